@@ -12,15 +12,8 @@
 
 enum { LONGEST_QUEUE = 256 };
 
-// A queue of finished pieces.
-typedef struct finished_pieces {
-    size_t *pieces;
-    char *results;
-    int count;
-} finished_pieces;
-
-// What the threads share. The mutex guards everything that changes, except `taken`, which is the
-// calling thread's.
+// What the threads share. The mutex guards everything that changes; the first finished piece is the
+// calling thread's until it is collected.
 typedef struct pool {
     const pool_work *work;
     pthread_mutex_t mutex;
@@ -28,8 +21,9 @@ typedef struct pool {
     size_t next;            // the first piece that no thread has taken
     int working;            // threads that have not ended
     bool stop;
-    int room;                        // pieces that a queue holds
-    finished_pieces finished, taken; // they change places when results are taken
+    size_t *pieces;            // finished ones, in a ring
+    char *results;             // of each
+    int room, first, finished; // places of the ring, the first finished piece, and how many
 } pool;
 
 typedef struct pool_thread {
@@ -65,12 +59,12 @@ static void *work_on_pieces(void *argument)
         pthread_mutex_lock(&p->mutex);
 
         // hand it over, when the calling thread has left room
-        while (p->finished.count == p->room) {
+        while (p->finished == p->room) {
             pthread_cond_wait(&p->changed, &p->mutex);
         }
-        int at = p->finished.count++;
-        p->finished.pieces[at] = piece;
-        memcpy(p->finished.results + (size_t)at * w->result_size, self->result, w->result_size);
+        const int at = (p->first + p->finished++) % p->room;
+        p->pieces[at] = piece;
+        memcpy(p->results + (size_t)at * w->result_size, self->result, w->result_size);
         pthread_cond_broadcast(&p->changed);
     }
     p->working--;
@@ -79,27 +73,21 @@ static void *work_on_pieces(void *argument)
     return NULL;
 }
 
-// Moves what is finished to p->taken, waiting a little for it. False if all threads have ended
-// and nothing is left.
-static bool fetch_finished(pool *p, bool stop)
+// Waits a little for a finished piece. Its place, -1 without one; *more is false if all threads
+// have ended and nothing is left.
+static int wait_for_piece(pool *p, bool stop, bool *more)
 {
-    struct timespec until = clock_after(TICK_INTERVAL);
+    const struct timespec until = clock_after(TICK_INTERVAL);
     pthread_mutex_lock(&p->mutex);
     p->stop = p->stop || stop;
     int waited = 0;
-    while (p->finished.count == 0 && p->working > 0 && waited == 0) {
+    while (p->finished == 0 && p->working > 0 && waited == 0) {
         waited = pthread_cond_timedwait(&p->changed, &p->mutex, &until);
     }
-
-    // the threads go on with the empty queue
-    bool more = p->finished.count > 0 || p->working > 0;
-    finished_pieces full = p->finished;
-    p->finished = p->taken;
-    p->finished.count = 0;
-    p->taken = full;
-    pthread_cond_broadcast(&p->changed);
+    const int at = p->finished > 0 ? p->first : -1;
+    *more = at >= 0 || p->working > 0;
     pthread_mutex_unlock(&p->mutex);
-    return more;
+    return at;
 }
 
 static bool asked_to_stop(const pool_work *w)
@@ -114,10 +102,18 @@ static status collect_results(pool *p, fault *f)
     status code = STATUS_OK;
     double ticked = clock_seconds(CLOCK_MONOTONIC);
     for (bool more = true; more;) {
-        more = fetch_finished(p, code != STATUS_OK || asked_to_stop(w));
-        for (int i = 0; i < p->taken.count && code == STATUS_OK; i++) {
-            const char *result = p->taken.results + (size_t)i * w->result_size;
-            code = w->collect(w->context, p->taken.pieces[i], result, f);
+        const int at = wait_for_piece(p, code != STATUS_OK || asked_to_stop(w), &more);
+        if (at >= 0 && code == STATUS_OK) {
+            code =
+                w->collect(w->context, p->pieces[at], p->results + (size_t)at * w->result_size, f);
+        }
+        if (at >= 0) {
+            pthread_mutex_lock(&p->mutex);
+            p->first = (at + 1) % p->room;
+            if (p->finished-- == p->room) {
+                pthread_cond_broadcast(&p->changed);
+            }
+            pthread_mutex_unlock(&p->mutex);
         }
 
         // a tick now and then, and one at the end
@@ -166,22 +162,15 @@ static int start_threads(pool *p, pool_thread *threads, int wanted)
     return started;
 }
 
-// Nothing is cleared: only what was put there is read, and large results are many megabytes.
-static bool allocate_queue(finished_pieces *queue, int room, size_t result_size)
-{
-    queue->count = 0;
-    queue->pieces = malloc((size_t)room * sizeof *queue->pieces);
-    queue->results = malloc((size_t)room * result_size);
-    return queue->pieces != NULL && queue->results != NULL;
-}
-
-// Both queues, and each thread's own storage; false without memory.
+// The ring, of which only what was put there is read, and each thread's own storage; false without
+// memory.
 static bool allocate(pool *p, pool_thread *threads, int count)
 {
     const pool_work *w = p->work;
     p->room = w->count < LONGEST_QUEUE ? (int)w->count + 1 : LONGEST_QUEUE;
-    bool allocated = allocate_queue(&p->finished, p->room, w->result_size) &&
-                     allocate_queue(&p->taken, p->room, w->result_size);
+    p->pieces = malloc((size_t)p->room * sizeof *p->pieces);
+    p->results = malloc((size_t)p->room * w->result_size); // may be many megabytes
+    bool allocated = p->pieces != NULL && p->results != NULL;
     for (int i = 0; i < count && allocated; i++) {
         threads[i].pool = p;
         threads[i].scratch = calloc(1, w->scratch_size + 1);
@@ -201,10 +190,8 @@ static void release(pool *p, pool_thread *threads, int count)
         free(threads[i].scratch);
         free(threads[i].result);
     }
-    free(p->finished.pieces);
-    free(p->finished.results);
-    free(p->taken.pieces);
-    free(p->taken.results);
+    free(p->pieces);
+    free(p->results);
 }
 
 status pool_run(const pool_work *work, int threads, fault *f)
