@@ -142,20 +142,6 @@ static status commit_and_report(void *context, bool over, fault *f)
     return code;
 }
 
-// Counts the runs of the share, in all and those present, and marks those of other shares so that
-// they are not computed here.
-static void keep_to_share(const sweep_execution *e, unsigned char *present)
-{
-    const sweep_share share = e->options->share;
-    *e->progress = (sweep_progress){0};
-    for (size_t run = 0; run < e->sweep->run_count; run++) {
-        bool own = share.parts == 0 || run % (size_t)share.parts == (size_t)(share.part - 1);
-        e->progress->total += own;
-        e->progress->done += own && present[run];
-        present[run] |= !own;
-    }
-}
-
 // Whether every run of the sweep is of a kind that gains by being computed side by side, and short:
 // two links, by the event method, under no law from outside the program.
 static bool runs_are_light(const sweep *s)
@@ -188,12 +174,16 @@ static size_t choose_together(const sweep_execution *e, int jobs)
     return share < 1 ? 1 : share < most ? share : most;
 }
 
-// Computes what is not present.
+// Computes what of the share is not present.
 static status run_missing(sweep_execution *e, const unsigned char *present, fault *f)
 {
-    e->wanted = malloc((e->sweep->run_count + 1) * sizeof *e->wanted);
+    sweep_progress *p = e->progress;
+    p->total = sweep_share_count(e->options->share, e->sweep->run_count);
+    e->wanted = malloc((p->total + 1) * sizeof *e->wanted);
     TRY_MEMORY(e->wanted != NULL, f);
-    for (size_t run = 0; run < e->sweep->run_count; run++) {
+    for (size_t i = 0; i < p->total; i++) {
+        const size_t run = sweep_share_run(e->options->share, i);
+        p->done += present[run];
         if (!present[run]) {
             e->wanted[e->count++] = run;
         }
@@ -242,7 +232,6 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
     size_t stored;
     status code = store->present(store, present, &stored, f);
     if (code == STATUS_OK) {
-        keep_to_share(&e, present);
         code = run_missing(&e, present, f);
         report(&e);
     }
