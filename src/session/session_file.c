@@ -54,6 +54,18 @@ static void write_input(FILE *stream, const session_input *in)
     }
 }
 
+// The parameters that a run starts with.
+static parameters started_with(const run_origin *from)
+{
+    parameters p = from->base.parameters;
+    for (const session_input *in = from->inputs; in < from->inputs + from->input_count; in++) {
+        if (in->kind == SESSION_INPUT_START) {
+            parameter_set_text(&p, in->parameter, in->text, NULL);
+        }
+    }
+    return p;
+}
+
 void session_file_write(FILE *stream, const session_file *file)
 {
     assert(file->run_count > 0);
@@ -147,7 +159,7 @@ static status read_change(const session_reader *r, const run_origin *from, sessi
                           const char *text)
 {
     char path[128];
-    parameters scratch = from->base.parameters;
+    parameters scratch = started_with(from);
     const size_t length = strcspn(text, " ");
     snprintf(path, sizeof path, "%.*s", (int)length, text);
     in->parameter = parameter_find(path);
@@ -156,15 +168,8 @@ static status read_change(const session_reader *r, const run_origin *from, sessi
     snprintf(in->text, sizeof in->text, "%s", text + length + (text[length] == ' '));
     const bool timed = in->kind == SESSION_INPUT_TIMED;
 
-    // among the values that the changes before it give
-    for (int i = 0; i < from->input_count; i++) {
-        const session_input *before = &from->inputs[i];
-        if (before->kind == SESSION_INPUT_START) {
-            parameter_set_text(&scratch, before->parameter, before->text, NULL);
-        }
-    }
-
-    // values that others must go with are checked with all of them, when the run is computed
+    // among the values that the changes before it give; values that others must go with are checked
+    // with all of them, when the run is computed
     fault f = {0};
     FAIL_IF((timed && !rig_can_change(&scratch, in->parameter)) ||
                 parameter_set_text(&scratch, in->parameter, in->text, &f) != STATUS_OK,
@@ -321,12 +326,7 @@ bool session_file_is_outdated(const session_file *file)
     bool outdated = false;
     for (int i = 0; i < file->run_count && !outdated; i++) {
         const run_origin *from = &file->runs[i].from;
-        parameters p = from->base.parameters;
-        for (int k = 0; k < from->input_count; k++) {
-            if (from->inputs[k].kind == SESSION_INPUT_START) {
-                parameter_set_text(&p, from->inputs[k].parameter, from->inputs[k].text, NULL);
-            }
-        }
+        const parameters p = started_with(from);
         char now[SHA256_TEXT];
         outside_digest_all(&p, now);
         outdated = from->outside[0] != '\0' && strcmp(now, from->outside) != 0;

@@ -6,7 +6,7 @@
 // begin with "| ".
 #pragma once
 
-#include "src/session/origin.h"
+#include "src/session/session.h"
 
 enum { SESSION_FILE_RUNS = 8, SESSION_FILE_NAME = 256, SESSION_FILE_LINES = 512 };
 
