@@ -267,13 +267,12 @@ status scenario_override_all(scenario *s, char *const *assignments, int count, f
 
     // something is wrong: those that can be applied are, so that the faults of the others are told
     // as long as fewer remain
-    int failures = count + 1, left = override_each(s, assignments, count, NULL, NULL);
-    while (left > 0 && left < failures) {
-        failures = left;
+    int before, left = count + 1;
+    do {
+        before = left;
         left = override_each(s, assignments, count, NULL, NULL);
-    }
-    if (left == 0 || override_each(s, assignments, count, report, context) == 0) {
-        return STATUS_OK;
-    }
-    return STATUS_BAD_ARGUMENT;
+    } while (left > 0 && left < before);
+    return left == 0 || override_each(s, assignments, count, report, context) == 0
+               ? STATUS_OK
+               : STATUS_BAD_ARGUMENT;
 }
