@@ -55,13 +55,10 @@ static double effect_time(const session *s)
 static status add_input(session *s, const session_input *in, fault *f)
 {
     // room for it
-    if (s->input_count == s->input_capacity) {
-        int capacity = s->input_capacity ? 2 * s->input_capacity : 16;
-        session_input *inputs = realloc(s->inputs, (size_t)capacity * sizeof *inputs);
-        TRY_MEMORY(inputs != NULL, f);
-        s->inputs = inputs;
-        s->input_capacity = capacity;
-    }
+    const int room = s->input_count < s->input_total ? s->input_total : s->input_count + 1;
+    session_input *inputs = realloc(s->inputs, (size_t)room * sizeof *inputs);
+    TRY_MEMORY(inputs != NULL, f);
+    s->inputs = inputs;
 
     // it takes the place of the first that could be redone, which comes back if the run fails
     session_input replaced = s->inputs[s->input_count];
@@ -297,16 +294,14 @@ status session_take_inputs(session *s, const session_input *inputs, int count, f
 
     // the old ones come back if their run cannot be computed
     session_input *const old = s->inputs;
-    const int old_count = s->input_count, old_total = s->input_total, old_room = s->input_capacity;
+    const int old_count = s->input_count, old_total = s->input_total;
     s->inputs = taken;
     s->input_count = s->input_total = count;
-    s->input_capacity = count + 1;
     const status code = session_compute(s, f);
     if (code != STATUS_OK) {
         s->inputs = old;
         s->input_count = old_count;
         s->input_total = old_total;
-        s->input_capacity = old_room;
         free(taken);
         return code;
     }

@@ -47,7 +47,7 @@ typedef struct session_input {
 typedef struct session {
     scenario base;         // as opened
     session_input *inputs; // inputs[0 .. input_count) are in effect, the rest can be redone
-    int input_count, input_total, input_capacity;
+    int input_count, input_total;
     scenario effective; // base with the inputs; owns its actions only
     run_result run;     // of `effective`
     run_result other;   // the run branched from

@@ -99,10 +99,9 @@ void session_file_write(FILE *stream, const session_file *file)
 typedef struct session_reader {
     session_file *file;
     const char *path;
-    int line; // from 1
-    scenario base;
-    bool has_base;
-    char *text; // of the scenario that is being read
+    int line;      // from 1
+    scenario base; // of zeroes before the first
+    char *text;    // of the scenario that is being read
     size_t length;
     char name[SESSION_FILE_NAME];
     fault *fault;
@@ -117,7 +116,7 @@ static status refuse(const session_reader *r, const char *what)
 static status end_base(session_reader *r)
 {
     if (r->text == NULL) {
-        return r->has_base ? STATUS_OK : refuse(r, "a run, expected a scenario before it");
+        return r->base.name != NULL ? STATUS_OK : refuse(r, "a run, expected a scenario before it");
     }
     fault first = {0};
     scenario fresh;
@@ -126,11 +125,8 @@ static status end_base(session_reader *r)
     free(r->text);
     r->text = NULL;
     FAIL_IF(code != STATUS_OK, refuse(r, first.text[0] ? first.text : status_text(code)));
-    if (r->has_base) {
-        scenario_finish(&r->base);
-    }
+    scenario_finish(&r->base);
     r->base = fresh;
-    r->has_base = true;
     return STATUS_OK;
 }
 
@@ -311,9 +307,7 @@ status session_file_read(session_file *file, const char *path, fault *f)
     const status code = read_lines(&r, stream);
     fclose(stream);
     free(r.text);
-    if (r.has_base) {
-        scenario_finish(&r.base);
-    }
+    scenario_finish(&r.base);
     if (code != STATUS_OK) {
         session_file_finish(file);
         return fault_set(f, own.code, "%s", own.text);

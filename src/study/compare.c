@@ -153,93 +153,79 @@ static void format_varied(const compare_table *t, int row, int which, char *text
     sweep_axis_format(&t->varied[which], t->rows[row].varied[which], text, size);
 }
 
-// "peak/N", or "peak [N]" for a page.
-static void format_heading(const char *name, const char *unit, bool page, char *text, size_t size)
-{
-    const char *open = unit[0] == '\0' ? "" : page ? " [" : "/";
-    snprintf(text, size, "%s%s%s%s", name, open, unit, unit[0] != '\0' && page ? "]" : "");
-}
+// Columns of the table: names, what was varied, results.
+enum { SCENARIO, LAW, NAMES, MOST_COLUMNS = NAMES + COMPARE_MOST_VARIED + COMPARE_QUANTITIES };
 
-// Heading of a varied parameter: its path without the group, which the columns have no room for.
-static void format_varied_heading(const compare_table *t, int which, bool page, char *text,
-                                  size_t size)
+// The cell of a row, of row -1 the heading, which a text may have room for; NULL in a column that
+// is not shown. A varied parameter is headed by its path without the group, for which there is no
+// room.
+static const char *cell_of(const compare_table *t, int row, int column, bool page,
+                           char text[PARAMETER_TEXT_SIZE])
 {
-    const sweep_axis *axis = &t->varied[which];
-    const char *own = settings_name(axis->name);
-    format_heading(own != NULL ? own : strchr(axis->name, '.') + 1,
-                   sweep_axis_parameter(axis)->unit, page, text, size);
-}
-
-static int longest(const compare_table *t, bool law)
-{
-    int width = (int)strlen(law ? "law" : "scenario");
-    for (int i = 0; i < t->count; i++) {
-        int length = (int)strlen(law ? t->rows[i].law : t->rows[i].scenario);
-        width = length > width ? length : width;
+    const compare_row *of = row < 0 ? NULL : &t->rows[row];
+    const int v = column - NAMES, k = v - t->varied_count;
+    if (column < NAMES) {
+        return of == NULL           ? (column == LAW ? "law" : "scenario")
+               : column == SCENARIO ? of->scenario
+                                    : of->law;
     }
-    return width;
-}
-
-static int varied_width(const compare_table *t, int which)
-{
-    char text[PARAMETER_TEXT_SIZE];
-    format_varied_heading(t, which, false, text, sizeof text);
-    int width = (int)strlen(text);
-    for (int i = 0; i < t->count; i++) {
-        format_varied(t, i, which, text, sizeof text);
-        width = (int)strlen(text) > width ? (int)strlen(text) : width;
+    if (k >= 0 && t->hidden[k]) {
+        return NULL;
     }
-    return width;
-}
 
-// A result as people see it.
-static void format_result(double value, bool page, char *text, size_t size)
-{
-    const char *format = !page ? "%.4g" : fabs(value) >= 999.5 ? "%.0f" : "%.3g";
-    if (isnan(value)) {
-        snprintf(text, size, "%s", page ? "–" : "-");
+    // a value, or "peak/N", for a page "peak [N]"
+    if (of == NULL) {
+        const sweep_axis *axis = k < 0 ? &t->varied[v] : NULL;
+        const char *own = k < 0 ? settings_name(axis->name) : NULL;
+        const char *name = k >= 0        ? compare_quantities[k].heading
+                           : own != NULL ? own
+                                         : strchr(axis->name, '.') + 1;
+        const char *unit = k >= 0 ? compare_quantities[k].unit : sweep_axis_parameter(axis)->unit;
+        const char *open = unit[0] == '\0' ? "" : page ? " [" : "/";
+        snprintf(text, PARAMETER_TEXT_SIZE, "%s%s%s%s", name, open, unit,
+                 unit[0] != '\0' && page ? "]" : "");
+    } else if (k < 0) {
+        format_varied(t, row, v, text, PARAMETER_TEXT_SIZE);
     } else {
-        decimal_print(text, size, format, value);
+        const double value = of->values[k];
+        decimal_print(text, PARAMETER_TEXT_SIZE,
+                      isnan(value)           ? (page ? "–" : "-")
+                      : !page                ? "%.4g"
+                      : fabs(value) >= 999.5 ? "%.0f"
+                                             : "%.3g",
+                      value);
     }
+    return k < 0 || page ? text : strcat(text, of != NULL && marked(t, row, k) ? "*" : " ");
 }
 
-// The table in columns of blanks, results marked where they differ, or of a Markdown page.
 void compare_text(FILE *stream, const compare_table *t, bool page)
 {
-    const int width = -longest(t, false), law = -longest(t, true);
+    const int columns = NAMES + t->varied_count + COMPARE_QUANTITIES;
+    int widths[MOST_COLUMNS];
     char text[PARAMETER_TEXT_SIZE];
 
-    // the headings, then a line each: names, what was varied, results
-    for (int i = -1; i < t->count; i++) {
-        const compare_row *row = i < 0 ? NULL : &t->rows[i];
-        int column = 0;
-        result_print(stream, page, column++, width, row != NULL ? row->scenario : "scenario");
-        result_print(stream, page, column++, law, row != NULL ? row->law : "law");
-        for (int v = 0; v < t->varied_count; v++) {
-            if (row != NULL) {
-                format_varied(t, i, v, text, sizeof text);
-            } else {
-                format_varied_heading(t, v, page, text, sizeof text);
-            }
-            result_print(stream, page, column++, varied_width(t, v), text);
+    // names and what was varied are as wide as they have to be, names to the left
+    for (int c = 0; c < columns; c++) {
+        widths[c] = c < NAMES + t->varied_count ? 0 : 12;
+        for (int i = -1; i < t->count && c < NAMES + t->varied_count; i++) {
+            const int length = (int)strlen(cell_of(t, i, c, false, text));
+            widths[c] = length > widths[c] ? length : widths[c];
         }
+        widths[c] *= c < NAMES ? -1 : 1;
+    }
 
-        for (int k = 0; k < COMPARE_QUANTITIES; k++) {
-            const compare_quantity *quantity = &compare_quantities[k];
-            if (t->hidden[k]) {
-                continue;
+    // the headings, then a line each
+    for (int i = -1; i < t->count; i++) {
+        int shown = 0;
+        for (int c = 0; c < columns; c++) {
+            const char *cell = cell_of(t, i, c, page, text);
+            if (cell != NULL) {
+                result_print(stream, page, shown++, widths[c], cell);
             }
-            if (row != NULL) {
-                format_result(row->values[k], page, text, sizeof text - 1);
-            } else {
-                format_heading(quantity->heading, quantity->unit, page, text, sizeof text - 1);
-            }
-            strcat(text, page ? "" : row != NULL && marked(t, i, k) ? "*" : " ");
-            result_print(stream, page, column++, 12, text);
         }
-        fprintf(stream, "%s\n", page || row == NULL || row->ok ? "" : " failed");
-        if (page && row == NULL) {
-            result_page_rule(stream, column);
+        fprintf(stream, "%s\n", page || i < 0 || t->rows[i].ok ? "" : " failed");
+        if (page && i < 0) {
+            result_page_rule(stream, shown);
         }
     }
 }

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -25,9 +26,7 @@ static struct ticker {
     double duration;    // of the run [s]
     bool ticks;         // the thread is there
     pthread_t thread;
-    pthread_mutex_t lock;
-    pthread_cond_t ended;
-    bool over;               // under the lock
+    sem_t over;
     struct sigaction before; // what an interrupt did
 } ticker;
 
@@ -55,18 +54,14 @@ static void *tick(void *argument)
     struct ticker *t = argument;
     bool told = false;
     struct timespec next = clock_after(FIRST_NOTE);
-    pthread_mutex_lock(&t->lock);
 
     // a note now and then until the work is over
-    while (!t->over) {
-        if (pthread_cond_timedwait(&t->ended, &t->lock, &next) != 0) {
-            tell(t);
-            told = true;
-            next = clock_after(NEXT_NOTE);
-        }
+    while (sem_clockwait(&t->over, CLOCK_MONOTONIC, &next) != 0) {
+        tell(t);
+        told = true;
+        next = clock_after(NEXT_NOTE);
     }
 
-    pthread_mutex_unlock(&t->lock);
     if (told) {
         fprintf(stderr, "\r%60s\r", "");
         fflush(stderr);
@@ -77,14 +72,9 @@ static void *tick(void *argument)
 static void begin(const arguments *a)
 {
     struct sigaction act = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
-    pthread_condattr_t steady;
     watched = (run_monitor){.stop = false};
-    ticker.over = ticker.ticks = false;
-    pthread_mutex_init(&ticker.lock, NULL);
-    pthread_condattr_init(&steady);
-    pthread_condattr_setclock(&steady, CLOCK_MONOTONIC);
-    pthread_cond_init(&ticker.ended, &steady);
-    pthread_condattr_destroy(&steady);
+    ticker.ticks = false;
+    sem_init(&ticker.over, 0, 0);
 
     // an interrupt ends the work in order; where it is ignored it stays so
     sigaction(SIGINT, &act, &ticker.before);
@@ -116,17 +106,13 @@ run_monitor *work_begin(const arguments *a, const char *pieces, int total)
 void work_end(void)
 {
     // the notes end before anything else is printed
-    pthread_mutex_lock(&ticker.lock);
-    ticker.over = true;
-    pthread_cond_signal(&ticker.ended);
-    pthread_mutex_unlock(&ticker.lock);
+    sem_post(&ticker.over);
     if (ticker.ticks) {
         pthread_join(ticker.thread, NULL);
     }
 
     sigaction(SIGINT, &ticker.before, NULL);
-    pthread_mutex_destroy(&ticker.lock);
-    pthread_cond_destroy(&ticker.ended);
+    sem_destroy(&ticker.over);
 }
 
 int work_finish(const arguments *a, status code, const fault *f, const command_results *r,

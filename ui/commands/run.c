@@ -141,6 +141,9 @@ static int run_and_report(const arguments *a, scenario *s)
 {
     run_result result;
     bool keep_trace = a->csv != NULL || a->plot != NULL || a->scene != NULL;
+
+    // what the file expects is said of its own parameters, not of changed ones
+    s->expectation_count = a->sets.count > 0 ? 0 : s->expectation_count;
     status code = run_with_progress(a, s, keep_trace, &result);
 
     // results are written of a run that failed, too
@@ -179,21 +182,12 @@ static int run_and_report(const arguments *a, scenario *s)
     return exit_status;
 }
 
-static int run_unless_changed(const arguments *a, scenario *s)
-{
-    // what the file expects is said of its own parameters, not of changed ones
-    if (a->sets.count > 0) {
-        s->expectation_count = 0;
-    }
-    return run_and_report(a, s);
-}
-
 static int run(const arguments *a)
 {
     figure_options pictures;
     int result = check_scene(a);
     result = result == EXIT_DONE ? read_picture_options(a, &pictures) : result;
-    return result == EXIT_DONE ? with_scenario(a->operands[0], a, run_unless_changed) : result;
+    return result == EXIT_DONE ? with_scenario(a->operands[0], a, run_and_report) : result;
 }
 
 static const option_row rows[] = {

@@ -113,33 +113,32 @@ static status create_tables(sweep_database *store, const definition *d, fault *f
 }
 
 // STATUS_OK if the definition that the database holds is the sweep's.
-static status check_definition(sweep_database *store, const definition *now, fault *f)
+static status check_definition(sweep_database *store, fault *f)
 {
-    definition was;
-    status code = read_definition(store, &was, f);
-    code = code == STATUS_OK ? definition_compare(store->path, &was, now, f) : code;
+    definition was = {.count = 0}, now;
+    status code = definition_init(&now, store->sweep, f);
+    code = code == STATUS_OK ? read_definition(store, &was, f) : code;
+    code = code == STATUS_OK ? definition_compare(store->path, &was, &now, f) : code;
     definition_finish(&was);
+    definition_finish(&now);
     return code;
 }
 
 // Continues the sweep in the database or starts it.
 static status adopt(sweep_database *store, fault *f)
 {
-    definition now;
     bool empty;
     TRY(database_recognise(store, &empty, f));
 
     // what lies outside is looked at before it is read: later it can only be newer
     definition_stamp(store->sweep, store->stamp);
-    status code = definition_init(&now, store->sweep, f);
-
-    // a new file is given the definition, another one must have the same
-    if (code == STATUS_OK && empty) {
-        code = create_tables(store, &now, f);
-    } else if (code == STATUS_OK) {
-        code = check_definition(store, &now, f);
-        code = code == STATUS_OK ? database_check_runs(store, f) : code;
+    if (!empty) {
+        TRY(check_definition(store, f));
+        return database_check_runs(store, f);
     }
+    definition now;
+    status code = definition_init(&now, store->sweep, f);
+    code = code == STATUS_OK ? create_tables(store, &now, f) : code;
     definition_finish(&now);
     return code;
 }
@@ -152,19 +151,12 @@ static status check_outside(sweep_database *store, fault *f)
         return STATUS_OK;
     }
     definition_stamp(store->sweep, stamp);
-    if (strcmp(stamp, store->stamp) == 0) {
-        return STATUS_OK;
-    }
-
-    // written to, but perhaps with the same content
-    definition now;
-    status code = definition_init(&now, store->sweep, f);
-    code = code == STATUS_OK ? check_definition(store, &now, f) : code;
-    definition_finish(&now);
-    if (code == STATUS_OK) {
+    if (strcmp(stamp, store->stamp) != 0) {
+        // written to, but perhaps with the same content
+        TRY(check_definition(store, f));
         memcpy(store->stamp, stamp, sizeof stamp);
     }
-    return code;
+    return STATUS_OK;
 }
 
 // Keeps a second sweep from writing to the same file. The descriptor stays open as long as the
