@@ -162,16 +162,13 @@ int impactlab_scenario_text(const impactlab_scenario *handle, const char *path, 
     TRY((status)api_axis(path, &axis, error));
 
     // whole or not at all
-    char whole[PARAMETER_TEXT_SIZE];
-    if (settings_name(path) != NULL) {
-        double value;
-        const bool given = settings_get(&handle->scenario.parameters, settings_name(path), &value);
-        snprintf(whole, sizeof whole, "%s", "");
-        if (given) {
-            number_format_short(whole, value);
-        }
-    } else {
-        parameter_format(&handle->scenario.parameters, axis.parameter, whole, sizeof whole);
+    const parameters *p = &handle->scenario.parameters;
+    char whole[PARAMETER_TEXT_SIZE] = "";
+    double value;
+    if (settings_name(path) == NULL) {
+        parameter_format(p, axis.parameter, whole, sizeof whole);
+    } else if (settings_get(p, settings_name(path), &value)) {
+        number_format_short(whole, value);
     }
     size_t length = strlen(whole) + 1;
     FAIL_IF(length > size, api_fail(error, STATUS_BAD_ARGUMENT,

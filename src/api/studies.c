@@ -87,15 +87,12 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
     jobs = wanted < 1 ? 1 : wanted > POOL_MOST_THREADS ? POOL_MOST_THREADS : (int)wanted;
 
     // which parameters
+    int code = IMPACTLAB_OK;
     sweep_axis *axes = calloc(path_count + 1, sizeof *axes);
     FAIL_IF(axes == NULL, api_fail(error, STATUS_NO_MEMORY, "no memory for a batch"));
-    for (size_t k = 0; k < path_count; k++) {
-        const int code = paths[k] != NULL ? api_axis(paths[k], &axes[k], error)
-                                          : api_missing(error, "paths[i]", 0);
-        if (code != IMPACTLAB_OK) {
-            free(axes);
-            return code;
-        }
+    for (size_t k = 0; k < path_count && code == IMPACTLAB_OK; k++) {
+        code = paths[k] != NULL ? api_axis(paths[k], &axes[k], error)
+                                : api_missing(error, "paths[i]", 0);
     }
 
     // all values before anything is run
@@ -103,14 +100,12 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
         .base = &handle->scenario, .axes = axes, .values = values, .axis_count = path_count};
     fault f = {.text = "", .path = ""};
     scenario tried;
-    for (size_t i = 0; i < count; i++) {
-        if (vary(&v, i, &tried, &f) != STATUS_OK) {
-            free(axes);
-            return api_fail(error, f.code, "run %zu: %.900s", i, f.text);
-        }
+    for (size_t i = 0; i < count && code == IMPACTLAB_OK; i++) {
+        code = vary(&v, i, &tried, &f) == STATUS_OK
+                   ? IMPACTLAB_OK
+                   : api_fail(error, f.code, "run %zu: %.900s", i, f.text);
     }
-
-    int code = run_varied(&v, count, jobs, take, context, error);
+    code = code == IMPACTLAB_OK ? run_varied(&v, count, jobs, take, context, error) : code;
     free(axes);
     return code;
 }

@@ -1,6 +1,4 @@
 // The tables of parameters, signals and quantities as the library shows them.
-#include <pthread.h>
-
 #include "src/api/handles.h"
 #include "src/base/shipped.h"
 #include "src/tables/summary.h"
@@ -10,7 +8,6 @@ enum { PARAMETERS_AT_MOST = sizeof((parameters *)0)->set };
 static impactlab_parameter parameter_rows[PARAMETERS_AT_MOST];
 static impactlab_signal signal_rows[SIGNALS_AT_MOST];
 static impactlab_quantity quantity_rows[SUMMARY_NUMBERS];
-static pthread_once_t filled = PTHREAD_ONCE_INIT;
 
 static impactlab_parameter parameter_row(const parameter_info *info)
 {
@@ -32,8 +29,9 @@ static impactlab_parameter parameter_row(const parameter_info *info)
                                  .timed = info->timed};
 }
 
-// The rows point into the tables of the program, which say the same under other names.
-static void fill(void)
+// The rows point into the tables of the program, which say the same under other names; filled in
+// before the program begins.
+static __attribute__((constructor)) void fill(void)
 {
     for (int i = 0; i < parameter_count; i++) {
         parameter_rows[i] = parameter_row(&parameter_table[i]);
@@ -53,19 +51,16 @@ static void fill(void)
 
 const impactlab_parameter *impactlab_parameter_at(size_t index)
 {
-    pthread_once(&filled, fill);
     return index < (size_t)parameter_count ? &parameter_rows[index] : NULL;
 }
 
 const impactlab_signal *impactlab_signal_at(size_t index)
 {
-    pthread_once(&filled, fill);
     return index < (size_t)signal_count ? &signal_rows[index] : NULL;
 }
 
 const impactlab_quantity *impactlab_quantity_at(size_t index)
 {
-    pthread_once(&filled, fill);
     return index < (size_t)summary_count ? &quantity_rows[index] : NULL;
 }
 

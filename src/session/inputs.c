@@ -130,18 +130,15 @@ static status begin_adjusting(session *s, int parameter, const char *text, fault
     return code;
 }
 
-// Whether an input gave a parameter a value, of one number of control.settings the same one.
-static bool gave_value(const session_input *in, int parameter, const char *text)
-{
-    return in->kind != SESSION_INPUT_PUSH && in->parameter == parameter &&
-           (text[0] != '.' || strncmp(in->text, text, strcspn(text, "=") + 1) == 0);
-}
-
 status session_adjust(session *s, int parameter, const char *text, fault *f)
 {
     assert(parameter >= 0 && parameter < parameter_count);
     const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
-    if (last == NULL || !gave_value(last, parameter, text) || last->time != s->now) {
+
+    // of control.settings the same number
+    const size_t name = text[0] == '.' ? strcspn(text, "=") + 1 : 0;
+    if (last == NULL || last->kind == SESSION_INPUT_PUSH || last->parameter != parameter ||
+        strncmp(last->text, text, name) != 0 || last->time != s->now) {
         return begin_adjusting(s, parameter, text, f);
     }
 

@@ -164,26 +164,6 @@ void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t 
     parameter_format(&scratch, axis->parameter, text, size);
 }
 
-// Cuts text at every separator. Returns the number of pieces, at most `most` + 1; those beyond
-// `most` are not stored.
-static size_t split(char *text, char separator, char **pieces, size_t most)
-{
-    size_t count = 0;
-
-    // one piece too many is enough to know
-    for (char *next = text; next != NULL && count <= most; count++) {
-        char *end = strchr(next, separator);
-        if (count < most) {
-            pieces[count] = next;
-        }
-        if (end != NULL) {
-            *end++ = '\0';
-        }
-        next = end;
-    }
-    return count;
-}
-
 double sweep_axis_point(const sweep_axis *axis, size_t i, size_t n)
 {
     assert(n >= 2 && i < n);
@@ -233,29 +213,15 @@ static status read_count(const char *text, size_t *count, fault *f)
     return STATUS_OK;
 }
 
-// The range's text in one way of writing, for comparing sweeps.
-static status describe_range(sweep_axis *axis, size_t n, fault *f)
-{
-    char low[128], high[128], count[32] = "";
-    sweep_axis_format(axis, axis->low, low, sizeof low);
-    sweep_axis_format(axis, axis->high, high, sizeof high);
-    if (n > 0) {
-        snprintf(count, sizeof count, ":%zu", n);
-    }
-    if (asprintf(&axis->text, "%s:%s%s%s", low, high, count, axis->logarithmic ? ":log" : "") < 0) {
-        axis->text = NULL;
-        return fault_no_memory(f);
-    }
-    return STATUS_OK;
-}
-
 // Reads "a:b", "a:b:n" or either with ":log".
 static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
 {
-    char *pieces[4];
-    size_t count = split(text, ':', pieces, 4), n = 0;
-
+    char *pieces[5], low[SWEEP_VALUE_TEXT], high[SWEEP_VALUE_TEXT], number[32] = "";
+    size_t count = 0, n = 0;
     axis->is_range = true;
+    while (count < 5 && (pieces[count] = strsep(&text, ":")) != NULL) {
+        count++;
+    }
 
     // only numbers have a range
     const char *choices = sweep_axis_parameter(axis)->choices;
@@ -289,7 +255,17 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
     FAIL_IF(axis->logarithmic && !(axis->low > 0 && axis->high > 0),
             fault_set(f, STATUS_BAD_ARGUMENT, "a logarithmic range needs ends above zero"));
 
-    TRY(describe_range(axis, drawn ? 0 : n, f));
+    // its text in one way of writing, for comparing sweeps
+    sweep_axis_format(axis, axis->low, low, sizeof low);
+    sweep_axis_format(axis, axis->high, high, sizeof high);
+    if (!drawn) {
+        snprintf(number, sizeof number, ":%zu", n);
+    }
+    if (asprintf(&axis->text, "%s:%s%s%s", low, high, number, axis->logarithmic ? ":log" : "") <
+        0) {
+        axis->text = NULL;
+        return fault_no_memory(f);
+    }
     return drawn ? STATUS_OK : fill_range(axis, n, f);
 }
 
@@ -306,30 +282,24 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
                       MOST_VALUES, most));
 
     // room for as many as there are commas, and the text as it would be written
-    char **pieces = malloc(most * sizeof *pieces);
     axis->values = malloc(most * sizeof *axis->values);
-    axis->text = calloc(most, 128);
-    status code = pieces && axis->values && axis->text ? STATUS_OK : fault_no_memory(f);
-    axis->count = code == STATUS_OK ? split(text, ',', pieces, most) : 0;
-
-    // in a grid each value once
+    axis->text = calloc(most, SWEEP_VALUE_TEXT);
+    TRY_MEMORY(axis->values != NULL && axis->text != NULL, f);
     char *end = axis->text;
-    for (size_t i = 0; i < axis->count && code == STATUS_OK; i++) {
-        code = read_value(axis, pieces[i], &axis->values[i], f);
-        for (size_t j = 0; !drawn && j < i && code == STATUS_OK; j++) {
-            if (axis->values[i] == axis->values[j]) {
-                code = fault_set(f, STATUS_BAD_ARGUMENT, "'%.60s' stands there twice", pieces[i]);
-            }
-        }
-        if (code == STATUS_OK) {
-            char value[127];
-            sweep_axis_format(axis, axis->values[i], value, sizeof value);
-            end += sprintf(end, "%s%s", i > 0 ? "," : "", value);
-        }
-    }
+    for (char *piece; (piece = strsep(&text, ",")) != NULL; axis->count++) {
+        char value[SWEEP_VALUE_TEXT - 1];
+        double *here = &axis->values[axis->count];
+        TRY(read_value(axis, piece, here, f));
 
-    free(pieces);
-    return code;
+        // in a grid each value once
+        for (const double *other = axis->values; !drawn && other < here; other++) {
+            FAIL_IF(*other == *here,
+                    fault_set(f, STATUS_BAD_ARGUMENT, "'%.60s' stands there twice", piece));
+        }
+        sweep_axis_format(axis, *here, value, sizeof value);
+        end += sprintf(end, "%s%s", axis->count > 0 ? "," : "", value);
+    }
+    return STATUS_OK;
 }
 
 status sweep_axis_parse(sweep_axis *axis, const char *values, bool drawn, fault *f)

@@ -210,16 +210,6 @@ const command figures_command = {
 
 // --- plot -------------------------------------------------------------------------------------
 
-// The recipe's name with .png, in the present folder; NULL without memory.
-static char *default_name(const char *recipe)
-{
-    const char *slash = strrchr(recipe, '/'), *name = slash != NULL ? slash + 1 : recipe;
-    const char *dot = strrchr(name, '.');
-    const size_t length = dot != NULL && dot != name ? (size_t)(dot - name) : strlen(name);
-    char *path = NULL;
-    return asprintf(&path, "%.*s.png", (int)length, name) < 0 ? NULL : path;
-}
-
 static int plot(const arguments *a)
 {
     figure_options o;
@@ -233,7 +223,16 @@ static int plot(const arguments *a)
                         o.overlay != NULL ? "overlay" : "signals");
     }
     FAIL_IF(code != EXIT_DONE, code);
-    char *path = a->plot != NULL ? strdup(a->plot) : default_name(a->operands[0]);
+
+    // the recipe's name with .png, in the present folder, unless there is another
+    const char *slash = strrchr(a->operands[0], '/');
+    const char *name = slash != NULL ? slash + 1 : a->operands[0], *dot = strrchr(name, '.');
+    const int length = dot != NULL && dot != name ? (int)(dot - name) : (int)strlen(name);
+    char *path = NULL;
+    if (a->plot != NULL ? asprintf(&path, "%s", a->plot) < 0
+                        : asprintf(&path, "%.*s.png", length, name) < 0) {
+        path = NULL;
+    }
     status done = path != NULL ? picture_check_path(path, &f) : fault_no_memory(&f);
 
     // faults in the recipe are reported as they are found and leave f empty

@@ -20,18 +20,6 @@ static const char *value_text(const parameters *p, const char *path, char *text)
     return text;
 }
 
-static void print_heading(const scenario *s)
-{
-    char model[128], joint[128], wall[128], method[128];
-    const parameters *p = &s->parameters;
-    say_title(s);
-    printf("%s model, %d link%s, %s hub, %s wall, %g V, method %s, h = %g s, %g s\n\n",
-           value_text(p, "arm.model", model), p->arm.links, p->arm.links == 1 ? "" : "s",
-           value_text(p, "arm.hub_joint", joint),
-           p->wall.kind == WALL_NONE ? "no" : value_text(p, "wall.kind", wall), p->motor.voltage,
-           value_text(p, "method.name", method), p->method.step, p->run.duration);
-}
-
 static void print_quantities(const summary *m)
 {
     for (int i = 0; i < summary_count; i++) {
@@ -126,7 +114,14 @@ static int plot_signals(const arguments *a, const scenario *s, const void *found
 static void print_run(const scenario *s, const void *found)
 {
     const run_result *result = found;
-    print_heading(s);
+    char model[128], joint[128], wall[128], method[128];
+    const parameters *p = &s->parameters;
+    say_title(s);
+    printf("%s model, %d link%s, %s hub, %s wall, %g V, method %s, h = %g s, %g s\n\n",
+           value_text(p, "arm.model", model), p->arm.links, p->arm.links == 1 ? "" : "s",
+           value_text(p, "arm.hub_joint", joint),
+           p->wall.kind == WALL_NONE ? "no" : value_text(p, "wall.kind", wall), p->motor.voltage,
+           value_text(p, "method.name", method), p->method.step, p->run.duration);
 
     // what failed before its first step has no numbers: the sentence that follows says why
     if (result->summary.status != STATUS_OK && result->summary.steps == 0) {
