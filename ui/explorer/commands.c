@@ -284,19 +284,18 @@ bool act_remember(explorer_state *st, const char *argument)
 {
     char path[1024];
     whole_file file;
-    fault f = {0};
     FAIL_IF(!user_file("lab", path, sizeof path, true),
             act_refuse(st, "there is no folder for settings (XDG_CONFIG_HOME or HOME)"));
     FAIL_IF(st->settings_broken,
             act_refuse(st, "%s has faults and is left alone: mend or remove it", path));
 
     // whole or not at all
-    status code = whole_file_open(&file, path, &f);
+    status code = whole_file_open(&file, path, &st->fault);
     if (code == STATUS_OK) {
         write_settings(st, file.stream);
-        code = whole_file_commit(&file, &f);
+        code = whole_file_commit(&file, &st->fault);
     }
-    return code == STATUS_OK ? act_tell(st, "settings kept in %s", path) : act_worked(st, code, &f);
+    return code == STATUS_OK ? act_tell(st, "settings kept in %s", path) : act_worked(st, code);
 }
 
 // --- the first visit --------------------------------------------------------------------------

@@ -155,19 +155,18 @@ static bool save_over(explorer_state *st, const char *name)
     FAIL_IF(kind == KINDS,
             act_refuse(st, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt"));
 
-    fault f = {0};
     status code;
     whole_file file;
     if (kinds[kind].write == NULL) {
-        code = write_figure(st, name, &f);
-    } else if ((code = whole_file_open(&file, name, &f)) == STATUS_OK) {
+        code = write_figure(st, name, &st->fault);
+    } else if ((code = whole_file_open(&file, name, &st->fault)) == STATUS_OK) {
         kinds[kind].write(st, file.stream);
-        code = whole_file_commit(&file, &f);
+        code = whole_file_commit(&file, &st->fault);
     }
     if (code == STATUS_OK && ends_with(name, ".yaml")) {
         st->saved_version = state_run_id(st);
     }
-    return code == STATUS_OK ? tell_saved(st, name) : act_worked(st, code, &f);
+    return code == STATUS_OK ? tell_saved(st, name) : act_worked(st, code);
 }
 
 bool act_save(explorer_state *st, const char *argument)
@@ -194,7 +193,6 @@ bool act_scene(explorer_state *st, const char *argument)
 {
     const session *s = &st->session;
     const scene_options options = {0};
-    fault f = {0};
 
     // without a name the prompt proposes one
     if (argument[0] == '\0') {
@@ -217,7 +215,7 @@ bool act_scene(explorer_state *st, const char *argument)
                                    .options = options,
                                    .times = &s->now,
                                    .count = 1};
-    return act_worked(st, scene_write(&picture, argument, &f), &f) && tell_saved(st, argument);
+    return act_worked(st, scene_write(&picture, argument, &st->fault)) && tell_saved(st, argument);
 }
 
 // --- the clipboard ----------------------------------------------------------------------------

@@ -143,12 +143,11 @@ static status write_session(explorer_state *st, const char *path, fault *f)
 
 static bool save_session(explorer_state *st, const char *path)
 {
-    fault f = {0};
 
     // a file is replaced only if it is the one this visit goes on with
     FAIL_IF(access(path, F_OK) == 0 && strcmp(path, st->session_path) != 0,
             act_refuse(st, "%.200s is there already: give the session another name", path));
-    if (!act_need_whole_run(st) || !act_worked(st, write_session(st, path, &f), &f)) {
+    if (!act_need_whole_run(st) || !act_worked(st, write_session(st, path, &st->fault))) {
         return false;
     }
     snprintf(st->session_path, sizeof st->session_path, "%s", path);
@@ -177,31 +176,30 @@ static status pin_kept(explorer_state *st, const kept_run *k, fault *f)
 // Takes what a file says, all of it or nothing.
 static bool take_session(explorer_state *st, const session_file *file)
 {
-    fault f = {0};
     session fresh;
     const int before = st->pinned.count, baseline = st->pinned.baseline;
     FAIL_IF(before + file->run_count - 1 > PINNED_RUNS,
             act_refuse(st, "its %d pinned runs have no room beside the %d here: R drops some",
                        file->run_count - 1, before));
-    status code = session_reopen(&fresh, &file->runs[0].from, st->session.patience, &f);
+    status code = session_reopen(&fresh, &file->runs[0].from, st->session.patience, &st->fault);
     if (code != STATUS_OK) {
-        return act_worked(st, code, &f);
+        return act_worked(st, code);
     }
     for (int i = 1; i < file->run_count && code == STATUS_OK; i++) {
-        code = pin_kept(st, &file->runs[i], &f);
+        code = pin_kept(st, &file->runs[i], &st->fault);
     }
 
     // the baseline is the file's, else the one that was
     const int kept = file->baseline >= 0 ? before + file->baseline : baseline;
     st->pinned.baseline = kept < st->pinned.count ? kept : st->pinned.count - 1;
-    code = code == STATUS_OK ? state_take_session(st, &fresh, &f) : code;
+    code = code == STATUS_OK ? state_take_session(st, &fresh, &st->fault) : code;
     if (code != STATUS_OK) {
         while (st->pinned.count > before) {
             run_list_drop(&st->pinned, st->pinned.count - 1);
         }
         st->pinned.baseline = baseline;
         session_finish(&fresh);
-        return act_worked(st, code, &f);
+        return act_worked(st, code);
     }
     return true;
 }
@@ -209,8 +207,7 @@ static bool take_session(explorer_state *st, const session_file *file)
 bool explorer_open_session(explorer_state *st, const char *path)
 {
     static session_file file;
-    fault f = {0};
-    if (!act_worked(st, session_file_read(&file, path, &f), &f)) {
+    if (!act_worked(st, session_file_read(&file, path, &st->fault))) {
         return false;
     }
 

@@ -48,9 +48,11 @@ bool act_refuse(explorer_state *st, const char *format, ...)
     return false;
 }
 
-bool act_worked(explorer_state *st, status code, const fault *f)
+bool act_worked(explorer_state *st, status code)
 {
-    return code == STATUS_OK || act_refuse(st, "%s", f->text[0] ? f->text : status_text(code));
+    const fault f = st->fault;
+    st->fault = (fault){0};
+    return code == STATUS_OK || act_refuse(st, "%s", f.text[0] ? f.text : status_text(code));
 }
 
 bool act_read_number(explorer_state *st, const char *text, double *value)
@@ -186,7 +188,6 @@ bool act_give(explorer_state *st, int parameter, const char *text)
 {
     assert(parameter >= 0 && parameter < parameter_count);
     session_forget_ghost(&st->session);
-    fault f = {0};
-    return act_worked(st, session_change(&st->session, parameter, text, &f), &f) &&
+    return act_worked(st, session_change(&st->session, parameter, text, &st->fault)) &&
            act_tell_change(st);
 }

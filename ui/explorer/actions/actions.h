@@ -28,8 +28,8 @@ bool act_warn(explorer_state *st, const char *format, ...) __attribute__((format
 bool act_hush(explorer_state *st);
 // Not done: the argument is not what the action expects.
 bool act_refuse(explorer_state *st, const char *format, ...) __attribute__((format(printf, 2, 3)));
-// Whether a call that returned `code` worked; if not, its fault is the message.
-bool act_worked(explorer_state *st, status code, const fault *f);
+// Whether a call that returned `code` worked; if not, the state's fault is the message.
+bool act_worked(explorer_state *st, status code);
 
 // --- what is read -----------------------------------------------------------------------------
 

@@ -17,17 +17,16 @@ static bool act_adjust(explorer_state *st, int parameter, double value)
     session *s = &st->session;
     parameters p = state_parameters(st);
     char text[LINE_TEXT];
-    fault f = {0};
 
     // checked and rounded as the table has it
-    if (!act_worked(st, parameter_set_number(&p, parameter, value, &f), &f)) {
+    if (!act_worked(st, parameter_set_number(&p, parameter, value, &st->fault))) {
         return false;
     }
     parameter_format(&p, parameter, text, sizeof text);
 
     // a value that is as it was leaves no change
     const int changes = s->input_count;
-    return act_worked(st, session_adjust(s, parameter, text, &f), &f) &&
+    return act_worked(st, session_adjust(s, parameter, text, &st->fault)) &&
            (s->input_count < changes
                 ? act_tell(st, "%s is %s %s again", parameter_table[parameter].path, text,
                            parameter_table[parameter].unit)
@@ -37,12 +36,11 @@ static bool act_adjust(explorer_state *st, int parameter, double value)
 // The parameter of a path, of its last part or of a beginning of either.
 static bool find_parameter(explorer_state *st, const char *name, int *parameter)
 {
-    fault f = {0};
     *parameter = parameter_of_name(name);
     FAIL_IF(*parameter == -2,
             act_refuse(st, "several parameters begin with '%s' (Tab lists them)", name));
-    if (*parameter < 0 && parameter_look_up(name, &f) < 0) {
-        return act_worked(st, STATUS_BAD_ARGUMENT, &f);
+    if (*parameter < 0 && parameter_look_up(name, &st->fault) < 0) {
+        return act_worked(st, STATUS_BAD_ARGUMENT);
     }
     return true;
 }
@@ -197,9 +195,8 @@ bool act_push(explorer_state *st, const char *argument)
 {
     session_forget_ghost(&st->session);
     double impulse = 0.01;
-    fault f = {0};
     return act_read_number_or(st, argument, "", &impulse) &&
-           act_worked(st, session_push(&st->session, impulse, &f), &f) &&
+           act_worked(st, session_push(&st->session, impulse, &st->fault)) &&
            (act_tell_failed_run(st) ||
             act_tell(st, "pushed with %g N s at %.4f s", impulse, st->session.now));
 }
@@ -207,8 +204,7 @@ bool act_push(explorer_state *st, const char *argument)
 // Opening a scenario is undone and done again as changes are.
 static bool turn(explorer_state *st, int direction)
 {
-    fault f = {0};
-    const bool turned = act_worked(st, state_turn(st, direction, &f), &f);
+    const bool turned = act_worked(st, state_turn(st, direction, &st->fault));
     return turned && act_tell(st, "in %s again, %s", st->session.base.name,
                               direction < 0 ? "U opens the one you left" : "u goes back");
 }
@@ -216,22 +212,20 @@ static bool turn(explorer_state *st, int direction)
 bool act_undo(explorer_state *st, const char *argument)
 {
     session_forget_ghost(&st->session);
-    fault f = {0};
     if (st->session.input_count == 0 && state_can_turn(st, -1)) {
         return turn(st, -1);
     }
-    return act_worked(st, session_undo(&st->session, &f), &f) &&
+    return act_worked(st, session_undo(&st->session, &st->fault)) &&
            act_tell(st, "undone, U puts it in again");
 }
 
 bool act_redo(explorer_state *st, const char *argument)
 {
     session_forget_ghost(&st->session);
-    fault f = {0};
     if (st->session.input_count == st->session.input_total && state_can_turn(st, 1)) {
         return turn(st, 1);
     }
-    return act_worked(st, session_redo(&st->session, &f), &f) && act_tell(st, "put in again");
+    return act_worked(st, session_redo(&st->session, &st->fault)) && act_tell(st, "put in again");
 }
 
 bool act_model(explorer_state *st, const char *argument)
@@ -315,8 +309,7 @@ bool act_change(explorer_state *st, const char *argument)
         prompt_open_value(&st->prompt, text, in->text);
         return act_tell(st, "%s", parameter_table[in->parameter].description);
     }
-    fault f = {0};
-    if (!act_worked(st, session_change_input(&st->session, index, argument, &f), &f)) {
+    if (!act_worked(st, session_change_input(&st->session, index, argument, &st->fault))) {
         return false;
     }
     st->change = st->session.input_count - 1;
@@ -333,9 +326,8 @@ bool act_drop(explorer_state *st, const char *argument)
     }
 
     // the text first: the change is gone afterwards
-    fault f = {0};
     state_change_text(st, index, text, sizeof text);
-    if (!act_worked(st, session_drop_input(&st->session, index, &f), &f)) {
+    if (!act_worked(st, session_drop_input(&st->session, index, &st->fault))) {
         return false;
     }
 

@@ -122,11 +122,10 @@ static bool tell_modes(explorer_state *st)
 static bool lock(explorer_state *st, const char *wanted)
 {
     session *s = &st->session;
-    fault f = {0};
 
     // going on through the modes at one instant replaces the lock there
     const bool replaces = locked_just_now(s);
-    if (replaces && !act_worked(st, session_undo(s, &f), &f)) {
+    if (replaces && !act_worked(st, session_undo(s, &st->fault))) {
         return false;
     }
 
@@ -135,7 +134,7 @@ static bool lock(explorer_state *st, const char *wanted)
     const bool other = strcmp(p.control.lock, wanted) != 0;
     if (other && !act_give(st, PARAMETER_INDEX(control.lock), wanted)) {
         if (replaces) {
-            loss_unless(session_redo(s, &f) == STATUS_OK);
+            loss_unless(session_redo(s, &st->fault) == STATUS_OK);
         }
         return false;
     }

@@ -36,7 +36,6 @@ static double first_above(const trace *t, int signal, double level)
 // Measured columns under the run, shifted as the file's name says, else to the run's first touch.
 bool act_data(explorer_state *st, const char *argument)
 {
-    fault f = {0};
     trace fresh = {0};
     csv_table table = {0};
     char path[LINE_TEXT];
@@ -58,12 +57,12 @@ bool act_data(explorer_state *st, const char *argument)
     snprintf(path, sizeof path, "%.*s", at != NULL ? (int)(at - argument) : (int)strlen(argument),
              argument);
     trace_init(&fresh, 1);
-    status code = csv_table_read(&table, path, 1, &f);
-    code = code == STATUS_OK ? measured_rows(&fresh, &table, NULL, -1, &f) : code;
+    status code = csv_table_read(&table, path, 1, &st->fault);
+    code = code == STATUS_OK ? measured_rows(&fresh, &table, NULL, -1, &st->fault) : code;
     csv_table_finish(&table);
     if (code != STATUS_OK) {
         trace_finish(&fresh);
-        return act_worked(st, code, &f);
+        return act_worked(st, code);
     }
 
     // a tenth of the measured largest force marks the touch in both
@@ -119,7 +118,6 @@ static bool tell_fit(explorer_state *st, const identification *id)
 // Fits parameters to the measured data and pins the run that they give.
 bool act_identify(explorer_state *st, const char *argument)
 {
-    fault f = {0};
     char words[LINE_TEXT], *rest = words;
     identification id = {.base = &st->session.effective, .starts = FIT_STARTS, .jobs = FIT_THREADS};
     const sweep_axis *axes[IDENTIFY_PATHS];
@@ -132,14 +130,15 @@ bool act_identify(explorer_state *st, const char *argument)
     }
 
     // a parameter may be given by the last part of its path
-    status code = identify_available(&f);
+    status code = identify_available(&st->fault);
     snprintf(words, sizeof words, "%s", argument);
     for (char *word; code == STATUS_OK && (word = strtok_r(rest, " ", &rest)) != NULL;) {
         char path[2 * LINE_TEXT];
-        code = identify_add_path(&id, act_whole_path(word, path, sizeof path), &f);
+        code = identify_add_path(&id, act_whole_path(word, path, sizeof path), &st->fault);
     }
-    code = code == STATUS_OK ? identify_add_trace(&id, st->measured_file, NULL, 0, &f) : code;
-    code = code == STATUS_OK ? identify_fit(&id, &f) : code;
+    code =
+        code == STATUS_OK ? identify_add_trace(&id, st->measured_file, NULL, 0, &st->fault) : code;
+    code = code == STATUS_OK ? identify_fit(&id, &st->fault) : code;
     int count = 0;
     for (int i = 0; i < id.count && code == STATUS_OK; i++) {
         if (id.fit[i].determined) {
@@ -148,9 +147,9 @@ bool act_identify(explorer_state *st, const char *argument)
         }
     }
     if (code == STATUS_OK && count > 0) {
-        code = act_pin_values(st, axes, values, count, "identified", &f);
+        code = act_pin_values(st, axes, values, count, "identified", &st->fault);
     }
-    const bool done = act_worked(st, code, &f) && tell_fit(st, &id);
+    const bool done = act_worked(st, code) && tell_fit(st, &id);
     const bool all = id.undetermined == 0;
     identify_finish(&id);
     return done && act_settle_baseline(st) && all;

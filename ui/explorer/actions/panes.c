@@ -30,16 +30,15 @@ static int free_place(const explorer_state *st, const pane *own)
 // Adds the signal of a name or an expression.
 static bool add_signal(explorer_state *st, const char *text, pane *own)
 {
-    fault f = {0};
     int signal = signal_find_any(text);
     FAIL_IF(signal < 0 && text[strcspn(text, "+-*/(")] == '\0',
             act_refuse(st, "there is no signal '%s' (Tab completes)", text));
     if (signal < 0) {
         const int place = free_place(st, own);
         FAIL_IF(place < 0, act_refuse(st, "%d expressions are shown already", DERIVED_SIGNALS));
-        signal = signal_derive(place, text, &f);
+        signal = signal_derive(place, text, &st->fault);
         if (signal < 0) {
-            return act_worked(st, f.code, &f);
+            return act_worked(st, st->fault.code);
         }
         for (int i = 0; i < SHOWN_RUNS; i++) {
             extremes_forget(&st->extremes[i]);

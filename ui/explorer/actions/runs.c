@@ -14,23 +14,21 @@
 // Makes the baseline the run for comparison with the present one.
 bool act_settle_baseline(explorer_state *st)
 {
-    fault f = {0};
     const run_list *list = &st->pinned;
     if (list->baseline < 0) {
         session_forget_other(&st->session);
         return true;
     }
-    return act_worked(st, session_keep_beside(&st->session, &list->runs[list->baseline].run, &f),
-                      &f);
+    return act_worked(
+        st, session_keep_beside(&st->session, &list->runs[list->baseline].run, &st->fault));
 }
 
 // Pins the present run and makes it the baseline.
 static bool pin(explorer_state *st, const char *name)
 {
-    fault f = {0};
     session_forget_ghost(&st->session);
     return act_need_whole_run(st) &&
-           act_worked(st, run_list_pin(&st->pinned, &st->session, name, &f), &f) &&
+           act_worked(st, run_list_pin(&st->pinned, &st->session, name, &st->fault)) &&
            act_settle_baseline(st);
 }
 
@@ -82,20 +80,19 @@ ACTION_ON_RUN(take)
     if (!pin(st, "")) {
         return false;
     }
-    fault f = {0};
     const pinned_run *taken = &list->runs[index];
     const run_origin *from = &taken->from;
     session other;
     status code = STATUS_OK;
     if (same_base(&from->base, &st->session.base)) {
-        code = session_take_inputs(&st->session, from->inputs, from->input_count, &f);
+        code = session_take_inputs(&st->session, from->inputs, from->input_count, &st->fault);
     } else {
-        code = session_reopen(&other, from, st->session.patience, &f);
-        if (code == STATUS_OK && (code = state_take_session(st, &other, &f)) != STATUS_OK) {
+        code = session_reopen(&other, from, st->session.patience, &st->fault);
+        if (code == STATUS_OK && (code = state_take_session(st, &other, &st->fault)) != STATUS_OK) {
             session_finish(&other);
         }
     }
-    return act_worked(st, code, &f) &&
+    return act_worked(st, code) &&
            act_tell(st, "'%s' goes on; the run before is compared with it", taken->name);
 }
 
@@ -280,7 +277,6 @@ static bool tell_limits(explorer_state *st, const sweep_axis *axis, const solve_
 
 bool act_solve(explorer_state *st, const char *argument)
 {
-    fault f = {0};
     sweep_axis axis = {0};
     solve_condition condition;
     static solution found;
@@ -297,19 +293,19 @@ bool act_solve(explorer_state *st, const char *argument)
     // a parameter may be given by the last part of its path
     char whole[2 * LINE_TEXT], name[RUN_NAME];
     act_whole_path(path, whole, sizeof whole);
-    status code = solve_condition_read(rest, &condition, &f);
+    status code = solve_condition_read(rest, &condition, &st->fault);
     const scenario *s = &st->session.effective;
-    code = code == STATUS_OK ? solve_axis_read(&axis, whole, s, &f) : code;
+    code = code == STATUS_OK ? solve_axis_read(&axis, whole, s, &st->fault) : code;
     code = code == STATUS_OK
-               ? solve(s, &axis, &condition, SOLVE_POINTS, SOLVE_THREADS, NULL, &found, &f)
+               ? solve(s, &axis, &condition, SOLVE_POINTS, SOLVE_THREADS, NULL, &found, &st->fault)
                : code;
     if (code == STATUS_OK && found.count > 0) {
         st->limit = (solved_limit){signal_of_quantity(condition.quantity), condition.bound};
         const double value = found.limits[nearest_limit(st, &axis, &found)].value;
         snprintf(name, sizeof name, "%s %.5g", strchr(axis.name, '.') + 1, value);
-        code = act_pin_values(st, (const sweep_axis *[]){&axis}, &value, 1, name, &f);
+        code = act_pin_values(st, (const sweep_axis *[]){&axis}, &value, 1, name, &st->fault);
     }
-    const bool done = act_worked(st, code, &f) && tell_limits(st, &axis, &condition, &found);
+    const bool done = act_worked(st, code) && tell_limits(st, &axis, &condition, &found);
     sweep_axis_finish(&axis);
     return done && act_settle_baseline(st);
 }
@@ -318,7 +314,6 @@ bool act_solve(explorer_state *st, const char *argument)
 
 bool act_continue_sweep(explorer_state *st)
 {
-    fault f = {0};
     lab_sweep *sweep = &st->sweep;
 
     // asked again and again: a finished sweep stays as it is
@@ -329,7 +324,7 @@ bool act_continue_sweep(explorer_state *st)
     // one run a call, of a map as many as a picture may wait for, so that keys are read in between
     const double begin = clock_seconds(CLOCK_MONOTONIC);
     do {
-        if (!act_worked(st, lab_sweep_compute_next(sweep, &st->session.effective, &f), &f)) {
+        if (!act_worked(st, lab_sweep_compute_next(sweep, &st->session.effective, &st->fault))) {
             return false;
         }
     } while (lab_sweep_is_map(sweep) && !lab_sweep_is_done(sweep) &&
@@ -347,7 +342,6 @@ bool act_continue_sweep(explorer_state *st)
 bool act_sweep(explorer_state *st, const char *argument)
 {
     lab_sweep *sweep = &st->sweep;
-    fault f = {0};
     if (strcmp(argument, "off") == 0) {
         lab_sweep_end(sweep);
         st->side.panel = st->side.panel == PANEL_SWEEP ? panel_first_on_side() : st->side.panel;
@@ -376,7 +370,7 @@ bool act_sweep(explorer_state *st, const char *argument)
 
     // each run is computed while the lab waits, so they must be short
     if (!act_need_whole_run(st) || !act_need_short_runs(st, "sweep", SWEPT_RUNS) ||
-        !act_worked(st, lab_sweep_begin(sweep, argument, &f), &f)) {
+        !act_worked(st, lab_sweep_begin(sweep, argument, &st->fault))) {
         return false;
     }
     st->side.panel = PANEL_SWEEP;

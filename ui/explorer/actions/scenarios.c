@@ -12,22 +12,21 @@ bool act_open_scenario(explorer_state *st, const char *name)
 {
     scenario s;
     session fresh;
-    fault f = {0};
-    status code = scenario_open(&s, name, keep_first_fault, &f);
+    status code = scenario_open(&s, name, keep_first_fault, &st->fault);
     if (code == STATUS_OK) {
         s.parameters.code_allowed = consent_needed(&s) && consent_remembered(&s);
-        code = session_open(&fresh, &s, st->session.patience, &f);
+        code = session_open(&fresh, &s, st->session.patience, &st->fault);
     }
     if (code != STATUS_OK) {
-        return act_worked(st, code, &f);
+        return act_worked(st, code);
     }
 
     // the new session takes the old one's place, to which u returns
     const int changes = st->session.input_count;
-    code = state_take_session(st, &fresh, &f);
+    code = state_take_session(st, &fresh, &st->fault);
     if (code != STATUS_OK) {
         session_finish(&fresh);
-        return act_worked(st, code, &f);
+        return act_worked(st, code);
     }
     st->playback.playing = true;
     const char *title = st->session.base.title ? st->session.base.title : "";
@@ -87,19 +86,18 @@ bool act_stop(explorer_state *st, const char *argument)
 bool act_allow(explorer_state *st, const char *argument)
 {
     session *s = &st->session;
-    fault f = {0};
     bool kept;
     FAIL_IF(s->run.summary.status != STATUS_NOT_ALLOWED,
             act_refuse(st, "the run asks for no permission"));
 
     // a visit's changes are the user's own: what is remembered is the scenario as it was opened
-    if (!act_worked(st, session_allow_code(s, &f), &f)) {
+    if (!act_worked(st, session_allow_code(s, &st->fault))) {
         return false;
     }
-    const status code = consent_remember(&s->base, &kept, &f);
+    const status code = consent_remember(&s->base, &kept, &st->fault);
     st->playback.playing = true;
     return act_tell_failed_run(st) ||
-           (act_worked(st, code, &f) &&
+           (act_worked(st, code) &&
             act_tell(st, kept ? "allowed, and remembered for just this scenario and program"
                               : "allowed for this visit"));
 }

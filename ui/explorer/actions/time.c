@@ -58,13 +58,12 @@ static bool pull_until(explorer_state *st, double time)
 
     // a push for each step of the run, as large as the spring's force over it
     while (p->held && p->next <= time && p->next < end && s->computing == NULL) {
-        fault f = {0};
         session_seek(s, p->next);
         follow_tip(st);
-        const status code = session_pull(s, p->force * PULL_STEP, p->gesture, &f);
+        const status code = session_pull(s, p->force * PULL_STEP, p->gesture, &st->fault);
         if (code != STATUS_OK) {
             p->held = false;
-            return act_worked(st, code, &f);
+            return act_worked(st, code);
         }
         p->next += PULL_STEP;
     }

@@ -107,6 +107,7 @@ typedef struct explorer_state {
     screen_size size; // of the screen drawn last
 
     // messages and input
+    fault fault; // of what an action called last, until act_worked has told it
     message_line message;
     prompt prompt;
     palette_view palette;
