@@ -1,6 +1,7 @@
 #include "ui/explorer/state/parameter_list.h"
 
 #include <assert.h>
+#include <fnmatch.h>
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -214,174 +215,92 @@ double slider_value(const slider_scale *scale, int parameter, double share, int 
 
 // --- parameters without effect ----------------------------------------------------------------
 
-// Whether a parameter is a field of struct parameters, or one of a group that is.
-#define IS_OF(parameter, field)                                                                    \
-    lies_in(parameter, offsetof(parameters, field), sizeof(((parameters *)0)->field))
-
-static bool lies_in(int parameter, size_t from, size_t size)
-{
-    const size_t offset = parameter_table[parameter].offset;
-    return offset >= from && offset < from + size;
-}
-
-// Why something has no effect, if that is so.
-typedef struct rule {
-    bool applies;
-    const char *reason;
-} rule;
-
-// The reason of the first rule that applies; NULL if none does.
-static const char *first_reason(const rule *rules, size_t count)
-{
-    const char *reason = NULL;
-    for (size_t i = 0; i < count && reason == NULL; i++) {
-        reason = rules[i].applies ? rules[i].reason : NULL;
-    }
-    return reason;
-}
-#define FIRST_REASON(rules) first_reason(rules, sizeof rules / sizeof rules[0])
-
-// What the arm, its wall and the method leave aside.
-static const char *reason_of_arm(const parameters *p, int parameter)
-{
-    const bool of_newmark = IS_OF(parameter, method.beta) || IS_OF(parameter, method.gamma);
-    const bool of_joints =
-        IS_OF(parameter, arm.k2) || IS_OF(parameter, arm.EI) || IS_OF(parameter, arm.stiffening);
-    const bool of_springs =
-        IS_OF(parameter, arm.damping_ratio) || IS_OF(parameter, arm.modal_ratios);
-    const bool without = p->arm.links == 1 && ((of_joints && p->arm.hub_joint != HUB_BEAM) ||
-                                               (of_springs && p->arm.hub_joint == HUB_RIGID));
-    const bool of_wall = IS_OF(parameter, wall) && !IS_OF(parameter, wall.kind);
-
-    // parts that this arm does not have, then numbers of other methods
-    const rule rules[] = {
-        {IS_OF(parameter, printed) && p->arm.model != ARM_PRINTED,
-         "it belongs to arm.model = printed"},
-        {IS_OF(parameter, arm.k1) && p->arm.hub_joint != HUB_SPRING,
-         "the hub joint is rigid (arm.hub_joint)"},
-        {IS_OF(parameter, arm.link_inertia) && p->arm.links != 2, "it is for two links"},
-        {without, "one link has no joint"},
-        {of_wall && p->wall.kind == WALL_NONE, "there is no wall (wall.kind)"},
-        {IS_OF(parameter, motor.transconductance) && p->motor.drive != DRIVE_CURRENT,
-         "it belongs to motor.drive = current"},
-        {of_newmark && p->method.name != METHOD_NEWMARK, "it belongs to method.name = newmark"},
-        {IS_OF(parameter, method.spectral_radius) && p->method.name != METHOD_GENERALIZED_ALPHA,
-         "it belongs to method.name = generalized-alpha"}};
-    return FIRST_REASON(rules);
-}
-
-// Whether a parameter is one of some fields, by where it lies.
-static bool is_among(int parameter, const size_t *fields, size_t count)
+// Whether a control law says that it reads a parameter of its own.
+static bool law_reads(const controller *law, const char *name)
 {
     bool found = false;
-    for (size_t i = 0; i < count; i++) {
-        found = found || parameter_table[parameter].offset == fields[i];
+    for (int i = 0; law != NULL && i < law->parameter_count; i++) {
+        found = found || strcmp(law->parameters[i].name, name) == 0;
     }
     return found;
 }
 
-#define FIELD(field)                offsetof(parameters, field)
-#define IS_AMONG(parameter, fields) is_among(parameter, fields, sizeof fields / sizeof fields[0])
+// Whether a path matches one of some patterns with blanks between them.
+static bool is_among(const char *path, const char *patterns)
+{
+    char pattern[PARAMETER_NAME];
+    bool found = false;
+    for (; *patterns != '\0' && !found; patterns += strspn(patterns, " ")) {
+        const int length = (int)strcspn(patterns, " ");
+        snprintf(pattern, sizeof pattern, "%.*s", length, patterns);
+        found = fnmatch(pattern, path, 0) == 0;
+        patterns += length;
+    }
+    return found;
+}
 
 // What means the same under every law.
-static const size_t every_law[] = {
-    FIELD(control.law),        FIELD(control.settings),        FIELD(control.rate),
-    FIELD(control.delay),      FIELD(control.delay_periods),   FIELD(control.jitter),
-    FIELD(control.seed),       FIELD(control.force),           FIELD(control.k2_table),
-    FIELD(control.force_rate), FIELD(control.force_amplitude), FIELD(control.force_frequency)};
+#define EVERY_LAW                                                                                  \
+    "control.settings control.rate control.delay control.delay_periods control.jitter "            \
+    "control.seed control.force control.k2_table control.force_rate control.force_amplitude "      \
+    "control.force_frequency"
 
-// What the control law does not read.
-static const char *reason_of_control(const parameters *p, int parameter)
-{
-    const controller *law = controller_of(p->control.law);
-    const char *name = strchr(parameter_table[parameter].path, '.') + 1;
-    if (IS_OF(parameter, control.plugin)) {
-        return p->control.law == LAW_PLUGIN ? NULL : "it belongs to control.law = plugin";
-    }
-    if (IS_OF(parameter, control.command) || IS_OF(parameter, control.answer_time)) {
-        return p->control.law == LAW_PROCESS ? NULL : "it belongs to control.law = process";
-    }
-    if (strncmp(name, "playback_", 9) == 0) {
-        return p->control.law == LAW_PLAYBACK ? NULL : "it belongs to control.law = playback";
-    }
-    if (law == NULL || IS_AMONG(parameter, every_law)) {
-        return NULL;
-    }
-    if (IS_OF(parameter, control.lock)) {
-        return law->lockable ? NULL : "this law cannot be held in a mode";
-    }
-
-    // what this one says it reads
-    for (int i = 0; i < law->parameter_count; i++) {
-        if (strcmp(law->parameters[i].name, name) == 0) {
-            return NULL;
-        }
-    }
-    return "the control law does not use it";
-}
-
-// The parameters of sensors that need not be fitted, the gain first, and the faults of the others.
-#define SENSOR(field) FIELD(sensor.field)
-static const size_t piezo[] = {
-    SENSOR(piezo_gain),  SENSOR(piezo_rise_time),  SENSOR(piezo_leak_time), SENSOR(piezo_range),
-    SENSOR(piezo_noise), SENSOR(piezo_gain_error), SENSOR(piezo_offset)};
-static const size_t film[] = {SENSOR(film_gain), SENSOR(film_leak_time), SENSOR(film_noise)};
-static const size_t accelerometer[] = {SENSOR(accelerometer_gain), SENSOR(accelerometer_rise_time),
-                                       SENSOR(accelerometer_range), SENSOR(accelerometer_noise)};
-static const size_t others[] = {SENSOR(encoder_counts),
-                                SENSOR(tachometer_ripple),
-                                SENSOR(tachometer_ripple_count),
-                                SENSOR(tachometer_noise),
-                                SENSOR(fsr_noise),
-                                SENSOR(fsr_rise_time),
-                                SENSOR(adc_bits),
-                                SENSOR(dac_bits),
-                                SENSOR(encoder_gain_error),
-                                SENSOR(encoder_offset),
-                                SENSOR(tachometer_gain_error),
-                                SENSOR(tachometer_offset),
-                                SENSOR(fsr_gain_error),
-                                SENSOR(fsr_offset),
-                                SENSOR(fsr_hysteresis)};
-
-// Whether a parameter is a fault of a sensor or converter, which ideal ones do not have.
-static bool is_imperfection(int parameter)
-{
-    const bool gain = parameter_table[parameter].offset == piezo[0] ||
-                      parameter_table[parameter].offset == film[0] ||
-                      parameter_table[parameter].offset == accelerometer[0];
-    return !gain && (IS_AMONG(parameter, piezo) || IS_AMONG(parameter, film) ||
-                     IS_AMONG(parameter, accelerometer) || IS_AMONG(parameter, others));
-}
-
-// What sensors that are not fitted, or are ideal, make no use of.
-static const char *reason_of_sensor(const parameters *p, int parameter)
-{
-    const rule rules[] = {
-        {IS_AMONG(parameter, piezo) && !p->sensor.piezo,
-         "no piezo sensor is fitted (sensor.piezo)"},
-        {IS_AMONG(parameter, film) && !p->sensor.film, "no piezo film is fitted (sensor.film)"},
-        {IS_AMONG(parameter, accelerometer) && !p->sensor.accelerometer,
-         "none is fitted (sensor.accelerometer)"},
-        {p->sensor.ideal && is_imperfection(parameter), "the sensors are ideal (sensor.ideal)"}};
-    return FIRST_REASON(rules);
-}
+// What ideal sensors and converters do not have.
+#define IMPERFECTIONS                                                                              \
+    "sensor.piezo_* sensor.film_* sensor.accelerometer_* sensor.*_noise sensor.*_error "           \
+    "sensor.*_offset sensor.*_bits sensor.encoder_counts sensor.tachometer_ripple* "               \
+    "sensor.fsr_rise_time sensor.fsr_hysteresis"
 
 const char *inert_reason(const parameters *p, int parameter)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    const bool law = p->control.law != LAW_NONE;
-    const bool control = IS_OF(parameter, control), sensor = IS_OF(parameter, sensor);
-    const bool of_rig = sensor || control || IS_OF(parameter, belief);
+    const char *path = parameter_table[parameter].path;
+    const int law = p->control.law;
+    const controller *own = controller_of(p->control.law);
+    const bool one_link = p->arm.links == 1, fits = law_reads(own, strchr(path, '.') + 1);
 
-    // without a law nothing of the rig matters, with one it has the voltage
-    if (of_rig && !law) {
-        return IS_OF(parameter, control.law) ? NULL : "no control law is on (control.law)";
+    // the first that applies to the parameter counts; without a reason it has an effect
+    const struct {
+        bool applies;
+        const char *paths, *reason;
+    } rules[] = {
+        {true, "control.law wall.kind", NULL},
+        {law == LAW_NONE, "sensor.* control.* belief.*", "no control law is on (control.law)"},
+        {law != LAW_NONE, "motor.voltage", "the control law commands the voltage"},
+        {law != LAW_PLUGIN, "control.plugin", "it belongs to control.law = plugin"},
+        {law != LAW_PROCESS, "control.command control.answer_time",
+         "it belongs to control.law = process"},
+        {law != LAW_PLAYBACK, "control.playback_*", "it belongs to control.law = playback"},
+        {true, "control.playback_*", NULL},
+        {own == NULL || fits, "control.*", NULL},
+        {true, EVERY_LAW, NULL},
+        {own != NULL && own->lockable, "control.lock", NULL},
+        {true, "control.lock", "this law cannot be held in a mode"},
+        {true, "control.*", "the control law does not use it"},
+        {!p->sensor.piezo, "sensor.piezo_*", "no piezo sensor is fitted (sensor.piezo)"},
+        {!p->sensor.film, "sensor.film_*", "no piezo film is fitted (sensor.film)"},
+        {!p->sensor.accelerometer, "sensor.accelerometer_*",
+         "none is fitted (sensor.accelerometer)"},
+        {true, "sensor.piezo_gain sensor.film_gain sensor.accelerometer_gain", NULL},
+        {p->sensor.ideal, IMPERFECTIONS, "the sensors are ideal (sensor.ideal)"},
+        {p->arm.model != ARM_PRINTED, "printed.*", "it belongs to arm.model = printed"},
+        {p->arm.hub_joint != HUB_SPRING, "arm.k1", "the hub joint is rigid (arm.hub_joint)"},
+        {p->arm.links != 2, "arm.link_inertia", "it is for two links"},
+        {one_link && p->arm.hub_joint != HUB_BEAM, "arm.k2 arm.EI arm.stiffening",
+         "one link has no joint"},
+        {one_link && p->arm.hub_joint == HUB_RIGID, "arm.damping_ratio arm.modal_ratios",
+         "one link has no joint"},
+        {p->wall.kind == WALL_NONE, "wall.*", "there is no wall (wall.kind)"},
+        {p->motor.drive != DRIVE_CURRENT, "motor.transconductance",
+         "it belongs to motor.drive = current"},
+        {p->method.name != METHOD_NEWMARK, "method.beta method.gamma",
+         "it belongs to method.name = newmark"},
+        {p->method.name != METHOD_GENERALIZED_ALPHA, "method.spectral_radius",
+         "it belongs to method.name = generalized-alpha"}};
+    for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
+        if (rules[i].applies && is_among(path, rules[i].paths)) {
+            return rules[i].reason;
+        }
     }
-    if (law && parameter == PARAMETER_INDEX(motor.voltage)) {
-        return "the control law commands the voltage";
-    }
-    return control  ? reason_of_control(p, parameter)
-           : sensor ? reason_of_sensor(p, parameter)
-                    : reason_of_arm(p, parameter);
+    return NULL;
 }
