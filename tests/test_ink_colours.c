@@ -30,20 +30,20 @@ TEST(test_every_ink_can_be_read_on_its_ground)
             rgb c;
             double least = i == INK_FRAME ? 3 : 4.5;
             if (!ink_rgb((colour_theme)theme, (ink)i, &c)) {
-                assert_int_equal(ink_256((colour_theme)theme, (ink)i), -1);
-                assert_int_equal(ink_16((colour_theme)theme, (ink)i), -1);
+                assert_int_equal(ink_index((colour_theme)theme, (ink)i, DEPTH_256), -1);
+                assert_int_equal(ink_index((colour_theme)theme, (ink)i, DEPTH_16), -1);
                 continue;
             }
             fail_if(least_contrast((colour_theme)theme, c) < least,
                     "ink %d of theme %d: contrast %.2f", i, theme,
                     least_contrast((colour_theme)theme, c));
-            int near = ink_256((colour_theme)theme, (ink)i),
-                basic = ink_16((colour_theme)theme, (ink)i);
+            int near = ink_index((colour_theme)theme, (ink)i, DEPTH_256),
+                basic = ink_index((colour_theme)theme, (ink)i, DEPTH_16);
             assert_in_range(near, 16, 255);
             assert_true(least_contrast((colour_theme)theme, colour_256(near)) >= least);
             check_below(rgb_distance(colour_256(near), c), 0.09);
             assert_true(basic < 16);
-            assert_true(basic < 0 || rgb_contrast(colour_16(basic),
+            assert_true(basic < 0 || rgb_contrast(colour_256(basic),
                                                   theme_grounds((colour_theme)theme)[0]) >= least);
         }
     }
@@ -69,10 +69,11 @@ TEST(test_curves_are_told_apart_by_everybody)
                 }
                 // with fewer colours they are at least not the same; on light ground 16 have only
                 // seven that can be read, text's own among them
-                assert_true(theme == COLOURS_LIGHT || ink_16((colour_theme)theme, (ink)i) !=
-                                                          ink_16((colour_theme)theme, (ink)j));
-                assert_int_not_equal(ink_256((colour_theme)theme, (ink)i),
-                                     ink_256((colour_theme)theme, (ink)j));
+                assert_true(theme == COLOURS_LIGHT ||
+                            ink_index((colour_theme)theme, (ink)i, DEPTH_16) !=
+                                ink_index((colour_theme)theme, (ink)j, DEPTH_16));
+                assert_int_not_equal(ink_index((colour_theme)theme, (ink)i, DEPTH_256),
+                                     ink_index((colour_theme)theme, (ink)j, DEPTH_256));
             }
         }
     }
@@ -83,8 +84,8 @@ TEST(test_no_colour_in_mono)
     rgb c;
     for (int i = 0; i < INK_COUNT; i++) {
         assert_false(ink_rgb(COLOURS_MONO, (ink)i, &c));
-        assert_int_equal(ink_256(COLOURS_MONO, (ink)i), -1);
-        assert_int_equal(ink_16(COLOURS_MONO, (ink)i), -1);
+        assert_int_equal(ink_index(COLOURS_MONO, (ink)i, DEPTH_256), -1);
+        assert_int_equal(ink_index(COLOURS_MONO, (ink)i, DEPTH_16), -1);
     }
 }
 
@@ -108,7 +109,7 @@ static void find_alike(colour_theme theme, int pair[2])
         for (int b = a + 1; b < signal_count; b++) {
             const int x = signal_table[a].colour, y = signal_table[b].colour;
             const ink one = (ink)(INK_SERIES_0 + x), other = (ink)(INK_SERIES_0 + y);
-            if (x != y && ink_16(theme, one) == ink_16(theme, other)) {
+            if (x != y && ink_index(theme, one, DEPTH_16) == ink_index(theme, other, DEPTH_16)) {
                 pair[0] = a;
                 pair[1] = b;
                 return;
@@ -151,7 +152,8 @@ TEST(test_curves_of_a_pane_differ_with_few_colours)
                 if (line && row[x + 1].glyph == ' ' && row[x].ink >= INK_SERIES_0 &&
                     count < PANE_SIGNALS) {
                     for (int k = 0; k < count; k++) {
-                        assert_int_not_equal(ink_16(theme, seen[k]), ink_16(theme, row[x].ink));
+                        assert_int_not_equal(ink_index(theme, seen[k], DEPTH_16),
+                                             ink_index(theme, row[x].ink, DEPTH_16));
                     }
                     seen[count++] = row[x].ink;
                 }

@@ -116,12 +116,10 @@ bool act_key(explorer_state *st, const char *argument)
     // a copy of the old meaning: its place gets the new one
     int index;
     snprintf(before, sizeof before, "%s", old ? old : "");
-    user_key *own = find_command(st, line, &index) ? key_add_own(&st->keys, key) : NULL;
-    if (own == NULL) {
+    if (!find_command(st, line, &index) || !key_bind(&st->keys, key, line)) {
         st->message.at = (int)(line - argument);
         return index >= 0 && no_room(st);
     }
-    snprintf(own->line, sizeof own->line, "%s", line);
     if (before[0] != '\0' && strcmp(before, line) != 0) {
         return act_tell(st, "%s does '%s' now, no longer '%s'", name, line, before);
     }
@@ -144,20 +142,16 @@ bool act_unkey(explorer_state *st, const char *argument)
     // the user's key goes, the explorer's own comes back
     key_name(key, name, sizeof name);
     const char *built_in = key_built_in_line(key);
-    user_key *own = key_find_own(&st->keys, key);
-    if (own != NULL) {
-        key_remove_own(&st->keys, own);
+    const int own = key_own(&st->keys, key);
+    if (own >= 0) {
+        st->keys.own[own] = st->keys.own[--st->keys.count];
         return built_in ? act_tell(st, "%s does '%s' again", name, built_in)
                         : act_tell(st, "%s does nothing now", name);
     }
 
     // one of the explorer's own does nothing then
     FAIL_IF(built_in == NULL, act_refuse(st, "%s does nothing as it is", name));
-    own = key_add_own(&st->keys, key);
-    if (own == NULL) {
-        return no_room(st);
-    }
-    own->line[0] = '\0';
+    FAIL_IF(!key_bind(&st->keys, key, ""), no_room(st));
     return act_tell(st, "%s does nothing now, no longer '%s' (unkey it again to have that back)",
                     name, built_in);
 }

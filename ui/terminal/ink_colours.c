@@ -82,23 +82,15 @@ double rgb_distance(rgb a, rgb b)
 
 // --- terminals with fewer colours -------------------------------------------------------------
 
-rgb colour_16(int index)
-{
-    // of the PC's text mode, which has the largest difference between bright and dark colours
-    int on = index & 8 ? 255 : 170, off = index & 8 ? 85 : 0;
-    rgb c = {(unsigned char)(index & 1 ? on : off), (unsigned char)(index & 2 ? on : off),
-             (unsigned char)(index & 4 ? on : off)};
-    if (index == 3) {
-        c.green = 85; // brown
-    }
-    return c;
-}
-
 rgb colour_256(int index)
 {
     static const unsigned char levels[6] = {0, 95, 135, 175, 215, 255};
+
+    // the PC's text mode, which has the largest difference between bright and dark colours
     if (index < 16) {
-        return colour_16(index);
+        const unsigned char on = index & 8 ? 255 : 170, off = index & 8 ? 85 : 0;
+        const unsigned char green = index == 3 ? 85 : index & 2 ? on : off; // 3 is brown
+        return (rgb){index & 1 ? on : off, green, index & 4 ? on : off};
     }
     if (index >= 232) {
         unsigned char grey = (unsigned char)(8 + 10 * (index - 232));
@@ -113,31 +105,27 @@ static bool is_grey(rgb c)
     return c.red == c.green && c.green == c.blue;
 }
 
-// The nearest of the colours from `first` to `last` that has enough contrast on the grounds and is
-// none of those taken (bits); a grey may stand for a colour if `greys`. -1 if there is none.
-static int nearest(colour_theme theme, ink i, int first, int last, rgb (*colour)(int), int grounds,
-                   unsigned taken, bool greys)
+// The nearest colour of 256, or of the first 16 (`few`), that has enough contrast on the grounds
+// and is none of those taken (bits); a grey may stand for a colour if `greys`. -1 if there is none.
+static int nearest(colour_theme theme, ink i, bool few, unsigned taken, bool greys)
 {
     // lines need less contrast than text
     double least = i == INK_FRAME ? 3 : 4.5, distance = (double)INFINITY;
     rgb wanted;
     int best = -1;
-
     if (!ink_rgb(theme, i, &wanted)) {
         return -1;
     }
-    greys = greys || is_grey(wanted);
 
-    for (int index = first; index <= last; index++) {
-        rgb c = colour(index);
+    // of 256 the first 16 are whatever the user has made of them
+    for (int index = few ? 0 : 16; index < (few ? 16 : 256); index++) {
+        const rgb c = colour_256(index);
         // no colour for what has none, and the other way round where there are some
-        bool readable =
-            (is_grey(c) ? greys : !is_grey(wanted)) && (index >= 16 || !(taken >> index & 1));
-
-        for (int g = 0; g < grounds; g++) {
+        bool readable = (is_grey(c) ? greys || is_grey(wanted) : !is_grey(wanted)) &&
+                        !(few && taken >> index & 1);
+        for (int g = 0; g < (few ? 1 : 2); g++) {
             readable = readable && rgb_contrast(c, theme_grounds(theme)[g]) >= least;
         }
-
         if (readable && rgb_distance(c, wanted) < distance) {
             best = index;
             distance = rgb_distance(c, wanted);
@@ -146,59 +134,38 @@ static int nearest(colour_theme theme, ink i, int first, int last, rgb (*colour)
     return best;
 }
 
-static int find_256(colour_theme theme, ink i)
-{
-    // the first 16 are whatever the user has made of them
-    return nearest(theme, i, 16, 255, colour_256, 2, 0, true);
-}
-
 static int find_16(colour_theme theme, ink i)
 {
     unsigned taken = 0;
     int best = -1;
     // curves differ as long as there are colours
     for (int k = i < INK_SERIES_0 ? (int)i : INK_SERIES_0; k <= (int)i; k++) {
-        best = nearest(theme, (ink)k, 0, 15, colour_16, 1, taken, false);
-        best = best < 0 ? nearest(theme, (ink)k, 0, 15, colour_16, 1, taken, true) : best;
-        best = best < 0 ? nearest(theme, (ink)k, 0, 15, colour_16, 1, 0, true) : best;
+        best = nearest(theme, (ink)k, true, taken, false);
+        best = best < 0 ? nearest(theme, (ink)k, true, taken, true) : best;
+        best = best < 0 ? nearest(theme, (ink)k, true, 0, true) : best;
         taken |= best < 0 ? 0 : 1u << best;
     }
     // black and white are the text's own, which the user may have exchanged
     return best == 0 || best == 7 || best == 15 ? -1 : best;
 }
 
-// What one of the above found, found once: kept with 2 added, so that 0 is unknown.
-static int remembered(int (*find)(colour_theme, ink), short kept[COLOUR_THEMES][INK_COUNT],
-                      colour_theme theme, ink i)
+int ink_index(colour_theme theme, ink i, colour_depth depth)
 {
+    // found once: kept with 2 added, so that 0 is unknown
+    static short kept[2][COLOUR_THEMES][INK_COUNT];
     assert(theme < COLOUR_THEMES && i < INK_COUNT);
-    short *known = &kept[theme][i];
+    short *known = &kept[depth == DEPTH_256][theme][i];
     if (*known == 0) {
-        *known = (short)(find(theme, i) + 2);
+        const int found =
+            depth == DEPTH_256 ? nearest(theme, i, false, 0, true) : find_16(theme, i);
+        *known = (short)(found + 2);
     }
     return *known - 2;
 }
 
-int ink_256(colour_theme theme, ink i)
-{
-    static short kept[COLOUR_THEMES][INK_COUNT];
-    return remembered(find_256, kept, theme, i);
-}
-
-int ink_16(colour_theme theme, ink i)
-{
-    static short kept[COLOUR_THEMES][INK_COUNT];
-    return remembered(find_16, kept, theme, i);
-}
-
 bool inks_look_alike(colour_theme theme, colour_depth depth, ink a, ink b)
 {
-    switch (depth) {
-    case DEPTH_16:
-        return ink_16(theme, a) == ink_16(theme, b);
-    case DEPTH_256:
-        return ink_256(theme, a) == ink_256(theme, b);
-    default:
-        return a == b;
-    }
+    return depth == DEPTH_16 || depth == DEPTH_256
+               ? ink_index(theme, a, depth) == ink_index(theme, b, depth)
+               : a == b;
 }

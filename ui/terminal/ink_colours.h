@@ -10,10 +10,9 @@ typedef struct rgb {
 
 // The colour of an ink; false if it is the terminal's default text colour.
 bool ink_rgb(colour_theme theme, ink i, rgb *colour);
-// The same as one of 256 or of 16 colours: the nearest one that is readable; -1 for the terminal's
-// default.
-int ink_256(colour_theme theme, ink i);
-int ink_16(colour_theme theme, ink i);
+// The same as one of 256 colours, or of 16 with any other depth: the nearest one that is readable;
+// -1 for the terminal's default.
+int ink_index(colour_theme theme, ink i, colour_depth depth);
 
 // Whether two inks have the same colour on a terminal with that many colours.
 bool inks_look_alike(colour_theme theme, colour_depth depth, ink a, ink b);
@@ -22,9 +21,8 @@ bool inks_look_alike(colour_theme theme, colour_depth depth, ink a, ink b);
 // least contrast.
 const rgb *theme_grounds(colour_theme theme);
 
-// The usual colour of one of 256 colours, or of one of 16, on terminals.
+// The usual colour of one of 256 colours on terminals; those of 16 are the first.
 rgb colour_256(int index);
-rgb colour_16(int index);
 
 // Contrast of two colours, 1 to 21, as in WCAG 2; text needs 4.5.
 double rgb_contrast(rgb a, rgb b);

@@ -80,7 +80,7 @@ static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
     rgb c;
     const bool mono = theme == COLOURS_MONO || depth == DEPTH_MONO;
     const bool coloured = !mono && ink_rgb(theme, i, &c);
-    const int index = depth == DEPTH_256 ? ink_256(theme, i) : ink_16(theme, i);
+    const int index = ink_index(theme, i, depth);
     const bool bright = coloured && depth == DEPTH_16 && COLORS == 8 && index >= 8;
 
     // many terminals show bold dark colours as bright ones, which are not readable on light ground

@@ -318,6 +318,6 @@ bool act_line_of_palette(const explorer_state *st, char line[LINE_TEXT], bool *g
     if (at < 0 || at >= count) {
         return false;
     }
-    palette_line(&st->scenarios, entries[at], line, LINE_TEXT, goes_on);
+    palette_line(&st->scenarios, &st->keys, entries[at], line, goes_on);
     return true;
 }

@@ -13,7 +13,7 @@ static void draw_entry(const explorer_state *st, screen *s, area a, palette_entr
 
     // a narrow screen leaves the kind out
     if (wide) {
-        screen_text(s, x, a.y, KIND, INK_FRAME, palette_kind_name(entry.kind));
+        screen_text(s, x, a.y, KIND, INK_FRAME, text.kind);
         x += KIND;
     }
     const bool command = entry.kind == PALETTE_COMMAND;

@@ -145,42 +145,29 @@ const char *key_built_in_line(int key)
     return NULL;
 }
 
-// The index of a user's key, -1 if it is none.
-static int own_index(const key_bindings *b, int key)
+int key_own(const key_bindings *b, int key)
 {
-    for (int i = 0; i < b->count; i++) {
-        if (b->own[i].key == key) {
-            return i;
-        }
+    int index = b->count - 1;
+    while (index >= 0 && b->own[index].key != key) {
+        index--;
     }
-    return -1;
+    return index;
 }
 
-user_key *key_find_own(key_bindings *b, int key)
+bool key_bind(key_bindings *b, int key, const char *line)
 {
-    int index = own_index(b, key);
-    return index >= 0 ? &b->own[index] : NULL;
-}
-
-user_key *key_add_own(key_bindings *b, int key)
-{
-    user_key *own = key_find_own(b, key);
-    if (own == NULL && b->count < USER_KEYS) {
-        own = &b->own[b->count++];
-        *own = (user_key){.key = key};
+    const int index = key_own(b, key), at = index >= 0 ? index : b->count;
+    if (at < USER_KEYS) {
+        b->own[at].key = key;
+        snprintf(b->own[at].line, sizeof b->own[at].line, "%s", line);
+        b->count += index < 0;
     }
-    return own;
-}
-
-void key_remove_own(key_bindings *b, user_key *own)
-{
-    assert(own >= b->own && own < b->own + b->count);
-    *own = b->own[--b->count];
+    return at < USER_KEYS;
 }
 
 const char *key_line(const key_bindings *b, int key)
 {
-    int index = own_index(b, key);
+    int index = key_own(b, key);
     if (index >= 0) {
         return b->own[index].line[0] ? b->own[index].line : NULL;
     }
@@ -209,7 +196,7 @@ void key_names_of(const key_bindings *b, const char *command, char *text, size_t
         }
     }
     for (const binding *own = built_in_keys(); own->key != 0 && used < size; own++) {
-        if (begins_with(own->line, command) && own_index(b, own->key) < 0) {
+        if (begins_with(own->line, command) && key_own(b, own->key) < 0) {
             used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "", own->name);
         }
     }

@@ -162,12 +162,10 @@ const char *key_line(const key_bindings *b, int key);
 // The line that the explorer's own table gives it, NULL for none.
 const char *key_built_in_line(int key);
 
-// The user's binding of a key, NULL if there is none.
-user_key *key_find_own(key_bindings *b, int key);
-// Finds or adds the user's binding of a key; NULL if there is no room for another.
-user_key *key_add_own(key_bindings *b, int key);
-// Removes the user's binding of a key, so that the explorer's own applies again.
-void key_remove_own(key_bindings *b, user_key *own);
+// The index of the user's binding of a key, -1 if there is none.
+int key_own(const key_bindings *b, int key);
+// Gives a key a line, "" for none; false if there is no room for another key.
+bool key_bind(key_bindings *b, int key, const char *line);
 
 // The names of the keys that execute a command, separated by blanks.
 void key_names_of(const key_bindings *b, const char *command, char *text, size_t size);

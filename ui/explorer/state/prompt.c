@@ -81,58 +81,39 @@ bool text_type(char *text, int key)
 
 // --- the palette ------------------------------------------------------------------------------
 
-const char *palette_kind_name(palette_kind kind)
-{
-    static const char *const names[PALETTE_KINDS] = {"command", "parameter", "signal", "scenario",
-                                                     "lesson"};
-    assert(kind < PALETTE_KINDS);
-    return names[kind];
-}
-
-// How many things of a kind there are.
-static int count_of(const scenario_menu *menu, palette_kind kind)
-{
-    switch (kind) {
-    case PALETTE_COMMAND:
-        return explorer_command_count;
-    case PALETTE_PARAMETER:
-        return parameter_count;
-    case PALETTE_SIGNAL:
-        return signal_count;
-    default:
-        return menu->count;
-    }
-}
+// What each kind is called, and the command that deals with what is chosen.
+static const struct {
+    const char *name, *command;
+} kinds[PALETTE_KINDS] = {{"command", ""},
+                          {"parameter", "edit "},
+                          {"signal", "trace "},
+                          {"scenario", "open "},
+                          {"lesson", "open "}};
 
 palette_text palette_describe(const scenario_menu *menu, const key_bindings *keys,
                               palette_entry entry)
 {
-    palette_text text = {0};
-    const char *name, *about;
+    palette_text text = {.kind = kinds[entry.kind].name};
 
-    // what each kind is called and about; only commands have keys
+    // what each is called and about; only commands have keys
     switch (entry.kind) {
     case PALETTE_COMMAND:
-        name = explorer_command_table[entry.index].name;
-        about = explorer_command_table[entry.index].help;
-        key_names_of(keys, name, text.keys, sizeof text.keys);
+        text.name = explorer_command_table[entry.index].name;
+        text.about = explorer_command_table[entry.index].help;
+        key_names_of(keys, text.name, text.keys, sizeof text.keys);
         break;
     case PALETTE_PARAMETER:
-        name = parameter_table[entry.index].path;
-        about = parameter_table[entry.index].description;
+        text.name = parameter_table[entry.index].path;
+        text.about = parameter_table[entry.index].description;
         break;
     case PALETTE_SIGNAL:
-        name = signal_table[entry.index].name;
-        about = signal_table[entry.index].description;
+        text.name = signal_table[entry.index].name;
+        text.about = signal_table[entry.index].description;
         break;
     default:
-        name = menu->names[entry.index];
-        about = scenario_menu_title(menu, entry.index);
+        text.name = menu->names[entry.index];
+        text.about = scenario_menu_title(menu, entry.index);
     }
-
-    // as much as an entry holds
-    snprintf(text.name, sizeof text.name, "%s", name);
-    snprintf(text.about, sizeof text.about, "%s", about);
     return text;
 }
 
@@ -191,18 +172,20 @@ static int rank_of(const palette_text *text, const char *words)
 static int compare_entries(const void *a, const void *b)
 {
     const palette_entry *one = a, *other = b;
-    const int kinds = (int)one->kind - (int)other->kind;
+    const int apart = (int)one->kind - (int)other->kind;
     return one->rank != other->rank ? one->rank - other->rank
-           : kinds != 0             ? kinds
+           : apart != 0             ? apart
                                     : one->index - other->index;
 }
 
 int palette_find(const scenario_menu *menu, const key_bindings *keys, const char *words,
                  palette_entry entries[PALETTE_ENTRIES])
 {
+    const int counts[PALETTE_KINDS] = {explorer_command_count, parameter_count, signal_count,
+                                       menu->count, menu->count};
     int count = 0;
     for (int kind = 0; kind < PALETTE_KINDS; kind++) {
-        for (int i = 0; i < count_of(menu, (palette_kind)kind) && count < PALETTE_ENTRIES; i++) {
+        for (int i = 0; i < counts[kind] && count < PALETTE_ENTRIES; i++) {
             palette_entry entry = {(palette_kind)kind, i, 0};
 
             // the list of scenarios has the lessons too
@@ -221,24 +204,15 @@ int palette_find(const scenario_menu *menu, const key_bindings *keys, const char
     return count;
 }
 
-void palette_line(const scenario_menu *menu, palette_entry entry, char *line, size_t size,
-                  bool *goes_on)
+void palette_line(const scenario_menu *menu, const key_bindings *keys, palette_entry entry,
+                  char line[LINE_TEXT], bool *goes_on)
 {
-    *goes_on = false;
-
-    // what is chosen becomes the command that deals with it
-    if (entry.kind == PALETTE_COMMAND) {
-        // what is in brackets need not be there
-        const explorer_command *c = &explorer_command_table[entry.index];
-        *goes_on = c->argument[0] != '\0' && c->argument[0] != '[';
-        snprintf(line, size, "%s%s", c->name, *goes_on ? " " : "");
-    } else if (entry.kind == PALETTE_PARAMETER) {
-        snprintf(line, size, "edit %s", parameter_table[entry.index].path);
-    } else if (entry.kind == PALETTE_SIGNAL) {
-        snprintf(line, size, "trace %s", signal_table[entry.index].name);
-    } else {
-        snprintf(line, size, "open %s", menu->names[entry.index]);
-    }
+    // what is in brackets need not be there
+    const char *argument =
+        entry.kind == PALETTE_COMMAND ? explorer_command_table[entry.index].argument : "";
+    *goes_on = argument[0] != '\0' && argument[0] != '[';
+    snprintf(line, LINE_TEXT, "%s%s%s", kinds[entry.kind].command,
+             palette_describe(menu, keys, entry).name, *goes_on ? " " : "");
 }
 
 bool palette_shows(const prompt *p)

@@ -36,7 +36,7 @@ bool text_type(char *text, int key);
 // The palette: one searchable list of commands with their keys, parameters, signals, scenarios and
 // lessons.
 
-enum { PALETTE_ENTRIES = 768, PALETTE_NAME = 96 };
+enum { PALETTE_ENTRIES = 768 };
 
 typedef enum palette_kind {
     PALETTE_COMMAND,
@@ -59,15 +59,11 @@ typedef struct palette_view {
     bool picked;  // the selected entry was chosen with the mouse
 } palette_view;
 
-// Name and description of an entry.
+// What an entry is ("command", "parameter", ...), its name and description.
 typedef struct palette_text {
-    char name[PALETTE_NAME];
+    const char *kind, *name, *about;
     char keys[32]; // keys of a command, "" for none
-    char about[LINE_TEXT];
 } palette_text;
-
-// "command", "parameter", ...
-const char *palette_kind_name(palette_kind kind);
 
 // The entries whose names or descriptions contain all the words, best matches first; returns how
 // many. Without words all entries.
@@ -78,8 +74,8 @@ palette_text palette_describe(const scenario_menu *menu, const key_bindings *key
                               palette_entry entry);
 
 // The command line of an entry; *goes_on: it still needs an argument.
-void palette_line(const scenario_menu *menu, palette_entry entry, char *line, size_t size,
-                  bool *goes_on);
+void palette_line(const scenario_menu *menu, const key_bindings *keys, palette_entry entry,
+                  char line[LINE_TEXT], bool *goes_on);
 
 // Whether an open prompt shows the palette: it searches, or its first word is being typed.
 bool palette_shows(const prompt *p);
