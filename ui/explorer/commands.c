@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "src/base/whole_file.h"
+#include "src/base/words.h"
 #include "ui/explorer/state/user_files.h"
 #include "ui/terminal/keys.h"
 
@@ -30,9 +31,13 @@ static bool find_command(explorer_state *st, const char *line, int *index)
     if (*index >= 0) {
         return true;
     }
-    const char *near = explorer_command_suggest(name);
-    return act_refuse(st, "there is no command '%s'%s%s%s", name, near ? ", did you mean " : "",
-                      near ? near : "", near ? "?" : " (? lists them)");
+    nearest_word near = nearest_begin(name);
+    for (int i = 0; i < explorer_command_count; i++) {
+        nearest_try(&near, explorer_command_table[i].name);
+    }
+    return act_refuse(st, "there is no command '%s'%s%s%s", name,
+                      near.best ? ", did you mean " : "", near.best ? near.best : "",
+                      near.best ? "?" : " (? lists them)");
 }
 
 bool explorer_execute(explorer_state *st, const char *line)

@@ -248,10 +248,13 @@ void explorer_paste(explorer *ex, int character)
 // Passes a gesture to the panel of its hit area; false if it has no effect.
 static bool give(explorer *ex, const panel_gesture *g)
 {
-    if (g->hit.panel == PANEL_NONE || panel_of(g->hit.panel)->point == NULL) {
-        return false;
+    const panel *p = g->hit.panel != PANEL_NONE ? panel_of(g->hit.panel) : NULL;
+    const int turn = pointer_wheel(g->event);
+    if (p != NULL && p->wheel != 0 && turn != 0) {
+        ex->state.drawn.scroll[g->hit.panel] += p->wheel * turn;
+        return true;
     }
-    bool taken = panel_of(g->hit.panel)->point(&ex->state, g);
+    const bool taken = p != NULL && p->point != NULL && p->point(&ex->state, g);
     take_picked(ex);
     return taken;
 }

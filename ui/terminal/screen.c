@@ -292,20 +292,11 @@ uint32_t glyph_in_set(uint32_t glyph, glyph_set set)
 void glyph_encode(uint32_t glyph, char *text)
 {
     // one byte, or a first one with the length and six bits in each that follows
-    if (glyph < 0x80) {
-        *text++ = (char)glyph;
-    } else if (glyph < 0x800) {
-        *text++ = (char)(0xc0 | glyph >> 6);
-        *text++ = (char)(0x80 | (glyph & 0x3f));
-    } else if (glyph < 0x10000) {
-        *text++ = (char)(0xe0 | glyph >> 12);
-        *text++ = (char)(0x80 | (glyph >> 6 & 0x3f));
-        *text++ = (char)(0x80 | (glyph & 0x3f));
-    } else {
-        *text++ = (char)(0xf0 | (glyph >> 18 & 0x07));
-        *text++ = (char)(0x80 | (glyph >> 12 & 0x3f));
-        *text++ = (char)(0x80 | (glyph >> 6 & 0x3f));
-        *text++ = (char)(0x80 | (glyph & 0x3f));
+    static const unsigned char first[] = {0, 0xc0, 0xe0, 0xf0};
+    const int more = glyph < 0x80 ? 0 : glyph < 0x800 ? 1 : glyph < 0x10000 ? 2 : 3;
+    *text++ = (char)(first[more] | glyph >> 6 * more);
+    for (int i = more; i-- > 0;) {
+        *text++ = (char)(0x80 | (glyph >> 6 * i & 0x3f));
     }
     *text = '\0';
 }

@@ -106,9 +106,8 @@ static void set_scaling(explorer_state *st, int index, axis_scaling scaling)
     value_range now;
     if (scaling == AXIS_FIXED && state_pane_axis(st, index, &now)) {
         pane_fix_axis(p, now);
-    } else if (scaling == AXIS_GROW) {
-        pane_grow_axis(p);
-    } else if (scaling == AXIS_AUTO || scaling == AXIS_CALM) {
+    } else if (scaling != AXIS_FIXED) {
+        p->grown = value_range_empty;
         p->scaling = scaling;
     }
 }

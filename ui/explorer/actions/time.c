@@ -85,6 +85,7 @@ bool act_drop_pull(explorer_state *st)
 // --- time -------------------------------------------------------------------------------------
 
 enum { MOST_SLOW = 100 }; // how much slower impacts can be shown
+#define NEW_SHARE 0.1     // of the last measurement in the mean speed
 
 void act_scrub(explorer_state *st, double time)
 {
@@ -113,7 +114,9 @@ bool act_advance(explorer_state *st, double seconds)
 
     // the cursor waits at the end of what has been computed
     session_seek(s, next);
-    playback_measure(play, s->now - before, seconds);
+    const double factor = (s->now - before) / seconds;
+    play->measured =
+        play->measured > 0 ? (1 - NEW_SHARE) * play->measured + NEW_SHARE * factor : factor;
     if (s->now < session_end(s) || s->computing != NULL) {
         return true;
     }

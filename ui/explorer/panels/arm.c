@@ -21,16 +21,6 @@ typedef struct stage {
     plan_view view;   // in either
 } stage;
 
-static double dot_x(const stage *g, double x)
-{
-    return plan_x(&g->view, x);
-}
-
-static double dot_y(const stage *g, double y)
-{
-    return plan_y(&g->view, y);
-}
-
 // The angle of a link in a recorded row.
 static double link_angle(const trace *t, int links, size_t row, int link)
 {
@@ -152,8 +142,8 @@ static void draw_links(const explorer_state *st, const stage *g, const trace *t,
 
     // one link after the other
     for (int i = 0; i < p->arm.links; i++) {
-        const double x0 = dot_x(g, joints[i].x), y0 = dot_y(g, joints[i].y);
-        const double x1 = dot_x(g, joints[i + 1].x), y1 = dot_y(g, joints[i + 1].y);
+        const double x0 = plan_x(&g->view, joints[i].x), y0 = plan_y(&g->view, joints[i].y);
+        const double x1 = plan_x(&g->view, joints[i + 1].x), y1 = plan_y(&g->view, joints[i + 1].y);
         for (int k = 0; dotted && k < 40; k++) {
             const double share = k / 40.0;
             canvas_dot(&g->canvas, lround(x0 + share * (x1 - x0)), lround(y0 + share * (y1 - y0)),
@@ -169,7 +159,7 @@ static void draw_links(const explorer_state *st, const stage *g, const trace *t,
 static void draw_hub(const stage *v, double angle)
 {
     const double radius = 5;
-    double x = dot_x(v, 0), y = dot_y(v, 0);
+    double x = plan_x(&v->view, 0), y = plan_y(&v->view, 0);
     for (int i = 0; i < 48; i++) {
         double turn = i * 6.283185307 / 48;
         canvas_dot(&v->canvas, lround(x + radius * cos(turn)), lround(y + radius * sin(turn)),
@@ -185,14 +175,16 @@ static void draw_wall(const stage *v, const parameters *p, const sample *at)
 
     // a plane: a stretch of the line that the arm lies along
     if (p->wall.kind == WALL_PLANE) {
-        canvas_line(&v->canvas, dot_x(v, 0.8 * x + shift.x), dot_y(v, 0.8 * y + shift.y),
-                    dot_x(v, 1.1 * x + shift.x), dot_y(v, 1.1 * y + shift.y), INK_WALL);
+        canvas_line(&v->canvas, plan_x(&v->view, 0.8 * x + shift.x),
+                    plan_y(&v->view, 0.8 * y + shift.y), plan_x(&v->view, 1.1 * x + shift.x),
+                    plan_y(&v->view, 1.1 * y + shift.y), INK_WALL);
     }
 
     // where the tip meets a wall of any kind
     x += shift.x;
     y += shift.y;
-    int column = v->canvas.x + (int)(dot_x(v, x) / 2), row = v->canvas.y + (int)(dot_y(v, y) / 4);
+    int column = v->canvas.x + (int)(plan_x(&v->view, x) / 2),
+        row = v->canvas.y + (int)(plan_y(&v->view, y) / 4);
     bool inside = row > v->canvas.y && row < v->canvas.y + v->canvas.height;
 
     if (p->wall.kind != WALL_NONE && inside) {
@@ -210,7 +202,8 @@ static void draw_force(const stage *v, plane_vector tip, double force, double pe
     if (!(force > 0) || !(peak > 0)) {
         return;
     }
-    double x = dot_x(v, tip.x), y = dot_y(v, tip.y), length = 1.2 * v->canvas.height * force / peak;
+    double x = plan_x(&v->view, tip.x), y = plan_y(&v->view, tip.y),
+           length = 1.2 * v->canvas.height * force / peak;
 
     // shaft and head in one column of cells
     const int across = (int)lround(x - 2) / 2, head = (int)(y / 4) - 1;
@@ -234,8 +227,8 @@ static void draw_dots(const explorer_state *st, const stage *g)
     draw_links(st, g, &e->run.trace, e->now, INK_ARM, false);
     if (st->pull.held) {
         const plane_vector tip = tip_of(st);
-        canvas_line(&g->canvas, dot_x(g, tip.x), dot_y(g, tip.y), dot_x(g, st->pull.x),
-                    dot_y(g, st->pull.y), INK_FORCE);
+        canvas_line(&g->canvas, plan_x(&g->view, tip.x), plan_y(&g->view, tip.y),
+                    plan_x(&g->view, st->pull.x), plan_y(&g->view, st->pull.y), INK_FORCE);
     }
     draw_force(g, tip_of(st), row->contact != 0 ? row->force : 0, e->run.summary.peak_force_N);
 }
@@ -314,8 +307,8 @@ static void draw_words(const explorer_state *st, const stage *g, area a)
     const plane_vector tip = tip_of(st);
     screen *s = g->canvas.screen;
     const double across = g->view.width / g->canvas.width, down = g->view.height / g->canvas.height;
-    const int x = g->canvas.x + (int)(dot_x(g, tip.x) / across);
-    const int y = g->canvas.y + (int)(dot_y(g, tip.y) / down) - 2;
+    const int x = g->canvas.x + (int)(plan_x(&g->view, tip.x) / across);
+    const int y = g->canvas.y + (int)(plan_y(&g->view, tip.y) / down) - 2;
     if (row->contact != 0 && row->force > 0 && y > a.y) {
         screen_print(s, x - 11, y, 9, INK_FORCE, "%7.3f N", row->force);
     }

@@ -197,17 +197,22 @@ static double time_at(const explorer_state *st, area plot, int x)
     return from + (to - from) * fmax(0, fmin(1, share));
 }
 
-// A turn of the wheel over the plot or the time axis zooms there or pans.
-static void turn_wheel(explorer_state *st, const panel_gesture *g, bool pans)
+// A turn of the wheel zooms the axis of values or of time that is under the mouse, or pans.
+static bool turn_wheel(explorer_state *st, const panel_gesture *g)
 {
+    const hit_area *h = &g->hit;
+    const int direction = pointer_wheel(g->event), rows = h->area.height > 0 ? h->area.height : 1;
+    const double factor = direction < 0 ? 0.8 : 1.25;
     double from, to;
-    int direction = pointer_wheel(g->event);
     state_window(st, &from, &to);
-    if (pans) {
+    if (h->part == PART_LABELS) {
+        act_scale_axis(st, h->index, factor, (g->event.y - h->area.y + 0.5) / rows);
+    } else if (h->part == PART_TIME_AXIS ? !g->event.control : g->event.shift) {
         act_pan_by(st, 0.1 * direction * (to - from));
     } else {
-        act_zoom_at(st, direction < 0 ? 0.8 : 1.25, time_at(st, g->hit.area, g->event.x));
+        act_zoom_at(st, factor, time_at(st, h->area, g->event.x));
     }
+    return true;
 }
 
 // With Control held a drag draws a box; letting go shows its instants, and its values where it has
@@ -248,68 +253,52 @@ static bool point_at_plot(explorer_state *st, const panel_gesture *g)
     if (g->event.kind == POINTER_PRESS) {
         st->box.held = in_pane && g->event.control;
     }
-    if (st->box.held && g->event.kind <= POINTER_RELEASE) {
+    if (st->box.held) {
         return draw_box(st, g);
     }
-    switch (g->event.kind) {
-    case POINTER_PRESS:
-    case POINTER_DRAG:
+    if (g->event.kind != POINTER_RELEASE) {
         act_scrub(st, time_at(st, g->hit.area, g->event.x));
-        return true;
-    case POINTER_RELEASE:
-        return false;
-    default:
-        turn_wheel(st, g, g->event.shift);
-        return true;
     }
+    return g->event.kind != POINTER_RELEASE;
 }
 
 // The axis is dragged; a click without a drag moves the cursor.
 static bool point_at_time_axis(explorer_state *st, const panel_gesture *g)
 {
     const area a = g->hit.area;
-
     double from, to;
-    switch (g->event.kind) {
-    case POINTER_PRESS:
-        return true;
-    case POINTER_DRAG:
-        state_window(st, &from, &to);
+    state_window(st, &from, &to);
+    if (g->event.kind == POINTER_DRAG) {
         act_pan_by(st, a.width > 0 ? -g->across * (to - from) / a.width : 0);
-        return true;
-    case POINTER_RELEASE:
-        if (!g->dragged) {
-            act_scrub(st, time_at(st, a, g->event.x));
-        }
-        return true;
-    default:
-        turn_wheel(st, g, !g->event.control);
-        return true;
+    } else if (g->event.kind == POINTER_RELEASE && !g->dragged) {
+        act_scrub(st, time_at(st, a, g->event.x));
     }
+    return true;
 }
 
-// A click puts the pane in focus, a drag moves its axis, the wheel zooms it.
+// A click puts the pane in focus, a drag moves its axis.
 static bool point_at_labels(explorer_state *st, const panel_gesture *g)
 {
     const hit_area *h = &g->hit;
-    const int rows = h->area.height > 0 ? h->area.height : 1;
-
-    switch (g->event.kind) {
-    case POINTER_PRESS:
+    if (g->event.kind == POINTER_PRESS) {
         st->panes.focus = h->index;
-        return true;
-    case POINTER_DRAG:
-        if (g->up != 0) {
-            act_shift_axis(st, h->index, -(double)g->up / rows);
-        }
-        return true;
-    case POINTER_RELEASE:
-        return false;
-    default:
-        act_scale_axis(st, h->index, pointer_wheel(g->event) < 0 ? 0.8 : 1.25,
-                       (g->event.y - h->area.y + 0.5) / rows);
-        return true;
+    } else if (g->event.kind == POINTER_DRAG && g->up != 0) {
+        act_shift_axis(st, h->index, -(double)g->up / (h->area.height > 0 ? h->area.height : 1));
     }
+    return g->event.kind != POINTER_RELEASE;
+}
+
+// On the map of the whole run the visible part moves to the mouse.
+static bool point_at_map(explorer_state *st, const panel_gesture *g)
+{
+    const area line = g->hit.area;
+    const double share = (g->event.x - line.x + 0.5) / (line.width > 0 ? line.width : 1);
+    double from, to;
+    state_window(st, &from, &to);
+    if (g->event.kind != POINTER_RELEASE) {
+        act_pan_by(st, share * st->session.effective.parameters.run.duration - (from + to) / 2);
+    }
+    return g->event.kind != POINTER_RELEASE;
 }
 
 // --- the panes --------------------------------------------------------------------------------
@@ -505,7 +494,6 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     int shown = 0;
 
     // the lanes take the lowest rows
-    lanes_survey(st, &lay->lanes);
     const int lanes = lanes_rows(st, &lay->lanes, a.height);
     a.height -= lanes;
     const area beneath = {a.x, a.y + a.height, a.width, lanes};
@@ -548,25 +536,27 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 
 static bool point(explorer_state *st, const panel_gesture *g)
 {
+    const hit_part part = g->hit.part;
+    const bool below = part == PART_LANES || part == PART_MAP;
+    if (pointer_wheel(g->event) != 0) {
+        return !below && (part == PART_VIEW || turn_wheel(st, g));
+    }
+
     // each part takes the mouse in its own way
-    switch (g->hit.part) {
+    switch (part) {
     case PART_BODY:
     case PART_PANE:
+    case PART_LANES:
         return point_at_plot(st, g);
     case PART_TIME_AXIS:
         return point_at_time_axis(st, g);
     case PART_VIEW:
         return true;
     case PART_LEGEND:
-        // the wheel zooms there as in the curves
-        if (pointer_wheel(g->event) != 0) {
-            return point_at_plot(st, g);
-        }
         return g->event.kind == POINTER_PRESS &&
                act_toggle_signal(st, g->hit.index / PANE_SIGNALS, g->hit.index % PANE_SIGNALS);
-    case PART_LANES:
     case PART_MAP:
-        return lanes_point(st, g);
+        return point_at_map(st, g);
     default:
         return point_at_labels(st, g);
     }

@@ -33,7 +33,8 @@ typedef struct lane_band {
 
 // --- which lanes there are --------------------------------------------------------------------
 
-void lanes_survey(const explorer_state *st, lane_survey *known)
+// Examines the rows that a run has gained.
+static void survey(const explorer_state *st, lane_survey *known)
 {
     const trace *t = &st->session.run.trace;
     const unsigned long run = state_run_id(st);
@@ -109,9 +110,10 @@ static bool has_map(const explorer_state *st)
     return st->window.to > st->window.from;
 }
 
-int lanes_rows(const explorer_state *st, const lane_survey *known, int height)
+int lanes_rows(const explorer_state *st, lane_survey *known, int height)
 {
     lane lanes[MOST_LANES];
+    survey(st, known);
     const int wanted = find_lanes(st, known, lanes) + has_map(st);
     const int spare = st->looks.lanes == LANES_ALL ? height - LEAST_CURVES
                       : height > FEWEST_CURVES     ? (height - FEWEST_CURVES) / 2
@@ -253,15 +255,11 @@ static void draw_bands(const explorer_state *st, screen *s, area line, lane l)
 static void draw_changes(const explorer_state *st, screen *s, area line)
 {
     const scenario *scripted = &st->session.effective;
-    double from, to;
-    state_window(st, &from, &to);
     for (int i = 0; i < scripted->action_count; i++) {
         const action *c = &scripted->actions[i];
-        const int at = (int)floor((c->time - from) / (to - from) * line.width);
+        const int at = time_column(st, line, c->time);
         char text[LINE_TEXT], value[PARAMETER_TEXT_SIZE];
-
-        // only what is in sight
-        if (c->time < from || at < 0 || at >= line.width) {
+        if (at < 0) {
             continue;
         }
 
@@ -277,8 +275,8 @@ static void draw_changes(const explorer_state *st, screen *s, area line)
 
         // what is still to come is hollow and dim
         const ink colour = seen ? INK_EVENT : INK_DIM;
-        screen_put(s, line.x + at, line.y, seen ? 0x25cf : 0x25cb, colour);
-        screen_text(s, line.x + at + 1, line.y, line.width - at - 1, colour, text);
+        screen_put(s, at, line.y, seen ? 0x25cf : 0x25cb, colour);
+        screen_text(s, at + 1, line.y, line.x + line.width - at - 1, colour, text);
     }
 }
 
@@ -337,24 +335,4 @@ void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a)
             draw_bands(st, s, line, lanes[i]);
         }
     }
-}
-
-bool lanes_point(explorer_state *st, const panel_gesture *g)
-{
-    const area line = g->hit.area;
-    const double share = (g->event.x - line.x + 0.5) / (line.width > 0 ? line.width : 1);
-    if (g->event.kind != POINTER_PRESS && g->event.kind != POINTER_DRAG) {
-        return false;
-    }
-    double from, to;
-    state_window(st, &from, &to);
-
-    // on the map the visible part moves to the mouse
-    if (g->hit.part == PART_MAP) {
-        const double at = share * st->session.effective.parameters.run.duration;
-        act_pan_by(st, at - (from + to) / 2);
-    } else {
-        act_scrub(st, from + fmax(0, fmin(1, share)) * (to - from));
-    }
-    return true;
 }

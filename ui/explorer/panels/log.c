@@ -107,7 +107,7 @@ static bool point(explorer_state *st, const panel_gesture *g)
     size_t index = (size_t)(g->hit.index + g->event.y - g->hit.area.y);
 
     if (g->event.kind != POINTER_PRESS) {
-        return panel_scroll(st, g, WHEEL_LINES);
+        return false;
     }
     if (index < log->count && log->entries[index].time <= st->session.seen) {
         act_scrub(st, log->entries[index].time);
@@ -121,4 +121,5 @@ const panel log_panel = {.name = "log",
                          .least_body = 26,
                          .rows = rows,
                          .draw = draw,
+                         .wheel = WHEEL_LINES,
                          .point = point};

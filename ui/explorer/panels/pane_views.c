@@ -23,12 +23,6 @@ static double dot_y(const plane *p, double y)
     return (p->y.high - y) / (p->y.high - p->y.low) * (4.0 * p->canvas.height - 1);
 }
 
-// A range that is not a point.
-static value_range opened(value_range r)
-{
-    return r.high - r.low < 1e-12 ? (value_range){r.low - 0.5, r.high + 0.5} : r;
-}
-
 // The ends of the axis across, in the corners of the lowest row, and what it is.
 static void draw_ends(screen *s, area a, value_range x, const char *name)
 {
@@ -45,10 +39,7 @@ static void widen_by(value_range *r, const trace *t, int signal, double from, do
 {
     const size_t first = trace_row_at(t, from), last = trace_row_at(t, to);
     for (size_t i = first; i <= last; i++) {
-        const double value = signal_value(&t->rows[i], signal);
-        if (isfinite(value)) {
-            value_range_widen(r, (value_range){value, value});
-        }
+        value_range_add(r, signal_value(&t->rows[i], signal));
     }
 }
 
@@ -80,7 +71,8 @@ static bool draw_phase(const explorer_state *st, screen *s, const pane *of, area
     if (!(x.high >= x.low) || !(y.high >= y.low)) {
         return false;
     }
-    const plane p = {{s, a.x, a.y, a.width, a.height}, opened(x), opened(y)};
+    const plane p = {
+        {s, a.x, a.y, a.width, a.height}, value_range_opened(x), value_range_opened(y)};
     *axis = p.y;
     if (e->has_other && !st->difference.on) {
         draw_path(&p, &e->other.trace, of, from, to, INK_OTHER);
@@ -170,7 +162,7 @@ static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, a
     const bool constant = highest <= ROUNDING * largest;
     const plane p = {{s, a.x, a.y, a.width, a.height},
                      {0, lines / (to - from)},
-                     opened((value_range){0, constant ? 0 : highest})};
+                     value_range_opened((value_range){0, constant ? 0 : highest})};
     *axis = p.y;
     snprintf(name, sizeof name, "constant, to [Hz]");
     if (!constant) {

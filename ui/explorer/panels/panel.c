@@ -22,12 +22,6 @@ bool panel_fits(const panel *p, screen_size body)
     return body.width >= p->least_width && body.height >= p->least_body;
 }
 
-bool panel_scroll(explorer_state *st, const panel_gesture *g, int lines)
-{
-    st->drawn.scroll[g->hit.panel] += lines * pointer_wheel(g->event);
-    return pointer_wheel(g->event) != 0;
-}
-
 int pointer_wheel(pointer_event e)
 {
     return e.kind == POINTER_WHEEL_UP ? -1 : e.kind == POINTER_WHEEL_DOWN ? 1 : 0;
@@ -94,6 +88,14 @@ int draw_first_line(int selected, int count, int height)
     int first = selected - height / 2;
     first = first > count - height ? count - height : first;
     return first < 0 ? 0 : first;
+}
+
+int time_column(const explorer_state *st, area line, double time)
+{
+    double from, to;
+    state_window(st, &from, &to);
+    const double at = (time - from) / (to - from) * line.width;
+    return at >= 0 && at < line.width ? line.x + (int)at : -1;
 }
 
 area page_area(area body, int width, int height)

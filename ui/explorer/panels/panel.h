@@ -119,6 +119,9 @@ number_text draw_number(double value);
 // The first line to show so that the selected one is visible.
 int draw_first_line(int selected, int count, int height);
 
+// The column of a time axis at which an instant [s] is, -1 if it is not visible.
+int time_column(const explorer_state *st, area line, double time);
+
 // The area of a page of at most this size, centred in the area of the panels.
 area page_area(area body, int width, int height);
 
@@ -146,6 +149,8 @@ typedef struct panel {
     // Draws it into an area of the screen; pages are centred in the area of all panels.
     void (*draw)(const explorer_state *st, layout *lay, screen *s, area a);
 
+    int wheel; // lines that a step of the wheel scrolls it, 0 where `point` has the wheel
+
     // Handles the mouse; false if the gesture does nothing. May be NULL.
     bool (*point)(explorer_state *st, const panel_gesture *g);
 
@@ -161,9 +166,6 @@ PANEL_LIST(PANEL_DECLARATION)
 
 // The description of a panel; not for PANEL_NONE.
 const panel *panel_of(panel_id id);
-
-// The wheel scrolls the panel of the gesture by some lines a step; false for other gestures.
-bool panel_scroll(explorer_state *st, const panel_gesture *g, int lines);
 
 // Whether a panel has room on a screen whose panels have the area `body`.
 bool panel_fits(const panel *p, screen_size body);
@@ -237,18 +239,13 @@ bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a, 
 // intervals in which the hub sticks or the command exceeds its limit, locks and changes. Above
 // them, if the curves show only a part of the run, a map of the whole run.
 
-// Examines the rows that a run has gained since the last picture, so that empty lanes are omitted.
-void lanes_survey(const explorer_state *st, lane_survey *known);
-
-// The number of rows of the lanes below curves of a given height.
-int lanes_rows(const explorer_state *st, const lane_survey *known, int height);
+// The number of rows of the lanes below curves of a given height. Examines the rows that the run
+// has gained since the last picture, so that empty lanes are omitted.
+int lanes_rows(const explorer_state *st, lane_survey *known, int height);
 
 // Draws the lanes in the number of rows given by lanes_rows; the area has the same columns as the
 // curves and their labels.
 void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a);
-
-// The mouse on a lane moves the cursor, on the map it moves the visible part.
-bool lanes_point(explorer_state *st, const panel_gesture *g);
 
 // The whole screen of the explorer: title, panels, page, status and prompt.
 

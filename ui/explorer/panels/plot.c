@@ -308,24 +308,20 @@ area draw_time_axis(const explorer_state *st, screen *s, area a)
 
     // a touch that is shorter than a column
     for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
-        const double at = (t->events[i].time - from) / (to - from) * line.width;
-        if (t->events[i].kind == EVENT_CONTACT && at >= 0 && at < line.width) {
-            screen_put(s, line.x + (int)at, a.y, 0x2592, INK_FORCE);
+        if (t->events[i].kind == EVENT_CONTACT) {
+            screen_put(s, time_column(st, line, t->events[i].time), a.y, 0x2592, INK_FORCE);
         }
     }
     draw_instants(s, line, from, to);
 
-    // impacts and inputs that have been seen
+    // impacts that have been seen and inputs: the coming motion is not known yet, coming changes
+    // are
     for (size_t i = 0; i < t->event_count; i++) {
         const event *v = &t->events[i];
-        double at = (v->time - from) / (to - from) * line.width;
-        bool impact = v->kind == EVENT_IMPACT;
-        bool input = v->kind == EVENT_CHANGE || v->kind == EVENT_PUSH;
-        bool seen = v->time <= e->seen;
-
-        // the coming motion is not known yet, but coming changes are
-        if (at >= 0 && at < line.width && ((impact && seen) || input)) {
-            screen_put(s, line.x + (int)at, a.y,
+        const bool input = v->kind == EVENT_CHANGE || v->kind == EVENT_PUSH;
+        const bool seen = v->time <= e->seen, impact = v->kind == EVENT_IMPACT && seen;
+        if (impact || input) {
+            screen_put(s, time_column(st, line, v->time), a.y,
                        impact ? 0x25b2
                        : seen ? 0x25cf
                               : 0x25cb,
@@ -335,10 +331,7 @@ area draw_time_axis(const explorer_state *st, screen *s, area a)
 
     // notes
     for (int i = 0; i < st->note_count; i++) {
-        const double at = (st->notes[i].time - from) / (to - from) * line.width;
-        if (at >= 0 && at < line.width) {
-            screen_put(s, line.x + (int)at, a.y, '!', INK_TITLE);
-        }
+        screen_put(s, time_column(st, line, st->notes[i].time), a.y, '!', INK_TITLE);
     }
 
     // the meaning of the marks, next to them

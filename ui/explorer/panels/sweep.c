@@ -10,24 +10,12 @@ enum { FRAME_OF_TITLE = 6 }; // corners, lines and blanks next to it [cells]
 // The least and the largest number among the runs; false without any.
 static bool range_of_metric(const lab_sweep *sweep, value_range *range)
 {
-    *range = value_range_empty;
+    value_range found = value_range_empty;
     for (int i = 0; i < sweep->count; i++) {
-        const double value = lab_sweep_metric(sweep, i, sweep->metric);
-        if (isfinite(value)) {
-            value_range_widen(range, (value_range){value, value});
-        }
+        value_range_add(&found, lab_sweep_metric(sweep, i, sweep->metric));
     }
-
-    // no run has a number
-    if (!(range->high >= range->low)) {
-        return false;
-    }
-
-    // a constant still needs some height
-    if (range->high - range->low < 1e-12) {
-        *range = (value_range){range->low - 0.5, range->high + 0.5};
-    }
-    return true;
+    *range = value_range_opened(found);
+    return found.high >= found.low;
 }
 
 // Where the value of a run lies on the axis, 0 to 1: values of a list stand side by side.

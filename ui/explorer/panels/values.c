@@ -84,12 +84,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     }
 }
 
-static bool point(explorer_state *st, const panel_gesture *g)
-{
-    return panel_scroll(st, g, WHEEL_LINES);
-}
-
-const panel values_panel = {.name = "values", .draw = draw, .point = point};
+const panel values_panel = {.name = "values", .draw = draw, .wheel = WHEEL_LINES};
 
 // --- statistics -------------------------------------------------------------------------------
 // The panel of statistics: what the signals of the panes come to between the mark and the cursor,
@@ -195,10 +190,4 @@ static void draw_statistics(const explorer_state *st, layout *lay, screen *s, ar
     }
 }
 
-static bool point_at_statistics(explorer_state *st, const panel_gesture *g)
-{
-    return panel_scroll(st, g, 1);
-}
-
-const panel statistics_panel = {
-    .name = "statistics", .draw = draw_statistics, .point = point_at_statistics};
+const panel statistics_panel = {.name = "statistics", .draw = draw_statistics, .wheel = 1};

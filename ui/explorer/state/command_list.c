@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/base/words.h"
 #include "ui/terminal/keys.h"
 #include "ui/terminal/screen.h"
 
@@ -37,15 +36,6 @@ int explorer_command_find(const char *name)
         }
     }
     return matches == 1 ? found : -1;
-}
-
-const char *explorer_command_suggest(const char *name)
-{
-    nearest_word near = nearest_begin(name);
-    for (int i = 0; i < explorer_command_count; i++) {
-        nearest_try(&near, explorer_command_table[i].name);
-    }
-    return near.best;
 }
 
 // --- keys -------------------------------------------------------------------------------------

@@ -134,9 +134,6 @@ extern const int explorer_command_count;
 // The index of a name or of an unambiguous beginning of one, -1 if there is none.
 int explorer_command_find(const char *name);
 
-// The name most similar to a misspelt one, NULL if none is similar.
-const char *explorer_command_suggest(const char *name);
-
 // --- keys -------------------------------------------------------------------------------------
 
 enum { USER_KEYS = 64, KEY_NAME = 16 };

@@ -40,6 +40,19 @@ void value_range_widen(value_range *r, value_range other)
     r->high = fmax(r->high, other.high);
 }
 
+void value_range_add(value_range *r, double value)
+{
+    if (isfinite(value)) {
+        value_range_widen(r, (value_range){value, value});
+    }
+}
+
+value_range value_range_opened(value_range r)
+{
+    const double rounding = 1e-12; // a smaller range is shown as a flat line
+    return r.high - r.low < rounding ? (value_range){r.low - 0.5, r.high + 0.5} : r;
+}
+
 // Shows the first pane that has a signal, or the user's own with it if none has.
 static void show_signal(pane_set *set, int signal)
 {
@@ -197,12 +210,6 @@ void pane_fix_axis(pane *p, value_range limits)
     }
 }
 
-void pane_grow_axis(pane *p)
-{
-    p->grown = value_range_empty;
-    p->scaling = AXIS_GROW;
-}
-
 // --- the visible part -------------------------------------------------------------------------
 
 #define SHORTEST 1e-6 // visible part of a run [s]
@@ -272,21 +279,15 @@ void extremes_forget(extremes *e)
 static void fill_blocks(double *pairs, size_t first, size_t blocks, const trace *t, int signal)
 {
     for (size_t b = first; b < blocks; b++) {
-        double low = (double)INFINITY, high = (double)-INFINITY;
-        size_t end = (b + 1) * EXTREMES_BLOCK;
-
-        // what has no value is left out
+        value_range found = value_range_empty;
+        const size_t end = (b + 1) * EXTREMES_BLOCK;
         for (size_t r = b * EXTREMES_BLOCK; r < t->row_count && r < end; r++) {
-            double value = signal_value(&t->rows[r], signal);
-            if (isfinite(value)) {
-                low = fmin(low, value);
-                high = fmax(high, value);
-            }
+            value_range_add(&found, signal_value(&t->rows[r], signal));
         }
 
         // without any value low stays above high
-        pairs[2 * b] = low;
-        pairs[2 * b + 1] = high;
+        pairs[2 * b] = found.low;
+        pairs[2 * b + 1] = found.high;
     }
 }
 

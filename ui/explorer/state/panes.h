@@ -29,8 +29,12 @@ typedef struct value_range {
 
 extern const value_range value_range_empty;
 
-// Widens a range to include another one.
+// Widens a range to include another one, or a value if it is finite.
 void value_range_widen(value_range *r, value_range other);
+void value_range_add(value_range *r, double value);
+
+// A range, or one about its only value.
+value_range value_range_opened(value_range r);
 
 // The horizontal axis of a pane.
 typedef enum pane_view {
@@ -92,9 +96,6 @@ int panes_add(pane_set *set, const pane *own);
 
 // Fixes a pane's axis to limits, unless they are not finite, nearly equal or far too wide.
 void pane_fix_axis(pane *p, value_range limits);
-
-// Discards the range shown so far; the axis grows anew.
-void pane_grow_axis(pane *p);
 
 // --- the visible part -------------------------------------------------------------------------
 

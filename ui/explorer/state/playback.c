@@ -6,15 +6,7 @@
 
 #include "render/scene/film.h"
 
-#define NEW_SHARE 0.1  // of the last measurement in the mean
-#define APART     0.05 // of the run, between impacts that are slowed down each for itself
-
-void playback_measure(playback *p, double simulated, double seconds)
-{
-    assert(seconds > 0);
-    double factor = simulated / seconds;
-    p->measured = p->measured > 0 ? (1 - NEW_SHARE) * p->measured + NEW_SHARE * factor : factor;
-}
+#define APART 0.05 // of the run, between impacts that are slowed down each for itself
 
 double playback_slowness(const playback *p, const trace *t, double duration, double time)
 {

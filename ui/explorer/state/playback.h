@@ -16,9 +16,6 @@ typedef struct playback {
     double slowed;   // the present factor
 } playback;
 
-// Records that `simulated` seconds passed in `seconds` of the clock (above 0).
-void playback_measure(playback *p, double simulated, double seconds);
-
 // How many times slower the run is to be shown at an instant [s], 1 to p->slow: near impacts that
 // follow an interval without any, as in films. `duration` [s] is that of the whole run.
 double playback_slowness(const playback *p, const trace *t, double duration, double time);

@@ -79,15 +79,6 @@ void run_log_forget(run_log *log)
 
 // --- modes of the control law -----------------------------------------------------------------
 
-void law_modes_update(law_modes *m, unsigned long run, const parameters *p)
-{
-    assert(run != 0);
-    if (m->run != run) {
-        m->run = run;
-        m->count = rig_mode_names(p, m->names, LAW_MODES, &m->lockable);
-    }
-}
-
 void law_mode_name(const law_modes *m, double mode, char *text, size_t size)
 {
     if (mode >= 0 && mode < m->count) {

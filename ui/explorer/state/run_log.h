@@ -42,8 +42,5 @@ typedef struct law_modes {
     char names[LAW_MODES][MODE_NAME_SIZE];
 } law_modes;
 
-// Reads the modes of a run's law, once for each run.
-void law_modes_update(law_modes *m, unsigned long run, const parameters *p);
-
 // The name of a mode; "mode N" if the law gives none.
 void law_mode_name(const law_modes *m, double mode, char *text, size_t size);

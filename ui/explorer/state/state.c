@@ -10,8 +10,6 @@
 #include "src/rig/controller.h"
 #include "src/rig/rig.h"
 
-#define ROUNDING 1e-12 // a smaller range is rounding, and shown as a flat line
-
 static double duration_of(const explorer_state *st)
 {
     return st->session.effective.parameters.run.duration;
@@ -305,8 +303,13 @@ bool state_has_law(const explorer_state *st)
 
 const law_modes *state_law_modes(explorer_state *st)
 {
-    law_modes_update(&st->modes, state_run_id(st), &st->session.effective.parameters);
-    return &st->modes;
+    law_modes *m = &st->modes;
+    if (m->run != state_run_id(st)) {
+        const parameters *p = &st->session.effective.parameters;
+        m->run = state_run_id(st);
+        m->count = rig_mode_names(p, m->names, LAW_MODES, &m->lockable);
+    }
+    return m;
 }
 
 const run_log *state_run_log(explorer_state *st)
@@ -377,10 +380,7 @@ static value_range range_of_rows(const trace *t, int signal, const double *pairs
             value_range_widen(&found, (value_range){pair[0], pair[1]});
             r += EXTREMES_BLOCK;
         } else {
-            double value = signal_value(&t->rows[r++], signal);
-            if (isfinite(value)) {
-                value_range_widen(&found, (value_range){value, value});
-            }
+            value_range_add(&found, signal_value(&t->rows[r++], signal));
         }
     }
     return found;
@@ -454,10 +454,7 @@ bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
     } else if (p->scaling == AXIS_FIXED) {
         found = p->fixed;
     }
-    if (found.high - found.low < ROUNDING && p->scaling != AXIS_FIXED) {
-        found = (value_range){found.low - 0.5, found.high + 0.5};
-    }
-    *axis = found;
+    *axis = p->scaling == AXIS_FIXED ? found : value_range_opened(found);
     return true;
 }
 
