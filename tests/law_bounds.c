@@ -7,8 +7,8 @@
 // but the push (law_informed.h). Where that is within the bounds no argument from physics can
 // excuse a run: what another law lacks is knowledge. Where it is not, nothing is proved: the run is
 // open. Last, the classes and how many are in each, and in how many of all cases that law is within
-// the bounds with the same tuning for all. Exit status 1 if fewer than CAUSES runs have
-// such an error or more than OPEN are open.
+// the bounds with the same tuning for all, told all or less. Exit status 1 if fewer than CAUSES
+// runs have such an error or more than OPEN are open.
 #include <limits.h>
 
 #include "tests/law_informed.h"
@@ -44,7 +44,7 @@ typedef struct tally {
     int out, lost, slow, high, wrong, late; // runs out of bounds, and by which of them
     int found;                              // of which the law that sees all is within them
     int by[ERRORS], several;                // an error without which the run is within; none is
-    int one[COMMANDS];                      // cases in which that law is with one tuning for all
+    int one[KNOWLEDGE][COMMANDS];           // cases in which that law is with one tuning for all
 } tally;
 
 static void count_bounds(tally *t, const verdict *v)
@@ -62,8 +62,10 @@ static void print_tally(const tally *t)
     printf("%d runs out of bounds: %d lose contact; %d slow, %d over, %d wrong, %d late\n", t->out,
            t->lost, t->slow, t->high, t->wrong, t->late);
     printf("a law that sees all is within them in %d; %d are open\n", t->found, t->out - t->found);
-    printf("with one tuning it is in %d, %d, %d cases at 0.5, 1, 3 N\n", t->one[0], t->one[1],
-           t->one[2]);
+    for (int i = 0; i < KNOWLEDGE; i++) {
+        printf("with one tuning it is in %d, %d, %d cases at 0.5, 1, 3 N: %s\n", t->one[i][0],
+               t->one[i][1], t->one[i][2], knowledge_names[i]);
+    }
     for (int e = 0; e < ERRORS; e++) {
         if (t->by[e] > 0) {
             printf("%4d within the bounds without: %s\n", t->by[e], errors[e].name);
@@ -94,7 +96,9 @@ static void explain_case(void *to, int number, const law_case *c, int command, d
                          const verdict *v)
 {
     tally *t = to;
-    t->one[command] += informed_once(c, commands[command], open_loop).within;
+    for (int i = 0; i < KNOWLEDGE; i++) {
+        t->one[i][command] += informed_once(c, commands[command], open_loop, i).within;
+    }
     if (v->within) {
         return;
     }

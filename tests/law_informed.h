@@ -10,6 +10,9 @@
 // T_d what holds F. A touch with speed makes a force that is not f_d, so it comes without. Where a
 // landing speed is given, it costs to be off that speed's line to the wall in the last 0.06 s.
 // Friction's torque is added in the direction in which the hub is to move.
+//
+// To say what knowledge is worth it may also be told less: no mass at the tip or the nearest of 0,
+// 40 and 80 g, and a rigid wall for one that gives.
 #pragma once
 
 #include "src/arm/modes.h"
@@ -39,6 +42,26 @@ typedef struct informed_arm {
     double period, delay, force;   // F
     arm arm;
 } informed_arm;
+
+// What is told of the tip's mass and of the wall.
+enum { TOLD_ALL, NOT_THE_WALL, NOT_THE_MASS, MASS_ROUGHLY, MASS_ROUGHLY_NOT_THE_WALL, KNOWLEDGE };
+static const char *const knowledge_names[] = {"told all", "not the wall", "not the tip's mass",
+                                              "the tip's mass to 20 g",
+                                              "the tip's mass to 20 g and not the wall"};
+
+static void forget(parameters *p, int knowledge)
+{
+    double *mass = &p->arm.tip_mass;
+    if (knowledge == NOT_THE_MASS) {
+        *mass = 0;
+    } else if (knowledge == MASS_ROUGHLY || knowledge == MASS_ROUGHLY_NOT_THE_WALL) {
+        *mass = fmin(0.08, 0.04 * round(*mass / 0.04));
+    }
+    if (knowledge == NOT_THE_WALL || knowledge == MASS_ROUGHLY_NOT_THE_WALL) {
+        p->wall.contact = WALL_RIGID;
+        p->wall.mass = 0;
+    }
+}
 
 typedef struct informed_tuning {
     double touch, rise, first, weight, speed; // [s], [s], share of F, -, landing speed [m/s] or 0
@@ -334,10 +357,11 @@ static verdict informed_verdict(const law_case *c, double command, double open_l
 }
 
 // With one tuning for all cases.
-static verdict informed_once(const law_case *c, double command, double open_loop)
+static verdict informed_once(const law_case *c, double command, double open_loop, int knowledge)
 {
     scenario s;
     case_scenario(&s, NULL, c, "open-loop", command);
+    forget(&s.parameters, knowledge);
     const informed_arm m = informed_arm_of(&s.parameters, command);
     const double speed = command < 1 ? 0.01 : command < 3 ? 0.02 : 0.04;
     const informed_tuning t = {1.2 * open_loop, 0.03, 0.4, 1e-3, speed};
