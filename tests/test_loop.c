@@ -72,6 +72,18 @@ TEST(what_stopped_it_is_said_again)
     assert_int_equal(loop_summary(l).status, code);
 }
 
+TEST(no_more_commands_are_under_way_than_have_room)
+{
+    SCOPED(loop_destroy_kept)
+    run_loop *l = begun(SETTINGS(BRIEF, "control.law=force-pd", "control.rate=2000"), NULL);
+    fault f = {.text = ""};
+    assert_int_equal(loop_until(l, 0.02, &f), STATUS_OK);
+    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(control.delay), 0.042, &f),
+                     STATUS_BAD_SCENARIO);
+    assert_non_null(strstr(f.text, "together longer than 5 periods"));
+    assert_int_equal(loop_until(l, 0.08, &f), STATUS_OK);
+}
+
 TEST(a_refused_input_changes_nothing)
 {
     SCOPED(loop_destroy_kept) run_loop *l = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);

@@ -239,6 +239,9 @@ TEST(faults_of_set)
     check_fault("script:\n  - at: 0.5\n    set: {motor.voltag: 3}\n", 3, 11,
                 "did you mean 'motor.voltage'?");
     check_fault("script:\n  - at: 0.5\n    set: {x: 3}\n", 3, 11, "unknown parameter 'x'");
+    check_fault("control: {law: force-pd}\nscript:\n  - at: 0.5\n    set: {control.delay: 0.5}\n",
+                3, 3,
+                "from 0.5 s on control.delay_periods = 0 and control.delay = 0.5 s are together");
     check_fault("script:\n  - at: 0.5\n    set: {motor.voltage: 1e9}\n", 3, 26, "out of range");
     check_fault("script:\n  - at: 0.5\n    set: {motor.voltage: [1]}\n", 3, 26, "is a list");
     check_fault("script:\n  - at: 0.5\n    set: {motor.voltage: 1, motor.voltage: 2}\n", 3, 29,

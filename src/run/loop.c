@@ -207,6 +207,7 @@ static status act(run_loop *l, const action *todo, fault *f)
         int mode;
         TRY(rig_find_mode(on->law, tried.control.lock, &mode, f));
         TRY(rig_takes(on, &tried, f));
+        TRY(parameters_check_timing(&tried, f));
     }
     const status code = driver_act(&l->driver, todo, &l->fault);
     if (code == STATUS_BAD_SCENARIO) { // a wall that would be behind the arm

@@ -40,6 +40,7 @@ static status start_rig(recording *r, fault *f)
         .ends = {o->monitor != NULL ? &o->monitor->stop : NULL, o->abandon},
     };
     TRY(rig_create(&r->rig, p, &given, f));
+    TRY(scenario_check_timing(r->scenario, f));
     return r->rig->withheld ? STATUS_OK : scenario_check_locks(r->scenario, r->rig->law, f);
 }
 

@@ -106,6 +106,22 @@ parameters scenario_parameters_at(const scenario *s, double time)
     return p;
 }
 
+status scenario_check_timing(const scenario *s, fault *f)
+{
+    parameters now = s->parameters;
+    for (int i = 0; i < s->action_count; i++) {
+        const double time = s->actions[i].time;
+        TRY(action_apply(&s->actions[i], &now, f));
+
+        // those of one instant go together
+        fault wrong;
+        const bool last = i + 1 == s->action_count || s->actions[i + 1].time > time;
+        FAIL_IF(last && parameters_check_timing(&now, &wrong) != STATUS_OK,
+                fault_set_at(f, wrong.code, wrong.path, "from %g s on %s", time, wrong.text));
+    }
+    return STATUS_OK;
+}
+
 status scenario_check_locks(const scenario *s, const controller *law, fault *f)
 {
     const int lock = PARAMETER_INDEX(control.lock);

@@ -154,7 +154,11 @@ static void parse_root(reader *r, const tree_node *root)
         reader_check_lock(r, &r->s->parameters, lock);
     }
     if (script != NULL) {
+        fault f;
         reader_script(r, script);
+        if (scenario_check_timing(r->s, &f) != STATUS_OK) {
+            reader_report_at(r, script->line, script->column, "%s", f.text);
+        }
     }
     if (expect != NULL) {
         reader_expectations(r, expect);

@@ -132,6 +132,7 @@ static status resolve_changed(const scenario *s, parameters *p, fault *f)
         scenario changed = *s;
         changed.parameters = *p;
         result = scenario_check_locks(&changed, controller_of(p->control.law), f);
+        result = result == STATUS_OK ? scenario_check_timing(&changed, f) : result;
     }
 
     // what the script sets may change, and a push acts on the corrected arm only

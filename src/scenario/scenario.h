@@ -122,6 +122,9 @@ bool expectation_is_met(const expectation *e, double value);
 // The parameters as the script has set them until an instant, that included [s].
 parameters scenario_parameters_at(const scenario *s, double time);
 
+// parameters_check_timing at every instant of the script.
+status scenario_check_timing(const scenario *s, fault *f);
+
 // Whether the law has every mode that control.lock and the script hold it in; else a sentence in f.
 // law: controller_of() before a run, which knows no plug-in; NULL says nothing.
 status scenario_check_locks(const scenario *s, const controller *law, fault *f);

@@ -197,6 +197,10 @@ void parameter_format(const parameters *p, int index, char *text, size_t size);
 // model with N != 2 ...). Call after the last parameter was set.
 status parameters_resolve(parameters *p, fault *f);
 
+// Whether the controller's clock can be kept: CONTROL_MOST_DELAY commands under way at most, and
+// samples in order. A sentence in f if not; parameters_resolve asks it, too.
+status parameters_check_timing(const parameters *p, fault *f);
+
 // Whether a parameter of resolved parameters may be given another value. False, with the reason in
 // f, for one that follows from others there: arm.k1 of a beam's root, arm.k2 and arm.EI beside
 // arm.joint_stiffness.

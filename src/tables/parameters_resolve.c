@@ -116,11 +116,25 @@ static status check_engine(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
+status parameters_check_timing(const parameters *p, fault *f)
+{
+    const control_parameters *c = &p->control;
+    const double period = 1 / c->rate;
+    REFUSE_IF(c->delay * c->rate + c->delay_periods > CONTROL_MOST_DELAY,
+              BLAME3(p, control.delay_periods, control.delay, control.rate), f,
+              "control.delay_periods = %g and control.delay = %g s are together longer than %d "
+              "periods of %g s (control.rate)",
+              c->delay_periods, c->delay, CONTROL_MOST_DELAY, period);
+    REFUSE_IF(c->jitter * c->rate > 1, BLAME2(p, control.jitter, control.rate), f,
+              "control.jitter = %g s is more than the period of %g s (control.rate)", c->jitter,
+              period);
+    return STATUS_OK;
+}
+
 // The controller's texts, and its timing.
 static status check_control(const parameters *p, fault *f)
 {
     const control_parameters *c = &p->control;
-    const double period = 1 / c->rate;
     k2_table table;
     REFUSE_IF(c->law == LAW_PLUGIN && c->plugin[0] == '\0', BLAME2(p, control.law, control.plugin),
               f, "control.law = plugin needs the file of a shared object in control.plugin");
@@ -131,17 +145,7 @@ static status check_control(const parameters *p, fault *f)
               BLAME2(p, control.law, control.playback_file), f,
               "control.law = playback needs a CSV file in control.playback_file");
     TRY(k2_table_read(&table, c->k2_table, f));
-
-    // so many commands are under way at most, and samples stay in order
-    REFUSE_IF(c->delay * c->rate + c->delay_periods > CONTROL_MOST_DELAY,
-              BLAME3(p, control.delay_periods, control.delay, control.rate), f,
-              "control.delay_periods = %g and control.delay = %g s are together longer than %d "
-              "periods of %g s (control.rate)",
-              c->delay_periods, c->delay, CONTROL_MOST_DELAY, period);
-    REFUSE_IF(c->jitter * c->rate > 1, BLAME2(p, control.jitter, control.rate), f,
-              "control.jitter = %g s is more than the period of %g s (control.rate)", c->jitter,
-              period);
-    return STATUS_OK;
+    return parameters_check_timing(p, f);
 }
 
 // Fits a sensor that a controller is to read, which somebody may have left out.
