@@ -360,6 +360,16 @@ TEST(other_line_ends_read_back)
     assert_string_equal(again.title, s.title);
 }
 
+// What is no text in UTF-8, such as a name of a file, leaves a file that can be read.
+TEST(broken_texts_read_back)
+{
+    SCOPED(scenario_finish) scenario s = good("title: a\n");
+    DONE(parameter_set_text(&s.parameters, parameter_find("control.plugin"), "a\xff.so", &f));
+    SCOPED(free_kept) char *file = file_of(&s);
+    SCOPED(scenario_finish) scenario again = good(file);
+    assert_string_equal(again.parameters.control.plugin, "a?.so");
+}
+
 // However long the title is and however much was changed, the file can be read, and tells of it.
 TEST(changed_scenarios_read_back)
 {

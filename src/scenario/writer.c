@@ -5,6 +5,7 @@
 #include "src/tables/summary.h"
 #include "src/scenario/scenario.h"
 #include "src/base/numbers.h"
+#include "src/base/words.h"
 
 // The escape of a character that YAML takes for a line's end or changes, NULL for any other; its
 // bytes in *length.
@@ -30,11 +31,12 @@ static void write_inside(FILE *stream, const char *text)
     size_t length;
     for (const char *c = text; *c != '\0'; c += length) {
         const char *escape = yaml_escape(c, &length);
+        const int printable = printable_length(c);
         if (escape != NULL) {
             fputs(escape, stream);
         } else {
-            fputc((unsigned char)*c < ' ' ? ' ' : *c, stream);
-            length = 1;
+            length = printable > 0 ? (size_t)printable : 1;
+            fwrite(printable > 0 ? c : (unsigned char)*c < ' ' ? " " : "?", 1, length, stream);
         }
     }
 }
