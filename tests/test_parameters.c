@@ -155,9 +155,9 @@ TEST(notations_of_numbers)
 
 TEST(words_for_truth)
 {
-    static const char *const truths[] = {"true", "yes", "on", "1"};
-    static const char *const lies[] = {"false", "no", "off", "0"};
-    for (int i = 0; i < 4; i++) {
+    static const char *const truths[] = {"true", "True", "TRUE", "yes", "on", "1"};
+    static const char *const lies[] = {"false", "False", "FALSE", "no", "off", "0"};
+    for (int i = 0; i < 6; i++) {
         parameters p = fresh(ARM_PRINTED);
         give(&p, "printed.sign_dead_band", lies[i]);
         assert_false(p.printed.sign_dead_band);

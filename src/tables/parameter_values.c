@@ -226,7 +226,8 @@ static status parse_word(const parameter_info *info, const char *word, double *v
 
     // of each pair of words the first is false
     if (info->type == PARAMETER_BOOLEAN) {
-        int choice = choice_index("false|true|no|yes|off|on|0|1", word, length);
+        int choice =
+            choice_index("false|true|False|True|FALSE|TRUE|no|yes|off|on|0|1", word, length);
         *value = choice % 2;
         return choice >= 0
                    ? STATUS_OK
