@@ -609,6 +609,7 @@ grep -q '"path": "motor.voltage"' solved.json && grep -q '"quantity": "peak_forc
     fail "solve --json has not the keys of a limit"
 expect 1 solve hit.yaml motor.voltage=0.5:5 'peak_force_N<1e9' --json -
 says out '"solve": []'
+says err "no limit: it holds in "
 expect 2 solve hit.yaml motor.volage 'peak_force_N<2'
 says err "did you mean 'motor.voltage'?"
 expect 2 solve hit.yaml motor.voltage=3 'peak_force_N<2'

@@ -98,7 +98,12 @@ static int find_and_report(const arguments *a, scenario *s)
 
     const int written = code == STATUS_OK ? write_results(a, &r, s, &q, true) : complain_fault(&f);
     sweep_axis_finish(&q.axis);
-    return code == STATUS_OK && q.found.count == 0 ? worse(written, EXIT_FAILED) : written;
+    const bool none = code == STATUS_OK && q.found.count == 0;
+    if (none && !summary_wanted(a)) {
+        complain("no limit: it holds in %d of these runs and does not in %d", q.found.holding,
+                 q.found.failing);
+    }
+    return none ? worse(written, EXIT_FAILED) : written;
 }
 
 static const option_row rows[] = {
