@@ -164,7 +164,6 @@ status scenario_take_parameters(scenario *s, const parameters *changed, fault *f
 status scenario_with(const scenario *base, const parameter_change *changes, size_t count,
                      scenario *changed, fault *f)
 {
-    assert(changes != NULL || count == 0);
     parameters p = base->parameters;
     *changed = *base;
     for (const parameter_change *c = changes; c < changes + count; c++) {
@@ -253,7 +252,7 @@ static bool settings_twice(char *const *assignments, int count)
 status scenario_override_all(scenario *s, char *const *assignments, int count, fault_handler report,
                              void *context)
 {
-    assert(count >= 0 && (count == 0 || assignments != NULL));
+    assert(count >= 0);
     if (settings_twice(assignments, count)) {
         s->refused = (fault_place){.path = setting_info.path};
         if (report != NULL) {

@@ -282,7 +282,7 @@ status session_drop_input(session *s, int index, fault *f)
 
 status session_take_inputs(session *s, const session_input *inputs, int count, fault *f)
 {
-    assert(count >= 0 && (inputs != NULL || count == 0));
+    assert(count >= 0);
     session_input *taken = calloc((size_t)count + 1, sizeof *taken);
     TRY_MEMORY(taken != NULL, f);
     if (count > 0) {

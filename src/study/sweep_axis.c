@@ -91,7 +91,6 @@ status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fau
 status sweep_axes_scenario(const sweep_axis *axes, int count, const double *values,
                            const scenario *base, scenario *derived, fault *f)
 {
-    assert(count == 0 || (axes != NULL && values != NULL));
     parameters p = base->parameters;
     *derived = *base;
     for (int i = 0; i < count; i++) {
