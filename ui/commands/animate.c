@@ -24,19 +24,6 @@ static void show_progress(void *context, int done, int total)
             100 * done / total, done, total);
 }
 
-static film_options options_of(const arguments *a)
-{
-    scene_options view = read_view(a);
-    return (film_options){.view = view,
-                          .ghosts = (int)a->ghosts,
-                          .width = view.width,
-                          .height = view.height,
-                          .frames_per_second = (int)a->fps,
-                          .seconds = a->seconds,
-                          .slow = a->slow,
-                          .stop = &signal_caught};
-}
-
 // The runs of a film with their scenarios.
 typedef struct filmed {
     scenario scenarios[FILM_RUNS];
@@ -101,7 +88,15 @@ static int film_runs(const arguments *a, const filmed *m)
 {
     fault f = {0};
     film_run runs[FILM_RUNS];
-    film_options o = options_of(a);
+    const scene_options view = read_view(a);
+    film_options o = {.view = view,
+                      .ghosts = (int)a->ghosts,
+                      .width = view.width,
+                      .height = view.height,
+                      .frames_per_second = (int)a->fps,
+                      .seconds = a->seconds,
+                      .slow = a->slow,
+                      .stop = &signal_caught};
     struct sigaction caught = {.sa_handler = catch_signal}, old[2];
     bool bar = isatty(STDERR_FILENO) && !a->quiet;
     o.progress = bar ? show_progress : NULL;

@@ -297,16 +297,6 @@ static void option_lists(const command *self, struct option *longs, char *shorts
     *shorts = '\0';
 }
 
-// The row of getopt's value.
-static int row_of(const command *self, int found)
-{
-    int i = 0;
-    while (found != ROW_VALUE + i && found != command_option(self, i)->letter) {
-        i++;
-    }
-    return i;
-}
-
 // Adds a word to the command line that pictures remember, in quotes where a shell needs them.
 static void remember(arguments *a, const char *before, const char *word)
 {
@@ -340,8 +330,11 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
         }
 
         // a row of the command's or of every command's table
-        int i = row_of(a->command, found);
-        const option_row *o = command_option(a->command, i);
+        int i = 0;
+        const option_row *o;
+        while ((o = command_option(a->command, i))->letter != found && found != ROW_VALUE + i) {
+            i++;
+        }
 
         if (o == help_options.rows) {
             return true;

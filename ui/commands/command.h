@@ -342,6 +342,14 @@ typedef void result_writer(FILE *stream, const scenario *s, const void *found);
         call;                                                                                      \
     }
 
+// The same of a result that is no file: its JSON, or its text on the standard output.
+#define RESULT_GIVEN(kind, name, type, call)                                                       \
+    static kind name(const scenario *s, const void *of)                                            \
+    {                                                                                              \
+        const type *found = of;                                                                    \
+        call;                                                                                      \
+    }
+
 // Writes a file whole or not at all ("-": standard output, NULL: none was asked for): calls `write`
 // with the stream, `s` and `found`; errors stay in the stream. Returns the exit status.
 int write_file(const char *path, result_writer *write, const scenario *s, const void *found)

@@ -108,27 +108,22 @@ static void take_input(explorer *ex, terminal_input in)
     }
 }
 
-// Gives the screen pictures if the terminal draws them and they are wanted.
-static void fit_pictures(const explorer *ex, screen *s, picture_layer *layer)
+// Fits the grid to the terminal and shows it.
+static void show(explorer *ex, screen *s, picture_layer *layer)
 {
-    const looks *l = &ex->state.looks;
+    int width, height;
+    looks *l = &ex->state.looks;
+    terminal_size(&width, &height);
+
+    // with pictures if the terminal draws them and they are wanted
     const terminal_pixels t = terminal_pixels_known();
     s->pictures = l->pixels && t.there ? layer : NULL;
     layer->cell_width = t.cell_width;
     layer->cell_height = t.cell_height;
     layer->ground = t.has_ground ? t.ground : theme_grounds(l->theme)[0];
-}
-
-// Fits the grid to the terminal and shows it.
-static void show(explorer *ex, screen *s, picture_layer *layer)
-{
-    int width, height;
-    terminal_size(&width, &height);
-    fit_pictures(ex, s, layer);
     if ((width != s->width || height != s->height) && !screen_resize(s, width, height)) {
         return;
     }
-    looks *l = &ex->state.looks;
     terminal_mouse(l->mouse);
     l->shown_depth = l->depth;
     if (l->depth == DEPTH_AUTO) {

@@ -36,18 +36,6 @@ static void on_interrupt(int number)
     atomic_store_explicit(&watched.stop, true, memory_order_relaxed);
 }
 
-static void tell(const struct ticker *t)
-{
-    if (t->pieces != NULL) {
-        fprintf(stderr, "\rimpactlab: %d of %d %s (^C stops) ",
-                atomic_load_explicit(&watched.pieces, memory_order_relaxed), t->total, t->pieces);
-    } else {
-        fprintf(stderr, "\rimpactlab: %.*f of %g s (^C stops) ", t->duration < 10 ? 3 : 1,
-                atomic_load_explicit(&watched.time, memory_order_relaxed), t->duration);
-    }
-    fflush(stderr);
-}
-
 // Tells now and then how far the work is, and takes its words away at the end.
 static void *tick(void *argument)
 {
@@ -57,7 +45,15 @@ static void *tick(void *argument)
 
     // a note now and then until the work is over
     while (sem_clockwait(&t->over, CLOCK_MONOTONIC, &next) != 0) {
-        tell(t);
+        if (t->pieces != NULL) {
+            fprintf(stderr, "\rimpactlab: %d of %d %s (^C stops) ",
+                    atomic_load_explicit(&watched.pieces, memory_order_relaxed), t->total,
+                    t->pieces);
+        } else {
+            fprintf(stderr, "\rimpactlab: %.*f of %g s (^C stops) ", t->duration < 10 ? 3 : 1,
+                    atomic_load_explicit(&watched.time, memory_order_relaxed), t->duration);
+        }
+        fflush(stderr);
         told = true;
         next = clock_after(NEXT_NOTE);
     }

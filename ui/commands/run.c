@@ -98,11 +98,7 @@ static void print_expectations(const scenario *s, const summary *m)
     }
 }
 
-static json_t *run_json(const scenario *s, const void *found)
-{
-    return export_run(s, found);
-}
-
+RESULT_GIVEN(json_t *, run_json, run_result, return export_run(s, found))
 RESULT_WRITER(write_signals, run_result, export_csv(stream, &found->trace, s->parameters.arm.links))
 
 static int plot_signals(const arguments *a, const scenario *s, const void *found)

@@ -163,15 +163,6 @@ const command lesson_command = {
 
 // --- show -------------------------------------------------------------------------------------
 
-static void print_parameter(const parameters *p, int index)
-{
-    const parameter_info *info = &parameter_table[index];
-    char value[128], range[RANGE_TEXT];
-    parameter_format(p, index, value, sizeof value);
-    say("%-33s %c %18s %-9s  %-29s  %s\n", info->path, p->set[index] ? '=' : ' ', value, info->unit,
-        format_range(info, "|", range), info->description);
-}
-
 // Each number of control.settings under its path: where the law is known with its unit and range.
 static void print_settings(const scenario *s)
 {
@@ -259,7 +250,11 @@ static int print_scenario(const arguments *a, scenario *s)
     printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n", "parameter",
            "value", "unit", "range");
     for (int i = 0; i < parameter_count; i++) {
-        print_parameter(&s->parameters, i);
+        const parameter_info *info = &parameter_table[i];
+        char value[128], range[RANGE_TEXT];
+        parameter_format(&s->parameters, i, value, sizeof value);
+        say("%-33s %c %18s %-9s  %-29s  %s\n", info->path, s->parameters.set[i] ? '=' : ' ', value,
+            info->unit, format_range(info, "|", range), info->description);
         if (i == PARAMETER_INDEX(control.settings)) {
             print_settings(s);
         }

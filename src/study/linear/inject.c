@@ -166,12 +166,6 @@ static status add(run_loop *l, injector *i, double hertz, linear_response *r, fa
     return code;
 }
 
-// Whether size one or a negative real gain lies between two points.
-static bool crosses(double complex a, double complex b)
-{
-    return (cabs(a) - 1) * (cabs(b) - 1) < 0 || (cimag(a) * cimag(b) < 0 && creal(a + b) < 0);
-}
-
 static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f)
 {
     const double highest = 1 / (2 * i->inner->period), lowest = fmin(LOWEST, highest / 10);
@@ -180,12 +174,14 @@ static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f
         code = add(l, i, lowest * plain_pow(highest / lowest, k / (FIRST - 1.0)), r, f);
     }
 
-    // where something crosses, between
+    // where size one or a negative real gain lies between two, between
     for (int pass = 0; pass < PASSES; pass++) {
         double middles[MOST_POINTS];
         int wanted = 0;
         for (int k = 0; k + 1 < r->count && r->count + wanted < MOST_POINTS; k++) {
-            if (crosses(r->gain[k], r->gain[k + 1])) {
+            const double complex a = r->gain[k], b = r->gain[k + 1];
+            const bool turns = cimag(a) * cimag(b) < 0 && creal(a + b) < 0;
+            if (turns || (cabs(a) - 1) * (cabs(b) - 1) < 0) {
                 middles[wanted++] = sqrt(r->frequency[k] * r->frequency[k + 1]) / (2 * M_PI);
             }
         }

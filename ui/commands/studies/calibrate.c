@@ -80,12 +80,8 @@ static void print_points(const scenario *s, const void *found)
     printf("\n  --set \"control.k2_table=%s\"\n", done->table);
 }
 
-static json_t *points_json(const scenario *s, const void *found)
-{
-    const calibrated *done = found;
-    return calibration_json(&done->points, s, done->table);
-}
-
+RESULT_GIVEN(json_t *, points_json, calibrated,
+             return calibration_json(&found->points, s, found->table))
 RESULT_WRITER(write_points, calibrated, calibration_csv(stream, &found->points, s))
 RESULT_WRITER(write_scenario, calibrated, scenario_write(stream, &found->with_table))
 

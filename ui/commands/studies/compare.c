@@ -144,11 +144,7 @@ static status run_all(comparison *c, run_monitor *monitor)
 
 RESULT_WRITER(write_csv, comparison, compare_csv(stream, &found->table))
 RESULT_WRITER(write_markdown, comparison, compare_text(stream, &found->table, true))
-
-static json_t *table_json(const scenario *s, const void *found)
-{
-    return compare_json(&((const comparison *)found)->table);
-}
+RESULT_GIVEN(json_t *, table_json, comparison, return compare_json(&found->table))
 
 static void print_table(const scenario *s, const void *found)
 {

@@ -290,11 +290,8 @@ static int run_case(robustness *r, int k)
     return code;
 }
 
-static json_t *table_json(const scenario *s, const void *table)
-{
-    return robust_json(table);
-}
-
+RESULT_GIVEN(json_t *, table_json, robust_table, return robust_json(found))
+RESULT_GIVEN(void, print_table, robust_table, robust_text(stdout, found, false))
 RESULT_WRITER(write_markdown, robust_table, robust_text(stream, found, true))
 RESULT_WRITER(write_csv, robust_table, robust_csv(stream, found))
 
@@ -302,11 +299,6 @@ static int plot(const arguments *a, const scenario *s, const void *table)
 {
     char changes[SCENARIO_CHANGES];
     return publish_owned(a, robust_figure_create(table, scenario_changes(s, changes)));
-}
-
-static void print_table(const scenario *s, const void *table)
-{
-    robust_text(stdout, table, false);
 }
 
 static int report(const robustness *r)

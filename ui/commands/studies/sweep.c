@@ -60,19 +60,6 @@ static void print_extreme(const sweep *s, const char *word, const double *values
     printf("\n");
 }
 
-static void print_table(const sweep_order *o, const double *values)
-{
-    size_t shown = o->sweep.run_count < ROWS_SHOWN ? o->sweep.run_count : ROWS_SHOWN;
-    for (size_t run = 0; run < shown; run++) {
-        printf("  %10.5g  ", values[run]);
-        print_values(&o->sweep, run);
-        printf("\n");
-    }
-    if (shown < o->sweep.run_count) {
-        printf("  ... and %zu more (--csv writes all)\n", o->sweep.run_count - shown);
-    }
-}
-
 static void print_summary(const sweep_order *o, const double *values, size_t failed,
                           const sweep_progress *p)
 {
@@ -92,8 +79,15 @@ static void print_summary(const sweep_order *o, const double *values, size_t fai
     printf("\n%s%s%s%s\n", quantity->label, unit[0] ? " [" : "", unit, unit[0] ? "]" : "");
 
     // each value, where no file has them
-    if (a->csv == NULL && a->json == NULL && a->db == NULL && a->plot == NULL) {
-        print_table(o, values);
+    const bool listed = a->csv == NULL && a->json == NULL && a->db == NULL && a->plot == NULL;
+    const size_t shown = !listed ? 0 : s->run_count < ROWS_SHOWN ? s->run_count : ROWS_SHOWN;
+    for (size_t run = 0; run < shown; run++) {
+        printf("  %10.5g  ", values[run]);
+        print_values(s, run);
+        printf("\n");
+    }
+    if (listed && shown < s->run_count) {
+        printf("  ... and %zu more (--csv writes all)\n", s->run_count - shown);
     }
 
     // the smallest and the largest of those that occurred
