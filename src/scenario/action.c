@@ -68,11 +68,9 @@ status action_apply(const action *a, parameters *p, fault *f)
     }
 
     // a number may change others with it
-    status code = parameter_set_number(p, a->parameter, a->value, f);
-    if (code == STATUS_OK) {
-        parameters_follow(p, a->parameter);
-    }
-    return code;
+    TRY(parameter_set_number(p, a->parameter, a->value, f));
+    parameters_follow(p, a->parameter);
+    return STATUS_OK;
 }
 
 void action_format_value(const action *a, char *text, size_t size)
@@ -131,14 +129,14 @@ status scenario_check_locks(const scenario *s, const controller *law, fault *f)
     }
 
     // the lock from the start, then those of the script
-    status code = rig_find_mode(law, s->parameters.control.lock, &mode, f);
-    for (int i = 0; i < s->action_count && code == STATUS_OK; i++) {
+    TRY(rig_find_mode(law, s->parameters.control.lock, &mode, f));
+    for (int i = 0; i < s->action_count; i++) {
         const action *a = &s->actions[i];
         if (a->kind == ACTION_SET && a->parameter == lock) {
-            code = rig_find_mode(law, a->text, &mode, f);
+            TRY(rig_find_mode(law, a->text, &mode, f));
         }
     }
-    return code;
+    return STATUS_OK;
 }
 
 // --- what is another than in the file, in words ------------------------------------------------

@@ -127,38 +127,33 @@ static status assign(parameters *p, const char *assignment, fault *f)
 // Resolves parameters that were changed, and checks that the scenario's script goes with them.
 static status resolve_changed(const scenario *s, parameters *p, fault *f)
 {
-    status result = parameters_resolve(p, f);
-    if (result == STATUS_OK) {
-        scenario changed = *s;
-        changed.parameters = *p;
-        result = scenario_check_locks(&changed, controller_of(p->control.law), f);
-        result = result == STATUS_OK ? scenario_check_timing(&changed, f) : result;
-    }
+    scenario changed = *s;
+    TRY(parameters_resolve(p, f));
+    changed.parameters = *p;
+    TRY(scenario_check_locks(&changed, controller_of(p->control.law), f));
+    TRY(scenario_check_timing(&changed, f));
 
     // what the script sets may change, and a push acts on the corrected arm only
-    for (int i = 0; i < s->action_count && result == STATUS_OK; i++) {
+    for (int i = 0; i < s->action_count; i++) {
         if (s->actions[i].kind == ACTION_SET) {
-            result = parameter_may_change(p, s->actions[i].parameter, f);
+            TRY(parameter_may_change(p, s->actions[i].parameter, f));
         }
     }
-    for (int i = 0; i < s->action_count && result == STATUS_OK; i++) {
-        if (s->actions[i].kind == ACTION_PUSH && p->arm.model == ARM_PRINTED) {
-            result = fault_set(f, STATUS_BAD_SCENARIO,
-                               "the printed model takes no pushes, but the script has one at %g s",
-                               s->actions[i].time);
-        }
+    for (int i = 0; i < s->action_count; i++) {
+        FAIL_IF(s->actions[i].kind == ACTION_PUSH && p->arm.model == ARM_PRINTED,
+                fault_set(f, STATUS_BAD_SCENARIO,
+                          "the printed model takes no pushes, but the script has one at %g s",
+                          s->actions[i].time));
     }
-    return result;
+    return STATUS_OK;
 }
 
 status scenario_take_parameters(scenario *s, const parameters *changed, fault *f)
 {
     parameters p = *changed;
-    status result = resolve_changed(s, &p, f);
-    if (result == STATUS_OK) {
-        s->parameters = p;
-    }
-    return result;
+    TRY(resolve_changed(s, &p, f));
+    s->parameters = p;
+    return STATUS_OK;
 }
 
 status scenario_with(const scenario *base, const parameter_change *changes, size_t count,

@@ -89,14 +89,13 @@ static status build_effective(const session *s, scenario *to, fault *f)
     TRY_MEMORY(to->actions != NULL, f);
 
     // the script's actions, then the inputs among them: an input comes after what is due with it
-    status code = STATUS_OK;
     for (int i = 0; i < s->base.action_count; i++) {
         scenario_insert_action(to, s->base.actions[i]);
     }
-    for (int i = 0; i < s->input_count && code == STATUS_OK; i++) {
+    for (int i = 0; i < s->input_count; i++) {
         const session_input *in = &s->inputs[i];
         if (in->kind == SESSION_INPUT_START) {
-            code = parameter_set_text(&to->parameters, in->parameter, in->text, f);
+            TRY(parameter_set_text(&to->parameters, in->parameter, in->text, f));
         } else {
             action a = {.time = in->time,
                         .kind = in->kind == SESSION_INPUT_PUSH ? ACTION_PUSH : ACTION_SET,
@@ -107,8 +106,7 @@ static status build_effective(const session *s, scenario *to, fault *f)
             scenario_insert_action(to, a);
         }
     }
-
-    return code == STATUS_OK ? parameters_resolve(&to->parameters, f) : code;
+    return parameters_resolve(&to->parameters, f);
 }
 
 static double expected_rows(const parameters *p)

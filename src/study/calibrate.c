@@ -151,15 +151,12 @@ status calibrate(const scenario *s, const double *commands, int count, run_monit
                          "of its stiffness alone: calibrate in a level plane, arm.tilt = 0"));
 
     // up to the first fault; what was measured before is kept
-    status code = STATUS_OK;
-    for (int i = 0; i < count && code == STATUS_OK; i++) {
-        code = press(s, commands[i], i, monitor, &c->points[i], f);
-        if (code == STATUS_OK) {
-            c->count++;
-            run_monitor_count(monitor);
-        }
+    for (int i = 0; i < count; i++) {
+        TRY(press(s, commands[i], i, monitor, &c->points[i], f));
+        c->count++;
+        run_monitor_count(monitor);
     }
-    return code;
+    return STATUS_OK;
 }
 
 // --- results --------------------------------------------------------------------------------

@@ -108,15 +108,14 @@ void identify_finish(identification *id)
 
 status identify_parameters(const identification *id, bool determined, parameters *p, fault *f)
 {
-    status code = STATUS_OK;
     *p = id->base->parameters;
-    for (int i = 0; i < id->count && code == STATUS_OK; i++) {
+    for (int i = 0; i < id->count; i++) {
         const fitted_parameter *fit = &id->fit[i];
         if (!determined || fit->determined) {
-            code = sweep_axis_apply(&fit->axis, fit->value, p, f);
+            TRY(sweep_axis_apply(&fit->axis, fit->value, p, f));
         }
     }
-    return code;
+    return STATUS_OK;
 }
 
 // --- unknowns ---------------------------------------------------------------------------------

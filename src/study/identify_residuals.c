@@ -220,22 +220,18 @@ status identify_add_trace(identification *id, const char *file, char *const *col
         readings += t->reading[c] != NULL;
     }
     csv_table_finish(&table);
-    if (code == STATUS_OK && readings == 0) {
-        code = fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
-                               "%.300s:1: no reading to compare with, expected a column such as "
-                               "encoder[rad], tachometer[rad/s] or force_reading[N]",
-                               file);
-    }
-    if (code == STATUS_OK && !(t->time[t->rows - 1] > t->time[0])) {
-        code = fault_set_place(f, STATUS_BAD_ARGUMENT, 2, 1,
-                               "%.300s:2: no time passes from the first row to the last", file);
-    }
-    if (code == STATUS_OK) {
-        keep_samples(t, p->control.rate);
-        guess_start(t, p);
-        code = weigh(t, p, f);
-    }
-    return code;
+    TRY(code);
+    FAIL_IF(readings == 0,
+            fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
+                            "%.300s:1: no reading to compare with, expected a column such as "
+                            "encoder[rad], tachometer[rad/s] or force_reading[N]",
+                            file));
+    FAIL_IF(!(t->time[t->rows - 1] > t->time[0]),
+            fault_set_place(f, STATUS_BAD_ARGUMENT, 2, 1,
+                            "%.300s:2: no time passes from the first row to the last", file));
+    keep_samples(t, p->control.rate);
+    guess_start(t, p);
+    return weigh(t, p, f);
 }
 
 // --- a run under the recorded command ---------------------------------------------------------

@@ -70,10 +70,10 @@ static status read_subject(const char *text, judged *of, double *excess, fault *
             fault_set(f, STATUS_BAD_ARGUMENT,
                       "'%.100s' is no condition, expected EXPR<=X or EXPR>=X", text));
     snprintf(left, sizeof left, "%.*s", (int)(sign - text), text);
-    status code = evaluate(left, of, &a, f);
-    code = code == STATUS_OK ? evaluate(sign + 2, of, &b, f) : code;
+    TRY(evaluate(left, of, &a, f));
+    TRY(evaluate(sign + 2, of, &b, f));
     *excess = (*sign == '<' ? a - b : b - a) / fmax(fabs(b), 1e-300);
-    return code;
+    return STATUS_OK;
 }
 
 // What cannot be judged ranks by how many of its runs never settle.
@@ -184,8 +184,8 @@ static status check(const tune_request *asked, fault *f)
             fault_set(f, STATUS_BAD_ARGUMENT,
                       "%s has no control law, and runs over a set are judged by one",
                       asked->base->name));
-    const status code = judge(asked, &of, &unused, f);
-    return code == STATUS_OK ? find_growth(asked, asked->base, &of.growth, f) : code;
+    TRY(judge(asked, &of, &unused, f));
+    return find_growth(asked, asked->base, &of.growth, f);
 }
 
 // The sweep of all evaluations: the varied parameters, whose values are free, and in each

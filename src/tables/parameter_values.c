@@ -99,12 +99,10 @@ status parameter_set_number(parameters *p, int index, double value, fault *f)
     const parameter_info *info = row_of(index);
     REFUSE_IF(parameter_is_text(info), info->path, f, "%s is a %s and takes no number", info->path,
               info->type == PARAMETER_LIST ? "list" : "text");
-    status code = check_number(info, value, f);
-    if (code == STATUS_OK) {
-        store(p, info, value);
-        p->set[index] = 1;
-    }
-    return code;
+    TRY(check_number(info, value, f));
+    store(p, info, value);
+    p->set[index] = 1;
+    return STATUS_OK;
 }
 
 // Position of text in "a|b|c", or -1.
@@ -193,9 +191,8 @@ static status store_list(parameters *p, int index, const char *text, size_t leng
                   "%s: number %d is missing, expected numbers with commas between "
                   "them",
                   info->path, count + 1);
-        status code = parse_quantity(info, word, &value, f);
-        code = code == STATUS_OK ? check_number(info, value, f) : code;
-        TRY(code);
+        TRY(parse_quantity(info, word, &value, f));
+        TRY(check_number(info, value, f));
 
         // in as few digits as give it back
         number_format_short(number, value);
@@ -275,8 +272,8 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
     word[length] = '\0';
 
     double value = 0;
-    status code = parse_word(info, word, &value, f);
-    return code == STATUS_OK ? parameter_set_number(p, index, value, f) : code;
+    TRY(parse_word(info, word, &value, f));
+    return parameter_set_number(p, index, value, f);
 }
 
 void parameter_format(const parameters *p, int index, char *text, size_t size)

@@ -67,8 +67,8 @@ static status begin(run_loop **loop, const scenario *s, const loop_options *opti
 {
     scenario longer = *s; // borrows its script
     longer.parameters.run.duration = 1e4;
-    const status code = loop_create(loop, &longer, options, f);
-    return code == STATUS_OK ? loop_until(*loop, s->parameters.run.duration, f) : code;
+    TRY(loop_create(loop, &longer, options, f));
+    return loop_until(*loop, s->parameters.run.duration, f);
 }
 
 // --- sines ------------------------------------------------------------------------------------
@@ -169,9 +169,9 @@ static status add(run_loop *l, injector *i, double hertz, linear_response *r, fa
 static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f)
 {
     const double highest = 1 / (2 * i->inner->period), lowest = fmin(LOWEST, highest / 10);
-    status code = size_sine(l, i, f);
-    for (int k = 0; k < FIRST && code == STATUS_OK; k++) {
-        code = add(l, i, lowest * plain_pow(highest / lowest, k / (FIRST - 1.0)), r, f);
+    TRY(size_sine(l, i, f));
+    for (int k = 0; k < FIRST; k++) {
+        TRY(add(l, i, lowest * plain_pow(highest / lowest, k / (FIRST - 1.0)), r, f));
     }
 
     // where size one or a negative real gain lies between two, between
@@ -185,11 +185,11 @@ static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f
                 middles[wanted++] = sqrt(r->frequency[k] * r->frequency[k + 1]) / (2 * M_PI);
             }
         }
-        for (int k = 0; k < wanted && code == STATUS_OK; k++) {
-            code = add(l, i, middles[k], r, f);
+        for (int k = 0; k < wanted; k++) {
+            TRY(add(l, i, middles[k], r, f));
         }
     }
-    return code;
+    return STATUS_OK;
 }
 
 status linear_inject(const scenario *s, linear_response *r, fault *f)
@@ -231,29 +231,29 @@ status linear_inject(const scenario *s, linear_response *r, fault *f)
 // Whether an impulse at the tip of the kept state loses contact.
 static status loses(run_loop *l, const void *kept, double impulse, bool *lost, fault *f)
 {
-    status code = loop_restore(l, kept, loop_saved_size(l), f);
+    *lost = false;
+    TRY(loop_restore(l, kept, loop_saved_size(l), f));
     const double before = loop_summary(l).separations;
-    code = code == STATUS_OK ? loop_push(l, impulse, f) : code;
-    code = code == STATUS_OK ? loop_until(l, loop_time(l) + FOLLOWED, f) : code;
-    *lost = code == STATUS_OK && loop_summary(l).separations > before;
-    return code;
+    TRY(loop_push(l, impulse, f));
+    TRY(loop_until(l, loop_time(l) + FOLLOWED, f));
+    *lost = loop_summary(l).separations > before;
+    return STATUS_OK;
 }
 
 // The least in one direction, by halves in the logarithm; NaN: none.
 static status least_push(run_loop *l, const void *kept, double direction, double *least, fault *f)
 {
     double low = plain_log(1e-9), high = plain_log(MOST_PUSHED);
-    bool lost;
-    status code = loses(l, kept, direction * MOST_PUSHED, &lost, f);
+    bool lost, there;
     *least = (double)NAN;
-    for (int i = 0; i < PUSHES && lost && code == STATUS_OK; i++) {
-        bool there;
+    TRY(loses(l, kept, direction * MOST_PUSHED, &lost, f));
+    for (int i = 0; i < PUSHES && lost; i++) {
         const double middle = (low + high) / 2;
-        code = loses(l, kept, direction * plain_exp(middle), &there, f);
+        TRY(loses(l, kept, direction * plain_exp(middle), &there, f));
         *(there ? &high : &low) = middle;
         *least = plain_exp(high);
     }
-    return code;
+    return STATUS_OK;
 }
 
 status linear_contact_margin(const scenario *s, double *impulse, fault *f)

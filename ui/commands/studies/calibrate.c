@@ -90,9 +90,7 @@ static status make_table(calibrated *done, const scenario *s, fault *f)
 {
     k2_table by_force;
     done->with_table = *s;
-    if (calibration_table(&done->points, &by_force, f) != STATUS_OK) {
-        return f->code;
-    }
+    TRY(calibration_table(&done->points, &by_force, f));
     FAIL_IF(!k2_table_write(&by_force, done->table, sizeof done->table),
             fault_set(f, STATUS_BAD_ARGUMENT,
                       "%d commands make a table of more than %d characters, expected fewer",

@@ -25,14 +25,14 @@ static status set_up(const arguments *a, const scenario *s, identification *id, 
                            .jobs = many_runs_jobs(a),
                            .seed = a->seed,
                            .starts = a->starts > 0 ? (int)a->starts : IDENTIFY_STARTS};
-    status code = identify_available(f);
-    for (int i = 0; i < a->fits.count && code == STATUS_OK; i++) {
-        code = identify_add_path(id, a->fits.items[i], f);
+    TRY(identify_available(f));
+    for (int i = 0; i < a->fits.count; i++) {
+        TRY(identify_add_path(id, a->fits.items[i], f));
     }
-    for (int i = 0; i < a->data.count && code == STATUS_OK; i++) {
-        code = identify_add_trace(id, a->data.items[i], a->headings.items, a->headings.count, f);
+    for (int i = 0; i < a->data.count; i++) {
+        TRY(identify_add_trace(id, a->data.items[i], a->headings.items, a->headings.count, f));
     }
-    return code;
+    return STATUS_OK;
 }
 
 // Another trace under the fitted values: only what is its own is fitted.
@@ -40,9 +40,8 @@ static status validate(const arguments *a, outcome *o, fault *f)
 {
     o->validation = (identification){
         .base = &o->written, .jobs = o->fit.jobs, .starts = 1, .monitor = o->fit.monitor};
-    status code =
-        identify_add_trace(&o->validation, a->validate, a->headings.items, a->headings.count, f);
-    return code == STATUS_OK ? identify_fit(&o->validation, f) : code;
+    TRY(identify_add_trace(&o->validation, a->validate, a->headings.items, a->headings.count, f));
+    return identify_fit(&o->validation, f);
 }
 
 // The numbers of --links.
