@@ -8,20 +8,6 @@
 
 enum { CANDIDATE = 160 };
 
-// The i-th control law, then "off"; NULL beyond it.
-static const char *law_name(int i)
-{
-    return i < LAW_COUNT ? control_law_table[i].word : i == LAW_COUNT ? "off" : NULL;
-}
-
-// The i-th mode of the law that is on, then the other words that lock takes.
-static const char *lock_word(explorer_state *st, int i)
-{
-    static const char *const others[] = {"next", "off"};
-    const law_modes *m = state_law_modes(st);
-    return i < m->count ? m->names[i] : i < m->count + 2 ? others[i - m->count] : NULL;
-}
-
 // The i-th of words with a bar between them; false beyond the last.
 static bool word_between_bars(const char *words, int i, char *text)
 {
@@ -125,9 +111,13 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
     } else if (strcmp(p->command, "set") == 0) {
         return p->word == 2 && parameter_value(parameter_of_name(p->first), i, text);
     } else if (strcmp(p->command, "law") == 0) {
-        name = law_name(i);
+        name = i < LAW_COUNT ? control_law_table[i].word : i == LAW_COUNT ? "off" : NULL;
     } else if (is_of(p, "MODE")) {
-        name = lock_word(st, i);
+        const law_modes *m = state_law_modes(st);
+        name = i < m->count        ? m->names[i]
+               : i == m->count     ? "next"
+               : i == m->count + 1 ? "off"
+                                   : NULL;
     } else if (strcmp(p->command, "open") == 0) {
         name = i < st->scenarios.count ? st->scenarios.names[i] : NULL;
     } else {

@@ -15,18 +15,17 @@ enum { BIN_BITS = 5, BINS = 1 << (3 * BIN_BITS), BAND = 6 };
 
 // Pixels that are alike in the upper bits of red, green and blue.
 typedef struct colour_bin {
-    uint64_t red, green, blue; // summed
+    uint64_t red, green, blue; // summed, then their means
     uint32_t count;
     int bin;
 } colour_bin;
 
 typedef struct sixel_picture {
     const pixel_block *block;
-    colour_bin *bins;                                                  // BINS of them
-    int colours;                                                       // used
-    int red[SIXEL_COLOURS], green[SIXEL_COLOURS], blue[SIXEL_COLOURS]; // of each, 0 to 255
-    unsigned char *colour_of;                                          // a bin's
-    unsigned char *bits; // of a band: for each colour in it, a row of columns
+    colour_bin *bins;         // BINS of them; the first are the colours
+    int colours;              // used
+    unsigned char *colour_of; // a bin's
+    unsigned char *bits;      // of a band: for each colour in it, a row of columns
 } sixel_picture;
 
 static int bin_of(uint32_t pixel)
@@ -46,13 +45,14 @@ static int by_count(const void *a, const void *b)
 }
 
 // The nearest of the picture's colours.
-static int nearest_colour(const sixel_picture *p, int red, int green, int blue)
+static int nearest_colour(const sixel_picture *p, const colour_bin *wanted)
 {
     int best = 0;
     long least = 4L * 256 * 256;
     for (int i = 0; i < p->colours; i++) {
-        const long r = p->red[i] - red, g = p->green[i] - green, b = p->blue[i] - blue;
-        const long distance = r * r + g * g + b * b;
+        const colour_bin *c = &p->bins[i];
+        const long r = (long)c->red - (long)wanted->red, g = (long)c->green - (long)wanted->green;
+        const long b = (long)c->blue - (long)wanted->blue, distance = r * r + g * g + b * b;
         if (distance < least) {
             least = distance;
             best = i;
@@ -87,18 +87,13 @@ static void choose_colours(sixel_picture *p, int most)
         }
     }
     qsort(p->bins, (size_t)used, sizeof *p->bins, by_count);
+    p->colours = used < most ? used : most;
     for (int i = 0; i < used; i++) {
-        const colour_bin *bin = &p->bins[i];
-        const int red = (int)(bin->red / bin->count), green = (int)(bin->green / bin->count);
-        const int blue = (int)(bin->blue / bin->count);
-        if (i < most) {
-            p->red[i] = red;
-            p->green[i] = green;
-            p->blue[i] = blue;
-            p->colours = i + 1;
-        }
-        p->colour_of[bin->bin] =
-            (unsigned char)(i < most ? i : nearest_colour(p, red, green, blue));
+        colour_bin *bin = &p->bins[i];
+        bin->red /= bin->count;
+        bin->green /= bin->count;
+        bin->blue /= bin->count;
+        p->colour_of[bin->bin] = (unsigned char)(i < most ? i : nearest_colour(p, bin));
     }
 }
 
@@ -169,8 +164,9 @@ bool sixel_write(FILE *stream, const pixel_block *block, int colours)
         choose_colours(&p, colours);
         fprintf(stream, "\033P0;1;0q\"1;1;%d;%d", block->width, block->height);
         for (int i = 0; i < p.colours; i++) {
-            fprintf(stream, "#%d;2;%d;%d;%d", i, (p.red[i] * 100 + 127) / 255,
-                    (p.green[i] * 100 + 127) / 255, (p.blue[i] * 100 + 127) / 255);
+            const colour_bin *c = &p.bins[i];
+            fprintf(stream, "#%d;2;%d;%d;%d", i, (int)(c->red * 100 + 127) / 255,
+                    (int)(c->green * 100 + 127) / 255, (int)(c->blue * 100 + 127) / 255);
         }
         for (int top = 0; top < block->height; top += BAND) {
             write_band(stream, &p, top);
@@ -227,16 +223,6 @@ bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns
     free(plain);
     free(packed);
     return done;
-}
-
-void kitty_delete(FILE *stream, int number)
-{
-    assert(number >= 0);
-    if (number == 0) {
-        fputs("\033_Ga=d,d=A,q=2\033\\", stream);
-    } else {
-        fprintf(stream, "\033_Ga=d,d=I,i=%d,q=2\033\\", number);
-    }
 }
 
 // --- what a terminal says ---------------------------------------------------------------------

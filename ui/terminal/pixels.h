@@ -30,8 +30,6 @@ bool sixel_write(FILE *stream, const pixel_block *block, int colours);
 // from the cursor on, and replaces the previous one of that number. The cursor does not move. False
 // without memory, with nothing written.
 bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns, int rows);
-// Removes picture `number`, or all of them if it is 0.
-void kitty_delete(FILE *stream, int number);
 
 // --- what a terminal says ---------------------------------------------------------------------
 // Whether a terminal draws pictures, and how: the queries to it and its answers. Its name is not

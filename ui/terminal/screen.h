@@ -38,8 +38,7 @@ typedef enum colour_depth {
     DEPTH_TRUE, // red, green and blue
     DEPTH_256,
     DEPTH_16,
-    DEPTH_MONO,
-    COLOUR_DEPTHS
+    DEPTH_MONO
 } colour_depth;
 
 typedef struct cell {

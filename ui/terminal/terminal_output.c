@@ -208,12 +208,6 @@ static uint64_t hash_of(const pixel_block *b)
     return hash;
 }
 
-static bool same_place(const picture_region *a, const picture_region *b)
-{
-    return a->picture == b->picture && a->x == b->x && a->y == b->y && a->width == b->width &&
-           a->height == b->height;
-}
-
 // Shows the regions that are not on the terminal yet, and remembers them.
 static void write_regions(FILE *stream, const screen *s, const picture_region *regions, int count,
                           bool whole)
@@ -225,7 +219,7 @@ static void write_regions(FILE *stream, const screen *s, const picture_region *r
         const picture_region *r = &regions[i];
         const pixel_block block = block_of(s, r);
         const uint64_t hash = hash_of(&block);
-        if (!whole && i < shown.count && same_place(&shown.regions[i].place, r) &&
+        if (!whole && i < shown.count && memcmp(&shown.regions[i].place, r, sizeof *r) == 0 &&
             shown.regions[i].hash == hash) {
             continue;
         }
@@ -243,7 +237,7 @@ static void write_regions(FILE *stream, const screen *s, const picture_region *r
 
     // those that are no longer there: blanks have cleared sixels, others are told to go
     for (int i = count; kitty && i < shown.count; i++) {
-        kitty_delete(stream, i + 1);
+        fprintf(stream, "\033_Ga=d,d=I,i=%d,q=2\033\\", i + 1);
     }
     shown.count = count;
 }

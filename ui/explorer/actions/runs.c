@@ -344,7 +344,7 @@ bool act_sweep(explorer_state *st, const char *argument)
     lab_sweep *sweep = &st->sweep;
     if (strcmp(argument, "off") == 0) {
         lab_sweep_end(sweep);
-        st->side.panel = st->side.panel == PANEL_SWEEP ? panel_first_on_side() : st->side.panel;
+        st->side.panel = st->side.panel == PANEL_SWEEP ? PANEL_PARAMETERS : st->side.panel;
         return true;
     }
 

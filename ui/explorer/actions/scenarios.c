@@ -131,7 +131,7 @@ static const char *lesson_named(explorer_state *st, const char *name)
     const char *found = NULL;
     scenario_menu_read_titles(&st->scenarios);
     for (int i = 0; i < menu->count; i++) {
-        if (scenario_menu_is_lesson(menu, i) &&
+        if (scenario_menu_text(menu, i).is_lesson &&
             (strcmp(menu->names[i], name) == 0 ||
              strcmp(scenario_leaf(menu->names[i]), name) == 0)) {
             found = menu->names[i];

@@ -136,14 +136,14 @@ bool act_side(explorer_state *st, const char *argument)
         st->side.in_front = !st->side.in_front;
         next = PANEL_NONE;
     }
-    st->side.panel = next != PANEL_NONE ? next : panel_first_on_side();
+    st->side.panel = next != PANEL_NONE ? next : PANEL_PARAMETERS;
     return true;
 }
 
 bool act_statistics(explorer_state *st, const char *argument)
 {
     const bool there = st->side.panel == PANEL_STATISTICS;
-    st->side.panel = there ? panel_first_on_side() : PANEL_STATISTICS;
+    st->side.panel = there ? PANEL_PARAMETERS : PANEL_STATISTICS;
     st->side.in_front = !there;
     return true;
 }

@@ -21,12 +21,6 @@ typedef struct stage {
     plan_view view;   // in either
 } stage;
 
-// The angle of a link in a recorded row.
-static double link_angle(const trace *t, int links, size_t row, int link)
-{
-    return t->angles[row * (size_t)t->angle_count + (size_t)(t->angle_count - links + link)];
-}
-
 // What the arm sweeps over in the whole run, remembered in *known.
 static void find_extent(const explorer_state *st, arm_extent *known)
 {
@@ -54,9 +48,10 @@ static void find_extent(const explorer_state *st, arm_extent *known)
     parameters_link_lengths(beam, lengths);
     size_t stride = (t->row_count - first) / samples + 1;
     for (size_t r = first; r < t->row_count; r += stride) {
+        const double *angles = t->angles + (r + 1) * (size_t)t->angle_count - beam->links;
         double y = 0;
         for (int i = 0; i < beam->links; i++) {
-            double angle = link_angle(t, beam->links, r, i);
+            const double angle = angles[i];
             y += lengths[i] * sin(angle);
             most = fmax(most, fabs(angle));
             low = fmin(low, y);

@@ -13,7 +13,10 @@ static void draw_title(const explorer_state *st, screen *s)
 
     // how many changes, and those that are to come
     if (e->input_count > 0) {
-        const int later = state_later_changes(st);
+        int later = 0;
+        for (int i = 0; i < e->input_count; i++) {
+            later += e->inputs[i].kind != SESSION_INPUT_START && e->inputs[i].time > e->now;
+        }
         int used = snprintf(changes, sizeof changes, "\u25cf %d change%s", e->input_count,
                             e->input_count == 1 ? "" : "s");
         if (later > 0) {
@@ -382,16 +385,6 @@ static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
     }
 }
 
-// The places with a single panel.
-static void draw_place(const explorer_state *st, layout *lay, screen *s, panel_place place, area a)
-{
-    for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
-        if (panel_place_of((panel_id)id) == place) {
-            panel_of((panel_id)id)->draw(st, lay, s, a);
-        }
-    }
-}
-
 static void draw_panels(const explorer_state *st, layout *lay, screen *s, area body)
 {
     // the lesson takes its rows from all others
@@ -406,14 +399,14 @@ static void draw_panels(const explorer_state *st, layout *lay, screen *s, area b
     int top = body.height >= 20 ? body.height * 2 / 5 : body.height / 2;
     const int arm = arm_rows(st, lay, (screen_size){left, top});
     top = top > arm ? arm : top;
-    draw_place(st, lay, s, PLACE_TOP, (area){body.x, body.y, left, top});
+    panel_of(PANEL_ARM)->draw(st, lay, s, (area){body.x, body.y, left, top});
 
     // on a narrow screen the side takes the place of the curves
     area below = {body.x, body.y + top, left, body.height - top};
     if (right == 0 && st->side.in_front) {
         draw_stack(st, lay, s, below);
     } else {
-        draw_place(st, lay, s, PLACE_MAIN, below);
+        panel_of(PANEL_CURVES)->draw(st, lay, s, below);
     }
     if (right > 0) {
         draw_stack(st, lay, s, (area){left, body.y, right, body.height});
@@ -429,7 +422,11 @@ void compose_screen(const explorer_state *st, layout *lay, screen *s)
 {
     screen_clear(s);
     pictures_clear(s);
-    layout_begin(lay, st);
+    lay->hit_count = 0;
+    lay->plot = (area){0};
+    lay->drawn = st->drawn;
+    lay->drawn.stage = (arm_stage){0};
+    memset(lay->drawn.folded, 0, sizeof lay->drawn.folded);
     if (!compose_fits((screen_size){s->width, s->height})) {
         draw_too_small(s);
         return;

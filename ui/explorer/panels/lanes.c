@@ -10,14 +10,18 @@ enum {
     SAMPLES = 32        // rows of a run that a column samples
 };
 
+// In the order in which they tell most, with the labels of this run's.
 typedef enum lane_kind {
     LANE_CONTACT,
     LANE_MODE,
     LANE_CHANGES,
     LANE_SATURATION,
+    LANE_LOCK,
     LANE_STICKING,
-    LANE_LOCK
+    LANE_KINDS
 } lane_kind;
+static const char *const labels[LANE_KINDS] = {"contact",   "mode",   "changes",
+                                               "saturated", "locked", "sticks"};
 
 typedef struct lane {
     lane_kind kind;
@@ -66,40 +70,25 @@ static bool has_lock(const explorer_state *st)
 static int find_lanes(const explorer_state *st, const lane_survey *known, lane lanes[MOST_LANES])
 {
     int count = 0;
-
-    // the time axis shows this run's contact: a lane only beside those of others
     bool others = false;
     for (int run = 1; run < state_run_count(st); run++) {
         others = others || state_run_name(st, run)[0] != '\0';
     }
-    if (others) {
-        lanes[count++] = (lane){LANE_CONTACT, 0};
-    }
 
-    // what this run has besides
-    if (state_has_law(st)) {
-        lanes[count++] = (lane){LANE_MODE, 0};
-    }
-    if (st->session.effective.action_count > 0) {
-        lanes[count++] = (lane){LANE_CHANGES, 0};
-    }
-    if (known->saturates) {
-        lanes[count++] = (lane){LANE_SATURATION, 0};
-    }
-    if (has_lock(st)) {
-        lanes[count++] = (lane){LANE_LOCK, 0};
-    }
-
-    // contact of the other runs, to compare; one place is left
-    for (int run = 1; run < state_run_count(st) && count < MOST_LANES - 1; run++) {
-        if (state_run_name(st, run)[0] != '\0') {
-            lanes[count++] = (lane){LANE_CONTACT, run};
+    // the time axis shows this run's contact: a lane only beside those of others
+    const bool there[LANE_KINDS] = {
+        others,           state_has_law(st), st->session.effective.action_count > 0,
+        known->saturates, has_lock(st),      known->sticks};
+    for (int kind = 0; kind < LANE_KINDS; kind++) {
+        // contact of the other runs, to compare, before the least informative: its place is left
+        for (int run = 1; kind == LANE_STICKING && run < state_run_count(st); run++) {
+            if (state_run_name(st, run)[0] != '\0' && count < MOST_LANES - 1) {
+                lanes[count++] = (lane){LANE_CONTACT, run};
+            }
         }
-    }
-
-    // sticking is the least informative
-    if (known->sticks) {
-        lanes[count++] = (lane){LANE_STICKING, 0};
+        if (there[kind]) {
+            lanes[count++] = (lane){(lane_kind)kind, 0};
+        }
     }
     return count;
 }
@@ -126,26 +115,21 @@ int lanes_rows(const explorer_state *st, lane_survey *known, int height)
 
 // Whether any of the rows from an instant to another one is in contact, sticks, and so on; a few of
 // many are sampled.
-static bool any_row(const trace *t, double from, double to, size_t offset, double above)
+static bool any_row(const trace *t, double from, double to, int signal, double above)
 {
     const size_t first = trace_row_at(t, from), last = trace_row_at(t, to);
     const size_t stride = (last - first) / SAMPLES + 1;
-    for (size_t r = first; r <= last; r += stride) {
-        double value;
-        memcpy(&value, (const char *)&t->rows[r] + offset, sizeof value);
-        if (fabs(value) > above) {
-            return true;
-        }
+    bool found = false;
+    for (size_t r = first; r <= last && !found; r += stride) {
+        found = fabs(signal_value(&t->rows[r], signal)) > above;
     }
-    return false;
+    return found;
 }
 
 // What a lane holds between two instants [s].
 static lane_band band_between(const explorer_state *st, lane l, double from, double to)
 {
-    static const ink mode_colours[] = {INK_SERIES_0,     INK_SERIES_0 + 1, INK_SERIES_0 + 2,
-                                       INK_SERIES_0 + 3, INK_SERIES_0 + 4, INK_SERIES_0 + 5};
-    enum { COLOURS = sizeof mode_colours / sizeof mode_colours[0] };
+    enum { COLOURS = 6 }; // of modes
     // what the run did, also where panes show a difference
     const trace *t = l.run == 0 ? &st->session.run.trace : state_run(st, l.run).trace;
     lane_band band = {-1, INK_FORCE, ""};
@@ -153,16 +137,15 @@ static lane_band band_between(const explorer_state *st, lane l, double from, dou
     // on or off, if anything in between is on
     switch (l.kind) {
     case LANE_CONTACT:
-        band.value = any_row(t, from, to, offsetof(sample, contact), 0) ? 1 : -1;
+        band.value = any_row(t, from, to, SIGNAL_INDEX(contact), 0) ? 1 : -1;
         break;
     case LANE_STICKING:
-        band.value = any_row(t, from, to, offsetof(sample, sticking), 0) ? 1 : -1;
+        band.value = any_row(t, from, to, SIGNAL_INDEX(sticking), 0) ? 1 : -1;
         band.colour = INK_HUB;
         break;
     case LANE_SATURATION: {
         const parameters p = session_parameters_at(&st->session, to);
-        const bool beyond = any_row(t, from, to, offsetof(sample, command), p.motor.voltage_limit);
-        band.value = beyond ? 1 : -1;
+        band.value = any_row(t, from, to, SIGNAL_INDEX(command), p.motor.voltage_limit) ? 1 : -1;
         band.colour = INK_WARNING;
         break;
     }
@@ -172,7 +155,7 @@ static lane_band band_between(const explorer_state *st, lane l, double from, dou
         const double mode = t->rows[trace_row_at(t, to)].controller_mode;
         if (mode >= 0) {
             band.value = (int)mode;
-            band.colour = mode_colours[(int)mode % COLOURS];
+            band.colour = (ink)(INK_SERIES_0 + (int)mode % COLOURS);
             law_mode_name(&st->modes, mode, band.name, sizeof band.name);
         }
         break;
@@ -188,7 +171,7 @@ static lane_band band_between(const explorer_state *st, lane l, double from, dou
     }
 
     // changes have no bands, they are written
-    case LANE_CHANGES:
+    default:
         break;
     }
     return band;
@@ -206,8 +189,6 @@ static double column_time(const explorer_state *st, area line, int column)
 
 static void draw_label(const explorer_state *st, screen *s, area a, lane l)
 {
-    static const char *const labels[] = {"contact",   "mode",   "changes",
-                                         "saturated", "sticks", "locked"};
     if (l.run > 0) {
         screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "\u2592 %s", state_run_name(st, l.run));
         return;

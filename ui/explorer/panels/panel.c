@@ -106,15 +106,6 @@ area page_area(area body, int width, int height)
                   height};
 }
 
-void layout_begin(layout *lay, const explorer_state *st)
-{
-    lay->hit_count = 0;
-    lay->plot = (area){0};
-    lay->drawn = st->drawn;
-    lay->drawn.stage = (arm_stage){0};
-    memset(lay->drawn.folded, 0, sizeof lay->drawn.folded);
-}
-
 void layout_add_hit(layout *lay, hit_area hit)
 {
     if (lay->hit_count < HIT_AREAS) {

@@ -97,9 +97,6 @@ typedef struct layout {
     lane_survey lanes;            // remembered
 } layout;
 
-// Begins a picture: no parts yet, all else as the state has it.
-void layout_begin(layout *lay, const explorer_state *st);
-
 // Stores the position of a part. Parts beyond the capacity are not found by the mouse.
 void layout_add_hit(layout *lay, hit_area hit);
 // The uppermost part at a cell; one of PANEL_NONE if there is none.

@@ -41,16 +41,6 @@ static void draw_track(layout *lay, screen *s, area a, const track *k)
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_SLIDER, k->parameter, a});
 }
 
-// The slider of the selected number in a line of its own, between the ends of its range.
-static void draw_wide_slider(layout *lay, screen *s, area a, const track *k)
-{
-    const number_text low = draw_number(k->scale.low), high = draw_number(k->scale.high);
-    int before = (int)strlen(low.text), after = (int)strlen(high.text);
-    screen_text(s, a.x, a.y, a.width, INK_DIM, low.text);
-    screen_text(s, a.x + a.width - after, a.y, after, INK_DIM, high.text);
-    draw_track(lay, s, (area){a.x + before + 1, a.y, a.width - before - after - 2, 1}, k);
-}
-
 // Value and unit as far as `most` cells have room for them: where they have not, the unit goes,
 // then the value's end, which two points stand for. Returns the cells it takes.
 static int fit_value(char *shown, size_t size, int most, const char *value,
@@ -131,15 +121,20 @@ static void draw_heading(const explorer_state *st, layout *lay, screen *s, area 
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_HEADING, parameter, a});
 }
 
-// The line below the selected parameter: its wide slider, or the reason why it has no effect.
-static void draw_below(const explorer_state *st, layout *lay, screen *s, area a, const track *wide)
+// The line below the selected parameter: its slider between the ends of its range, or the reason
+// why it has no effect.
+static void draw_below(const explorer_state *st, layout *lay, screen *s, area a, const track *k)
 {
-    const char *inert = state_inert_reason(st, wide->parameter);
-    if (inert == NULL) {
-        draw_wide_slider(lay, s, a, wide);
-    } else {
+    const char *inert = state_inert_reason(st, k->parameter);
+    if (inert != NULL) {
         screen_text(s, a.x + 1, a.y, a.width - 1, INK_WARNING, inert);
+        return;
     }
+    const number_text low = draw_number(k->scale.low), high = draw_number(k->scale.high);
+    const int before = (int)strlen(low.text), after = (int)strlen(high.text);
+    screen_text(s, a.x, a.y, a.width, INK_DIM, low.text);
+    screen_text(s, a.x + a.width - after, a.y, after, INK_DIM, high.text);
+    draw_track(lay, s, (area){a.x + before + 1, a.y, a.width - before - after - 2, 1}, k);
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)

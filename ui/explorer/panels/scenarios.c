@@ -26,7 +26,7 @@ static void draw_scenario(const scenario_menu *menu, int index, screen *s, area 
     int used = screen_text(s, a.x, a.y, a.width, INK_TEXT, menu->names[index]);
     int column = used + 2 > 30 ? used + 2 : 30, room = a.width - column;
     text_line title;
-    if (room > 0 && text_wrap(scenario_menu_title(menu, index), room, &title, 1, NULL) > 0) {
+    if (room > 0 && text_wrap(scenario_menu_text(menu, index).title, room, &title, 1, NULL) > 0) {
         screen_print(s, a.x + column, a.y, room, INK_DIM, "%.*s", title.bytes, title.start);
     }
     if (index == menu->selected) {
@@ -48,7 +48,7 @@ static void draw_preview(const scenario_menu *menu, screen *s, area a)
     }
 
     // as much of it as there is room for
-    const char *text = scenario_menu_description(menu, menu->selected);
+    const char *text = scenario_menu_text(menu, menu->selected).description;
     const int count = text_wrap(text, a.width, lines, a.height - 1, NULL);
     for (int i = 0; i < count; i++) {
         screen_print(s, a.x, a.y + 1 + i, a.width, INK_TEXT, "%.*s", lines[i].bytes,

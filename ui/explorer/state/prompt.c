@@ -112,7 +112,7 @@ palette_text palette_describe(const scenario_menu *menu, const key_bindings *key
         break;
     default:
         text.name = menu->names[entry.index];
-        text.about = scenario_menu_title(menu, entry.index);
+        text.about = scenario_menu_text(menu, entry.index).title;
     }
     return text;
 }
@@ -190,7 +190,7 @@ int palette_find(const scenario_menu *menu, const key_bindings *keys, const char
 
             // the list of scenarios has the lessons too
             if (kind >= PALETTE_SCENARIO &&
-                scenario_menu_is_lesson(menu, i) != (kind == PALETTE_LESSON)) {
+                scenario_menu_text(menu, i).is_lesson != (kind == PALETTE_LESSON)) {
                 continue;
             }
             const palette_text text = palette_describe(menu, keys, entry);

@@ -192,14 +192,6 @@ void run_list_drop(run_list *list, int index)
     list->selected = list->selected < 0 ? 0 : list->selected;
 }
 
-void run_list_clear(run_list *list)
-{
-    while (list->count > 0) {
-        run_list_drop(list, list->count - 1);
-    }
-    list->baseline = -1;
-}
-
 // --- a sweep ----------------------------------------------------------------------------------
 
 bool lab_sweep_is_on(const lab_sweep *sweep)
@@ -275,42 +267,36 @@ static status read_axis(sweep_axis *axis, const char *definition, fault *f)
     return sweep_axis_parse(axis, values, false, f);
 }
 
+// Reads the axes of a sweep, and makes room for the cells of a map.
+static status read_sweep(lab_sweep *fresh, const char *definition, fault *f)
+{
+    const size_t length = strcspn(definition, " ");
+    const char *rest = definition + length + strspn(definition + length, " ");
+    const bool map = *rest != '\0';
+    char first[256];
+    snprintf(first, sizeof first, "%.*s", (int)length, definition);
+    TRY(read_axis(&fresh->axis, first, f));
+    TRY(map ? read_axis(&fresh->second, rest, f) : STATUS_OK);
+    const size_t runs = fresh->axis.count * (map ? fresh->second.count : 1);
+    const size_t most = map ? MAP_CELLS : SWEPT_RUNS;
+    FAIL_IF(runs > most, fault_set(f, STATUS_BAD_ARGUMENT,
+                                   "%zu runs are too many here, at most %zu: 'impactlab sweep' "
+                                   "takes any number",
+                                   runs, most));
+    FAIL_IF(map && fresh->axis.parameter == fresh->second.parameter,
+            fault_set(f, STATUS_BAD_ARGUMENT, "a map takes two different parameters"));
+    fresh->cells = map ? calloc(runs, sizeof *fresh->cells) : NULL;
+    TRY_MEMORY(!map || fresh->cells != NULL, f);
+    return STATUS_OK;
+}
+
 status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f)
 {
     lab_sweep fresh = {.metric = sweep->metric, .computed = sweep->computed};
-    const size_t length = strcspn(definition, " ");
-    const char *rest = definition + length + strspn(definition + length, " ");
-    char first[256];
-    snprintf(first, sizeof first, "%.*s", (int)length, definition);
-    status code = read_axis(&fresh.axis, first, f);
-    if (code == STATUS_OK && *rest != '\0') {
-        code = read_axis(&fresh.second, rest, f);
-    }
-    const size_t runs = fresh.axis.count * (*rest != '\0' ? fresh.second.count : 1);
-    const size_t most = *rest != '\0' ? MAP_CELLS : SWEPT_RUNS;
-    if (code == STATUS_OK && runs > most) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%zu runs are too many here, at most %zu: 'impactlab sweep' takes any "
-                         "number",
-                         runs, most);
-    }
-    if (code == STATUS_OK && *rest != '\0' && fresh.axis.parameter == fresh.second.parameter) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT, "a map takes two different parameters");
-    }
-    if (code == STATUS_OK && *rest != '\0' &&
-        (fresh.cells = calloc(runs, sizeof *fresh.cells)) == NULL) {
-        code = fault_no_memory(f);
-    }
-    if (code != STATUS_OK) {
-        sweep_axis_finish(&fresh.axis);
-        sweep_axis_finish(&fresh.second);
-        return code;
-    }
-
-    // it takes the place of the one before
-    lab_sweep_end(sweep);
-    *sweep = fresh;
-    return STATUS_OK;
+    const status code = read_sweep(&fresh, definition, f);
+    lab_sweep_end(code == STATUS_OK ? sweep : &fresh);
+    *sweep = code == STATUS_OK ? fresh : *sweep;
+    return code;
 }
 
 status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f)
@@ -374,16 +360,13 @@ static sample sample_at(const trace *t, double time, bool before)
         return *a;
     }
 
-    // straight from row to row
+    // straight from row to row: a sample is a row of numbers
     sample value = *a;
     const sample *b = &t->rows[r + 1];
     const double share = b->time > a->time ? (time - a->time) / (b->time - a->time) : 0;
+    const double *from = (const double *)a, *to = (const double *)b;
     for (int i = 0; i < SIGNALS_AT_MOST; i++) {
-        double from, to;
-        memcpy(&from, (const char *)a + (size_t)i * sizeof from, sizeof from);
-        memcpy(&to, (const char *)b + (size_t)i * sizeof to, sizeof to);
-        from += share * (to - from);
-        memcpy((char *)&value + (size_t)i * sizeof from, &from, sizeof from);
+        ((double *)&value)[i] = from[i] + share * (to[i] - from[i]);
     }
     return value;
 }
@@ -399,18 +382,12 @@ static status add_row(run_difference *d, const trace *run, const trace *other, s
         row + 1 < run->row_count && same_instant(run->rows[row + 1].time, now->time);
     const sample beside = sample_at(other, now->time, before);
 
-    // signal by signal: a sample is a row of numbers; states stay this run's own
+    // signal by signal; states stay this run's own
     sample difference = *now;
     for (int i = 0; i < SIGNALS_AT_MOST; i++) {
-        if (signal_is_state(i)) {
-            continue;
+        if (!signal_is_state(i)) {
+            ((double *)&difference)[i] -= ((const double *)&beside)[i];
         }
-        const size_t at = (size_t)i * sizeof(double);
-        double a, b;
-        memcpy(&a, (const char *)now + at, sizeof a);
-        memcpy(&b, (const char *)&beside + at, sizeof b);
-        a -= b;
-        memcpy((char *)&difference + at, &a, sizeof a);
     }
 
     // the time is no difference

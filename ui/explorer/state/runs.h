@@ -43,7 +43,6 @@ const char *scenario_leaf(const char *name);
 
 // Removes a run from the list.
 void run_list_drop(run_list *list, int index);
-void run_list_clear(run_list *list);
 
 // The number of runs of the list that are of the session's scenario.
 int run_list_of_scenario(const run_list *list, const session *s);

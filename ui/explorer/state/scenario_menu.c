@@ -86,35 +86,20 @@ int scenario_menu_find(const scenario_menu *menu, const char *name)
     return at;
 }
 
-// What a scenario says of itself, nothing before it is read.
-static menu_text text_of(const scenario_menu *menu, int index)
+menu_text scenario_menu_text(const scenario_menu *menu, int index)
 {
     assert(index >= 0 && index < menu->count);
-    return menu->texts != NULL ? menu->texts[index] : (menu_text){0};
-}
-
-const char *scenario_menu_title(const scenario_menu *menu, int index)
-{
-    const char *title = text_of(menu, index).title;
-    return title != NULL ? title : "";
-}
-
-const char *scenario_menu_description(const scenario_menu *menu, int index)
-{
-    const char *description = text_of(menu, index).description;
-    return description != NULL ? description : "";
-}
-
-bool scenario_menu_is_lesson(const scenario_menu *menu, int index)
-{
-    return text_of(menu, index).is_lesson;
+    menu_text text = menu->texts != NULL ? menu->texts[index] : (menu_text){0};
+    text.title = text.title != NULL ? text.title : "";
+    text.description = text.description != NULL ? text.description : "";
+    return text;
 }
 
 bool scenario_menu_shows(const scenario_menu *menu, int index)
 {
     assert(index >= 0 && index < menu->count);
     char text[1024];
-    snprintf(text, sizeof text, "%s %s", menu->names[index], scenario_menu_title(menu, index));
+    snprintf(text, sizeof text, "%s %s", menu->names[index], scenario_menu_text(menu, index).title);
     return filter_passes(menu->filter, text);
 }
 

@@ -29,12 +29,8 @@ void scenario_menu_finish(scenario_menu *menu);
 
 // The index of a name, -1 if there is none.
 int scenario_menu_find(const scenario_menu *menu, const char *name);
-// The title of a scenario, "" if it has none or none was read.
-const char *scenario_menu_title(const scenario_menu *menu, int index);
-// The description of a scenario, "" if it has none or none was read.
-const char *scenario_menu_description(const scenario_menu *menu, int index);
-// Whether a scenario is a lesson; false before it is read.
-bool scenario_menu_is_lesson(const scenario_menu *menu, int index);
+// What a scenario says of itself, "" where it has nothing or nothing was read.
+menu_text scenario_menu_text(const scenario_menu *menu, int index);
 // Whether a scenario passes the filter by its name or title.
 bool scenario_menu_shows(const scenario_menu *menu, int index);
 // The index of the scenario in a displayed line, -1 after the last.

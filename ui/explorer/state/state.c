@@ -36,27 +36,19 @@ static int main_parameter(const explorer_state *st)
 {
     const parameters *p = &st->session.effective.parameters;
     const controller *law = controller_of(p->control.law);
+    int found = state_has_law(st) ? PARAMETER_INDEX(control.rate) : PARAMETER_INDEX(motor.voltage);
 
-    // without a law it is the voltage
-    if (!state_has_law(st)) {
-        return PARAMETER_INDEX(motor.voltage);
-    }
-
-    // what it presses with, if it does
-    for (int i = 0; law != NULL && i < law->parameter_count; i++) {
-        if (strcmp(law->parameters[i].name, "force") == 0) {
-            return PARAMETER_INDEX(control.force);
-        }
-    }
-
-    // else the first number of its own
-    if (law != NULL && law->parameter_count > 0) {
+    // what the law presses with, if it does, else the first number of its own
+    for (int i = law != NULL ? law->parameter_count : 0; i-- > 0;) {
         char path[PARAMETER_NAME];
-        snprintf(path, sizeof path, "control.%s", law->parameters[0].name);
+        snprintf(path, sizeof path, "control.%s", law->parameters[i].name);
         const int own = parameter_find(path);
-        return own >= 0 ? own : PARAMETER_INDEX(control.rate);
+        found = own >= 0 && (i == 0 || own == PARAMETER_INDEX(control.force)) &&
+                        found != PARAMETER_INDEX(control.force)
+                    ? own
+                    : found;
     }
-    return PARAMETER_INDEX(control.rate);
+    return found;
 }
 
 // Begins the scenario's lesson, if it has one, with the parameters that matter to it.
@@ -77,7 +69,7 @@ static void show_anew(explorer_state *st)
 {
     st->opened++;
     if (st->side.panel == PANEL_SWEEP) {
-        st->side.panel = panel_first_on_side();
+        st->side.panel = PANEL_PARAMETERS;
     }
     parameter_list_arrange(&st->parameters, &st->session.effective.parameters, main_parameter(st));
     st->mark.set = false;
@@ -103,7 +95,7 @@ status state_init(explorer_state *st, scenario *s, double patience, fault *f)
     st->looks.pixels = true;
     st->looks.bending = 1;
     st->playback.slow = USUAL_SLOW;
-    st->side.panel = panel_first_on_side();
+    st->side.panel = PANEL_PARAMETERS;
     scenario_menu_read(&st->scenarios);
     show_anew(st);
     return STATUS_OK;
@@ -126,7 +118,9 @@ void state_finish(explorer_state *st)
     trace_finish(&st->measured);
     free(st->copied);
     lab_sweep_end(&st->sweep);
-    run_list_clear(&st->pinned);
+    while (st->pinned.count > 0) {
+        run_list_drop(&st->pinned, st->pinned.count - 1);
+    }
     for (int i = 0; i < st->visit_count; i++) {
         run_origin_finish(&st->visits[i].from);
     }
@@ -331,16 +325,6 @@ void state_change_text(const explorer_state *st, int index, char *text, size_t s
     char value[SESSION_INPUT_TEXT];
     input_value_text(in, value);
     snprintf(text, size, "%s = %s%s%s", info->path, value, info->unit[0] ? " " : "", info->unit);
-}
-
-int state_later_changes(const explorer_state *st)
-{
-    const session *s = &st->session;
-    int count = 0;
-    for (int i = 0; i < s->input_count; i++) {
-        count += s->inputs[i].kind != SESSION_INPUT_START && s->inputs[i].time > s->now;
-    }
-    return count;
 }
 
 int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES])

@@ -177,7 +177,5 @@ const run_log *state_run_log(explorer_state *st);
 int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES]);
 // A change as a line of text: parameter and value, without its instant.
 void state_change_text(const explorer_state *st, int index, char *text, size_t size);
-// Changes that take effect after the cursor.
-int state_later_changes(const explorer_state *st);
 // Why a parameter has no effect on the run, half a sentence; NULL if it has one.
 const char *state_inert_reason(const explorer_state *st, int parameter);

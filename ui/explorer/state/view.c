@@ -19,15 +19,6 @@ panel_place panel_place_of(panel_id id)
     return places[id];
 }
 
-panel_id panel_first_on_side(void)
-{
-    int id = PANEL_NONE + 1;
-    while (places[id] != PLACE_SIDE) {
-        id++;
-    }
-    return (panel_id)id;
-}
-
 // --- filters ----------------------------------------------------------------------------------
 
 bool filter_passes(const char *filter, const char *text)

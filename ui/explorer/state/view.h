@@ -59,9 +59,6 @@ typedef enum panel_id {
 // The place of a panel; not for PANEL_NONE.
 panel_place panel_place_of(panel_id id);
 
-// The first panel of the side.
-panel_id panel_first_on_side(void);
-
 // --- filters ----------------------------------------------------------------------------------
 // A line of words for each panel that is a list.
 
@@ -81,16 +78,14 @@ bool filter_passes(const char *filter, const char *text);
 typedef enum lane_choice {
     LANES_AUTO, // as many as there is room for
     LANES_ALL,
-    LANES_OFF,
-    LANE_CHOICES
+    LANES_OFF
 } lane_choice;
 
 // Whether a close-up of the contact is shown.
 typedef enum close_up_choice {
     CLOSE_UP_AUTO, // if the terminal has pixels
     CLOSE_UP_ON,
-    CLOSE_UP_OFF,
-    CLOSE_UP_CHOICES
+    CLOSE_UP_OFF
 } close_up_choice;
 
 // Choices are values of their enumerations.
