@@ -177,14 +177,13 @@ static void escape(explorer *ex)
 static void key_by_table(explorer *ex, int key)
 {
     explorer_state *st = &ex->state;
-    const char *bound = key_line(&st->keys, key);
     const bool asked = st->asked_to_quit;
-    if (key == 'y' && st->session.run.summary.status == STATUS_NOT_ALLOWED) {
-        bound = "allow"; // the answer to what is asked then
-    }
-    if (key == 's' && asked) {
-        bound = "session save"; // the other answer to what leaving asks
-    }
+
+    // the answers to what is asked come before the table
+    const char *bound = key == 's' && asked ? "session save"
+                        : key == 'y' && st->session.run.summary.status == STATUS_NOT_ALLOWED
+                            ? "allow"
+                            : key_line(&st->keys, key);
     if (bound != NULL) {
         // a copy: the command may be one that binds keys
         char line[LINE_TEXT];
@@ -200,9 +199,7 @@ static void key_by_table(explorer *ex, int key)
     }
 
     // the answer is the very next key
-    if (asked) {
-        st->asked_to_quit = false;
-    }
+    st->asked_to_quit = st->asked_to_quit && !asked;
 }
 
 void explorer_key(explorer *ex, int key)
@@ -284,10 +281,6 @@ static void press(explorer *ex, pointer_event e)
 
 static void drag(explorer *ex, pointer_event e)
 {
-    // a terminal may leave the press out
-    if (!ex->grip.holding) {
-        press(ex, e);
-    }
     pointer_grip *grip = &ex->grip;
     panel_gesture g = {.event = e, .hit = grip->hit, .across = e.x - grip->x, .up = grip->y - e.y};
     grip->dragged |= g.across != 0 || g.up != 0;
@@ -305,10 +298,6 @@ static void drag(explorer *ex, pointer_event e)
 
 static void release(explorer *ex, pointer_event e)
 {
-    // a quick click may come without its press
-    if (!ex->grip.holding) {
-        press(ex, e);
-    }
     give(ex, &(panel_gesture){.event = e, .hit = ex->grip.hit, .dragged = ex->grip.dragged});
     ex->grip = (pointer_grip){0};
 }
@@ -330,6 +319,11 @@ static void turn_wheel(explorer *ex, pointer_event e)
 
 void explorer_point(explorer *ex, pointer_event e)
 {
+    // a terminal may leave the press out, a quick click may come without
+    if ((e.kind == POINTER_DRAG || e.kind == POINTER_RELEASE) && !ex->grip.holding) {
+        press(ex, e);
+    }
+
     // a gesture is a press, its drags and its release; what is left is the wheel
     switch (e.kind) {
     case POINTER_PRESS:

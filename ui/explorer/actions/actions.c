@@ -6,46 +6,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Puts a sentence on the message line; it may contain what stood there.
-static void put_message(explorer_state *st, bool warning, const char *format, va_list list)
-{
-    char text[MESSAGE_TEXT];
-    vsnprintf(text, sizeof text, format, list);
-    memcpy(st->message.text, text, sizeof text);
-    st->message.warning = warning;
-}
-
 bool act_hush(explorer_state *st)
 {
     st->message.text[0] = '\0';
     return true;
 }
 
-bool act_tell(explorer_state *st, const char *format, ...)
+bool act_say(explorer_state *st, bool warning, bool done, const char *format, ...)
 {
+    // it may contain what stood there
+    char text[MESSAGE_TEXT];
     va_list list;
     va_start(list, format);
-    put_message(st, false, format, list);
+    vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    return true;
-}
-
-bool act_warn(explorer_state *st, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    put_message(st, true, format, list);
-    va_end(list);
-    return true;
-}
-
-bool act_refuse(explorer_state *st, const char *format, ...)
-{
-    va_list list;
-    va_start(list, format);
-    put_message(st, true, format, list);
-    va_end(list);
-    return false;
+    memcpy(st->message.text, text, sizeof text);
+    st->message.warning = warning;
+    return done;
 }
 
 bool act_worked(explorer_state *st, status code)

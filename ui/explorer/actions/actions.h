@@ -22,12 +22,15 @@ COMMAND_LIST(ACTION_FUNCTION, ACTION_NOW)
 
 // --- what is said -----------------------------------------------------------------------------
 
+// Puts a sentence on the message line and returns `done`.
+bool act_say(explorer_state *st, bool warning, bool done, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 // Done: with a message, with a warning, without any (the message line is cleared).
-bool act_tell(explorer_state *st, const char *format, ...) __attribute__((format(printf, 2, 3)));
-bool act_warn(explorer_state *st, const char *format, ...) __attribute__((format(printf, 2, 3)));
+#define act_tell(st, ...) act_say(st, false, true, __VA_ARGS__)
+#define act_warn(st, ...) act_say(st, true, true, __VA_ARGS__)
 bool act_hush(explorer_state *st);
 // Not done: the argument is not what the action expects.
-bool act_refuse(explorer_state *st, const char *format, ...) __attribute__((format(printf, 2, 3)));
+#define act_refuse(st, ...) act_say(st, true, false, __VA_ARGS__)
 // Whether a call that returned `code` worked; if not, the state's fault is the message.
 bool act_worked(explorer_state *st, status code);
 

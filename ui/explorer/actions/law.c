@@ -46,42 +46,23 @@ static bool change_law(explorer_state *st, const char *name)
 
 bool act_law(explorer_state *st, const char *argument)
 {
-    char present[LINE_TEXT];
-    const parameters *p = &st->session.effective.parameters;
+    const bool named = argument[0] != '\0', off = is_release(argument);
     const int law = PARAMETER_INDEX(control.law);
-    parameter_format(p, law, present, sizeof present);
+    parameters scratch = st->session.effective.parameters;
 
     // the law of now is the one to come back to
     if (state_has_law(st)) {
-        snprintf(st->last_law, sizeof st->last_law, "%s", present);
+        parameter_format(&scratch, law, st->last_law, sizeof st->last_law);
     }
 
     // a name of the table, however the parameter would refuse another one
-    parameters scratch = st->session.effective.parameters;
-    if (argument[0] != '\0' && !is_release(argument) &&
-        parameter_set_text(&scratch, law, argument, NULL) != STATUS_OK) {
+    if (named && !off && parameter_set_text(&scratch, law, argument, NULL) != STATUS_OK) {
         return refuse_law(st, argument);
     }
 
     // without a name: off, or on again
-    if (argument[0] == '\0') {
-        const char *again = st->last_law[0] ? st->last_law : "hybrid";
-        return change_law(st, state_has_law(st) ? "none" : again);
-    }
-    return change_law(st, is_release(argument) ? "none" : argument);
-}
-
-// Index of the mode the law is held in at the cursor, -1 if in none.
-static int locked_mode(explorer_state *st)
-{
-    const law_modes *m = state_law_modes(st);
-    parameters p = state_parameters(st);
-    for (int i = 0; i < m->count; i++) {
-        if (strcmp(m->names[i], p.control.lock) == 0) {
-            return i;
-        }
-    }
-    return -1;
+    const char *again = st->last_law[0] ? st->last_law : "hybrid";
+    return change_law(st, off || (!named && state_has_law(st)) ? "none" : named ? argument : again);
 }
 
 // The value of control.lock that an argument asks for: a mode, "none", or the next one of a round
@@ -89,11 +70,18 @@ static int locked_mode(explorer_state *st)
 static const char *wanted_lock(explorer_state *st, const char *argument)
 {
     const law_modes *m = state_law_modes(st);
-    int step = strcmp(argument, "next") == 0 ? 1 : strcmp(argument, "previous") == 0 ? -1 : 0;
+    const parameters p = state_parameters(st);
+    const int step = strcmp(argument, "next") == 0 ? 1 : strcmp(argument, "previous") == 0 ? -1 : 0;
     if (step == 0) {
         return is_release(argument) ? "none" : argument;
     }
-    int round = m->count + 1, next = (locked_mode(st) + 1 + step + round) % round;
+
+    // the mode it is held in at the cursor is one of those from 1 on
+    int held = m->count;
+    while (held > 0 && strcmp(m->names[held - 1], p.control.lock) != 0) {
+        held--;
+    }
+    const int next = (held + step + m->count + 1) % (m->count + 1);
     return next == 0 ? "none" : m->names[next - 1];
 }
 

@@ -156,22 +156,22 @@ bool act_difference(explorer_state *st, const char *argument)
         return act_tell(st, "minus '%s'; D shows the runs again", name);
     }
     const int signal = st->panes.pane[focused].signals[0];
+    const signal_info *info = &signal_table[signal];
     if (signal_is_derived(signal)) {
         return act_tell(st, "minus '%s', but an expression has no difference; D shows the runs",
                         name);
     }
     if (signal_is_state(signal)) {
         return act_tell(st, "minus '%s', but states such as %s are this run's; D shows the runs",
-                        name, signal_table[signal].name);
+                        name, info->name);
     }
     const double first = difference_first_beyond(d, signal, tolerance);
-    if (first < 0) {
-        return act_tell(st, "minus '%s': %s never differs by more than %g %s", name,
-                        signal_table[signal].name, tolerance, signal_table[signal].unit);
-    }
-    return act_tell(st,
-                    "minus '%s': %s differs by more than %g %s from %.5f s on; D shows the runs",
-                    name, signal_table[signal].name, tolerance, signal_table[signal].unit, first);
+    return first < 0 ? act_tell(st, "minus '%s': %s never differs by more than %g %s", name,
+                                info->name, tolerance, info->unit)
+                     : act_tell(st,
+                                "minus '%s': %s differs by more than %g %s from %.5f s on; D shows "
+                                "the runs",
+                                name, info->name, tolerance, info->unit, first);
 }
 
 // --- limits -----------------------------------------------------------------------------------

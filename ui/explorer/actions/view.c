@@ -60,15 +60,10 @@ bool act_fold(explorer_state *st, const char *argument)
     return act_refuse(st, "there is no group '%s' of parameters", argument);
 }
 
-// The panel to whose filter `/` applies: the open page, or the side panel.
-static panel_id filtered_panel(const explorer_state *st)
-{
-    return st->page != PANEL_NONE ? st->page : st->side.panel;
-}
-
 bool act_filter(explorer_state *st, const char *argument)
 {
-    const panel_id panel = filtered_panel(st);
+    // of the open page, or of the side panel
+    const panel_id panel = st->page != PANEL_NONE ? st->page : st->side.panel;
     char *text = st->filters.text[panel];
     snprintf(text, LINE_TEXT, "%s", argument);
     st->filters.typing = argument[0] == '\0' ? panel : PANEL_NONE;
@@ -264,17 +259,16 @@ bool act_quit(explorer_state *st, const char *argument)
         st->quit = true;
         return true;
     }
-    char lost[96] = "";
-    const char *and = changes > 0 && pins > 0 ? " and " : "";
+    char lost[96] = "", pinned[48] = "";
     if (changes > 0) {
-        snprintf(lost, sizeof lost, "%d change%s%s", changes, changes == 1 ? "" : "s", and);
+        snprintf(lost, sizeof lost, "%d change%s", changes, changes == 1 ? "" : "s");
     }
     if (pins > 0) {
-        const size_t used = strlen(lost);
-        snprintf(lost + used, sizeof lost - used, "%d pinned run%s", pins, pins == 1 ? "" : "s");
+        snprintf(pinned, sizeof pinned, "%d pinned run%s", pins, pins == 1 ? "" : "s");
     }
     st->asked_to_quit = true;
-    return act_warn(st, "%s would be lost: q leaves all the same, s keeps all, Esc stays", lost);
+    return act_warn(st, "%s%s%s would be lost: q leaves all the same, s keeps all, Esc stays", lost,
+                    changes > 0 && pins > 0 ? " and " : "", pinned);
 }
 
 bool act_quit_now(explorer_state *st, const char *argument)

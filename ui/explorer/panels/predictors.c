@@ -10,16 +10,6 @@
 enum { MOST_PREDICTED = 32 }; // links: more would take seconds
 enum { ROWS = 6 };            // of the panel [cells]
 
-// The parameters in a row, with the voltage that is in force there: under a control law that is the
-// law's, and beyond the limit the amplifier gets no more.
-static parameters parameters_in_row(const explorer_state *st, size_t r)
-{
-    const sample *row = &st->session.run.trace.rows[r];
-    parameters p = session_parameters_at(&st->session, row->time);
-    p.motor.voltage = row->voltage;
-    return p;
-}
-
 // What a predictor says of the state in a row. The linearised arm is asked once for each row: with
 // more links than two it takes milliseconds, too long for every frame of a run that plays.
 static prediction_answer ask(const explorer_state *st, layout *lay, predictor which, size_t r)
@@ -27,7 +17,9 @@ static prediction_answer ask(const explorer_state *st, layout *lay, predictor wh
     const trace *t = &st->session.run.trace;
     const sample *row = &t->rows[r];
     const size_t state = r * (size_t)t->angle_count;
-    const parameters p = parameters_in_row(st, r);
+    // under a control law the voltage is the law's, and the amplifier gets no more than its limit
+    parameters p = session_parameters_at(&st->session, row->time);
+    p.motor.voltage = row->voltage;
     const prediction_question question = {
         .parameters = &p,
         .bodies = {{row->hub_angle, row->first_angle, row->last_angle},

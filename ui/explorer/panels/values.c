@@ -11,16 +11,11 @@
 
 enum { NAME = 19, NUMBER = 10, UNIT = 6 }; // columns [cells]
 
-// Signals of sensors that are not fitted have none.
-static bool has_value(const sample *row, int signal)
-{
-    return !signal_table[signal].optional || !isnan(signal_value(row, signal));
-}
-
-// Whether a signal is in the list: it has a value, and the filter lets it through.
+// Whether a signal is in the list: the filter lets it through, and it is not of a sensor that is
+// not fitted, which has no value.
 static bool is_listed(const explorer_state *st, const sample *row, int signal)
 {
-    return has_value(row, signal) &&
+    return !(signal_table[signal].optional && isnan(signal_value(row, signal))) &&
            filter_passes(st->filters.text[PANEL_VALUES], signal_table[signal].name);
 }
 

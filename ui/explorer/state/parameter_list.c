@@ -52,26 +52,32 @@ static int group_begin(int parameter)
     return parameter;
 }
 
-static bool is_long_group(int parameter)
+// Whether a path matches one of some patterns with blanks between them.
+static bool is_among(const char *path, const char *patterns)
 {
-    char name[PARAMETER_NAME];
-    parameter_group_name(parameter, name, sizeof name);
-    return strcmp(name, "sensor") == 0 || strcmp(name, "belief") == 0;
+    char pattern[PARAMETER_NAME];
+    bool found = false;
+    for (; *patterns != '\0' && !found; patterns += strspn(patterns, " ")) {
+        const int length = (int)strcspn(patterns, " ");
+        snprintf(pattern, sizeof pattern, "%.*s", length, patterns);
+        found = fnmatch(pattern, path, 0) == 0;
+        patterns += length;
+    }
+    return found;
 }
 
 void parameter_list_arrange(parameter_list *list, const parameters *p, int selected)
 {
     assert(selected >= 0 && selected < parameter_count);
 
-    // groups without effect are folded, and long ones in which nothing was set
-    for (int first = 0, next; first < parameter_count; first = next) {
-        bool used = false, given = false;
-        for (next = first; next == first || (next < parameter_count && !begins_group(next));
-             next++) {
-            used = used || inert_reason(p, next) == NULL;
-            given = given || p->set[next] != 0;
-        }
-        list->folded[parameter_group(first)] = !used || (is_long_group(first) && !given);
+    // groups without effect are folded, and those of sensors and nominal models without a value set
+    bool shown[PARAMETER_GROUPS] = {false}, given[PARAMETER_GROUPS] = {false};
+    for (int i = 0; i < parameter_count; i++) {
+        const int group = parameter_group(i);
+        const bool is_long = is_among(parameter_table[i].path, "sensor.* belief.*");
+        shown[group] = shown[group] || inert_reason(p, i) == NULL;
+        given[group] = given[group] || !is_long || p->set[i] != 0;
+        list->folded[group] = !shown[group] || !given[group];
     }
 
     // the selected one must still be visible
@@ -221,20 +227,6 @@ static bool law_reads(const controller *law, const char *name)
     bool found = false;
     for (int i = 0; law != NULL && i < law->parameter_count; i++) {
         found = found || strcmp(law->parameters[i].name, name) == 0;
-    }
-    return found;
-}
-
-// Whether a path matches one of some patterns with blanks between them.
-static bool is_among(const char *path, const char *patterns)
-{
-    char pattern[PARAMETER_NAME];
-    bool found = false;
-    for (; *patterns != '\0' && !found; patterns += strspn(patterns, " ")) {
-        const int length = (int)strcspn(patterns, " ");
-        snprintf(pattern, sizeof pattern, "%.*s", length, patterns);
-        found = fnmatch(pattern, path, 0) == 0;
-        patterns += length;
     }
     return found;
 }

@@ -141,17 +141,6 @@ static double quantity_of(const session *s, int quantity)
     return s->computing == NULL ? summary_value(&s->run.summary, quantity) : (double)NAN;
 }
 
-// Whether the quantity of the present run is in a range, as a share of the baseline's.
-static bool ratio_is_in_range(const lesson_step *step, const session *s)
-{
-    if (!s->has_other) {
-        return false;
-    }
-    const double ratio =
-        quantity_of(s, step->quantity) / summary_value(&s->other.summary, step->quantity);
-    return ratio >= step->low && ratio <= step->high;
-}
-
 bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p, const session *s,
                          const run_list *pinned)
 {
@@ -178,8 +167,12 @@ bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p, cons
     }
     case LESSON_PINNED:
         return run_list_of_scenario(pinned, s) >= step->pinned;
-    case LESSON_RATIO:
-        return ratio_is_in_range(step, s);
+    case LESSON_RATIO: {
+        const double other =
+            s->has_other ? summary_value(&s->other.summary, step->quantity) : (double)NAN;
+        const double ratio = quantity_of(s, step->quantity) / other;
+        return ratio >= step->low && ratio <= step->high;
+    }
     }
     return false;
 }

@@ -103,10 +103,6 @@ status state_init(explorer_state *st, scenario *s, double patience, fault *f)
 
 void state_finish(explorer_state *st)
 {
-    if (st == NULL) {
-        return;
-    }
-
     // what was found out about the runs goes before them
     for (int i = 0; i < SHOWN_RUNS; i++) {
         extremes_forget(&st->extremes[i]);
@@ -125,9 +121,6 @@ void state_finish(explorer_state *st)
         run_origin_finish(&st->visits[i].from);
     }
     session_finish(&st->session);
-
-    // nothing points to what is gone
-    memset(st, 0, sizeof *st);
 }
 
 // Puts a session in the place of the present one, which is compared with what that was.
