@@ -180,16 +180,13 @@ static bool complete_common(explorer_state *st, const place *where, int count)
 {
     prompt *p = &st->prompt;
     char common[CANDIDATE] = "", name[CANDIDATE], listed[512] = "";
-    size_t used = 0;
     for (int i = 0; i < count; i++) {
         count_fitting(st, where, p->stem, i, name);
         if (i == 0) {
             snprintf(common, sizeof common, "%s", name);
         }
         keep_common(common, name);
-        if (used < sizeof listed) {
-            used += (size_t)snprintf(listed + used, sizeof listed - used, "%s ", name);
-        }
+        text_add(listed, sizeof listed, "%s ", name);
     }
 
     // what agrees may be less than what is typed, where last parts fit

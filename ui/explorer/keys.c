@@ -61,14 +61,11 @@ static bool key_in_palette(explorer_state *st, int key)
 {
     const bool down = key == KEY_CODE_DOWN || key == ('n' & 0x1f);
     const bool up = key == KEY_CODE_UP || key == ('p' & 0x1f);
-    if (!palette_shows(&st->prompt) || (!down && !up)) {
-        return false;
+    const bool moves = palette_shows(&st->prompt) && (down || (up && st->palette.selected >= 0));
+    if (moves) {
+        act_move_in_palette(st, down ? 1 : -1);
     }
-    if (up && st->palette.selected < 0) {
-        return false;
-    }
-    act_move_in_palette(st, down ? 1 : -1);
-    return true;
+    return moves;
 }
 
 static void key_in_prompt(explorer *ex, int key)
@@ -106,15 +103,6 @@ static void key_in_prompt(explorer *ex, int key)
         // other words, another list
         prompt_type(p, key);
         ex->state.palette.selected = p->searches ? 0 : -1;
-    }
-}
-
-// Executes the entry of the palette that was chosen with the mouse, if any.
-static void take_picked(explorer *ex)
-{
-    if (ex->state.palette.picked && ex->state.prompt.open) {
-        ex->state.palette.picked = false;
-        enter_prompt(ex);
     }
 }
 
@@ -252,7 +240,12 @@ static bool give(explorer *ex, const panel_gesture *g)
         return true;
     }
     const bool taken = p != NULL && p->point != NULL && p->point(&ex->state, g);
-    take_picked(ex);
+
+    // an entry of the palette that was chosen with the mouse
+    if (ex->state.palette.picked && ex->state.prompt.open) {
+        ex->state.palette.picked = false;
+        enter_prompt(ex);
+    }
     return taken;
 }
 

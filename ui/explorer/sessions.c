@@ -35,8 +35,7 @@ static void add_pane(const explorer_state *st, session_file *file, int index, in
     const pane *p = &st->panes.pane[index];
     char signals[PANE_SIGNALS * (LINE_TEXT + 1)] = "";
     for (int k = 0; k < p->count; k++) {
-        const size_t used = strlen(signals);
-        snprintf(signals + used, sizeof signals - used, "%s%s", k > 0 ? "," : " ",
+        text_add(signals, sizeof signals, "%s%s", k > 0 ? "," : " ",
                  signal_table[p->signals[k]].name);
     }
     if (index >= PANES_OF_TABLE && p->shown) {

@@ -101,8 +101,7 @@ static bool tell_modes(explorer_state *st)
     const law_modes *m = state_law_modes(st);
     char text[LINE_TEXT] = "";
     for (int i = 0; i < m->count; i++) {
-        size_t used = strlen(text);
-        snprintf(text + used, sizeof text - used, "%s%s", i > 0 ? ", " : "", m->names[i]);
+        text_add(text, sizeof text, "%s%s", i > 0 ? ", " : "", m->names[i]);
     }
     return act_tell(st, "lock takes off, next or a mode of this law: %s", text);
 }

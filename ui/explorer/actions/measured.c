@@ -100,8 +100,7 @@ static bool tell_fit(explorer_state *st, const identification *id)
     for (int i = 0; i < id->count; i++) {
         const fitted_parameter *fit = &id->fit[i];
         const char *unit = sweep_axis_parameter(&fit->axis)->unit;
-        const size_t used = strlen(text);
-        snprintf(text + used, sizeof text - used,
+        text_add(text, sizeof text,
                  !fit->determined       ? "%s%s is not determined"
                  : identify_at_end(fit) ? "%s%s %.5g, at the end of its range"
                                         : "%s%s %.5g +- %.2g%s%s",

@@ -263,10 +263,9 @@ static bool tell_limits(explorer_state *st, const sweep_axis *axis, const solve_
     }
     const int nearest = nearest_limit(st, axis, found);
     for (int i = 0; i < found->count; i++) {
-        const size_t used = strlen(others);
-        if (i != nearest && used < sizeof others) {
-            snprintf(others + used, sizeof others - used, "%s%.5g",
-                     used == 0 ? "; limits also at " : ", ", found->limits[i].value);
+        if (i != nearest) {
+            text_add(others, sizeof others, "%s%.5g",
+                     others[0] == '\0' ? "; limits also at " : ", ", found->limits[i].value);
         }
     }
     const solve_limit *l = &found->limits[nearest];

@@ -67,7 +67,6 @@ bool act_filter(explorer_state *st, const char *argument)
     char *text = st->filters.text[panel];
     snprintf(text, LINE_TEXT, "%s", argument);
     st->filters.typing = argument[0] == '\0' ? panel : PANEL_NONE;
-    st->drawn.scroll[panel] = 0;
     act_settle_filter(st, panel);
     return true;
 }
@@ -187,8 +186,7 @@ static bool choose(explorer_state *st, const look_choice *c, const char *argumen
     char all[128] = "";
     int *value = look_value(&st->looks, c), count = 0, found = -1;
     for (; c->words[count] != NULL; count++) {
-        const size_t used = strlen(all);
-        snprintf(all + used, sizeof all - used, "%s%s", count > 0 ? ", " : "", c->words[count]);
+        text_add(all, sizeof all, "%s%s", count > 0 ? ", " : "", c->words[count]);
         found = strcmp(argument, c->words[count]) == 0 ? count : found;
     }
     FAIL_IF(found < 0 && (argument[0] != '\0' || !c->goes_round),

@@ -344,13 +344,11 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     // the title says how it is drawn
     stage g = plan_stage(s, a);
     g.view = whole_view(st, &lay->extent, g.view.width, g.view.height);
-    size_t used = strlen(title);
     if (g.view.magnified != 1) {
-        snprintf(title + used, sizeof title - used, ", drawn %g times as high", g.view.magnified);
-        used = strlen(title);
+        text_add(title, sizeof title, ", drawn %g times as high", g.view.magnified);
     }
     if (st->looks.bending != 1) {
-        snprintf(title + used, sizeof title - used, ", bent %g times", st->looks.bending);
+        text_add(title, sizeof title, ", bent %g times", st->looks.bending);
     }
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
     draw_stage(st, &g);

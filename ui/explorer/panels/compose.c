@@ -17,10 +17,10 @@ static void draw_title(const explorer_state *st, screen *s)
         for (int i = 0; i < e->input_count; i++) {
             later += e->inputs[i].kind != SESSION_INPUT_START && e->inputs[i].time > e->now;
         }
-        int used = snprintf(changes, sizeof changes, "\u25cf %d change%s", e->input_count,
-                            e->input_count == 1 ? "" : "s");
+        snprintf(changes, sizeof changes, "\u25cf %d change%s", e->input_count,
+                 e->input_count == 1 ? "" : "s");
         if (later > 0) {
-            snprintf(changes + used, sizeof changes - (size_t)used, ", \u25cb %d later", later);
+            text_add(changes, sizeof changes, ", \u25cb %d later", later);
         }
     }
 
@@ -339,17 +339,15 @@ static int fold_stack(const explorer_state *st, layout *lay, int rows[PANEL_IDS]
 static void draw_tabs(const layout *lay, screen *s, area a)
 {
     char text[96] = " Tab: ";
-    bool any = false;
+    const size_t none = strlen(text);
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
-        const size_t used = strlen(text);
         if (lay->drawn.folded[id]) {
-            snprintf(text + used, sizeof text - used, "%s%s", any ? ", " : "",
+            text_add(text, sizeof text, "%s%s", strlen(text) > none ? ", " : "",
                      panel_of((panel_id)id)->name);
-            any = true;
         }
     }
-    if (any && a.height > 1) {
-        strncat(text, " ", sizeof text - strlen(text) - 1);
+    if (strlen(text) > none && a.height > 1) {
+        text_add(text, sizeof text, " ");
         screen_text(s, a.x + 1, a.y + a.height - 1, a.width - 2, INK_DIM, text);
     }
 }

@@ -113,8 +113,7 @@ static int draw_legend(const explorer_state *st, layout *lay, screen *s, int ind
         char value[48], text[128];
         format_value(st, p, p->signals[k], how == LEGEND_TIGHT, value, sizeof value);
         if (unit_of(p)[0] == '\0' && info->unit[0] != '\0' && how < LEGEND_TIGHT) {
-            size_t used = strlen(value);
-            snprintf(value + used, sizeof value - used, " %s", info->unit);
+            text_add(value, sizeof value, " %s", info->unit);
         }
         // what is hidden goes first where room is short
         if (p->hidden >> k & 1 && how >= LEGEND_SYMBOLS) {

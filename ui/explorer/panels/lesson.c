@@ -15,8 +15,7 @@ static void write_step(const explorer_state *st, char *text, size_t size)
     }
     snprintf(text, size, "%s", step->say);
     for (int i = 0; i < step->choice_count; i++) {
-        const size_t used = strlen(text);
-        snprintf(text + used, used < size ? size - used : 0, "  %d: %s", i + 1, step->choices[i]);
+        text_add(text, size, "  %d: %s", i + 1, step->choices[i]);
     }
 }
 

@@ -200,9 +200,9 @@ void plot_frame_level(const plot_frame *f, screen *s, double value, const char *
 // A tick's value with no more digits than the axis needs, its power of ten behind.
 static void axis_label(const ticks *t, int index, char *text, size_t size)
 {
-    int used = snprintf(text, size, "%.*f", t->decimals, t->value[index] / pow(10, t->exponent));
-    if (t->exponent != 0 && t->value[index] != 0 && used > 0 && (size_t)used < size) {
-        snprintf(text + used, size - (size_t)used, "e%d", t->exponent);
+    snprintf(text, size, "%.*f", t->decimals, t->value[index] / pow(10, t->exponent));
+    if (t->exponent != 0 && t->value[index] != 0) {
+        text_add(text, size, "e%d", t->exponent);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "ui/explorer/state/command_list.h"
 
 #include <assert.h>
+#include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -8,6 +9,16 @@
 
 #include "ui/terminal/keys.h"
 #include "ui/terminal/screen.h"
+
+void text_add(char *text, size_t size, const char *format, ...)
+{
+    const size_t used = strlen(text);
+    va_list list;
+    assert(used < size);
+    va_start(list, format);
+    vsnprintf(text + used, size - used, format, list);
+    va_end(list);
+}
 
 const explorer_command explorer_command_table[] = {
 #define COMMAND_INFO(group, name, keys, argument, help) {group, #name, keys, argument, help},
@@ -173,21 +184,19 @@ static bool begins_with(const char *line, const char *command)
 
 void key_names_of(const key_bindings *b, const char *command, char *text, size_t size)
 {
-    assert(size > 0);
-    size_t used = 0;
     char name[KEY_NAME];
     text[0] = '\0';
 
     // the user's keys first, then the explorer's that are not overridden
-    for (int i = 0; i < b->count && used < size; i++) {
+    for (int i = 0; i < b->count; i++) {
         if (begins_with(b->own[i].line, command)) {
             key_name(b->own[i].key, name, sizeof name);
-            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "", name);
+            text_add(text, size, "%s%s", text[0] ? " " : "", name);
         }
     }
-    for (const binding *own = built_in_keys(); own->key != 0 && used < size; own++) {
+    for (const binding *own = built_in_keys(); own->key != 0; own++) {
         if (begins_with(own->line, command) && key_own(b, own->key) < 0) {
-            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " " : "", own->name);
+            text_add(text, size, "%s%s", text[0] ? " " : "", own->name);
         }
     }
 }

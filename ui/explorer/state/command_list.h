@@ -7,6 +7,10 @@
 
 enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
 
+// Appends to a text in `size` bytes as much as has room.
+void text_add(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
 // X: group that begins with this command, or ""; name, also of the action that executes it,
 // act_NAME; its keys, each KEY or KEY:ARGUMENT (names as in --keys without their brackets);
 // argument as shown in the help; description. Y: the same of NAME!, which asks no questions:

@@ -10,20 +10,12 @@
 #include "src/rig/rig.h"
 #include "ui/explorer/state/view.h"
 
-// Bytes of the group's name at the beginning of a path.
-static size_t group_length(int parameter)
-{
-    return strcspn(parameter_table[parameter].path, ".");
-}
-
+// Whether a parameter begins another group than the one before it.
 static bool begins_group(int parameter)
 {
-    if (parameter == 0) {
-        return true;
-    }
-    const size_t length = group_length(parameter);
-    return length != group_length(parameter - 1) ||
-           strncmp(parameter_table[parameter].path, parameter_table[parameter - 1].path, length);
+    const char *path = parameter_table[parameter].path;
+    return parameter == 0 ||
+           strncmp(path, parameter_table[parameter - 1].path, strcspn(path, ".") + 1) != 0;
 }
 
 int parameter_group(int parameter)
@@ -40,7 +32,8 @@ int parameter_group(int parameter)
 void parameter_group_name(int parameter, char *name, size_t size)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    snprintf(name, size, "%.*s", (int)group_length(parameter), parameter_table[parameter].path);
+    const char *path = parameter_table[parameter].path;
+    snprintf(name, size, "%.*s", (int)strcspn(path, "."), path);
 }
 
 // The first parameter of a parameter's group.

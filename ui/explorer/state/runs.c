@@ -66,10 +66,9 @@ static void append_others(const session_input *of, int count, const session_inpu
     bool first = true;
     for (int i = 0; i < count; i++) {
         char one[SESSION_INPUT_TEXT + 80];
-        const size_t used = strlen(text);
-        if (!has_input(other, other_count, &of[i]) && used < size) {
+        if (!has_input(other, other_count, &of[i])) {
             run_list_input_text(&of[i], one, sizeof one);
-            snprintf(text + used, size - used, "%s%s", first ? "" : ", ", one);
+            text_add(text, size, "%s%s", first ? "" : ", ", one);
             first = false;
         }
     }
@@ -88,10 +87,9 @@ void run_list_differences(const pinned_run *p, const session *s, char *text, siz
     }
     append_others(o->inputs, o->input_count, s->inputs, s->input_count, text, size);
     append_others(s->inputs, s->input_count, o->inputs, o->input_count, here, sizeof here);
-    const size_t used = strlen(text);
-    if (here[0] != '\0' && used < size) {
-        snprintf(text + used, size - used, "%s(now: %s)", used > 0 ? " " : "", here);
-    } else if (used == 0) {
+    if (here[0] != '\0') {
+        text_add(text, size, "%s(now: %s)", text[0] ? " " : "", here);
+    } else if (text[0] == '\0') {
         snprintf(text, size, "the same");
     }
 }
