@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "render/scene/plan.h"
-#include "src/base/text_stream.h"
 #include "ui/terminal/pictures.h"
 
 enum {
@@ -127,11 +126,7 @@ static void draw_links(const explorer_state *st, const stage *g, const trace *t,
                        ink in, bool dotted)
 {
     const parameters *p = &st->session.effective.parameters;
-    vector *joints = malloc(((size_t)p->arm.links + 1) * sizeof *joints);
-    loss_unless(joints != NULL);
-    if (joints == NULL) {
-        return;
-    }
+    vector joints[PARAMETER_LINKS_MOST + 1];
     scene_joints(t, p, time, joints);
     scene_exaggerate(joints, p->arm.links, st->looks.bending);
 
@@ -148,7 +143,6 @@ static void draw_links(const explorer_state *st, const stage *g, const trace *t,
             canvas_line(&g->canvas, x0, y0 + thick, x1, y1 + thick, in);
         }
     }
-    free(joints);
 }
 
 static void draw_hub(const stage *v, double angle)
