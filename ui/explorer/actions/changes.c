@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/text_stream.h"
 #include "src/base/numbers.h"
 
 // act_give with a number, in small steps: several at one instant are one change, and none at all

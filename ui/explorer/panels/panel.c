@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <limits.h>
 #include <math.h>
-#include <string.h>
 
 static const panel *const panels[PANEL_IDS] = {
 #define PANEL_POINTER(id, place, description) [id] = &description,

@@ -18,7 +18,7 @@ typedef struct plot_frame {
     canvas canvas;
     double from, to; // [s]
     value_range axis;
-    unsigned pattern; // of the curve that is drawn, as in run_lines.h
+    unsigned pattern; // of the curve that is drawn, as of style_pattern
     ink colour;
     cairo_t *picture; // used instead of dots; NULL: none
     pane_frame pixels;

@@ -1,6 +1,5 @@
 #include "ui/explorer/state/prompt.h"
 
-#include <assert.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
