@@ -48,10 +48,12 @@ typedef struct coefficients {
     double alpha_m, alpha_f, beta, gamma;
 } coefficients;
 
-// Accelerations and velocities that belong to angles q1.
-static void update_rates(const motion *m, const coefficients *k, double h, const double *q1,
-                         double *w1, double *A1, double *a1)
+// Accelerations and velocities that belong to the trial's angles; a stuck hub has none.
+static void update_rates(motion *m, const coefficients *k, double h, bool stuck)
 {
+    const double *q1 = state_angles(m, m->trial);
+    double *w1 = state_velocities(m, m->trial), *A1 = state_algorithmic(m, m->trial);
+    double *a1 = state_accelerations(m, m->trial);
     const double *q0 = state_angles(m, m->state), *w0 = state_velocities(m, m->state);
     const double *a0 = state_accelerations(m, m->state), *A0 = state_algorithmic(m, m->state);
     const double per_square = 1 / (h * h * k->beta), own = 1 / (1 - k->alpha_f);
@@ -59,6 +61,9 @@ static void update_rates(const motion *m, const coefficients *k, double h, const
         A1[i] = (q1[i] - q0[i] - h * w0[i] - h * h * (0.5 - k->beta) * A0[i]) * per_square;
         w1[i] = w0[i] + h * ((1 - k->gamma) * A0[i] + k->gamma * A1[i]);
         a1[i] = ((1 - k->alpha_m) * A1[i] + k->alpha_m * A0[i] - k->alpha_f * a0[i]) * own;
+    }
+    if (stuck) {
+        w1[0] = A1[0] = a1[0] = 0;
     }
 }
 
@@ -69,8 +74,7 @@ static status solve_step(const arm *a, motion *m, double h, const coefficients *
 {
     const int n = a->dof;
     const double *q0 = state_angles(m, m->state), *w0 = state_velocities(m, m->state);
-    double *q1 = state_angles(m, m->trial), *w1 = state_velocities(m, m->trial);
-    double *A1 = state_algorithmic(m, m->trial), *a1 = state_accelerations(m, m->trial);
+    double *q1 = state_angles(m, m->trial);
     double *dq = m->scratch + 2 * n, *unit = m->scratch + 3 * n;
 
     // backward Euler starts from rest: a predictor from the velocities just after a jump would put
@@ -83,14 +87,11 @@ static status solve_step(const arm *a, motion *m, double h, const coefficients *
     }
 
     for (int iteration = 0; iteration < NEWTON_ITERATIONS; iteration++) {
-        // rates of the guess; a stuck hub has none
+        // rates of the guess
         if (it->stuck) {
             q1[0] = q0[0];
         }
-        update_rates(m, k, h, q1, w1, A1, a1);
-        if (it->stuck) {
-            w1[0] = A1[0] = a1[0] = 0;
-        }
+        update_rates(m, k, h, it->stuck);
 
         // its correction
         it->force += implicit_correction(a, m->memory, it, t, dq, unit);
@@ -104,10 +105,7 @@ static status solve_step(const arm *a, motion *m, double h, const coefficients *
 
         // small enough: the rates that go with the angles found
         if (size <= NEWTON_TOLERANCE * largest) {
-            update_rates(m, k, h, q1, w1, A1, a1);
-            if (it->stuck) {
-                w1[0] = A1[0] = a1[0] = 0;
-            }
+            update_rates(m, k, h, it->stuck);
             return STATUS_OK;
         }
     }
@@ -172,10 +170,9 @@ static bool makes_energy(const arm *a, const motion *m)
     double energy[2], weight[2];
     for (int i = 0; i < 2; i++) {
         double *state = i == 0 ? m->state : m->trial;
-        const double *q = state_angles(m, state);
-        energy[i] =
-            chain_kinetic_energy(a, q, state_velocities(m, state)) + chain_strain_energy(a, q);
-        weight[i] = chain_weight_energy(a, q);
+        const state_energy has = motion_energy(a, m, state);
+        energy[i] = has.kinetic + has.strain;
+        weight[i] = chain_weight_energy(a, state_angles(m, state));
     }
     double turned = state_angles(m, m->trial)[0] - state_angles(m, m->state)[0];
     const double gained = energy[1] - energy[0] + weight[1] - weight[0];
