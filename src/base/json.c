@@ -77,11 +77,10 @@ json_t *json_members(json_t *object, const char *members, ...)
     return object;
 }
 
-static void write_string(FILE *stream, const char *text)
+// A value without parts of its own, as jansson writes it.
+static void write_plain(FILE *stream, const json_t *value)
 {
-    json_t *string = json_text(text);
-    loss_unless(string != NULL && json_dumpf(string, stream, JSON_ENCODE_ANY) == 0);
-    json_decref(string);
+    loss_unless(value != NULL && json_dumpf(value, stream, JSON_ENCODE_ANY) == 0);
 }
 
 static void write_indented(FILE *stream, const json_t *value, int depth);
@@ -102,7 +101,9 @@ static void write_object(FILE *stream, const json_t *object, int depth)
     {
         fputs(separator, stream);
         new_line(stream, depth + 1);
-        write_string(stream, key);
+        json_t *name = json_text(key);
+        write_plain(stream, name);
+        json_decref(name);
         fputs(": ", stream);
         write_indented(stream, member, depth + 1);
         separator = ",";
@@ -144,34 +145,15 @@ static void write_array(FILE *stream, const json_t *array, int depth)
 static void write_indented(FILE *stream, const json_t *value, int depth)
 {
     char text[NUMBER_TEXT];
-
-    // what holds others goes one level deeper
-    switch (json_typeof(value)) {
-    case JSON_OBJECT:
+    if (json_is_object(value)) {
         write_object(stream, value, depth);
-        break;
-    case JSON_ARRAY:
+    } else if (json_is_array(value)) {
         write_array(stream, value, depth);
-        break;
-    case JSON_STRING:
-        write_string(stream, json_string_value(value));
-        break;
-
-    // whole numbers are written like all others
-    case JSON_REAL:
-    case JSON_INTEGER:
-        number_format(text, json_number_value(value));
+    } else if (json_is_number(value)) {
+        number_format(text, json_number_value(value)); // whole ones like all others
         fputs(text, stream);
-        break;
-    case JSON_TRUE:
-        fputs("true", stream);
-        break;
-    case JSON_FALSE:
-        fputs("false", stream);
-        break;
-    case JSON_NULL:
-        fputs("null", stream);
-        break;
+    } else {
+        write_plain(stream, value);
     }
 }
 
