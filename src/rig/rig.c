@@ -225,14 +225,19 @@ static controller_input input_of(const rig *r, double time)
                               .wanted_mode = r->lock};
 }
 
+void rig_read(rig *r, double time, const sensed_motion *now)
+{
+    if (!instant_after(r->sample_time, time) && r->read_time != time) {
+        r->reading = sensors_read(&r->sensors, now);
+        r->read_time = time;
+    }
+}
+
 // One sample: sensors, controller, D/A; the command is pending for the delay.
 static status take_sample(rig *r, double time, const sensed_motion *now, fault *f)
 {
     TRY(rig_follow_setpoint(r, time, f));
-    if (r->read_time != time) {
-        r->reading = sensors_read(&r->sensors, now);
-        r->read_time = time;
-    }
+    rig_read(r, time, now);
     controller_input input = input_of(r, time);
     r->predicted_force =
         r->told.control.force_limit > 0 ? touch_forecast_sample(&r->forecast, &input) : (double)NAN;
@@ -264,14 +269,6 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     r->samples++;
     r->sample_time = sampling_instant(r);
     return STATUS_OK;
-}
-
-void rig_read(rig *r, double time, const sensed_motion *now)
-{
-    if (!instant_after(r->sample_time, time) && r->read_time != time) {
-        r->reading = sensors_read(&r->sensors, now);
-        r->read_time = time;
-    }
 }
 
 status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fault *f)

@@ -128,8 +128,7 @@ static double spring_torque(const hybrid_memory *m, double angle)
 static double contact_inertia(const hybrid_memory *m)
 {
     const controller_setup *r = &m->rig;
-    double own = m->printed ? 0 : r->hub_inertia + 2 * r->link_inertia;
-    return 2 * r->link_mass * r->link_length * r->link_length / 4 + own;
+    return m->printed ? r->link_mass * r->link_length * r->link_length / 2 : pressed_inertia(r);
 }
 
 // Hub angle at which the beam presses with a force, (5.23) [rad].
