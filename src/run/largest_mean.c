@@ -5,10 +5,6 @@
 
 #include "src/base/extremes.h"
 
-// Windows that hold less than a likely largest integral by more than this share of it are passed
-// over; the share is more than rounding.
-#define BELOW_LIKELY 1e-9
-
 // One end of the window, on its way through the run.
 typedef struct window_end {
     double time;     // of the window's front [s]
@@ -135,24 +131,6 @@ static double holds_no_more(const run_result *r, const window_end *front, const 
     return i > front->step ? steps[i - 1].end : -HUGE_VAL;
 }
 
-// The integral over the window that ends with the step of the largest mean force, from the instant
-// `first` of the window's front on [N s].
-static double likely_largest(const run_result *r, double first, double window)
-{
-    const force_history *h = &r->history.forces;
-    const force_step *steps = force_steps(h);
-    size_t strongest = h->count - 1;
-    for (size_t i = h->count; i-- > 0 && steps[i].end >= first;) {
-        strongest = steps[i].mean > steps[strongest].mean ? i : strongest;
-    }
-
-    window_end front = {0}, back = {0};
-    const double time = steps[strongest].end;
-    advance(r, &front, time, 0, true);
-    advance(r, &back, time, window, false);
-    return integral_to(r, &front, time) - integral_to(r, &back, time - window);
-}
-
 double force_largest_mean(const run_result *result, double from, double window)
 {
     assert(isfinite(from) && window > 0);
@@ -163,17 +141,14 @@ double force_largest_mean(const run_result *result, double from, double window)
     }
 
     window_end front = {0}, back = {0};
-    const double likely = likely_largest(result, from + window, window);
-    const double least = likely - BELOW_LIKELY * fabs(likely);
     double largest = -HUGE_VAL;
     size_t bounded = 0;
     for (double time = from + window;;) {
         // at the instant itself, impulses on both edges counting
         advance(result, &front, time, 0, true);
         advance(result, &back, time, window, false);
-        const double passed = time < end ? holds_no_more(result, &front, &back, window,
-                                                         larger(largest, least), &bounded)
-                                         : time;
+        const double passed =
+            time < end ? holds_no_more(result, &front, &back, window, largest, &bounded) : time;
         if (passed > time) {
             time = fmin(passed, end);
             continue;
@@ -181,7 +156,7 @@ double force_largest_mean(const run_result *result, double from, double window)
         largest = fmax(largest, integral_to(result, &front, time) -
                                     integral_to(result, &back, time - window));
         if (time >= end) {
-            return larger(largest, likely) / window;
+            return largest / window;
         }
 
         // behind it, up to the next one
