@@ -25,10 +25,10 @@ static double flat(double t)
 }
 
 // The history of a curve over [0, 1] s; each step has its mean by Simpson's rule, exact for cubics.
-static force_history history_of(force_curve f)
+static shared_array history_of(force_curve f)
 {
-    force_history h;
-    force_history_init(&h);
+    shared_array h;
+    shared_array_init(&h, sizeof(force_step));
     for (int i = 0; i < 100; i++) {
         double start = i * STEP, end = (i + 1) * STEP;
         double mean = (f(start) + 4 * f((start + end) / 2) + f(end)) / 6;
@@ -42,13 +42,13 @@ static double largest_mean(force_curve f, double from, double window)
 {
     run_result r = {.history = {.forces = history_of(f)}};
     double mean = force_largest_mean(&r, from, window);
-    force_history_finish(&r.history.forces);
+    shared_array_finish(&r.history.forces);
     return mean;
 }
 
 TEST(a_constant_force_has_settled_from_the_start)
 {
-    SCOPED(force_history_finish) force_history h = history_of(flat);
+    SCOPED(shared_array_finish) shared_array h = history_of(flat);
     check_close(force_settled_since(&h, 3), 0, 0);
     // a run that ends outside the band has not settled
     assert_true(isnan(force_settled_since(&h, 4)));
@@ -56,18 +56,18 @@ TEST(a_constant_force_has_settled_from_the_start)
 
 TEST(a_rising_force_settles_where_it_enters_the_band)
 {
-    SCOPED(force_history_finish) force_history h = history_of(rising);
+    SCOPED(shared_array_finish) shared_array h = history_of(rising);
     check_close(force_settled_since(&h, 2), 0.95, 1e-12);
 }
 
 TEST(the_band_is_entered_within_a_step)
 {
     // up and down again to nothing: 4 t (1 - t) = 0.05 f where the band round f ends from below
-    SCOPED(force_history_finish) force_history h = history_of(parabola);
+    SCOPED(shared_array_finish) shared_array h = history_of(parabola);
     assert_true(isnan(force_settled_since(&h, 0.5)));
-    force_history_finish(&h);
+    shared_array_finish(&h);
     force_step bump = {0, 1, 1, 1, 1 + 2.0 / 3 * 0.2}; // rises by 0.2 to its middle
-    force_history_init(&h);
+    shared_array_init(&h, sizeof(force_step));
     assert_int_equal(force_history_add(&h, bump), STATUS_OK);
     // 1 + 0.8 s (1 - s) = 1.05 at the later root
     check_close(force_settled_since(&h, 1), 0.5 + sqrt(0.25 - 0.05 / 0.8), 1e-12);
@@ -86,8 +86,8 @@ TEST(a_line_that_meets_the_band_at_a_steps_end_settles_there)
         const force_step steps[] = {{0, 1, 0, final / 2, final / 4},
                                     {1, 2, final / 2, edge, (final / 2 + edge) / 2},
                                     {2, 3, edge, final, (final + edge) / 2}};
-        SCOPED(force_history_finish) force_history h;
-        force_history_init(&h);
+        SCOPED(shared_array_finish) shared_array h;
+        shared_array_init(&h, sizeof(force_step));
         for (int i = 0; i < 3; i++) {
             assert_int_equal(force_history_add(&h, steps[i]), STATUS_OK);
         }
@@ -107,8 +107,8 @@ TEST(a_force_at_the_edge_of_its_band_has_settled)
                                 {1, 2, 2 * final, edge, (2 * final + edge) / 2},
                                 parabolic_step(1, 2, edge + 2, -3, 1)};
     for (int last = 1; last < 3; last++) {
-        SCOPED(force_history_finish) force_history h;
-        force_history_init(&h);
+        SCOPED(shared_array_finish) shared_array h;
+        shared_array_init(&h, sizeof(force_step));
         assert_int_equal(force_history_add(&h, steps[0]), STATUS_OK);
         assert_int_equal(force_history_add(&h, steps[last]), STATUS_OK);
         check_close(force_settled_since(&h, final), 2, 1e-12);
@@ -118,8 +118,8 @@ TEST(a_force_at_the_edge_of_its_band_has_settled)
 TEST(a_history_keeps_all_of_its_steps)
 {
     enum { STEPS = 5000 };
-    SCOPED(force_history_finish) force_history h;
-    force_history_init(&h);
+    SCOPED(shared_array_finish) shared_array h;
+    shared_array_init(&h, sizeof(force_step));
     for (int i = 0; i < STEPS; i++) {
         assert_int_equal(force_history_add(&h, (force_step){i, i + 1, i, i, i}), STATUS_OK);
     }
@@ -144,8 +144,8 @@ TEST(lines_are_crossed_where_they_are)
         if (step.last > final * (1 + SETTLED_BAND)) {
             continue; // beyond the band again
         }
-        SCOPED(force_history_finish) force_history h;
-        force_history_init(&h);
+        SCOPED(shared_array_finish) shared_array h;
+        shared_array_init(&h, sizeof(force_step));
         assert_int_equal(force_history_add(&h, step), STATUS_OK);
         check_close(force_settled_since(&h, final), share, 1e-11);
     }
@@ -160,10 +160,10 @@ TEST(from_the_instant_found_the_force_stays)
     random_seed(&g, 6);
     int within = 0, between = 0;
     for (int round = 0; round < 300; round++) {
-        SCOPED(force_history_finish) force_history h;
-        SCOPED(force_history_finish) force_history scaled;
-        force_history_init(&h);
-        force_history_init(&scaled);
+        SCOPED(shared_array_finish) shared_array h;
+        SCOPED(shared_array_finish) shared_array scaled;
+        shared_array_init(&h, sizeof(force_step));
+        shared_array_init(&scaled, sizeof(force_step));
         double force = 0, time = 0;
         for (int i = 0; i < STEPS; i++) {
             // towards 1 by shares, now and then with a jump as at an impact
@@ -218,8 +218,8 @@ TEST(from_the_instant_found_the_force_stays)
 TEST(the_opposite_force_is_outside)
 {
     for (int sign = -1; sign <= 1; sign += 2) {
-        SCOPED(force_history_finish) force_history h;
-        force_history_init(&h);
+        SCOPED(shared_array_finish) shared_array h;
+        shared_array_init(&h, sizeof(force_step));
         assert_int_equal(force_history_add(&h, (force_step){0, 1, sign, -sign, 0}), STATUS_OK);
         assert_true(isnan(force_settled_since(&h, sign)));
         // the way from one to the other is a line of slope 2
@@ -229,7 +229,7 @@ TEST(the_opposite_force_is_outside)
 
 TEST(an_empty_history_has_no_answer)
 {
-    SCOPED(force_history_finish) force_history h = {0};
+    SCOPED(shared_array_finish) shared_array h = {0};
     assert_true(isnan(force_settled_since(&h, 1)));
 }
 
@@ -253,7 +253,7 @@ TEST(an_impulse_counts_as_long_as_the_window_holds_it)
                     .trace = {.events = &impact, .event_count = 1}};
     check_close(force_largest_mean(&r, 0, 0.1), 3 + 0.2 / 0.1, 1e-12);
     check_close(force_largest_mean(&r, 0.6, 0.1), 3, 1e-12);
-    force_history_finish(&r.history.forces);
+    shared_array_finish(&r.history.forces);
 }
 
 // Impulse of the force over a run, as the motion itself integrates it [N s].
@@ -288,7 +288,7 @@ TEST(the_force_kept_has_the_impulse_of_decays)
         const run_options kept = {.keep_trace = true, .rows_expected = 100};
         SCOPED(run_finish) run_result run;
         assert_int_equal(run_scenario_with(&one, &kept, &run), STATUS_OK);
-        const force_history *h = &run.history.forces;
+        const shared_array *h = &run.history.forces;
         double sum = 0;
         for (size_t k = 0; k < h->count; k++) {
             const force_step *step = &force_steps(h)[k];

@@ -8,7 +8,7 @@ static run_result empty_run(void)
 {
     run_result r;
     memset(&r, 0, sizeof r);
-    force_history_init(&r.history.forces);
+    shared_array_init(&r.history.forces, sizeof(force_step));
     trace_init(&r.trace, 1);
     return r;
 }
@@ -16,7 +16,7 @@ static run_result empty_run(void)
 static void finish(run_result *r)
 {
     trace_finish(&r->trace);
-    force_history_finish(&r->history.forces);
+    shared_array_finish(&r->history.forces);
 }
 
 // A parabola first + slope s + curve s^2 of the share of a step.
@@ -183,7 +183,7 @@ TEST(a_full_history_is_looked_at_to_its_end)
 {
     run_result r = empty_run();
     add_step(&r, 0, 1, 5, -4, 0);
-    for (int i = 1; r.history.forces.count < r.history.forces.array.capacity; i++) {
+    for (int i = 1; r.history.forces.count < r.history.forces.capacity; i++) {
         add_step(&r, i, i + 1, 1, 0, 0);
     }
     check_close(force_largest_mean(&r, 0, 0.25), 4.5, 1e-14);

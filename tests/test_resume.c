@@ -60,7 +60,7 @@ TEST(a_resumed_run_is_the_run_from_the_start)
     scenario s = {.parameters = parameters_with("run.duration=4 motor.stiction=0")};
     scenario later = changed_late(&s, &change);
     run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
-    assert_true(old.history.checkpoint_count > 2);
+    assert_true(old.history.checkpoints.count > 2);
     assert_true(resumed(&old, &s, &later, &result));
     check_same_run(&result, &whole);
     assert_non_null(result.before_impact); // the impact before it is still known
@@ -262,6 +262,6 @@ TEST(a_run_of_the_rig_is_shared_without_history)
     SCOPED(run_finish) run_result old = run_keeping_history(&s), shared;
     assert_int_equal(run_share(&old, ROWS, &shared), STATUS_OK);
     check_same_run(&shared, &old);
-    assert_int_equal(shared.history.forces.array.reserved, 0);
+    assert_int_equal(shared.history.forces.reserved, 0);
     assert_int_equal(shared.history.checkpoints.reserved, 0);
 }

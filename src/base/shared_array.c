@@ -169,6 +169,7 @@ bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
     if (bytes > done) {
         memcpy((char *)a->base + done, (const char *)from->base + done, bytes - done);
     }
+    a->count = count;
     return true;
 }
 

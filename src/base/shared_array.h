@@ -17,6 +17,7 @@ typedef struct array_chunk array_chunk;
 typedef struct shared_array {
     void *base;      // of the elements
     size_t size;     // of one element [bytes]
+    size_t count;    // elements in it, for whoever keeps no count of his own
     size_t capacity; // elements that there is memory for
     size_t reserved; // address space of a shared array [bytes]; 0: a plain one
     array_chunk **chunks;

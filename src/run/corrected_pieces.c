@@ -32,7 +32,7 @@ sensed_motion corrected_sensed_motion(const corrected_run *c, double *state)
                            .force = state[SLOT_FORCE]};
 }
 
-static force_history *forces_of(const corrected_run *c)
+static shared_array *forces_of(const corrected_run *c)
 {
     return &c->recording->result->history.forces;
 }

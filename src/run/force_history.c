@@ -2,48 +2,20 @@
 
 #include <assert.h>
 #include <math.h>
-#include <string.h>
 
 #include "src/base/extremes.h"
 
-void force_history_init(force_history *h)
+force_step *force_history_extend(shared_array *h, size_t count)
 {
-    shared_array_init(&h->array, sizeof(force_step));
-    h->count = 0;
-}
-
-bool force_history_reserve(force_history *h, size_t least, size_t most)
-{
-    assert(least <= most);
-    h->count = 0;
-    return shared_array_reserve(&h->array, sizeof(force_step), least, most);
-}
-
-void force_history_take(force_history *h, force_history *used)
-{
-    assert(h->array.base == NULL && used->array.reserved == 0);
-    *h = *used;
-    h->count = 0;
-    memset(used, 0, sizeof *used);
-}
-
-void force_history_finish(force_history *h)
-{
-    shared_array_finish(&h->array);
-    memset(h, 0, sizeof *h);
-}
-
-force_step *force_history_extend(force_history *h, size_t count)
-{
-    if (h->count + count > h->array.capacity && !shared_array_grow(&h->array, h->count + count)) {
+    if (h->count + count > h->capacity && !shared_array_grow(h, h->count + count)) {
         return NULL;
     }
-    force_step *added = (force_step *)h->array.base + h->count;
+    force_step *added = (force_step *)h->base + h->count;
     h->count += count;
     return added;
 }
 
-status force_history_add(force_history *h, force_step step)
+status force_history_add(shared_array *h, force_step step)
 {
     force_step *added = force_history_extend(h, 1);
     FAIL_IF(added == NULL, STATUS_NO_MEMORY);
@@ -73,7 +45,7 @@ static double last_crossing(const force_step *step, double edge)
     return latest;
 }
 
-double force_settled_since(const force_history *h, double final)
+double force_settled_since(const shared_array *h, double final)
 {
     assert(isfinite(final));
     const force_step *steps = force_steps(h);

@@ -1,4 +1,5 @@
-// The contact force of a whole run, step by step: what its settling time is found from.
+// The contact force of a whole run, a shared array of force_step: what its settling time is found
+// from.
 #pragma once
 
 #include "src/base/shared_array.h"
@@ -32,39 +33,19 @@ static inline double step_bulge(const force_step *step)
     return (curve < 0 ? -curve : curve) / 4;
 }
 
-// The array is plain (after force_history_init) or shared between runs (after
-// force_history_reserve); all zero is an empty one that may be finished.
-typedef struct force_history {
-    shared_array array; // of force_step
-    size_t count;
-} force_history;
-
-// An empty history of a run that is not resumed.
-void force_history_init(force_history *h);
-
-// An empty history that other runs can share: for `least` steps, and up to `most` if there is
-// address space. False if it cannot be had.
-bool force_history_reserve(force_history *h, size_t least, size_t most);
-
-// Lets an empty plain history use the memory of another one that is not needed any more, which is
-// empty then.
-void force_history_take(force_history *h, force_history *used);
-
-void force_history_finish(force_history *h);
-
-// The steps, oldest first; good until the next one is added to a plain history.
-static inline const force_step *force_steps(const force_history *h)
+// The steps, oldest first; good until the next one is added to a plain array.
+static inline const force_step *force_steps(const shared_array *h)
 {
-    return h->array.base;
+    return h->base;
 }
 
 // Appends a step. STATUS_NO_MEMORY.
-status force_history_add(force_history *h, force_step step) __attribute__((warn_unused_result));
+status force_history_add(shared_array *h, force_step step) __attribute__((warn_unused_result));
 
 // Appends `count` steps that the caller fills in at once. NULL without memory.
-force_step *force_history_extend(force_history *h, size_t count);
+force_step *force_history_extend(shared_array *h, size_t count);
 
 // The instant [s] after which the force stays for good within SETTLED_BAND (a share) of `final`
 // [N], each step taken as the parabola through its ends that has its mean; NaN if the run ends
 // outside, or has no step.
-double force_settled_since(const force_history *h, double final);
+double force_settled_since(const shared_array *h, double final);

@@ -118,7 +118,7 @@ static double largest_between(const run_result *r, const window_end *front, cons
 static double holds_no_more(const run_result *r, const window_end *front, const window_end *back,
                             double window, double largest, size_t *bounded)
 {
-    const force_history *h = &r->history.forces;
+    const shared_array *h = &r->history.forces;
     const force_step *steps = force_steps(h);
     const trace *t = &r->trace;
     const double met = back->event < t->event_count ? t->events[back->event].time : HUGE_VAL;
@@ -134,7 +134,7 @@ static double holds_no_more(const run_result *r, const window_end *front, const 
 double force_largest_mean(const run_result *result, double from, double window)
 {
     assert(isfinite(from) && window > 0);
-    const force_history *h = &result->history.forces;
+    const shared_array *h = &result->history.forces;
     double end = h->count > 0 ? force_steps(h)[h->count - 1].end : -HUGE_VAL;
     if (!(from + window <= end)) {
         return (double)NAN;

@@ -318,7 +318,7 @@ status printed_open(printed_run *p, recording *r, fault *f)
     TRY(refuse_pushes(r->scenario, f));
 
     // the row of time 0, with the command that the rig starts with
-    force_history_init(&r->result->history.forces);
+    shared_array_init(&r->result->history.forces, sizeof(force_step));
     printed_motion_start(&p->motion, &r->now);
     if (r->rig != NULL) {
         motor_set_voltage(&p->motion.arm.motor, r->rig->voltage);

@@ -78,8 +78,8 @@ void recording_end(recording *r, status code, const fault *f, time_used used)
     recording_tell_fault(&result->summary, code, f);
     result->summary.cpu_time_s = used.cpu;
     result->summary.wall_time_s = used.wall;
-    if (result->history.forces.array.reserved == 0 && !r->options->keep_forces) {
-        force_history_finish(&result->history.forces); // needed until here only
+    if (result->history.forces.reserved == 0 && !r->options->keep_forces) {
+        shared_array_finish(&result->history.forces); // needed until here only
     }
 }
 

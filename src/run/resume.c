@@ -16,7 +16,7 @@ enum {
 // The checkpoint of a number, oldest first.
 static checkpoint *checkpoint_at(const run_history *h, size_t index)
 {
-    assert(index < h->checkpoint_count);
+    assert(index < h->checkpoints.count);
     return (checkpoint *)((char *)h->checkpoints.base + index * h->checkpoints.size);
 }
 
@@ -35,27 +35,22 @@ static bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected
 
     // of a run of a few rows, too, there is room for one
     const size_t least = rows_expected / ROWS_PER_RESERVED + 1;
-    return force_history_reserve(&h->forces, rows_expected, most) &&
+    return shared_array_reserve(&h->forces, sizeof(force_step), rows_expected, most) &&
            shared_array_reserve(&h->checkpoints, size, least, most);
 }
 
 status checkpoint_open_history(recording *r, const motion *m, fault *f)
 {
     run_history *h = &r->result->history;
-    size_t expected = r->options->rows_expected;
-    size_t size = sizeof(checkpoint) + motion_saved_size(m);
-
-    // shared, plain, or one that others can share
-    if (h->forces.array.reserved > 0) {
-        return STATUS_OK; // shared with the run that is resumed
+    const size_t expected = r->options->rows_expected;
+    if (h->forces.base != NULL) {
+        return STATUS_OK; // shared with the run that is resumed, or another run's memory to use
     }
     if (!keeps_history(r)) {
-        if (h->forces.array.base == NULL) {
-            force_history_init(&h->forces); // else it has another run's memory to use
-        }
+        shared_array_init(&h->forces, sizeof(force_step));
         return STATUS_OK;
     }
-    return checkpoint_reserve(h, size, expected)
+    return checkpoint_reserve(h, sizeof(checkpoint) + motion_saved_size(m), expected)
                ? STATUS_OK
                : fault_set(f, STATUS_NO_MEMORY, "no address space for %zu rows", expected);
 }
@@ -70,17 +65,17 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
     }
 
     // is it time for one, and is there room?
-    size_t before = h->checkpoint_count > 0 ? checkpoint_at(h, h->checkpoint_count - 1)->rows : 0;
+    size_t before = h->checkpoints.count > 0 ? checkpoint_at(h, h->checkpoints.count - 1)->rows : 0;
     if (t->row_count < before + CHECKPOINT_ROWS) {
         return true;
     }
 
-    if (!shared_array_grow(&h->checkpoints, h->checkpoint_count + 1)) {
+    if (!shared_array_grow(&h->checkpoints, h->checkpoints.count + 1)) {
         return false;
     }
 
     // all that the steps to come depend on
-    checkpoint *kept = checkpoint_at(h, h->checkpoint_count++);
+    checkpoint *kept = checkpoint_at(h, h->checkpoints.count++);
     *kept = (checkpoint){.time = now,
                          .rows = t->row_count,
                          .events = t->event_count,
@@ -94,9 +89,9 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
 
 void checkpoint_restore(recording *r, arm *a, motion *m)
 {
-    assert(r->result->history.checkpoint_count > 0);
+    assert(r->result->history.checkpoints.count > 0);
     const run_history *h = &r->result->history;
-    const checkpoint *kept = checkpoint_at(h, h->checkpoint_count - 1);
+    const checkpoint *kept = checkpoint_at(h, h->checkpoints.count - 1);
 
     // the parameters as the script had changed them by then
     for (; r->state.next_action < kept->recording.next_action; r->state.next_action++) {
@@ -159,59 +154,38 @@ static double same_until(const scenario *a, const scenario *b)
     return until;
 }
 
-// How much of a run another one begins with.
-typedef struct shared_part {
-    size_t rows, events, force_steps, checkpoints;
-} shared_part;
-
-// Lets a trace and a history begin with the given part of `from`, with room for the rows expected.
-// False without memory; what was shared until then is result's.
-static bool share_parts(const run_result *from, const shared_part *part, size_t rows_expected,
-                        run_result *result)
+// Lets `result` begin with what `from` had recorded as a checkpoint says, so many checkpoints among
+// it, with room for the rows expected. False without memory; result is empty then.
+static bool share(const run_result *from, const checkpoint *part, size_t checkpoints,
+                  size_t rows_expected, run_result *result)
 {
     const run_history *old = &from->history;
     run_history *own = &result->history;
     const size_t most = recording_most_rows(rows_expected);
+    result->summary = part->summary;
 
-    // rows and events
+    // rows and events, then forces and checkpoints of a run that has them
     bool shared =
         trace_reserve(&result->trace, from->trace.angle_count, rows_expected, most) == STATUS_OK &&
         trace_share(&result->trace, &from->trace, part->rows, part->events) == STATUS_OK;
-    if (!shared || old->forces.array.reserved == 0) {
-        return shared; // there is no history to be shared
+    if (shared && old->forces.reserved > 0) {
+        shared = checkpoint_reserve(own, old->checkpoints.size, rows_expected) &&
+                 shared_array_share(&own->forces, &old->forces, part->force_steps) &&
+                 shared_array_share(&own->checkpoints, &old->checkpoints, checkpoints);
     }
 
-    // forces and checkpoints
-    shared = checkpoint_reserve(own, old->checkpoints.size, rows_expected) &&
-             shared_array_share(&own->forces.array, &old->forces.array, part->force_steps) &&
-             shared_array_share(&own->checkpoints, &old->checkpoints, part->checkpoints);
-    own->forces.count = part->force_steps;
-    own->checkpoint_count = part->checkpoints;
-    return shared;
-}
-
-static bool copy_before_impact(const run_result *from, run_result *result)
-{
-    result->before_impact = malloc(from->before_impact_size + 1);
-    if (result->before_impact != NULL) {
+    // what was known before the landing, if it is behind
+    if (shared && part->impacted) {
+        result->before_impact = malloc(from->before_impact_size);
+        shared = result->before_impact != NULL;
+    }
+    if (!shared) {
+        run_finish(result);
+    } else if (part->impacted) {
         memcpy(result->before_impact, from->before_impact, from->before_impact_size);
         result->before_impact_size = from->before_impact_size;
     }
-    return result->before_impact != NULL;
-}
-
-// The same with what was known before the landing, if it is behind, and a summary. False without
-// memory; result is empty then.
-static bool share(const run_result *from, const shared_part *part, bool impacted, const summary *s,
-                  size_t rows_expected, run_result *result)
-{
-    const bool done = share_parts(from, part, rows_expected, result) &&
-                      (!impacted || copy_before_impact(from, result));
-    result->summary = *s;
-    if (!done) {
-        run_finish(result);
-    }
-    return done;
+    return shared;
 }
 
 bool run_resume(const run_result *from, const scenario *old, const scenario *s,
@@ -219,32 +193,32 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
 {
     memset(result, 0, sizeof *result);
     const run_history *h = &from->history;
-    if (h->checkpoint_count == 0) {
+    if (h->checkpoints.count == 0) {
         return false;
     }
 
     // the last checkpoint before the runs differ
     double until = same_until(old, s) - MARGIN * s->parameters.method.step;
     size_t count = 0;
-    while (count < h->checkpoint_count && checkpoint_at(h, count)->time < until) {
+    while (count < h->checkpoints.count && checkpoint_at(h, count)->time < until) {
         count++;
     }
     if (count == 0) {
         return false;
     }
 
-    // everything up to it
-    const checkpoint *last = checkpoint_at(h, count - 1);
-    const shared_part part = {last->rows, last->events, last->force_steps, count};
-    return share(from, &part, last->impacted, &last->summary, rows_expected, result);
+    return share(from, checkpoint_at(h, count - 1), count, rows_expected, result);
 }
 
 status run_share(const run_result *from, size_t rows_expected, run_result *result)
 {
     memset(result, 0, sizeof *result);
-    const shared_part whole = {from->trace.row_count, from->trace.event_count,
-                               from->history.forces.count, from->history.checkpoint_count};
-    const bool impacted = from->before_impact != NULL;
-    return share(from, &whole, impacted, &from->summary, rows_expected, result) ? STATUS_OK
-                                                                                : STATUS_NO_MEMORY;
+    const checkpoint whole = {.rows = from->trace.row_count,
+                              .events = from->trace.event_count,
+                              .force_steps = from->history.forces.count,
+                              .impacted = from->before_impact != NULL,
+                              .summary = from->summary};
+    return share(from, &whole, from->history.checkpoints.count, rows_expected, result)
+               ? STATUS_OK
+               : STATUS_NO_MEMORY;
 }

@@ -12,7 +12,7 @@
 void run_finish(run_result *result)
 {
     trace_finish(&result->trace);
-    force_history_finish(&result->history.forces);
+    shared_array_finish(&result->history.forces);
     shared_array_finish(&result->history.checkpoints);
     free(result->before_impact);
     result->before_impact = NULL;

@@ -10,9 +10,8 @@
 
 // What a run that can be resumed (src/run/resume.h) keeps besides its rows.
 typedef struct run_history {
-    force_history forces;
+    shared_array forces;      // over every step (src/run/force_history.h)
     shared_array checkpoints; // of the run, every few hundred rows (src/run/resume.h)
-    size_t checkpoint_count;
 } run_history;
 
 // The first contact that ends a free flight, and its pulse: it is the run's first contact, but of

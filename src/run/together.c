@@ -22,10 +22,10 @@ typedef struct side_run {
     recording recording;
     corrected_run run;
     fault fault;
-    taylor_lane *lane;    // its part in the series of the step it is to make
-    int kind;             // that of its form
-    motion *motion;       // of the run before, NULL if there was none: its storage is used again
-    force_history forces; // and that run's, if there was one
+    taylor_lane *lane;   // its part in the series of the step it is to make
+    int kind;            // that of its form
+    motion *motion;      // of the run before, NULL if there was none: its storage is used again
+    shared_array forces; // and that run's forces, if there was one
 } side_run;
 
 struct side_by_side {
@@ -43,7 +43,7 @@ struct side_by_side {
 // Ends a run, whose storage is for the next one in its place.
 static void end_run(side_run *one, status failed)
 {
-    force_history *forces = &one->recording.result->history.forces;
+    shared_array *forces = &one->recording.result->history.forces;
     motion *over = corrected_finish(&one->run, failed);
     one->motion = over != NULL ? over : one->motion;
     one->forces = *forces;
@@ -58,7 +58,9 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
     one->run.motion = NULL;
     one->run.path = NULL;
     const status failed = recording_begin(&one->recording, s, options, result, &one->fault);
-    force_history_take(&result->history.forces, &one->forces);
+    result->history.forces = one->forces;
+    result->history.forces.count = 0;
+    one->forces = (shared_array){0};
     TRY(failed);
     motion *spare = one->motion;
     one->motion = NULL;
@@ -116,7 +118,7 @@ static void fetch_run(const side_run *one)
     fetch(run, offsetof(corrected_run, arm.modal_damping));
     fetch(&one->recording.state, sizeof one->recording.state);
     fetch(&one->recording.result->summary.first_contact_s, SUMMARY_SHARE);
-    fetch(&one->recording.result->history.forces, sizeof(force_history));
+    fetch(&one->recording.result->history.forces, sizeof(shared_array));
 }
 
 // Begins runs in a free place until one waits there for its series, or none is left.
@@ -202,7 +204,7 @@ static side_by_side *open_storage(side_by_side **storage)
         *storage = aligned_alloc(_Alignof(side_by_side), sizeof **storage);
         for (int place = 0; *storage != NULL && place < IN_HAND; place++) {
             (*storage)->in_hand[place].motion = NULL;
-            force_history_init(&(*storage)->in_hand[place].forces);
+            shared_array_init(&(*storage)->in_hand[place].forces, sizeof(force_step));
         }
     }
     return *storage;
@@ -212,7 +214,7 @@ void side_by_side_destroy(side_by_side *storage)
 {
     for (int place = 0; storage != NULL && place < IN_HAND; place++) {
         motion_destroy(storage->in_hand[place].motion);
-        force_history_finish(&storage->in_hand[place].forces);
+        shared_array_finish(&storage->in_hand[place].forces);
     }
     free(storage);
 }

@@ -104,7 +104,7 @@ static void take_force(blow *b, const force_step *step)
 // The blow of a run that has a contact.
 static blow blow_of(const run_result *result)
 {
-    const force_history *h = &result->history.forces;
+    const shared_array *h = &result->history.forces;
     const trace *t = &result->trace;
     blow b = {.touch = result->summary.first_contact_s};
     size_t next = 0;
