@@ -38,7 +38,7 @@ static inline double angle_at(double t, double phase)
 typedef struct synthetic {
     scenario scenario;
     run_result result;
-    trace_figure figure;
+    owned_figure *plot;
 } synthetic;
 
 static inline void synthetic_init(synthetic *s, const trace_panel *panels, int count)
@@ -74,12 +74,12 @@ static inline void synthetic_init(synthetic *s, const trace_panel *panels, int c
     s->result.summary.first_pulse_time_to_peak_s = 0.035;
     s->result.summary.first_pulse_peak_N = 2.1;
     const trace_run run = {&s->scenario, &s->result, NULL};
-    DONE(trace_figure_init(&s->figure, NULL, panels, count, &run, 1, &f));
+    s->plot = trace_figure_create(NULL, panels, count, &run, 1);
 }
 
 static inline void synthetic_finish(synthetic *s)
 {
-    trace_figure_finish(&s->figure);
+    owned_figure_destroy(s->plot);
     run_finish(&s->result);
 }
 
@@ -124,7 +124,7 @@ static inline figure_rect record_page(const artwork *a, figure_report *report)
 
 static inline figure_rect record(const figure *fig, figure_report *report)
 {
-    SCOPED(artwork_finish) artwork a = artwork_of_figure(fig, NULL, NULL);
+    SCOPED(artwork_finish) artwork a = artwork_of_figure(fig);
     figure_rect ink = record_page(&a, report);
     return ink;
 }
@@ -144,7 +144,7 @@ static inline cairo_surface_t *page_pixels(const artwork *a, double scale, figur
 
 static inline cairo_surface_t *paint_pixels(const figure *fig, double scale, figure_report *report)
 {
-    SCOPED(artwork_finish) artwork a = artwork_of_figure(fig, NULL, NULL);
+    SCOPED(artwork_finish) artwork a = artwork_of_figure(fig);
     cairo_surface_t *surface = page_pixels(&a, scale, report);
     return surface;
 }
@@ -207,7 +207,7 @@ static inline void expect_tidy_page(const artwork *a, figure_report *r)
 static inline void expect_tidy(const figure *fig)
 {
     static figure_report r;
-    SCOPED(artwork_finish) artwork a = artwork_of_figure(fig, NULL, NULL);
+    SCOPED(artwork_finish) artwork a = artwork_of_figure(fig);
     expect_tidy_page(&a, &r);
     assert_int_equal(r.panel_count, fig->panel_count);
     for (int i = 0; i < r.panel_count; i++) {
@@ -277,7 +277,7 @@ static inline void expect_same_bytes(const char *a, const char *b)
 
 static inline void write_csv(const figure *fig, const char *path)
 {
-    SCOPED(artwork_finish) artwork a = artwork_of_figure(fig, NULL, NULL);
+    SCOPED(artwork_finish) artwork a = artwork_of_figure(fig);
     DONE(artwork_write_csv(&a, path, &f));
 }
 

@@ -171,12 +171,12 @@ TEST(labels_stand_where_they_belong)
         const trace_run run = {&s, &result, NULL};
         int arrows = 0;
         for (EACH_OF(double, width, 85, 170)) {
-            SCOPED(trace_figure_finish) trace_figure t;
-            DONE(trace_figure_init(&t, NULL, usual_panels, USUAL_PANELS, &run, 1, &f));
-            t.plot.figure.width = *width;
-            t.plot.figure.x.low = c->from;
-            t.plot.figure.x.high = c->to;
-            arrows += check_labels(&t.plot.figure);
+            owned_figure *t = trace_figure_create(NULL, usual_panels, USUAL_PANELS, &run, 1);
+            t->figure.width = *width;
+            t->figure.x.low = c->from;
+            t->figure.x.high = c->to;
+            arrows += check_labels(&t->figure);
+            owned_figure_destroy(t);
         }
         assert_int_equal(arrows, c->arrows);
     }

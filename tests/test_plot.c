@@ -6,7 +6,7 @@ TEST(all_texts_of_a_run_are_drawn)
     static figure_report r;
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    record(&s.figure.plot.figure, &r);
+    record(&s.plot->figure, &r);
     for (EACH_TEXT(c, "Synthetic run & <more>", "Time t (s)", "Contact force f (N)", "Angle (rad)",
                    "Angular velocity (rad\u2060/\u2060s)", "\u03b81  hub", "\u03b83  last link",
                    "wall", "contact", "peak 2.10\u2009N", "release", "Impulse\n(N\u00b7s)", "0.044",
@@ -24,9 +24,9 @@ TEST(nothing_is_clipped_or_covered)
         for (int theme = THEME_COLOUR; theme <= THEME_DARK; theme++) {
             SCOPED(synthetic_finish) synthetic s;
             synthetic_init(&s, run_panels, RUN_PANELS);
-            s.figure.plot.figure.width = *c;
-            s.figure.plot.figure.theme = theme;
-            expect_tidy(&s.figure.plot.figure);
+            s.plot->figure.width = *c;
+            s.plot->figure.theme = theme;
+            expect_tidy(&s.plot->figure);
         }
     }
 }
@@ -43,11 +43,11 @@ TEST(many_marks_and_impulses_stay_readable)
     }
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    s.figure.plot.figure.marks = marks;
-    s.figure.plot.figure.mark_count = 60;
-    s.figure.plot.panels[0].impulses = impulses;
-    s.figure.plot.panels[0].impulse_count = 300;
-    expect_tidy(&s.figure.plot.figure);
+    s.plot->figure.marks = marks;
+    s.plot->figure.mark_count = 60;
+    s.plot->panels[0].impulses = impulses;
+    s.plot->panels[0].impulse_count = 300;
+    expect_tidy(&s.plot->figure);
 }
 
 TEST(layout_is_the_same_on_every_surface)
@@ -55,9 +55,9 @@ TEST(layout_is_the_same_on_every_surface)
     static figure_report reference, other;
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    record(&s.figure.plot.figure, &reference);
+    record(&s.plot->figure, &reference);
     for (double scale = 1; scale < 4; scale += 0.77) {
-        cairo_surface_destroy(paint_pixels(&s.figure.plot.figure, scale, &other));
+        cairo_surface_destroy(paint_pixels(&s.plot->figure, scale, &other));
         assert_int_equal(other.text_count, reference.text_count);
         for (int i = 0; i < reference.text_count; i++) {
             assert_string_equal(other.texts[i].text, reference.texts[i].text);
@@ -75,9 +75,9 @@ static cairo_surface_t *paint_impulse(double size, figure_report *r)
 {
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, 1);
-    s.figure.plot.panels[0].impulses = &(figure_impulse){0.31, size};
-    s.figure.plot.panels[0].impulse_count = 1;
-    cairo_surface_t *image = paint_pixels(&s.figure.plot.figure, FINE, r);
+    s.plot->panels[0].impulses = &(figure_impulse){0.31, size};
+    s.plot->panels[0].impulse_count = 1;
+    cairo_surface_t *image = paint_pixels(&s.plot->figure, FINE, r);
     return image;
 }
 
@@ -239,11 +239,11 @@ TEST(legend_and_inset_keep_off_the_data)
     static figure_report with, without;
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    figure *fig = &s.figure.plot.figure;
+    figure *fig = &s.plot->figure;
     record(fig, &with);
     for (int i = 0; i < RUN_PANELS; i++) {
-        s.figure.plot.panels[i].keyless = true;
-        s.figure.plot.panels[i].zoom_to = s.figure.plot.panels[i].zoom_from;
+        s.plot->panels[i].keyless = true;
+        s.plot->panels[i].zoom_to = s.plot->panels[i].zoom_from;
     }
     PIXELS(image) = paint_pixels(fig, 3, &without);
     for (int i = 0; i < RUN_PANELS; i++) {
@@ -327,10 +327,10 @@ TEST(mono_has_no_colour)
     static figure_report r;
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    PIXELS(coloured) = paint_pixels(&s.figure.plot.figure, 1.5, &r);
+    PIXELS(coloured) = paint_pixels(&s.plot->figure, 1.5, &r);
     assert_true(coloured_pixels(coloured, 1.5, r.page) > 1000);
-    s.figure.plot.figure.theme = THEME_MONO;
-    expect_grey(paint_pixels(&s.figure.plot.figure, 1.5, &r));
+    s.plot->figure.theme = THEME_MONO;
+    expect_grey(paint_pixels(&s.plot->figure, 1.5, &r));
 
     // a map neither
     double x[] = {0, 1, 2}, y[] = {0, 1}, z[] = {1, 2, 3, 4, 5, 6};
@@ -407,7 +407,6 @@ TEST(each_curve_of_a_comparison_says_run_and_signal)
         {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}},
         {.signals = {"last_angle"}}};
     static const int signals[] = {2, 3, 1};
-    static trace_figure t;
     trace_run runs[TRACE_RUNS];
     char names[TRACE_RUNS][32];
     SCOPED(synthetic_finish) synthetic s;
@@ -417,43 +416,40 @@ TEST(each_curve_of_a_comparison_says_run_and_signal)
             snprintf(names[i], sizeof names[i], "run number %d", i + 1);
             runs[i] = (trace_run){&s.scenario, &s.result, names[i], .rank = i + 1};
         }
-        assert_int_equal(trace_figure_init(&t, "Runs", panels, 3, runs, count, NULL), STATUS_OK);
+        owned_figure *t = trace_figure_create("Runs", panels, 3, runs, count);
 
         // colours are the runs', lines the signals': that of a body is the same in all panels
         line_style of_body[4];
         for (int p = 0; p < 3; p++) {
-            const figure_panel *panel = &t.plot.figure.panels[p];
+            const figure_panel *panel = &t->figure.panels[p];
             assert_int_equal(panel->series_count, count * signals[p]);
             for (int i = 0; i < panel->series_count; i++) {
                 const figure_series *one = &panel->series[i];
                 const int run = i / signals[p], signal = i % signals[p];
                 const int body = signal_table[signal_find(panels[p].signals[signal])].body;
                 assert_int_equal(one->run, run + 1);
-                assert_int_equal(one->colour,
-                                 t.plot.figure.panels[0].series[run * signals[0]].colour);
+                assert_int_equal(one->colour, t->figure.panels[0].series[run * signals[0]].colour);
                 if (run == 0 && p == (body == BODY_HUB)) {
                     of_body[body] = one->style;
                 }
                 assert_int_equal(one->style, of_body[body]);
-                assert_true(is_in_key(&t.plot.figure, one, true) &&
-                            is_in_key(&t.plot.figure, one, false));
+                assert_true(is_in_key(&t->figure, one, true) && is_in_key(&t->figure, one, false));
             }
         }
         assert_true(of_body[BODY_HUB] != of_body[BODY_FIRST_LINK] &&
                     of_body[BODY_HUB] != of_body[BODY_LAST_LINK] &&
                     of_body[BODY_FIRST_LINK] != of_body[BODY_LAST_LINK]);
         for (int i = 1; i < count; i++) {
-            assert_int_not_equal(t.plot.figure.key->series[i].colour,
-                                 t.plot.figure.key->series[0].colour);
+            assert_int_not_equal(t->figure.key->series[i].colour, t->figure.key->series[0].colour);
         }
 
         // the key is drawn once, above the panels
         for (int narrow = 0; narrow < 2; narrow++) {
             static figure_report r;
-            t.plot.figure.width = narrow ? 85 : 170;
-            t.plot.figure.height = 230;
-            record(&t.plot.figure, &r);
-            expect_tidy(&t.plot.figure);
+            t->figure.width = narrow ? 85 : 170;
+            t->figure.height = 230;
+            record(&t->figure, &r);
+            expect_tidy(&t->figure);
             int times = 0;
             for (int i = 0; i < r.text_count; i++) {
                 const bool named = strcmp(r.texts[i].text, names[0]) == 0;
@@ -463,7 +459,7 @@ TEST(each_curve_of_a_comparison_says_run_and_signal)
             assert_int_equal(times, 1);
             expect_text(&r, "first link");
         }
-        trace_figure_finish(&t);
+        owned_figure_destroy(t);
     }
 }
 
@@ -475,10 +471,10 @@ TEST(the_last_of_twenty_links_is_body_21)
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
     const trace_run run = {&s.scenario, &s.result, NULL};
-    trace_figure_finish(&s.figure);
+    owned_figure_destroy(s.plot);
     s.scenario.parameters.arm.links = 20;
-    DONE(trace_figure_init(&s.figure, NULL, run_panels, RUN_PANELS, &run, 1, &f));
-    record(&s.figure.plot.figure, &r);
+    s.plot = trace_figure_create(NULL, run_panels, RUN_PANELS, &run, 1);
+    record(&s.plot->figure, &r);
     expect_text(&r, "\u03b821  last link");
     assert_false(has_text(&r, "\u03b83  last link"));
 }

@@ -146,7 +146,7 @@ TEST(pdf_embeds_fonts_and_has_no_type_3)
 {
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    write_figure(&s.figure.plot.figure, "fonts.pdf");
+    write_figure(&s.plot->figure, "fonts.pdf");
     GString *pdf = unpack_pdf("fonts.pdf");
     assert_true(contains(pdf, "/FontFile2"));
     assert_true(contains(pdf, "DejaVuSans"));
@@ -164,10 +164,10 @@ TEST(png_knows_its_resolution_and_origin)
 {
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, 2);
-    s.figure.plot.figure.width = 127;
-    s.figure.plot.figure.height = 101.6;
-    s.figure.plot.figure.dpi = 300;
-    write_figure(&s.figure.plot.figure, "notes.png");
+    s.plot->figure.width = 127;
+    s.plot->figure.height = 101.6;
+    s.plot->figure.dpi = 300;
+    write_figure(&s.plot->figure, "notes.png");
     FILE *file = fopen("notes.png", "rb");
     assert_non_null(file);
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
@@ -198,7 +198,7 @@ TEST(svg_ids_are_unique_and_all_references_resolve)
     SCOPED(synthetic_finish) synthetic s;
     size_t length;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    write_figure(&s.figure.plot.figure, "ids.svg");
+    write_figure(&s.plot->figure, "ids.svg");
     SCOPED(free_kept) char *svg = read_file("ids.svg", &length);
     assert_non_null(strstr(svg, "<metadata>"));
     assert_non_null(strstr(svg, "<title>Synthetic run &amp; &lt;more&gt;</title>"));
@@ -256,7 +256,7 @@ TEST(faults_are_sentences)
 {
     SCOPED(synthetic_finish) synthetic s;
     synthetic_init(&s, run_panels, RUN_PANELS);
-    figure *fig = &s.figure.plot.figure;
+    figure *fig = &s.plot->figure;
     REFUSED(STATUS_BAD_ARGUMENT, ".svg", figure_write(fig, "x.gif", &f));
     REFUSED(STATUS_BAD_ARGUMENT, "", figure_write(fig, "png", &f));
     REFUSED(STATUS_CANNOT_WRITE, "nowhere/x.png", figure_write(fig, "nowhere/x.png", &f));
@@ -279,7 +279,7 @@ TEST(a_full_disk_is_noticed)
     for (EACH_TEXT(c, "full.png", "full.pdf", "full.svg")) {
         fault f = {0};
         assert_int_equal(symlink("/dev/full", *c), 0);
-        assert_int_equal(figure_write(&s.figure.plot.figure, *c, &f), STATUS_CANNOT_WRITE);
+        assert_int_equal(figure_write(&s.plot->figure, *c, &f), STATUS_CANNOT_WRITE);
         assert_true(strlen(f.text) > 10);
     }
 }
@@ -290,14 +290,14 @@ TEST(measured_data_have_a_panel_of_residuals)
 {
     static figure_report r;
     SCOPED(synthetic_finish) synthetic s;
-    run_figure drawn;
     synthetic_init(&s, run_panels, RUN_PANELS);
     put_file("bench.csv", "time[s],cell[N]\n0.30,0\n0.325,2\n0.345,1.6\n");
     char *spec = g_strconcat("bench.csv", ":cell@0.02", NULL);
     const trace_run run = {&s.scenario, &s.result, "run"};
     const figure_options o = {.overlay = spec, .signals = "force,hub_angle+last_angle"};
-    DONE(run_figure_init(&drawn, "t", NULL, 0, &run, 1, &o, &f));
-    const figure *fig = &drawn.traces.plot.figure;
+    owned_figure *drawn = NULL;
+    DONE((drawn = run_figure_create("t", NULL, 0, &run, 1, &o, &f)) == NULL ? f.code : STATUS_OK);
+    const figure *fig = &drawn->figure;
     record(fig, &r);
     expect_text(&r, "bench.csv: cell");
     expect_text(&r, "Residual (N)");
@@ -308,13 +308,14 @@ TEST(measured_data_have_a_panel_of_residuals)
     check_close(residual->x[1], 0.345, 1e-12);
     check_close(residual->y[1], 2 - force_at(0.345), 1e-6);
     check_close(residual->y[2], 1.6 - force_at(0.365), 1e-6);
-    run_figure_finish(&drawn);
+    owned_figure_destroy(drawn);
 
     // what does not fit is said
     const figure_options unknown = {.signals = "forse"}, mixed = {.signals = "force+hub_angle"};
     REFUSED(STATUS_BAD_ARGUMENT, "did you mean 'force'",
-            run_figure_init(&drawn, "t", NULL, 0, &run, 1, &unknown, &f));
-    REFUSED(STATUS_BAD_ARGUMENT, "", run_figure_init(&drawn, "t", NULL, 0, &run, 1, &mixed, &f));
+            run_figure_create("t", NULL, 0, &run, 1, &unknown, &f) == NULL ? f.code : STATUS_OK);
+    REFUSED(STATUS_BAD_ARGUMENT, "",
+            run_figure_create("t", NULL, 0, &run, 1, &mixed, &f) == NULL ? f.code : STATUS_OK);
     g_free(spec);
 }
 

@@ -130,16 +130,24 @@ static char *describe_figure(const figure *fig)
     return g_string_free(out, FALSE);
 }
 
-artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner))
+artwork artwork_of_figure(const figure *fig)
 {
-    artwork a = {fig->title,
-                 .caption = fig->caption,
-                 .parameters = fig->parameters,
-                 .alternative = describe_figure(fig),
-                 .plotted = fig,
-                 .owner = owner,
-                 .release = release};
+    artwork a = {fig->title, .caption = fig->caption, .parameters = fig->parameters,
+                 .alternative = describe_figure(fig), .plotted = fig};
     figure_size(fig, &a.width, &a.height);
+    return a;
+}
+
+static void release_figure(void *what)
+{
+    owned_figure_destroy(what);
+}
+
+artwork artwork_of_owned(owned_figure *o)
+{
+    artwork a = artwork_of_figure(&o->figure);
+    a.owner = o;
+    a.release = release_figure;
     return a;
 }
 
@@ -303,7 +311,7 @@ status figure_publish(const figure *fig, const figure_options *o, const char *pa
     figure_take_look(&shown, &o->look);
     figure_take_range(&shown, o);
 
-    artwork a = artwork_of_figure(&shown, NULL, NULL);
+    artwork a = artwork_of_figure(&shown);
     status code = artwork_publish(&a, o, path, with_csv, f);
     artwork_finish(&a);
     return code;

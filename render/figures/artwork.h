@@ -42,9 +42,9 @@ picture artwork_picture(const artwork *a, const figure_options *options);
 
 void artwork_finish(artwork *a);
 
-// An artwork of a plotted figure. `owner` holds what the figure borrows and the figure itself;
-// release (NULL: nothing to free) frees it.
-artwork artwork_of_figure(const figure *fig, void *owner, void (*release)(void *owner));
+// An artwork of a plotted figure, which is borrowed; and of one that it owns from now on.
+artwork artwork_of_figure(const figure *fig);
+artwork artwork_of_owned(owned_figure *o);
 
 // A table from g_new0 as an artwork, which owns it.
 artwork artwork_of_table(table_page *t);

@@ -146,19 +146,19 @@ static void add_shape_values(diagram *d, const arm_shape *a)
 
 status diagram_contact(const figure_order *order, artwork *out, fault *f)
 {
-    opened_run run;
-    TRY(run_begin(&run, order->which->scenario, "method.step=0.01", f));
+    opened_run *run = run_open(order->which->scenario, "method.step=0.01", f);
+    FAIL_IF(run == NULL, f->code);
 
     // two steps during contact
-    const trace *t = &run.result.trace;
+    const trace *t = &run->result.trace;
     size_t first = liveliest_pair(t);
     diagram *d = diagram_create(order, 232, draw_contact);
     shapes *of = d->shapes = g_new0(shapes, 1);
-    d->p = run.scenario.parameters;
-    d->parameters = parameters_line(&run.scenario);
+    d->p = run->scenario.parameters;
+    d->parameters = parameters_line(&run->scenario);
     of->one = shape_of(&t->rows[first]);
     of->other = shape_of(&t->rows[first + 1 < t->row_count ? first + 1 : first]);
-    run_end(&run);
+    run_close(run);
 
     // the numbers, and what is left of the constraint (3.9)
     double a = d->p.arm.length * cos(d->p.wall.angle), b = d->p.arm.length * sin(d->p.wall.angle);
@@ -243,27 +243,27 @@ static const sample *row_before(const trace *t, double contact)
 
 status diagram_deformation(const figure_order *order, artwork *out, fault *f)
 {
-    opened_run run;
-    TRY(run_begin(&run, order->which->scenario, NULL, f));
-    const summary *m = &run.result.summary;
+    opened_run *run = run_open(order->which->scenario, NULL, f);
+    FAIL_IF(run == NULL, f->code);
+    const summary *m = &run->result.summary;
     if (!isfinite(m->first_pulse_time_to_peak_s)) {
-        run_end(&run);
+        run_close(run);
         return fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse to draw", order->which->scenario);
     }
 
     // first contact and the peak
-    const trace *t = &run.result.trace;
+    const trace *t = &run->result.trace;
     const sample *before = row_before(t, m->first_contact_s);
     double delay = m->first_pulse_time_to_peak_s, energy;
     diagram *d = diagram_create(order, 148, draw_deformation);
     shapes *of = d->shapes = g_new0(shapes, 1);
-    d->p = run.scenario.parameters;
-    d->parameters = parameters_line(&run.scenario);
+    d->p = run->scenario.parameters;
+    d->parameters = parameters_line(&run->scenario);
     of->one = shape_of(row_at(t, m->first_contact_s + delay));
     of->one.force = m->first_pulse_peak_N;
     of->other = shape_of(before);
     energy = before->kinetic_energy + before->strain_energy;
-    run_end(&run);
+    run_close(run);
 
     // half the bend on either side of the line, as the energy principle has it
     double wall = d->p.wall.angle, bend = sqrt(2 * energy / d->p.arm.k2);

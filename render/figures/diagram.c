@@ -1,14 +1,13 @@
 #include "render/figures/diagram.h"
 
-#include <assert.h>
 #include <math.h>
 
 #include "render/figures/run_figure.h"
 
 void diagram_add_value(diagram *d, const char *name, double value, const char *unit)
 {
-    assert(d->value_count < DIAGRAM_VALUES);
-    d->values[d->value_count++] = (diagram_value){name, unit, value};
+    const diagram_value added = {name, unit, value};
+    g_array_append_val(d->values, added);
 }
 
 static status paint_diagram(cairo_t *cr, const void *what, figure_report *report, fault *f)
@@ -23,14 +22,6 @@ static status paint_diagram(cairo_t *cr, const void *what, figure_report *report
     return code;
 }
 
-static void write_value(csv_writer *csv, const char *name, double value, const char *unit)
-{
-    csv_text(csv, name);
-    csv_number(csv, value);
-    csv_text(csv, unit);
-    csv_end_row(csv);
-}
-
 static void write_diagram(const void *what, csv_writer *csv)
 {
     const diagram *d = what;
@@ -38,14 +29,12 @@ static void write_diagram(const void *what, csv_writer *csv)
     csv_heading(csv, "value", NULL);
     csv_heading(csv, "unit", NULL);
     csv_end_row(csv);
-
-    // single values, then the curve
-    for (int i = 0; i < d->value_count; i++) {
-        write_value(csv, d->values[i].name, d->values[i].value, d->values[i].unit);
-    }
-    for (int i = 0; d->curve_x != NULL && i < CURVE_POINTS; i++) {
-        write_value(csv, "force", d->curve_x[i], "N");
-        write_value(csv, "output", d->curve_y[i], "V");
+    for (guint i = 0; i < d->values->len; i++) {
+        const diagram_value *v = &g_array_index(d->values, diagram_value, i);
+        csv_text(csv, v->name);
+        csv_number(csv, v->value);
+        csv_text(csv, v->unit);
+        csv_end_row(csv);
     }
 }
 
@@ -55,8 +44,7 @@ void diagram_release(void *what)
     g_free(d->title);
     g_free(d->caption);
     g_free(d->parameters);
-    g_free(d->curve_x);
-    g_free(d->curve_y);
+    g_array_free(d->values, TRUE);
     g_free(d->shapes);
     g_free(d);
 }
@@ -66,6 +54,7 @@ diagram *diagram_create(const figure_order *order, double body,
 {
     diagram *d = g_new0(diagram, 1);
     d->draw = draw;
+    d->values = g_array_new(FALSE, FALSE, sizeof(diagram_value));
     d->title = g_strdup(order->title);
     d->frame = (sketch_frame){.title = d->title, .body_height = body, .look = order->options->look};
     parameters_defaults(&d->p, ARM_CORRECTED);
@@ -75,23 +64,23 @@ diagram *diagram_create(const figure_order *order, double body,
 
 status diagram_take_impact(diagram *d, const figure_order *order, double *speed, fault *f)
 {
-    opened_run run;
-    status code = run_begin(&run, order->which->scenario, NULL, f);
-    if (code != STATUS_OK) {
+    opened_run *run = run_open(order->which->scenario, NULL, f);
+    if (run == NULL) {
         diagram_release(d);
-        return code;
+        return f->code;
     }
-    d->p = run.scenario.parameters;
-    d->parameters = parameters_line(&run.scenario);
+    d->p = run->scenario.parameters;
+    d->parameters = parameters_line(&run->scenario);
 
     // the first impact of the run
-    const trace *t = &run.result.trace;
+    const trace *t = &run->result.trace;
+    status code = STATUS_OK;
     size_t first = 0;
     while (first < t->event_count && t->events[first].kind != EVENT_IMPACT) {
         first++;
     }
     if (first < t->event_count) {
-        const double *touch = run.result.before_impact;
+        const double *touch = run->result.before_impact;
         *speed = t->events[first].speed;
         d->impulse = t->events[first].impulse;
         d->before =
@@ -100,7 +89,7 @@ status diagram_take_impact(diagram *d, const figure_order *order, double *speed,
         code = fault_set(f, STATUS_BAD_SCENARIO, "%s: no impact to draw", order->which->scenario);
         diagram_release(d);
     }
-    run_end(&run);
+    run_close(run);
     return code;
 }
 

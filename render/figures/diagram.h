@@ -5,8 +5,6 @@
 #include "render/page/sketch.h"
 #include "src/predict/predict.h"
 
-enum { DIAGRAM_VALUES = 24, CURVE_POINTS = 400 };
-
 // A number that a diagram shows or depends on.
 typedef struct diagram_value {
     const char *name, *unit;
@@ -18,13 +16,11 @@ typedef struct diagram {
     char *title, *caption, *parameters;
     void (*draw)(sketch *s, const struct diagram *d);
     parameters p;
-    diagram_value values[DIAGRAM_VALUES];
-    int value_count;
-    three_body_state before;   // 4.2: the instant before the impact
-    double after[3];           // angular velocities just after it [rad/s]
-    double impulse;            // [N s]
-    double *curve_x, *curve_y; // 2.1: force and output
-    void *shapes;              // 3.1, 4.6: owned, shapes of their own
+    GArray *values;          // diagram_value
+    three_body_state before; // 4.2: the instant before the impact
+    double after[3];         // angular velocities just after it [rad/s]
+    double impulse;          // [N s]
+    void *shapes;            // 3.1, 4.6: owned, shapes of their own
 } diagram;
 
 // The transformation from metres of the model, y upwards, to the page. `across` enlarges distances

@@ -240,6 +240,8 @@ status diagram_springs(const figure_order *order, artwork *out, fault *f)
 #define R_GAIN     10e3 // both of the gain stage [ohm]
 #define MOST_FORCE 12.0 // [N]
 
+enum { SENSOR_VALUES = 7, CURVE_POINTS = 400 };
+
 static void draw_ground(const sketch *s, double x, double y)
 {
     sketch_line(s, (point){x, y}, (point){x, y + 5}, 0.8, SKETCH_INK);
@@ -355,7 +357,14 @@ static void draw_sensor(sketch *s, const diagram *d)
     draw_divider(s, &d->p.sensor, s->left + 74, s->top);
     draw_stages(s, s->left + 74, s->top + 62);
 
-    const figure_series curve = {"output", NULL, d->curve_x, d->curve_y, CURVE_POINTS, .colour = 5};
+    // force and output by turns, after the single values
+    const diagram_value *points = &g_array_index(d->values, diagram_value, SENSOR_VALUES);
+    const figure_series curve = {"output",
+                                 .x = &points[0].value,
+                                 .y = &points[1].value,
+                                 .count = CURVE_POINTS,
+                                 .stride = 2 * sizeof *points,
+                                 .colour = 5};
     const figure_panel panel = {.y = {.name = "output",
                                       .label = "Output <i>V</i><sub>out</sub>",
                                       .unit = "V",
@@ -383,7 +392,6 @@ status diagram_sensor(const figure_order *order, artwork *out, fault *f)
 
     diagram *d = diagram_create(order, 186 + 52 / 25.4 * 72, draw_sensor);
     const sensor_parameters *p = &d->p.sensor;
-    d->frame.caption = d->caption;
     diagram_add_value(d, "measuring resistor", p->fsr_divider, "ohm");
     diagram_add_value(d, "gain resistor R5", R_GAIN, "ohm");
     diagram_add_value(d, "gain resistor R6", R_GAIN, "ohm");
@@ -393,13 +401,12 @@ status diagram_sensor(const figure_order *order, artwork *out, fault *f)
     diagram_add_value(d, "force beyond which it saturates", p->fsr_saturation, "N");
 
     // force and output of the divider
-    d->curve_x = g_new(double, CURVE_POINTS);
-    d->curve_y = g_new(double, CURVE_POINTS);
+    assert(d->values->len == SENSOR_VALUES);
     for (int i = 0; i < CURVE_POINTS; i++) {
         // close together where the curve bends
-        double share = (double)i / (CURVE_POINTS - 1);
-        d->curve_x[i] = MOST_FORCE * share * share;
-        d->curve_y[i] = fsr_volts(p, d->curve_x[i]);
+        double share = (double)i / (CURVE_POINTS - 1), force = MOST_FORCE * share * share;
+        diagram_add_value(d, "force", force, "N");
+        diagram_add_value(d, "output", fsr_volts(p, force), "V");
     }
 
     return diagram_open(

@@ -65,33 +65,11 @@ const thesis_figure *thesis_figure_find(const char *id)
 
 // ---- recorded signals
 
-// A figure of recorded signals with the runs it borrows from.
-typedef struct signal_figure {
-    opened_run runs[2];
-    int run_count;
-    run_figure figure;
-    char *caption;
-    double printed_time, printed_force; // of the thesis's table
-} signal_figure;
-
-static void release_signals(void *owner)
-{
-    signal_figure *s = owner;
-    run_figure_finish(&s->figure);
-    g_free(s->caption);
-    for (int i = 0; i < s->run_count; i++) {
-        run_end(&s->runs[i]);
-    }
-    g_free(s);
-}
-
 // The peak that the thesis prints for the run, as a point; its residual goes into the caption.
-static void add_printed_peak(signal_figure *s, const thesis_figure *which, GString *caption)
+static void add_printed_peak(owned_figure *o, const summary *m, const thesis_figure *which,
+                             GString *caption)
 {
     double forces[TABLE_VOLTAGES], delays[TABLE_VOLTAGES];
-    trace_figure *t = &s->figure.traces;
-    figure_panel *panel = &t->plot.panels[0];
-    const summary *m = &s->runs[0].result.summary;
     int column = which->printed_voltage - 1;
     bool known = tables_printed("4.3", "max_force_simulation", forces) &&
                  tables_printed("4.3", "delay_simulation", delays);
@@ -99,11 +77,13 @@ static void add_printed_peak(signal_figure *s, const thesis_figure *which, GStri
     (void)known;
 
     // where the thesis has it: as long after the run's own first contact
-    s->printed_force = forces[column];
-    s->printed_time = m->first_contact_s + delays[column];
-    t->plot.series[0][panel->series_count++] = (figure_series){
-        "Table 4.3", "Table 4.3",     .x = &s->printed_time,    .y = &s->printed_force, .count = 1,
-        .colour = 5, .no_line = true, .marker = MARKER_DIAMOND, .radius = 2.6};
+    double *peak = owned_figure_numbers(o, 2);
+    peak[0] = m->first_contact_s + delays[column];
+    peak[1] = forces[column];
+    o->series[0][o->panels[0].series_count++] =
+        (figure_series){"Table 4.3",  "Table 4.3", .x = peak,       .y = peak + 1,
+                        .count = 1,   .colour = 5, .no_line = true, .marker = MARKER_DIAMOND,
+                        .radius = 2.6};
 
     // how far the run is from it
     double more = m->first_pulse_peak_N - forces[column];
@@ -117,9 +97,10 @@ static void add_printed_peak(signal_figure *s, const thesis_figure *which, GStri
 }
 
 // What the catalogue adds to a figure of recorded signals.
-static void add_facts(signal_figure *s, const thesis_figure *which, const figure_options *o)
+static void add_facts(owned_figure *drawn, const summary *m, const thesis_figure *which,
+                      const figure_options *o)
 {
-    figure *fig = &s->figure.traces.plot.figure;
+    figure *fig = &drawn->figure;
     GString *caption = g_string_new(fig->caption);
     if (which->note != NULL) {
         text_append(caption, " %s", which->note);
@@ -128,10 +109,9 @@ static void add_facts(signal_figure *s, const thesis_figure *which, const figure
         g_string_append(caption, " Dots: the steps of the method.");
     }
     if (which->printed_voltage > 0 && o->signals == NULL) {
-        add_printed_peak(s, which, caption);
+        add_printed_peak(drawn, m, which, caption);
     }
-    s->caption = g_string_free(caption, FALSE);
-    fig->caption = s->caption;
+    fig->caption = owned_figure_keep(drawn, g_string_free(caption, FALSE));
 
     // a stretch that was asked for on the command line comes first
     if (which->from < which->to && !(o->from < o->to)) {
@@ -140,42 +120,44 @@ static void add_facts(signal_figure *s, const thesis_figure *which, const figure
     }
 }
 
-static status open_signals(const figure_order *order, artwork *out, fault *f)
+// Opens it; *of (may be NULL) is the scenario, which the artwork owns.
+static status open_signals(const figure_order *order, artwork *out, const scenario **of, fault *f)
 {
     const thesis_figure *which = order->which;
-    const figure_options *o = order->options;
     trace_run runs[2];
     trace_panel panels[THESIS_PANELS];
-    signal_figure *s = g_new0(signal_figure, 1);
+    opened_run *opened[2] = {run_open_changed(which->scenario, NULL, 0, order->monitor, f)};
+    owned_figure *drawn = NULL;
 
     // the scenario, and again with the change of the second run
-    status code = run_begin_changed(&s->runs[0], which->scenario, NULL, 0, order->monitor, f);
-    s->run_count = code == STATUS_OK;
-    if (code == STATUS_OK && which->beside != NULL) {
-        code = run_begin(&s->runs[1], which->scenario, which->beside, f);
-        s->run_count += code == STATUS_OK;
+    const int count = which->beside != NULL ? 2 : 1;
+    if (count == 2 && opened[0] != NULL) {
+        opened[1] = run_open(which->scenario, which->beside, f);
     }
 
     // the same panels for each
-    for (int i = 0; i < s->run_count; i++) {
-        runs[i] = (trace_run){&s->runs[i].scenario, &s->runs[i].result, which->names[i],
-                              .steps = which->steps && i == 0, .brief = i == 1};
+    if (opened[count - 1] != NULL) {
+        for (int i = 0; i < count; i++) {
+            runs[i] = (trace_run){&opened[i]->scenario, &opened[i]->result, which->names[i],
+                                  .steps = which->steps && i == 0, .brief = i == 1};
+        }
+        memcpy(panels, which->panels, sizeof panels);
+        panels[0].modes = which->modes;
+        drawn = run_figure_create(order->title, which->panel_count > 0 ? panels : NULL,
+                                  which->panel_count, runs, count, order->options, f);
     }
-    memcpy(panels, which->panels, sizeof panels);
-    panels[0].modes = which->modes;
-
-    if (code == STATUS_OK) {
-        code = run_figure_init(&s->figure, order->title, which->panel_count > 0 ? panels : NULL,
-                               which->panel_count, runs, s->run_count, o, f);
+    if (drawn == NULL) {
+        run_close(opened[0]);
+        run_close(opened[1]);
+        return f->code;
     }
-
-    if (code != STATUS_OK) {
-        release_signals(s);
-        return code;
+    owned_figure_own(drawn, opened[0], run_close);
+    owned_figure_own(drawn, opened[1], run_close);
+    add_facts(drawn, &opened[0]->result.summary, which, order->options);
+    *out = artwork_of_owned(drawn);
+    if (of != NULL) {
+        *of = &opened[0]->scenario;
     }
-
-    add_facts(s, which, o);
-    *out = artwork_of_figure(&s->figure.traces.plot.figure, s, release_signals);
     return STATUS_OK;
 }
 
@@ -184,9 +166,7 @@ status scenario_figure_open(const char *name, run_monitor *monitor, artwork *out
 {
     const thesis_figure run = {.scenario = name};
     const figure_options options = {0};
-    status code = open_signals(&(figure_order){&run, NULL, &options, monitor}, out, f);
-    *s = code == STATUS_OK ? &((const signal_figure *)out->owner)->runs[0].scenario : NULL;
-    return code;
+    return open_signals(&(figure_order){&run, NULL, &options, monitor}, out, s, f);
 }
 
 // ---- any figure
@@ -203,7 +183,7 @@ status figure_open(const thesis_figure *which, const figure_options *o, artwork 
                                                     which->id + table, which->caption)
                                       : g_strdup(which->caption);
     const figure_order order = {which, title, o, NULL};
-    return which->open != NULL ? which->open(&order, out, f) : open_signals(&order, out, f);
+    return which->open != NULL ? which->open(&order, out, f) : open_signals(&order, out, NULL, f);
 }
 
 status figure_draw(const char *id, const figure_options *o, const char *folder, const char *formats,

@@ -7,70 +7,63 @@
 
 enum { PANELS = 2, ASSUMED_POINTS = 101, MARKS = 2 };
 
-// A figure with everything it borrows.
+// A figure of a run's first pulse, owned by its plot.
 typedef struct impact_figure {
-    owned_figure plot;
+    owned_figure *plot;
     figure_level peak_level;
     figure_mark marks[MARKS];
     figure_interval interval;
     figure_impulse impulse;
     figure_measure measure;
-    opened_run run;
+    const opened_run *run;
     double contact, peak_time, peak; // first pulse [s], [s], [N]
 } impact_figure;
-
-static void release_impact(void *owner)
-{
-    impact_figure *fig = owner;
-    run_end(&fig->run);
-    owned_figure_finish(&fig->plot);
-    g_free(fig);
-}
 
 // Runs the scenario and describes what all these figures share. NULL if it fails.
 static impact_figure *new_impact(const figure_order *order, fault *f)
 {
-    impact_figure *fig = g_new0(impact_figure, 1);
     const char *of = order->which->scenario;
-    if (run_begin(&fig->run, of, NULL, f) != STATUS_OK) {
-        g_free(fig);
-        return NULL;
-    }
+    opened_run *run = run_open(of, NULL, f);
+    FAIL_IF(run == NULL, NULL);
 
     // the pulse that the figure is about
-    const summary *m = &fig->run.result.summary;
-    owned_figure_init(&fig->plot, order->title, PANELS);
-    fig->contact = m->first_contact_s;
-    fig->peak_time = m->first_contact_s + m->first_pulse_time_to_peak_s;
-    fig->peak = m->first_pulse_peak_N;
-    if (!isfinite(fig->peak_time)) {
+    const summary *m = &run->result.summary;
+    const double at = m->first_contact_s + m->first_pulse_time_to_peak_s;
+    if (!isfinite(at)) {
         fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to draw", of);
-        release_impact(fig);
+        run_close(run);
         return NULL;
     }
 
-    fig->plot.figure.parameters =
-        owned_figure_keep(&fig->plot, parameters_line(&fig->run.scenario));
-    figure_take_look(&fig->plot.figure, &order->options->look);
+    owned_figure *o = owned_figure_create(PANELS, "%s", order->title);
+    owned_figure_own(o, run, run_close);
+    o->figure.parameters = owned_figure_keep(o, parameters_line(&run->scenario));
+    figure_take_look(&o->figure, &order->options->look);
+    impact_figure *fig = owned_figure_keep(o, g_new(impact_figure, 1));
+    *fig = (impact_figure){.plot = o,
+                           .run = run,
+                           .contact = m->first_contact_s,
+                           .peak_time = at,
+                           .peak = m->first_pulse_peak_N};
     return fig;
 }
 
 static void add_series(impact_figure *fig, int panel, figure_series s)
 {
-    fig->plot.series[panel][fig->plot.panels[panel].series_count++] = s;
+    fig->plot->series[panel][fig->plot->panels[panel].series_count++] = s;
 }
 
 // A recorded signal over time, in the rows' own numbers.
 static void add_signal(impact_figure *fig, int panel, const char *name, const char *label)
 {
     const trace_run rows = {
-        .scenario = &fig->run.scenario, .result = &fig->run.result, .points = true};
-    figure_series s = trace_series(&rows, signal_index(name), &fig->plot);
+        .scenario = &fig->run->scenario, .result = &fig->run->result, .points = true};
+    figure_series s = trace_series(&rows, signal_index(name), fig->plot);
     s.label = label;
     s.style = LINE_SOLID;
     add_series(fig, panel, s);
-    fig->plot.panels[panel].y.name = name;
-    fig->plot.panels[panel].y.unit = signal_table[signal_index(name)].unit;
+    fig->plot->panels[panel].y.name = name;
+    fig->plot->panels[panel].y.unit = signal_table[signal_index(name)].unit;
 }
 
 // ---- the force pulse
@@ -80,10 +73,10 @@ static void show_pulse(impact_figure *fig, double low, double high)
 {
     fig->marks[0] = (figure_mark){fig->contact, "<i>t</i><sub>0</sub>"};
     fig->marks[1] = (figure_mark){fig->peak_time, "<i>t</i><sub>0</sub> + <i>T</i>"};
-    fig->plot.figure.marks = fig->marks;
-    fig->plot.figure.mark_count = 2;
+    fig->plot->figure.marks = fig->marks;
+    fig->plot->figure.mark_count = 2;
 
-    fig->plot.figure.x =
+    fig->plot->figure.x =
         (figure_axis){"time", "Time <i>t</i>", .unit = "s", .low = low, .high = high};
 }
 
@@ -94,8 +87,8 @@ status figure_force_profile(const figure_order *order, artwork *out, fault *f)
         return f->code;
     }
 
-    const summary *m = &fig->run.result.summary;
-    figure_panel *panel = &fig->plot.panels[0];
+    const summary *m = &fig->run->result.summary;
+    figure_panel *panel = &fig->plot->panels[0];
     double pulse = isfinite(m->first_pulse_s) ? m->first_pulse_s : fig->peak_time - fig->contact;
     add_signal(fig, 0, "force", NULL);
     panel->y.label = "Contact force <i>f</i>";
@@ -112,29 +105,29 @@ status figure_force_profile(const figure_order *order, artwork *out, fault *f)
 
     fig->peak_level = (figure_level){
         fig->peak,
-        owned_figure_printf(&fig->plot, "<i>f</i><sub>max</sub> = %.3g\u2009N", fig->peak)};
+        owned_figure_printf(fig->plot, "<i>f</i><sub>max</sub> = %.3g\u2009N", fig->peak)};
     panel->levels = &fig->peak_level;
     panel->level_count = 1;
 
     // the contact is shaded; its labels stand above the measure of T
     fig->interval = (figure_interval){fig->contact, fig->contact + pulse};
-    fig->plot.figure.marks_above = true;
-    fig->plot.figure.intervals = &fig->interval;
-    fig->plot.figure.interval_count = 1;
+    fig->plot->figure.marks_above = true;
+    fig->plot->figure.intervals = &fig->interval;
+    fig->plot->figure.interval_count = 1;
 
     show_pulse(fig, fig->contact - 0.25 * pulse, fig->contact + 1.25 * pulse);
-    fig->plot.figure.panel_count = 1;
-    fig->plot.figure.caption =
+    fig->plot->figure.panel_count = 1;
+    fig->plot->figure.caption =
         "First pulse of corrected/first-impact, 1\u2009V. The impact is an impulse that takes no "
         "time (arrow, its own axis); the force that follows is finite and grows to its peak while "
         "the beam bends. Shaded: contact.";
 
     // T stands above the peak, from contact to it
     fig->measure = (figure_measure){fig->contact, fig->peak_time, 1.13 * fig->peak,
-                                    owned_figure_printf(&fig->plot, "<i>T</i> = %.1f\u2009ms",
+                                    owned_figure_printf(fig->plot, "<i>T</i> = %.1f\u2009ms",
                                                         1e3 * (fig->peak_time - fig->contact))};
-    fig->plot.figure.measure = &fig->measure;
-    *out = artwork_of_figure(&fig->plot.figure, fig, release_impact);
+    fig->plot->figure.measure = &fig->measure;
+    *out = artwork_of_owned(fig->plot);
     g_clear_pointer(&out->alternative, g_free); // its title says it
     return STATUS_OK;
 }
@@ -169,8 +162,8 @@ static double assumed_at(const assumption *a, double since)
 
 static void add_assumption(impact_figure *fig, int panel, const assumption *a, const char *label)
 {
-    double *x = owned_figure_numbers(&fig->plot, ASSUMED_POINTS);
-    double *y = owned_figure_numbers(&fig->plot, ASSUMED_POINTS);
+    double *x = owned_figure_numbers(fig->plot, ASSUMED_POINTS);
+    double *y = owned_figure_numbers(fig->plot, ASSUMED_POINTS);
 
     // the assumed course, from the contact on
     for (int i = 0; i < ASSUMED_POINTS; i++) {
@@ -188,7 +181,7 @@ static void add_assumption(impact_figure *fig, int panel, const assumption *a, c
 // Largest distance of a recorded signal from the assumption between contact and peak.
 static double departure(const impact_figure *fig, const char *name, const assumption *a)
 {
-    const trace *t = &fig->run.result.trace;
+    const trace *t = &fig->run->result.trace;
     const int index = signal_index(name);
     double most = 0;
     for (size_t i = 0; i < t->row_count; i++) {
@@ -214,7 +207,7 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
     }
 
     // where the assumed motion starts
-    const sample *after = row_after(&fig->run.result.trace);
+    const sample *after = row_after(&fig->run->result.trace);
     const double angles[] = {after->first_angle, after->last_angle};
     const double velocities[] = {after->first_velocity, after->last_velocity};
 
@@ -223,7 +216,7 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
         const char *name = signals[of_angle][i];
         add_signal(fig, i, name, i == 0 ? "computed" : NULL);
         // one legend speaks for both panels, so both have its colours
-        fig->plot.series[i][0].colour = 0;
+        fig->plot->series[i][0].colour = 0;
 
         const assumption a = {angles[i], velocities[i], period, of_angle};
         add_assumption(fig, i, &a,
@@ -231,14 +224,14 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
                        : of_angle ? "quadratic approximation (4.19)"
                                   : "linear approximation");
         most[i] = departure(fig, name, &a);
-        fig->plot.panels[i].y.label = labels[of_angle][i];
+        fig->plot->panels[i].y.label = labels[of_angle][i];
     }
 
     show_pulse(fig, fig->contact - 0.4 * period, fig->contact + 1.4 * period);
-    fig->plot.figure.panel_count = PANELS;
+    fig->plot->figure.panel_count = PANELS;
 
-    fig->plot.figure.caption =
-        owned_figure_printf(&fig->plot,
+    fig->plot->figure.caption =
+        owned_figure_printf(fig->plot,
                             "First and last link of corrected/first-impact from first contact to "
                             "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
                             "departure between them: %.2g and %.2g\u2009%s.",
@@ -249,6 +242,6 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
                                        "straight line",
                             most[0], most[1], of_angle ? "rad" : "rad/s");
 
-    *out = artwork_of_figure(&fig->plot.figure, fig, release_impact);
+    *out = artwork_of_owned(fig->plot);
     return STATUS_OK;
 }

@@ -2,11 +2,9 @@
 // how far each point is from its line.
 #include "render/figures/figures.h"
 
-#include <string.h>
-
 #include "render/plot/drawing.h"
 
-enum { TABLES = 3, QUANTITIES = 3, PANELS = 2 * TABLES, SERIES = 2 * QUANTITIES };
+enum { TABLES = 3, QUANTITIES = 3, PANELS = 2 * TABLES };
 
 #define VALUES_WEIGHT    1.5 // of a panel of values
 #define RESIDUALS_WEIGHT 0.8
@@ -46,41 +44,27 @@ static const printed_kind kinds[] = {
       {"delay_simulation", "delay_simulation printed", "simulation", MARKER_TRIANGLE, 2}}},
 };
 
-// The figure with all that it borrows.
-typedef struct printed_values {
-    owned_figure plot;
-    figure_level zero;
-    double voltage[TABLE_VOLTAGES];
-    double values[TABLES][SERIES][TABLE_VOLTAGES];        // thesis, computed of each quantity
-    double residuals[TABLES][QUANTITIES][TABLE_VOLTAGES]; // [% of the thesis's]
-} printed_values;
-
-static void release_values(void *owner)
-{
-    printed_values *v = owner;
-    owned_figure_finish(&v->plot);
-    g_free(v);
-}
-
 // The points and lines of a table, and the panel of their distances.
-static void add_table(printed_values *v, const printed_kind *kind, int t,
+static void add_table(owned_figure *plot, const printed_kind *kind, const double *voltage,
                       const table_row *const *rows, figure_panel *shown, figure_panel *distances)
 {
-    owned_figure *plot = &v->plot;
+    static const figure_level zero = {0};
     int panel = (int)(shown - plot->panels), below = (int)(distances - plot->panels);
     figure_series *lines = plot->series[panel], *points = lines + kind->count;
     for (int q = 0; q < kind->count; q++) {
         const printed_quantity *of = &kind->quantities[q];
-        double *printed = v->values[t][2 * q], *computed = v->values[t][2 * q + 1];
+        double *printed = owned_figure_numbers(plot, TABLE_VOLTAGES);
+        double *computed = owned_figure_numbers(plot, TABLE_VOLTAGES);
+        double *residual = owned_figure_numbers(plot, TABLE_VOLTAGES); // [% of the thesis's]
         for (int i = 0; i < TABLE_VOLTAGES; i++) {
             printed[i] = kind->scale * rows[q]->printed[i];
             computed[i] = kind->scale * rows[q]->computed[i];
-            v->residuals[t][q][i] = 100 * (computed[i] / printed[i] - 1);
+            residual[i] = 100 * (computed[i] / printed[i] - 1);
         }
 
         // lines first, so that points lie on them
         lines[q] = (figure_series){.name = of->key,
-                                   .x = v->voltage,
+                                   .x = voltage,
                                    .y = computed,
                                    .count = TABLE_VOLTAGES,
                                    .colour = of->colour,
@@ -88,7 +72,7 @@ static void add_table(printed_values *v, const printed_kind *kind, int t,
                                    .secondary = true};
         points[q] = (figure_series){.name = of->printed,
                                     .label = of->label,
-                                    .x = v->voltage,
+                                    .x = voltage,
                                     .y = printed,
                                     .count = TABLE_VOLTAGES,
                                     .colour = of->colour,
@@ -96,13 +80,13 @@ static void add_table(printed_values *v, const printed_kind *kind, int t,
                                     .marker = of->marker,
                                     .radius = POINT_RADIUS};
         plot->series[below][q] = points[q];
-        plot->series[below][q].y = v->residuals[t][q];
+        plot->series[below][q].y = residual;
     }
 
     // the names are those of the CSV
     double factor = rows[0]->k2_factor;
     const char *name = owned_figure_printf(plot, "%s k2 x %g", kind->name, factor);
-    const char *residual = owned_figure_printf(plot, "residual k2 x %g", factor);
+    const char *distance = owned_figure_printf(plot, "residual k2 x %g", factor);
 
     // 1, 2, 5, 10 V are nearly even on a logarithmic axis
     *shown = (figure_panel){
@@ -115,9 +99,9 @@ static void add_table(printed_values *v, const printed_kind *kind, int t,
     *distances = (figure_panel){
         .weight = RESIDUALS_WEIGHT,
         .keyless = true,
-        .levels = &v->zero,
+        .levels = &zero,
         .level_count = 1,
-        .y = {.name = residual, .label = "Residual", .unit = "%", .with_zero = true, .room = 0.12},
+        .y = {.name = distance, .label = "Residual", .unit = "%", .with_zero = true, .room = 0.12},
         .series = plot->series[below],
         .series_count = kind->count};
 }
@@ -132,11 +116,10 @@ status printed_values_figure(const figure_order *order, artwork *out, fault *f)
         return f->code;
     }
 
-    printed_values *v = g_new0(printed_values, 1);
-    figure *fig = &v->plot.figure;
-    owned_figure_init(&v->plot, order->title, PANELS);
+    owned_figure *plot = owned_figure_create(PANELS, "%s", order->title);
+    figure *fig = &plot->figure;
     fig->caption = owned_figure_printf(
-        &v->plot,
+        plot,
         "Points: printed in Tables 4.1 to 4.3. Dashed: the printed model, whose constants were "
         "inferred from these tables (docs/explanation/model.md). Residual: what the model gives "
         "beyond what is printed, in per cent of that. %s.",
@@ -151,7 +134,6 @@ status printed_values_figure(const figure_order *order, artwork *out, fault *f)
                            .ticks = voltages,
                            .tick_count = (int)G_N_ELEMENTS(voltages)};
     figure_take_look(fig, &order->options->look);
-    memcpy(v->voltage, all->voltage, sizeof v->voltage);
 
     // panels side by side have their residuals in a row below, panels in a column next to them
     bool rows_of_tables = figure_columns(fig) == TABLES;
@@ -160,10 +142,11 @@ status printed_values_figure(const figure_order *order, artwork *out, fault *f)
         for (int q = 0; q < kind->count; q++) {
             rows[q] = computed_row(all, tables[t], "printed", kind->quantities[q].key);
         }
-        figure_panel *shown = &v->plot.panels[rows_of_tables ? t : 2 * t];
-        add_table(v, kind, t, rows, shown, rows_of_tables ? shown + TABLES : shown + 1);
+        figure_panel *shown = &plot->panels[rows_of_tables ? t : 2 * t];
+        add_table(plot, kind, all->voltage, rows, shown,
+                  rows_of_tables ? shown + TABLES : shown + 1);
     }
 
-    *out = artwork_of_figure(fig, v, release_values);
+    *out = artwork_of_owned(plot);
     return STATUS_OK;
 }

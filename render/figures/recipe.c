@@ -1,139 +1,365 @@
 #include "render/figures/recipe.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "render/figures/recipe_parts.h"
-
-static void release(void *owner)
-{
-    recipe_figure *fig = owner;
-    for (int i = 0; i < fig->recipe.source_count; i++) {
-        opened_source *s = &fig->sources[i];
-        if (s->ran) {
-            run_end(&s->run);
-        }
-        trace_finish(&s->data.trace);
-        for (int k = 0; k < SWEEP_TABLE_COLUMNS; k++) {
-            free(s->columns[k]);
-        }
-    }
-
-    owned_figure_finish(&fig->plot);
-    recipe_finish(&fig->recipe);
-    g_free(fig->path);
-    g_free(fig);
-}
+#include "src/base/numbers.h"
 
 // ---- opening what the recipe names
 
 // A file as the recipe's folder sees it; a scenario's name stays.
-static char *path_of(const recipe_figure *fig, const char *name)
+static char *path_of(const char *recipe_path, const char *name)
 {
-    g_autofree char *folder = g_path_get_dirname(fig->path);
+    g_autofree char *folder = g_path_get_dirname(recipe_path);
     char *path = g_path_is_absolute(name) ? g_strdup(name) : g_build_filename(folder, name, NULL);
     return path;
 }
 
-static status open_data(recipe_figure *fig, const recipe_source *s, opened_source *out, fault *f)
+static status open_data(recipe *r, recipe_source *s, const char *path, fault *f)
 {
     trace_panel shown[FIGURE_PANELS];
     int count = 0;
 
     // the signals that a nameless column may lie over
-    for (int i = 0; i < fig->recipe.panel_count; i++) {
-        if (fig->recipe.panels[i].signal_count > 0) {
-            shown[count++] = (trace_panel){.signals = {fig->recipe.panels[i].signals[0]}};
+    for (int i = 0; i < r->shown.panel_count; i++) {
+        if (r->panels[i].signal_count > 0) {
+            shown[count++] = (trace_panel){.signals = {r->panels[i].signals[0]}};
+        }
+    }
+    g_autofree char *name = NULL;
+    opened_run *data = owned_figure_own(r->plot, g_new0(opened_run, 1), run_close);
+    s->run = data;
+    return overlay_read_column(&data->result.trace, path, s->column, s->shift, shown, count, &name,
+                               f);
+}
+
+static status open_source(recipe *r, recipe_source *s, const char *recipe_path, fault *f)
+{
+    fault why = {0};
+    status code = STATUS_OK;
+    g_autofree char *path = path_of(recipe_path, s->kind == SOURCE_RUN ? s->scenario : s->file);
+
+    if (s->kind == SOURCE_RUN) {
+        bool own = g_file_test(path, G_FILE_TEST_IS_REGULAR);
+        s->run = owned_figure_own(
+            r->plot,
+            run_open_changed(own ? path : s->scenario, s->change, s->change_count, NULL, &why),
+            run_close);
+        code = why.code;
+    } else if (s->kind == SOURCE_DATA) {
+        code = open_data(r, s, path, &why);
+    } else {
+        const char *const keys[] = {s->x, s->y, s->z};
+        code = sweep_table_read(path, keys, s->z != NULL ? 3 : 2, s->columns, &s->count, &why);
+        for (int i = 0; i < SWEEP_TABLE_COLUMNS; i++) {
+            owned_figure_own(r->plot, s->columns[i], free);
         }
     }
 
-    g_autofree char *path = path_of(fig, s->file), *name = NULL;
-    return overlay_read_column(&out->data.trace, path, s->column, s->shift, shown, count, &name, f);
+    // the place in the recipe stands before what went wrong
+    return code == STATUS_OK ? code
+                             : fault_set(f, code, "%s:%d:%d: %s", recipe_path, s->at.line,
+                                         s->at.column, why.text);
 }
 
-static status open_source(recipe_figure *fig, int index, fault *f)
-{
-    const recipe_source *s = &fig->recipe.sources[index];
-    opened_source *out = &fig->sources[index];
-    fault why = {0};
-    status code = STATUS_OK;
+// ---- labels
 
-    if (s->kind == SOURCE_RUN) {
-        g_autofree char *beside = path_of(fig, s->scenario);
-        bool own = g_file_test(beside, G_FILE_TEST_IS_REGULAR);
-        code = run_begin_changed(&out->run, own ? beside : s->scenario, s->change, s->change_count,
-                                 NULL, &why);
-        out->ran = code == STATUS_OK;
-    } else if (s->kind == SOURCE_DATA) {
-        code = open_data(fig, s, out, &why);
-    } else {
-        g_autofree char *path = path_of(fig, s->file);
-        const char *const keys[] = {s->x, s->y, s->z};
-        code = sweep_table_read(path, keys, s->z != NULL ? 3 : 2, out->columns, &out->count, &why);
+// The legend text of a source, markup.
+static const char *label_of(recipe *r, const recipe_source *s)
+{
+    return owned_figure_keep(r->plot, text_escape(s->label != NULL ? s->label : s->name));
+}
+
+// The first source's scenario, whose bodies the symbols name.
+static const scenario *first_scenario(const recipe *r)
+{
+    static const scenario none;
+    return r->sources[0].run != NULL ? &r->sources[0].run->scenario : &none;
+}
+
+// The colour of curve number `index` of a panel; the first ones differ most.
+static int colour_of(int index)
+{
+    static const int colours[] = {0, 5, 2, 4, 1, 3, 7};
+    return colours[index % (int)G_N_ELEMENTS(colours)];
+}
+
+// The axis of a table's column: label and unit of a parameter or summary quantity, otherwise the
+// key itself.
+static figure_axis column_axis(recipe *r, const char *key)
+{
+    int parameter = parameter_find(key), quantity = summary_find(key);
+    const char *words = parameter >= 0  ? parameter_table[parameter].description
+                        : quantity >= 0 ? summary_table[quantity].label
+                                        : NULL;
+
+    // what neither table describes goes by its own name, without a unit
+    g_autofree char *label = words != NULL ? text_label(words) : g_strdup(key);
+    figure_axis axis = {.name = key,
+                        .label = owned_figure_keep(r->plot, text_escape(label)),
+                        .unit = parameter >= 0  ? parameter_table[parameter].unit
+                                : quantity >= 0 ? summary_table[quantity].unit
+                                                : ""};
+    return axis;
+}
+
+// ---- tables
+
+static void add_curve(recipe *r, int panel, const recipe_source *s)
+{
+    static const marker_kind markers[] = {MARKER_CIRCLE, MARKER_SQUARE, MARKER_TRIANGLE,
+                                          MARKER_DIAMOND};
+    figure_panel *p = &r->plot->panels[panel];
+
+    // more curves than a panel has room for are left out
+    if (p->series_count == PANEL_SERIES) {
+        return;
     }
 
-    // the place in the recipe stands before what went wrong
-    return code == STATUS_OK
-               ? code
-               : fault_set(f, code, "%s:%d:%d: %s", fig->path, s->at.line, s->at.column, why.text);
+    // points are marked while they are few enough to be told apart
+    r->plot->series[panel][p->series_count] =
+        (figure_series){.name = s->name,
+                        .label = label_of(r, s),
+                        .x = s->columns[0],
+                        .y = s->columns[1],
+                        .count = s->count,
+                        .colour = colour_of(p->series_count),
+                        .marker = s->count > 80 ? MARKER_NONE : markers[p->series_count % 4]};
+    p->series_count++;
+}
+
+// The different values of a column, ascending. Returns their number.
+static size_t different_values(const double *column, size_t count, double *out)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        out[i] = column[i];
+    }
+    qsort(out, count, sizeof *out, compare_numbers);
+    for (size_t i = 0; i < count; i++) {
+        if (kept == 0 || out[i] != out[kept - 1]) {
+            out[kept++] = out[i];
+        }
+    }
+    return kept;
+}
+
+static size_t place_among(const double *values, size_t count, double value)
+{
+    const double *found = bsearch(&value, values, count, sizeof *values, compare_numbers);
+    return (size_t)(found - values);
+}
+
+// Cells over the grid that the first two columns make; a point without a run is hatched.
+static void describe_cells(recipe *r, int panel, const recipe_source *s, figure_map *map)
+{
+    size_t cells = map->columns * map->rows;
+    double *z = owned_figure_numbers(r->plot, cells);
+
+    // the map goes column by column; cells that no run fills keep no number
+    for (size_t i = 0; i < cells; i++) {
+        z[i] = (double)NAN;
+    }
+    for (size_t i = 0; i < s->count; i++) {
+        size_t column = place_among(map->x, map->columns, s->columns[0][i]);
+        size_t row = place_among(map->y, map->rows, s->columns[1][i]);
+        z[column * map->rows + row] = s->columns[2][i];
+    }
+    map->z = z;
+    map->contours = true;
+    r->plot->panels[panel].map = map;
+}
+
+static void add_map(recipe *r, int panel, const recipe_source *s)
+{
+    figure_panel *p = &r->plot->panels[panel];
+    figure_colours *colours = owned_figure_keep(r->plot, g_new(figure_colours, 1));
+    figure_map *map = owned_figure_keep(r->plot, g_new(figure_map, 1));
+    double *x = owned_figure_numbers(r->plot, s->count + 1);
+    double *y = owned_figure_numbers(r->plot, s->count + 1);
+    size_t columns = different_values(s->columns[0], s->count, x);
+    size_t rows = different_values(s->columns[1], s->count, y);
+
+    *colours = (figure_colours){.axis = column_axis(r, s->z), .bar = true};
+    p->colours = colours;
+    *map = (figure_map){.x = x, .y = y, .columns = columns, .rows = rows};
+
+    // values that were drawn at random make no grid: dots with their shade
+    if (columns * rows <= 2 * s->count && columns > 1 && rows > 1) {
+        describe_cells(r, panel, s, map);
+        return;
+    }
+    r->plot->series[panel][p->series_count++] = (figure_series){
+        s->name,           .x = s->columns[0], .y = s->columns[1],      .shade = s->columns[2],
+        .count = s->count, .no_line = true,    .marker = MARKER_CIRCLE, .radius = 2.4};
+}
+
+// ---- curves
+
+static void add_signal(recipe *r, int panel, const recipe_source *s, int index, int signals)
+{
+    figure_panel *p = &r->plot->panels[panel];
+    const bool data = s->kind == SOURCE_DATA;
+
+    // no room, or nothing measured
+    if (p->series_count == PANEL_SERIES || (data && !trace_has(&s->run->result.trace, index))) {
+        return;
+    }
+
+    const trace_run run = {&s->run->scenario, &s->run->result, .points = data};
+    figure_series *out = &r->plot->series[panel][p->series_count];
+    *out = trace_series(&run, index, r->plot);
+
+    // several signals of one run are told by their symbols, several runs by their labels
+    const char *label = label_of(r, s);
+    if (signals > 1) {
+        g_autofree char *symbol = trace_symbol(data ? first_scenario(r) : run.scenario, index);
+        label = r->source_count > 1 ? owned_figure_printf(r->plot, "%s %s", label, symbol)
+                                    : owned_figure_keep(r->plot, g_steal_pointer(&symbol));
+    }
+
+    // measured data are points without a line
+    out->label = label;
+    out->name = owned_figure_printf(r->plot, "%s %s", s->name, signal_table[index].name);
+    out->style = LINE_SOLID;
+    out->colour = data ? 6 : colour_of(p->series_count);
+    out->no_line = data;
+    out->marker = data ? MARKER_CIRCLE : MARKER_NONE;
+    p->series_count++;
+}
+
+// One signal of one source less that of another, at the instants of the first.
+static void add_difference(recipe *r, int panel)
+{
+    const recipe_panel *from = &r->panels[panel];
+    const recipe_source *of = &r->sources[from->of], *less = &r->sources[from->less];
+    figure_series *s = &r->plot->series[panel][0];
+    *s = trace_difference(&of->run->result.trace, &less->run->result.trace,
+                          signal_index(from->signals[0]), r->plot);
+
+    // points where data are compared, else a line
+    const bool data = of->kind == SOURCE_DATA;
+    s->name = "difference";
+    s->colour = data ? 6 : 7;
+    s->no_line = data;
+    s->marker = data ? MARKER_CIRCLE : MARKER_NONE;
+    r->plot->panels[panel].series_count = 1;
+}
+
+// ---- panels
+
+// "Contact force f (N)" of a signal, or the names of a table's columns, unless the recipe has a
+// word of its own.
+static void describe_axis(recipe *r, const recipe_panel *from, figure_axis *y)
+{
+    figure_axis told = {0};
+    if (from->signal_count > 0) {
+        const int index = signal_index(from->signals[0]);
+        const signal_info *signal = &signal_table[index];
+        g_autofree char *symbol = trace_symbol(first_scenario(r), index);
+        told.name = signal->name;
+        told.unit = signal->unit;
+        told.label = from->compared ? owned_figure_printf(r->plot, "Difference of %s", symbol)
+                     : from->signal_count > 1
+                         ? signal->quantity
+                         : owned_figure_printf(r->plot, "%s %s", signal->quantity, symbol);
+        if (from->signal_count == 1) {
+            y->symbol = owned_figure_printf(r->plot, "%s%s", from->compared ? "Δ" : "", symbol);
+        }
+    } else if (from->source_count > 0) {
+        const recipe_source *table = &r->sources[from->sources[0]];
+        told = column_axis(r, table->y);
+        y->room = table->z != NULL ? 0 : 0.05;
+    }
+    y->name = told.name;
+    y->unit = told.unit;
+    y->label = y->label != NULL ? y->label : told.label;
+    y->scale = from->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR;
+}
+
+// Describes a panel with its curves.
+static void describe_panel(recipe *r, int panel)
+{
+    const recipe_panel *from = &r->panels[panel];
+    figure_panel *p = &r->plot->panels[panel];
+    *p = from->shown;
+    p->notes = from->notes;
+    p->series = r->plot->series[panel];
+    describe_axis(r, from, &p->y);
+
+    // curves
+    if (from->compared) {
+        add_difference(r, panel);
+    }
+    for (int i = 0; i < from->source_count; i++) {
+        const recipe_source *s = &r->sources[from->sources[i]];
+        const bool empty = p->map == NULL && p->series_count == 0;
+        if (s->kind == SOURCE_TABLE && s->z == NULL) {
+            add_curve(r, panel, s);
+        } else if (s->kind == SOURCE_TABLE && empty && s->count > 0) {
+            add_map(r, panel, s);
+        }
+        for (int k = 0; k < from->signal_count && s->kind != SOURCE_TABLE; k++) {
+            add_signal(r, panel, s, signal_index(from->signals[k]), from->signal_count);
+        }
+    }
+
+    // a panel with the first one's curves needs no legend of its own
+    const figure_panel *first = &r->plot->panels[0];
+    p->keyless = panel > 0 && p->series_count == first->series_count;
+    for (int i = 0; i < p->series_count && p->keyless; i++) {
+        p->keyless = g_strcmp0(p->series[i].label, first->series[i].label) == 0 &&
+                     p->series[i].colour == first->series[i].colour;
+    }
 }
 
 // ---- the page
 
-// The axis below all panels: time, or the first column of the first table.
-static figure_axis horizontal_axis(recipe_figure *fig)
+// The axis below all panels: time, or the first column of the first table; and what the recipe says
+// of it.
+static void describe_horizontal(recipe *r, figure_axis *x)
 {
-    const recipe *r = &fig->recipe;
     const recipe_source *first = &r->sources[0];
-    figure_axis x = {.name = "time", .label = "Time <i>t</i>", .unit = "s"};
-
+    figure_axis told = {.name = "time", .label = "Time <i>t</i>", .unit = "s"};
     if (first->kind == SOURCE_TABLE) {
-        x = recipe_column_axis(fig, first->x);
-        x.room = first->z != NULL ? 0 : 0.03;
+        told = column_axis(r, first->x);
+        x->room = first->z != NULL ? 0 : 0.03;
     }
-
-    // what the recipe says of it
-    x.label = r->x_label != NULL ? r->x_label : x.label;
-    x.unit = r->x_unit != NULL ? r->x_unit : x.unit;
-    x.low = r->from;
-    x.high = r->to;
-    x.scale = r->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR;
-    return x;
+    x->name = told.name;
+    x->label = x->label != NULL ? x->label : told.label;
+    x->unit = x->unit != NULL ? x->unit : told.unit;
+    x->scale = r->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR;
 }
 
-static void describe(recipe_figure *fig, const figure_options *o)
+static void describe(recipe *r, const figure_options *o)
 {
-    const recipe *r = &fig->recipe;
-    for (int i = 0; i < r->panel_count; i++) {
-        recipe_describe_panel(fig, i);
-    }
-
-    figure *shown = &fig->plot.figure;
-    shown->title = r->title;
-    shown->caption = r->caption;
-    shown->x = horizontal_axis(fig);
-    shown->panel_count = r->panel_count;
+    figure *shown = &r->plot->figure;
+    *shown = r->shown;
+    shown->panels = r->plot->panels;
     shown->columns = (int)r->columns;
-    shown->shared_y = r->shared;
     shown->marks = r->marks;
-    shown->mark_count = r->mark_count;
+    for (int i = 0; i < shown->panel_count; i++) {
+        describe_panel(r, i);
+    }
+    describe_horizontal(r, &shown->x);
 
     // runs with every parameter, for the file
     GString *values = g_string_new(NULL);
     for (int i = 0; i < r->source_count; i++) {
-        if (fig->sources[i].ran) {
-            g_autofree char *line = parameters_line(&fig->sources[i].run.scenario);
+        if (r->sources[i].kind == SOURCE_RUN) {
+            g_autofree char *line = parameters_line(&r->sources[i].run->scenario);
             text_append(values, "%s%s", values->len > 0 ? "; " : "", line);
         }
     }
-    shown->parameters = owned_figure_keep(&fig->plot, g_string_free(values, FALSE));
+    shown->parameters = owned_figure_keep(r->plot, g_string_free(values, FALSE));
 
     // the first run's contact
-    if (r->contact && fig->sources[0].ran) {
-        trace_shade(&fig->plot, &fig->sources[0].run.result.trace, false);
+    if (r->contact && r->sources[0].kind == SOURCE_RUN) {
+        trace_shade(r->plot, &r->sources[0].run->result.trace, false);
     }
-
-    figure_take_look(&fig->plot.figure, &o->look);
-    figure_take_range(&fig->plot.figure, o);
+    figure_take_look(shown, &o->look);
+    figure_take_range(shown, o);
 }
 
 status recipe_open(const char *path, const figure_options *o, fault_handler report, void *context,
@@ -148,27 +374,23 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
         return STATUS_CANNOT_READ;
     }
 
-    // what it says
-    recipe_figure *fig = g_new0(recipe_figure, 1);
-    fig->path = g_strdup(path);
-    owned_figure_init(&fig->plot, NULL, FIGURE_PANELS);
-    status code = recipe_read(&fig->recipe, path, text, length, report, context)
-                      ? STATUS_OK
-                      : STATUS_BAD_SCENARIO;
+    // what it says, and what it names
+    recipe *r = g_new0(recipe, 1);
+    status code =
+        recipe_read(r, path, text, length, report, context) ? STATUS_OK : STATUS_BAD_SCENARIO;
+    owned_figure_keep(r->plot, r);
     g_free(text);
-
-    // what it names
-    for (int i = 0; i < fig->recipe.source_count && code == STATUS_OK; i++) {
-        code = open_source(fig, i, f);
+    for (int i = 0; i < r->source_count && code == STATUS_OK; i++) {
+        code = open_source(r, &r->sources[i], path, f);
     }
     if (code != STATUS_OK) {
-        release(fig);
+        owned_figure_destroy(r->plot);
         return code;
     }
 
     // what it shows
-    describe(fig, o);
-    *out = artwork_of_figure(&fig->plot.figure, fig, release);
+    describe(r, o);
+    *out = artwork_of_owned(r->plot);
     return STATUS_OK;
 }
 

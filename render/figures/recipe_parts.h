@@ -1,4 +1,4 @@
-// Internal to recipes: what a recipe says, how its text is read, and the figure made of it.
+// Internal to recipes: what a recipe says, and how its text is read.
 #pragma once
 
 #include <glib.h>
@@ -27,44 +27,41 @@ typedef struct recipe_source {
     const char *z;      // of a table: the column of a map's colours; NULL: a curve
     double shift;       // of data [s]
     place at;           // its place in the recipe
+
+    // once it is opened
+    const opened_run *run;                // of a run; of data with its trace alone
+    double *columns[SWEEP_TABLE_COLUMNS]; // of a table: x, y and z
+    size_t count;                         // of their values
 } recipe_source;
 
 typedef struct recipe_panel {
+    figure_panel shown; // heading, weight, number of notes; label, zero and ends of its axis
+    bool logarithmic;
+    figure_note notes[RECIPE_NOTES];
     const char *signals[TRACE_SIGNALS];
     int signal_count;
     int sources[RECIPE_SOURCES]; // indices, in the order of the recipe
     int source_count;
     bool compared; // shows a difference, of two sources
     int of, less;
-    const char *heading, *label;
-    double weight, low, high; // 0; low >= high: from the data
-    bool zero, logarithmic;
-    figure_note notes[RECIPE_NOTES];
-    int note_count;
 } recipe_panel;
 
 typedef struct recipe {
-    const char *title, *caption;
+    figure shown; // title, caption, numbers of panels and marks, its horizontal axis
+    bool logarithmic;
+    double columns;
+    bool contact; // the first run's contact is shaded
     recipe_source sources[RECIPE_SOURCES];
     int source_count;
     recipe_panel panels[FIGURE_PANELS];
-    int panel_count;
     figure_mark marks[RECIPE_MARKS];
-    int mark_count;
-    const char *x_label, *x_unit;
-    double from, to; // of the horizontal axis; from >= to: from the data
-    bool logarithmic;
-    double columns;
-    bool shared;      // all panels have one vertical axis
-    bool contact;     // the first run's contact is shaded
-    GPtrArray *owned; // texts
+    owned_figure *plot; // the figure made of it, which owns its texts
 } recipe;
 
-// Reads a recipe's text. Every fault is reported with file:line:column; false if there is one.
-// recipe_finish in both cases.
+// Reads a recipe's text. Every fault is reported with file:line:column; false if there is one. In
+// both cases r->plot is to be destroyed.
 bool recipe_read(recipe *r, const char *path, const char *text, size_t length, fault_handler report,
                  void *context);
-void recipe_finish(recipe *r);
 
 // --- reading: values, maps and lists, used by every section: recipe_sources.c
 
@@ -162,32 +159,3 @@ bool recipe_knows_parameter(recipe_context *c, const tree_node *node, const char
 
 // The index of a source that a panel names, or -1 after a fault.
 int recipe_find_source(recipe_context *c, const tree_node *node);
-
-// --- drawing: a figure with everything it borrows
-
-// A source with its run or data.
-typedef struct opened_source {
-    opened_run run;                       // of a run
-    bool ran;                             // the run must be finished
-    run_result data;                      // of data: its trace alone
-    double *columns[SWEEP_TABLE_COLUMNS]; // of a table: x, y and z
-    size_t count;                         // of their values
-} opened_source;
-
-typedef struct recipe_figure {
-    recipe recipe;
-    char *path;
-    opened_source sources[RECIPE_SOURCES];
-    owned_figure plot;
-    figure_map maps[FIGURE_PANELS];
-    figure_colours colours[FIGURE_PANELS];
-} recipe_figure;
-
-// --- panels: recipe_panels.c
-
-// The axis of a table's column: label and unit of a parameter or summary quantity, otherwise the
-// key itself.
-figure_axis recipe_column_axis(recipe_figure *fig, const char *key);
-
-// Describes a panel with its curves.
-void recipe_describe_panel(recipe_figure *fig, int panel);

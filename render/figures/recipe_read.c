@@ -110,12 +110,12 @@ static bool repeat_panels(recipe_context *c, const multiples *m, int at[][RECIPE
 {
     recipe *r = c->recipe;
     const recipe read = *r;
-    if (read.panel_count * m->count > FIGURE_PANELS) {
+    if (read.shown.panel_count * m->count > FIGURE_PANELS) {
         return false;
     }
 
-    r->panel_count = 0;
-    for (int p = 0; p < read.panel_count; p++) {
+    r->shown.panel_count = 0;
+    for (int p = 0; p < read.shown.panel_count; p++) {
         for (int k = 0; k < m->count; k++) {
             recipe_panel panel = read.panels[p];
             for (int i = 0; i < panel.source_count; i++) {
@@ -123,8 +123,8 @@ static bool repeat_panels(recipe_context *c, const multiples *m, int at[][RECIPE
             }
             panel.of = at[k][panel.of];
             panel.less = at[k][panel.less];
-            panel.heading = p == 0 ? heading_of(c, m, k) : panel.heading;
-            r->panels[r->panel_count++] = panel;
+            panel.shown.heading = p == 0 ? heading_of(c, m, k) : panel.shown.heading;
+            r->panels[r->shown.panel_count++] = panel;
         }
     }
     return true;
@@ -152,13 +152,13 @@ TAKE(take_multiples, recipe)
 
     // the first run's contact is not that of the others
     r->contact = false;
-    r->columns = r->panel_count > 1 ? m.count : r->columns > 1 ? r->columns : MIN(m.count, 3);
+    r->columns = r->shown.panel_count > 1 ? m.count : r->columns > 1 ? r->columns : MIN(m.count, 3);
     if (!repeat_runs(c, &m, at)) {
         report_node(&c->reader, node, "%d values make more than %d runs, or more than %d changes",
                     m.count, RECIPE_SOURCES, RECIPE_CHANGES);
     } else if (!repeat_panels(c, &m, at)) {
         report_node(&c->reader, node, "%d values of %d panels make more than %d panels", m.count,
-                    r->panel_count, FIGURE_PANELS);
+                    r->shown.panel_count, FIGURE_PANELS);
     }
 }
 
@@ -273,14 +273,14 @@ static const recipe_form panels = {
     {OWN_KEY("signals", take_signals),
      OWN_KEY("from", take_from),
      OWN_KEY("difference", take_difference),
-     FIELD_KEY("heading", VALUE_TEXT, recipe_panel, heading),
-     FIELD_KEY("label", VALUE_TEXT, recipe_panel, label),
-     {"weight", VALUE_NUMBER, offsetof(recipe_panel, weight), .low = DBL_MIN, .high = 20,
+     FIELD_KEY("heading", VALUE_TEXT, recipe_panel, shown.heading),
+     FIELD_KEY("label", VALUE_TEXT, recipe_panel, shown.y.label),
+     {"weight", VALUE_NUMBER, offsetof(recipe_panel, shown.weight), .low = DBL_MIN, .high = 20,
       .expected = "a number above 0, up to 20"},
-     FIELD_KEY("zero", VALUE_TRUTH, recipe_panel, zero),
+     FIELD_KEY("zero", VALUE_TRUTH, recipe_panel, shown.y.with_zero),
      FIELD_KEY("log", VALUE_TRUTH, recipe_panel, logarithmic),
-     PAIR_KEY("range", recipe_panel, low, high),
-     ITEMS_KEY("notes", &notes, recipe_panel, notes, note_count)},
+     PAIR_KEY("range", recipe_panel, shown.y.low, shown.y.high),
+     ITEMS_KEY("notes", &notes, recipe_panel, notes, shown.note_count)},
     "a figure",
     "panels",
     sizeof(recipe_panel),
@@ -289,9 +289,9 @@ static const recipe_form panels = {
 
 static const recipe_form horizontal = {"x",
                                        "range: [0, 1]",
-                                       {PAIR_KEY("range", recipe, from, to),
-                                        FIELD_KEY("label", VALUE_TEXT, recipe, x_label),
-                                        FIELD_KEY("unit", VALUE_TEXT, recipe, x_unit),
+                                       {PAIR_KEY("range", recipe, shown.x.low, shown.x.high),
+                                        FIELD_KEY("label", VALUE_TEXT, recipe, shown.x.label),
+                                        FIELD_KEY("unit", VALUE_TEXT, recipe, shown.x.unit),
                                         FIELD_KEY("log", VALUE_TRUTH, recipe, logarithmic)}};
 
 static const recipe_form marks = {"a mark",
@@ -310,21 +310,21 @@ static const recipe_form whole = {
     {ITEMS_KEY("runs", &recipe_runs, recipe, sources, source_count),
      ITEMS_KEY("data", &recipe_data, recipe, sources, source_count),
      ITEMS_KEY("tables", &recipe_tables, recipe, sources, source_count),
-     ITEMS_KEY("panels", &panels, recipe, panels, panel_count),
-     FIELD_KEY("title", VALUE_TEXT, recipe, title),
-     FIELD_KEY("caption", VALUE_TEXT, recipe, caption),
+     ITEMS_KEY("panels", &panels, recipe, panels, shown.panel_count),
+     FIELD_KEY("title", VALUE_TEXT, recipe, shown.title),
+     FIELD_KEY("caption", VALUE_TEXT, recipe, shown.caption),
      {"x", VALUE_MAP, .form = &horizontal},
      {"columns", VALUE_NUMBER, offsetof(recipe, columns), .low = 1, .high = 8, .whole = true,
       .expected = "a whole number from 1 to 8"},
-     FIELD_KEY("shared", VALUE_TRUTH, recipe, shared),
+     FIELD_KEY("shared", VALUE_TRUTH, recipe, shown.shared_y),
      FIELD_KEY("contact", VALUE_TRUTH, recipe, contact),
-     ITEMS_KEY("marks", &marks, recipe, marks, mark_count),
+     ITEMS_KEY("marks", &marks, recipe, marks, shown.mark_count),
      OWN_KEY("multiples", take_multiples)}};
 
 static void take_recipe(recipe_context *c, const tree_node *root)
 {
     recipe_map(c, root, &whole, c->recipe);
-    if (c->recipe->panel_count == 0 && c->reader.faults == 0) {
+    if (c->recipe->shown.panel_count == 0 && c->reader.faults == 0) {
         report_node(&c->reader, root, "there are no panels here");
     }
     if (c->recipe->source_count == 0 && c->reader.faults == 0) {
@@ -338,7 +338,7 @@ bool recipe_read(recipe *r, const char *path, const char *text, size_t length, f
     fault f = {0};
     recipe_context c = {.reader = {.path = path}, .recipe = r};
     *r = (recipe){.columns = 1, .contact = true};
-    r->owned = g_ptr_array_new_with_free_func(g_free);
+    r->plot = owned_figure_create(0, "%s", path);
 
     tree_node *root = tree_parse(text, length, &f);
     if (root == NULL) {
@@ -352,12 +352,4 @@ bool recipe_read(recipe *r, const char *path, const char *text, size_t length, f
     bool good = c.reader.faults == 0 && !c.reader.no_memory;
     reader_report_all(&c.reader, report, report_context);
     return good;
-}
-
-void recipe_finish(recipe *r)
-{
-    if (r->owned != NULL) {
-        g_ptr_array_free(r->owned, TRUE);
-    }
-    memset(r, 0, sizeof *r);
 }

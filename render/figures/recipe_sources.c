@@ -9,8 +9,7 @@
 
 const char *recipe_keep(recipe_context *c, char *text)
 {
-    g_ptr_array_add(c->recipe->owned, text);
-    return text;
+    return owned_figure_keep(c->recipe->plot, text);
 }
 
 const char *recipe_text(recipe_context *c, const tree_node *node, const char *what)

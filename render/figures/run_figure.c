@@ -7,45 +7,45 @@
 
 // ---- scenarios run for figures
 
-void run_end(opened_run *r)
+void run_close(void *run)
 {
-    run_finish(&r->result);
-    scenario_finish(&r->scenario);
+    opened_run *r = run;
+    if (r != NULL) {
+        run_finish(&r->result);
+        scenario_finish(&r->scenario);
+        g_free(r);
+    }
 }
 
-status run_begin(opened_run *r, const char *name, const char *change, fault *f)
+opened_run *run_open(const char *name, const char *change, fault *f)
 {
-    return run_begin_changed(r, name, &change, change != NULL ? 1 : 0, NULL, f);
+    return run_open_changed(name, &change, change != NULL ? 1 : 0, NULL, f);
 }
 
-status run_begin_changed(opened_run *r, const char *name, const char *const *changes, int count,
-                         run_monitor *monitor, fault *f)
+opened_run *run_open_changed(const char *name, const char *const *changes, int count,
+                             run_monitor *monitor, fault *f)
 {
     const run_options options = {.keep_trace = true, .monitor = monitor};
     fault first = {STATUS_OK, ""};
+    opened_run *r = g_new0(opened_run, 1);
     status code = scenario_open(&r->scenario, name, keep_first_fault, &first);
-    FAIL_IF(code != STATUS_OK, fault_set(f, code, "%s", first.text));
 
     // changes lie above what the file says
-    if (count > 0) {
+    if (code == STATUS_OK && count > 0) {
         code = scenario_override_all(&r->scenario, (char *const *)changes, count, keep_first_fault,
                                      &first);
-        fault_set(f, code, "%s", first.text);
     }
-
-    // a run that fails takes its rows with it
-    if (code == STATUS_OK) {
+    if (code != STATUS_OK) {
+        fault_set(f, code, "%s", first.text);
+    } else {
         code = run_scenario_with(&r->scenario, &options, &r->result);
         if (code == STATUS_OK) {
-            return code;
+            return r;
         }
         fault_set(f, code, "%s: %s", name, r->result.summary.message);
-        run_finish(&r->result);
     }
-
-    // after any fault the caller has nothing to finish
-    scenario_finish(&r->scenario);
-    return code;
+    run_close(r);
+    return NULL;
 }
 
 // ---- the signals asked for
@@ -111,51 +111,41 @@ static status read_signals(const char *text, trace_panel *panels, int *count, fa
 
 // ---- the figure
 
-void run_figure_finish(run_figure *r)
-{
-    trace_figure_finish(&r->traces);
-    trace_finish(&r->overlay.trace);
-    g_free(r->overlay_name);
-    memset(r, 0, sizeof *r);
-}
-
-status run_figure_init(run_figure *r, const char *title, const trace_panel *panels, int panel_count,
-                       const trace_run *runs, int run_count, const figure_options *o, fault *f)
+owned_figure *run_figure_create(const char *title, const trace_panel *panels, int panel_count,
+                                const trace_run *runs, int run_count, const figure_options *o,
+                                fault *f)
 {
     assert(run_count >= 1);
     trace_run all[TRACE_RUNS];
     trace_panel asked[FIGURE_PANELS];
-    status code = STATUS_OK;
-    memset(r, 0, sizeof *r);
     panel_count = panels != NULL ? panel_count : USUAL_PANELS;
     panels = panels != NULL ? panels : usual_panels;
     if (o->signals != NULL) {
-        code = read_signals(o->signals, asked, &panel_count, f);
+        FAIL_IF(read_signals(o->signals, asked, &panel_count, f) != STATUS_OK, NULL);
         panels = asked;
     }
-    if (code == STATUS_OK && run_count + (o->overlay != NULL) > TRACE_RUNS) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT, "a figure shows at most %d runs and data",
-                         TRACE_RUNS);
+    if (run_count + (o->overlay != NULL) > TRACE_RUNS) {
+        fault_set(f, STATUS_BAD_ARGUMENT, "a figure shows at most %d runs and data", TRACE_RUNS);
+        return NULL;
     }
 
     // measured data are one more run, of points
-    if (code == STATUS_OK) {
-        memcpy(all, runs, (size_t)run_count * sizeof *runs);
+    g_autofree char *name = NULL;
+    opened_run *overlay = NULL;
+    memcpy(all, runs, (size_t)run_count * sizeof *runs);
+    if (o->overlay != NULL) {
+        overlay = g_new0(opened_run, 1);
+        trace *rows = &overlay->result.trace;
+        if (overlay_read(rows, o->overlay, panels, panel_count, &name, f) != STATUS_OK) {
+            run_close(overlay);
+            return NULL;
+        }
+        all[run_count++] = (trace_run){runs[0].scenario, &overlay->result, name, .points = true};
     }
-    if (code == STATUS_OK && o->overlay != NULL) {
-        code =
-            overlay_read(&r->overlay.trace, o->overlay, panels, panel_count, &r->overlay_name, f);
-        all[run_count++] =
-            (trace_run){runs[0].scenario, &r->overlay, r->overlay_name, .points = true};
-    }
-    if (code == STATUS_OK) {
-        code = trace_figure_init(&r->traces, title, panels, panel_count, all, run_count, f);
-    }
-    if (code != STATUS_OK) {
-        run_figure_finish(r);
-        return code;
-    }
-    figure_take_look(&r->traces.plot.figure, &o->look);
-    figure_take_range(&r->traces.plot.figure, o);
-    return STATUS_OK;
+
+    owned_figure *drawn = trace_figure_create(title, panels, panel_count, all, run_count);
+    owned_figure_own(drawn, overlay, run_close);
+    figure_take_look(&drawn->figure, &o->look);
+    figure_take_range(&drawn->figure, o);
+    return drawn;
 }

@@ -7,38 +7,30 @@
 
 // --- scenarios run for figures
 
-// A run with its scenario, finished by run_end.
+// A run with its scenario; of measured data the trace alone.
 typedef struct opened_run {
     scenario scenario;
     run_result result; // with its trace
 } opened_run;
 
 // Opens and runs a scenario, with one parameter changed if `change` ("arm.model=corrected") is not
-// NULL. On failure nothing has to be finished.
-status run_begin(opened_run *r, const char *name, const char *change, fault *f);
-void run_end(opened_run *r);
+// NULL. NULL with the reason if that fails. To be ended with run_close, which accepts NULL.
+opened_run *run_open(const char *name, const char *change, fault *f);
+void run_close(void *run);
+
+// The same with several changes, each "PATH=VALUE". STATUS_STOPPED if `monitor` (may be NULL)
+// requested it.
+opened_run *run_open_changed(const char *name, const char *const *changes, int count,
+                             run_monitor *monitor, fault *f);
 
 // The recorded signal whose name is nearest to a misspelt one.
 const char *nearest_signal(const char *name);
 
-// The same with several changes, each "PATH=VALUE". STATUS_STOPPED if `monitor` (may be NULL)
-// requested it.
-status run_begin_changed(opened_run *r, const char *name, const char *const *changes, int count,
-                         run_monitor *monitor, fault *f);
-
 // --- their figures
 
-// A figure of runs with what it owns. The runs are borrowed.
-typedef struct run_figure {
-    trace_figure traces;
-    run_result overlay; // its trace alone
-    char *overlay_name;
-} run_figure;
-
-// Describes a figure of the runs: o->signals in place of `panels` (NULL: the usual ones of a run),
-// o->overlay as points with a panel of residuals, o->from to o->to, and the look. Returns the
-// status of trace_figure_init and overlay_read, STATUS_BAD_ARGUMENT for an unknown signal; on
-// failure nothing has to be finished.
-status run_figure_init(run_figure *r, const char *title, const trace_panel *panels, int panel_count,
-                       const trace_run *runs, int run_count, const figure_options *o, fault *f);
-void run_figure_finish(run_figure *r);
+// A figure of the runs, which it borrows: o->signals in place of `panels` (NULL: the usual ones of
+// a run), o->overlay as points with a panel of residuals, o->from to o->to, and the look. NULL with
+// the status of overlay_read, or STATUS_BAD_ARGUMENT for an unknown signal or too many runs.
+owned_figure *run_figure_create(const char *title, const trace_panel *panels, int panel_count,
+                                const trace_run *runs, int run_count, const figure_options *o,
+                                fault *f);

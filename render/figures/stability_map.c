@@ -8,7 +8,6 @@
 
 enum {
     MAP_PANELS = 3,
-    MAP_LAYERS = 4,
     MAP_COLUMNS = 40, // most of a map
     MAP_ROWS = 30,
     MAP_RINGS = 3,
@@ -32,13 +31,12 @@ typedef struct newmark_kind {
 // A map with everything its figure borrows.
 struct newmark_map {
     const newmark_kind *kind;
-    opened_run run;        // of reference
+    const opened_run *run; // of reference
     scenario base;         // borrowed from it
     double from, peak;     // of its first pulse: first contact [s] and force [N]
     double force[SAMPLES]; // in the window [N]
 
-    owned_figure plot;
-    int layer_count;
+    owned_figure *plot; // owns this
     figure_map maps[MAP_PANELS];
     figure_colours colours[MAP_PANELS];
     double beta[MAP_COLUMNS], gamma[MAP_ROWS]; // middles of the cells
@@ -59,17 +57,14 @@ struct newmark_map {
 
 // ---- what lies over the cells
 
-// The same layer in every panel.
+// Adds the same layer to every panel.
 static void add_layer(newmark_map *m, figure_series layer)
 {
-    assert(m->layer_count < MAP_LAYERS);
     for (int panel = 0; panel < MAP_PANELS; panel++) {
-        m->plot.series[panel][m->layer_count] = layer;
-        if (layer.shade != NULL) {
-            m->plot.series[panel][m->layer_count].shade = m->ring_value[panel];
-        }
+        figure_series *out = &m->plot->series[panel][m->plot->panels[panel].series_count++];
+        *out = layer;
+        out->shade = layer.shade != NULL ? m->ring_value[panel] : NULL;
     }
-    m->layer_count++;
 }
 
 // ---- the runs
@@ -89,37 +84,31 @@ static gpointer compute_cells(gpointer data)
     return NULL;
 }
 
-static void newmark_map_destroy(void *what)
-{
-    newmark_map *m = what;
-    run_end(&m->run);
-    owned_figure_finish(&m->plot);
-    g_free(m);
-}
-
 // A map with its run of reference; NULL with STATUS_BAD_SCENARIO if that has no pulse, or with the
 // run's status.
 static newmark_map *newmark_map_create(const newmark_kind *kind, const figure_order *order,
                                        fault *f)
 {
-    newmark_map *m = g_new0(newmark_map, 1);
-    if (run_begin(&m->run, order->which->scenario, kind->change, f) != STATUS_OK) {
-        g_free(m);
-        return NULL;
-    }
-    owned_figure_init(&m->plot, order->title, MAP_PANELS);
-    m->kind = kind;
-    m->base = m->run.scenario;
-    m->from = m->run.result.summary.first_contact_s;
-    m->peak = m->run.result.summary.first_pulse_peak_N;
-    m->base.parameters.run.duration = m->from + WINDOW + kind->beyond;
-    m->plot.figure.parameters = owned_figure_keep(&m->plot, parameters_line(&m->run.scenario));
-    if (!isfinite(m->from) || !(m->peak > 0)) {
+    opened_run *run = run_open(order->which->scenario, kind->change, f);
+    FAIL_IF(run == NULL, NULL);
+    const summary *pulse = &run->result.summary;
+    if (!isfinite(pulse->first_contact_s) || !(pulse->first_pulse_peak_N > 0)) {
         fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to compare",
                   order->which->scenario);
-        newmark_map_destroy(m);
+        run_close(run);
         return NULL;
     }
+
+    owned_figure *o = owned_figure_create(MAP_PANELS, "%s", order->title);
+    newmark_map *m = owned_figure_keep(o, g_new0(newmark_map, 1));
+    m->plot = o;
+    m->kind = kind;
+    m->run = owned_figure_own(o, run, run_close);
+    m->base = run->scenario;
+    m->from = pulse->first_contact_s;
+    m->peak = pulse->first_pulse_peak_N;
+    m->base.parameters.run.duration = m->from + WINDOW + kind->beyond;
+    o->figure.parameters = owned_figure_keep(o, parameters_line(&run->scenario));
     return m;
 }
 
@@ -162,23 +151,21 @@ static artwork open_map(newmark_map *m, const figure_options *o)
                                       .rows = (size_t)m->kind->rows, .z = m->values[panel]};
         m->colours[panel] = (figure_colours){
             .axis = m->kind->scale, .reversed = true, .bar = panel == MAP_PANELS - 1};
-        m->plot.panels[panel] = (figure_panel){
-            .heading = m->kind->headings[panel],
-            .y = {.name = "gamma", .label = "<i>γ</i>", .low = GAMMA_LOW, .high = GAMMA_HIGH},
-            .weight = WEIGHT,
-            .map = &m->maps[panel],
-            .colours = &m->colours[panel],
-            .series = m->plot.series[panel],
-            .series_count = m->layer_count};
+        figure_panel *p = &m->plot->panels[panel];
+        p->heading = m->kind->headings[panel];
+        p->y = (figure_axis){"gamma", "<i>γ</i>", .low = GAMMA_LOW, .high = GAMMA_HIGH};
+        p->weight = WEIGHT;
+        p->map = &m->maps[panel];
+        p->colours = &m->colours[panel];
     }
 
-    figure *fig = &m->plot.figure;
+    figure *fig = &m->plot->figure;
     fig->x = (figure_axis){.name = "beta", .label = "<i>β</i>", .low = 0, .high = BETA_HIGH};
     fig->columns = MAP_PANELS;
     fig->common_legend = fig->shared_y = true;
     figure_take_look(fig, &o->look);
 
-    return artwork_of_figure(fig, m, newmark_map_destroy);
+    return artwork_of_owned(m->plot);
 }
 
 // ==== the figures
@@ -270,8 +257,8 @@ status stability_map(const figure_order *order, artwork *out, fault *f)
     if (m == NULL) {
         return f->code;
     }
-    m->plot.figure.caption = owned_figure_printf(
-        &m->plot,
+    m->plot->figure.caption = owned_figure_printf(
+        m->plot,
         "Newmark's method on the corrected arm (corrected/first-impact, 1\u2009V). Error: root of "
         "the mean square difference of the contact force from the event method's over the "
         "%g\u2009ms after first contact, in per cent of its peak. Lines: <i>γ</i> = ½ and "
@@ -281,7 +268,7 @@ status stability_map(const figure_order *order, artwork *out, fault *f)
         "energy no longer balanced. Rings have the colour of their own method's error.",
         1e3 * WINDOW);
 
-    sample_force(&m->run.result.trace, m->from, m->force);
+    sample_force(&m->run->result.trace, m->from, m->force);
     compute(m);
     add_rings(m);
     *out = open_map(m, order->options);
@@ -328,8 +315,8 @@ status printed_stability_map(const figure_order *order, artwork *out, fault *f)
     if (m == NULL) {
         return f->code;
     }
-    m->plot.figure.caption = owned_figure_printf(
-        &m->plot,
+    m->plot->figure.caption = owned_figure_printf(
+        m->plot,
         "The printed model (thesis/fig-3-4, 1\u2009V), largest contact force of the %g\u2009ms "
         "after first contact, in times the %.3g\u2009N of Fig. 3.4. Two runs: accelerations and "
         "force are computed once more from the constraint's second derivative (3.13), the thesis's "

@@ -8,45 +8,53 @@
 #define PANEL_HEIGHT 34.0 // of a panel of weight 1 on a page without a height [mm]
 #define SIDES        52.0 // approximate width of the labels next to the panels [pt]
 
-void owned_figure_init(owned_figure *o, const char *title, int panels)
-{
-    *o = (owned_figure){.kept = g_ptr_array_new_with_free_func(g_free)};
-    o->figure = (figure){.title = title != NULL ? owned_figure_keep(o, g_strdup(title)) : NULL,
-                         .panels = o->panels,
-                         .panel_count = panels};
-    for (int i = 0; i < panels; i++) {
-        o->panels[i].series = o->series[i];
-    }
-}
+// What a figure owns, with the function that ends it.
+typedef struct kept_thing {
+    void *thing;
+    GDestroyNotify end;
+} kept_thing;
 
-void owned_figure_finish(owned_figure *o)
+static void end_thing(gpointer kept)
 {
-    g_ptr_array_free(o->kept, TRUE);
+    const kept_thing *k = kept;
+    k->end(k->thing);
 }
 
 owned_figure *owned_figure_create(int panels, const char *format, ...)
 {
+    owned_figure *o = g_new0(owned_figure, 1);
+    o->kept = g_array_new(FALSE, FALSE, sizeof(kept_thing));
+    g_array_set_clear_func(o->kept, end_thing);
+
     va_list list;
     va_start(list, format);
-    g_autofree char *title = text_vprintf(format, list);
+    char *title = owned_figure_keep(o, text_vprintf(format, list));
     va_end(list);
-    owned_figure *o = g_new(owned_figure, 1);
-    owned_figure_init(o, title, panels);
+    o->figure = (figure){.title = title, .panels = o->panels, .panel_count = panels};
+    for (int i = 0; i < FIGURE_PANELS; i++) {
+        o->panels[i].series = o->series[i];
+    }
     return o;
 }
 
 void owned_figure_destroy(owned_figure *o)
 {
     if (o != NULL) {
-        owned_figure_finish(o);
+        g_array_free(o->kept, TRUE);
         g_free(o);
     }
 }
 
+void *owned_figure_own(owned_figure *o, void *thing, GDestroyNotify end)
+{
+    const kept_thing kept = {thing, end};
+    g_array_append_val(o->kept, kept);
+    return thing;
+}
+
 void *owned_figure_keep(owned_figure *o, void *block)
 {
-    g_ptr_array_add(o->kept, block);
-    return block;
+    return owned_figure_own(o, block, g_free);
 }
 
 double *owned_figure_numbers(owned_figure *o, size_t count)

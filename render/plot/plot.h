@@ -175,20 +175,18 @@ typedef struct owned_figure {
     figure figure;
     figure_panel panels[FIGURE_PANELS];
     figure_series series[FIGURE_PANELS][PANEL_SERIES]; // of each panel
-    GPtrArray *kept;                                   // blocks
+    GArray *kept;                                      // whatever ends with it
 } owned_figure;
 
-// A figure of empty panels with a copy of the plain title (may be NULL).
-void owned_figure_init(owned_figure *o, const char *title, int panels);
-void owned_figure_finish(owned_figure *o);
-
-// The same on the heap, with a title printed as by text_printf; to be destroyed, NULL is accepted.
+// A figure of empty panels with a plain title printed as by text_printf; to be destroyed, NULL is
+// accepted.
 owned_figure *owned_figure_create(int panels, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 void owned_figure_destroy(owned_figure *o);
 
-// Gives a block from g_malloc to the figure, and returns it; room for numbers; and a text as
-// text_printf makes it.
+// Gives something to the figure, which ends it by `end`, and returns it; a block from g_malloc;
+// room for numbers; and a text as text_printf makes it.
+void *owned_figure_own(owned_figure *o, void *thing, GDestroyNotify end);
 void *owned_figure_keep(owned_figure *o, void *block);
 double *owned_figure_numbers(owned_figure *o, size_t count);
 const char *owned_figure_printf(owned_figure *o, const char *format, ...)

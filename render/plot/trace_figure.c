@@ -1,6 +1,7 @@
 // Runs side by side: each has a colour, each signal a line, and one key says both.
 #include "render/plot/trace_plot.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -19,6 +20,15 @@ static bool shows(const trace_run *run, const trace_panel *panel, int index)
 
 // ---- lines
 
+enum { KEY_ENTRIES = TRACE_RUNS + FIGURE_PANELS * TRACE_SIGNALS };
+
+// The key of runs side by side: their colours, then lines, then data.
+typedef struct trace_key {
+    figure_panel panel;
+    figure_series series[KEY_ENTRIES];
+    int meanings[KEY_ENTRIES]; // what the entry is a line of; 0: no signal
+} trace_key;
+
 // What a line stands for: a body, whatever is shown of it, or else a signal.
 static int meaning_of(int index)
 {
@@ -27,10 +37,10 @@ static int meaning_of(int index)
 }
 
 // The key's entry for a signal, or -1.
-static int find_entry(const trace_figure *t, int meaning)
+static int find_entry(const trace_key *key, int meaning)
 {
-    for (int i = 0; i < t->key.series_count; i++) {
-        if (t->key_signals[i] == meaning) {
+    for (int i = 0; i < key->panel.series_count; i++) {
+        if (key->meanings[i] == meaning) {
             return i;
         }
     }
@@ -38,21 +48,22 @@ static int find_entry(const trace_figure *t, int meaning)
 }
 
 // The plainest line that no signal has with which this one shares a panel.
-static line_style free_line(const trace_figure *t, const trace_panel *panels, int meaning)
+static line_style free_line(const trace_key *key, const trace_panel *panels, int panel_count,
+                            int meaning)
 {
     static const line_style lines[TRACE_SIGNALS] = {LINE_SOLID, LINE_DASHED, LINE_DASH_DOT,
                                                     LINE_DOTTED};
     bool taken[TRACE_SIGNALS] = {false};
 
-    for (int p = 0; p < t->plot.figure.panel_count; p++) {
+    for (int p = 0; p < panel_count; p++) {
         bool here = false;
         for (int i = 0; i < TRACE_SIGNALS && panels[p].signals[i] != NULL; i++) {
             here = here || meaning_of(signal_index(panels[p].signals[i])) == meaning;
         }
         for (int i = 0; here && i < TRACE_SIGNALS && panels[p].signals[i] != NULL; i++) {
-            int entry = find_entry(t, meaning_of(signal_index(panels[p].signals[i])));
+            int entry = find_entry(key, meaning_of(signal_index(panels[p].signals[i])));
             for (int k = 0; entry >= 0 && k < TRACE_SIGNALS; k++) {
-                taken[k] = taken[k] || t->key_series[entry].style == lines[k];
+                taken[k] = taken[k] || key->series[entry].style == lines[k];
             }
         }
     }
@@ -66,11 +77,12 @@ static line_style free_line(const trace_figure *t, const trace_panel *panels, in
 
 // ---- the key
 
-static void add_entry(trace_figure *t, figure_series entry, int meaning, char *label)
+static void add_entry(owned_figure *o, trace_key *key, figure_series entry, int meaning,
+                      char *label)
 {
-    entry.name = entry.label = owned_figure_keep(&t->plot, label);
-    t->key_signals[t->key.series_count] = meaning;
-    t->key_series[t->key.series_count++] = entry;
+    entry.name = entry.label = owned_figure_keep(o, label);
+    key->meanings[key->panel.series_count] = meaning;
+    key->series[key->panel.series_count++] = entry;
 }
 
 // "hub and first link", or of a signal of no body its symbol and what it is.
@@ -86,11 +98,10 @@ static char *signal_label(const trace_run *runs, int run_count, int index)
                : g_strconcat(signal_body_name(body), joined ? " and first link" : "", NULL);
 }
 
-// The signals of a panel that has several, in the colour of texts.
-static void add_signals(trace_figure *t, const trace_panel *panels, int panel,
-                        const trace_run *runs, int run_count)
+// The signals of panels that have several, in the colour of texts.
+static void add_signals(owned_figure *o, trace_key *key, const trace_panel *panels,
+                        const trace_panel *p, const trace_run *runs, int run_count)
 {
-    const trace_panel *p = &panels[panel];
     for (int i = 0; i < TRACE_SIGNALS && p->signals[1] != NULL && p->signals[i] != NULL; i++) {
         int index = signal_index(p->signals[i]), meaning = meaning_of(index);
         bool shown = false;
@@ -98,45 +109,46 @@ static void add_signals(trace_figure *t, const trace_panel *panels, int panel,
             shown = shown ||
                     (shows(&runs[run], p, index) && trace_has(&runs[run].result->trace, index));
         }
-        if (shown && find_entry(t, meaning) < 0) {
-            const figure_series line = {
-                .run = 1, .colour = 6, .style = free_line(t, panels, meaning)};
-            add_entry(t, line, meaning, signal_label(runs, run_count, index));
+        if (shown && find_entry(key, meaning) < 0) {
+            const line_style style = free_line(key, panels, o->figure.panel_count, meaning);
+            add_entry(o, key, (figure_series){.run = 1, .colour = 6, .style = style}, meaning,
+                      signal_label(runs, run_count, index));
         }
     }
 }
 
 // Gives signals that stand in one panel different lines, and the figure one key for all panels of
-// both runs and signals; does nothing where no run has a rank. Before the panels are described.
-static void make_key(trace_figure *t, const trace_panel *panels, const trace_run *runs,
-                     int run_count)
+// both runs and signals; empty where no run has a rank.
+static trace_key *make_key(owned_figure *o, const trace_panel *panels, const trace_run *runs,
+                           int run_count)
 {
-    // runs
+    trace_key *key = owned_figure_keep(o, g_new0(trace_key, 1));
     for (int run = 0; run < run_count; run++) {
         if (runs[run].rank > 0) {
             const figure_series line = {.run = runs[run].rank,
                                         .colour = palette_slot(runs[run].rank - 1)};
-            add_entry(t, line, 0, text_escape(runs[run].name));
+            add_entry(o, key, line, 0, text_escape(runs[run].name));
         }
     }
-    if (t->key.series_count == 0) {
-        return;
+    if (key->panel.series_count == 0) {
+        return key;
     }
-    t->key.series = t->key_series;
-    t->plot.figure.key = &t->key;
-    t->plot.figure.common_legend = true;
+    key->panel.series = key->series;
+    o->figure.key = &key->panel;
+    o->figure.common_legend = true;
 
     // signals, and data
-    for (int p = 0; p < t->plot.figure.panel_count; p++) {
-        add_signals(t, panels, p, runs, run_count);
+    for (int p = 0; p < o->figure.panel_count; p++) {
+        add_signals(o, key, panels, &panels[p], runs, run_count);
     }
     for (int run = 0; run < run_count; run++) {
         if (runs[run].points) {
             const figure_series points = {
                 .run = 1, .no_line = true, .marker = MARKER_CIRCLE, .colour = 6};
-            add_entry(t, points, 0, text_escape(runs[run].name));
+            add_entry(o, key, points, 0, text_escape(runs[run].name));
         }
     }
+    return key;
 }
 
 // ==== panels
@@ -148,10 +160,10 @@ static void make_key(trace_figure *t, const trace_panel *panels, const trace_run
 // ---- panels
 
 // The series of one run.
-static void add_series(trace_figure *t, int panel_index, const trace_panel *from,
-                       const trace_run *runs, int run, int run_count)
+static void add_series(owned_figure *o, const trace_key *key, int panel_index,
+                       const trace_panel *from, const trace_run *runs, int run, int run_count)
 {
-    figure_panel *panel = &t->plot.panels[panel_index];
+    figure_panel *panel = &o->panels[panel_index];
     const scenario *s = runs[run].scenario;
     bool alone = from->signals[1] == NULL, points = run > 0 && runs[run].points, named = false;
 
@@ -165,11 +177,11 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
         }
 
         // as the signal table has it
-        figure_series *out = &t->plot.series[panel_index][panel->series_count++];
-        *out = trace_series(&runs[run], index, &t->plot);
+        figure_series *out = &o->series[panel_index][panel->series_count++];
+        *out = trace_series(&runs[run], index, o);
         for (int k = 0; k + 1 < panel->series_count && run == 0; k++) {
             // two readings of one quantity: the second in grey
-            out->colour = t->plot.series[panel_index][k].colour == out->colour ? 7 : out->colour;
+            out->colour = o->series[panel_index][k].colour == out->colour ? 7 : out->colour;
         }
 
         // the second run stands back
@@ -179,8 +191,7 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             out->radius = STEP_RADIUS;
         }
         if (run > 0) {
-            out->name =
-                owned_figure_keep(&t->plot, g_strconcat(out->name, " ", runs[run].name, NULL));
+            out->name = owned_figure_keep(o, g_strconcat(out->name, " ", runs[run].name, NULL));
             out->colour = alone ? 6 : runs[run].brief ? 7 : out->colour;
         }
 
@@ -189,8 +200,8 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             out->secondary = false;
             out->run = runs[run].rank;
             out->colour = palette_slot(runs[run].rank - 1);
-            const int entry = find_entry(t, meaning_of(index));
-            out->style = entry >= 0 ? t->key_series[entry].style : LINE_SOLID;
+            const int entry = find_entry(key, meaning_of(index));
+            out->style = entry >= 0 ? key->series[entry].style : LINE_SOLID;
             continue;
         }
 
@@ -200,57 +211,57 @@ static void add_series(trace_figure *t, int panel_index, const trace_panel *from
             out->secondary = false;
             out->marker = MARKER_CIRCLE;
             out->colour = 6;
-            out->label = named ? NULL : owned_figure_keep(&t->plot, text_escape(runs[run].name));
+            out->label = named ? NULL : owned_figure_keep(o, text_escape(runs[run].name));
             named = true;
         } else if (alone && run_count > 1 && panel_index == 0) {
             // the first panel's legend holds for all
-            out->label = owned_figure_keep(&t->plot, text_escape(runs[run].name));
+            out->label = owned_figure_keep(o, text_escape(runs[run].name));
         } else if (!alone && run == 0) {
-            out->label = owned_figure_keep(&t->plot, trace_series_label(s, index, true));
-            out->symbol = owned_figure_keep(&t->plot, trace_series_symbol(s, index));
+            out->label = owned_figure_keep(o, trace_series_label(s, index, true));
+            out->symbol = owned_figure_keep(o, trace_series_symbol(s, index));
         } else if (!alone && !named) {
             // the first of its signals speaks for the other run
             g_autofree char *symbol = trace_series_symbol(s, index),
                             *run_name = text_escape(runs[run].name);
-            out->label = owned_figure_printf(&t->plot, "%s  %s", symbol, run_name);
+            out->label = owned_figure_printf(o, "%s  %s", symbol, run_name);
             named = true;
         }
     }
 }
 
-static void describe_panel(trace_figure *t, int index, const trace_panel *from,
-                           const trace_run *runs, int run_count)
+static void describe_panel(owned_figure *o, const trace_key *key, int index,
+                           const trace_panel *from, const trace_run *runs, int run_count)
 {
-    figure_panel *panel = &t->plot.panels[index];
+    figure_panel *panel = &o->panels[index];
     const signal_info *first = &signal_table[signal_index(from->signals[0])];
     const wall_parameters *wall = &runs[0].scenario->parameters.wall;
 
     // the axis, whose symbol names the body
     const char *symbol =
-        owned_figure_keep(&t->plot, trace_symbol(runs[0].scenario, signal_index(first->name)));
+        owned_figure_keep(o, trace_symbol(runs[0].scenario, signal_index(first->name)));
     panel->y.name = first->name;
     panel->y.unit = first->unit;
-    panel->y.label = from->label != NULL
-                         ? from->label
-                         : owned_figure_printf(&t->plot, "%s %s", first->quantity, symbol);
+    panel->y.label = from->label != NULL ? from->label
+                                         : owned_figure_printf(o, "%s %s", first->quantity, symbol);
     panel->y.symbol = from->signals[1] == NULL ? symbol : NULL;
     panel->weight = from->weight;
     panel->y.with_zero = from->with_zero;
 
     // curves of all runs
     for (int run = 0; run < run_count; run++) {
-        add_series(t, index, from, runs, run, run_count);
+        add_series(o, key, index, from, runs, run, run_count);
     }
 
     // what is drawn with them
     if (from->impulses) {
-        panel->impulses = trace_impulses(&runs[0].result->trace, &panel->impulse_count, &t->plot);
+        panel->impulses = trace_impulses(&runs[0].result->trace, &panel->impulse_count, o);
         panel->impulse_label = "Impulse";
         panel->impulse_unit = signal_table[SIGNAL_INDEX(impulse)].unit;
     }
     if (from->wall && wall->kind != WALL_NONE) {
-        t->wall = (figure_level){wall->angle, "wall"};
-        panel->levels = &t->wall;
+        figure_level *level = owned_figure_keep(o, g_new(figure_level, 1));
+        *level = (figure_level){wall->angle, "wall"};
+        panel->levels = level;
         panel->level_count = 1;
     }
     if (from->inset) {
@@ -264,13 +275,13 @@ static void describe_panel(trace_figure *t, int index, const trace_panel *from,
 }
 
 // A panel of what was measured less what was computed, for the first signal that has data.
-static void add_residuals(trace_figure *t, const trace_panel *panels, const trace_run *computed,
+static void add_residuals(owned_figure *o, const trace_panel *panels, const trace_run *computed,
                           const trace_run *measured)
 {
     const trace *data = &measured->result->trace;
 
     // the first panel with a measured signal
-    int last = t->plot.figure.panel_count, panel = 0;
+    int last = o->figure.panel_count, panel = 0;
     while (panel < last && !trace_has(data, signal_index(panels[panel].signals[0]))) {
         panel++;
     }
@@ -279,46 +290,25 @@ static void add_residuals(trace_figure *t, const trace_panel *panels, const trac
     }
 
     int index = signal_index(panels[panel].signals[0]);
-    figure_series *s = &t->plot.series[last][0];
-    *s = trace_difference(data, &computed->result->trace, index, &t->plot);
+    figure_series *s = &o->series[last][0];
+    *s = trace_difference(data, &computed->result->trace, index, o);
     s->name = "residual";
     s->colour = 6;
     s->marker = MARKER_CIRCLE;
     s->no_line = true;
-    t->plot.panels[last] =
-        (figure_panel){.y = {"residual", "Residual", .symbol = "Δ",
-                             .unit = signal_table[index].unit, .with_zero = true},
-                       .series = s,
-                       .series_count = 1,
-                       .weight = 0.6};
-    t->plot.figure.panel_count++;
+    o->panels[last] = (figure_panel){.y = {"residual", "Residual", .symbol = "Δ",
+                                           .unit = signal_table[index].unit, .with_zero = true},
+                                     .series = s,
+                                     .series_count = 1,
+                                     .weight = 0.6};
+    o->figure.panel_count++;
 }
 
-static status check_panels(const trace_panel *panels, int count, int run_count, fault *f)
+owned_figure *trace_figure_create(const char *title, const trace_panel *panels, int panel_count,
+                                  const trace_run *runs, int run_count)
 {
-    FAIL_IF(count < 1 || count > FIGURE_PANELS || run_count < 1 || run_count > TRACE_RUNS,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "a figure of %d panels and %d runs, expected 1 to %d and 1 to %d", count,
-                      run_count, FIGURE_PANELS, TRACE_RUNS));
-
-    // every name is a signal's
-    for (int p = 0; p < count; p++) {
-        for (int i = 0; i < TRACE_SIGNALS && (i == 0 || panels[p].signals[i] != NULL); i++) {
-            const char *name = panels[p].signals[i];
-            FAIL_IF(name == NULL || signal_find(name) < 0,
-                    fault_set(f, STATUS_BAD_ARGUMENT, "panel %d shows no known signal: '%s'", p + 1,
-                              name ? name : ""));
-        }
-    }
-    return STATUS_OK;
-}
-
-status trace_figure_init(trace_figure *t, const char *title, const trace_panel *panels,
-                         int panel_count, const trace_run *runs, int run_count, fault *f)
-{
-    memset(t, 0, sizeof *t);
-
-    TRY(check_panels(panels, panel_count, run_count, f));
+    assert(panel_count >= 1 && panel_count <= FIGURE_PANELS);
+    assert(run_count >= 1 && run_count <= TRACE_RUNS);
 
     // what is shaded
     bool modes = false;
@@ -326,43 +316,31 @@ status trace_figure_init(trace_figure *t, const char *title, const trace_panel *
         modes = modes || panels[i].modes;
     }
     const char *mode = modes ? trace_mode_name(runs[0].scenario, 1) : NULL;
-
     g_autofree char *shading =
         mode != NULL ? text_printf("%s mode", mode) : g_strdup(modes ? "second mode" : "contact");
 
     // the page
     g_autofree char *own_title = title == NULL ? scenario_title(runs[0].scenario) : NULL;
-    owned_figure_init(&t->plot, title != NULL ? title : own_title, panel_count);
-    figure *fig = &t->plot.figure;
-    fig->caption = owned_figure_keep(&t->plot, trace_caption(runs, run_count, shading));
-    fig->x = (figure_axis){"time", "Time <i>t</i>", .unit = "s"};
-    fig->parameters = owned_figure_keep(&t->plot, parameters_line(runs[0].scenario));
+    owned_figure *o = owned_figure_create(panel_count, "%s", title != NULL ? title : own_title);
+    o->figure.caption = owned_figure_keep(o, trace_caption(runs, run_count, shading));
+    o->figure.x = (figure_axis){"time", "Time <i>t</i>", .unit = "s"};
+    o->figure.parameters = owned_figure_keep(o, parameters_line(runs[0].scenario));
 
     // panels with their curves; side by side, runs are told by colours and signals by lines
-    make_key(t, panels, runs, run_count);
+    const trace_key *key = make_key(o, panels, runs, run_count);
     for (int i = 0; i < panel_count; i++) {
-        describe_panel(t, i, &panels[i], runs, run_count);
+        describe_panel(o, key, i, &panels[i], runs, run_count);
     }
-
     for (int run = 1; run < run_count; run++) {
         if (runs[run].points) {
-            add_residuals(t, panels, &runs[0], &runs[run]);
+            add_residuals(o, panels, &runs[0], &runs[run]);
         }
     }
 
     // marks and shading
-    trace_mark_events(t, &runs[0]);
-    fig->marks = t->marks;
-    trace_shade(&t->plot, &runs[0].result->trace, modes);
-    return STATUS_OK;
-}
-
-void trace_figure_finish(trace_figure *t)
-{
-    if (t->plot.kept != NULL) {
-        owned_figure_finish(&t->plot);
-    }
-    memset(t, 0, sizeof *t);
+    trace_mark_events(o, &runs[0]);
+    trace_shade(o, &runs[0].result->trace, modes);
+    return o;
 }
 
 const trace_panel usual_panels[USUAL_PANELS] = {
@@ -372,33 +350,27 @@ const trace_panel usual_panels[USUAL_PANELS] = {
     {.label = "Voltage <i>v</i>", .signals = {"voltage"}, .with_zero = true, .weight = 0.5},
 };
 
-// Puts notes behind a figure's marks.
-static void add_notes(trace_figure *t, const figure_mark *notes, int count)
-{
-    figure *fig = &t->plot.figure;
-    figure_mark *all = g_new0(figure_mark, (gsize)(fig->mark_count + count) + 1);
-    memcpy(all, fig->marks, (size_t)fig->mark_count * sizeof *all);
-    for (int i = 0; i < count; i++) {
-        figure_mark *m = &all[fig->mark_count++];
-        *m = (figure_mark){.x = notes[i].x};
-        m->label = owned_figure_keep(&t->plot, g_markup_escape_text(notes[i].label, -1));
-    }
-    fig->marks = owned_figure_keep(&t->plot, all);
-}
-
 status plot_run(const scenario *s, const run_result *result, const run_result *old,
                 const figure_mark *notes, int note_count, const char *path, fault *f)
 {
     const trace_run runs[] = {{s, result, "this run"}, {s, old, "old run"}};
-    trace_figure t;
-    status code =
-        trace_figure_init(&t, NULL, usual_panels, USUAL_PANELS, runs, old != NULL ? 2 : 1, f);
-    if (code == STATUS_OK) {
-        if (note_count > 0) {
-            add_notes(&t, notes, note_count);
-        }
-        code = figure_write(&t.plot.figure, path, f);
-        trace_figure_finish(&t);
+    owned_figure *o =
+        trace_figure_create(NULL, usual_panels, USUAL_PANELS, runs, old != NULL ? 2 : 1);
+
+    // notes behind the figure's marks
+    const int count = o->figure.mark_count;
+    figure_mark *all = owned_figure_keep(o, g_new0(figure_mark, (gsize)(count + note_count) + 1));
+    for (int i = 0; i < count; i++) {
+        all[i] = o->figure.marks[i];
     }
+    for (int i = 0; i < note_count; i++) {
+        char *label = owned_figure_keep(o, g_markup_escape_text(notes[i].label, -1));
+        all[count + i] = (figure_mark){.x = notes[i].x, .label = label};
+    }
+    o->figure.marks = all;
+    o->figure.mark_count += note_count;
+
+    status code = figure_write(&o->figure, path, f);
+    owned_figure_destroy(o);
     return code;
 }

@@ -24,7 +24,7 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded);
 // --- what happened: trace_series.c
 
 // Marks contact, peak, release and changes by the script; on the rig changes of mode.
-void trace_mark_events(trace_figure *t, const trace_run *run);
+void trace_mark_events(owned_figure *o, const trace_run *run);
 
 // The impulses of all impacts, kept by the figure.
 figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o);

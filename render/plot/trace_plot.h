@@ -7,7 +7,7 @@
 #include "src/base/fault.h"
 #include "src/run/run.h"
 
-enum { TRACE_SIGNALS = 4, TRACE_RUNS = 8, TRACE_ACTIONS = 16, TRACE_MARKS = 3 + TRACE_ACTIONS };
+enum { TRACE_SIGNALS = 4, TRACE_RUNS = 8 };
 
 // A panel: signals of one unit over time.
 typedef struct trace_panel {
@@ -33,18 +33,6 @@ typedef struct trace_run {
     int rank; // 0: as above; otherwise a colour of its own, 1 to 8, and lines tell signals
 } trace_run;
 
-enum { TRACE_KEY = TRACE_RUNS + FIGURE_PANELS * TRACE_SIGNALS };
-
-// A figure with everything it borrows, except for the runs.
-typedef struct trace_figure {
-    owned_figure plot; // with an additional last panel of residuals, if there are reference data
-    figure_panel key;  // of runs side by side: their colours, then lines, then data
-    figure_series key_series[TRACE_KEY];
-    int key_signals[TRACE_KEY]; // what the entry is a line of, see trace_figure.c; 0: no signal
-    figure_level wall;
-    figure_mark marks[TRACE_MARKS];
-} trace_figure;
-
 // The scenario's title, and what was changed of what it speaks of. Free with g_free.
 char *scenario_title(const scenario *s);
 
@@ -68,12 +56,11 @@ figure_series trace_difference(const trace *of, const trace *less, int index, ow
 // Shades a run's contact, or where the controller was in its second mode.
 void trace_shade(owned_figure *o, const trace *rows, bool modes);
 
-// Describes the panels (at most FIGURE_PANELS) of the runs (at most TRACE_RUNS). `title` is plain,
-// NULL for the first scenario's. The runs must outlive the figure. STATUS_BAD_ARGUMENT for an
-// unknown signal, STATUS_NO_MEMORY; on failure nothing has to be finished.
-status trace_figure_init(trace_figure *t, const char *title, const trace_panel *panels,
-                         int panel_count, const trace_run *runs, int run_count, fault *f);
-void trace_figure_finish(trace_figure *t);
+// A figure of panels (1 to FIGURE_PANELS, of known signals) of runs (1 to TRACE_RUNS), which must
+// outlive it, with an additional last panel of residuals if there are reference data. `title` is
+// plain, NULL for the first scenario's.
+owned_figure *trace_figure_create(const char *title, const trace_panel *panels, int panel_count,
+                                  const trace_run *runs, int run_count);
 
 // The default panels of a run.
 enum { USUAL_PANELS = 4 };

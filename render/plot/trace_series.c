@@ -9,10 +9,7 @@
 
 // ==== what happened
 
-static void add_mark(trace_figure *t, double time, const char *label)
-{
-    t->marks[t->plot.figure.mark_count++] = (figure_mark){.x = time, .label = label};
-}
+enum { TRACE_MARKS = 19 }; // most of a figure: the first pulse and 16 actions of the script
 
 // What the script did at an event, "voltage 2 V"; NULL if the event is no action.
 static char *action_label(const scenario *s, const event *e)
@@ -36,65 +33,74 @@ static char *action_label(const scenario *s, const event *e)
     return text_printf("%s %s\u2009%s", name, value, unit);
 }
 
-// Where the controller went into another mode, with the mode's name. False if it never did.
-static bool mark_modes(trace_figure *t, const trace_run *run)
+static void add_mark(GArray *marks, figure_mark mark)
+{
+    g_array_append_val(marks, mark);
+}
+
+// Where the controller went into another mode, with the mode's name.
+static void mark_modes(owned_figure *o, GArray *marks, const trace_run *run)
 {
     const trace *rows = &run->result->trace;
-    bool marked = false;
     double mode = (double)NAN;
 
     // wherever the mode is another than in the last row that had one
     for (size_t i = 0; i < rows->row_count; i++) {
         double now = rows->rows[i].controller_mode;
-        if (isfinite(now) && isfinite(mode) && now != mode &&
-            t->plot.figure.mark_count < TRACE_MARKS) {
+        if (isfinite(now) && isfinite(mode) && now != mode && marks->len < TRACE_MARKS) {
             const char *name = trace_mode_name(run->scenario, (int)now);
             g_autofree char *escaped = name != NULL ? text_escape(name) : text_printf("%g", now);
-            add_mark(t, rows->rows[i].time,
-                     name != NULL ? owned_figure_printf(&t->plot, "%s mode", escaped)
-                                  : owned_figure_printf(&t->plot, "mode %s", escaped));
-            t->marks[t->plot.figure.mark_count - 1].onwards = true;
-            marked = true;
+            const char *label = name != NULL ? owned_figure_printf(o, "%s mode", escaped)
+                                             : owned_figure_printf(o, "mode %s", escaped);
+            add_mark(marks,
+                     (figure_mark){.x = rows->rows[i].time, .label = label, .onwards = true});
         }
         mode = isfinite(now) ? now : mode;
     }
-    return marked;
 }
 
-void trace_mark_events(trace_figure *t, const trace_run *run)
+// The first pulse, its peak at its point where the first panel shows forces, and what the script
+// did.
+static void mark_contact(owned_figure *o, GArray *marks, const trace_run *run)
 {
-    const summary *m = &run->result->summary;
-
-    // modes of a controller say more than contacts
-    if (run->scenario->parameters.control.law != LAW_NONE && mark_modes(t, run)) {
-        return;
-    }
-
-    // the first pulse
     const trace *rows = &run->result->trace;
-    if (isfinite(m->first_contact_s)) {
-        add_mark(t, m->first_contact_s, "contact");
+    const summary *m = &run->result->summary;
+    const double from = m->first_contact_s, peak = m->first_pulse_peak_N;
+    if (isfinite(from)) {
+        add_mark(marks, (figure_mark){.x = from, .label = "contact"});
     }
     if (isfinite(m->first_pulse_time_to_peak_s)) {
-        g_autofree char *force = text_quantity(m->first_pulse_peak_N, 3, "N");
-        add_mark(t, m->first_contact_s + m->first_pulse_time_to_peak_s,
-                 owned_figure_printf(&t->plot, "peak %s", force));
-        // at its point where the first panel shows forces
-        figure_mark *peak = &t->marks[t->plot.figure.mark_count - 1];
-        peak->pointed = strcmp(t->plot.panels[0].y.name, "force") == 0;
-        peak->y = m->first_pulse_peak_N;
+        g_autofree char *force = text_quantity(peak, 3, "N");
+        add_mark(marks, (figure_mark){.x = from + m->first_pulse_time_to_peak_s,
+                                      .label = owned_figure_printf(o, "peak %s", force),
+                                      .pointed = strcmp(o->panels[0].y.name, "force") == 0,
+                                      .y = peak});
     }
     if (isfinite(m->first_pulse_s)) {
-        add_mark(t, m->first_contact_s + m->first_pulse_s, "release");
+        add_mark(marks, (figure_mark){.x = from + m->first_pulse_s, .label = "release"});
     }
-
-    // what the script did
-    for (size_t i = 0; i < rows->event_count && t->plot.figure.mark_count < TRACE_MARKS; i++) {
+    for (size_t i = 0; i < rows->event_count && marks->len < TRACE_MARKS; i++) {
         char *label = action_label(run->scenario, &rows->events[i]);
         if (label != NULL) {
-            add_mark(t, rows->events[i].time, owned_figure_keep(&t->plot, label));
+            add_mark(marks, (figure_mark){.x = rows->events[i].time,
+                                          .label = owned_figure_keep(o, label)});
         }
     }
+}
+
+void trace_mark_events(owned_figure *o, const trace_run *run)
+{
+    GArray *marks = g_array_new(FALSE, FALSE, sizeof(figure_mark));
+
+    // modes of a controller say more than contacts
+    if (run->scenario->parameters.control.law != LAW_NONE) {
+        mark_modes(o, marks, run);
+    }
+    if (marks->len == 0) {
+        mark_contact(o, marks, run);
+    }
+    o->figure.mark_count = (int)marks->len;
+    o->figure.marks = owned_figure_keep(o, g_array_free(marks, FALSE));
 }
 
 void trace_shade(owned_figure *o, const trace *rows, bool modes)

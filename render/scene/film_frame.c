@@ -165,7 +165,7 @@ static void place_views(film_plan *plan)
 }
 
 // The traces: force, angles and velocities of one run, the forces of several.
-static status describe_traces(const film_plan *plan, trace_figure *t, fault *f)
+static owned_figure *describe_traces(const film_plan *plan)
 {
     static const trace_panel one[] = {
         {.signals = {"force"}, .with_zero = true, .impulses = true, .weight = 1.2},
@@ -180,37 +180,35 @@ static status describe_traces(const film_plan *plan, trace_figure *t, fault *f)
         runs[i] = (trace_run){plan->runs[i].scenario, plan->runs[i].result, plan->runs[i].name,
                               .rank = plan->run_count > 1 ? i + 1 : 0};
     }
-    return plan->run_count == 1
-               ? trace_figure_init(t, NULL, one, (int)G_N_ELEMENTS(one), runs, 1, f)
-               : trace_figure_init(t, NULL, several, 1, runs, plan->run_count, f);
+    return plan->run_count == 1 ? trace_figure_create(NULL, one, (int)G_N_ELEMENTS(one), runs, 1)
+                                : trace_figure_create(NULL, several, 1, runs, plan->run_count);
 }
 
 // Paints all of the traces once; frames veil what has not happened yet.
 static status paint_traces(film_plan *plan, fault *f)
 {
-    trace_figure t;
-    status code = describe_traces(plan, &t, f);
-    TRY(code);
+    owned_figure *drawn = describe_traces(plan);
+    figure *t = &drawn->figure;
 
     // its size: what the views leave of the picture
     const film_view *strip = &plan->strip;
     plan->trace_scale = TRACE_LETTERS * film_scale(plan);
 
     // the views have the titles
-    t.plot.figure.title = t.plot.figure.caption = NULL;
-    t.plot.figure.theme = plan->options.view.theme;
-    t.plot.figure.x.low = plan->clock.start;
-    t.plot.figure.x.high = plan->clock.end;
-    t.plot.figure.width = strip->width / plan->trace_scale * 25.4 / 72;
-    t.plot.figure.height = strip->height / plan->trace_scale * 25.4 / 72;
+    t->title = t->caption = NULL;
+    t->theme = plan->options.view.theme;
+    t->x.low = plan->clock.start;
+    t->x.high = plan->clock.end;
+    t->width = strip->width / plan->trace_scale * 25.4 / 72;
+    t->height = strip->height / plan->trace_scale * 25.4 / 72;
 
     plan->traces = cairo_image_surface_create(CAIRO_FORMAT_RGB24, strip->width, strip->height);
     cairo_t *cr = cairo_create(plan->traces);
     set_colour(cr, page_of(plan));
     cairo_paint(cr);
     cairo_scale(cr, plan->trace_scale, plan->trace_scale);
-    code = picture_end_drawing(cr, figure_paint(cr, &t.plot.figure, plan->report, f), f);
-    trace_figure_finish(&t);
+    status code = picture_end_drawing(cr, figure_paint(cr, t, plan->report, f), f);
+    owned_figure_destroy(drawn);
     return code;
 }
 

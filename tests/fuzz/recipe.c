@@ -29,11 +29,11 @@ static void check_panel(const recipe *r, const recipe_panel *p)
     FUZZ_CHECK(p->signal_count >= 0 && p->signal_count <= TRACE_SIGNALS);
     FUZZ_CHECK(p->source_count >= 0 && p->source_count <= RECIPE_SOURCES);
     FUZZ_CHECK(p->of < r->source_count && p->less < r->source_count);
-    FUZZ_CHECK(isfinite(p->weight) && isfinite(p->low) && isfinite(p->high));
+    FUZZ_CHECK(isfinite(p->shown.weight) && isfinite(p->shown.y.low) && isfinite(p->shown.y.high));
     for (int i = 0; i < p->source_count; i++) {
         FUZZ_CHECK(p->sources[i] >= 0 && p->sources[i] < r->source_count);
     }
-    for (int i = 0; i < p->note_count; i++) {
+    for (int i = 0; i < p->shown.note_count; i++) {
         FUZZ_CHECK(isfinite(p->notes[i].x) && isfinite(p->notes[i].y) && p->notes[i].text != NULL);
     }
 }
@@ -41,17 +41,17 @@ static void check_panel(const recipe *r, const recipe_panel *p)
 static void check_recipe(const recipe *r)
 {
     FUZZ_CHECK(r->source_count > 0 && r->source_count <= RECIPE_SOURCES);
-    FUZZ_CHECK(r->panel_count > 0 && r->panel_count <= FIGURE_PANELS);
-    FUZZ_CHECK(isfinite(r->from) && isfinite(r->to));
+    FUZZ_CHECK(r->shown.panel_count > 0 && r->shown.panel_count <= FIGURE_PANELS);
+    FUZZ_CHECK(isfinite(r->shown.x.low) && isfinite(r->shown.x.high));
     for (int i = 0; i < r->source_count; i++) {
         const recipe_source *s = &r->sources[i];
         FUZZ_CHECK(s->name != NULL && isfinite(s->shift) && s->at.line > 0);
         FUZZ_CHECK((s->kind == SOURCE_RUN ? s->scenario : s->file) != NULL);
     }
-    for (int i = 0; i < r->panel_count; i++) {
+    for (int i = 0; i < r->shown.panel_count; i++) {
         check_panel(r, &r->panels[i]);
     }
-    for (int i = 0; i < r->mark_count; i++) {
+    for (int i = 0; i < r->shown.mark_count; i++) {
         FUZZ_CHECK(isfinite(r->marks[i].x));
     }
 }
@@ -95,7 +95,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (is_read) {
         check_recipe(&r);
     }
-    recipe_finish(&r);
+    owned_figure_destroy(r.plot);
     free(text);
 
     if (is_read && inputs++ % DRAWN_OF == 0) {

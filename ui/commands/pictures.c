@@ -122,22 +122,20 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs, i
 {
     assert(run_count > 0);
     figure_options o;
-    run_figure r;
     fault f = {0};
 
     int code = read_picture_options(a, &o);
     FAIL_IF(code != EXIT_DONE, code);
 
-    FAIL_IF(run_figure_init(&r, title, NULL, 0, runs, run_count, &o, &f) != STATUS_OK,
-            complain_fault(&f));
+    owned_figure *r = run_figure_create(title, NULL, 0, runs, run_count, &o, &f);
+    FAIL_IF(r == NULL, complain_fault(&f));
 
-    artwork drawn = artwork_of_figure(&r.traces.plot.figure, NULL, NULL);
+    artwork drawn = artwork_of_owned(r);
     if (artwork_publish(&drawn, &o, a->plot, false, &f) != STATUS_OK) {
         code = complain_fault(&f);
     }
 
     artwork_finish(&drawn);
-    run_figure_finish(&r);
     return code;
 }
 
