@@ -48,15 +48,23 @@ void table_finish(table_page *t)
     memset(t, 0, sizeof *t);
 }
 
-static char **row_cells(const table_page *t, guint row)
+// The cells of a row; row -1 is the heading, of the columns' labels.
+enum { HEADING = -1 };
+
+static int row_count(const table_page *t)
 {
-    return g_ptr_array_index(t->rows, row);
+    return (int)t->rows->len;
 }
 
-static bool table_row_is_group(const table_page *t, guint row)
+static const char *cell_at(const table_page *t, int row, int column)
 {
-    assert(row < t->rows->len);
-    return t->column_count > 1 && row_cells(t, row)[1] == NULL;
+    char *const *cells = row != HEADING ? g_ptr_array_index(t->rows, row) : NULL;
+    return cells != NULL ? cells[column] : t->columns[column].label;
+}
+
+static bool table_row_is_group(const table_page *t, int row)
+{
+    return t->column_count > 1 && cell_at(t, row, 1) == NULL;
 }
 
 // ---- the page
@@ -99,10 +107,11 @@ static void choose_columns(PangoContext *context, const table_page *t, const ske
 {
     double room = frame->design_width - 2 * SKETCH_MARGIN, least[TABLE_COLUMNS], sum = 0, need = 0;
     for (int i = 0; i < t->column_count; i++) {
-        least[i] = widest_word(context, frame, t->columns[i].label, true);
-        for (guint row = 0; row < t->rows->len; row++) {
+        least[i] = 0;
+        for (int row = HEADING; row < row_count(t); row++) {
             if (!table_row_is_group(t, row)) {
-                least[i] = fmax(least[i], widest_word(context, frame, row_cells(t, row)[i], false));
+                const char *text = cell_at(t, row, i);
+                least[i] = fmax(least[i], widest_word(context, frame, text, row == HEADING));
             }
         }
         least[i] += 2 * CELL_SPACE + 0.5;
@@ -130,27 +139,18 @@ static double text_height(const table_layout *l, const char *markup, double widt
     return text_measure(l->context, &t).height;
 }
 
-static double heading_height(const table_layout *l, const table_page *t)
+static double row_height(const table_layout *l, const table_page *t, int row)
 {
-    double most = 0;
-    for (int i = 0; i < t->column_count; i++) {
-        most = fmax(most, text_height(l, t->columns[i].label, l->widths[i], true));
-    }
-    return most + 2 * CELL_SPACE;
-}
-
-static double row_height(const table_layout *l, const table_page *t, guint row)
-{
-    char **cells = row_cells(t, row);
     double most = 0;
     if (table_row_is_group(t, row)) {
-        most = text_height(l, cells[0], l->frame.design_width - 2 * SKETCH_MARGIN, true);
+        most = text_height(l, cell_at(t, row, 0), l->frame.design_width - 2 * SKETCH_MARGIN, true);
         return most + 2 * CELL_SPACE;
     }
     for (int i = 0; i < t->column_count; i++) {
-        most = fmax(most, text_height(l, cells[i], l->widths[i], false));
+        const char *text = cell_at(t, row, i);
+        most = fmax(most, text_height(l, text, l->widths[i], row == HEADING));
     }
-    return most + CELL_SPACE;
+    return most + (row == HEADING ? 2 : 1) * CELL_SPACE;
 }
 
 // Lays the table out; give l->context to g_object_unref.
@@ -160,11 +160,10 @@ static void lay_out(table_layout *l, const table_page *t)
     *l = (table_layout){text_context_create(), {t->title, t->caption, .look = t->look}};
     l->frame.design_width = t->look.width > 0 ? t->look.width * 72 / 25.4 : SKETCH_WIDTH;
     choose_columns(l->context, t, &l->frame, l->widths);
-    double body = heading_height(l, t) + CELL_SPACE;
-    for (guint row = 0; row < t->rows->len; row++) {
-        body += row_height(l, t, row);
+    l->frame.body_height = CELL_SPACE;
+    for (int row = HEADING; row < row_count(t); row++) {
+        l->frame.body_height += row_height(l, t, row);
     }
-    l->frame.body_height = body;
 }
 
 void table_size(const table_page *t, double *width, double *height)
@@ -175,17 +174,15 @@ void table_size(const table_page *t, double *width, double *height)
     g_object_unref(l.context);
 }
 
-static void draw_cells(sketch *s, const table_layout *l, const table_page *t, char *const *cells,
-                       double y, bool bold)
+static void draw_cells(sketch *s, const table_layout *l, const table_page *t, int row, double y)
 {
     double x = s->left;
     for (int i = 0; i < t->column_count; i++) {
-        const char *text = cells != NULL ? cells[i] : t->columns[i].label;
-        if (text[0] != '\0') {
-            sketch_wrapped(s, (point){x + CELL_SPACE, y},
-                           &(text_block){text, CELL_SIZE, .bold = bold,
-                                         .align = t->columns[i].align,
-                                         .width = l->widths[i] - 2 * CELL_SPACE});
+        const text_block text = {cell_at(t, row, i), CELL_SIZE, .bold = row == HEADING,
+                                 .align = t->columns[i].align,
+                                 .width = l->widths[i] - 2 * CELL_SPACE};
+        if (text.markup[0] != '\0') {
+            sketch_wrapped(s, (point){x + CELL_SPACE, y}, &text);
         }
         x += l->widths[i];
     }
@@ -205,22 +202,22 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
     // a line above and below the heading, then the rows
     double y = s.top;
     sketch_line(&s, (point){s.left, y}, (point){s.right, y}, 0.9, SKETCH_INK);
-    draw_cells(&s, &l, t, NULL, y + CELL_SPACE, true);
-    y += heading_height(&l, t);
-    sketch_line(&s, (point){s.left, y}, (point){s.right, y}, 0.5, SKETCH_INK);
-    for (guint row = 0; row < t->rows->len; row++) {
+    for (int row = HEADING; row < row_count(t); row++) {
         double height = row_height(&l, t, row);
         if (table_row_is_group(t, row)) {
             set_colour(s.cr, s.colours->shade);
             cairo_rectangle(s.cr, s.left, y, s.right - s.left, height);
             cairo_fill(s.cr);
             sketch_wrapped(&s, (point){s.left + CELL_SPACE, y + CELL_SPACE},
-                           &(text_block){row_cells(t, row)[0], CELL_SIZE, .bold = true,
+                           &(text_block){cell_at(t, row, 0), CELL_SIZE, .bold = true,
                                          .width = s.right - s.left - 2 * CELL_SPACE});
         } else {
-            draw_cells(&s, &l, t, row_cells(t, row), y + CELL_SPACE / 2, false);
+            draw_cells(&s, &l, t, row, y + (row == HEADING ? CELL_SPACE : CELL_SPACE / 2));
         }
         y += height;
+        if (row == HEADING) {
+            sketch_line(&s, (point){s.left, y}, (point){s.right, y}, 0.5, SKETCH_INK);
+        }
     }
     sketch_line(&s, (point){s.left, y + CELL_SPACE}, (point){s.right, y + CELL_SPACE}, 0.9,
                 SKETCH_INK);
@@ -242,62 +239,49 @@ void table_write_csv(const table_page *t, csv_writer *csv)
     // the group that a row stands under becomes its first field
     bool grouped = false;
     const char *group = "";
-    for (guint row = 0; row < t->rows->len; row++) {
+    for (int row = 0; row < row_count(t); row++) {
         grouped = grouped || table_row_is_group(t, row);
     }
-    if (grouped) {
-        csv_heading(csv, "group", NULL);
-    }
-    for (int i = 0; i < t->column_count; i++) {
-        write_plain(csv, t->columns[i].label);
-    }
-    csv_end_row(csv);
-
-    for (guint row = 0; row < t->rows->len; row++) {
-        char **cells = row_cells(t, row);
+    for (int row = HEADING; row < row_count(t); row++) {
         if (table_row_is_group(t, row)) {
-            group = cells[0];
+            group = cell_at(t, row, 0);
             continue;
         }
         if (grouped) {
-            write_plain(csv, group);
+            write_plain(csv, row == HEADING ? "group" : group);
         }
         for (int i = 0; i < t->column_count; i++) {
-            write_plain(csv, cells[i]);
+            write_plain(csv, cell_at(t, row, i));
         }
         csv_end_row(csv);
     }
 }
 
-static void add_html_cell(GString *html, const char *tag, text_align align, const char *markup)
+static void add_html_cells(GString *html, const table_page *t, int row)
 {
     // Pango's <span> and <sub> are HTML's; its colours and sizes are not used in cells
-    text_append(html, "<%s%s>%s</%s>", tag, align == TEXT_LEFT ? "" : " class=\"number\"", markup,
-                tag);
+    const char *tag = row == HEADING ? "th" : "td";
+    for (int i = 0; i < t->column_count; i++) {
+        text_append(html, "<%s%s>%s</%s>", tag,
+                    t->columns[i].align == TEXT_LEFT ? "" : " class=\"number\"", cell_at(t, row, i),
+                    tag);
+    }
 }
 
 void table_add_html(const table_page *t, GString *html)
 {
     // a heading that repeats where the table breaks
     g_string_append(html, "<table>\n<thead><tr>");
-    for (int i = 0; i < t->column_count; i++) {
-        add_html_cell(html, "th", t->columns[i].align, t->columns[i].label);
-    }
+    add_html_cells(html, t, HEADING);
     g_string_append(html, "</tr></thead>\n<tbody>\n");
-
-    for (guint row = 0; row < t->rows->len; row++) {
-        char **cells = row_cells(t, row);
-
+    for (int row = 0; row < row_count(t); row++) {
         // a group's heading spans all columns
-        if (table_row_is_group(t, row)) {
-            text_append(html, "<tr><th class=\"group\" colspan=\"%d\">%s</th></tr>\n",
-                        t->column_count, cells[0]);
-            continue;
-        }
-
         g_string_append(html, "<tr>");
-        for (int i = 0; i < t->column_count; i++) {
-            add_html_cell(html, "td", t->columns[i].align, cells[i]);
+        if (table_row_is_group(t, row)) {
+            text_append(html, "<th class=\"group\" colspan=\"%d\">%s</th>", t->column_count,
+                        cell_at(t, row, 0));
+        } else {
+            add_html_cells(html, t, row);
         }
         g_string_append(html, "</tr>\n");
     }
