@@ -68,16 +68,10 @@ void artwork_finish(artwork *a)
 
 // ---- tables
 
-static void release_table(void *what)
-{
-    table_finish(what);
-    g_free(what);
-}
-
 artwork artwork_of_table(table_page *t)
 {
     artwork a = {t->title,   .caption = t->caption,   .parameters = t->parameters, .table = t,
-                 .owner = t, .release = release_table};
+                 .owner = t, .release = table_destroy};
     table_size(t, &a.width, &a.height);
     return a;
 }

@@ -46,7 +46,7 @@ void artwork_finish(artwork *a);
 artwork artwork_of_figure(const figure *fig);
 artwork artwork_of_owned(owned_figure *o);
 
-// A table from g_new0 as an artwork, which owns it.
+// A table as an artwork, which owns it.
 artwork artwork_of_table(table_page *t);
 
 // Creates a folder unless it exists. STATUS_CANNOT_WRITE with the reason.

@@ -187,9 +187,8 @@ static void add_parameters(report_content *r)
     for (int i = 0; i < parameter_count;) {
         const char *group = parameter_table[i].path;
         size_t length = strcspn(group, ".");
-        table_page *t = g_new0(table_page, 1);
         g_autofree char *title = text_printf("Parameters: %.*s", (int)length, group);
-        table_begin(t, title);
+        table_page *t = table_create(title);
         table_add_column(t, "Parameter", 3.7, TEXT_LEFT);
         table_add_column(t, "Corrected", 1.1, TEXT_LEFT);
         table_add_column(t, "Printed", 1.1, TEXT_LEFT);

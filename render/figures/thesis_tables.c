@@ -38,8 +38,7 @@ const table_row *computed_row(const thesis_tables *t, const char *table, const c
 
 static table_page *new_table(const figure_order *order)
 {
-    table_page *t = g_new0(table_page, 1);
-    table_begin(t, order->title);
+    table_page *t = table_create(order->title);
     t->look = order->options->look;
     return t;
 }

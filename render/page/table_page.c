@@ -2,16 +2,26 @@
 
 #include <assert.h>
 #include <math.h>
-#include <string.h>
 
 #define CELL_SPACE 3.0 // above and below a row's text, and left and right of a cell's
 #define CELL_SIZE  7.0
 
-void table_begin(table_page *t, const char *title)
+table_page *table_create(const char *title)
 {
-    memset(t, 0, sizeof *t);
+    table_page *t = g_new0(table_page, 1);
     t->title = g_strdup(title);
     t->rows = g_ptr_array_new_with_free_func((GDestroyNotify)g_strfreev);
+    return t;
+}
+
+void table_destroy(void *table)
+{
+    table_page *t = table;
+    g_free(t->title);
+    g_free(t->caption);
+    g_free(t->parameters);
+    g_ptr_array_free(t->rows, TRUE);
+    g_free(t);
 }
 
 void table_add_column(table_page *t, const char *label, double share, text_align align)
@@ -35,17 +45,6 @@ void table_add_group(table_page *t, const char *heading)
     char **row = g_new0(char *, 2);
     row[0] = g_strdup(heading);
     g_ptr_array_add(t->rows, row);
-}
-
-void table_finish(table_page *t)
-{
-    g_free(t->title);
-    g_free(t->caption);
-    g_free(t->parameters);
-    if (t->rows != NULL) {
-        g_ptr_array_free(t->rows, TRUE);
-    }
-    memset(t, 0, sizeof *t);
 }
 
 // The cells of a row; row -1 is the heading, of the columns' labels.

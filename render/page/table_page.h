@@ -24,13 +24,14 @@ typedef struct table_page {
 } table_page;
 
 // An empty table; the title is copied.
-void table_begin(table_page *t, const char *title);
+table_page *table_create(const char *title);
+void table_destroy(void *table);
+
 void table_add_column(table_page *t, const char *label, double share, text_align align);
 
 // A row of column_count cells, copied; and a group's heading.
 void table_add_row(table_page *t, const char *const *cells);
 void table_add_group(table_page *t, const char *heading);
-void table_finish(table_page *t);
 
 void table_size(const table_page *t, double *width, double *height);
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f);
