@@ -70,10 +70,9 @@ typedef void (*any_function)(void);
 typedef any_function (*function_finder)(const char *name);
 
 struct gl_offscreen {
-    gl_library library;
+    scene_renderer library;
     void *handle; // of the library
     function_finder find;
-    char renderer[256];
     void *context, *display, *surface;
     unsigned char *small; // OSMesa's own picture, which nothing is drawn into
     int width, height;
@@ -98,7 +97,7 @@ static bool make_current(gl_offscreen *g)
 {
     unsigned char (*osmesa)(void *, void *, unsigned, int, int);
     unsigned (*egl)(void *, void *, void *, void *);
-    if (g->library == GL_OSMESA) {
+    if (g->library == RENDER_OSMESA) {
         return load(g->handle, "OSMesaMakeCurrent", &osmesa) &&
                osmesa(g->context, g->small, GL_UNSIGNED_BYTE, SMALL, SMALL);
     }
@@ -236,23 +235,21 @@ static bool make_framebuffer(gl_offscreen *g)
     return g->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
-static status set_up(gl_offscreen *g, fault *f)
+static status set_up(gl_offscreen *g, char name[RENDERER_NAME], fault *f)
 {
-    status code = g->library == GL_OSMESA ? open_osmesa(g, f) : open_egl(g, f);
-    const char *name = g->library == GL_OSMESA ? "OSMesa" : "EGL";
+    const char *library = g->library == RENDER_OSMESA ? "OSMesa" : "EGL";
 
     // a context with OpenGL's functions
-    TRY(code);
+    TRY(g->library == RENDER_OSMESA ? open_osmesa(g, f) : open_egl(g, f));
     FAIL_IF(!load_functions(g),
-            fault_set(f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3", name));
+            fault_set(f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3", library));
+    FAIL_IF(!make_framebuffer(g),
+            fault_set(f, STATUS_CANNOT_WRITE, "%s cannot draw a picture of %d x %d pixels", library,
+                      g->width, g->height));
 
     // what draws, as the picture's notes name it
-    snprintf(g->renderer, sizeof g->renderer, "%s, %s, OpenGL %s", name,
+    snprintf(name, RENDERER_NAME, "%s, %s, OpenGL %s", library,
              (const char *)g->GetString(GL_RENDERER), (const char *)g->GetString(GL_VERSION));
-
-    FAIL_IF(!make_framebuffer(g),
-            fault_set(f, STATUS_CANNOT_WRITE, "%s cannot draw a picture of %d x %d pixels", name,
-                      g->width, g->height));
     g->Enable(GL_DEPTH_TEST);
     g->Enable(GL_SCISSOR_TEST);
     g->EnableClientState(GL_VERTEX_ARRAY);
@@ -261,7 +258,8 @@ static status set_up(gl_offscreen *g, fault *f)
     return STATUS_OK;
 }
 
-status gl_offscreen_create(gl_offscreen **out, gl_library library, int width, int height, fault *f)
+status gl_offscreen_create(gl_offscreen **out, scene_renderer library, int width, int height,
+                           char name[RENDERER_NAME], fault *f)
 {
     assert(width > 0 && height > 0);
     gl_offscreen *g = g_new0(gl_offscreen, 1);
@@ -271,7 +269,7 @@ status gl_offscreen_create(gl_offscreen **out, gl_library library, int width, in
     g->height = height;
 
     // whatever was opened is closed by the destructor
-    status code = set_up(g, f);
+    status code = set_up(g, name, f);
     if (code != STATUS_OK) {
         gl_offscreen_destroy(g);
         return code;
@@ -287,7 +285,7 @@ void gl_offscreen_destroy(gl_offscreen *g)
     }
 
     // the context takes OpenGL's objects with it
-    if (g->library == GL_OSMESA) {
+    if (g->library == RENDER_OSMESA) {
         void (*destroy)(void *);
         if (g->context != NULL && load(g->handle, "OSMesaDestroyContext", &destroy)) {
             destroy(g->context);
@@ -308,11 +306,6 @@ void gl_offscreen_destroy(gl_offscreen *g)
 
     // the library stays: its threads may still be ending
     g_free(g);
-}
-
-const char *gl_offscreen_renderer(const gl_offscreen *g)
-{
-    return g->renderer;
 }
 
 status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, gl_region region, uint32_t *pixels,

@@ -16,46 +16,27 @@ bool scene_renderer_find(const char *name, scene_renderer *which)
     return false;
 }
 
-// Opens the renderer asked for, or the first that is there.
-static status open_renderer(scene_painter *p, scene_renderer which, fault *f)
-{
-    const sample_buffer *b = &p->samples;
-    int width = b->samples * b->width, height = b->samples * b->height;
-    status code = STATUS_OK;
-
-    // OSMesa is tried first: it needs no driver
-    if (which == RENDER_OSMESA || which == RENDER_AUTO) {
-        code = gl_offscreen_create(&p->gl, GL_OSMESA, width, height, f);
-    }
-    if (which == RENDER_EGL || (which == RENDER_AUTO && p->gl == NULL)) {
-        code = gl_offscreen_create(&p->gl, GL_EGL, width, height, f);
-    }
-
-    if (p->gl != NULL) {
-        snprintf(p->name, sizeof p->name, "%s", gl_offscreen_renderer(p->gl));
-        return STATUS_OK;
-    }
-    if (which != RENDER_AUTO && which != RENDER_CAIRO) {
-        return code;
-    }
-
-    // drawing by hand needs only memory for the depths
-    snprintf(p->name, sizeof p->name, "cairo %s, own depth buffer", cairo_version_string());
-    return samples_add_depths(&p->samples)
-               ? STATUS_OK
-               : fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", b->width,
-                           b->height);
-}
-
 status scene_painter_create(scene_painter **out, scene_renderer which, int width, int height,
                             int samples, fault *f)
 {
     assert(width > 0 && height > 0 && samples > 0);
     scene_painter *p = *out = g_new0(scene_painter, 1);
-    status code = samples_init(&p->samples, width, height, samples)
-                      ? open_renderer(p, which, f)
-                      : fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels",
-                                  width, height);
+    status code = STATUS_OK;
+    snprintf(p->name, sizeof p->name, "cairo %s, own depth buffer", cairo_version_string());
+
+    // the renderer asked for, or the first that is there; OSMesa needs no driver
+    for (scene_renderer r = RENDER_OSMESA; r <= RENDER_EGL && p->gl == NULL; r++) {
+        if (which == r || which == RENDER_AUTO) {
+            code = gl_offscreen_create(&p->gl, r, samples * width, samples * height, p->name, f);
+        }
+    }
+
+    // drawing by hand needs only memory
+    code = which == RENDER_AUTO ? STATUS_OK : code;
+    if (code == STATUS_OK && !samples_init(&p->samples, width, height, samples, p->gl == NULL)) {
+        code = fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", width,
+                         height);
+    }
     if (code != STATUS_OK) {
         scene_painter_destroy(p);
         *out = NULL;

@@ -12,33 +12,23 @@ enum {
     FOUR = 4,                   // samples worked on at once
 };
 
-// Samples of the whole picture, with room for what fill_columns reads after the last.
-static size_t sample_count(const sample_buffer *b)
-{
-    return (size_t)(b->samples * b->width) * (size_t)(b->samples * b->height) + FOUR;
-}
-
-bool samples_init(sample_buffer *b, int width, int height, int samples)
+bool samples_init(sample_buffer *b, int width, int height, int samples, bool depths)
 {
     assert(width > 0 && height > 0);
     assert(samples > 0 && samples * SAMPLE_TILE <= ROW_MOST);
     *b = (sample_buffer){width, height, .samples = samples,
                          .tiles_across = (width + SAMPLE_TILE - 1) / SAMPLE_TILE,
                          .tiles_down = (height + SAMPLE_TILE - 1) / SAMPLE_TILE};
-    b->pixels = calloc(sample_count(b), sizeof *b->pixels);
-    b->touched = malloc((size_t)b->tiles_across * (size_t)b->tiles_down);
-    return b->pixels != NULL && b->touched != NULL;
-}
 
-bool samples_add_depths(sample_buffer *b)
-{
-    assert(b->depths == NULL);
-    size_t count = sample_count(b);
-    b->depths = malloc(count * sizeof *b->depths);
+    // with room for what fill_columns reads after the last
+    const size_t count = (size_t)(samples * width) * (size_t)(samples * height) + FOUR;
+    b->pixels = calloc(count, sizeof *b->pixels);
+    b->touched = malloc((size_t)b->tiles_across * (size_t)b->tiles_down);
+    b->depths = depths ? malloc(count * sizeof *b->depths) : NULL;
     for (size_t i = 0; i < count && b->depths != NULL; i++) {
         b->depths[i] = FARTHEST;
     }
-    return b->depths != NULL;
+    return b->pixels != NULL && b->touched != NULL && (b->depths != NULL || !depths);
 }
 
 void samples_finish(sample_buffer *b)

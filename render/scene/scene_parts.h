@@ -90,8 +90,6 @@ status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface
 
 // --- triangles as samples of a picture, filled by OpenGL or without it
 
-typedef enum gl_library { GL_OSMESA, GL_EGL } gl_library;
-
 typedef struct gl_offscreen gl_offscreen;
 
 // A vertex of a triangle for OpenGL.
@@ -100,13 +98,14 @@ typedef struct gl_vertex {
     float colour[4]; // red, green, blue, opacity
 } gl_vertex;
 
-// A renderer of pictures of up to width by height pixels. STATUS_CANNOT_WRITE if the library is
-// missing or has no OpenGL 3, with what to install in f.
-status gl_offscreen_create(gl_offscreen **out, gl_library library, int width, int height, fault *f);
-void gl_offscreen_destroy(gl_offscreen *g);
+enum { RENDERER_NAME = 300 };
 
-// Library, renderer and version, "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), ...".
-const char *gl_offscreen_renderer(const gl_offscreen *g);
+// A renderer of pictures of up to width by height pixels, RENDER_OSMESA or RENDER_EGL, and its
+// name: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), ...". STATUS_CANNOT_WRITE if the library is
+// missing or has no OpenGL 3, with what to install in f.
+status gl_offscreen_create(gl_offscreen **out, scene_renderer library, int width, int height,
+                           char name[RENDERER_NAME], fault *f);
+void gl_offscreen_destroy(gl_offscreen *g);
 
 // Triangles, three corners each, as numbers of vertices.
 typedef struct gl_triangles {
@@ -141,8 +140,7 @@ typedef struct sample_buffer {
 
 // Empty samples, with depths if triangles are filled without OpenGL. False without memory;
 // samples_finish must be called in either case.
-bool samples_init(sample_buffer *b, int width, int height, int samples);
-bool samples_add_depths(sample_buffer *b);
+bool samples_init(sample_buffer *b, int width, int height, int samples, bool depths);
 void samples_finish(sample_buffer *b);
 
 // Adds a new set of triangles, of closed solids: records the tiles that they touch and, if there
@@ -158,7 +156,7 @@ void samples_lay_over(sample_buffer *b, gl_region region, double opacity, cairo_
 struct scene_painter {
     gl_offscreen *gl; // NULL: samples are filled by hand
     sample_buffer samples;
-    char name[300]; // of the renderer, for the picture's metadata
+    char name[RENDERER_NAME]; // of the renderer, for the picture's metadata
     gl_vertex *vertices;
     size_t vertex_capacity;
 };
