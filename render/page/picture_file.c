@@ -219,6 +219,13 @@ void picture_stroke(cairo_t *cr)
     errno = before;
 }
 
+void picture_line(cairo_t *cr, double x0, double y0, double x1, double y1)
+{
+    cairo_move_to(cr, x0, y0);
+    cairo_line_to(cr, x1, y1);
+    picture_stroke(cr);
+}
+
 status picture_end_drawing(cairo_t *cr, status code, fault *f)
 {
     const bool lacks = cairo_get_user_data(cr, &lacking) != NULL;

@@ -31,6 +31,9 @@ const char *picture_software(void);
 // long line, it omits a piece of it without reporting an error; picture_end_drawing reports it.
 void picture_stroke(cairo_t *cr);
 
+// Strokes a straight line so.
+void picture_line(cairo_t *cr, double x0, double y0, double x1, double y1);
+
 // Ends a drawing: destroys cr and returns `code`, the status of drawing, or STATUS_NO_MEMORY if
 // cairo met an error, after which it draws nothing, or if a piece of a line is missing. Errors of
 // writing are found by the caller when closing the stream.

@@ -179,19 +179,11 @@ static void set_pen(const sketch *s, double width, int slot)
     cairo_new_path(s->cr);
 }
 
-// A straight line with the pen as it is.
-static void stroke_line(const sketch *s, point from, point to)
-{
-    cairo_move_to(s->cr, from.x, from.y);
-    cairo_line_to(s->cr, to.x, to.y);
-    picture_stroke(s->cr);
-}
-
 void sketch_line(const sketch *s, point from, point to, double width, int slot)
 {
     assert(width > 0);
     set_pen(s, width, slot);
-    stroke_line(s, from, to);
+    picture_line(s->cr, from.x, from.y, to.x, to.y);
 }
 
 static void set_dashes(const sketch *s)
@@ -205,7 +197,7 @@ void sketch_dashed(const sketch *s, point from, point to, int slot)
 {
     set_pen(s, 0.6, slot);
     set_dashes(s);
-    stroke_line(s, from, to);
+    picture_line(s->cr, from.x, from.y, to.x, to.y);
 }
 
 // An arrowhead with its tip at a point, along `direction` on the page.
@@ -238,7 +230,8 @@ static void draw_arrow(const sketch *s, point from, point to)
 {
     double length = length_of(from, to), head = fmin(HEAD_LENGTH, length);
     double share = length > 0 ? 1 - 0.8 * head / length : 0;
-    stroke_line(s, from, shifted(from, share * (to.x - from.x), share * (to.y - from.y)));
+    picture_line(s->cr, from.x, from.y, from.x + share * (to.x - from.x),
+                 from.y + share * (to.y - from.y));
     draw_head(s, to, direction_of(from, to), head);
 }
 

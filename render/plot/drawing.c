@@ -49,13 +49,6 @@ void draw_rotated(drawing *d, text_block t, double x, double y, colour c)
 
 // ---- strokes
 
-void draw_line(cairo_t *cr, double x0, double y0, double x1, double y1)
-{
-    cairo_move_to(cr, x0, y0);
-    cairo_line_to(cr, x1, y1);
-    picture_stroke(cr);
-}
-
 void set_plain_line(cairo_t *cr, colour c, double width)
 {
     set_colour(cr, c);
@@ -120,12 +113,12 @@ void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y)
     set_plain_line(d->cr, d->style.colours->grid, GRID_WIDTH);
     for (int i = 0; i < y->count; i++) {
         double at = plane_y(p, y->at[i]);
-        draw_line(d->cr, box->x, at, box->x + box->width, at);
+        picture_line(d->cr, box->x, at, box->x + box->width, at);
     }
     // where steps are not even the eye needs help across, too
     for (int i = 0; x->even.count == 0 && i < x->count; i++) {
         double at = plane_x(p, x->at[i]);
-        draw_line(d->cr, at, box->y, at, box->y + box->height);
+        picture_line(d->cr, at, box->y, at, box->y + box->height);
     }
 }
 
@@ -136,11 +129,11 @@ static void draw_ticks(const drawing *d, const plane *p, const double *x, int x_
     double bottom = p->box.y + p->box.height;
     for (int i = 0; i < x_count; i++) {
         double at = plane_x(p, x[i]);
-        draw_line(d->cr, at, bottom, at, bottom + length);
+        picture_line(d->cr, at, bottom, at, bottom + length);
     }
     for (int i = 0; i < y_count; i++) {
         double at = plane_y(p, y[i]);
-        draw_line(d->cr, p->box.x, at, p->box.x - length, at);
+        picture_line(d->cr, p->box.x, at, p->box.x - length, at);
     }
 }
 
@@ -182,11 +175,11 @@ void draw_axes(drawing *d, const plane *p, const axis *x, const axis *y, axes_lo
     draw_ticks(d, p, x->at, x->count, y->at, y->count, TICK_LENGTH);
     double bottom = p->box.y + p->box.height, right = p->box.x + p->box.width;
     cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_SQUARE);
-    draw_line(d->cr, p->box.x, p->box.y, p->box.x, bottom);
-    draw_line(d->cr, p->box.x, bottom, right, bottom);
+    picture_line(d->cr, p->box.x, p->box.y, p->box.x, bottom);
+    picture_line(d->cr, p->box.x, bottom, right, bottom);
     if (look.framed) {
-        draw_line(d->cr, p->box.x, p->box.y, right, p->box.y);
-        draw_line(d->cr, right, p->box.y, right, bottom);
+        picture_line(d->cr, p->box.x, p->box.y, right, p->box.y);
+        picture_line(d->cr, right, p->box.y, right, bottom);
     }
     draw_tick_labels(d, p, x, y, &look);
 }

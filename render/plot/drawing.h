@@ -150,7 +150,6 @@ void draw_rotated(drawing *d, text_block t, double x, double y, colour c);
 
 // --- strokes: drawing.c
 
-void draw_line(cairo_t *cr, double x0, double y0, double x1, double y1);
 void set_plain_line(cairo_t *cr, colour c, double width);
 void clip_to(cairo_t *cr, const figure_rect *box, double space);
 void fill_box(cairo_t *cr, const figure_rect *box, colour c);

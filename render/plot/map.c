@@ -134,7 +134,7 @@ static void fill_missing(const drawing *d, const figure_rect *r)
     // lines at fixed places of the page, so that they run on from cell to cell
     double from = floor((r->x + r->y) / HATCH) * HATCH, to = r->x + r->width + r->y + r->height;
     for (double sum = from; sum <= to; sum += HATCH) {
-        draw_line(d->cr, sum - r->y, r->y, sum - r->y - r->height, r->y + r->height);
+        picture_line(d->cr, sum - r->y, r->y, sum - r->y - r->height, r->y + r->height);
     }
     cairo_restore(d->cr);
 }
@@ -276,11 +276,11 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
         double y = bar.y + bar.height * (1 - scale_share(&l->colours.scale, l->colours.at[i]));
         if (l->panel->map != NULL && l->panel->map->contours) {
             set_contour_line(d, l, l->colours.at[i]);
-            draw_line(d->cr, bar.x, y, right, y);
+            picture_line(d->cr, bar.x, y, right, y);
         }
 
         set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
-        draw_line(d->cr, right, y, right + TICK_LENGTH, y);
+        picture_line(d->cr, right, y, right + TICK_LENGTH, y);
         draw_label(d, l->colours.text[i], d->style.tick, right + TICK_LENGTH + TICK_SPACE, y,
                    (anchor){0, 0.5});
     }

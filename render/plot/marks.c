@@ -1,6 +1,7 @@
 // Marks at instants and levels, shaded intervals, and where their labels go.
 #include <math.h>
 
+#include "render/page/picture_file.h"
 #include "render/page/sketch.h"
 #include "render/plot/drawing.h"
 
@@ -342,7 +343,7 @@ static void draw_hairline(const drawing *d, double x, double top, double bottom)
         clip_out_labels(d);
     }
     set_mark_line(d);
-    draw_line(d->cr, x, top, x, bottom);
+    picture_line(d->cr, x, top, x, bottom);
     cairo_restore(d->cr);
 }
 
@@ -440,7 +441,7 @@ void draw_levels(drawing *d, const panel_layout *l)
         }
 
         set_mark_line(d);
-        draw_line(d->cr, box->x, y, box->x + box->width, y);
+        picture_line(d->cr, box->x, y, box->x + box->width, y);
 
         // its label, where the layout found room
         if (level->label != NULL && i < LEVELS_LABELLED && l->level_place[i].width > 0) {

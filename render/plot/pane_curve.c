@@ -152,9 +152,7 @@ static void hairline(cairo_t *cr, double x0, double y0, double x1, double y1, bo
     cairo_set_dash(cr, dots, dotted ? 2 : 0, 0);
     cairo_set_line_width(cr, 1);
     set_colour(cr, in);
-    cairo_move_to(cr, x0, y0);
-    cairo_line_to(cr, x1, y1);
-    picture_stroke(cr);
+    picture_line(cr, x0, y0, x1, y1);
 }
 
 void pane_level_paint(cairo_t *cr, const pane_frame *f, double value, colour in)

@@ -247,7 +247,7 @@ void draw_swatch(drawing *d, const panel_layout *l, int index, double x, double 
     set_series(d, l, index);
     cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_BUTT);
     if (!s->no_line) {
-        draw_line(d->cr, x, y, x + SWATCH, y);
+        picture_line(d->cr, x, y, x + SWATCH, y);
     }
     draw_marker(d, NULL, s, x + SWATCH / 2, y, (double)NAN);
 }
@@ -262,7 +262,7 @@ void draw_swatch(drawing *d, const panel_layout *l, int index, double x, double 
 static void draw_arrow(cairo_t *cr, double x, double base, double length)
 {
     double head = fmin(4, length);
-    draw_line(cr, x, base, x, base - length + 0.7 * head);
+    picture_line(cr, x, base, x, base - length + 0.7 * head);
     cairo_move_to(cr, x, base - length);
     cairo_line_to(cr, x - 0.36 * head, base - length + head);
     cairo_line_to(cr, x + 0.36 * head, base - length + head);
@@ -382,7 +382,7 @@ void draw_impulses(drawing *d, const panel_layout *l)
 
     // the base line and an arrow for each
     set_plain_line(d->cr, d->style.colours->axis, GRID_WIDTH);
-    draw_line(d->cr, left, base, right, base);
+    picture_line(d->cr, left, base, right, base);
     for (int i = 0; i < panel->impulse_count; i++) {
         const figure_impulse *p = &panel->impulses[i];
         if (impulse_shows(d, p)) {

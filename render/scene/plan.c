@@ -66,13 +66,6 @@ static colour paler(const painter *g, colour c, double share)
     return colour_between(c, g->plan->colours.ground, share);
 }
 
-static void stroke_line(const painter *g, double x0, double y0, double x1, double y1)
-{
-    cairo_move_to(g->cr, x0, y0);
-    cairo_line_to(g->cr, x1, y1);
-    picture_stroke(g->cr);
-}
-
 // A disc with a rim of the present colour, paler inside.
 static void disc(const painter *g, double x, double y, double radius, colour c, double share)
 {
@@ -125,7 +118,7 @@ static void paint_wall(const painter *g)
         pen(g, wall, 1);
         hatch(g, from_x, from_y, dx, dy);
         pen(g, wall, 2);
-        stroke_line(g, from_x, from_y, from_x + dx, from_y + dy);
+        picture_line(g->cr, from_x, from_y, from_x + dx, from_y + dy);
         return;
     }
 
@@ -162,7 +155,7 @@ static void paint_force(const painter *g, double x, double y, const sample *row)
     }
     pen(g, g->plan->colours.force, 3);
     cairo_set_line_cap(g->cr, CAIRO_LINE_CAP_BUTT);
-    stroke_line(g, x, y - off - length, x, y - off - 0.8 * head);
+    picture_line(g->cr, x, y - off - length, x, y - off - 0.8 * head);
     cairo_move_to(g->cr, x, y - off);
     cairo_line_to(g->cr, x - 0.45 * head, y - off - head);
     cairo_line_to(g->cr, x + 0.45 * head, y - off - head);
@@ -213,8 +206,8 @@ static void paint_all(const painter *g)
     const double radius = fmin(size_of(g, HUB_RADIUS, 6), 0.3 * g->view->height);
     pen(g, p->colours.hub, 2);
     disc(g, hub_x, hub_y, radius, p->colours.hub, 0.75);
-    stroke_line(g, hub_x, hub_y, hub_x + radius * cos(row.hub_angle),
-                hub_y - radius * sin(row.hub_angle));
+    picture_line(g->cr, hub_x, hub_y, hub_x + radius * cos(row.hub_angle),
+                 hub_y - radius * sin(row.hub_angle));
 
     // a rim, and the beam's own colour inside it
     cairo_new_path(g->cr);
