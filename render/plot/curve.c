@@ -123,27 +123,25 @@ static void pen_to(pen *p, point q)
 
 // ---- decimation
 
+// A point with its number.
+typedef struct numbered {
+    point at;
+    size_t number;
+} numbered;
+
 // The points of one column that matter, with their numbers to keep their order.
 typedef struct column {
     double index; // of the column
     size_t count;
-    size_t first_at, low_at, high_at, last_at;
-    point first, low, high, last;
+    numbered first, low, high, last;
 } column;
 
-static void column_add(column *c, point q, size_t at)
+static void column_add(column *c, numbered q)
 {
     c->count++;
     c->last = q;
-    c->last_at = at;
-    if (q.y > c->low.y) {
-        c->low = q;
-        c->low_at = at;
-    }
-    if (q.y < c->high.y) {
-        c->high = q;
-        c->high_at = at;
-    }
+    c->low = q.at.y > c->low.at.y ? q : c->low;
+    c->high = q.at.y < c->high.at.y ? q : c->high;
 }
 
 static void column_flush(column *c, pen *p)
@@ -152,22 +150,14 @@ static void column_flush(column *c, pen *p)
         return;
     }
 
-    // lowest and highest in their order
-    bool low_first = c->low_at < c->high_at;
-    const point middle[2] = {low_first ? c->low : c->high, low_first ? c->high : c->low};
-    const size_t at[2] = {low_first ? c->low_at : c->high_at, low_first ? c->high_at : c->low_at};
-
-    // first, middle ones, last: each once
-    size_t drawn = c->first_at;
-    pen_to(p, c->first);
-    for (int i = 0; i < 2; i++) {
-        if (at[i] > drawn && at[i] < c->last_at) {
-            pen_to(p, middle[i]);
-            drawn = at[i];
+    // first, lowest and highest in their order, last: each once
+    const bool low_first = c->low.number < c->high.number;
+    const numbered all[] = {c->first, low_first ? c->low : c->high, low_first ? c->high : c->low,
+                            c->last};
+    for (int i = 0; i < 4; i++) {
+        if (i == 0 || all[i].number > all[i - 1].number) {
+            pen_to(p, all[i].at);
         }
-    }
-    if (c->last_at > c->first_at) {
-        pen_to(p, c->last);
     }
     c->count = 0;
 }
@@ -212,12 +202,13 @@ void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void 
         point q = {plane_x(p, x), plane_y(p, y)};
         double index = floor((q.x - p->box.x) / COLUMN);
         if (columns && c.count > 0 && index == c.index) {
-            column_add(&c, q, i);
+            column_add(&c, (numbered){q, i});
             continue;
         }
         column_flush(&c, &tip);
         if (columns) {
-            c = (column){index, 1, i, i, i, i, q, q, q, q};
+            const numbered only = {q, i};
+            c = (column){index, 1, only, only, only, only};
         } else {
             pen_to(&tip, q);
         }

@@ -104,8 +104,8 @@ static void end_second(film_making *m)
 static status next_frame(film_making *m, int frame, fault *f)
 {
     if (m->second == NULL || frame % 2 == 0) {
-        status code = film_painter_frame(m->painter, film_time_of(m, frame), m->frame, f);
-        return code == STATUS_OK ? film_file_add(m->file, m->frame, f) : code;
+        TRY(film_painter_frame(m->painter, film_time_of(m, frame), m->frame, f));
+        return film_file_add(m->file, m->frame, f);
     }
 
     // it paints the one after the next while this one is written
@@ -126,11 +126,11 @@ static status add_frames(film_making *m, fault *f)
 
     // a frame with every colour of the film, for formats that have a palette
     if (film_file_wants_palette(m->file)) {
-        code = film_painter_palette(m->painter, m->frame, f);
-        code = code == STATUS_OK ? film_file_add(m->file, m->frame, f) : code;
+        TRY(film_painter_palette(m->painter, m->frame, f));
+        TRY(film_file_add(m->file, m->frame, f));
     }
 
-    if (o->threads > 1 && code == STATUS_OK) {
+    if (o->threads > 1) {
         begin_second(m);
     }
     for (int i = 0; i < total && code == STATUS_OK; i++) {
@@ -189,15 +189,12 @@ static status record(film_making *m, const char *path, fault *f)
         plan->options.width, plan->options.height, plan->options.frames_per_second,
         .notes = notes,      .note_count = 4,      .stop = plan->options.stop};
 
-    status code = film_file_open(&m->file, path, &facts, f);
+    TRY(film_file_open(&m->file, path, &facts, f));
+    status code = add_frames(m, f);
     if (code == STATUS_OK) {
-        code = add_frames(m, f);
-        if (code == STATUS_OK) {
-            code = film_file_commit(m->file, f);
-        } else {
-            film_file_abandon(m->file);
-        }
+        return film_file_commit(m->file, f);
     }
+    film_file_abandon(m->file);
     return code;
 }
 
@@ -217,18 +214,16 @@ status film_write(const film_run *runs, int run_count, const film_options *optio
     o.threads = o.threads < MOST_THREADS ? o.threads : MOST_THREADS;
 
     // only a film that can be painted
-    status code = check_options(&o, f);
-    for (int i = 0; i < run_count && code == STATUS_OK; i++) {
-        if (runs[i].result->trace.row_count == 0) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw");
-        }
+    TRY(check_options(&o, f));
+    for (int i = 0; i < run_count; i++) {
+        FAIL_IF(runs[i].result->trace.row_count == 0,
+                fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw"));
     }
-    TRY(code);
 
     // planned, then painted
     film_plan plan;
     film_making m = {.plan = &plan};
-    code = film_plan_init(&plan, runs, run_count, &o, f);
+    status code = film_plan_init(&plan, runs, run_count, &o, f);
     code = code == STATUS_OK ? film_painter_create(&m.painter, &plan, f) : code;
     if (code == STATUS_OK) {
         m.frame = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o.width, o.height);

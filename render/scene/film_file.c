@@ -292,39 +292,28 @@ static bool looks_whole(const film_file *film)
 
 // ---- the film
 
-// Stops the encoder at once, if it is running.
-static void stop_encoder(film_file *film)
+void film_file_abandon(film_file *film)
 {
+    // an encoder that runs is stopped at once
     if (film->encoder > 0) {
         kill(film->encoder, SIGKILL);
         wait_for_encoder(film);
     }
     close_pipe(film);
-}
-
-static void film_file_free(film_file *film)
-{
-    stop_encoder(film);
-    g_clear_pointer(&film->words, fclose);
-    g_free(film->path);
-    g_free(film);
-}
-
-void film_file_abandon(film_file *film)
-{
-    stop_encoder(film);
     if (film->format != NULL) {
         whole_file_abandon(&film->file);
     }
-    film_file_free(film);
+    g_clear_pointer(&film->words, fclose);
+    g_free(film->path);
+    g_free(film);
 }
 
 // Opens the folder of frames, or the encoder to what is renamed once it is whole.
 static status open_target(film_file *film, fault *f)
 {
     if (film->format != NULL) {
-        status code = whole_file_open(&film->file, film->path, f);
-        return code == STATUS_OK ? start_encoder(film, f) : code;
+        TRY(whole_file_open(&film->file, film->path, f));
+        return start_encoder(film, f);
     }
     FAIL_IF(mkdir(film->path, 0777) != 0 && errno != EEXIST,
             fault_set(f, STATUS_CANNOT_WRITE, "the folder %s could not be made: %s", film->path,
@@ -336,12 +325,11 @@ status film_file_open(film_file **out, const char *path, const film_facts *facts
 {
     assert(facts->width > 0 && facts->height > 0);
     *out = NULL;
-    status code = film_file_check(path, f);
-    TRY(code);
+    TRY(film_file_check(path, f));
     film_file *film = g_new0(film_file, 1);
     *film =
         (film_file){.format = format_of(path), .facts = *facts, .path = g_strdup(path), .pipe = -1};
-    code = open_target(film, f);
+    status code = open_target(film, f);
     if (code != STATUS_OK) {
         film_file_abandon(film);
         return code;
@@ -354,9 +342,8 @@ static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
 {
     whole_file file;
     g_autofree char *path = text_printf("%s/frame-%05d.png", film->path, film->frames + 1);
-    status code = whole_file_open(&file, path, f);
-    TRY(code);
-    code =
+    TRY(whole_file_open(&file, path, f));
+    status code =
         png_file_write(file.stream, frame, FRAME_DPI, film->facts.notes, film->facts.note_count, f);
     return whole_file_close(&file, code, f);
 }
@@ -425,6 +412,6 @@ status film_file_commit(film_file *film, fault *f)
     }
 
     // of no more use, whatever came of it
-    film_file_free(film);
+    film_file_abandon(film);
     return code;
 }

@@ -59,18 +59,17 @@ void labels_force(const labels *l, vector from, vector end, double force, colour
     // text and its size
     decimal_print(text, sizeof text, "%.*f\u2009N", force < 10 ? 2 : force < 100 ? 1 : 0, force);
     const text_block t = {.markup = text, .size = TITLE_LETTERS * l->scale, .bold = true};
-    const double width = text_measure(l->context, &t).width;
-    const double height = text_measure(l->context, &t).height;
+    const text_size size = text_measure(l->context, &t);
     vector start = camera_project(l->camera, from), tip = camera_project(l->camera, end);
     double dx = tip.x - start.x, dy = tip.y - start.y, length = fmax(1e-9, hypot(dx, dy));
 
     // beyond the arrow's point, the box touching a circle round it
-    double x = tip.x + dx / length * (width / 2 + 8 * l->scale) - width / 2;
-    double y = tip.y + dy / length * (height / 2 + 6 * l->scale) - height / 2;
+    double x = tip.x + dx / length * (size.width / 2 + 8 * l->scale) - size.width / 2;
+    double y = tip.y + dy / length * (size.height / 2 + 6 * l->scale) - size.height / 2;
 
     // inside the picture
-    x = fmin(fmax(x, 4), l->camera->width - width - 4);
-    y = fmin(fmax(y, 4), l->camera->height - height - 4);
+    x = fmin(fmax(x, 4), l->camera->width - size.width - 4);
+    y = fmin(fmax(y, 4), l->camera->height - size.height - 4);
     draw_text(l, x, y, text, TITLE_LETTERS, true, ink);
 }
 

@@ -58,22 +58,19 @@ void scene_options_scale(scene_options *o, const trace *t)
 
 static status prepare(scene *sc, fault *f)
 {
-    status code = check_options(sc, f);
-    TRY(code);
+    TRY(check_options(sc, f));
 
     // room for one shape
     sc->joints = g_new(vector, sc->links + 1);
     sc->curve = g_new(vector, scene_curve_length(sc->links));
     scene_options_scale(&sc->options, &sc->result->trace);
     sc->context = text_context_create();
-    code = scene_set_view(sc, f);
-    if (code == STATUS_OK) {
-        int samples = sc->options.samples > 0 ? sc->options.samples : SAMPLES_FINE;
-        code = scene_painter_create(&sc->painter, sc->options.renderer, sc->options.width,
-                                    sc->options.height, samples, f);
-    }
-    if (code != STATUS_OK || !sc->options.inset) {
-        return code;
+    TRY(scene_set_view(sc, f));
+    TRY(scene_painter_create(&sc->painter, sc->options.renderer, sc->options.width,
+                             sc->options.height,
+                             sc->options.samples > 0 ? sc->options.samples : SAMPLES_FINE, f));
+    if (!sc->options.inset) {
+        return STATUS_OK;
     }
 
     // the inset: a scene of its own, from near by
@@ -314,16 +311,14 @@ static status check_instants(const scene_picture *p, fault *f)
 status scene_write(const scene_picture *p, const char *path, fault *f)
 {
     scene *sc;
-
-    status code = scene_check_path(path, f);
-    code = code == STATUS_OK ? check_instants(p, f) : code;
-    code = code == STATUS_OK ? scene_create(&sc, p->scenario, p->result, &p->options, f) : code;
-    TRY(code);
+    TRY(scene_check_path(path, f));
+    TRY(check_instants(p, f));
+    TRY(scene_create(&sc, p->scenario, p->result, &p->options, f));
 
     cairo_surface_t *surface = cairo_image_surface_create(
         p->options.transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, sc->options.width,
         sc->options.height);
-    code = scene_paint(sc, p->times, p->count, surface, f);
+    status code = scene_paint(sc, p->times, p->count, surface, f);
 
     // with what it was made from
     whole_file file;
