@@ -50,6 +50,16 @@ bool scale_is_empty(const axis_scale *s)
     return !(s->low <= s->high);
 }
 
+bool scale_take_ends(axis_scale *s, const figure_axis *from)
+{
+    *s = scale_empty(from->scale);
+    if (from->low < from->high) {
+        scale_include(s, from->low);
+        scale_include(s, from->high);
+    }
+    return !scale_is_empty(s);
+}
+
 void scale_widen(axis_scale *s, double share)
 {
     assert(share >= 0);

@@ -28,6 +28,9 @@ axis_scale scale_empty(scale_kind kind);
 void scale_include(axis_scale *s, double value);
 bool scale_is_empty(const axis_scale *s);
 
+// An axis' own ends; false if it takes those of the data, with an empty scale.
+bool scale_take_ends(axis_scale *s, const figure_axis *from);
+
 // Separates equal ends (0 and 1 if there are none; at least half a decade on a logarithmic scale)
 // and then moves them outwards by a share of the range.
 void scale_widen(axis_scale *s, double share);

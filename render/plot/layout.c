@@ -17,24 +17,14 @@
 
 // ---- ranges
 
-// An axis' own ends; false if it takes those of the data.
-static bool has_own_ends(const figure_axis *from, axis_scale *s)
-{
-    *s = scale_empty(from->scale);
-    if (from->low < from->high) {
-        scale_include(s, from->low);
-        scale_include(s, from->high);
-        return !scale_is_empty(s);
-    }
-    return false;
-}
-
-static status check_range(const axis_scale *s, const figure_axis *from, fault *f)
+// The range of the data and a share of it round them.
+static status widen_range(axis_scale *s, double share, const figure_axis *from, fault *f)
 {
     FAIL_IF(s->kind == SCALE_LOGARITHMIC && scale_is_empty(s),
             fault_set(f, STATUS_BAD_ARGUMENT,
                       "the logarithmic axis '%s' has no point above zero to show",
                       from->name != NULL ? from->name : ""));
+    scale_widen(s, share);
     return STATUS_OK;
 }
 
@@ -42,7 +32,7 @@ static status choose_x_range(drawing *d, fault *f)
 {
     const figure *fig = d->fig;
     axis_scale *x = &d->x.scale;
-    if (has_own_ends(&fig->x, x)) {
+    if (scale_take_ends(x, &fig->x)) {
         return STATUS_OK;
     }
 
@@ -60,16 +50,14 @@ static status choose_x_range(drawing *d, fault *f)
         }
     }
 
-    status code = check_range(x, &fig->x, f);
-    scale_widen(x, fig->x.room);
-    return code;
+    return widen_range(x, fig->x.room, &fig->x, f);
 }
 
 static status choose_y_range(const drawing *d, panel_layout *l, fault *f)
 {
     const figure_panel *panel = l->panel;
     axis_scale *y = &l->plane.y, unused = scale_empty(d->x.scale.kind);
-    if (has_own_ends(&panel->y, y)) {
+    if (scale_take_ends(y, &panel->y)) {
         return STATUS_OK;
     }
 
@@ -95,9 +83,8 @@ static status choose_y_range(const drawing *d, panel_layout *l, fault *f)
             scale_include(y, m->y + POINT_ROOM * (y->high - y->low));
         }
     }
-    status code = check_range(y, &panel->y, f);
-    scale_widen(y, panel->y.room > 0 ? panel->y.room : panel->map != NULL ? 0 : RANGE_SPACE);
-    return code;
+    const double room = panel->map != NULL ? 0 : RANGE_SPACE;
+    return widen_range(y, panel->y.room > 0 ? panel->y.room : room, &panel->y, f);
 }
 
 // One vertical axis for all panels: from the lowest to the highest end.

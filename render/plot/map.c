@@ -83,13 +83,8 @@ void map_include(const figure_map *map, axis_scale *x, axis_scale *y)
 void map_choose_scale(panel_layout *l)
 {
     const figure_panel *panel = l->panel;
-    const figure_axis *from = &panel->colours->axis;
     axis_scale *s = &l->colours.scale;
-    *s = scale_empty(from->scale);
-
-    if (from->low < from->high) {
-        scale_include(s, from->low);
-        scale_include(s, from->high);
+    if (scale_take_ends(s, &panel->colours->axis)) {
         return;
     }
 

@@ -199,13 +199,6 @@ static const summary_info *info_of(const sweep_picture *p)
     return p->info != NULL ? p->info : &summary_table[summary_index(p->key)];
 }
 
-// The axis of the quantity itself.
-static figure_axis quantity_axis(sweep_drawing *s, const sweep_picture *p)
-{
-    const summary_info *info = info_of(p);
-    return (figure_axis){.name = p->key, .label = label_of(s, info->label), .unit = info->unit};
-}
-
 // ---- layers
 
 static double marker_radius(size_t points)
@@ -237,16 +230,12 @@ static void describe_line(sweep_drawing *s, const sweep_picture *p)
                         .marker = joined && count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE,
                         .radius = marker_radius(count)};
 
-    s->drawn->panels[0].y = quantity_axis(s, p);
-    s->drawn->panels[0].y.room = LINE_ROOM;
     s->drawn->panels[0].series_count = 1;
 }
 
 // A parameter of words and one of numbers: a curve for each word, over the numbers.
 static void describe_words(sweep_drawing *s, const sweep_picture *p, int words, int numbers)
 {
-    static const marker_kind markers[] = {MARKER_CIRCLE, MARKER_SQUARE, MARKER_TRIANGLE,
-                                          MARKER_DIAMOND};
     const varied *word = &s->varied[words], *number = &s->varied[numbers];
     size_t inner = s->varied[1].count;
 
@@ -257,20 +246,17 @@ static void describe_words(sweep_drawing *s, const sweep_picture *p, int words, 
             size_t w = word->order[k], n = number->order[i];
             y[i] = p->values[words == 0 ? w * inner + n : n * inner + w];
         }
-        s->drawn->series[0][k] = (figure_series){.name = own(s, point_label(word, k)),
-                                                 .label = own(s, point_label(word, k)),
-                                                 .x = number->place,
-                                                 .y = y,
-                                                 .count = number->count,
-                                                 .colour = palette_slot((int)k),
-                                                 .marker = number->count > MOST_MARKERS
-                                                               ? MARKER_NONE
-                                                               : markers[k % G_N_ELEMENTS(markers)],
-                                                 .radius = marker_radius(number->count)};
+        s->drawn->series[0][k] = (figure_series){
+            .name = own(s, point_label(word, k)),
+            .label = own(s, point_label(word, k)),
+            .x = number->place,
+            .y = y,
+            .count = number->count,
+            .colour = palette_slot((int)k),
+            .marker = number->count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE + k % 4,
+            .radius = marker_radius(number->count)};
     }
 
-    s->drawn->panels[0].y = quantity_axis(s, p);
-    s->drawn->panels[0].y.room = LINE_ROOM;
     s->drawn->panels[0].series_count = (int)word->count;
 }
 
@@ -286,12 +272,12 @@ static int axis_of_curves(const sweep_drawing *s, const sweep *from)
 }
 
 // Two parameters: a map of every combination, or dots where they were drawn.
-static void describe_map(sweep_drawing *s, const sweep_picture *p)
+static void describe_map(sweep_drawing *s, const sweep_picture *p, figure_axis quantity)
 {
     const sweep *from = p->sweep;
     const varied *x = &s->varied[0], *y = &s->varied[1];
     figure_colours *colours = own(s, g_new(figure_colours, 1));
-    *colours = (figure_colours){.axis = quantity_axis(s, p), .bar = true};
+    *colours = (figure_colours){.axis = quantity, .bar = true};
     s->drawn->panels[0].colours = colours;
 
     // values that were drawn are dots
@@ -361,14 +347,18 @@ static void describe(sweep_drawing *s, const sweep_picture *p)
         axes[1] = describe_axis(s, &s->varied[1], &from->axes[1]);
     }
     int words = axis_of_curves(s, from);
+    const summary_info *info = info_of(p);
+    figure_axis quantity = {.name = p->key, .label = label_of(s, info->label), .unit = info->unit};
     s->drawn->figure.x = axes[words == 0];
+    s->drawn->panels[0].y = quantity;
+    s->drawn->panels[0].y.room = LINE_ROOM;
     if (from->axis_count == 1) {
         describe_line(s, p);
     } else if (words >= 0) {
         describe_words(s, p, words, 1 - words);
     } else {
         s->drawn->panels[0].y = axes[1];
-        describe_map(s, p);
+        describe_map(s, p, quantity);
     }
     if (missing == from->run_count) {
         s->drawn->panels[0].remark = "the quantity did not occur in any run";

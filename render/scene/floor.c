@@ -140,14 +140,14 @@ void scene_floor_finish(scene_floor *floor)
     *floor = (scene_floor){0};
 }
 
-// Cells of the map: [left, right) and [low, high).
-typedef struct map_box {
+// Columns [left, right) and rows [low, high) of the map or of the picture.
+typedef struct cell_box {
     int left, right, low, high;
-} map_box;
+} cell_box;
 
 // One smoothing pass along rows of the box, outside which all is empty; the result is stored turned
 // round, so that two passes do both directions.
-static void blur_turned(const unsigned char *from, unsigned char *to, map_box cells)
+static void blur_turned(const unsigned char *from, unsigned char *to, cell_box cells)
 {
     for (int row = cells.low; row < cells.high; row++) {
         const unsigned char *line_from = from + (ptrdiff_t)row * MAP;
@@ -172,7 +172,7 @@ static int within_map(double cell)
 
 // Draws the mesh's triangles, thrown onto the floor along the light, into the map. *covered is what
 // they and their soft edge may cover.
-static status cast_shadow(scene_floor *floor, const mesh *m, map_box *covered, fault *f)
+static status cast_shadow(scene_floor *floor, const mesh *m, cell_box *covered, fault *f)
 {
     double left = MAP, right = 0, low = MAP, high = 0;
     memset(floor->mask, 0, (size_t)MAP * MAP);
@@ -209,9 +209,9 @@ static status cast_shadow(scene_floor *floor, const mesh *m, map_box *covered, f
 
     // a soft edge, as of a wide lamp
     const int edge = BLUR * BLUR_PASSES + 1;
-    const map_box cells = {within_map(left - edge), within_map(right + edge + 1),
-                           within_map(low - edge), within_map(high + edge + 1)};
-    const map_box turned = {cells.low, cells.high, cells.left, cells.right};
+    const cell_box cells = {within_map(left - edge), within_map(right + edge + 1),
+                            within_map(low - edge), within_map(high + edge + 1)};
+    const cell_box turned = {cells.low, cells.high, cells.left, cells.right};
     for (int pass = 0; pass < BLUR_PASSES; pass++) {
         blur_turned(floor->mask, floor->spare, cells);
         blur_turned(floor->spare, floor->mask, turned);
@@ -235,12 +235,8 @@ static float shadow_at(const scene_floor *floor, float x, float y)
     return (1 - b) * ((1 - a) * at[0] + a * at[1]) + b * ((1 - a) * at[MAP] + a * at[MAP + 1]);
 }
 
-// The pixels [left, right) and [top, bottom) that show a box of the map, some to spare.
-typedef struct pixel_box {
-    int left, right, top, bottom;
-} pixel_box;
-
-static pixel_box seen_box(const scene_floor *floor, map_box cells)
+// The pixels that show a box of the map, some to spare.
+static cell_box seen_box(const scene_floor *floor, cell_box cells)
 {
     double left = floor->width, right = 0, top = floor->height, bottom = 0;
     for (int i = 0; i < 4; i++) {
@@ -250,7 +246,7 @@ static pixel_box seen_box(const scene_floor *floor, map_box cells)
         const vector at = camera_project(&floor->camera, corner);
         if (at.z < floor->camera.nearest) {
             // it reaches behind the eye
-            return (pixel_box){0, floor->width, 0, floor->height};
+            return (cell_box){0, floor->width, 0, floor->height};
         }
         left = fmin(left, at.x);
         right = fmax(right, at.x);
@@ -259,8 +255,8 @@ static pixel_box seen_box(const scene_floor *floor, map_box cells)
     }
 
     // one pixel more on each side
-    return (pixel_box){(int)fmax(0, left - 1), (int)fmin(floor->width, right + 2),
-                       (int)fmax(0, top - 1), (int)fmin(floor->height, bottom + 2)};
+    return (cell_box){(int)fmax(0, left - 1), (int)fmin(floor->width, right + 2),
+                      (int)fmax(0, top - 1), (int)fmin(floor->height, bottom + 2)};
 }
 
 // A colour under a shadow of 0 to 255; threshold [1/65536] as of threshold_at.
@@ -274,9 +270,9 @@ static uint32_t darkened(uint32_t rgb, float shadow, uint32_t threshold)
 
 status scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto, fault *f)
 {
-    map_box shade;
+    cell_box shade;
     TRY(cast_shadow(floor, m, &shade, f));
-    const pixel_box seen = seen_box(floor, shade);
+    const cell_box seen = seen_box(floor, shade);
 
     cairo_surface_flush(onto);
     unsigned char *data = cairo_image_surface_get_data(onto);
@@ -287,7 +283,7 @@ status scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *ont
         uint32_t *to = (uint32_t *)(void *)(data + row * stride), thresholds[8];
         size_t at = (size_t)row * (size_t)floor->width;
         memcpy(to, floor->ground + at, (size_t)floor->width * sizeof *to);
-        if (row < seen.top || row >= seen.bottom) {
+        if (row < seen.low || row >= seen.high) {
             continue;
         }
 
