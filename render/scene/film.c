@@ -27,9 +27,8 @@ typedef struct film_making {
     film_painter *painter;
     film_file *file;
     cairo_surface_t *frame;
-    GThreadPool *second; // NULL: all frames are painted here
-    film_painter *its_painter;
-    GAsyncQueue *painted; // frame_job
+    GThread *second;              // NULL: all frames are painted here
+    GAsyncQueue *asked, *painted; // frame_job
     frame_job jobs[BUFFERS];
 } film_making;
 
@@ -38,26 +37,26 @@ static double film_time_of(const film_making *m, int frame)
     return m->plan->options.seconds * frame / (m->total - 1);
 }
 
-// On the second thread. A job without a surface ends its painter there: GLib keeps the thread for
-// others, and OpenGL must not take a context that is gone for that thread's present one.
-static void paint_job(gpointer data, gpointer making)
+// On the second thread: what is asked for, until a job without a surface ends it.
+static gpointer paint_jobs(gpointer making)
 {
-    frame_job *job = data;
     film_making *m = making;
-    if (job->onto == NULL) {
-        film_painter_destroy(m->its_painter);
-        return;
-    }
+    film_painter *painter = NULL;
+    frame_job *job;
 
     // signals are for the thread that writes: they end its waiting
     worker_signals_block(NULL);
-    job->code = m->its_painter != NULL ? STATUS_OK
-                                       : film_painter_create(&m->its_painter, m->plan, &job->fault);
-    if (job->code == STATUS_OK) {
-        const double time = film_time_of(m, job->frame);
-        job->code = film_painter_frame(m->its_painter, time, job->onto, &job->fault);
+    while ((job = g_async_queue_pop(m->asked))->onto != NULL) {
+        job->code =
+            painter != NULL ? STATUS_OK : film_painter_create(&painter, m->plan, &job->fault);
+        if (job->code == STATUS_OK) {
+            const double time = film_time_of(m, job->frame);
+            job->code = film_painter_frame(painter, time, job->onto, &job->fault);
+        }
+        g_async_queue_push(m->painted, job);
     }
-    g_async_queue_push(m->painted, job);
+    film_painter_destroy(painter);
+    return NULL;
 }
 
 // Asks the second thread for a frame, if the film has it.
@@ -66,7 +65,7 @@ static void ask_for(film_making *m, int frame)
     if (m->second != NULL && frame < m->total) {
         frame_job *job = &m->jobs[frame / 2 % BUFFERS];
         job->frame = frame;
-        g_thread_pool_push(m->second, job, NULL);
+        g_async_queue_push(m->asked, job);
     }
 }
 
@@ -74,16 +73,12 @@ static void ask_for(film_making *m, int frame)
 static void begin_second(film_making *m)
 {
     const film_options *o = &m->plan->options;
-    m->second = g_thread_pool_new(paint_job, m, 1, TRUE, NULL);
-    if (g_thread_pool_get_num_threads(m->second) == 0) {
-        g_thread_pool_free(m->second, TRUE, TRUE);
-        m->second = NULL;
-        return;
-    }
     for (int i = 0; i < BUFFERS; i++) {
         m->jobs[i].onto = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o->width, o->height);
     }
+    m->asked = g_async_queue_new();
     m->painted = g_async_queue_new();
+    m->second = g_thread_try_new("frames", paint_jobs, m, NULL);
     ask_for(m, 1);
 }
 
@@ -91,12 +86,13 @@ static void end_second(film_making *m)
 {
     frame_job last = {0};
     if (m->second != NULL) {
-        g_thread_pool_push(m->second, &last, NULL);
-        g_thread_pool_free(m->second, FALSE, TRUE);
-        g_async_queue_unref(m->painted);
-        for (int i = 0; i < BUFFERS; i++) {
-            cairo_surface_destroy(m->jobs[i].onto);
-        }
+        g_async_queue_push(m->asked, &last);
+        g_thread_join(m->second);
+    }
+    g_clear_pointer(&m->asked, g_async_queue_unref);
+    g_clear_pointer(&m->painted, g_async_queue_unref);
+    for (int i = 0; i < BUFFERS; i++) {
+        cairo_surface_destroy(m->jobs[i].onto);
     }
 }
 
