@@ -396,24 +396,16 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
         }
 
         // its label, above the panels or inside the first
-        double x = plane_x(first, m->x), top = first->box.y;
+        double x = plane_x(first, m->x), top = first->box.y + 1;
         if (i < MARKS_LABELLED && d->mark_row[i] >= 0) {
-            text_block t = figure_text_of(d, m->label, d->style.small);
-            top = d->marks_bottom - MARK_ROW * (d->mark_row[i] + 1);
-            if (d->marks_inside) {
-                draw_text(d, t, d->mark_text_x[i], d->mark_text_y[i], (anchor){0, 0},
-                          d->style.colours->text);
-
-                // its line
-                draw_hairline(d, x, first->box.y, last->box.y + last->box.height);
-                continue;
-            }
-            bool before = m->onwards && d->mark_text_x[i] < x;
+            const double row = d->marks_bottom - MARK_ROW * (d->mark_row[i] + 1);
+            const bool before = !d->marks_inside && m->onwards && d->mark_text_x[i] < x;
             g_autofree char *towards = before ? g_strconcat(m->label, ARROW, NULL) : NULL;
-            t.markup = before ? towards : t.markup;
-            draw_text(d, t, d->mark_text_x[i] + shift, top, (anchor){0, 0}, d->style.colours->text);
+            draw_label(d, before ? towards : m->label, d->style.small, d->mark_text_x[i] + shift,
+                       d->marks_inside ? d->mark_text_y[i] : row, (anchor){0, 0});
+            top = d->marks_inside ? first->box.y : row + 1;
         }
-        draw_hairline(d, x, top + 1, last->box.y + last->box.height);
+        draw_hairline(d, x, top, last->box.y + last->box.height);
     }
 }
 

@@ -43,16 +43,15 @@ double set_series(const drawing *d, const panel_layout *l, int index)
 {
     const figure_series *s = &l->panel->series[index];
     double width = s->secondary ? SECONDARY_WIDTH : CURVE_WIDTH;
+    colour ink = palette_series(d->style.theme, s->colour, index);
+    line_style style = s->style;
 
     if (s->run > 0) {
         // its style is the signal's and its colour the run's; there are three greys
         const int rank = s->run - 1;
         width *= d->style.theme == THEME_MONO ? 1 + RUN_WIDER * (rank / 3) : 1;
-        set_colour(d->cr, palette_series(d->style.theme, s->colour, 2 * rank));
-        set_line_style(d->cr, s->style, width);
-        return width;
-    }
-    if (l->busy[index]) {
+        ink = palette_series(d->style.theme, s->colour, 2 * rank);
+    } else if (l->busy[index]) {
         // no pattern shows in it; without colours a lighter and wider line does
         bool wide = d->style.theme == THEME_MONO && !s->secondary;
         bool second = false;
@@ -60,14 +59,13 @@ double set_series(const drawing *d, const panel_layout *l, int index)
             second = second || l->busy[i];
         }
         width *= wide && !second ? 1.7 : 1;
-        set_colour(d->cr, wide ? palette_series(THEME_MONO, 0, second ? 0 : 4)
-                               : palette_series(d->style.theme, s->colour, index));
-        set_line_style(d->cr, LINE_SOLID, width);
-        return width;
+        ink = wide ? palette_series(THEME_MONO, 0, second ? 0 : 4) : ink;
+        style = LINE_SOLID;
+    } else if (!s->rim) {
+        // a line over a map keeps the pattern it asks for
+        style = free_style(l->panel->series, index);
     }
-    // a line over a map keeps the pattern it asks for
-    line_style style = s->rim ? s->style : free_style(l->panel->series, index);
-    set_colour(d->cr, palette_series(d->style.theme, s->colour, index));
+    set_colour(d->cr, ink);
     set_line_style(d->cr, style, width);
     return width;
 }
@@ -336,21 +334,17 @@ static bool impulse_shows(const drawing *d, const figure_impulse *p)
     return isfinite(p->size) && p->size != 0 && scale_holds(&d->x.scale, p->x);
 }
 
-// The largest impulse that shows and is not among the first `count` of `done`; -1 if none is left.
-static int next_impulse(const drawing *d, const figure_panel *panel, const int *done, int count)
+// The largest impulse that shows after the one at `last` (-1: of all), of two alike the first; -1
+// if none is left.
+static int next_impulse(const drawing *d, const figure_panel *panel, int last)
 {
+    const figure_impulse *all = panel->impulses;
+    const double most = last >= 0 ? fabs(all[last].size) : (double)INFINITY;
     int next = -1;
     for (int i = 0; i < panel->impulse_count; i++) {
-        const figure_impulse *p = &panel->impulses[i];
-
-        // one that does not show counts as done
-        bool is_done = !impulse_shows(d, p);
-        for (int k = 0; k < count && !is_done; k++) {
-            is_done = done[k] == i;
-        }
-
-        // of two alike the first
-        if (!is_done && (next < 0 || fabs(p->size) > fabs(panel->impulses[next].size))) {
+        const double size = fabs(all[i].size);
+        const bool left = size < most || (size == most && i > last);
+        if (left && impulse_shows(d, &all[i]) && (next < 0 || size > fabs(all[next].size))) {
             next = i;
         }
     }
@@ -361,13 +355,10 @@ static int next_impulse(const drawing *d, const figure_panel *panel, const int *
 static void label_impulses(drawing *d, const panel_layout *l, double base)
 {
     figure_rect taken[IMPULSES_LABELLED];
-    int done[IMPULSES_LABELLED], count = 0;
-    for (int rank = 0; rank < IMPULSES_LABELLED; rank++) {
-        done[rank] = next_impulse(d, l->panel, done, rank);
-        if (done[rank] < 0) {
-            return;
-        }
-        label_impulse(d, l, done[rank], base, taken, &count);
+    int count = 0, next = next_impulse(d, l->panel, -1);
+    for (int rank = 0; rank < IMPULSES_LABELLED && next >= 0; rank++) {
+        label_impulse(d, l, next, base, taken, &count);
+        next = next_impulse(d, l->panel, next);
     }
 }
 
