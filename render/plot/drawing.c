@@ -56,10 +56,9 @@ void set_plain_line(cairo_t *cr, colour c, double width)
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
 }
 
-void clip_to(cairo_t *cr, const figure_rect *box, double space)
+void clip_to(cairo_t *cr, const figure_rect *box)
 {
-    cairo_rectangle(cr, box->x - space, box->y - space, box->width + 2 * space,
-                    box->height + 2 * space);
+    cairo_rectangle(cr, box->x, box->y, box->width, box->height);
     cairo_clip(cr);
 }
 

@@ -151,7 +151,7 @@ void draw_rotated(drawing *d, text_block t, double x, double y, colour c);
 // --- strokes: drawing.c
 
 void set_plain_line(cairo_t *cr, colour c, double width);
-void clip_to(cairo_t *cr, const figure_rect *box, double space);
+void clip_to(cairo_t *cr, const figure_rect *box);
 void fill_box(cairo_t *cr, const figure_rect *box, colour c);
 // Whether two rectangles lie over each other, or less than `space` apart sideways.
 bool rects_meet(const figure_rect *a, const figure_rect *b, double space);

@@ -118,7 +118,7 @@ void set_shade(const drawing *d, const panel_layout *l, double value)
 static void fill_missing(const drawing *d, const figure_rect *r)
 {
     cairo_save(d->cr);
-    clip_to(d->cr, r, 0);
+    clip_to(d->cr, r);
 
     set_colour(d->cr, d->style.colours->grid);
     cairo_paint(d->cr);
@@ -213,7 +213,7 @@ void draw_map(drawing *d, const panel_layout *l)
         return;
     }
     cairo_save(d->cr);
-    clip_to(d->cr, &l->plane.box, 0);
+    clip_to(d->cr, &l->plane.box);
 
     // cells, and contour lines at the ticks of the colours
     draw_cells(d, l);

@@ -283,7 +283,7 @@ void draw_intervals(const drawing *d, const plane *p)
     const figure_rect *box = &p->box;
 
     cairo_save(d->cr);
-    clip_to(d->cr, box, 0);
+    clip_to(d->cr, box);
     set_colour(d->cr, d->style.colours->shade);
 
     // each as far as the axis shows it

@@ -208,7 +208,7 @@ void draw_series(const drawing *d, const panel_layout *l, const plane *p)
         double width = set_series(d, l, i);
         stroke_context context = {.cr = d->cr, .radius = 0.75 * width};
         cairo_save(d->cr);
-        clip_to(d->cr, &page, 0);
+        clip_to(d->cr, &page);
 
         // a wider line below makes the rim
         if (s->rim && !s->no_line) {
