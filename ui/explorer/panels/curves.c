@@ -245,6 +245,14 @@ static bool draw_box(explorer_state *st, const panel_gesture *g)
 }
 
 // The cursor goes where the mouse is.
+static bool scrub(explorer_state *st, const panel_gesture *g)
+{
+    if (g->event.kind != POINTER_RELEASE) {
+        act_scrub(st, time_at(st, g->hit.area, g->event.x));
+    }
+    return g->event.kind != POINTER_RELEASE;
+}
+
 static bool point_at_plot(explorer_state *st, const panel_gesture *g)
 {
     const bool in_pane =
@@ -252,13 +260,7 @@ static bool point_at_plot(explorer_state *st, const panel_gesture *g)
     if (g->event.kind == POINTER_PRESS) {
         st->box.held = in_pane && g->event.control;
     }
-    if (st->box.held) {
-        return draw_box(st, g);
-    }
-    if (g->event.kind != POINTER_RELEASE) {
-        act_scrub(st, time_at(st, g->hit.area, g->event.x));
-    }
-    return g->event.kind != POINTER_RELEASE;
+    return st->box.held ? draw_box(st, g) : scrub(st, g);
 }
 
 // The axis is dragged; a click without a drag moves the cursor.
@@ -545,8 +547,9 @@ static bool point(explorer_state *st, const panel_gesture *g)
     switch (part) {
     case PART_BODY:
     case PART_PANE:
-    case PART_LANES:
         return point_at_plot(st, g);
+    case PART_LANES:
+        return scrub(st, g);
     case PART_TIME_AXIS:
         return point_at_time_axis(st, g);
     case PART_VIEW:
