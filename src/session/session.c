@@ -175,7 +175,7 @@ static status start_run(session *s, const scenario *effective, fault *f)
     // of what it is about to read, unless that was read before
     memcpy(digest, s->digest, sizeof digest);
     if (!same || !p->code_allowed || outside_read(p) != outside_read(&s->effective.parameters)) {
-        outside_digest_all(p, digest);
+        outside_digest_all(p->code_allowed ? ~0u : outside_files(), p, digest);
     }
     if (s->transcript == NULL && p->control.law == LAW_PROCESS) {
         s->transcript = process_transcript_create(); // without memory the program is always asked

@@ -322,7 +322,7 @@ bool session_file_is_outdated(const session_file *file)
         const run_origin *from = &file->runs[i].from;
         const parameters p = started_with(from);
         char now[SHA256_TEXT];
-        outside_digest_all(&p, now);
+        outside_digest_all(~0u, &p, now);
         outdated = from->outside[0] != '\0' && strcmp(now, from->outside) != 0;
     }
     return outdated;
