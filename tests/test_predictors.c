@@ -1,5 +1,5 @@
 // One question to all predictors: which answer, and why the others do not.
-#include "src/run/first_contact.h"
+#include "src/run/run.h"
 
 #include "tests/arm_fixture.h"
 

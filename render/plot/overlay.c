@@ -1,7 +1,7 @@
 #include "render/plot/trace_plot.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
-#include "src/run/measured.h"
+#include "src/run/trace.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 
 #include "render/plot/trace_plot.h"
 #include "render/scene/film_file.h"
-#include "src/base/worker_signals.h"
+#include "src/run/background_run.h"
 
 enum { MOST_THREADS = 2, BUFFERS = 2 };
 

@@ -5,7 +5,7 @@
 #include "src/base/json.h"
 #include "src/rig/controller.h"
 #include "src/run/export.h"
-#include "src/run/first_contact.h"
+#include "src/run/run.h"
 
 // Whether the rig can call a controller that a program gives.
 static int check_law(const controller *law, impactlab_error *error)

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/double_bits.h"
+#include "src/base/plain_math.h"
 
 // Gives the calling thread the "C" locale; returns the one to go back to. The C library keeps the
 // "C" locale for good: it is neither allocated here nor freed.

@@ -4,8 +4,6 @@
 #include <float.h>
 #include <math.h>
 
-#include "src/base/double_bits.h"
-
 // log(2), the first part with so few bits that its product with an exponent is exact
 static const double log2_high = 0x1.62e42feep-1, log2_low = 0x1.a39ef35793c76p-33;
 

@@ -7,6 +7,9 @@
 // in sincos.h.
 #pragma once
 
+#include <stdint.h>
+#include <string.h>
+
 // e^x; 0 and infinity beyond the range of doubles.
 double plain_exp(double x);
 
@@ -19,3 +22,19 @@ double plain_pow(double x, double y);
 // The angle of the point (x, y) from the x axis, from -pi to pi [rad], both finite; 0 at the
 // origin.
 double plain_atan2(double y, double x);
+
+// The bits of a number in double precision: sign, 11 of the exponent, 52 of the fraction (IEEE
+// 754); and the number of such bits.
+static inline uint64_t double_bits(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static inline double double_of_bits(uint64_t bits)
+{
+    double x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}

@@ -27,12 +27,9 @@ typedef struct prediction {
 // An empty prediction: it does not hold, and every number is NaN.
 static inline prediction prediction_none(void)
 {
-    const double unknown = (double)NAN;
-    return (prediction){.force = unknown,
-                        .delay = unknown,
-                        .impulse = unknown,
-                        .restitution = unknown,
-                        .inductance = unknown};
+    const double none = (double)NAN;
+    return (prediction){
+        .force = none, .delay = none, .impulse = none, .restitution = none, .inductance = none};
 }
 
 // Commands of the motor after the touch, each in force from its time on: v(t) of the remark in 4.2.

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 
 #include "src/base/clock.h"
-#include "src/base/worker_signals.h"
 
 struct background_run {
     scenario scenario;
@@ -118,4 +117,15 @@ run_result background_run_finish(background_run *c)
     pthread_cond_destroy(&c->ended);
     free(c);
     return result;
+}
+
+void worker_signals_block(sigset_t *before)
+{
+    static const int crashes[] = {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGTRAP, SIGSYS};
+    sigset_t blocked;
+    sigfillset(&blocked);
+    for (size_t i = 0; i < sizeof crashes / sizeof crashes[0]; i++) {
+        sigdelset(&blocked, crashes[i]);
+    }
+    pthread_sigmask(SIG_SETMASK, &blocked, before);
 }

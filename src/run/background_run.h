@@ -1,6 +1,8 @@
 // A run that is being computed by a thread of its own, and can be looked at meanwhile.
 #pragma once
 
+#include <signal.h>
+
 #include "src/run/run.h"
 
 typedef struct background_run background_run;
@@ -30,3 +32,11 @@ void background_run_stop(background_run *c);
 
 // Waits for the run's end, gives its result away and frees the rest.
 run_result background_run_finish(background_run *c);
+
+// Signals and the threads that work for another one: those for the program as a whole go to the
+// thread that waits for them, those that a crash raises stay where it happens.
+
+// Blocks all signals for the calling thread, and for threads that it starts from now on, but those
+// that a crash raises: blocked, these would end the program without its handlers. *before takes the
+// mask of before for pthread_sigmask(SIG_SETMASK, before, NULL); NULL where it is not wanted.
+void worker_signals_block(sigset_t *before);

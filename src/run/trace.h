@@ -1,6 +1,7 @@
 // A recorded run: rows of samples, the link angles at each, and the events between them.
 #pragma once
 
+#include "src/base/csv_table.h"
 #include "src/base/fault.h"
 #include "src/base/shared_array.h"
 #include "src/tables/signals.h"
@@ -96,3 +97,11 @@ typedef struct signal_statistics {
 // Of a signal from one instant to a later one [s], straight between rows, both kept within the run.
 // All NaN where it never has a value.
 signal_statistics trace_statistics(const trace *t, int signal, double from, double to);
+
+// --- recorded tables as traces: measured signals beside those of a run ---
+
+// Appends a row for each row of a table with a column "time": of the columns that are headed as
+// signals, in their units, or of `column` alone (not NULL), which stands for `signal`. What was not
+// measured is NaN. STATUS_BAD_ARGUMENT with the line in f: no time, times that fall, no such
+// column, a field that is no number, no number at all; STATUS_NO_MEMORY.
+status measured_rows(trace *t, const csv_table *table, const char *column, int signal, fault *f);

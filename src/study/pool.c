@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "src/base/clock.h"
-#include "src/base/worker_signals.h"
+#include "src/run/background_run.h"
 
 #define TICK_INTERVAL 0.1 // [s]
 

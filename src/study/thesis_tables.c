@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/run/first_contact.h"
 #include "src/run/run.h"
 #include "src/predict/predict.h"
 #include "src/thesis/printed_algorithm.h"

@@ -4,7 +4,7 @@
 
 #include "src/base/json.h"
 #include "src/base/numbers.h"
-#include "src/run/first_contact.h"
+#include "src/run/run.h"
 #include "ui/commands/pictures.h"
 #include "ui/commands/progress.h"
 

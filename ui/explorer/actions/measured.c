@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "src/run/measured.h"
+#include "src/run/trace.h"
 #include "src/study/identify.h"
 
 // --- under the run ----------------------------------------------------------------------------

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "src/base/text_stream.h"
-#include "src/run/first_contact.h"
+#include "src/run/run.h"
 
 enum { MOST_PREDICTED = 32 }; // links: more would take seconds
 enum { ROWS = 6 };            // of the panel [cells]
