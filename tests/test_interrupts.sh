@@ -29,8 +29,9 @@ control: {law: process, command: "read question; echo $$ >asked; exec sleep 1000
 run: {duration: 0.4 s}
 END
 
-computes() { # JOB: it has used some time of the processor
-    [ "$(awk '{ print $14 + $15 }' "/proc/$1/stat")" -ge 15 ]
+computes() { # JOB: it has used some time of the processor, and catches SIGINT
+    [ "$(awk '{ print $14 + $15 }' "/proc/$1/stat")" -ge 15 ] &&
+        (((0x$(awk '/^SigCgt:/ { print $2 }' "/proc/$1/status") & 2) != 0))
 }
 asks() { # whoever does: the controller that sleeps was asked
     [ -s asked ]

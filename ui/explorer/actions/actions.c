@@ -126,9 +126,12 @@ bool act_need_whole_run(explorer_state *st)
 
 bool act_need_short_runs(explorer_state *st, const char *command, int runs)
 {
-    const double takes = st->session.run.summary.wall_time_s;
+    // how busy the machine is has no say, but a program that is asked takes its own time
+    const summary *s = &st->session.run.summary;
+    const bool waits = st->session.effective.parameters.control.law == LAW_PROCESS;
+    const double takes = waits ? s->wall_time_s : s->cpu_time_s;
     return !(isfinite(st->session.patience) && takes * runs > LONGEST_WAIT) ||
-           act_refuse(st, "a run takes %.1f s here: 'impactlab %s' computes them beside", takes,
+           act_refuse(st, "a run takes %.2g s here: 'impactlab %s' computes them beside", takes,
                       command);
 }
 
