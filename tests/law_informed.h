@@ -11,8 +11,8 @@
 // landing speed is given, it costs to be off that speed's line to the wall in the last 0.06 s.
 // Friction's torque is added in the direction in which the hub is to move.
 //
-// To say what knowledge is worth it may also be told less: no mass at the tip or the nearest of 0,
-// 40 and 80 g, and a rigid wall for one that gives.
+// To say what knowledge is worth it may also be told less: the nearest of 0, 40 and 80 g for the
+// mass at the tip, and a rigid wall for one that gives.
 #pragma once
 
 #include "src/arm/modes.h"
@@ -44,20 +44,17 @@ typedef struct informed_arm {
 } informed_arm;
 
 // What is told of the tip's mass and of the wall.
-enum { TOLD_ALL, NOT_THE_WALL, NOT_THE_MASS, MASS_ROUGHLY, MASS_ROUGHLY_NOT_THE_WALL, KNOWLEDGE };
-static const char *const knowledge_names[] = {"told all", "not the wall", "not the tip's mass",
-                                              "the tip's mass to 20 g",
+enum { TOLD_ALL, MASS_ROUGHLY, MASS_ROUGHLY_NOT_THE_WALL, KNOWLEDGE };
+static const char *const knowledge_names[] = {"told all", "the tip's mass to 20 g",
                                               "the tip's mass to 20 g and not the wall"};
 
 static void forget(parameters *p, int knowledge)
 {
     double *mass = &p->arm.tip_mass;
-    if (knowledge == NOT_THE_MASS) {
-        *mass = 0;
-    } else if (knowledge == MASS_ROUGHLY || knowledge == MASS_ROUGHLY_NOT_THE_WALL) {
+    if (knowledge >= MASS_ROUGHLY) {
         *mass = fmin(0.08, 0.04 * round(*mass / 0.04));
     }
-    if (knowledge == NOT_THE_WALL || knowledge == MASS_ROUGHLY_NOT_THE_WALL) {
+    if (knowledge == MASS_ROUGHLY_NOT_THE_WALL) {
         p->wall.contact = WALL_RIGID;
         p->wall.mass = 0;
     }

@@ -176,7 +176,7 @@ status outside_digest(const outside_source *source, const parameters *p, char di
                                 value, strerror(reason));
 }
 
-void outside_digest_all(unsigned sources, const parameters *p, char digest[SHA256_TEXT])
+void outside_digest_all(const parameters *p, char digest[SHA256_TEXT])
 {
     sha256 whole;
     sha256_init(&whole);
@@ -184,7 +184,7 @@ void outside_digest_all(unsigned sources, const parameters *p, char digest[SHA25
     for (int i = 0; i < outside_count; i++) {
         const outside_source *source = &outside_table[i];
         char one[SHA256_TEXT];
-        if ((sources >> i & 1) != 0 && outside_is_read(source, p) && outside_is_told(source, p) &&
+        if (outside_is_read(source, p) && outside_is_told(source, p) &&
             outside_digest(source, p, one, NULL) == STATUS_OK) {
             sha256_add_text(&whole, one);
             reads = true;

@@ -39,11 +39,11 @@ bool outside_is_told(const outside_source *source, const parameters *p);
 status outside_digest(const outside_source *source, const parameters *p, char digest[SHA256_TEXT],
                       fault *f);
 
-// The digest of all that a run with these parameters reads from some sources and that can be told;
-// empty if that is nothing. `sources` has bit i for outside_table[i].
-void outside_digest_all(unsigned sources, const parameters *p, char digest[SHA256_TEXT]);
+// The digest of all that a run with these parameters reads and that can be told; empty if that is
+// nothing.
+void outside_digest_all(const parameters *p, char digest[SHA256_TEXT]);
 
 // A text that is another one if a file that one of these sources names is: quick, as of a large
 // file it takes in only when it was written, and one written again with the same content for
-// another. What cannot be told counts as the same.
+// another. What cannot be told counts as the same. `sources` has bit i for outside_table[i].
 void outside_stamp(unsigned sources, const parameters *p, char stamp[SHA256_TEXT]);

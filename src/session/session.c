@@ -172,10 +172,13 @@ static status start_run(session *s, const scenario *effective, fault *f)
     const bool same = outside_is_same(s, p, stamp);
     bool resume = same && run_resume(&s->run, &s->effective, effective, rows, &run);
 
-    // of what it is about to read, unless that was read before
+    // of what it is about to read, unless that was read before; without a consent it reads nothing
+    const unsigned reads = outside_read(p);
     memcpy(digest, s->digest, sizeof digest);
-    if (!same || !p->code_allowed || outside_read(p) != outside_read(&s->effective.parameters)) {
-        outside_digest_all(p->code_allowed ? ~0u : outside_files(), p, digest);
+    if (!p->code_allowed && (reads & ~outside_files()) != 0) {
+        digest[0] = '\0';
+    } else if (!same || reads != outside_read(&s->effective.parameters)) {
+        outside_digest_all(p, digest);
     }
     if (s->transcript == NULL && p->control.law == LAW_PROCESS) {
         s->transcript = process_transcript_create(); // without memory the program is always asked

@@ -58,7 +58,8 @@ static void write_input(FILE *stream, const session_input *in)
 static parameters started_with(const run_origin *from)
 {
     parameters p = from->base.parameters;
-    for (const session_input *in = from->inputs; in < from->inputs + from->input_count; in++) {
+    for (int i = 0; i < from->input_count; i++) {
+        const session_input *in = &from->inputs[i];
         if (in->kind == SESSION_INPUT_START) {
             parameter_set_text(&p, in->parameter, in->text, NULL);
         }
@@ -322,7 +323,7 @@ bool session_file_is_outdated(const session_file *file)
         const run_origin *from = &file->runs[i].from;
         const parameters p = started_with(from);
         char now[SHA256_TEXT];
-        outside_digest_all(~0u, &p, now);
+        outside_digest_all(&p, now);
         outdated = from->outside[0] != '\0' && strcmp(now, from->outside) != 0;
     }
     return outdated;

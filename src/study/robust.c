@@ -264,7 +264,8 @@ static void judge(robust_law *out, const sweep *s, sweep_share share, double *va
     double *of[QUANTITIES];
     size_t settled = 0, separated = 0, exceeded = 0;
     double pushed = 0; // instant of the script's last push [s]
-    for (const action *a = s->base->actions; a < s->base->actions + s->base->action_count; a++) {
+    for (int i = 0; i < s->base->action_count; i++) {
+        const action *a = &s->base->actions[i];
         pushed = a->kind == ACTION_PUSH ? fmax(pushed, a->time) : pushed;
     }
     for (int q = 0; q < QUANTITIES; q++) {

@@ -143,7 +143,7 @@ static bool is_whole(const search *s)
     return sweep_axis_parameter(s->axis)->type == PARAMETER_INTEGER && s->axis->element == 0;
 }
 
-// Value i of the range, from its low to its high end, both included; whole numbers are each other's
+// Runs value i of the range, from its low to its high end, both included; whole numbers are each other's
 // neighbours where there are enough points.
 static void compute_point(void *context, size_t i, void *scratch, void *result)
 {

@@ -1,4 +1,4 @@
-// The arm at rest, and its equations of motion linearised there.
+// The arm at rest, its equations of motion linearised there, and those from sample to sample.
 //
 // Rates are the derivatives of chain_accelerations by differences of sixth order, which are good to
 // some 1e-12 of a row. A rigid wall leaves angles with J q = 0: the last link's follows from the

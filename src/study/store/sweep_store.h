@@ -37,7 +37,8 @@ status sweep_store_quantity(sweep_store *store, const char *key, double *values,
 // Writes all rows in the order of the runs. As CSV: run, varied values, status, message, then the
 // quantities that do not depend on the machine; the header is name[unit]. As JSON: scenario,
 // sampling, and in `runs` an object for each row under the keys of `impactlab run --json`, the
-// varied values under their paths. Errors of the stream stay in it (ferror). STATUS_NO_MEMORY.
+// varied values under their paths. Errors of the stream stay in it (ferror).
+// STATUS_NO_MEMORY, or what is wrong with the database.
 status sweep_store_write(sweep_store *store, FILE *stream, bool json, fault *f)
     __attribute__((warn_unused_result));
 
