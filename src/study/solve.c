@@ -143,8 +143,8 @@ static bool is_whole(const search *s)
     return sweep_axis_parameter(s->axis)->type == PARAMETER_INTEGER && s->axis->element == 0;
 }
 
-// Runs value i of the range, from its low to its high end, both included; whole numbers are each other's
-// neighbours where there are enough points.
+// Runs value i of the range, from its low to its high end, both included; whole numbers are each
+// other's neighbours where there are enough points.
 static void compute_point(void *context, size_t i, void *scratch, void *result)
 {
     const search *s = context;
