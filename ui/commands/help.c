@@ -201,7 +201,7 @@ static int cut_length(const char *text, int most)
 static void print_hit(FILE *stream, const search_source *sources, const search_hit *hit)
 {
     const search_entry e = sources[hit->source].entry(hit->index);
-    const char *text = hit->text >= 0 ? e.texts[hit->text] : "";
+    const char *text = hit->text < e.text_count ? e.texts[hit->text] : "";
 
     fprintf(stream, "\n");
     print_name(stream, hit->source, hit->index, &e);
@@ -241,19 +241,15 @@ static int print_answers(FILE *stream, const char *question)
 int print_meanings(FILE *stream, const char *words)
 {
     search_source sources[SOURCES];
-    int count = 0;
+    search_hit hits[MEANINGS];
     list_sources(sources);
-    for (int s = 0; s < SOURCES; s++) {
-        for (int i = 0; i < sources[s].count && count < MEANINGS; i++) {
-            const search_entry e = sources[s].entry(i);
-            if (!search_names(e.title, words)) {
-                continue;
-            }
-            fprintf(stream, "%s", count++ == 0 ? "it may mean\n" : "");
-            fprintf(stream, "  ");
-            print_name(stream, s, i, &e);
-            print_indented(stream, e.texts[0], cut_length(e.texts[0], PASSAGE), LINE, INDENT);
-        }
+    const int count = search_titles(sources, SOURCES, words, hits, MEANINGS);
+    fprintf(stream, "%s", count > 0 ? "it may mean\n" : "");
+    for (int i = 0; i < count; i++) {
+        const search_entry e = sources[hits[i].source].entry(hits[i].index);
+        fprintf(stream, "  ");
+        print_name(stream, hits[i].source, hits[i].index, &e);
+        print_indented(stream, e.texts[0], cut_length(e.texts[0], PASSAGE), LINE, INDENT);
     }
     return count;
 }

@@ -1,306 +1,193 @@
 #include "ui/manual/search.h"
 
-#include <assert.h>
 #include <ctype.h>
-#include <math.h>
+#include <sqlite3.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "src/base/text_stream.h"
 #include "src/base/words.h"
 
-enum { WORDS = 16, WORD = 32 };
+enum { WORDS = 16, WORD = 32, TERMS = WORDS * (WORD + 8) };
 
-// Okapi BM25: how fast further occurrences of a word stop to count, how much a long text needs more
-// of them, and how many occurrences one in a title of one word is worth, in a longer one by the
-// root of its length less.
-static const double SATURATION = 1.2;
-static const double LENGTH_SHARE = 0.6;
-static const double USUAL_LENGTH = 60;
-static const double TITLE_WEIGHT = 12;
-static const double ABOVE_WEIGHT = 2;
+// All things and their passages, words without their endings (Porter 1980), and the words of titles
+// as they are spelt. Passages of the thing with number n have the numbers from n PASSAGES on.
+static const char tables[] =
+    "BEGIN;"
+    "CREATE VIRTUAL TABLE thing USING fts5(source UNINDEXED, item UNINDEXED, title, above, body, "
+    "tokenize = 'porter');"
+    "CREATE VIRTUAL TABLE passage USING fts5(body, tokenize = 'porter');"
+    "CREATE VIRTUAL TABLE title USING fts5(body);"
+    "CREATE VIRTUAL TABLE spelling USING fts5vocab(title, row);";
+#define PASSAGES "10000"
 
-// The words that a question is about, each once.
+// The best things for the terms ?1, at most ?2, each with its best passage. The score is Okapi BM25
+// (Robertson and Zaragoza 2009), where a word in a title counts as twelve.
+static const char best_things[] =
+    "SELECT source, item, (SELECT passage.rowid % " PASSAGES " FROM passage "
+    "WHERE passage MATCH ?1 AND passage.rowid / " PASSAGES " = thing.rowid "
+    "ORDER BY bm25(passage), passage.rowid LIMIT 1) "
+    "FROM thing WHERE thing MATCH ?1 ORDER BY bm25(thing, 0, 0, 12, 4, 1), rowid LIMIT ?2";
+static const char titled_things[] = "SELECT source, item, NULL FROM thing "
+                                    "WHERE thing MATCH 'title:' || ?1 ORDER BY rowid LIMIT ?2";
+
 typedef struct question_words {
     char words[WORDS][WORD];
     int count;
-    double weight[WORDS]; // the rarer a word is, the more it says
 } question_words;
-
-// How often each of them occurs somewhere, and how many words there are in all.
-typedef struct occurrences {
-    double of[WORDS];
-    double length;
-} occurrences;
-
-static bool is_word_byte(char c)
-{
-    return isalnum((unsigned char)c) || (unsigned char)c >= 0x80;
-}
-
-// Takes an ending off if at least three letters are left.
-static bool take_ending(char *word, const char *ending, const char *instead)
-{
-    const size_t length = strlen(word), end = strlen(ending);
-    if (length < end + 3 || strcmp(word + length - end, ending) != 0) {
-        return false;
-    }
-    strcpy(word + length - end, instead);
-    return true;
-}
-
-// "settling", "settled", "settles" and "settle" become one word.
-static void take_endings(char *word)
-{
-    if (!take_ending(word, "ies", "y") && !take_ending(word, "ss", "ss")) {
-        take_ending(word, "s", "");
-    }
-    if (!take_ending(word, "ing", "")) {
-        take_ending(word, "ed", "");
-    }
-    take_ending(word, "er", "");
-    take_ending(word, "e", "");
-
-    // "fitting" and "fitted" as "fit", "controller" as "control"
-    const size_t length = strlen(word);
-    if (length > 3 && word[length - 1] == word[length - 2] &&
-        strchr("bdglmnprt", word[length - 1])) {
-        word[length - 1] = '\0';
-    }
-}
-
-// Takes the next word off *text, in small letters and without its ending; false after the last.
-static bool next_word(const char **text, char word[WORD])
-{
-    int length = 0;
-    while (**text != '\0' && !is_word_byte(**text)) {
-        (*text)++;
-    }
-    for (; is_word_byte(**text); (*text)++) {
-        if (length < WORD - 1) {
-            word[length++] = (char)tolower((unsigned char)**text);
-        }
-    }
-    word[length] = '\0';
-    take_endings(word);
-    return length > 0;
-}
 
 // Words of which questions are made, whatever they are about.
 static bool says_little(const char *word)
 {
-    static const char *const little[] = {
-        "a",    "an",   "and", "are",  "at",     "be",   "by",   "can",  "do",    "doe",  "for",
-        "get",  "from", "go",  "ha",   "have",   "how",  "i",    "if",   "in",    "is",   "it",
-        "mak",  "me",   "my",  "need", "of",     "on",   "or",   "so",   "that",  "the",  "ther",
-        "thi",  "to",   "use", "used", "wa",     "want", "what", "wher", "which", "why",  "will",
-        "with", "writ", "you", "your", "should", "take", "tak",  "mean", "one",   "when", "then",
-    };
-    for (size_t i = 0; i < sizeof little / sizeof little[0]; i++) {
-        if (strcmp(little[i], word) == 0) {
-            return true;
-        }
-    }
-    return false;
+    static const char little[] =
+        " a an and are at be by can do does for from get has have how i if in is it make me mean "
+        "my need of on one or should so take that the then there this to use used want was "
+        "what "
+        "when where which why will with write you your ";
+    char padded[WORD + 2];
+    snprintf(padded, sizeof padded, " %s ", word);
+    return strstr(little, padded) != NULL;
 }
 
-static bool is_among(const question_words *q, const char *word)
-{
-    for (int i = 0; i < q->count; i++) {
-        if (strcmp(q->words[i], word) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
+// The words of a question in small letters, all of them or those that say something.
 static void read_words(question_words *q, const char *question, bool all)
 {
-    char word[WORD];
     q->count = 0;
-    while (q->count < WORDS && next_word(&question, word)) {
-        if ((all || !says_little(word)) && !is_among(q, word)) {
-            strcpy(q->words[q->count++], word);
+    while (q->count < WORDS && *question != '\0') {
+        char *word = q->words[q->count];
+        int length = 0;
+        for (; isalnum((unsigned char)*question) || (unsigned char)*question >= 0x80; question++) {
+            if (length < WORD - 1) {
+                word[length++] = (char)tolower((unsigned char)*question);
+            }
         }
+        word[length] = '\0';
+        q->count += length > 0 && (all || !says_little(word));
+        question += *question != '\0';
     }
 }
 
-static void count_words(occurrences *o, const question_words *q, const char *text, double weight)
+// The tables of all entries in memory; NULL, and a loss is noted, without memory.
+static sqlite3 *open_tables(const search_source *sources, int source_count)
 {
-    char word[WORD];
-    while (next_word(&text, word)) {
-        o->length++;
-        for (int i = 0; i < q->count; i++) {
-            o->of[i] += strcmp(q->words[i], word) == 0 ? weight : 0;
-        }
-    }
-}
-
-// How many words a title has that say something, at least one.
-static double title_length(const char *title)
-{
-    char word[WORD];
-    int count = 0;
-    while (next_word(&title, word)) {
-        count += !says_little(word);
-    }
-    return count > 0 ? count : 1;
-}
-
-// All that an entry says, its title and the page's as many times as they count.
-static occurrences entry_words(const question_words *q, const search_entry *e)
-{
-    occurrences o = {.length = 0};
-    count_words(&o, q, e->title, TITLE_WEIGHT / sqrt(title_length(e->title)));
-    count_words(&o, q, e->above, ABOVE_WEIGHT);
-    for (int i = 0; i < e->text_count; i++) {
-        count_words(&o, q, e->texts[i], 1);
-    }
-    return o;
-}
-
-// BM25 of one field, times how much of the question is met.
-static double score_of(const question_words *q, const occurrences *o)
-{
-    const double room = 1 - LENGTH_SHARE + LENGTH_SHARE * o->length / USUAL_LENGTH;
-    double score = 0, met = 0, all = 0;
-    for (int i = 0; i < q->count; i++) {
-        const double often = o->of[i] / room;
-        score += q->weight[i] * often / (often + SATURATION);
-        met += o->of[i] > 0 ? q->weight[i] : 0;
-        all += q->weight[i];
-    }
-    return all > 0 ? score * (met / all) : 0;
-}
-
-// Number of entries, and of those that have each word.
-static double count_entries(const question_words *q, const search_source *sources, int source_count,
-                            double with[WORDS])
-{
-    double entries = 0;
-    memset(with, 0, WORDS * sizeof with[0]);
-    for (int s = 0; s < source_count; s++) {
-        for (int i = 0; i < sources[s].count; i++) {
+    sqlite3 *database = NULL;
+    sqlite3_open(":memory:", &database);
+    sqlite3_str *script = sqlite3_str_new(database);
+    sqlite3_str_appendall(script, tables);
+    for (int s = 0, thing = 1; s < source_count; s++) {
+        for (int i = 0; i < sources[s].count; i++, thing++) {
             const search_entry e = sources[s].entry(i);
-            const occurrences o = entry_words(q, &e);
-            for (int w = 0; w < q->count; w++) {
-                with[w] += o.of[w] > 0;
+            for (int t = 0; t < e.text_count; t++) {
+                sqlite3_str_appendf(script,
+                                    "INSERT INTO passage(rowid, body) VALUES "
+                                    "(%d * " PASSAGES " + %d, %Q);",
+                                    thing, t, e.texts[t]);
             }
-            entries++;
+            sqlite3_str_appendf(script,
+                                "INSERT INTO thing SELECT %d, %d, %Q, %Q, group_concat(body, ' ') "
+                                "FROM passage WHERE rowid >= %d * " PASSAGES ";"
+                                "INSERT INTO title VALUES (%Q);",
+                                s, i, e.title, e.above, thing, e.title);
         }
     }
-    return entries;
+    sqlite3_str_appendall(script, "COMMIT;");
+    char *sql = sqlite3_str_finish(script);
+    const bool made = sql != NULL && sqlite3_exec(database, sql, NULL, NULL, NULL) == SQLITE_OK;
+    sqlite3_free(sql);
+    loss_unless(made);
+    if (!made) {
+        sqlite3_close(database);
+    }
+    return made ? database : NULL;
 }
 
-// Takes the word of a title that is nearest to a misspelt one in its place, if one is near: one
-// letter in four.
-static void correct_word(char word[WORD], const search_source *sources, int source_count)
+// Runs a statement on the terms and takes its rows as hits; returns how many there are.
+static int take_hits(sqlite3 *database, const char *sql, const char *terms, search_hit *hits,
+                     int most)
 {
-    char best[WORD], candidate[WORD];
+    sqlite3_stmt *rows = NULL;
+    int count = 0, code = sqlite3_prepare_v2(database, sql, -1, &rows, NULL);
+    sqlite3_bind_text(rows, 1, terms, -1, SQLITE_STATIC);
+    sqlite3_bind_int(rows, 2, most);
+    while (code == SQLITE_OK && (code = sqlite3_step(rows)) == SQLITE_ROW) {
+        const bool fits = sqlite3_column_type(rows, 2) != SQLITE_NULL;
+        hits[count++] = (search_hit){.source = sqlite3_column_int(rows, 0),
+                                     .index = sqlite3_column_int(rows, 1),
+                                     .text = fits ? sqlite3_column_int(rows, 2) : 0};
+        code = SQLITE_OK;
+    }
+    sqlite3_finalize(rows);
+    loss_unless(code == SQLITE_DONE);
+    return count;
+}
+
+// Takes the word of a title that is nearest to one that occurs nowhere in its place, if one is
+// near: one letter in four.
+static void correct_word(sqlite3 *database, char word[WORD])
+{
+    search_hit found;
+    char term[WORD + 3];
+    snprintf(term, sizeof term, "\"%s\"", word);
+    if (take_hits(database, best_things, term, &found, 1) > 0) {
+        return;
+    }
+
+    sqlite3_stmt *rows = NULL;
     int least = (int)strlen(word) / 4 + 1;
+    char best[WORD];
     strcpy(best, word);
-    for (int s = 0; s < source_count; s++) {
-        for (int i = 0; i < sources[s].count; i++) {
-            const char *title = sources[s].entry(i).title;
-            while (next_word(&title, candidate)) {
-                const int distance = edit_distance(word, candidate, least);
-                if (distance < least) {
-                    least = distance;
-                    strcpy(best, candidate);
-                }
-            }
+    sqlite3_prepare_v2(database, "SELECT term FROM spelling", -1, &rows, NULL);
+    while (sqlite3_step(rows) == SQLITE_ROW) {
+        const char *candidate = (const char *)sqlite3_column_text(rows, 0);
+        const int distance = candidate != NULL ? edit_distance(word, candidate, least) : least;
+        if (distance < least) {
+            least = distance;
+            snprintf(best, sizeof best, "%s", candidate);
         }
     }
+    sqlite3_finalize(rows);
     strcpy(word, best);
 }
 
-// How much each word says: the fewer entries have it, the more. One that none has is taken for a
-// misspelt one.
-static void weigh(question_words *q, const search_source *sources, int source_count)
+static int find(const search_source *sources, int source_count, const char *question,
+                search_hit *hits, int most, bool titled)
 {
-    double with[WORDS];
-    count_entries(q, sources, source_count, with);
-    for (int w = 0; w < q->count; w++) {
-        if (with[w] == 0) {
-            correct_word(q->words[w], sources, source_count);
+    question_words q;
+    char terms[TERMS] = "(";
+    sqlite3 *database = open_tables(sources, source_count);
+
+    // a question of little words only is about these
+    read_words(&q, question, titled);
+    if (q.count == 0) {
+        read_words(&q, question, true);
+    }
+    for (int i = 0; i < q.count && database != NULL; i++) {
+        if (!titled) {
+            correct_word(database, q.words[i]);
         }
+        const size_t length = strlen(terms);
+        snprintf(terms + length, sizeof terms - length, "%s\"%s\"%s",
+                 i == 0   ? ""
+                 : titled ? " AND "
+                          : " OR ",
+                 q.words[i], i + 1 == q.count ? ")" : "");
     }
 
-    const double entries = count_entries(q, sources, source_count, with);
-    for (int w = 0; w < q->count; w++) {
-        q->weight[w] = log(1 + (entries - with[w] + 0.5) / (with[w] + 0.5));
-    }
-}
-
-// The paragraph that fits best; the first of equals.
-static int best_text(const question_words *q, const search_entry *e)
-{
-    int best = e->text_count > 0 ? 0 : -1;
-    double highest = 0;
-    for (int i = 0; i < e->text_count; i++) {
-        occurrences o = {.length = 0};
-        count_words(&o, q, e->texts[i], 1);
-        const double score = score_of(q, &o);
-        if (score > highest) {
-            highest = score;
-            best = i;
-        }
-    }
-    return best;
-}
-
-// Puts a hit in its place among the best; the first of equals stays in front. Returns how many
-// there are then.
-static int keep_hit(search_hit *hits, int count, int most, search_hit hit)
-{
-    int at = count;
-    for (; at > 0 && hits[at - 1].score < hit.score; at--) {
-        if (at < most) {
-            hits[at] = hits[at - 1];
-        }
-    }
-    if (at < most) {
-        hits[at] = hit;
-    }
-    return count < most ? count + 1 : most;
+    const char *sql = titled ? titled_things : best_things;
+    const int count =
+        database != NULL && q.count > 0 ? take_hits(database, sql, terms, hits, most) : 0;
+    sqlite3_close(database);
+    return count;
 }
 
 int search_find(const search_source *sources, int source_count, const char *question,
                 search_hit *hits, int most)
 {
-    assert(most > 0);
-    question_words q;
-    int count = 0;
-
-    // a question of little words only is about these
-    read_words(&q, question, false);
-    if (q.count == 0) {
-        read_words(&q, question, true);
-    }
-    weigh(&q, sources, source_count);
-
-    for (int s = 0; s < source_count; s++) {
-        for (int i = 0; i < sources[s].count; i++) {
-            const search_entry e = sources[s].entry(i);
-            const occurrences o = entry_words(&q, &e);
-            const double score = score_of(&q, &o);
-            if (score > 0) {
-                const search_hit hit = {s, i, best_text(&q, &e), score};
-                count = keep_hit(hits, count, most, hit);
-            }
-        }
-    }
-    return count;
+    return find(sources, source_count, question, hits, most, false);
 }
 
-bool search_names(const char *title, const char *question)
+int search_titles(const search_source *sources, int source_count, const char *words,
+                  search_hit *hits, int most)
 {
-    question_words q;
-    occurrences o = {.length = 0};
-    read_words(&q, question, true);
-    count_words(&o, &q, title, 1);
-    for (int i = 0; i < q.count; i++) {
-        if (o.of[i] == 0) {
-            return false;
-        }
-    }
-    return q.count > 0;
+    return find(sources, source_count, words, hits, most, true);
 }

@@ -21,19 +21,18 @@ typedef struct search_source {
 // A thing that was found.
 typedef struct search_hit {
     int source, index; // which it is
-    int text;          // the paragraph that fits best, -1 if there is none
-    double score;      // how well it fits; only comparisons within one search mean something
+    int text;          // the paragraph that fits best, the first where only the title does
 } search_hit;
 
 // Finds what fits a question, the best first: at most `most` hits; returns how many. Words are
 // compared without their usual endings, misspelt ones are corrected; words such as "how" and "the"
-// do not count beside others. The score is that of Okapi BM25 (Robertson and Zaragoza, 2009) with
-// the title as a field of more weight, times the share of the question that is met.
+// do not count beside others. Without memory a loss is noted (text_stream.h).
 int search_find(const search_source *sources, int source_count, const char *question,
                 search_hit *hits, int most);
 
-// Whether all words of the question stand in the title.
-bool search_names(const char *title, const char *question);
+// Finds the things in whose titles all the words stand, in order of the sources; returns how many.
+int search_titles(const search_source *sources, int source_count, const char *words,
+                  search_hit *hits, int most);
 
 // The manual's pages, section by section, as they were when the program was built.
 
