@@ -7,12 +7,21 @@
 enum { RUNS = 200 };
 
 // Voltages from 0.5 V to 10 V on arms of 2, 3 and 5 links.
-static void make(void *context, size_t i, scenario *made)
+static status make(void *context, size_t i, scenario *made, fault *f)
 {
     static const char *const links[] = {"arm.links=2", "arm.links=3", "arm.links=5"};
-    (void)context;
+    (void)context, (void)f;
     made->parameters = fixture_parameters(SETTINGS(links[i % 3], "run.duration=0.5"));
     made->parameters.motor.voltage = 0.5 + 9.5 * (double)i / RUNS;
+    return STATUS_OK;
+}
+
+// All on that many threads.
+static void run_all(status (*maker)(void *, size_t, scenario *, fault *), void *context,
+                    size_t count, int jobs, summary *summaries)
+{
+    const batch all = {.context = context, .count = count, .make = maker, .summaries = summaries};
+    DONE(batch_run(&all, jobs, &f));
 }
 
 static void check_same(const summary *a, const summary *b)
@@ -29,34 +38,38 @@ static void check_same(const summary *a, const summary *b)
 
 TEST(batches_equal_single_runs_to_the_last_bit)
 {
-    SCOPED(free_kept) summary *batch = calloc(RUNS, sizeof *batch);
+    SCOPED(free_kept) summary *runs = calloc(RUNS, sizeof *runs);
     for (int jobs = 1; jobs <= 3; jobs++) {
-        memset(batch, 0, RUNS * sizeof *batch);
-        assert_int_equal(batch_run(make, NULL, RUNS, jobs, batch), STATUS_OK);
+        memset(runs, 0, RUNS * sizeof *runs);
+        run_all(make, NULL, RUNS, jobs, runs);
         for (size_t i = 0; i < RUNS; i++) {
             scenario s = {0};
             SCOPED(run_finish) run_result single;
-            make(NULL, i, &s);
+            make(NULL, i, &s, NULL);
             run_scenario(&s, false, &single);
-            check_same(&batch[i], &single.summary);
+            check_same(&runs[i], &single.summary);
         }
     }
 }
 
-static void make_bad(void *context, size_t i, scenario *made)
+static status make_bad(void *context, size_t i, scenario *made, fault *f)
 {
-    make(context, i, made);
+    make(context, i, made, f);
     made->parameters.motor.stiction = i == 7 ? (double)NAN : 0.045;
+    return i == 8 ? fault_set(f, STATUS_BAD_SCENARIO, "no such run") : STATUS_OK;
 }
 
 TEST(a_failing_run_does_not_touch_the_others)
 {
-    SCOPED(free_kept) summary *batch = calloc(RUNS, sizeof *batch);
-    assert_int_equal(batch_run(make_bad, NULL, RUNS, 2, batch), STATUS_OK);
+    SCOPED(free_kept) summary *runs = calloc(RUNS, sizeof *runs);
+    run_all(make_bad, NULL, RUNS, 2, runs);
     for (int i = 0; i < RUNS; i++) {
-        assert_int_equal(batch[i].status, i == 7 ? STATUS_NOT_FINITE : STATUS_OK);
+        assert_int_equal(runs[i].status, i == 7   ? STATUS_NOT_FINITE
+                                         : i == 8 ? STATUS_BAD_SCENARIO
+                                                  : STATUS_OK);
     }
-    assert_non_null(strstr(batch[7].message, "t = "));
+    assert_non_null(strstr(runs[7].message, "t = "));
+    assert_string_equal(runs[8].message, "no such run");
 }
 
 typedef struct random_base {
@@ -65,9 +78,10 @@ typedef struct random_base {
 } random_base;
 
 // Motor, arm, wall and restitution at random: a number is the same run for every caller.
-static void make_random(void *context, size_t i, scenario *made)
+static status make_random(void *context, size_t i, scenario *made, fault *f)
 {
     const random_base *from = context;
+    (void)f;
     random_generator g;
     double u[8];
     random_seed(&g, from->first + i + 1);
@@ -85,6 +99,7 @@ static void make_random(void *context, size_t i, scenario *made)
     p->wall.kind = u[6] < 0.5 ? WALL_POINT : u[6] < 0.95 ? WALL_PLANE : WALL_NONE;
     p->arm.hub_joint = u[7] < 0.03 ? HUB_SPRING : HUB_RIGID;
     p->arm.k1 = 200;
+    return STATUS_OK;
 }
 
 // Runs from a number on with vectors of each width: none differs in a bit from one by itself, and
@@ -98,13 +113,13 @@ static double compare_widths(size_t first, size_t runs)
     SCOPED(free_kept)
     summary *scalar = calloc(runs, sizeof *scalar), *wide = calloc(runs, sizeof *wide);
     assert_int_equal(taylor_limit_width(1), 1);
-    assert_int_equal(batch_run(make_random, &from, runs, 2, scalar), STATUS_OK);
+    run_all(make_random, &from, runs, 2, scalar);
     for (int width = 2; width <= TAYLOR_WIDEST; width *= 2) {
         if (taylor_limit_width(width) != width) {
             print_message("no vectors of %d on this processor\n", width);
             continue;
         }
-        assert_int_equal(batch_run(make_random, &from, runs, 2, wide), STATUS_OK);
+        run_all(make_random, &from, runs, 2, wide);
         for (size_t i = 0; i < runs; i++) {
             assert_int_equal(wide[i].status, scalar[i].status);
             check_same(&wide[i], &scalar[i]);

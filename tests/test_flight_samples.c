@@ -252,23 +252,25 @@ TEST(samples_on_the_way_are_those_at_ends_of_steps)
 }
 
 // Number i of the random arms under random laws, the same for every caller.
-static void make(void *context, size_t i, scenario *made)
+static status make(void *context, size_t i, scenario *made, fault *f)
 {
     random_generator g;
-    (void)context;
+    (void)context, (void)f;
     random_seed(&g, 100 + i);
     const drawn_settings drawn = draw(&g);
     made->parameters = drawn_parameters(&drawn);
+    return STATUS_OK;
 }
 
 // Runs side by side, computed in lanes, are the same as single runs.
 TEST(runs_side_by_side_are_single_runs)
 {
     summary together[RUNS];
-    assert_int_equal(batch_run(make, NULL, RUNS, 1, together), STATUS_OK);
+    const batch runs = {.count = RUNS, .make = make, .summaries = together};
+    DONE(batch_run(&runs, 1, &f));
     for (size_t i = 0; i < RUNS; i++) {
         scenario s = {0};
-        make(NULL, i, &s);
+        make(NULL, i, &s, NULL);
         SCOPED(run_finish) run_result single = run_done(&s, false);
         check_same_summary(&together[i], &single.summary);
     }

@@ -167,17 +167,20 @@ static status step_as_a_loop(scenario *s, FILE *out)
     return code;
 }
 
-static void make_one(void *context, size_t i, scenario *made)
+static status make_one(void *context, size_t i, scenario *made, fault *f)
 {
+    (void)f;
     *made = *(const scenario *)context;
     made->parameters.motor.voltage = 1 + (double)i;
+    return STATUS_OK;
 }
 
 static status run_many(scenario *s, FILE *out)
 {
     enum { RUNS = 6 };
     summary all[RUNS];
-    status code = batch_run(make_one, s, RUNS, 2, all);
+    const batch runs = {.context = s, .count = RUNS, .make = make_one, .summaries = all};
+    status code = batch_run(&runs, 2, NULL);
     for (int i = 0; i < RUNS && code == STATUS_OK; i++) {
         fprintf(out, "%a\n", all[i].peak_force_N);
         code = all[i].status;

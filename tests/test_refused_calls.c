@@ -236,7 +236,7 @@ static status measure(const char *name, FILE *out)
     double value = -1;
     fault f = {0};
     status code = STATUS_BAD_ARGUMENT;
-    for (int i = 0; i < bench_count; i++) {
+    for (int i = 0; i < BENCHMARKS; i++) {
         if (strcmp(bench_table[i].name, name) == 0) {
             code = bench_table[i].measure(&bench_table[i], &value, &f);
         }

@@ -20,18 +20,12 @@ typedef struct varied {
     size_t first; // of this turn
 } varied;
 
-// The scenario of a run; `f` says what is wrong with it.
-static status vary(const varied *v, size_t run, scenario *made, fault *f)
-{
-    return sweep_axes_scenario(v->axes, (int)v->axis_count, v->values + run * v->axis_count,
-                               v->base, made, f);
-}
-
-// Values were looked at before.
-static void make_varied(void *context, size_t i, scenario *made)
+// The scenario of a run of this turn; `f` says what is wrong with it.
+static status vary(void *context, size_t i, scenario *made, fault *f)
 {
     const varied *v = context;
-    vary(v, v->first + i, made, NULL);
+    const double *values = v->values + (v->first + i) * v->axis_count;
+    return sweep_axes_scenario(v->axes, (int)v->axis_count, values, v->base, made, f);
 }
 
 // Tells an outcome to the caller. False if that is enough.
@@ -61,7 +55,8 @@ static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker
     status code = STATUS_OK;
     for (v->first = 0; code == STATUS_OK && v->first < count; v->first += turn) {
         const size_t now = count - v->first < turn ? count - v->first : turn;
-        code = batch_run(make_varied, v, now, jobs, summaries);
+        const batch runs = {.context = v, .count = now, .make = vary, .summaries = summaries};
+        code = batch_run(&runs, jobs, NULL);
         for (size_t i = 0; code == STATUS_OK && i < now; i++) {
             code =
                 hand_over(&summaries[i], v->first + i, take, context) ? STATUS_OK : STATUS_STOPPED;

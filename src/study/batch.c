@@ -1,50 +1,60 @@
 #include "src/study/batch.h"
 
-#include <string.h>
+#include <stdio.h>
 
-#include "src/study/pool.h"
+#include "src/base/clock.h"
 
 // What a thread keeps.
 typedef struct batch_scratch {
     scenario made[RUN_TOGETHER];
-    run_result runs[RUN_TOGETHER];
+    run_result results[RUN_TOGETHER];
     side_by_side *storage;
 } batch_scratch;
 
-typedef struct batch {
-    batch_maker make;
-    void *context;
-    summary *summaries;
-    size_t count;
-} batch;
-
-// A piece of work: RUN_TOGETHER runs, or what is left of them.
+// How many runs a piece of work has: the last one what is left.
 static size_t piece_length(const batch *b, size_t piece)
 {
-    size_t left = b->count - piece * RUN_TOGETHER;
-    return left < RUN_TOGETHER ? left : RUN_TOGETHER;
+    const size_t left = b->count - piece * b->together;
+    return left < b->together ? left : b->together;
 }
 
+// Computes the runs of a piece side by side.
 static void compute(void *context, size_t piece, void *scratch, void *result)
 {
     const batch *b = context;
-    batch_scratch *own = scratch;
-    scenario *made = own->made;
-    run_result *runs = own->runs;
-    summary *summaries = result;
     const size_t length = piece_length(b, piece);
+    batch_scratch *own = scratch;
+    summary *summaries = result;
+    size_t place[RUN_TOGETHER]; // of each scenario that goes together
+    int begun = 0;
 
-    // each made from the one before
+    // the times of this thread, making the scenarios included
+    const double start = clock_seconds(CLOCK_MONOTONIC),
+                 start_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID);
     for (size_t i = 0; i < length; i++) {
-        // filled with that of the call before: the last one of a piece is, as pieces are full
-        made[i] = made[i > 0 ? i - 1 : RUN_TOGETHER - 1];
-        b->make(b->context, piece * RUN_TOGETHER + i, &made[i]);
+        fault f = {.path = ""};
+        place[begun] = i;
+        if (b->make(b->context, piece * b->together + i, &own->made[begun], &f) == STATUS_OK) {
+            begun++;
+        } else {
+            summary_init(&summaries[i]);
+            summaries[i].status = f.code;
+            snprintf(summaries[i].message, sizeof summaries[i].message, "%s", f.text);
+        }
     }
 
-    run_together(made, (int)length, NULL, runs, &own->storage);
+    run_together(own->made, begun, b->abandon, own->results, &own->storage);
+    for (int i = 0; i < begun; i++) {
+        summaries[place[i]] = own->results[i].summary;
+        run_finish(&own->results[i]);
+    }
+
+    // the time cannot be attributed to single runs
+    const double cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - start_cpu;
+    const double wall = clock_seconds(CLOCK_MONOTONIC) - start;
     for (size_t i = 0; i < length; i++) {
-        summaries[i] = runs[i].summary;
-        run_finish(&runs[i]);
+        summaries[i].cpu_time_s = cpu / (double)length;
+        summaries[i].wall_time_s = wall / (double)length;
     }
 }
 
@@ -57,21 +67,44 @@ static void release(void *scratch)
 static status collect(void *context, size_t piece, const void *result, fault *f)
 {
     const batch *b = context;
-    (void)f;
-    memcpy(b->summaries + piece * RUN_TOGETHER, result, piece_length(b, piece) * sizeof(summary));
+    const summary *summaries = result;
+    const size_t first = piece * b->together, length = piece_length(b, piece);
+    for (size_t i = 0; i < length; i++) {
+        if (b->take != NULL) {
+            TRY(b->take(b->context, first + i, &summaries[i], f));
+        } else {
+            b->summaries[first + i] = summaries[i];
+        }
+    }
     return STATUS_OK;
 }
 
-status batch_run(batch_maker make, void *context, size_t count, int jobs, summary *summaries)
+static status tick(void *context, bool over, fault *f)
 {
-    batch b = {.make = make, .context = context, .summaries = summaries, .count = count};
+    const batch *b = context;
+    return b->tick(b->context, over, f);
+}
+
+status batch_run(const batch *asked, int jobs, fault *f)
+{
+    batch b = *asked;
+    const size_t most = b.together > 0 ? b.together : RUN_TOGETHER,
+                 threads = jobs < 1                   ? 1
+                           : jobs > POOL_MOST_THREADS ? POOL_MOST_THREADS
+                                                      : (size_t)jobs;
+
+    // enough pieces for everybody, and no more threads than pieces
+    const size_t share = (b.count + threads - 1) / threads;
+    b.together = share < 1 ? 1 : share < most ? share : most;
+    const size_t pieces = (b.count + b.together - 1) / b.together;
     const pool_work work = {.context = &b,
-                            .count = (count + RUN_TOGETHER - 1) / RUN_TOGETHER,
+                            .count = pieces,
                             .scratch_size = sizeof(batch_scratch),
-                            .result_size = RUN_TOGETHER * sizeof(summary),
+                            .result_size = b.together * sizeof(summary),
                             .compute = compute,
                             .collect = collect,
-                            .release = release};
-    jobs = jobs < 1 ? 1 : jobs > POOL_MOST_THREADS ? POOL_MOST_THREADS : jobs;
-    return pool_run(&work, jobs, NULL);
+                            .tick = b.tick != NULL ? tick : NULL,
+                            .release = release,
+                            .stop = b.stop};
+    return pool_run(&work, pieces < 1 ? 1 : pieces < threads ? (int)pieces : (int)threads, f);
 }

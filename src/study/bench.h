@@ -10,7 +10,7 @@
 
 #include "src/base/fault.h"
 
-enum { BENCH_REPETITIONS = 11, BENCH_NAME = 48, BENCH_UNIT = 16 };
+enum { BENCHMARKS = 18, BENCH_REPETITIONS = 11 };
 
 // Something that can be measured.
 typedef struct benchmark benchmark;
@@ -19,29 +19,23 @@ struct benchmark {
     const char *unit;                                               // "us/ms"
     bool more_is_better;                                            // a rate instead of a time
     status (*measure)(const benchmark *b, double *value, fault *f); // once, in `unit`
-    const char *settings; // "PATH=VALUE PATH=VALUE ...", or words of the program
-    int number;           // and a number that tells it from its like
+    const char *of; // a scenario, or words of the program
+    int number;     // and a number that tells it from its like
 };
+extern const benchmark bench_table[BENCHMARKS];
 
 // What came out of it.
 typedef struct bench_result {
-    char name[BENCH_NAME], unit[BENCH_UNIT];
-    double median, min, max;
+    double median, min, max; // 0: not measured
     double wall; // time by the clock for each second of computing time: 1 on an idle machine
 } bench_result;
-
-// What is measured.
-extern const benchmark bench_table[];
-extern const int bench_count;
 
 // Computing time that one measurement of short work goes on for, 0.5 [s]; a test takes less.
 extern double bench_window;
 
-// Computing time so far of the process and of those it has started and waited for [s].
-double bench_computing_time(void);
-
-// Seconds that one call of work(context) takes: it is repeated until `least` seconds of computing
-// time have passed. *failed is the first code that is not STATUS_OK, at which it stops.
+// Computing time of the process, and of those it has waited for, that one call of work(context)
+// takes [s]: it is repeated until `least` seconds have passed. *failed is the first code that is
+// not STATUS_OK, at which it stops.
 double bench_seconds_per_call(status (*work)(void *context), void *context, double least,
                               status *failed);
 
@@ -49,17 +43,17 @@ double bench_seconds_per_call(status (*work)(void *context), void *context, doub
 // measured less often: three times in all if one second is exceeded, once if twenty are.
 status bench_run(const benchmark *b, bench_result *result, fault *f);
 
-// The object of `bench --json`: {"bench": [{"name", "unit", "median", "min", "max",
-// "wall_per_cpu"}]}.
-json_t *bench_export(const bench_result *results, int count);
+// The object of `bench --json`, of what was measured: {"bench": [{"name", "unit", "median", "min",
+// "max", "wall_per_cpu"}]}.
+json_t *bench_export(const bench_result results[BENCHMARKS]);
 
-// Reads such a file. *results is to be freed. STATUS_CANNOT_READ if the file cannot be read or
-// holds no benchmarks.
-status bench_read(const char *path, bench_result **results, int *count, fault *f);
+// Reads the medians of such a file, 0 of what is not in it. STATUS_CANNOT_READ if it cannot be read
+// or holds no benchmarks.
+status bench_read(const char *path, double medians[BENCHMARKS], fault *f);
 
-// How many times slower `now` is than `before` by the medians; below 1: faster.
-double bench_slowdown(const benchmark *b, const bench_result *now, const bench_result *before);
+// How many times slower a value is than one of before; below 1: faster.
+double bench_slowdown(const benchmark *b, double now, double before);
 
 // Whether that is more than noise: by the medians 15 % slower, and every single measurement slower
 // than the median before.
-bool bench_is_slower(const benchmark *b, const bench_result *now, const bench_result *before);
+bool bench_is_slower(const benchmark *b, const bench_result *now, double before);

@@ -6,11 +6,8 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
-#include "src/run/run.h"
-#include "src/study/pool.h"
+#include "src/study/batch.h"
 #include "src/tables/settings.h"
-
-enum { REASON = sizeof((solution *)0)->reason };
 
 // --- the condition --------------------------------------------------------------------------
 
@@ -102,33 +99,41 @@ typedef struct search {
     const solve_condition *condition;
     run_monitor *monitor;
     solution *found;
-    trial *trials; // of the range
+    trial *trials;        // of the range
+    size_t first_unknown; // of them
 } search;
 
-// Runs the scenario with one value of the parameter; `reason` (may be NULL): why it is not known.
-// STATUS_STOPPED, STATUS_NO_MEMORY.
-static status run_trial(const search *s, double value, trial *t, char reason[REASON])
+// What a run with the value came to.
+static trial trial_of(const search *s, double value, const summary *m)
+{
+    const bool known = m->status == STATUS_OK && !m->inaccurate;
+    const double quantity = known ? summary_value(m, s->condition->quantity) : (double)NAN;
+    return (trial){value, quantity, known};
+}
+
+// What ends a search, others are runs that say nothing.
+static status ending(status code, fault *f)
+{
+    return code == STATUS_STOPPED || code == STATUS_NO_MEMORY
+               ? fault_set(f, code, "%s", status_text(code))
+               : STATUS_OK;
+}
+
+// Runs the scenario with one value of the parameter. Values that do not go with the others of the
+// scenario are as good as a run that fails. STATUS_STOPPED, STATUS_NO_MEMORY.
+static status run_trial(const search *s, double value, trial *t, fault *f)
 {
     scenario derived;
-    fault f = {0};
     *t = (trial){.value = value, .quantity = (double)NAN};
-
-    // values that do not go with the others of the scenario are as good as a run that fails
-    status code = sweep_axes_scenario(s->axis, 1, &value, s->base, &derived, &f);
+    status code = sweep_axes_scenario(s->axis, 1, &value, s->base, &derived, NULL);
     if (code == STATUS_OK) {
         run_result result;
         const run_options options = {.monitor = s->monitor};
         code = run_scenario_with(&derived, &options, &result);
-        t->known = code == STATUS_OK && !result.summary.inaccurate;
-        t->quantity =
-            t->known ? summary_value(&result.summary, s->condition->quantity) : (double)NAN;
-        snprintf(f.text, sizeof f.text, "%s", result.summary.message);
+        *t = trial_of(s, value, &result.summary);
         run_finish(&result);
     }
-    if (reason != NULL) {
-        snprintf(reason, REASON, "%.500s", f.text);
-    }
-    return code == STATUS_STOPPED || code == STATUS_NO_MEMORY ? code : STATUS_OK;
+    return ending(code, f);
 }
 
 static bool holds(const search *s, const trial *t)
@@ -143,28 +148,41 @@ static bool is_whole(const search *s)
     return sweep_axis_parameter(s->axis)->type == PARAMETER_INTEGER && s->axis->element == 0;
 }
 
-// Runs value i of the range, from its low to its high end, both included; whole numbers are each
-// other's neighbours where there are enough points.
-static void compute_point(void *context, size_t i, void *scratch, void *result)
+// Value i of the range, from its low to its high end, both included; whole numbers are each other's
+// neighbours where there are enough points.
+static double point_value(const search *s, size_t i)
 {
-    const search *s = context;
     const size_t points = (size_t)s->found->points;
     sweep_axis rising = *s->axis;
-    (void)scratch;
     rising.low = fmin(s->axis->low, s->axis->high);
     rising.high = fmax(s->axis->low, s->axis->high);
     const double value = sweep_axis_point(&rising, i, points);
-    const bool rounded = is_whole(s) && i > 0 && i + 1 < points;
-    *(status *)result = run_trial(s, rounded ? round(value) : value, &s->trials[i], NULL);
+    return is_whole(s) && i > 0 && i + 1 < points ? round(value) : value;
 }
 
-static status collect_point(void *context, size_t i, const void *result, fault *f)
+static status make_point(void *context, size_t i, scenario *made, fault *f)
 {
     const search *s = context;
-    const status code = *(const status *)result;
-    (void)i;
+    const double value = point_value(s, i);
+    return sweep_axes_scenario(s->axis, 1, &value, s->base, made, f);
+}
+
+// Counts what became of a value of the range, and keeps why the first unknown one is.
+static status take_point(void *context, size_t i, const summary *m, fault *f)
+{
+    search *s = context;
+    solution *found = s->found;
+    TRY(ending(m->status, f));
+    const trial t = s->trials[i] = trial_of(s, point_value(s, i), m);
+    if (!t.known && (found->unknown++ == 0 || i < s->first_unknown)) {
+        s->first_unknown = i;
+        snprintf(found->reason, sizeof found->reason, "%.500s", m->message);
+    }
+    found->missing += t.known && isnan(t.quantity);
+    found->holding += holds(s, &t);
+    found->failing += !isnan(t.quantity) && !holds(s, &t);
     run_monitor_count(s->monitor);
-    return code == STATUS_OK ? code : fault_set(f, code, "%s", status_text(code));
+    return STATUS_OK;
 }
 
 // --- between two values ---------------------------------------------------------------------
@@ -204,8 +222,7 @@ static status locate(const search *s, trial *in, trial *out, fault *f)
     for (int i = 0; i < MOST_RUNS && !neighbours(s, in->value, out->value); i++) {
         trial t;
         const double width = fabs(in->value - out->value);
-        const status code = run_trial(s, next_value(s, in, out, secant), &t, NULL);
-        FAIL_IF(code != STATUS_OK, fault_set(f, code, "%s", status_text(code)));
+        TRY(run_trial(s, next_value(s, in, out, secant), &t, f));
         *(holds(s, &t) ? in : out) = t;
         secant = fabs(in->value - out->value) <= width / 2 || !secant;
     }
@@ -241,21 +258,6 @@ static status locate_limits(search *s, fault *f)
     return STATUS_OK;
 }
 
-// Counts what became of the values of the range, and why the first unknown one is.
-static void count_points(search *s)
-{
-    solution *found = s->found;
-    for (const trial *t = s->trials; t < s->trials + found->points; t++) {
-        if (!t->known && found->unknown++ == 0) {
-            trial again;
-            run_trial(s, t->value, &again, found->reason);
-        }
-        found->missing += t->known && isnan(t->quantity);
-        found->holding += holds(s, t);
-        found->failing += !isnan(t->quantity) && !holds(s, t);
-    }
-}
-
 status solve(const scenario *s, const sweep_axis *axis, const solve_condition *condition,
              int points, int jobs, run_monitor *monitor, solution *found, fault *f)
 {
@@ -272,16 +274,15 @@ status solve(const scenario *s, const sweep_axis *axis, const solve_condition *c
     here.trials = calloc((size_t)found->points, sizeof *here.trials);
     TRY_MEMORY(here.trials != NULL, f);
 
-    const pool_work work = {.context = &here,
-                            .count = (size_t)found->points,
-                            .result_size = sizeof(status),
-                            .compute = compute_point,
-                            .collect = collect_point};
-    status code = pool_run(&work, jobs < 1 ? 1 : fmin(jobs, POOL_MOST_THREADS), f);
-    if (code == STATUS_OK) {
-        count_points(&here);
-        code = locate_limits(&here, f);
-    }
+    // one by one: none waits for others when it is stopped
+    const batch range = {.context = &here,
+                         .count = (size_t)found->points,
+                         .make = make_point,
+                         .take = take_point,
+                         .together = 1,
+                         .abandon = monitor != NULL ? &monitor->stop : NULL};
+    status code = batch_run(&range, jobs, f);
+    code = code == STATUS_OK ? locate_limits(&here, f) : code;
     free(here.trials);
     return code;
 }

@@ -23,22 +23,39 @@
 
 enum { BATCH = 256 };
 
+static void vary(scenario *made, const scenario *base, size_t i)
+{
+    *made = *base;
+    made->parameters.motor.voltage = 0.5 + (double)i / BATCH;
+}
+
+static summary summaries[BATCH];
+
+#ifdef BEFORE
 static void make_run(void *context, size_t i, scenario *made)
 {
-    *made = *(const scenario *)context;
-    made->parameters.motor.voltage = 0.5 + (double)i / BATCH;
+    vary(made, context, i);
 }
 
 static status run_batch(scenario *s)
 {
-    static summary summaries[BATCH];
-#ifdef BEFORE
     batch_run(make_run, s, BATCH, 1, summaries);
     return summaries[0].status;
-#else
-    return batch_run(make_run, s, BATCH, 1, summaries);
-#endif
 }
+#else
+static status make_run(void *context, size_t i, scenario *made, fault *f)
+{
+    (void)f;
+    vary(made, context, i);
+    return STATUS_OK;
+}
+
+static status run_batch(scenario *s)
+{
+    const batch runs = {.context = s, .count = BATCH, .make = make_run, .summaries = summaries};
+    return batch_run(&runs, 1, NULL);
+}
+#endif
 
 #ifdef BEFORE
 static status run_one(scenario *s, const char *what)
@@ -72,7 +89,7 @@ int main(int argc, char **argv)
     }
     const char *what = argv[1];
     const int passes = atoi(argv[2]);
-    const bool batch = strcmp(what, "batch") == 0;
+    const bool many = strcmp(what, "batch") == 0;
 
     // the corrected arm, under the hybrid law if on the rig
     static char name[] = "whole runs", none[] = "";
@@ -89,9 +106,9 @@ int main(int argc, char **argv)
 
     const double start = computing_time();
     for (int i = 0; i < passes && code == STATUS_OK; i++) {
-        code = batch ? run_batch(&s) : run_one(&s, what);
+        code = many ? run_batch(&s) : run_one(&s, what);
     }
-    const int runs = batch ? passes * BATCH : passes;
+    const int runs = many ? passes * BATCH : passes;
     printf("%d %.2f\n", runs, 1e6 * (computing_time() - start) / runs);
     return code != STATUS_OK;
 }

@@ -1,26 +1,18 @@
 #include "ui/commands/command.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/study/bench.h"
 #include "src/base/words.h"
 
-enum { MOST = 32 };
-
-// A line of the table, beside what was measured before if that is known.
-static void print_result(const benchmark *b, const bench_result *r, const bench_result *before,
-                         int count)
+// A line of the table, beside the median measured before if that is known (not 0).
+static void print_result(const benchmark *b, const bench_result *r, double before)
 {
-    printf("%-28s %10.4g %10.4g %10.4g  %-8s %8.2f", r->name, r->median, r->min, r->max, r->unit,
+    printf("%-28s %10.4g %10.4g %10.4g  %-8s %8.2f", b->name, r->median, r->min, r->max, b->unit,
            r->wall);
-    int i = 0;
-    while (i < count && strcmp(before[i].name, r->name) != 0) {
-        i++;
-    }
-    if (i < count) {
-        printf(" %10.4g %8.2f%s", before[i].median, bench_slowdown(b, r, &before[i]),
-               bench_is_slower(b, r, &before[i]) ? "  slower" : "");
+    if (before > 0) {
+        printf(" %10.4g %8.2f%s", before, bench_slowdown(b, r->median, before),
+               bench_is_slower(b, r, before) ? "  slower" : "");
     }
     printf("\n");
     fflush(stdout); // the next one takes a while
@@ -29,7 +21,7 @@ static void print_result(const benchmark *b, const bench_result *r, const bench_
 static int complain_only(const char *name)
 {
     nearest_word near = nearest_begin(name);
-    for (int i = 0; i < bench_count; i++) {
+    for (int i = 0; i < BENCHMARKS; i++) {
         nearest_try(&near, bench_table[i].name);
     }
     FAIL_IF(near.best != NULL,
@@ -40,30 +32,29 @@ static int complain_only(const char *name)
 // Measures all benchmarks, or the one asked for.
 static int bench(const arguments *a)
 {
-    bench_result results[MOST], *before = NULL;
-    int count = 0, before_count = 0;
+    bench_result results[BENCHMARKS] = {{0}};
+    double before[BENCHMARKS] = {0};
+    int count = 0;
     fault f = {0};
-    status code =
-        a->baseline != NULL ? bench_read(a->baseline, &before, &before_count, &f) : STATUS_OK;
-    for (int i = 0; i < bench_count && count < MOST && code == STATUS_OK; i++) {
+    status code = a->baseline != NULL ? bench_read(a->baseline, before, &f) : STATUS_OK;
+    for (int i = 0; i < BENCHMARKS && code == STATUS_OK; i++) {
         const benchmark *b = &bench_table[i];
         if (a->only != NULL && strcmp(a->only, b->name) != 0) {
             continue;
         }
-        code = bench_run(b, &results[count], &f);
+        code = bench_run(b, &results[i], &f);
         if (code == STATUS_OK && summary_wanted(a)) {
             if (count == 0) {
                 printf("%-28s %10s %10s %10s  %-8s %8s%s\n", "", "median", "min", "max", "unit",
-                       "wall/cpu", before != NULL ? "   baseline    times" : "");
+                       "wall/cpu", a->baseline != NULL ? "   baseline    times" : "");
             }
-            print_result(b, &results[count], before, before_count);
+            print_result(b, &results[i], before[i]);
         }
-        count += code == STATUS_OK;
+        count++;
     }
-    free(before);
     return code != STATUS_OK ? complain_fault(&f)
            : count == 0      ? complain_only(a->only)
-           : a->json != NULL ? write_json(a->json, bench_export(results, count))
+           : a->json != NULL ? write_json(a->json, bench_export(results))
                              : EXIT_DONE;
 }
 
