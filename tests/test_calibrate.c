@@ -183,20 +183,20 @@ TEST(what_does_not_press_is_said)
 
 TEST(results_reach_every_form)
 {
-    calibration c = {.count = 2,
-                     .points = {{.command = 2, .force = 1.5, .angle = 0.05, .k2 = 4.5},
-                                {.command = 1, .force = 0.5, .angle = 0.02, .k2 = 4.92}}};
-    scenario s = {.name = (char *)"arm", .parameters = rig_parameters(NULL)};
+    calibration c = {
+        .count = 2,
+        .points = {{.command = 2, .force = 1.5, .angle = 0.05, .k2 = 4.5},
+                   {.command = 1, .force = 0.5, .angle = 0.02, .k2 = 4.92, .k2_over_arm = 1}}};
     char setting[PARAMETER_TEXT_SIZE + 32], *csv = NULL;
     table_setting(&c, setting, sizeof setting);
     assert_string_equal(setting, "control.k2_table=0.5:4.92 1.5:4.5");
     size_t size;
     FILE *stream = open_memstream(&csv, &size);
-    calibration_csv(stream, &c, &s);
+    calibration_csv(stream, &c);
     fclose(stream);
     assert_non_null(strstr(csv, "command[V],force[N],hub_angle[rad],k2[N m/rad],k2_over_arm[],"));
     assert_non_null(strstr(csv, "\n1,0.5,0.02,4.92,1,"));
-    json_t *whole = calibration_json(&c, &s, "0.5:4.92 1.5:4.5");
+    json_t *whole = calibration_json(&c, "arm", "0.5:4.92 1.5:4.5");
     json_t *first = json_array_get(json_object_get(whole, "points"), 0);
     check_close(json_number_value(json_object_get(first, "k2_Nm_per_rad")), 4.5, 0);
     assert_string_equal(json_string_value(json_object_get(whole, "k2_table")), "0.5:4.92 1.5:4.5");

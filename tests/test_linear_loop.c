@@ -34,12 +34,11 @@ TEST(limits_are_those_found_otherwise)
     for (EACH(c, cases)) {
         SCOPED(scenario_finish) scenario s = shipped_with(c->name, c->changes);
         char range[64], *vary[] = {range};
-        SCOPED(sweep_finish) sweep between;
-        double limit;
+        SCOPED(linear_survey_finish) linear_survey found;
         snprintf(range, sizeof range, "%s=%g:%g:2", c->path, c->from, c->to);
-        DONE(sweep_init(&between, &s, &(sweep_request){vary, 1}, &f));
-        DONE(linear_limit(&between, LINEAR_CONTACT, false, c->from, c->to, &limit, &f));
-        check_relative(limit, c->known, 1e-2);
+        DONE(linear_survey_make(&found, &s, &(sweep_request){vary, 1}, LINEAR_CONTACT, &f));
+        assert_false(found.limits[0].by_runs);
+        check_relative(found.limits[0].value, c->known, 1e-2);
     }
 }
 

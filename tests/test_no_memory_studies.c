@@ -108,7 +108,7 @@ static status measure_stiffness(scenario *s, FILE *out)
     fault f = {0};
     status code = calibrate(s, commands, 1, NULL, &c, &f);
     if (code == STATUS_OK) {
-        json_t *object = calibration_json(&c, s, "");
+        json_t *object = calibration_json(&c, s->name, "");
         code = loss_noted() || object == NULL ? STATUS_NO_MEMORY : STATUS_OK;
         fprintf(out, "%a\n", c.points[0].k2);
         json_decref(object);

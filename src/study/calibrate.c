@@ -93,6 +93,7 @@ static void measure(const parameters *p, const trace *t, double command, calibra
                                  .force = f,
                                  .angle = x,
                                  .k2 = stiffness(p, f, x),
+                                 .k2_over_arm = stiffness(p, f, x) / p->arm.k2,
                                  .force_spread = average_spread(&whole_force),
                                  .angle_spread = average_spread(&whole_angle),
                                  .drift = k2[1] / k2[0] - 1};
@@ -189,48 +190,36 @@ status calibration_table(const calibration *c, k2_table *t, fault *f)
     return STATUS_OK;
 }
 
-enum { COLUMNS = 8 };
-static const result_column columns[COLUMNS] = {
-    {"command_V", "command", "V"},
-    {"force_N", "force", "N"},
-    {"hub_angle_rad", "hub_angle", "rad"},
-    {"k2_Nm_per_rad", "k2", "N m/rad"},
-    {"k2_over_arm", "k2_over_arm", ""},
-    {"force_spread_N", "force_spread", "N"},
-    {"angle_spread_rad", "angle_spread", "rad"},
-    {"drift_percent", "drift", "%"},
-};
-
-static void fill_cells(const calibration_point *p, const scenario *s, result_cell cells[COLUMNS])
-{
-    const double row[COLUMNS] = {
-        p->command,      p->force,        p->angle,      p->k2, p->k2 / s->parameters.arm.k2,
-        p->force_spread, p->angle_spread, 100 * p->drift};
-    for (int k = 0; k < COLUMNS; k++) {
-        cells[k] = (result_cell){.number = row[k]};
+#define COLUMN(key, name, unit, field, times)                                                      \
+    {                                                                                              \
+        key, name, unit, offsetof(calibration_point, field), times                                 \
     }
+
+static result_table told(const calibration *c)
+{
+    static const result_column columns[] = {
+        COLUMN("command_V", "command", "V", command, 1),
+        COLUMN("force_N", "force", "N", force, 1),
+        COLUMN("hub_angle_rad", "hub_angle", "rad", angle, 1),
+        COLUMN("k2_Nm_per_rad", "k2", "N m/rad", k2, 1),
+        COLUMN("k2_over_arm", "k2_over_arm", "", k2_over_arm, 1),
+        COLUMN("force_spread_N", "force_spread", "N", force_spread, 1),
+        COLUMN("angle_spread_rad", "angle_spread", "rad", angle_spread, 1),
+        COLUMN("drift_percent", "drift", "%", drift, 100),
+    };
+    return (result_table){columns, sizeof columns / sizeof *columns, c->points, sizeof *c->points,
+                          c->count};
 }
 
-json_t *calibration_json(const calibration *c, const scenario *s, const char *table)
+json_t *calibration_json(const calibration *c, const char *name, const char *table)
 {
-    json_t *points = json_array();
-    result_cell cells[COLUMNS];
-    for (int i = 0; i < c->count; i++) {
-        json_t *point = json_object();
-        fill_cells(&c->points[i], s, cells);
-        result_put(point, columns, cells, COLUMNS);
-        json_add(points, point);
-    }
-    return json_members(json_object(), "scenario:t k2_table:t points:o", s->name, table, points);
+    const result_table points = told(c);
+    return json_members(json_object(), "scenario:t k2_table:t points:o", name, table,
+                        result_json(&points));
 }
 
-void calibration_csv(FILE *stream, const calibration *c, const scenario *s)
+void calibration_csv(FILE *stream, const calibration *c)
 {
-    csv_writer csv = csv_begin(stream);
-    result_cell cells[COLUMNS];
-    result_headings(&csv, columns, COLUMNS);
-    for (int i = 0; i < c->count; i++) {
-        fill_cells(&c->points[i], s, cells);
-        result_row(&csv, cells, COLUMNS);
-    }
+    const result_table points = told(c);
+    result_csv(stream, &points);
 }

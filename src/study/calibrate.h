@@ -17,6 +17,7 @@ typedef struct calibration_point {
     double force;        // [N]
     double angle;        // of the hub, from the wall as the controller believes it [rad]
     double k2;           // [N m/rad]
+    double k2_over_arm;  // over arm.k2
     double force_spread; // standard deviation of the readings [N]
     double angle_spread; // the same [rad]
     double drift;        // of K2 from the first half of the window to the second, a share
@@ -44,7 +45,7 @@ status calibration_table(const calibration *c, k2_table *t, fault *f);
 // {"scenario": ..., "k2_table": text of control.k2_table, "points": [{"command_V", "force_N",
 // "hub_angle_rad", "k2_Nm_per_rad", "k2_over_arm", "force_spread_N", "angle_spread_rad",
 // "drift_percent"} ...]}. NULL without memory.
-json_t *calibration_json(const calibration *c, const scenario *s, const char *table);
+json_t *calibration_json(const calibration *c, const char *name, const char *table);
 
 // One header row of the same keys, one row a command.
-void calibration_csv(FILE *stream, const calibration *c, const scenario *s);
+void calibration_csv(FILE *stream, const calibration *c);

@@ -5,6 +5,41 @@
 #include "src/base/json.h"
 #include "src/base/words.h"
 
+result_cell result_cell_of(const result_table *t, int row, const result_column *column)
+{
+    const void *at = (const char *)t->rows + (size_t)row * t->row_size + column->place;
+    const bool text = column->kind == RESULT_TEXT;
+    return (result_cell){text ? *(const char *const *)at : NULL,
+                         text                           ? 0
+                         : column->kind == RESULT_COUNT ? (double)*(const size_t *)at
+                                                        : column->times * *(const double *)at};
+}
+
+json_t *result_json(const result_table *t)
+{
+    json_t *array = json_array();
+    for (int i = 0; i < t->row_count; i++) {
+        json_t *object = json_object();
+        for (const result_column *c = t->columns; c < t->columns + t->column_count; c++) {
+            result_put(object, c->key, result_cell_of(t, i, c));
+        }
+        json_add(array, object);
+    }
+    return array;
+}
+
+void result_csv(FILE *stream, const result_table *t)
+{
+    csv_writer csv = csv_begin(stream);
+    result_headings(&csv, t->columns, t->column_count);
+    for (int i = 0; i < t->row_count; i++) {
+        for (const result_column *c = t->columns; c < t->columns + t->column_count; c++) {
+            result_field(&csv, result_cell_of(t, i, c));
+        }
+        csv_end_row(&csv);
+    }
+}
+
 void result_headings(csv_writer *w, const result_column *columns, int count)
 {
     for (int k = 0; k < count; k++) {
@@ -13,24 +48,18 @@ void result_headings(csv_writer *w, const result_column *columns, int count)
     csv_end_row(w);
 }
 
-void result_row(csv_writer *w, const result_cell *cells, int count)
+void result_field(csv_writer *w, result_cell cell)
 {
-    for (int k = 0; k < count; k++) {
-        if (cells[k].text != NULL) {
-            csv_text(w, cells[k].text);
-        } else {
-            csv_number(w, cells[k].number);
-        }
+    if (cell.text != NULL) {
+        csv_text(w, cell.text);
+    } else {
+        csv_number(w, cell.number);
     }
-    csv_end_row(w);
 }
 
-void result_put(json_t *object, const result_column *columns, const result_cell *cells, int count)
+void result_put(json_t *object, const char *key, result_cell cell)
 {
-    for (int k = 0; k < count; k++) {
-        json_put(object, columns[k].key,
-                 cells[k].text != NULL ? json_text(cells[k].text) : json_number(cells[k].number));
-    }
+    json_put(object, key, cell.text != NULL ? json_text(cell.text) : json_number(cell.number));
 }
 
 void result_print(FILE *stream, bool page, int column, int width, const char *text)

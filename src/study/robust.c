@@ -301,6 +301,9 @@ static void judge(robust_law *out, const sweep *s, sweep_share share, double *va
     }
 
     // all of them
+    out->overshoot_of = out->by_smoothed == 0   ? "peak"
+                        : out->by_smoothed == n ? "smoothed"
+                                                : "peak and smoothed";
     out->settled = (double)settled / (double)n;
     out->separated = (double)separated / (double)n;
     out->exceeded = (double)exceeded / (double)n;
@@ -339,13 +342,6 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sha
     free(column);
     free(values);
     return code;
-}
-
-const char *robust_overshoot_of(const robust_law *law)
-{
-    return law->by_smoothed == 0           ? "peak"
-           : law->by_smoothed == law->runs ? "smoothed"
-                                           : "peak and smoothed";
 }
 
 void robust_law_finish(robust_law *law)

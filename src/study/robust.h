@@ -79,6 +79,8 @@ typedef struct robust_law {
     double overshoot[ROBUST_QUANTILES];  // of each run the one or, with more than two links, the
                                          // other: a chain's peak depends on the number of links [%]
     size_t by_smoothed;                  // runs of the other kind
+    const char *overshoot_of; // "peak", "smoothed", or "peak and smoothed" where the number of
+                              // links is drawn
     double settling[ROBUST_QUANTILES];   // from first contact, or the last push after it [s]
     double from_start[ROBUST_QUANTILES]; // until it has settled, from the run's start;
                                          // NaN where the tip is pushed [s]
@@ -94,10 +96,6 @@ typedef struct robust_law {
 status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_share share,
                      sweep_store *store, fault *f);
 void robust_law_finish(robust_law *law);
-
-// Which `overshoot` is: "peak", "smoothed", or "peak and smoothed" where the number of links is
-// drawn.
-const char *robust_overshoot_of(const robust_law *law);
 
 // The numbers of a law under their keys of robust_json: the i-th key, NULL after the last.
 const char *robust_key(int i);

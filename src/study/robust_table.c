@@ -27,34 +27,41 @@ enum {
     SMOOTHED = RAW + ROBUST_QUANTILES,
     COLUMNS = SMOOTHED + ROBUST_QUANTILES
 };
+enum { ROBUST_CELL = 64 };
+
+#define PLACE(field) offsetof(robust_law, field), 1
+#define TEXT(field)  offsetof(robust_law, field), .kind = RESULT_TEXT
+#define COUNT(field) offsetof(robust_law, field), .kind = RESULT_COUNT
+#define SHARE(field) offsetof(robust_law, field), 100 // in percent
 
 // The three quantiles of a quantity, in the order of their enumeration.
-#define QUANTILES(name, key_unit, unit)                                                            \
-    {name "_median" key_unit, name "_median", unit},                                               \
-        {name "_nine_tenths" key_unit, name "_nine_tenths", unit},                                 \
+#define QUANTILES(name, key_unit, unit, field)                                                     \
+    {name "_median" key_unit, name "_median", unit, PLACE(field[ROBUST_MEDIAN])},                  \
+        {name "_nine_tenths" key_unit, name "_nine_tenths", unit,                                  \
+         PLACE(field[ROBUST_NINE_TENTHS])},                                                        \
     {                                                                                              \
-        name "_worst" key_unit, name "_worst", unit                                                \
+        name "_worst" key_unit, name "_worst", unit, PLACE(field[ROBUST_WORST])                    \
     }
 
 static const result_column columns[COLUMNS] = {
-    {"case", "case", ""},
-    {"law", "law", ""},
-    {"runs", "runs", ""},
-    {"failed", "failed", ""},
-    {"overshoot_of", "overshoot_of", ""},
-    {"settled_percent", "settled", "%"},
-    {"separated_percent", "separated", "%"},
-    {"exceeded_percent", "exceeded", "%"},
-    QUANTILES("overshoot", "_percent", "%"),
-    QUANTILES("settling", "_s", "s"),
-    QUANTILES("error", "_percent", "%"),
-    QUANTILES("from_start", "_s", "s"),
-    QUANTILES("back_share", "", ""),
-    {"from_start_share", "from_start_share", ""},
-    QUANTILES("raw_overshoot", "_percent", "%"),
-    QUANTILES("smoothed_overshoot", "_percent", "%"),
+    {"case", "case", "", TEXT(case_title)},
+    {"law", "law", "", TEXT(law)},
+    {"runs", "runs", "", COUNT(runs)},
+    {"failed", "failed", "", COUNT(failed)},
+    {"overshoot_of", "overshoot_of", "", TEXT(overshoot_of)},
+    {"settled_percent", "settled", "%", SHARE(settled)},
+    {"separated_percent", "separated", "%", SHARE(separated)},
+    {"exceeded_percent", "exceeded", "%", SHARE(exceeded)},
+    QUANTILES("overshoot", "_percent", "%", overshoot),
+    QUANTILES("settling", "_s", "s", settling),
+    QUANTILES("error", "_percent", "%", error),
+    QUANTILES("from_start", "_s", "s", from_start),
+    QUANTILES("back_share", "", "", back),
+    {"from_start_share", "from_start_share", "", PLACE(against)},
+    QUANTILES("raw_overshoot", "_percent", "%", raw),
+    QUANTILES("smoothed_overshoot", "_percent", "%", smoothed),
 };
-#undef QUANTILES
+
 // What people see, of the laws and of cases.
 typedef struct shown_column {
     int column;
@@ -93,36 +100,17 @@ static const shown_column of_cases[] = {
     {AGAINST, ""}, // headed by the law
 };
 
-// The first column of a table, which has cases or not.
-static int first_column(const robust_table *t)
+static bool has_cases(const robust_table *t)
 {
-    return t->laws[0].case_title != NULL ? CASE : LAW;
+    assert(t->count > 0);
+    return t->laws[0].case_title != NULL;
 }
 
-// A law's cells, all of them.
-static void fill_cells(const robust_law *law, result_cell *cells)
+// The columns of a table, which has cases or not.
+static result_table told(const robust_table *t)
 {
-    for (int k = 0; k < COLUMNS; k++) {
-        cells[k].text = NULL;
-    }
-    cells[CASE].text = law->case_title;
-    cells[LAW].text = law->law;
-    cells[RUNS].number = (double)law->runs;
-    cells[FAILED].number = (double)law->failed;
-    cells[OVER_OF].text = robust_overshoot_of(law);
-    cells[SETTLED].number = 100 * law->settled;
-    cells[SEPARATED].number = 100 * law->separated;
-    cells[EXCEEDED].number = 100 * law->exceeded;
-    cells[AGAINST].number = law->against;
-    for (int i = 0; i < ROBUST_QUANTILES; i++) {
-        cells[OVER + i].number = law->overshoot[i];
-        cells[SETTLING + i].number = law->settling[i];
-        cells[ERROR + i].number = law->error[i];
-        cells[FROM_START + i].number = law->from_start[i];
-        cells[BACK + i].number = law->back[i];
-        cells[RAW + i].number = law->raw[i];
-        cells[SMOOTHED + i].number = law->smoothed[i];
-    }
+    const int first = has_cases(t) ? CASE : LAW;
+    return (result_table){columns + first, COLUMNS - first, t->laws, sizeof *t->laws, t->count};
 }
 
 // Two counts, then the numbers but the one that another law is needed for.
@@ -140,22 +128,39 @@ const char *robust_key(int i)
 
 double robust_value(const robust_law *law, int i)
 {
-    result_cell cells[COLUMNS];
     assert(i >= 0 && column_of(i) < COLUMNS);
-    fill_cells(law, cells);
-    return cells[column_of(i)].number;
+    return result_cell_of(&(result_table){.rows = law}, 0, &columns[column_of(i)]).number;
+}
+
+// What stands in a column of a row, of row -1 the heading; `text` has room for it.
+static const char *cell_of(const robust_table *t, int row, const shown_column *shown,
+                           char text[ROBUST_CELL])
+{
+    if (row < 0 && shown->column == AGAINST) {
+        snprintf(text, ROBUST_CELL, "/%s", t->against);
+    }
+    if (row < 0) {
+        return shown->column == AGAINST ? text : shown->heading;
+    }
+    const result_table all = told(t);
+    const result_cell cell = result_cell_of(&all, row, &columns[shown->column]);
+    decimal_print(text, ROBUST_CELL,
+                  isnan(cell.number)          ? "-"
+                  : fabs(cell.number) >= 1000 ? "%.0f"
+                                              : "%.3g",
+                  cell.number);
+    return cell.text != NULL ? cell.text : text;
 }
 
 // The table in columns of blanks, or of a Markdown page.
 void robust_text(FILE *stream, const robust_table *t, bool page)
 {
-    assert(t->count > 0);
-    const bool cases = first_column(t) == CASE;
+    const bool cases = has_cases(t);
     const shown_column *shown = cases ? of_cases : of_laws;
     const int count = cases ? (int)(sizeof of_cases / sizeof of_cases[0]) - (t->against == NULL)
                             : (int)(sizeof of_laws / sizeof of_laws[0]);
     int widest = 0; // title of a case
-    char text[64];
+    char text[ROBUST_CELL];
     for (int i = 0; i < t->count && cases; i++) {
         const int length = (int)strlen(t->laws[i].case_title);
         widest = length > widest ? length : widest;
@@ -163,30 +168,13 @@ void robust_text(FILE *stream, const robust_table *t, bool page)
 
     // headings, then a line a law
     for (int i = -1; i < t->count; i++) {
-        result_cell cells[COLUMNS] = {{0}};
-        if (i >= 0) {
-            fill_cells(&t->laws[i], cells);
-        }
         for (int k = 0; k < count; k++) {
             const int column = shown[k].column;
-            const double number = cells[column].number;
-            const char *told = i < 0 ? shown[k].heading : cells[column].text;
-            if (i < 0 && column == AGAINST) {
-                snprintf(text, sizeof text, "/%s", t->against);
-                told = text;
-            } else if (told == NULL) {
-                decimal_print(text, sizeof text,
-                              isnan(number)          ? "-"
-                              : fabs(number) >= 1000 ? "%.0f"
-                                                     : "%.3g",
-                              number);
-                told = text;
-            }
             const int width = column == CASE   ? -widest
                               : column == LAW  ? -16
                               : column == RUNS ? 5
                                                : 12;
-            result_print(stream, page, k, width, told);
+            result_print(stream, page, k, width, cell_of(t, i, &shown[k], text));
         }
         if (i >= 0 && t->laws[i].failed > 0 && !page) {
             fprintf(stream, "  %zu failed", t->laws[i].failed);
@@ -200,31 +188,16 @@ void robust_text(FILE *stream, const robust_table *t, bool page)
 
 void robust_csv(FILE *stream, const robust_table *t)
 {
-    assert(t->count > 0);
-    const int first = first_column(t);
-    csv_writer csv = csv_begin(stream);
-    result_headings(&csv, columns + first, COLUMNS - first);
-    for (int i = 0; i < t->count; i++) {
-        result_cell cells[COLUMNS];
-        fill_cells(&t->laws[i], cells);
-        result_row(&csv, cells + first, COLUMNS - first);
-    }
+    const result_table all = told(t);
+    result_csv(stream, &all);
 }
 
 json_t *robust_json(const robust_table *t)
 {
-    json_t *whole = json_members(json_object(), "scenario:t", t->scenario), *laws = json_array();
-    for (int i = 0; i < t->count; i++) {
-        result_cell cells[COLUMNS];
-        const int first = first_column(t);
-        json_t *law = json_object();
-        fill_cells(&t->laws[i], cells);
-        result_put(law, columns + first, cells + first, COLUMNS - first);
-        json_add(laws, law);
-    }
-
+    const result_table all = told(t);
+    json_t *whole = json_members(json_object(), "scenario:t", t->scenario);
     if (t->against != NULL) {
-        json_put(whole, "against", json_text(t->against));
+        json_members(whole, "against:t", t->against);
     }
-    return json_members(whole, "laws:o", laws);
+    return json_members(whole, "laws:o", result_json(&all));
 }

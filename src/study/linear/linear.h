@@ -155,6 +155,17 @@ static inline bool linear_is_stable(bool by_runs, double number)
 // How fast the slowest part of the linear form grows in contact [1/s]; NaN on failure.
 status linear_growth(const scenario *s, double *growth, fault *f);
 
-// Where stability changes between two values of the axis of a sweep of one.
-status linear_limit(const sweep *s, linear_place place, bool by_runs, double from, double to,
-                    double *limit, fault *f);
+// The same over all combinations of varied values.
+enum { LINEAR_MOST_LIMITS = 32 };
+typedef struct linear_survey {
+    sweep sweep;
+    double *numbers[2]; // of each combination: growth [1/s], and by runs the settling time [s]
+    struct {
+        double value; // of the axis
+        bool by_runs;
+    } limits[LINEAR_MOST_LIMITS]; // of a single axis, where stability changes
+    int limit_count;
+} linear_survey;
+status linear_survey_make(linear_survey *y, const scenario *s, const sweep_request *request,
+                          linear_place place, fault *f); // to be finished in any case
+void linear_survey_finish(linear_survey *y);

@@ -316,21 +316,57 @@ status linear_growth(const scenario *s, double *growth, fault *f)
     return linear_stability(s, LINEAR_CONTACT, false, growth, f);
 }
 
-status linear_limit(const sweep *s, linear_place place, bool by_runs, double from, double to,
-                    double *limit, fault *f)
+// Where stability changes between the i-th value of a single axis and the one before.
+static status find_limit(const linear_survey *y, size_t i, linear_place place, bool by_runs,
+                         double *limit, fault *f)
 {
-    assert(s->axis_count == 1);
-    bool at_start = false;
-    for (int i = -1; i < (by_runs ? RUN_BISECTIONS : BISECTIONS); i++) {
-        const double value = i < 0 ? from : (from + to) / 2;
+    double from = y->sweep.axes[0].values[i - 1], to = y->sweep.axes[0].values[i];
+    const bool at_start = linear_is_stable(by_runs, y->numbers[by_runs][i - 1]);
+    for (int n = 0; n < (by_runs ? RUN_BISECTIONS : BISECTIONS); n++) {
+        const double value = (from + to) / 2;
         scenario derived;
         double number;
-        TRY(sweep_axes_scenario(s->axes, 1, &value, s->base, &derived, f));
+        TRY(sweep_axes_scenario(y->sweep.axes, 1, &value, y->sweep.base, &derived, f));
         TRY(linear_stability(&derived, place, by_runs, &number, f));
-        const bool here = linear_is_stable(by_runs, number);
-        at_start = i < 0 ? here : at_start;
-        *(here == at_start ? &from : &to) = value;
+        *(linear_is_stable(by_runs, number) == at_start ? &from : &to) = value;
     }
     *limit = (from + to) / 2;
     return STATUS_OK;
+}
+
+// The numbers of combination i, and the limit that lies before it.
+static status survey_one(linear_survey *y, size_t i, linear_place place, fault *f)
+{
+    scenario derived;
+    TRY(sweep_scenario(&y->sweep, i, &derived, f));
+    for (int k = 0; k < 2; k++) {
+        double *number = &y->numbers[k][i];
+        TRY(linear_stability(&derived, place, k, number, f));
+        if (y->sweep.axis_count == 1 && i > 0 && y->limit_count < LINEAR_MOST_LIMITS &&
+            linear_is_stable(k, number[-1]) != linear_is_stable(k, number[0])) {
+            y->limits[y->limit_count].by_runs = k;
+            TRY(find_limit(y, i, place, k, &y->limits[y->limit_count++].value, f));
+        }
+    }
+    return STATUS_OK;
+}
+
+status linear_survey_make(linear_survey *y, const scenario *s, const sweep_request *request,
+                          linear_place place, fault *f)
+{
+    *y = (linear_survey){.limit_count = 0};
+    TRY(sweep_init(&y->sweep, s, request, f));
+    y->numbers[0] = calloc(2 * y->sweep.run_count, sizeof *y->numbers[0]);
+    TRY_MEMORY(y->numbers[0] != NULL, f);
+    y->numbers[1] = y->numbers[0] + y->sweep.run_count;
+    for (size_t i = 0; i < y->sweep.run_count; i++) {
+        TRY(survey_one(y, i, place, f));
+    }
+    return STATUS_OK;
+}
+
+void linear_survey_finish(linear_survey *y)
+{
+    free(y->numbers[0]);
+    sweep_finish(&y->sweep);
 }

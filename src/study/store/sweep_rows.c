@@ -145,25 +145,28 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
         result_headings(&csv, columns, count);
     }
     while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
-        result_cell cells[RUN_MOST_COLUMNS];
+        json_t *object = json ? json_object() : NULL; // NULL loses whatever is put into it
         for (int k = 0; k < count; k++) {
             const int type = sqlite3_column_type(rows, at[k]);
-            cells[k] =
+            const result_cell cell =
                 type == SQLITE_TEXT
                     ? (result_cell){(const char *)sqlite3_column_text(rows, at[k]), 0}
                     : (result_cell){NULL, type == SQLITE_NULL ? (double)NAN
                                                               : sqlite3_column_double(rows, at[k])};
+            if (json) {
+                result_put(object, columns[k].key, cell);
+            } else {
+                result_field(&csv, cell);
+            }
         }
         if (json) {
-            json_t *object = json_object(); // NULL loses whatever is put into it
-            result_put(object, columns, cells, count);
             fputs(separator, stream);
             json_write_member(stream, object, 2);
-            json_decref(object);
             separator = ",\n    ";
         } else {
-            result_row(&csv, cells, count);
+            csv_end_row(&csv);
         }
+        json_decref(object);
     }
     fputs(json ? "\n  ]\n}\n" : "", stream);
     return sqlite3_finalize(rows) == SQLITE_OK ? STATUS_OK : database_fault(store, f);

@@ -67,7 +67,7 @@ static void print_points(const scenario *s, const void *found)
         const calibration_point *p = &c->points[i];
         bool moved = fabs(p->drift) > DRIFT_WORTH_A_WORD;
         printf("  %9.4g  %9.4g  %11.5g  %11.4g  %9.4f  %9.2g  %9.2g%s\n", p->command, p->force,
-               p->angle, p->k2, p->k2 / s->parameters.arm.k2, p->force_spread, p->angle_spread,
+               p->angle, p->k2, p->k2_over_arm, p->force_spread, p->angle_spread,
                moved ? " *" : "");
         drifts |= moved;
     }
@@ -81,8 +81,8 @@ static void print_points(const scenario *s, const void *found)
 }
 
 RESULT_GIVEN(json_t *, points_json, calibrated,
-             return calibration_json(&found->points, s, found->table))
-RESULT_WRITER(write_points, calibrated, calibration_csv(stream, &found->points, s))
+             return calibration_json(&found->points, s->name, found->table))
+RESULT_WRITER(write_points, calibrated, calibration_csv(stream, &found->points))
 RESULT_WRITER(write_scenario, calibrated, scenario_write(stream, &found->with_table))
 
 // The table of the presses, as text and in the scenario.

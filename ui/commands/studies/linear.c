@@ -13,7 +13,7 @@
 
 #define TWO_PI (2 * 3.14159265358979323846)
 
-enum { POLES, HUB_ZEROS, END_ZEROS, SETS, MOST_LIMITS = 32 };
+enum { POLES, HUB_ZEROS, END_ZEROS, SETS };
 
 // Poles, or zeros, one behind the other.
 typedef struct root_set {
@@ -37,14 +37,7 @@ typedef struct analysis {
     bool stable, measured;
     double least_push; // that loses contact [N s]
 
-    // with --vary: of each value, by poles and by runs, growth [1/s] and settling time [s]
-    sweep sweep;
-    double *numbers[2];
-    struct {
-        double value;
-        int by_runs;
-    } limits[MOST_LIMITS];
-    int limit_count;
+    linear_survey survey; // with --vary
 } analysis;
 
 // --- one arm ----------------------------------------------------------------------------------
@@ -200,19 +193,18 @@ static void write_csv(FILE *stream, const scenario *base, const void *found)
                                             {NULL, "real", "1/s"},
                                             {NULL, "imaginary", "rad/s"},
                                             {NULL, "damping", ""}};
-    enum { COLUMNS = sizeof columns / sizeof *columns };
     const analysis *x = found;
     csv_writer w = csv_begin(stream);
-    result_headings(&w, columns, COLUMNS);
+    result_headings(&w, columns, sizeof columns / sizeof *columns);
     for (const root_set *set = x->sets; set < x->sets + SETS; set++) {
         for (int i = 0; i < set->count; i++) {
             const double complex s = in_time(x, set->values[i]);
-            const result_cell cells[COLUMNS] = {{set->kind},
-                                                {set->output},
-                                                {NULL, creal(s)},
-                                                {NULL, cimag(s)},
-                                                {NULL, linear_damping(s)}};
-            result_row(&w, cells, COLUMNS);
+            csv_text(&w, set->kind);
+            csv_text(&w, set->output);
+            csv_number(&w, creal(s));
+            csv_number(&w, cimag(s));
+            csv_number(&w, linear_damping(s));
+            csv_end_row(&w);
         }
     }
 }
@@ -305,34 +297,11 @@ static const summary_info told[2] = {
     {.key = "growth_per_s", .name = "growth", .label = "growth without friction", .unit = "1/s"},
     {.key = "settling_time_s", .name = "settling_time", .label = "settling time", .unit = "s"}};
 
-static status survey(analysis *x, fault *f)
-{
-    const sweep *s = &x->sweep;
-    x->numbers[1] = x->numbers[0] + s->run_count;
-    for (size_t i = 0; i < s->run_count; i++) {
-        scenario derived;
-        TRY(sweep_scenario(s, i, &derived, f));
-        for (int k = 0; k < 2; k++) {
-            const double *before = i > 0 ? &x->numbers[k][i - 1] : NULL;
-            TRY(linear_stability(&derived, x->place, k, &x->numbers[k][i], f));
-
-            // the limit between neighbours of which one is stable
-            if (s->axis_count == 1 && before != NULL && x->limit_count < MOST_LIMITS &&
-                linear_is_stable(k, before[0]) != linear_is_stable(k, before[1])) {
-                const double *values = s->axes[0].values + i - 1;
-                x->limits[x->limit_count].by_runs = k;
-                TRY(linear_limit(s, x->place, k, values[0], values[1],
-                                 &x->limits[x->limit_count++].value, f));
-            }
-        }
-    }
-    return STATUS_OK;
-}
-
 static json_t *survey_json(const scenario *base, const void *found)
 {
     const analysis *x = found;
-    const sweep *s = &x->sweep;
+    const linear_survey *y = &x->survey;
+    const sweep *s = &y->sweep;
     json_t *points = json_array(), *limits = json_array();
     for (size_t i = 0; i < s->run_count; i++) {
         json_t *values = json_object();
@@ -341,12 +310,12 @@ static json_t *survey_json(const scenario *base, const void *found)
         }
         json_add(points,
                  json_members(json_object(), "values:o growth_per_s:n stable:b settling_time_s:n",
-                              values, x->numbers[0][i], linear_is_stable(false, x->numbers[0][i]),
-                              x->numbers[1][i]));
+                              values, y->numbers[0][i], linear_is_stable(false, y->numbers[0][i]),
+                              y->numbers[1][i]));
     }
-    for (int i = 0; i < x->limit_count; i++) {
+    for (int i = 0; i < y->limit_count; i++) {
         json_add(limits, json_members(json_object(), "path:t value:n of:t", s->axes[0].name,
-                                      x->limits[i].value, x->limits[i].by_runs ? "runs" : "poles"));
+                                      y->limits[i].value, y->limits[i].by_runs ? "runs" : "poles"));
     }
     return json_members(json_object(), "scenario:t at:t varied:o limits:o", base->name, x->word,
                         points, limits);
@@ -354,8 +323,8 @@ static json_t *survey_json(const scenario *base, const void *found)
 
 static void write_survey(FILE *stream, const scenario *base, const void *found)
 {
-    const analysis *x = found;
-    const sweep *s = &x->sweep;
+    const linear_survey *y = &((const analysis *)found)->survey;
+    const sweep *s = &y->sweep;
     csv_writer w = csv_begin(stream);
     for (int axis = 0; axis < s->axis_count; axis++) {
         csv_heading(&w, s->axes[axis].name, sweep_axis_parameter(&s->axes[axis])->unit);
@@ -367,8 +336,8 @@ static void write_survey(FILE *stream, const scenario *base, const void *found)
         for (int axis = 0; axis < s->axis_count; axis++) {
             csv_number(&w, sweep_value(s, i, axis));
         }
-        csv_number(&w, x->numbers[0][i]);
-        csv_number(&w, x->numbers[1][i]);
+        csv_number(&w, y->numbers[0][i]);
+        csv_number(&w, y->numbers[1][i]);
         csv_end_row(&w);
     }
 }
@@ -376,13 +345,13 @@ static void write_survey(FILE *stream, const scenario *base, const void *found)
 // Growth and settling time, one picture above the other.
 static int plot_survey(const arguments *a, const scenario *base, const void *found)
 {
-    const analysis *x = found;
+    const linear_survey *y = &((const analysis *)found)->survey;
     owned_figure *both[2];
     for (int k = 0; k < 2; k++) {
-        const sweep_picture shown = {&x->sweep, told[k].key, &told[k], x->numbers[k]};
+        const sweep_picture shown = {&y->sweep, told[k].key, &told[k], y->numbers[k]};
         both[k] = sweep_figure_create(&shown);
     }
-    both[0]->panels[0].y.with_zero = x->sweep.axis_count == 1;
+    both[0]->panels[0].y.with_zero = y->sweep.axis_count == 1;
     both[0]->panels[1] = both[1]->panels[0];
     both[0]->panels[0].heading = "linear, without friction: unstable above zero";
     both[0]->panels[1].heading = "runs, with friction: where one has a value it settles";
@@ -395,20 +364,20 @@ static int plot_survey(const arguments *a, const scenario *base, const void *fou
 
 static void print_survey(const scenario *base, const void *found)
 {
-    const analysis *x = found;
-    const sweep *s = &x->sweep;
+    const linear_survey *y = &((const analysis *)found)->survey;
+    const sweep *s = &y->sweep;
     size_t stable = 0, settle = 0;
     for (size_t i = 0; i < s->run_count; i++) {
-        stable += linear_is_stable(false, x->numbers[0][i]);
-        settle += linear_is_stable(true, x->numbers[1][i]);
+        stable += linear_is_stable(false, y->numbers[0][i]);
+        settle += linear_is_stable(true, y->numbers[1][i]);
     }
     say_title(base);
     printf("%zu of %zu loops are stable without friction, %zu of the runs settle\n", stable,
            s->run_count, settle);
-    for (int i = 0; i < x->limit_count; i++) {
-        say("  limit %s = %.6g %s, %s\n", s->axes[0].name, x->limits[i].value,
+    for (int i = 0; i < y->limit_count; i++) {
+        say("  limit %s = %.6g %s, %s\n", s->axes[0].name, y->limits[i].value,
             sweep_axis_parameter(&s->axes[0])->unit,
-            x->limits[i].by_runs ? "of runs, with friction" : "of poles, without friction");
+            y->limits[i].by_runs ? "of runs, with friction" : "of poles, without friction");
     }
 }
 
@@ -416,20 +385,14 @@ static int look_around(const arguments *a, analysis *x)
 {
     static const command_results r = {survey_json, print_survey, plot_survey, write_survey};
     const sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
-    fault f = {.code = STATUS_OK};
-    status code = a->plot != NULL && a->varies.count > 2
-                      ? fault_set(&f, STATUS_BAD_ARGUMENT,
-                                  "--plot shows one or two varied parameters, but %d are varied",
-                                  a->varies.count)
-                      : sweep_init(&x->sweep, x->scenario, &request, &f);
-    if (code == STATUS_OK) {
-        x->numbers[0] = calloc(2 * x->sweep.run_count, sizeof *x->numbers[0]);
-        code = x->numbers[0] != NULL ? survey(x, &f) : fault_no_memory(&f);
-    }
+    fault f = {0};
+    FAIL_IF(
+        a->plot != NULL && a->varies.count > 2,
+        complain("--plot shows one or two varied parameters, but %d are varied", a->varies.count));
+    const status code = linear_survey_make(&x->survey, x->scenario, &request, x->place, &f);
     const int result =
         code == STATUS_OK ? write_results(a, &r, x->scenario, x, true) : complain_fault(&f);
-    free(x->numbers[0]);
-    sweep_finish(&x->sweep);
+    linear_survey_finish(&x->survey);
     return result;
 }
 
