@@ -1,6 +1,5 @@
 #include "src/study/sweep_definition.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -19,19 +18,16 @@ static const char untold[] = "cannot be told"; // in place of a digest
 void definition_add(definition *d, const char *key, const char *format, ...)
 {
     va_list list;
-    assert(d->count < DEFINITION_LINES);
-    definition_line *line = &d->lines[d->count];
-
-    // a value may be long: it has memory of its own
-    snprintf(line->key, sizeof line->key, "%s", key);
     va_start(list, format);
-    line->value = decimal_vtext(format, list);
-    if (line->value == NULL) {
-        d->code = STATUS_NO_MEMORY;
-    } else {
-        d->count++;
-    }
+    char *value = decimal_vtext(format, list);
     va_end(list);
+
+    // a name of a file need not be UTF-8
+    json_t *text = value != NULL ? json_stringn_nocheck(value, strlen(value)) : NULL;
+    if (json_object_set_new_nocheck(d->lines, key, text) != 0) {
+        d->code = STATUS_NO_MEMORY;
+    }
+    free(value);
 }
 
 static bool is_varied(const sweep *s, int parameter)
@@ -125,7 +121,7 @@ static void define_outside(definition *d, const sweep *s, fault *f)
     for (int i = 0; i < outside_count && d->code == STATUS_OK; i++) {
         const outside_source *source = &outside_table[i];
         const parameters *p = &s->base->parameters;
-        char key[sizeof d->lines[0].key], digest[SHA256_TEXT];
+        char key[DEFINITION_KEY], digest[SHA256_TEXT];
         if ((sources >> i & 1) == 0) {
             continue;
         }
@@ -146,7 +142,7 @@ void definition_stamp(const sweep *s, char stamp[SHA256_TEXT])
 
 status definition_init(definition *d, const sweep *s, fault *f)
 {
-    memset(d, 0, sizeof *d);
+    *d = (definition){.lines = json_object()};
 
     // what is varied, and how
     definition_add(d, "version", "%s", lab_version());
@@ -176,20 +172,13 @@ status definition_init(definition *d, const sweep *s, fault *f)
 
 void definition_finish(definition *d)
 {
-    for (int i = 0; i < d->count; i++) {
-        free(d->lines[i].value);
-    }
-    d->count = 0;
+    json_decref(d->lines);
+    d->lines = NULL;
 }
 
 const char *definition_value(const definition *d, const char *key)
 {
-    for (int i = 0; i < d->count; i++) {
-        if (strcmp(d->lines[i].key, key) == 0) {
-            return d->lines[i].value;
-        }
-    }
-    return NULL;
+    return json_string_value(json_object_get(d->lines, key));
 }
 
 // The whole number that a line holds. False if it is none, or too large.
@@ -277,27 +266,30 @@ static void add_difference(char *text, size_t size, int *count, const char *key,
 status definition_compare(const char *path, const definition *was, const definition *now, fault *f)
 {
     char text[900] = "";
+    const char *key;
+    json_t *line;
     int count = 0;
 
     // what is new or another value
-    for (int i = 0; i < now->count; i++) {
-        const char *key = now->lines[i].key, *before = definition_value(was, key);
+    json_object_foreach(now->lines, key, line)
+    {
+        const char *before = definition_value(was, key), *value = json_string_value(line);
         // the same scenario may have another name (a file seen from another folder), and which
         // parameters were given is worth saying only if all values are the same
         const bool aside = strcmp(key, "scenario") == 0 || (count > 0 && strcmp(key, "given") == 0);
-        const bool same = before != NULL && strcmp(before, now->lines[i].value) == 0;
+        const bool same = before != NULL && strcmp(before, value) == 0;
         if (!aside && (!same || strcmp(before, untold) == 0)) {
-            add_difference(text, sizeof text, &count, key, before, now->lines[i].value);
+            add_difference(text, sizeof text, &count, key, before, value);
         }
     }
 
     // what is gone
-    for (int i = 0; i < was->count; i++) {
-        if (definition_value(now, was->lines[i].key) == NULL) {
-            add_difference(text, sizeof text, &count, was->lines[i].key, was->lines[i].value, NULL);
+    json_object_foreach(was->lines, key, line)
+    {
+        if (definition_value(now, key) == NULL) {
+            add_difference(text, sizeof text, &count, key, json_string_value(line), NULL);
         }
     }
-
     if (count == 0) {
         return STATUS_OK;
     }

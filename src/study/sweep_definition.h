@@ -2,20 +2,16 @@
 // database of an equal definition only.
 #pragma once
 
+#include <jansson.h>
+
 #include "src/base/sha256.h"
 #include "src/study/sweep.h"
 
-typedef struct definition_line {
-    char key[64];
-    char *value;
-} definition_line;
-
-enum { DEFINITION_LINES = 256 };
+enum { DEFINITION_LINES = 256, DEFINITION_KEY = 64 }; // at most, and a key with its end
 
 typedef struct definition {
-    definition_line lines[DEFINITION_LINES];
-    int count;
-    status code; // STATUS_OK, or why it is incomplete
+    json_t *lines; // a text under each key, in their order
+    status code;   // STATUS_OK, or why it is incomplete
 } definition;
 
 // The definition of a sweep: version, scenario, sampling, seed, what is varied, every other

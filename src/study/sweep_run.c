@@ -98,8 +98,8 @@ static bool runs_are_light(const sweep *s)
            p->control.law != LAW_PLUGIN && p->control.law != LAW_PROCESS;
 }
 
-// Computes what of the share is not present.
-static status run_missing(sweep_execution *e, const unsigned char *present, fault *f)
+// Computes what of the share an earlier call has not.
+static status run_missing(sweep_execution *e, fault *f)
 {
     const double duration = e->sweep->base->parameters.run.duration;
     sweep_progress *p = e->progress;
@@ -109,8 +109,8 @@ static status run_missing(sweep_execution *e, const unsigned char *present, faul
     TRY_MEMORY(e->wanted != NULL, f);
     for (size_t i = 0; i < p->total; i++) {
         const size_t run = sweep_share_run(e->options->share, i);
-        p->done += present[run];
-        if (!present[run]) {
+        p->done += e->store->present[run];
+        if (!e->store->present[run]) {
             e->wanted[count++] = run;
         }
     }
@@ -147,17 +147,7 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
                          .committed = now};
     *progress = (sweep_progress){.total = s->run_count};
 
-    // what an earlier call has computed is not computed again
-    unsigned char *present = malloc(s->run_count);
-    TRY_MEMORY(present != NULL, f);
-
-    // the rest is computed
-    size_t stored;
-    status code = store->present(store, present, &stored, f);
-    if (code == STATUS_OK) {
-        code = run_missing(&e, present, f);
-        report(&e);
-    }
-    free(present);
+    const status code = run_missing(&e, f);
+    report(&e);
     return code;
 }

@@ -12,9 +12,10 @@ enum { SWEEP_MOST_JOBS = POOL_MOST_THREADS };
 // Where the rows of a sweep are kept, one for each run that was computed: what a store can do. Its
 // functions are given itself; their faults are sentences.
 typedef struct sweep_store {
-    // Marks present[run] = 1 for every run the store has, 0 for the others (run_count of them), and
-    // counts them.
-    status (*present)(struct sweep_store *store, unsigned char *present, size_t *count, fault *f);
+    // 1 for every run that the store has, 0 for the others, and how many those are; `put` goes on
+    // with it.
+    unsigned char *present;
+    size_t count;
 
     // Adds the result of run `run`; `commit` makes permanent what was put since the last one.
     status (*put)(struct sweep_store *store, size_t run, const summary *result, fault *f);

@@ -213,13 +213,12 @@ static status check_row(const sweep_database *store, sqlite3_stmt *row, unsigned
     return STATUS_OK;
 }
 
-status database_check_runs(sweep_database *store, fault *f)
+status database_check_runs(sweep_database *store, unsigned char *seen, size_t *count, fault *f)
 {
     run_column expected[RUN_MOST_COLUMNS];
     const int columns = database_columns(store->sweep, expected);
     sqlite3_stmt *rows;
-    unsigned char *seen = calloc(store->sweep->run_count, 1);
-    TRY_MEMORY(seen != NULL, f);
+    *count = 0;
     status code = database_prepare(store, &rows, "SELECT * FROM run", f);
     const int found = code == STATUS_OK ? sqlite3_column_count(rows) : 0;
 
@@ -240,11 +239,11 @@ status database_check_runs(sweep_database *store, fault *f)
     // row by row
     while (database_next(store, rows, &code, f)) {
         code = check_row(store, rows, seen, f);
+        (*count)++;
         if (code != STATUS_OK && sqlite3_errcode(store->database) == SQLITE_NOMEM) {
             code = fault_no_memory(f);
         }
     }
-    free(seen);
     return code;
 }
 

@@ -9,29 +9,6 @@
 #include "src/study/store/sweep_database.h"
 #include "src/study/store/sweep_store.h"
 
-status sweep_store_present(sweep_store *of, unsigned char *present, size_t *count, fault *f)
-{
-    sweep_database *store = database_of(of);
-    sqlite3_stmt *rows;
-    size_t total = store->sweep->run_count;
-    memset(present, 0, total);
-    *count = 0;
-
-    // a run that the sweep does not have means that the file was changed by others
-    status code = database_prepare(store, &rows, "SELECT run FROM run", f);
-    while (database_next(store, rows, &code, f)) {
-        long long run = sqlite3_column_int64(rows, 0);
-        if (run < 1 || (unsigned long long)run > total) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu",
-                             store->path, run, total);
-        } else {
-            present[run - 1] = 1;
-            (*count)++;
-        }
-    }
-    return code;
-}
-
 static void bind_row(sweep_database *store, size_t run, const summary *result)
 {
     const sweep *s = store->sweep;
@@ -71,9 +48,11 @@ status sweep_store_put(sweep_store *of, size_t run, const summary *result, fault
 
     // the row, within a transaction that is committed every now and then
     bind_row(store, run, result);
-    int done = sqlite3_step(store->insert);
-    status code = done == SQLITE_DONE ? STATUS_OK : database_fault(store, f);
+    const bool done = sqlite3_step(store->insert) == SQLITE_DONE;
+    const status code = done ? STATUS_OK : database_fault(store, f);
     sqlite3_reset(store->insert);
+    of->present[run] |= done;
+    of->count += done;
     return code;
 }
 
@@ -174,54 +153,41 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
 
 // --- columns, for whoever draws them ------------------------------------------------------------
 
-// All rows of a statement with a number in each of its columns.
-static status read_rows(const sweep_database *store, sqlite3_stmt *rows, int key_count,
-                        double **columns, size_t *count, fault *f)
+// Takes row number `at` that a statement stands on, with a number in each of its columns.
+static status take_row(const sweep_database *store, sqlite3_stmt *row, int key_count,
+                       double **columns, size_t at, fault *f)
 {
-    size_t room = 0;
-    int step;
-    while ((step = sqlite3_step(rows)) == SQLITE_ROW) {
-        // all grow together; what was had is kept for the caller to free
-        if (*count == room) {
-            room = room > 0 ? 2 * room : 64;
-            for (int k = 0; k < key_count; k++) {
-                double *more = realloc(columns[k], room * sizeof *more);
-                TRY_MEMORY(more != NULL, f);
-                columns[k] = more;
-            }
+    for (int k = 0; k < key_count; k++) {
+        // room for 64 of them, then for twice as many whenever it is full
+        if (at == 0 || (at >= 64 && (at & (at - 1)) == 0)) {
+            double *more = realloc(columns[k], (at > 0 ? 2 * at : 64) * sizeof *more);
+            TRY_MEMORY(more != NULL, f);
+            columns[k] = more;
         }
-
-        for (int k = 0; k < key_count; k++) {
-            columns[k][*count] = sqlite3_column_double(rows, k);
-            FAIL_IF(!isfinite(columns[k][*count]),
-                    fault_set(f, STATUS_CANNOT_READ, "'%s' has an infinite %s, expected numbers",
-                              store->path, sqlite3_column_name(rows, k)));
-        }
-        (*count)++;
+        columns[k][at] = sqlite3_column_double(row, k);
+        FAIL_IF(!isfinite(columns[k][at]),
+                fault_set(f, STATUS_CANNOT_READ, "'%s' has an infinite %s, expected numbers",
+                          store->path, sqlite3_column_name(row, k)));
     }
-
-    // rows that end by a failure are not all
-    return step == SQLITE_DONE ? STATUS_OK : database_fault(store, f);
+    return STATUS_OK;
 }
 
 // Looks for a column in the runs' table: sqlite would take an unknown name for a text.
 static status find_column(sweep_database *store, const char *key, fault *f)
 {
     sqlite3_stmt *found;
+    int count = 0;
     status code = database_prepare(store, &found,
                                    "SELECT 1 FROM pragma_table_info('run') WHERE name = ?1", f);
-    if (code == STATUS_OK) {
-        sqlite3_bind_text(found, 1, key, -1, SQLITE_STATIC);
-        const int step = sqlite3_step(found);
-        code = step == SQLITE_ROW ? STATUS_OK
-               : step == SQLITE_DONE
-                   ? fault_set(f, STATUS_CANNOT_READ,
-                               "%s: no column '%s' in it, expected the database of a sweep",
-                               store->path, key)
-                   : database_fault(store, f);
+    sqlite3_bind_text(found, 1, key, -1, SQLITE_STATIC);
+    while (database_next(store, found, &code, f)) {
+        count++;
     }
-    sqlite3_finalize(found);
-    return code;
+    return code != STATUS_OK || count > 0
+               ? code
+               : fault_set(f, STATUS_CANNOT_READ,
+                           "%s: no column '%s' in it, expected the database of a sweep",
+                           store->path, key);
 }
 
 // Opens the rows of runs that have a number in every column.
@@ -267,10 +233,11 @@ status sweep_table_read(const char *path, const char *const *keys, int key_count
     status code = database_open(&store, SQLITE_OPEN_READONLY, f);
     code = code == STATUS_OK ? database_recognise(&store, &empty, f) : code;
     code = code == STATUS_OK ? query(&store, keys, key_count, &rows, f) : code;
-    code = code == STATUS_OK ? read_rows(&store, rows, key_count, columns, count, f) : code;
+    while (database_next(&store, rows, &code, f)) {
+        code = take_row(&store, rows, key_count, columns, (*count)++, f);
+    }
 
     // all or nothing
-    sqlite3_finalize(rows);
     sqlite3_close(store.database);
     for (int k = 0; k < key_count && code != STATUS_OK; k++) {
         free(columns[k]);

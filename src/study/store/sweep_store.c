@@ -53,12 +53,12 @@ static status read_line(definition *d, const char *path, sqlite3_stmt *row, faul
     const char *key = (const char *)sqlite3_column_text(row, 0);
     const char *value = (const char *)sqlite3_column_text(row, 1);
     FAIL_IF(sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM, fault_no_memory(f));
-    FAIL_IF(key == NULL || value == NULL || strlen(key) >= sizeof d->lines[0].key ||
+    FAIL_IF(key == NULL || value == NULL || strlen(key) >= DEFINITION_KEY ||
                 strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
                 strlen(value) != (size_t)sqlite3_column_bytes(row, 1),
             fault_set(f, STATUS_BAD_ARGUMENT,
                       "'%s' has a line without text in what defines its sweep", path));
-    FAIL_IF(d->count == DEFINITION_LINES || definition_value(d, key) != NULL,
+    FAIL_IF(json_object_size(d->lines) == DEFINITION_LINES || definition_value(d, key) != NULL,
             fault_set(f, STATUS_BAD_ARGUMENT,
                       "'%s' has more lines in what defines its sweep than this program writes",
                       path));
@@ -71,7 +71,7 @@ static status read_line(definition *d, const char *path, sqlite3_stmt *row, faul
 static status read_definition(sweep_database *store, definition *d, fault *f)
 {
     sqlite3_stmt *rows;
-    memset(d, 0, sizeof *d);
+    *d = (definition){.lines = json_object()};
 
     // as it was written, line by line; a damaged file shows at the end
     d->code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
@@ -84,12 +84,15 @@ static status read_definition(sweep_database *store, definition *d, fault *f)
 static status write_definition(sweep_database *store, const definition *d, fault *f)
 {
     sqlite3_stmt *insert;
+    const char *key;
+    json_t *value;
     status code =
         database_prepare(store, &insert, "INSERT INTO sweep (key, value) VALUES (?1, ?2)", f);
-    for (int i = 0; i < d->count && code == STATUS_OK; i++) {
-        sqlite3_bind_text(insert, 1, d->lines[i].key, -1, SQLITE_STATIC);
-        sqlite3_bind_text(insert, 2, d->lines[i].value, -1, SQLITE_STATIC);
-        if (sqlite3_step(insert) != SQLITE_DONE) {
+    json_object_foreach(d->lines, key, value)
+    {
+        sqlite3_bind_text(insert, 1, key, -1, SQLITE_STATIC);
+        sqlite3_bind_text(insert, 2, json_string_value(value), -1, SQLITE_STATIC);
+        if (code == STATUS_OK && sqlite3_step(insert) != SQLITE_DONE) {
             code = database_fault(store, f);
         }
         sqlite3_reset(insert);
@@ -115,7 +118,7 @@ static status create_tables(sweep_database *store, const definition *d, fault *f
 // STATUS_OK if the definition that the database holds is the sweep's.
 static status check_definition(sweep_database *store, fault *f)
 {
-    definition was = {.count = 0}, now;
+    definition was = {.lines = NULL}, now;
     status code = definition_init(&now, store->sweep, f);
     code = code == STATUS_OK ? read_definition(store, &was, f) : code;
     code = code == STATUS_OK ? definition_compare(store->path, &was, &now, f) : code;
@@ -134,7 +137,7 @@ static status adopt(sweep_database *store, fault *f)
     definition_stamp(store->sweep, store->stamp);
     if (!empty) {
         TRY(check_definition(store, f));
-        return database_check_runs(store, f);
+        return database_check_runs(store, store->store.present, &store->store.count, f);
     }
     definition now;
     status code = definition_init(&now, store->sweep, f);
@@ -193,16 +196,16 @@ status sweep_store_open(sweep_store **opened, const char *path, const sweep *s, 
     *opened = NULL;
     TRY_MEMORY(store != NULL, f);
 
-    store->store = (sweep_store){.present = sweep_store_present,
-                                 .put = sweep_store_put,
-                                 .commit = sweep_store_commit,
-                                 .quantity = sweep_store_quantity};
+    store->store = (sweep_store){
+        .put = sweep_store_put, .commit = sweep_store_commit, .quantity = sweep_store_quantity};
     store->sweep = s;
     store->lock = -1;
-    status code = STATUS_OK;
+    store->store.present = calloc(s->run_count, 1);
+    status code = store->store.present != NULL ? STATUS_OK : fault_no_memory(f);
 
     // a plain name that begins with a colon would mean something else to the database
-    if (path != NULL && asprintf(&store->path, "%s%s", path[0] == ':' ? "./" : "", path) < 0) {
+    if (code == STATUS_OK && path != NULL &&
+        asprintf(&store->path, "%s%s", path[0] == ':' ? "./" : "", path) < 0) {
         store->path = NULL;
         code = fault_no_memory(f);
     }
@@ -232,6 +235,7 @@ void sweep_store_close(sweep_store *closed)
     if (store->lock >= 0) {
         close(store->lock);
     }
+    free(store->store.present);
     free(store->path);
     free(store);
 }
@@ -319,10 +323,14 @@ static status add_row(merging *m, const char *path, sqlite3_stmt *row, fault *f)
 static status add_rows(merging *m, sweep_database *part, fault *f)
 {
     sqlite3_stmt *rows;
+    size_t count;
     part->sweep = &m->plan;
-    TRY(database_check_runs(part, f));
+    unsigned char *seen = calloc(m->plan.run_count, 1);
+    status code = seen != NULL ? database_check_runs(part, seen, &count, f) : fault_no_memory(f);
+    free(seen);
+    TRY(code);
 
-    status code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
+    code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
     while (database_next(part, rows, &code, f)) {
         code = add_row(m, part->path, rows, f);
     }
@@ -332,7 +340,7 @@ static status add_rows(merging *m, sweep_database *part, fault *f)
 // Adds a part: the first one begins the merged sweep, the others must be of the same.
 static status add_part(merging *m, char *path, bool first, fault *f)
 {
-    definition own = {.count = 0};
+    definition own = {.lines = NULL};
     sweep_database part;
     definition *d = first ? &m->definition : &own;
 

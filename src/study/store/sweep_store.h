@@ -25,10 +25,8 @@ void sweep_store_close(sweep_store *store);
 // Makes what was put permanent. STATUS_CANNOT_WRITE also where the file was deleted or moved since.
 status sweep_store_commit(sweep_store *store, fault *f) __attribute__((warn_unused_result));
 
-// What the store of a sweep does (sweep_run.h): of the rows that are there, of one more in the
-// transaction, and of a quantity of all.
-status sweep_store_present(sweep_store *store, unsigned char *present, size_t *count, fault *f)
-    __attribute__((warn_unused_result));
+// What the store of a sweep does (sweep_run.h): of one more row in the transaction, and of a
+// quantity of all.
 status sweep_store_put(sweep_store *store, size_t run, const summary *result, fault *f)
     __attribute__((warn_unused_result));
 status sweep_store_quantity(sweep_store *store, const char *key, double *values, size_t *failed,
