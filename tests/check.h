@@ -19,6 +19,8 @@
 
 #include <cmocka.h>
 
+#include "src/base/fault.h"
+
 // Fails unless |a - b| <= tolerance; NaN never passes.
 #define check_close(a, b, tolerance)                                                               \
     do {                                                                                           \
@@ -89,18 +91,6 @@ int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down);
         fail_if(strstr(f.text, (says)) == NULL, "'%s' does not say '%s'", f.text, (says));         \
     } while (0)
 
-// A variable that is given back when its block is left, and must be whole by then:
-// SCOPED(run_finish) run_result r;
-#define SCOPED(finish) __attribute__((cleanup(finish)))
-
-// The same of what is behind a pointer: SCOPED(free_kept) char *text; for other types, after
-// GIVEN_BACK(motion, motion_destroy), SCOPED(motion_destroy_kept) motion *m.
-#define GIVEN_BACK(type, destroy)                                                                  \
-    static inline void destroy##_kept(type **pointer)                                              \
-    {                                                                                              \
-        destroy(*pointer);                                                                         \
-    }
-
 // A table's entries in turn: for (EACH(c, cases)) { ... c->name ... }
 #define EACH(entry, table)                                                                         \
     const __typeof__((table)[0]) *entry = (table);                                                 \
@@ -130,11 +120,6 @@ int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down);
         __VA_ARGS__;                                                                               \
         assert_int_equal(fclose(stream), 0);                                                       \
     } while (0)
-
-static inline void free_kept(void *pointer)
-{
-    free(*(void **)pointer);
-}
 
 // A case that works in an empty folder of its own, `test_folder`, which goes afterwards with all
 // that is in it. Where all cases share one: ALL_BETWEEN(enter_folder, leave_folder).

@@ -1,6 +1,8 @@
 // A fault: a code and places for programs, a sentence for people. No program reads the sentence.
 #pragma once
 
+#include <stdlib.h>
+
 // One list, two uses: the enumeration and the text of each code.
 #define STATUS_LIST(X)                                                                             \
     X(OK, "done")                                                                                  \
@@ -53,7 +55,7 @@ status fault_set_place(fault *f, status code, int line, int column, const char *
 status fault_no_memory(fault *f);
 
 // Ends the calling function with what a call came to, unless that is STATUS_OK: for a function that
-// holds nothing to be given back.
+// holds nothing to be given back, or nothing that is not SCOPED.
 #define TRY(call)                                                                                  \
     do {                                                                                           \
         const status tried_ = (call);                                                              \
@@ -72,3 +74,19 @@ status fault_no_memory(fault *f);
             return fault;                                                                          \
         }                                                                                          \
     } while (0)
+
+// A variable that is given back when its block is left, and must be whole by then:
+// SCOPED(run_finish) run_result r;
+#define SCOPED(finish) __attribute__((cleanup(finish)))
+
+// The same of what is behind a pointer: SCOPED(free_kept) char *text; for other types, after
+// GIVEN_BACK(motion, motion_destroy), SCOPED(motion_destroy_kept) motion *m.
+#define GIVEN_BACK(type, destroy)                                                                  \
+    static inline void destroy##_kept(type **pointer)                                              \
+    {                                                                                              \
+        destroy(*pointer);                                                                         \
+    }
+static inline void free_kept(void *pointer)
+{
+    free(*(void **)pointer);
+}

@@ -104,29 +104,23 @@ static status press(const scenario *s, double command, int number, run_monitor *
                     calibration_point *point, fault *f)
 {
     const run_options options = {.keep_trace = true, .monitor = monitor};
-    run_result result;
     scenario under;
     TRY(pressing(s, command, number, &under, f));
 
     // a run that presses with it, and what the sensors read at its end
-    status code = run_scenario_with(&under, &options, &result);
-    if (code != STATUS_OK) {
-        fault_set_at(f, code, result.summary.path, "pressing with %g V failed: %.700s", command,
-                     result.summary.message);
-    } else {
-        measure(&under.parameters, &result.trace, command, point);
-        if (!(point->force > 0) || !(point->angle > 0)) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT,
-                             "under %g V the arm does not press: the force sensor reads %.4g N, "
-                             "the encoder %.4g rad beyond the wall; friction alone holds %.3g V",
-                             command, point->force, point->angle,
-                             s->parameters.motor.stiction /
-                                 motor_torque_per_volt(&s->parameters.motor));
-        }
-    }
-
-    run_finish(&result);
-    return code;
+    SCOPED(run_finish) run_result result;
+    const status code = run_scenario_with(&under, &options, &result);
+    FAIL_IF(code != STATUS_OK,
+            fault_set_at(f, code, result.summary.path, "pressing with %g V failed: %.700s", command,
+                         result.summary.message));
+    measure(&under.parameters, &result.trace, command, point);
+    FAIL_IF(!(point->force > 0) || !(point->angle > 0),
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "under %g V the arm does not press: the force sensor reads %.4g N, the "
+                      "encoder %.4g rad beyond the wall; friction alone holds %.3g V",
+                      command, point->force, point->angle,
+                      s->parameters.motor.stiction / motor_torque_per_volt(&s->parameters.motor)));
+    return STATUS_OK;
 }
 
 status calibrate(const scenario *s, const double *commands, int count, run_monitor *monitor,

@@ -59,13 +59,12 @@ static status part_in_run(const scenario *s, const char *law, double frequency, 
     TRY(scenario_with(s, changes, sizeof changes / sizeof *changes, &changed, f));
 
     // a law that fails here says nothing of the others
-    run_result result;
+    SCOPED(run_finish) run_result result;
     const run_options options = {.keep_trace = true, .monitor = monitor};
     const status code = run_scenario_with(&changed, &options, &result);
     if (code == STATUS_OK) {
         *part = part_of(&result.trace, frequency, until);
     }
-    run_finish(&result);
     return code == STATUS_STOPPED || code == STATUS_NO_MEMORY
                ? fault_set(f, code, "%s", status_text(code))
                : STATUS_OK;
@@ -111,27 +110,28 @@ status follow_study_compute(const scenario *s, run_monitor *monitor, follow_stud
                       : p->wall.kind == WALL_NONE ? "wall"
                                                   : "commanded force"));
     find_bound(&s->parameters, study);
-    for (int i = 0; i < FOLLOW_RUNS; i++) {
-        study->points[i / 2 / FOLLOW_FREQUENCIES][i / 2 % FOLLOW_FREQUENCIES] =
-            point_of(follow_frequencies[i / 2 % FOLLOW_FREQUENCIES], (double)NAN);
+    for (int i = 0; i < FOLLOW_LAWS * FOLLOW_FREQUENCIES; i++) {
+        const int k = i % FOLLOW_FREQUENCIES;
+        study->points[i / FOLLOW_FREQUENCIES][k] = point_of(follow_frequencies[k], (double)NAN);
     }
     double phase_before = 0;
-    for (int i = 0; i < FOLLOW_RUNS; i++) {
-        const int law = i / 2 / FOLLOW_FREQUENCIES, k = i / 2 % FOLLOW_FREQUENCIES;
-        const bool wall = i % 2 != 0;
+    for (; study->done < FOLLOW_RUNS; study->done++) {
+        const int law = study->done / 2 / FOLLOW_FREQUENCIES,
+                  k = study->done / 2 % FOLLOW_FREQUENCIES;
+        const bool wall = study->done % 2 != 0;
+        const double frequency = follow_frequencies[k];
+        follow_point *point = &study->points[law][k];
         double complex part;
-        TRY(part_in_run(s, follow_laws[law], follow_frequencies[k], wall, monitor, &part, f));
+        TRY(part_in_run(s, follow_laws[law], frequency, wall, monitor, &part, f));
         if (wall) {
-            study->points[law][k].shaken = cabs(part) / FOLLOW_WALL;
+            point->shaken = cabs(part) / FOLLOW_WALL;
         } else {
-            study->points[law][k] =
-                point_of(follow_frequencies[k], part / (FOLLOW_WAVE * s->parameters.control.force));
+            *point = point_of(frequency, part / (FOLLOW_WAVE * p->control.force));
         }
+
         // a phase goes on from the one at the frequency before
-        double *phase = &study->points[law][k].phase;
-        *phase -= k > 0 && *phase > phase_before + 180 ? 360 : 0;
-        phase_before = *phase;
-        study->done++;
+        point->phase -= k > 0 && point->phase > phase_before + 180 ? 360 : 0;
+        phase_before = point->phase;
         run_monitor_count(monitor);
     }
     return STATUS_OK;

@@ -214,10 +214,10 @@ static double draw_back(const fitted_parameter *fit, double x, double *slope)
 static status residuals_of(identification *id, const double *x, int sets, const int *only,
                            bool judge, double *out, fault *why, fault *f)
 {
-    batch_of_runs b = {.id = id};
+    SCOPED(free_kept) piece *pieces = calloc((size_t)(sets * id->trace_count), sizeof *pieces);
+    batch_of_runs b = {.id = id, .pieces = pieces};
     double slope;
-    b.pieces = calloc((size_t)(sets * id->trace_count), sizeof *b.pieces);
-    TRY_MEMORY(b.pieces != NULL, f);
+    TRY_MEMORY(pieces != NULL, f);
     for (int s = 0; s < sets; s++, x += id->unknowns) {
         for (int k = 0; k < id->trace_count; k++) {
             if (only == NULL || only[s] < 0 || only[s] == k) {
@@ -238,7 +238,6 @@ static status residuals_of(identification *id, const double *x, int sets, const 
     for (size_t i = b.count; why != NULL && i-- > 0;) {
         *why = b.pieces[i].why.code != STATUS_OK ? b.pieces[i].why : *why;
     }
-    free(b.pieces);
     return code;
 }
 
@@ -247,7 +246,7 @@ static status residuals_of(identification *id, const double *x, int sets, const 
 static status jacobian_of(identification *id, const double *x, double *jacobian, fault *f)
 {
     const size_t n = (size_t)id->unknowns, m = id->residuals;
-    double *moved = calloc(2 * n * (n + m), sizeof *moved);
+    SCOPED(free_kept) double *moved = calloc(2 * n * (n + m), sizeof *moved);
     int only[2 * IDENTIFY_UNKNOWNS];
     TRY_MEMORY(moved != NULL, f);
     double *out = moved + 2 * n * n;
@@ -256,16 +255,15 @@ static status jacobian_of(identification *id, const double *x, double *jacobian,
         moved[s * n + s / 2] += s % 2 == 0 ? -DIFFERENCE : DIFFERENCE;
         only[s] = id->unknown[s / 2].trace;
     }
-    const status code = residuals_of(id, moved, (int)(2 * n), only, false, out, NULL, f);
-    for (size_t i = 0; i < m * n && code == STATUS_OK; i++) {
+    TRY(residuals_of(id, moved, (int)(2 * n), only, false, out, NULL, f));
+    for (size_t i = 0; i < m * n; i++) {
         const double *lower = out + (i / m * 2 * m) + i % m;
         jacobian[i] = (lower[m] - lower[0]) / (2 * DIFFERENCE);
     }
-    for (int j = 0; j < id->count && code == STATUS_OK; j++) {
+    for (int j = 0; j < id->count; j++) {
         draw_back(&id->fit[j], x[j], &jacobian[(size_t)(j + 1) * m - (size_t)(id->count - j)]);
     }
-    free(moved);
-    return code;
+    return STATUS_OK;
 }
 
 // --- least squares ----------------------------------------------------------------------------
@@ -292,14 +290,13 @@ static status minimise(identification *id, double *x, double *residual, double *
 {
     const int m = (int)id->residuals, n = id->unknowns;
     least_squares l = {.id = id, .f = f};
-    double diagonal[IDENTIFY_UNKNOWNS], work[4][IDENTIFY_UNKNOWNS],
-        *more = calloc((size_t)m, sizeof *more);
+    double diagonal[IDENTIFY_UNKNOWNS], work[4][IDENTIFY_UNKNOWNS];
+    SCOPED(free_kept) double *more = calloc((size_t)m, sizeof *more);
     int pivots[IDENTIFY_UNKNOWNS], evaluations, jacobians;
     TRY_MEMORY(more != NULL, f);
     lmder(evaluate, &l, m, n, x, residual, jacobian, m, TOLERANCE, TOLERANCE, 0, MOST_STEPS,
           diagonal, 1, 1, 0, &evaluations, &jacobians, pivots, work[0], work[1], work[2], work[3],
           more);
-    free(more);
     return l.code;
 }
 #else
@@ -343,7 +340,7 @@ static status draw_beginnings(identification *id, double *x, double *rest, fault
 {
     const size_t m = id->residuals;
     random_generator random;
-    double *out = calloc((size_t)id->starts * m, sizeof *out);
+    SCOPED(free_kept) double *out = calloc((size_t)id->starts * m, sizeof *out);
     TRY_MEMORY(out != NULL, f);
     random_seed(&random, id->seed);
     for (int s = 0; s < id->starts; s++) {
@@ -356,12 +353,11 @@ static status draw_beginnings(identification *id, double *x, double *rest, fault
                                          : here[i] * (u < 0.5 ? 0.5 + u : 2 * u);
         }
     }
-    const status code = residuals_of(id, x, id->starts, NULL, false, out, NULL, f);
+    TRY(residuals_of(id, x, id->starts, NULL, false, out, NULL, f));
     for (int s = 0; s < id->starts; s++) {
         rest[s] = sum_of_squares(out + (size_t)s * m, m);
     }
-    free(out);
-    return code;
+    return STATUS_OK;
 }
 
 // Fits with room for the beginnings and what they leave, a set of residuals and the Jacobian.
@@ -416,9 +412,7 @@ status identify_fit(identification *id, fault *f)
 
     free(id->residual);
     id->residual = calloc(m, sizeof *id->residual);
-    double *room = calloc(starts * (n + 1) + m + m * n, sizeof *room);
-    const status code =
-        id->residual != NULL && room != NULL ? fit_with(id, room, f) : fault_no_memory(f);
-    free(room);
-    return code;
+    SCOPED(free_kept) double *room = calloc(starts * (n + 1) + m + m * n, sizeof *room);
+    TRY_MEMORY(id->residual != NULL && room != NULL, f);
+    return fit_with(id, room, f);
 }

@@ -50,7 +50,7 @@ static status judge_whiteness(identification *id, fault *f)
     id->white = true;
     for (int k = 0; k < id->trace_count; k++) {
         recorded_trace *t = &id->traces[k];
-        double *series = calloc(t->rows, sizeof *series);
+        SCOPED(free_kept) double *series = calloc(t->rows, sizeof *series);
         TRY_MEMORY(series != NULL, f);
         const bool alone = t->reading[CHANNEL_TACHOMETER] == NULL;
         for (int c = 0; c < CHANNELS; c++) {
@@ -66,7 +66,6 @@ static status judge_whiteness(identification *id, fault *f)
             id->white = id->white && !(counts && t->whiteness[c] > WHITE);
         }
         residual += t->contact_count;
-        free(series);
     }
     return STATUS_OK;
 }
@@ -111,11 +110,11 @@ static bool project(const identification *id, const double *jacobian, double *al
                 (size[i] * size[j]);
         }
     }
-    if (q > 0 && !symmetric_eigen(q, own, values, scratch)) {
+    SCOPED(free_kept) double *along = calloc(m, sizeof *along);
+    if (along == NULL || (q > 0 && !symmetric_eigen(q, own, values, scratch))) {
         return false;
     }
-    double *along = calloc(m, sizeof *along);
-    for (int k = 0; along != NULL && k < q; k++) {
+    for (int k = 0; k < q; k++) {
         if (values[k] < NO_SAY * values[q - 1]) {
             continue;
         }
@@ -127,9 +126,7 @@ static bool project(const identification *id, const double *jacobian, double *al
             add(alone + (size_t)i * m, -dot(alone + (size_t)i * m, along, m) / values[k], along, m);
         }
     }
-    const bool done = along != NULL;
-    free(along);
-    return done;
+    return true;
 }
 
 // How far the residuals of a channel of all traces scatter where the parameters look: over blocks
@@ -247,13 +244,13 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     double scatter[IDENTIFY_PATHS * IDENTIFY_PATHS] = {0};
     id->chi_square = dot(id->residual, id->residual, id->residuals);
     id->aic = id->chi_square + 2 * id->unknowns;
-    status code = judge_whiteness(id, f);
-    if (code != STATUS_OK || p == 0) {
-        return code;
+    TRY(judge_whiteness(id, f));
+    if (p == 0) {
+        return STATUS_OK;
     }
 
     // what each channel says of the parameters, and how far it scatters
-    double *alone = calloc((size_t)p * id->residuals, sizeof *alone);
+    SCOPED(free_kept) double *alone = calloc((size_t)p * id->residuals, sizeof *alone);
     TRY_MEMORY(alone != NULL, f);
     bool done = project(id, jacobian, alone);
     memset(id->direction, 0, sizeof id->direction);
@@ -263,7 +260,6 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     if (done) {
         add_contacts(id, alone, id->direction, scatter);
     }
-    free(alone);
     FAIL_IF(!done || !symmetric_eigen(p, id->direction, values, scratch),
             fault_set(f, STATUS_SINGULAR, "the parameters' errors cannot be computed"));
 

@@ -115,12 +115,9 @@ static status weigh(recorded_trace *t, const parameters *p, fault *f)
 {
     const double *force =
         t->reading[CHANNEL_FSR] != NULL ? t->reading[CHANNEL_FSR] : t->reading[CHANNEL_PIEZO];
-    unsigned char *near = calloc(t->rows, 1);
+    SCOPED(free_kept) unsigned char *near = calloc(t->rows, 1);
     t->contacts = calloc(t->rows, sizeof *t->contacts);
-    if (near == NULL || t->contacts == NULL) {
-        free(near);
-        return fault_no_memory(f);
-    }
+    TRY_MEMORY(near != NULL && t->contacts != NULL, f);
 
     double released = -HUGE_VAL;
     for (size_t i = 1; force != NULL && i < t->rows; i++) {
@@ -152,10 +149,7 @@ static status weigh(recorded_trace *t, const parameters *p, fault *f)
             continue;
         }
         t->deviation[c] = calloc(t->rows, sizeof *t->deviation[c]);
-        if (t->deviation[c] == NULL) {
-            free(near);
-            return fault_no_memory(f);
-        }
+        TRY_MEMORY(t->deviation[c] != NULL, f);
         for (size_t i = 0, end; i < t->rows; i = end) {
             for (end = i + 1; !dithered && end < t->rows && read[end] == read[i];) {
                 end++;
@@ -171,7 +165,6 @@ static status weigh(recorded_trace *t, const parameters *p, fault *f)
             }
         }
     }
-    free(near);
     return STATUS_OK;
 }
 
@@ -203,24 +196,20 @@ status identify_add_trace(identification *id, const char *file, char *const *col
             fault_set(f, STATUS_BAD_ARGUMENT, "more than %d traces", IDENTIFY_TRACES));
     const parameters *p = &id->base->parameters;
     recorded_trace *t = &id->traces[id->trace_count++];
-    csv_table table;
+    SCOPED(csv_table_finish) csv_table table = {0};
     *t = (recorded_trace){.file = strdup(file)};
     TRY(t->file != NULL ? csv_table_read(&table, file, 2, f) : fault_no_memory(f));
 
     t->rows = table.rows;
-    status code = read_column(&table, "time", "s", true, columns, count, &t->time, f);
-    if (code == STATUS_OK) {
-        code = read_column(&table, "command", "V", true, columns, count, &t->command, f);
-    }
+    TRY(read_column(&table, "time", "s", true, columns, count, &t->time, f));
+    TRY(read_column(&table, "command", "V", true, columns, count, &t->command, f));
     int readings = 0;
-    for (int c = 0; c < CHANNELS && code == STATUS_OK; c++) {
+    for (int c = 0; c < CHANNELS; c++) {
         const signal_info *signal = &signal_table[identify_signals[c]];
-        code = read_column(&table, signal->name, signal->unit, false, columns, count,
-                           &t->reading[c], f);
+        TRY(read_column(&table, signal->name, signal->unit, false, columns, count, &t->reading[c],
+                        f));
         readings += t->reading[c] != NULL;
     }
-    csv_table_finish(&table);
-    TRY(code);
     FAIL_IF(readings == 0,
             fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
                             "%.300s:1: no reading to compare with, expected a column such as "
@@ -389,7 +378,7 @@ status identify_residuals(const identification *id, recorded_trace *t, const par
                           const double own[OWNS], bool judge, double *residual, fault *f)
 {
     scenario made;
-    run_result result = {0};
+    SCOPED(run_finish) run_result result = {0};
     const given_law law = {&playback, (void *)t};
     const run_options options = {.keep_trace = true, .law = &law, .monitor = NULL};
     status code = make_run(id, t, p, own, &made, f);
@@ -411,6 +400,5 @@ status identify_residuals(const identification *id, recorded_trace *t, const par
     if (code == STATUS_OK && judge) {
         judge_run(t, &result.trace, 1 / made.parameters.control.rate, own);
     }
-    run_finish(&result);
     return code;
 }

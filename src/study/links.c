@@ -132,12 +132,11 @@ static blow blow_of(const run_result *result)
 static status first_frequency(const arm *a, tip_end tip, double *frequency, fault *f)
 {
     const size_t dof = (size_t)a->dof;
-    double *work = malloc((dof + dof * dof) * sizeof *work);
+    SCOPED(free_kept) double *work = malloc((dof + dof * dof) * sizeof *work);
     int count = 0;
     TRY_MEMORY(work != NULL, f);
-    status code = modes_compute(a, HUB_LOCKED, tip, &count, work, work + dof);
+    const status code = modes_compute(a, HUB_LOCKED, tip, &count, work, work + dof);
     *frequency = code == STATUS_OK && count > 0 ? work[0] / (2 * M_PI) : (double)NAN;
-    free(work);
     return code == STATUS_OK ? code : fault_set(f, code, "%s", status_text(code));
 }
 
@@ -166,30 +165,24 @@ static status compute_column(const scenario *s, int i, run_monitor *monitor, lin
     TRY(scenario_with(s, &links, 1, &changed, f));
 
     // the whole run; one that failed has what it has until then, which is not its end
-    run_result result;
+    SCOPED(run_finish) run_result result;
     const run_options options = {.monitor = monitor, .keep_forces = true};
-    status code = run_scenario_with(&changed, &options, &result);
-    if (code != STATUS_OK) {
-        fault_set_at(f, code, result.summary.path, "with %d links: %.700s", links_numbers[i],
-                     result.summary.message);
-    } else if (isnan(result.summary.first_contact_s)) {
-        code =
+    const status code = run_scenario_with(&changed, &options, &result);
+    FAIL_IF(code != STATUS_OK, fault_set_at(f, code, result.summary.path, "with %d links: %.700s",
+                                            links_numbers[i], result.summary.message));
+    FAIL_IF(isnan(result.summary.first_contact_s),
             fault_set(f, STATUS_BAD_SCENARIO, "%s: with %d links there is no contact within %g s",
-                      s->name, links_numbers[i], s->parameters.run.duration);
-    } else {
-        const blow b = blow_of(&result);
-        *speed = b.speed;
-        rows[IMPULSE].value[i] = b.impulse;
-        rows[PEAK].value[i] = b.peak;
-        rows[MOMENTUM].value[i] = b.momentum;
-        for (int k = 0; k < SENSORS; k++) {
-            rows[SENSED + k].value[i] = b.sensed[k];
-        }
-        rows[CONTACT_TIME].value[i] = result.summary.first_pulse_s;
-        rows[STEADY_FORCE].value[i] = result.summary.steady_force_N;
+                      s->name, links_numbers[i], s->parameters.run.duration));
+    const blow b = blow_of(&result);
+    *speed = b.speed;
+    rows[IMPULSE].value[i] = b.impulse;
+    rows[PEAK].value[i] = b.peak;
+    rows[MOMENTUM].value[i] = b.momentum;
+    for (int k = 0; k < SENSORS; k++) {
+        rows[SENSED + k].value[i] = b.sensed[k];
     }
-    run_finish(&result);
-    TRY(code);
+    rows[CONTACT_TIME].value[i] = result.summary.first_pulse_s;
+    rows[STEADY_FORCE].value[i] = result.summary.steady_force_N;
 
     // small vibrations and statics
     arm a;

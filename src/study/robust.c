@@ -324,24 +324,18 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sha
     *out = (robust_law){.law = law, .runs = n, .against = (double)NAN};
 
     // a column of the store for each quantity, and of it the runs of the share
-    double *column = calloc(s->run_count, sizeof *column);
-    double *values = calloc(QUANTITIES * n, sizeof *values);
+    SCOPED(free_kept) double *column = calloc(s->run_count, sizeof *column);
+    SCOPED(free_kept) double *values = calloc(QUANTITIES * n, sizeof *values);
     out->overshoots = calloc(n, sizeof *out->overshoots);
-    status code = column != NULL && values != NULL && out->overshoots != NULL ? STATUS_OK
-                                                                              : fault_no_memory(f);
-    for (int q = 0; q < QUANTITIES && code == STATUS_OK; q++) {
-        code = store->quantity(store, keys[q], column, NULL, f);
+    TRY_MEMORY(column != NULL && values != NULL && out->overshoots != NULL, f);
+    for (int q = 0; q < QUANTITIES; q++) {
+        TRY(store->quantity(store, keys[q], column, NULL, f));
         for (size_t i = 0; i < n; i++) {
             values[(size_t)q * n + i] = column[sweep_share_run(share, i)];
         }
     }
-
-    if (code == STATUS_OK) {
-        judge(out, s, share, values);
-    }
-    free(column);
-    free(values);
-    return code;
+    judge(out, s, share, values);
+    return STATUS_OK;
 }
 
 void robust_law_finish(robust_law *law)

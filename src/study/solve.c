@@ -127,11 +127,10 @@ static status run_trial(const search *s, double value, trial *t, fault *f)
     *t = (trial){.value = value, .quantity = (double)NAN};
     status code = sweep_axes_scenario(s->axis, 1, &value, s->base, &derived, NULL);
     if (code == STATUS_OK) {
-        run_result result;
+        SCOPED(run_finish) run_result result;
         const run_options options = {.monitor = s->monitor};
         code = run_scenario_with(&derived, &options, &result);
         *t = trial_of(s, value, &result.summary);
-        run_finish(&result);
     }
     return ending(code, f);
 }
@@ -271,8 +270,9 @@ status solve(const scenario *s, const sweep_axis *axis, const solve_condition *c
     if (is_whole(&here)) {
         found->points = (int)fmin(points, fabs(axis->high - axis->low) + 1);
     }
-    here.trials = calloc((size_t)found->points, sizeof *here.trials);
-    TRY_MEMORY(here.trials != NULL, f);
+    SCOPED(free_kept) trial *trials = calloc((size_t)found->points, sizeof *trials);
+    TRY_MEMORY(trials != NULL, f);
+    here.trials = trials;
 
     // one by one: none waits for others when it is stopped
     const batch range = {.context = &here,
@@ -281,8 +281,6 @@ status solve(const scenario *s, const sweep_axis *axis, const solve_condition *c
                          .take = take_point,
                          .together = 1,
                          .abandon = monitor != NULL ? &monitor->stop : NULL};
-    status code = batch_run(&range, jobs, f);
-    code = code == STATUS_OK ? locate_limits(&here, f) : code;
-    free(here.trials);
-    return code;
+    TRY(batch_run(&range, jobs, f));
+    return locate_limits(&here, f);
 }

@@ -73,14 +73,9 @@ static status read_axis(sweep *s, const char *given, fault *f)
 // run_count parts of equal chance, which the runs take in random order, each at a random place.
 static status draw_latin(sweep *s, random_generator *g, fault *f)
 {
-    size_t *part = malloc(s->run_count * sizeof *part);
-    double *share = malloc(s->run_count * sizeof *share);
-    if (part == NULL || share == NULL) {
-        free(part);
-        free(share);
-        return fault_no_memory(f);
-    }
-
+    SCOPED(free_kept) size_t *part = malloc(s->run_count * sizeof *part);
+    SCOPED(free_kept) double *share = malloc(s->run_count * sizeof *share);
+    TRY_MEMORY(part != NULL && share != NULL, f);
     for (int i = 0; i < s->axis_count; i++) {
         if (!s->axes[i].together) {
             random_permutation(g, part, s->run_count);
@@ -96,8 +91,6 @@ static status draw_latin(sweep *s, random_generator *g, fault *f)
                 sweep_axis_value_at(&s->axes[i], share[run]);
         }
     }
-    free(part);
-    free(share);
     return STATUS_OK;
 }
 

@@ -303,15 +303,13 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
 
 status sweep_axis_parse(sweep_axis *axis, const char *values, bool drawn, fault *f)
 {
-    char *text = strdup(values);
+    SCOPED(free_kept) char *text = strdup(values);
     TRY_MEMORY(text != NULL, f);
 
     // a list cannot hold ranges: with a comma it is read as a list, and a value with a colon is
     // refused
     const bool range = strchr(text, ':') != NULL && strchr(text, ',') == NULL;
-    const status code = (range ? read_range : read_list)(axis, text, drawn, f);
-    free(text);
-    return code;
+    return (range ? read_range : read_list)(axis, text, drawn, f);
 }
 
 status sweep_axis_parse_range(sweep_axis *axis, const char *text, fault *f)

@@ -105,13 +105,14 @@ static status run_missing(sweep_execution *e, fault *f)
     sweep_progress *p = e->progress;
     size_t count = 0;
     p->total = sweep_share_count(e->options->share, e->sweep->run_count);
-    e->wanted = malloc((p->total + 1) * sizeof *e->wanted);
-    TRY_MEMORY(e->wanted != NULL, f);
+    SCOPED(free_kept) size_t *wanted = malloc((p->total + 1) * sizeof *wanted);
+    TRY_MEMORY(wanted != NULL, f);
+    e->wanted = wanted;
     for (size_t i = 0; i < p->total; i++) {
         const size_t run = sweep_share_run(e->options->share, i);
         p->done += e->store->present[run];
         if (!e->store->present[run]) {
-            e->wanted[count++] = run;
+            wanted[count++] = run;
         }
     }
 
@@ -127,9 +128,7 @@ static status run_missing(sweep_execution *e, fault *f)
                            .tick = commit_and_report,
                            .stop = e->options->stop,
                            .abandon = e->options->abandon};
-    const status code = batch_run(&missing, e->options->jobs, f);
-    free(e->wanted);
-    return code;
+    return batch_run(&missing, e->options->jobs, f);
 }
 
 status sweep_run(const sweep *s, sweep_store *store, const sweep_options *options,

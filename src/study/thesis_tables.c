@@ -107,21 +107,13 @@ static status simulate_corrected(const parameters *p, cell *c, fault *f)
 {
     char name[] = "tables";
     scenario s = {.name = name, .file = name, .title = name, .description = name, .parameters = *p};
-    run_result result;
-    status outcome = run_scenario(&s, true, &result);
-
-    if (outcome == STATUS_OK) {
-        const sample *before = row_before_landing(&result);
-        c->touched = true;
-        c->at_touch = row_bodies(before);
-        c->peak = result.summary.first_pulse_peak_N;
-        c->delay = result.summary.first_pulse_time_to_peak_s;
-    } else {
-        summary_fault(&result.summary, f);
-    }
-
-    run_finish(&result);
-    return outcome;
+    SCOPED(run_finish) run_result result;
+    FAIL_IF(run_scenario(&s, true, &result) != STATUS_OK, summary_fault(&result.summary, f));
+    c->touched = true;
+    c->at_touch = row_bodies(row_before_landing(&result));
+    c->peak = result.summary.first_pulse_peak_N;
+    c->delay = result.summary.first_pulse_time_to_peak_s;
+    return STATUS_OK;
 }
 
 // Five numbers of one cell, NaN where the quantity does not occur.

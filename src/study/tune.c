@@ -119,7 +119,8 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
     char word[48];
     sweep_options only = *options;
     sweep_progress progress;
-    double run[SUMMARY_NUMBERS], *column = calloc(t->plan.run_count, sizeof *column);
+    double run[SUMMARY_NUMBERS];
+    SCOPED(free_kept) double *column = calloc(t->plan.run_count, sizeof *column);
     *out = (tune_result){.rank = (double)INFINITY};
     snprintf(word, sizeof word, "%zu of %zu:", evaluation + 1, t->most);
     only.context = word; // of the progress line
@@ -128,38 +129,32 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
         memcpy(t->plan.drawn + sweep_share_run(only.share, i) * (size_t)t->plan.axis_count, values,
                (size_t)asked->vary_count * sizeof *values);
     }
-    status code =
-        column != NULL ? sweep_run(&t->plan, store, &only, &progress, f) : fault_no_memory(f);
-    if (code == STATUS_OK && progress.done < progress.total) {
-        code = fault_set(f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
-    }
+    TRY_MEMORY(column != NULL, f);
+    TRY(sweep_run(&t->plan, store, &only, &progress, f));
+    FAIL_IF(progress.done < progress.total,
+            fault_set(f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED)));
 
     // a store that another search has filled
-    for (int k = 0; k < asked->vary_count && code == STATUS_OK; k++) {
-        code = store->quantity(store, t->plan.axes[k].name, column, NULL, f);
-        if (code == STATUS_OK && !isnan(column[evaluation]) && column[evaluation] != values[k]) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT,
-                             "the database is of another search: run %zu has %s = %g, not %g",
-                             evaluation + 1, t->plan.axes[k].name, column[evaluation], values[k]);
-        }
+    for (int k = 0; k < asked->vary_count; k++) {
+        TRY(store->quantity(store, t->plan.axes[k].name, column, NULL, f));
+        FAIL_IF(!isnan(column[evaluation]) && column[evaluation] != values[k],
+                fault_set(f, STATUS_BAD_ARGUMENT,
+                          "the database is of another search: run %zu has %s = %g, not %g",
+                          evaluation + 1, t->plan.axes[k].name, column[evaluation], values[k]));
     }
 
     // what came out
     judged of = {asked->over != NULL ? &out->law : NULL, run, (double)NAN};
     scenario derived;
-    code = code == STATUS_OK ? tune_apply(t, values, &derived, f) : code;
-    if (code == STATUS_OK && find_growth(asked, &derived, &of.growth, NULL) == STATUS_NO_MEMORY) {
-        code = fault_no_memory(f);
-    }
-    if (code == STATUS_OK && of.law != NULL) {
-        code = robust_law_of(&out->law, name, &t->plan, only.share, store, f);
-    }
-    for (int q = 0; q < summary_count && of.law == NULL && code == STATUS_OK; q++) {
-        code = store->quantity(store, summary_table[q].key, column, NULL, f);
+    TRY(tune_apply(t, values, &derived, f));
+    TRY_MEMORY(find_growth(asked, &derived, &of.growth, NULL) != STATUS_NO_MEMORY, f);
+    TRY(of.law != NULL ? robust_law_of(&out->law, name, &t->plan, only.share, store, f)
+                       : STATUS_OK);
+    for (int q = 0; q < summary_count && of.law == NULL; q++) {
+        TRY(store->quantity(store, summary_table[q].key, column, NULL, f));
         run[q] = column[evaluation];
     }
-    free(column);
-    return code == STATUS_OK ? judge(asked, &of, out, f) : code;
+    return judge(asked, &of, out, f);
 }
 
 // --- what is asked for ----------------------------------------------------------------------
@@ -195,7 +190,7 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
     const tune_request *asked = &t->asked;
     const int varied = asked->vary_count, drawn = asked->over != NULL ? asked->over->count : 0;
     char *lines[2 * SWEEP_MOST_AXES];
-    sweep draws = {0};
+    SCOPED(sweep_finish) sweep draws = {0};
     sweep_request request = {.vary = lines,
                              .vary_count = varied + drawn,
                              .sampling = SWEEP_LATIN,
@@ -213,15 +208,13 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
         TRY(sweep_init(&draws, asked->base, &set, f));
     }
 
-    status code = sweep_plan(&t->plan, &request, f);
-    for (int i = 0; i < varied && code == STATUS_OK; i++) {
-        if (!t->plan.axes[i].is_range) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT, "--vary %.200s: expected a range, %s=a:b",
-                             asked->vary[i], t->plan.axes[i].name);
-            sweep_finish(&t->plan);
-        }
+    TRY(sweep_plan(&t->plan, &request, f));
+    for (int i = 0; i < varied; i++) {
+        FAIL_IF(!t->plan.axes[i].is_range,
+                fault_set(f, STATUS_BAD_ARGUMENT, "--vary %.200s: expected a range, %s=a:b",
+                          asked->vary[i], t->plan.axes[i].name));
     }
-    for (size_t i = 0; code == STATUS_OK && i < request.runs * (size_t)(varied + drawn); i++) {
+    for (size_t i = 0; i < request.runs * (size_t)(varied + drawn); i++) {
         const size_t run = i / (size_t)(varied + drawn);
         const int axis = (int)(i % (size_t)(varied + drawn));
         t->plan.drawn[i] =
@@ -229,8 +222,7 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
     }
     t->plan.base = asked->base;
     t->plan.chosen_by = t->chosen_by;
-    sweep_finish(&draws);
-    return code;
+    return STATUS_OK;
 }
 
 status tune_init(tuning *t, const tune_request *asked, fault *f)

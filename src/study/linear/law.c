@@ -7,6 +7,8 @@
 #include "src/rig/rig.h"
 #include "src/study/linear/linear.h"
 
+GIVEN_BACK(rig, rig_destroy)
+
 // A pulse in a reading, in the reading's unit, and what a linear law's answers may lack.
 #define PULSE      1e-3
 #define NOT_LINEAR 1e-7
@@ -50,13 +52,10 @@ static controller_input rest_input(const linear_arm *arm, const parameters *p, i
 static status answer(const linear_arm *arm, const parameters *p, int reading, double pulse,
                      double *commands, fault *f)
 {
-    rig *r;
+    SCOPED(rig_destroy_kept) rig *r = NULL;
     TRY(rig_create(&r, p, NULL, f));
-    if (r->withheld) {
-        rig_destroy(r);
-        return fault_set(f, STATUS_NOT_ALLOWED,
-                         "the loop of a program or plug-in needs --allow-code");
-    }
+    FAIL_IF(r->withheld, fault_set(f, STATUS_NOT_ALLOWED,
+                                   "the loop of a program or plug-in needs --allow-code"));
     const double settling = (p->control.transition_time + SETTLING) * p->control.rate;
     const int before = (int)fmin(settling, MOST_SETTLING);
     for (int k = 0; k < before + ANSWERS; k++) {
@@ -69,7 +68,6 @@ static status answer(const linear_arm *arm, const parameters *p, int reading, do
             commands[k - before] = out.command;
         }
     }
-    rig_destroy(r);
     return STATUS_OK;
 }
 
@@ -167,17 +165,13 @@ static status learn(linear_law *law, const linear_arm *arm, const parameters *p,
 status linear_loop(linear_system *loop, const linear_arm *arm, const parameters *p, fault *f)
 {
     assert(p->control.law != LAW_NONE);
-    linear_system plant;
+    SCOPED(linear_system_finish) linear_system plant = {0};
     linear_law law = {.order = 0};
     *loop = (linear_system){0};
-    status code = learn(&law, arm, p, f);
-    TRY(code == STATUS_OK ? linear_sample(&plant, arm, p, f) : code);
+    TRY(learn(&law, arm, p, f));
+    TRY(linear_sample(&plant, arm, p, f));
     const int n = plant.states, states = n + law.order;
-    code = linear_system_init(loop, states, 1, f);
-    if (code != STATUS_OK) {
-        linear_system_finish(&plant);
-        return code;
-    }
+    TRY(linear_system_init(loop, states, 1, f));
 
     // the law's states are the answers that are still to come
     for (int i = 0; i < n; i++) {
@@ -199,7 +193,6 @@ status linear_loop(linear_system *loop, const linear_arm *arm, const parameters 
     if (law.order > 0) {
         loop->c[n] = 1;
     }
-    linear_system_finish(&plant);
     return STATUS_OK;
 }
 

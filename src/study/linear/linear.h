@@ -56,8 +56,12 @@ typedef struct linear_arm {
 
 // Linearises the corrected arm of a scenario. It presses with control.force where a law is to hold
 // it, else under motor.voltage. STATUS_BAD_ARGUMENT, with a sentence in f, for an arm that has no
-// such place of rest. To be freed with linear_system_finish(&arm->system).
+// such place of rest.
 status linear_arm_init(linear_arm *arm, const parameters *p, linear_place place, fault *f);
+static inline void linear_arm_finish(linear_arm *a)
+{
+    linear_system_finish(&a->system);
+}
 
 // --- poles, zeros, answers --------------------------------------------------------------------
 

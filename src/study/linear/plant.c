@@ -306,7 +306,7 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
     const bool weighs = !held && p->arm.tilt != 0; // which may press or lift, and is seen at rest
     const char *why = refusal(p, place, held ? p->control.force : weighs ? 1 : p->motor.voltage);
     FAIL_IF(why != NULL, fault_set(f, STATUS_BAD_ARGUMENT, "%s", why));
-    workshop *w = calloc(1, sizeof *w);
+    SCOPED(free_kept) workshop *w = calloc(1, sizeof *w);
     TRY_MEMORY(w != NULL, f);
 
     // straight; what is pressed into a wall that stiffens is found from a rigid one
@@ -318,13 +318,11 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
     for (int k = 0; k < w->n; k++) {
         w->rest[k] = p->wall.angle;
     }
-    status code = stiffens ? press(w, p, place, &out->force, f) : STATUS_OK;
-    if (code == STATUS_OK && stiffens) {
+    if (stiffens) {
+        TRY(press(w, p, place, &out->force, f));
         press_in(w, p, out->force);
     }
-    code = code == STATUS_OK ? linearise_at(w, out, p, place, f) : code;
-    free(w);
-    return code;
+    return linearise_at(w, out, p, place, f);
 }
 
 // --- between samples ---------------------------------------------------------------------------
@@ -407,7 +405,7 @@ static status fill(linear_system *out, const linear_system *s, int n, int held, 
 {
     const int size = n + 1, states = out->states;
     const size_t square = (size_t)size * (size_t)size;
-    double *both = calloc(5 * square, sizeof *both);
+    SCOPED(free_kept) double *both = calloc(5 * square, sizeof *both);
     TRY_MEMORY(both != NULL, f);
     double *before = both + square, *after = before + square, *power = after + square,
            *product = power + square;
@@ -425,7 +423,6 @@ static status fill(linear_system *out, const linear_system *s, int n, int held, 
         }
         *(held > 1 ? &out->a[i * states + n + 1] : &out->b[i]) = after[i * size + n];
     }
-    free(both);
 
     // commands move up; what is read sees the oldest
     for (int i = 0; i + 1 < held; i++) {

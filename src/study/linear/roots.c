@@ -69,7 +69,8 @@ static status eigenvalues(int n, const double *matrix, double complex *values, f
                                "machine (Debian: apt install liblapack3)"));
     const size_t square = (size_t)n * (size_t)n;
     const int size = 8 * n, one = 1;
-    double *work = calloc(square + (size_t)(size + 2 * n) + 1, sizeof *work), unused[1];
+    SCOPED(free_kept) double *work = calloc(square + (size_t)(size + 2 * n) + 1, sizeof *work);
+    double unused[1];
     TRY_MEMORY(work != NULL, f);
 
     // those of the transpose, which Fortran sees, are the same
@@ -83,7 +84,6 @@ static status eigenvalues(int n, const double *matrix, double complex *values, f
     for (int i = 0; i < n; i++) {
         values[i] = complex_of(real[i], imaginary[i]);
     }
-    free(work);
     qsort(values, (size_t)n, sizeof *values, compare);
     return info == 0
                ? STATUS_OK
@@ -100,7 +100,7 @@ status linear_zeros(const linear_system *s, int output, int *count, double compl
 {
     assert(output >= 0 && output < s->outputs);
     const int n = s->states;
-    double *row = calloc((size_t)(n * n + 2 * n) + 1, sizeof *row);
+    SCOPED(free_kept) double *row = calloc((size_t)(n * n + 2 * n) + 1, sizeof *row);
     TRY_MEMORY(row != NULL, f);
     double *next = row + n, *matrix = next + n;
 
@@ -129,7 +129,6 @@ status linear_zeros(const linear_system *s, int output, int *count, double compl
     *count = direct != 0 ? n - order : 0;
     const status code = eigenvalues(direct != 0 ? n : 0, matrix, values, f);
     memmove(values, values + order, (size_t)*count * sizeof *values);
-    free(row);
     return code;
 }
 
@@ -206,23 +205,22 @@ status linear_respond(const linear_system *s, int output, double period, linear_
     const size_t n = (size_t)s->states;
     *r = (linear_response){0};
     double *block = calloc(3 * MOST_FREQUENCIES, sizeof *block);
-    double complex *scratch = calloc(n * (n + 2) + 1, sizeof *scratch);
-    status code = block != NULL && scratch != NULL ? STATUS_OK : fault_no_memory(f);
-    code = code == STATUS_OK ? linear_poles(s, scratch, f) : code;
-    if (code == STATUS_OK) {
-        *r = (linear_response){choose_frequencies(scratch, s->states, period, block), block,
-                               (double complex *)(block + MOST_FREQUENCIES)};
-        for (int i = 0; i < r->count; i++) {
-            double sine, cosine;
-            inline_sincos(r->frequency[i] * period, &sine, &cosine);
-            r->gain[i] = period > 0 ? -linear_answer(s, output, complex_of(cosine, sine), scratch)
-                                    : linear_answer(s, output, complex_of(0, block[i]), scratch);
-        }
-    } else {
+    SCOPED(free_kept) double complex *scratch = calloc(n * (n + 2) + 1, sizeof *scratch);
+    const status code =
+        block != NULL && scratch != NULL ? linear_poles(s, scratch, f) : fault_no_memory(f);
+    if (code != STATUS_OK) {
         free(block);
+        return code;
     }
-    free(scratch);
-    return code;
+    *r = (linear_response){choose_frequencies(scratch, s->states, period, block), block,
+                           (double complex *)(block + MOST_FREQUENCIES)};
+    for (int i = 0; i < r->count; i++) {
+        double sine, cosine;
+        inline_sincos(r->frequency[i] * period, &sine, &cosine);
+        r->gain[i] = period > 0 ? -linear_answer(s, output, complex_of(cosine, sine), scratch)
+                                : linear_answer(s, output, complex_of(0, block[i]), scratch);
+    }
+    return STATUS_OK;
 }
 
 // --- margins ----------------------------------------------------------------------------------
@@ -276,22 +274,16 @@ linear_margins linear_margins_of(const linear_response *r)
 
 static status growth_of(const scenario *s, linear_place place, double *growth, fault *f)
 {
-    linear_arm arm;
-    linear_system loop = {0};
-    status code = linear_arm_init(&arm, &s->parameters, place, f);
-    code = code == STATUS_OK ? linear_loop(&loop, &arm, &s->parameters, f) : code;
-    double complex *poles = calloc((size_t)loop.states + 1, sizeof *poles);
-    if (code == STATUS_OK) {
-        linear_close(&loop);
-        code = poles != NULL ? linear_poles(&loop, poles, f) : fault_no_memory(f);
-    }
-    if (code == STATUS_OK) {
-        *growth = plain_log(cabs(poles[loop.states - 1])) * s->parameters.control.rate;
-    }
-    free(poles);
-    linear_system_finish(&loop);
-    linear_system_finish(&arm.system);
-    return code;
+    SCOPED(linear_arm_finish) linear_arm arm = {{0}};
+    SCOPED(linear_system_finish) linear_system loop = {0};
+    TRY(linear_arm_init(&arm, &s->parameters, place, f));
+    TRY(linear_loop(&loop, &arm, &s->parameters, f));
+    linear_close(&loop);
+    SCOPED(free_kept) double complex *poles = calloc((size_t)loop.states + 1, sizeof *poles);
+    TRY_MEMORY(poles != NULL, f);
+    TRY(linear_poles(&loop, poles, f));
+    *growth = plain_log(cabs(poles[loop.states - 1])) * s->parameters.control.rate;
+    return STATUS_OK;
 }
 
 status linear_stability(const scenario *s, linear_place place, bool by_runs, double *number,
@@ -301,14 +293,12 @@ status linear_stability(const scenario *s, linear_place place, bool by_runs, dou
     if (!by_runs) {
         return growth_of(s, place, number, f);
     }
-    run_result result;
-    status code = run_scenario(s, false, &result);
+    SCOPED(run_finish) run_result result;
+    const status code = run_scenario(s, false, &result);
     *number = result.summary.settling_time_s;
-    code = code == STATUS_NO_MEMORY || code == STATUS_NOT_ALLOWED
+    return code == STATUS_NO_MEMORY || code == STATUS_NOT_ALLOWED
                ? summary_fault(&result.summary, f)
                : STATUS_OK;
-    run_finish(&result);
-    return code;
 }
 
 status linear_growth(const scenario *s, double *growth, fault *f)

@@ -118,13 +118,11 @@ static status create_tables(sweep_database *store, const definition *d, fault *f
 // STATUS_OK if the definition that the database holds is the sweep's.
 static status check_definition(sweep_database *store, fault *f)
 {
-    definition was = {.lines = NULL}, now;
-    status code = definition_init(&now, store->sweep, f);
-    code = code == STATUS_OK ? read_definition(store, &was, f) : code;
-    code = code == STATUS_OK ? definition_compare(store->path, &was, &now, f) : code;
-    definition_finish(&was);
-    definition_finish(&now);
-    return code;
+    SCOPED(definition_finish) definition was = {.lines = NULL};
+    SCOPED(definition_finish) definition now = {.lines = NULL};
+    TRY(definition_init(&now, store->sweep, f));
+    TRY(read_definition(store, &was, f));
+    return definition_compare(store->path, &was, &now, f);
 }
 
 // Continues the sweep in the database or starts it.
@@ -139,11 +137,9 @@ static status adopt(sweep_database *store, fault *f)
         TRY(check_definition(store, f));
         return database_check_runs(store, store->store.present, &store->store.count, f);
     }
-    definition now;
-    status code = definition_init(&now, store->sweep, f);
-    code = code == STATUS_OK ? create_tables(store, &now, f) : code;
-    definition_finish(&now);
-    return code;
+    SCOPED(definition_finish) definition now = {.lines = NULL};
+    TRY(definition_init(&now, store->sweep, f));
+    return create_tables(store, &now, f);
 }
 
 // STATUS_OK if what the runs read from outside is what it was when the store was opened.
@@ -325,12 +321,11 @@ static status add_rows(merging *m, sweep_database *part, fault *f)
     sqlite3_stmt *rows;
     size_t count;
     part->sweep = &m->plan;
-    unsigned char *seen = calloc(m->plan.run_count, 1);
-    status code = seen != NULL ? database_check_runs(part, seen, &count, f) : fault_no_memory(f);
-    free(seen);
-    TRY(code);
+    SCOPED(free_kept) unsigned char *seen = calloc(m->plan.run_count, 1);
+    TRY_MEMORY(seen != NULL, f);
+    TRY(database_check_runs(part, seen, &count, f));
 
-    code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
+    status code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
     while (database_next(part, rows, &code, f)) {
         code = add_row(m, part->path, rows, f);
     }
@@ -340,7 +335,7 @@ static status add_rows(merging *m, sweep_database *part, fault *f)
 // Adds a part: the first one begins the merged sweep, the others must be of the same.
 static status add_part(merging *m, char *path, bool first, fault *f)
 {
-    definition own = {.lines = NULL};
+    SCOPED(definition_finish) definition own = {.lines = NULL};
     sweep_database part;
     definition *d = first ? &m->definition : &own;
 
@@ -350,8 +345,6 @@ static status add_part(merging *m, char *path, bool first, fault *f)
         code = first ? begin(m, path, f) : definition_compare(path, d, &m->definition, f);
     }
     code = code == STATUS_OK ? add_rows(m, &part, f) : code;
-
-    definition_finish(&own);
     sqlite3_close(part.database);
     return code;
 }
