@@ -2,8 +2,6 @@
 
 #include "tests/check.h"
 
-GIVEN_BACK(sweep_store, sweep_store_close)
-
 scenario base;
 
 void print_sentence(void *context, const char *sentence)

@@ -6,8 +6,6 @@
 #include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 
-GIVEN_BACK(sweep_store, sweep_store_close)
-
 static void print_sentence(void *context, const char *sentence)
 {
     (void)context;

@@ -10,8 +10,6 @@
 #include "src/study/thesis_tables.h"
 #include "tests/refused_requests.h"
 
-GIVEN_BACK(sweep_store, sweep_store_close)
-
 // --- scenarios by name --------------------------------------------------------------------------
 
 static void write_sentence(void *out, const char *sentence)

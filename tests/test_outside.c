@@ -9,8 +9,6 @@
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
-GIVEN_BACK(sweep_store, sweep_store_close)
-
 static char *plugin_files[2];
 
 // A law that answers every sample with so many volts.

@@ -14,8 +14,6 @@
 #include "src/study/tune.h"
 #include "tests/refused_requests.h"
 
-GIVEN_BACK(sweep_store, sweep_store_close)
-
 GIVEN_BACK(run_loop, loop_destroy)
 
 static const char *put(const char *name, const char *text)

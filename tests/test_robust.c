@@ -4,8 +4,6 @@
 #include "src/study/store/sweep_store.h"
 #include "tests/rig_fixture.h"
 
-GIVEN_BACK(sweep_store, sweep_store_close)
-
 static const char path[] = "the.set";
 
 static status read_set(robust_set *set, const char *text, fault *f)

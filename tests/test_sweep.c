@@ -7,8 +7,6 @@
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
-GIVEN_BACK(sweep_store, sweep_store_close)
-
 TEST(every_run_is_what_the_scenario_gives_alone)
 {
     SCOPED(sweep_finish) sweep s;

@@ -7,8 +7,6 @@
 #include "src/study/store/sweep_store.h"
 #include "tests/check.h"
 
-GIVEN_BACK(sweep_store, sweep_store_close)
-
 enum { RUNS = 60, COMMIT_EVERY = 25 };
 
 static char folder[] = "/tmp/sweep-faults-XXXXXX";

@@ -4,8 +4,6 @@
 #include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
-GIVEN_BACK(sweep_store, sweep_store_close)
-
 static void sweep_voltages(sweep *s, const char *values)
 {
     must_sweep(s, SWEEP_GRID, 0, values, NULL);

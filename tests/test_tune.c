@@ -6,8 +6,6 @@
 #include "src/study/store/sweep_store.h"
 #include "tests/rig_fixture.h"
 
-GIVEN_BACK(sweep_store, sweep_store_close)
-
 // --- expressions ----------------------------------------------------------------------------
 
 static int find(void *context, const char *name, const char **near)

@@ -361,8 +361,8 @@ typedef struct command_results {
     void (*text)(const scenario *s, const void *found); // for people, on the standard output
     int (*plot)(const arguments *a, const scenario *s, const void *found); // gives the exit status
     result_writer *csv, *markdown, *output, *mat, *cases;
-    // said after an interrupt: what became of the pieces that were done; the same where none were
-    // and nothing is written, NULL: as of some
+    // said after an interrupt: what became of the pieces that were done, NULL: nothing of them is
+    // written; the same where none were and nothing is written, NULL: as of some
     const char *kept, *none;
 } command_results;
 

@@ -112,6 +112,7 @@ static int plot_modes(const arguments *args, const scenario *s, const void *foun
     figure_panel panels[HOLDS] = {{0}};
     char headings[HOLDS][64], labels[HOLDS][MODES_DRAWN][48];
     size_t points = (size_t)a->links + 1;
+    SCOPED(free_kept)
     double *numbers = calloc((size_t)HOLDS * MODES_DRAWN * 2 * points, sizeof *numbers);
     FAIL_IF(numbers == NULL, worse(EXIT_FAILED, complain("out of memory")));
 
@@ -149,9 +150,7 @@ static int plot_modes(const arguments *args, const scenario *s, const void *foun
         .panel_count = HOLDS,
         .columns = 2,
         .shared_y = true};
-    int code = publish_titled(args, s, "first modes of the arm", &fig);
-    free(numbers);
-    return code;
+    return publish_titled(args, s, "first modes of the arm", &fig);
 }
 
 static void print_modes(const scenario *s, const void *found)

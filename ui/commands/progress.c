@@ -115,6 +115,10 @@ int work_finish(const arguments *a, status code, const fault *f, const command_r
                 const scenario *s, const void *found)
 {
     work_end();
+    if (code == STATUS_STOPPED && r->kept == NULL) {
+        complain("%s", status_text(code));
+        leave_interrupted();
+    }
     if (code != STATUS_OK && code != STATUS_STOPPED) {
         return complain_fault(f);
     }

@@ -21,6 +21,7 @@ status sweep_store_open(sweep_store **store, const char *path, const sweep *s, f
 // Commits what is not committed and closes; NULL is nothing. An error is only noted
 // (text_stream.h): commit first.
 void sweep_store_close(sweep_store *store);
+GIVEN_BACK(sweep_store, sweep_store_close)
 
 // Makes what was put permanent. STATUS_CANNOT_WRITE also where the file was deleted or moved since.
 status sweep_store_commit(sweep_store *store, fault *f) __attribute__((warn_unused_result));

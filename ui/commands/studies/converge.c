@@ -73,7 +73,9 @@ static void print_panel(const scenario *s, const void *found)
 
 // --- the force at the three steps -----------------------------------------------------------
 
-static int draw(const arguments *a, const scenario *s, const three_steps *r, double *work[4])
+// `work` has room for the instants of two differences, and each one's values.
+static int draw(const arguments *a, const scenario *s, const three_steps *r, double *work,
+                size_t room)
 {
     static const int colours[PANEL_STEPS] = {5, 0, 6};
     static const char *const names[PANEL_STEPS] = {"h", "h/2", "h/4"};
@@ -94,11 +96,12 @@ static int draw(const arguments *a, const scenario *s, const three_steps *r, dou
                                    .colour = colours[i]};
 
         if (i < PANEL_STEPS - 1) {
-            size_t count = convergence_difference(t, finest, work[2 * i], work[2 * i + 1]);
+            double *x = work + 2 * room * (size_t)i, *y = x + room;
+            size_t count = convergence_difference(t, finest, x, y);
             less[i] = (figure_series){.name = names[i],
                                       .label = label[i],
-                                      .x = work[2 * i],
-                                      .y = work[2 * i + 1],
+                                      .x = x,
+                                      .y = y,
                                       .count = count,
                                       .colour = colours[i]};
         }
@@ -121,17 +124,10 @@ static int draw(const arguments *a, const scenario *s, const three_steps *r, dou
 
 static int plot(const arguments *a, const scenario *s, const void *found)
 {
-    // abscissas and ordinates of two differences
     const three_steps *r = found;
     const size_t room = r->runs[0].trace.row_count + r->runs[1].trace.row_count + 1;
-    double *work[4] = {malloc(4 * room * sizeof(double))};
-    for (int i = 1; i < 4 && work[0] != NULL; i++) {
-        work[i] = work[0] + (size_t)i * room;
-    }
-    const int code =
-        work[0] != NULL ? draw(a, s, r, work) : worse(EXIT_FAILED, complain("out of memory"));
-    free(work[0]);
-    return code;
+    SCOPED(free_kept) double *work = malloc(4 * room * sizeof *work);
+    return work != NULL ? draw(a, s, r, work, room) : worse(EXIT_FAILED, complain("out of memory"));
 }
 
 static int converge(const arguments *a, scenario *s)

@@ -112,10 +112,9 @@ static int read_set(robustness *r)
 {
     const arguments *a = r->arguments;
     fault f = {0};
-    char *path = a->over == NULL ? scenario_folder_file(default_set) : NULL;
+    SCOPED(free_kept) char *path = a->over == NULL ? scenario_folder_file(default_set) : NULL;
     const char *read = a->over != NULL ? a->over : path;
     status code = read != NULL ? robust_set_read(&r->set, read, &f) : fault_no_memory(&f);
-    free(path);
     FAIL_IF(code != STATUS_OK, complain_fault(&f));
     FAIL_IF(r->set.case_count > 0 && a->plot != NULL,
             complain("--plot shows laws, not the cases of %s", a->over));
@@ -124,9 +123,8 @@ static int read_set(robustness *r)
     bool cases = r->set.case_count > 0;
     r->runs = a->runs > 0 ? (size_t)a->runs : cases ? DEFAULT_CASE_RUNS : DEFAULT_RUNS;
     const sweep_request request = request_of(r);
-    sweep plan;
+    SCOPED(sweep_finish) sweep plan;
     FAIL_IF(sweep_plan(&plan, &request, &f) != STATUS_OK, complain_fault(&f));
-    sweep_finish(&plan);
     r->found =
         calloc((size_t)(cases ? r->set.case_count : 1) * (size_t)(r->count + 1), sizeof *r->found);
     return r->found != NULL ? EXIT_DONE : (fault_no_memory(&f), complain_fault(&f));
@@ -152,8 +150,9 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
 {
     const arguments *a = r->arguments;
     fault f = {0};
-    char word[64], *db = a->db != NULL ? place_of(a->db, law, k) : NULL;
-    sweep_store *store = NULL;
+    char word[64];
+    SCOPED(free_kept) char *db = a->db != NULL ? place_of(a->db, law, k) : NULL;
+    SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
     sweep_progress progress = {0};
     snprintf(word, sizeof word, "%-16.40s", law);
     const sweep_options options = many_runs_begin(a, word);
@@ -175,12 +174,9 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
         code = robust_law_of(found, law, s, (sweep_share){0}, store, &f);
         found->case_title = k >= 0 ? r->set.cases[k].title : NULL;
     }
-    sweep_store_close(store);
-    int result = code != STATUS_OK ? complain_fault(&f)
-                 : stopped         ? many_runs_stopped(db, progress.done, progress.total)
-                                   : EXIT_DONE;
-    free(db);
-    return result;
+    return code != STATUS_OK ? complain_fault(&f)
+           : stopped         ? many_runs_stopped(db, progress.done, progress.total)
+                             : EXIT_DONE;
 }
 
 // Whether the scenario's own law or one that is judged has a parameter of that name. The parameters
@@ -256,19 +252,18 @@ static int open_law(const robustness *r, const scenario *base, int which, int k,
 static int take_case(robustness *r, int k, bool run)
 {
     fault f = {0};
-    scenario base, under;
-    sweep s;
+    SCOPED(robust_case_finish) scenario base;
     const robust_case *c = k >= 0 ? &r->set.cases[k] : NULL;
     FAIL_IF(robust_case_scenario(&base, r->scenario, c, &f) != STATUS_OK, complain_fault(&f));
     int code = EXIT_DONE;
     for (int i = 0; i < r->count + (r->against == r->count) && code == EXIT_DONE; i++) {
+        scenario under;
+        SCOPED(sweep_finish) sweep s = {0};
         code = open_law(r, &base, i, k, run && !r->arguments->quiet, &under, &s);
-        if (code == EXIT_DONE) {
-            code = run ? judge_law(r, control_law_table[r->laws[i]].word, k, &s) : EXIT_DONE;
-            sweep_finish(&s);
+        if (code == EXIT_DONE && run) {
+            code = judge_law(r, control_law_table[r->laws[i]].word, k, &s);
         }
     }
-    robust_case_finish(&base);
     return code;
 }
 

@@ -84,19 +84,13 @@ static int find_and_report(const arguments *a, scenario *s)
     static const command_results r = {answer, print_answer};
     question q = {.points = a->runs > 0 ? (int)a->runs : SOLVE_POINTS};
     fault f = {0};
+    run_monitor *monitor = work_begin(a, "runs", q.points);
     status code = solve_condition_read(a->operands[2], &q.condition, &f);
     code = code == STATUS_OK ? solve_axis_read(&q.axis, a->operands[1], s, &f) : code;
     if (code == STATUS_OK) {
-        run_monitor *monitor = work_begin(a, "runs", q.points);
         code = solve(s, &q.axis, &q.condition, q.points, many_runs_jobs(a), monitor, &q.found, &f);
-        work_end();
     }
-    if (code == STATUS_STOPPED) {
-        complain("%s", status_text(code));
-        leave_interrupted();
-    }
-
-    const int written = code == STATUS_OK ? write_results(a, &r, s, &q, true) : complain_fault(&f);
+    const int written = work_finish(a, code, &f, &r, s, &q);
     sweep_axis_finish(&q.axis);
     const bool none = code == STATUS_OK && q.found.count == 0;
     if (none && !summary_wanted(a)) {

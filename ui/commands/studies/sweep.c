@@ -19,7 +19,7 @@ typedef struct sweep_order {
     const char *quantity; // key of the quantity that is drawn and summarised
     sweep_share share;    // of all runs
     const scenario *scenario;
-    sweep sweep;
+    const sweep *sweep;
 } sweep_order;
 
 // --- results ----------------------------------------------------------------------------------
@@ -63,7 +63,7 @@ static void print_extreme(const sweep *s, const char *word, const double *values
 static void print_summary(const sweep_order *o, const double *values, size_t failed,
                           const sweep_progress *p)
 {
-    const sweep *s = &o->sweep;
+    const sweep *s = o->sweep;
     const arguments *a = o->arguments;
     const summary_info *quantity = &summary_table[summary_index(o->quantity)];
     const char *unit = quantity->unit;
@@ -112,31 +112,27 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
     const arguments *a = o->arguments;
     fault f = {0};
     size_t failed = 0;
-    double *values = malloc(o->sweep.run_count * sizeof *values);
+    SCOPED(free_kept) double *values = malloc(o->sweep->run_count * sizeof *values);
     const status read = values == NULL
                             ? fault_no_memory(&f)
                             : sweep_store_quantity(store, o->quantity, values, &failed, &f);
-    if (read != STATUS_OK) {
-        free(values);
-        return complain_fault(&f);
-    }
+    FAIL_IF(read != STATUS_OK, complain_fault(&f));
 
     // files first: what is printed may be cut off
     int code = worse(write_rows(store, a->csv, false), write_rows(store, a->json, true));
     if (a->plot != NULL) {
-        const sweep_picture shown = {.sweep = &o->sweep, .key = o->quantity, .values = values};
+        const sweep_picture shown = {.sweep = o->sweep, .key = o->quantity, .values = values};
         code = worse(code, publish_owned(a, sweep_figure_create(&shown)));
     }
     if (summary_wanted(a)) {
         print_summary(o, values, failed, p);
     }
-    free(values);
-    if (p->failed > 0 && (!a->quiet || failed == o->sweep.run_count)) {
+    if (p->failed > 0 && (!a->quiet || failed == o->sweep->run_count)) {
         many_runs_tell_failure(p);
-    } else if (failed == o->sweep.run_count) {
+    } else if (failed == o->sweep->run_count) {
         complain("all %zu runs failed; the message of each is in its row", failed);
     }
-    return failed == o->sweep.run_count ? worse(code, EXIT_FAILED) : code;
+    return failed == o->sweep->run_count ? worse(code, EXIT_FAILED) : code;
 }
 
 // --- the request ------------------------------------------------------------------------------
@@ -172,7 +168,7 @@ static int compute(const sweep_order *o, sweep_store *store)
     sweep_progress progress;
     sweep_options options = many_runs_begin(o->arguments, NULL);
     options.share = o->share;
-    status code = sweep_run(&o->sweep, store, &options, &progress, &f);
+    status code = sweep_run(o->sweep, store, &options, &progress, &f);
     many_runs_end(&options);
 
     // what it came to: an error, a stop, the whole sweep or a part of it
@@ -185,7 +181,7 @@ static int compute(const sweep_order *o, sweep_store *store)
     }
     if (!o->arguments->quiet) {
         say("%s: part %d of %d, %zu of %zu runs in '%s'\n", o->scenario->name, o->share.part,
-            o->share.parts, progress.done, o->sweep.run_count, o->arguments->db);
+            o->share.parts, progress.done, o->sweep->run_count, o->arguments->db);
     }
     return progress.failed > 0 && progress.failed == progress.total ? EXIT_FAILED : EXIT_DONE;
 }
@@ -203,21 +199,18 @@ static int sweep_and_report(const arguments *a, scenario *base)
         .runs = (size_t)a->runs,
         .seed = a->seed};
     fault f = {0};
-    sweep_store *store;
-    int code = read_share(a, &o.share);
+    const int code = read_share(a, &o.share);
     FAIL_IF(code != EXIT_DONE, code);
-    FAIL_IF(sweep_init(&o.sweep, base, &request, &f) != STATUS_OK, complain_fault(&f));
+    SCOPED(sweep_finish) sweep s = {0};
+    SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
+    o.sweep = &s;
 
     // the rows, in the file or in memory
-    if ((a->plot == NULL || sweep_plot_check(&o.sweep, a->plot, &f) == STATUS_OK) &&
-        sweep_store_open(&store, a->db, &o.sweep, &f) == STATUS_OK) {
-        code = compute(&o, store);
-        sweep_store_close(store);
-    } else {
-        code = complain_fault(&f);
-    }
-    sweep_finish(&o.sweep);
-    return code;
+    FAIL_IF(sweep_init(&s, base, &request, &f) != STATUS_OK ||
+                (a->plot != NULL && sweep_plot_check(&s, a->plot, &f) != STATUS_OK) ||
+                sweep_store_open(&store, a->db, &s, &f) != STATUS_OK,
+            complain_fault(&f));
+    return compute(&o, store);
 }
 
 static const option_row rows[] = {

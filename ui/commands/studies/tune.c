@@ -39,13 +39,12 @@ static status keep_best(void *context, const tuning *best, fault *f)
     const tuner *t = context;
     const char *path = t->arguments->output;
     whole_file file;
-    status code = STATUS_OK;
-    if (path != NULL && strcmp(path, "-") != 0 &&
-        (code = whole_file_open(&file, path, f)) == STATUS_OK) {
-        write_best(file.stream, t->scenario, t);
-        code = whole_file_commit(&file, f);
+    if (path == NULL || strcmp(path, "-") == 0) {
+        return STATUS_OK;
     }
-    return code;
+    TRY(whole_file_open(&file, path, f));
+    write_best(file.stream, t->scenario, t);
+    return whole_file_commit(&file, f);
 }
 
 static double given_value(const tuner *t, int axis)
@@ -56,11 +55,11 @@ static double given_value(const tuner *t, int axis)
 static status judge_rows(tuner *t, const sweep_options *options, fault *f)
 {
     const int varied = t->tuning.asked.vary_count, rows = CHANGED + 2 * varied;
-    tuning unseen;
-    sweep_store *store = NULL;
-    status code = tune_unseen(&unseen, &t->tuning, (size_t)rows, f);
-    code = code == STATUS_OK ? sweep_store_open(&store, NULL, &unseen.plan, f) : code;
-    while (code == STATUS_OK && t->count < rows) {
+    SCOPED(tune_finish) tuning unseen = {.done = 0};
+    SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
+    TRY(tune_unseen(&unseen, &t->tuning, (size_t)rows, f));
+    TRY(sweep_store_open(&store, NULL, &unseen.plan, f));
+    while (t->count < rows) {
         const int i = t->count++;
         double values[SWEEP_MOST_AXES];
         for (int k = 0; k < varied; k++) {
@@ -69,12 +68,10 @@ static status judge_rows(tuner *t, const sweep_options *options, fault *f)
         if (i >= CHANGED) {
             values[(i - CHANGED) / 2] *= i % 2 == CHANGED % 2 ? 0.9 : 1.1;
         }
-        code = tune_evaluate(&unseen, (size_t)i, values, i == GIVEN ? "given" : "tuned", store,
-                             options, &t->rows[i], f);
+        TRY(tune_evaluate(&unseen, (size_t)i, values, i == GIVEN ? "given" : "tuned", store,
+                          options, &t->rows[i], f));
     }
-    sweep_store_close(store);
-    tune_finish(&unseen);
-    return code;
+    return STATUS_OK;
 }
 
 // Given and tuned as laws, side by side.
