@@ -1,7 +1,7 @@
 // A fault: a code and places for programs, a sentence for people. No program reads the sentence.
 #pragma once
 
-#include <stdlib.h>
+#include "src/base/scoped.h"
 
 // One list, two uses: the enumeration and the text of each code.
 #define STATUS_LIST(X)                                                                             \
@@ -74,19 +74,3 @@ status fault_no_memory(fault *f);
             return fault;                                                                          \
         }                                                                                          \
     } while (0)
-
-// A variable that is given back when its block is left, and must be whole by then:
-// SCOPED(run_finish) run_result r;
-#define SCOPED(finish) __attribute__((cleanup(finish)))
-
-// The same of what is behind a pointer: SCOPED(free_kept) char *text; for other types, after
-// GIVEN_BACK(motion, motion_destroy), SCOPED(motion_destroy_kept) motion *m.
-#define GIVEN_BACK(type, destroy)                                                                  \
-    static inline void destroy##_kept(type **pointer)                                              \
-    {                                                                                              \
-        destroy(*pointer);                                                                         \
-    }
-static inline void free_kept(void *pointer)
-{
-    free(*(void **)pointer);
-}
