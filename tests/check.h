@@ -19,7 +19,7 @@
 
 #include <cmocka.h>
 
-#include "src/base/scoped.h"
+#include "../src/base/scoped.h"
 
 // Fails unless |a - b| <= tolerance; NaN never passes.
 #define check_close(a, b, tolerance)                                                               \

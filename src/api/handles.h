@@ -44,6 +44,23 @@ int api_missing(impactlab_error *error, const char *names, size_t i);
         }                                                                                          \
     } while (0)
 
+// The same of a call that makes something: *made is NULL until it is there.
+#define API_MAKES(error, made, ...)                                                                \
+    do {                                                                                           \
+        API_NEEDS(error, made);                                                                    \
+        *(made) = NULL;                                                                            \
+        API_NEEDS(error, __VA_ARGS__);                                                             \
+    } while (0)
+
+// Ends a call with the fault that one within came to, which that writes to `f`.
+#define API_TRY(error, call)                                                                       \
+    do {                                                                                           \
+        fault f = {.text = "", .path = ""};                                                        \
+        if ((call) != STATUS_OK) {                                                                 \
+            return api_error(error, &f);                                                           \
+        }                                                                                          \
+    } while (0)
+
 // Writes the first fault of a scenario that was refused (keep_first_fault) with its place and code,
 // which it returns.
 int api_refused(impactlab_error *error, fault *first, const fault_place *at, status code);
@@ -58,6 +75,10 @@ int api_axis(const char *path, sweep_axis *axis, impactlab_error *error);
 
 // Index of a signal, likewise.
 int api_signal(const char *name, impactlab_error *error);
+
+// A run of a copy of the scenario, of which nothing is computed yet; NULL, with an error, without
+// memory.
+impactlab_run *api_new_run(const scenario *s, impactlab_error *error);
 
 // A text that is handed to the caller, if all of what `write` writes is there.
 // IMPACTLAB_NO_MEMORY if not.

@@ -8,9 +8,7 @@
 int impactlab_loop_create(impactlab_loop **loop, const impactlab_scenario *handle, int flags,
                           impactlab_error *error)
 {
-    API_NEEDS(error, loop);
-    *loop = NULL;
-    API_NEEDS(error, handle);
+    API_MAKES(error, loop, handle);
     FAIL_IF((flags & ~(IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND)) != 0,
             api_fail(error, STATUS_BAD_ARGUMENT,
                      "a loop knows no other flags than KEEP_ROWS and COMMAND"));
@@ -39,25 +37,20 @@ void impactlab_loop_destroy(impactlab_loop *loop)
 
 // --- going on ---------------------------------------------------------------------------------
 
-static int came_to(status code, const fault *f, impactlab_error *error)
-{
-    return code == STATUS_OK ? api_done(error) : api_error(error, f);
-}
-
 int impactlab_loop_step(impactlab_loop *loop, impactlab_error *error)
 {
     API_NEEDS(error, loop);
-    fault f;
-    return came_to(loop_step(loop->loop, &f), &f, error);
+    API_TRY(error, loop_step(loop->loop, &f));
+    return api_done(error);
 }
 
 int impactlab_loop_step_until(impactlab_loop *loop, double time, impactlab_error *error)
 {
     API_NEEDS(error, loop);
-    fault f;
     FAIL_IF(!isfinite(time),
             api_fail(error, STATUS_BAD_ARGUMENT, "the instant is not finite, expected seconds"));
-    return came_to(loop_until(loop->loop, time, &f), &f, error);
+    API_TRY(error, loop_until(loop->loop, time, &f));
+    return api_done(error);
 }
 
 double impactlab_loop_time(const impactlab_loop *loop)
@@ -89,35 +82,34 @@ int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double valu
                              impactlab_error *error)
 {
     API_NEEDS(error, loop, path);
-    fault f;
     char number[NUMBER_TEXT], room[PARAMETER_TEXT_SIZE];
     const char *text = number;
     number_format_short(number, value);
     const int index = api_parameter(path, &text, room, error);
     FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
-    return came_to(text != number ? loop_set_text(loop->loop, index, text, &f)
-                                  : loop_set_number(loop->loop, index, value, &f),
-                   &f, error);
+    API_TRY(error, text != number ? loop_set_text(loop->loop, index, text, &f)
+                                  : loop_set_number(loop->loop, index, value, &f));
+    return api_done(error);
 }
 
 int impactlab_loop_set_text(impactlab_loop *loop, const char *path, const char *text,
                             impactlab_error *error)
 {
     API_NEEDS(error, loop, path, text);
-    fault f;
     char room[PARAMETER_TEXT_SIZE];
     const int index = api_parameter(path, &text, room, error);
     FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
-    return came_to(loop_set_text(loop->loop, index, text, &f), &f, error);
+    API_TRY(error, loop_set_text(loop->loop, index, text, &f));
+    return api_done(error);
 }
 
 int impactlab_loop_push(impactlab_loop *loop, double impulse, impactlab_error *error)
 {
     API_NEEDS(error, loop);
-    fault f;
     FAIL_IF(!isfinite(impulse),
             api_fail(error, STATUS_BAD_ARGUMENT, "the impulse is not finite, expected N s"));
-    return came_to(loop_push(loop->loop, impulse, &f), &f, error);
+    API_TRY(error, loop_push(loop->loop, impulse, &f));
+    return api_done(error);
 }
 
 // --- what is known ----------------------------------------------------------------------------
@@ -166,16 +158,11 @@ int impactlab_loop_state(const impactlab_loop *loop, impactlab_table *table, imp
 
 int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run, impactlab_error *error)
 {
-    API_NEEDS(error, run);
-    *run = NULL;
-    API_NEEDS(error, loop);
+    API_MAKES(error, run, loop);
 
     // a copy, so that the loop can go on or end
-    impactlab_run *made = calloc(1, sizeof *made);
-    if (made == NULL || scenario_copy(&made->scenario, loop_scenario(loop->loop)) != STATUS_OK) {
-        free(made);
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for a run");
-    }
+    impactlab_run *made = api_new_run(loop_scenario(loop->loop), error);
+    FAIL_IF(made == NULL, IMPACTLAB_NO_MEMORY);
     if (trace_copy(&made->result.trace, &loop_result(loop->loop)->trace) != STATUS_OK) {
         impactlab_run_destroy(made);
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the rows of a run");
@@ -210,6 +197,6 @@ int impactlab_loop_restore_state(impactlab_loop *loop, const void *bytes, size_t
                                  impactlab_error *error)
 {
     API_NEEDS(error, loop, bytes);
-    fault f;
-    return came_to(loop_restore(loop->loop, bytes, size, &f), &f, error);
+    API_TRY(error, loop_restore(loop->loop, bytes, size, &f));
+    return api_done(error);
 }

@@ -25,6 +25,17 @@ static int check_law(const controller *law, impactlab_error *error)
     return IMPACTLAB_OK;
 }
 
+impactlab_run *api_new_run(const scenario *s, impactlab_error *error)
+{
+    impactlab_run *made = calloc(1, sizeof *made);
+    if (made == NULL || scenario_copy(&made->scenario, s) != STATUS_OK) {
+        free(made);
+        api_fail(error, STATUS_NO_MEMORY, "no memory for a run");
+        return NULL;
+    }
+    return made;
+}
+
 int impactlab_run_create(impactlab_run **run, const impactlab_scenario *handle, int flags,
                          impactlab_error *error)
 {
@@ -34,32 +45,22 @@ int impactlab_run_create(impactlab_run **run, const impactlab_scenario *handle, 
 int impactlab_run_create_with(impactlab_run **run, const impactlab_scenario *handle, int flags,
                               const struct controller *law, void *context, impactlab_error *error)
 {
-    API_NEEDS(error, run);
-    *run = NULL;
-    API_NEEDS(error, handle);
+    API_MAKES(error, run, handle);
     FAIL_IF((flags & ~IMPACTLAB_KEEP_ROWS) != 0,
             api_fail(error, STATUS_BAD_ARGUMENT, "a run knows no other flag than KEEP_ROWS"));
     if (law != NULL && check_law(law, error) != IMPACTLAB_OK) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
 
-    impactlab_run *made = calloc(1, sizeof *made);
-    if (made == NULL || scenario_copy(&made->scenario, &handle->scenario) != STATUS_OK) {
-        free(made);
-        return api_fail(error, STATUS_NO_MEMORY, "no memory for a run");
-    }
-
+    impactlab_run *made = api_new_run(&handle->scenario, error);
+    FAIL_IF(made == NULL, IMPACTLAB_NO_MEMORY);
     const given_law given = {law, context};
     const run_options options = {.keep_trace = (flags & IMPACTLAB_KEEP_ROWS) != 0,
                                  .law = law != NULL ? &given : NULL};
     status code = run_scenario_with(&made->scenario, &options, &made->result);
     *run = made;
-    if (code == STATUS_OK) {
-        return api_done(error);
-    }
-    fault f = {.text = "", .path = ""};
-    summary_fault(&made->result.summary, &f);
-    return api_error(error, &f);
+    API_TRY(error, code == STATUS_OK ? code : summary_fault(&made->result.summary, &f));
+    return api_done(error);
 }
 
 void impactlab_run_destroy(impactlab_run *run)

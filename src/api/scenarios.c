@@ -12,10 +12,9 @@
 int impactlab_scenario_names(char ***names, size_t *count, impactlab_error *error)
 {
     API_NEEDS(error, names, count);
-    fault f = {.text = "", .path = ""};
     int found = 0;
     *count = 0;
-    FAIL_IF(scenario_list(names, &found, &f) != STATUS_OK, api_error(error, &f));
+    API_TRY(error, scenario_list(names, &found, &f));
     *count = (size_t)found;
     return api_done(error);
 }
@@ -61,9 +60,7 @@ static int finish_reading(impactlab_scenario **handle, status code, fault *first
 int impactlab_scenario_open(impactlab_scenario **handle, const char *name_or_file,
                             impactlab_error *error)
 {
-    API_NEEDS(error, handle);
-    *handle = NULL;
-    API_NEEDS(error, name_or_file);
+    API_MAKES(error, handle, name_or_file);
     FAIL_IF(new_handle(handle, error) == NULL, IMPACTLAB_NO_MEMORY);
     fault first = {.code = STATUS_OK};
     status code = scenario_open(&(*handle)->scenario, name_or_file, keep_first_fault, &first);
@@ -79,9 +76,7 @@ int impactlab_scenario_parse(impactlab_scenario **handle, const char *text, size
 int impactlab_scenario_parse_named(impactlab_scenario **handle, const char *text, size_t length,
                                    const char *name, impactlab_error *error)
 {
-    API_NEEDS(error, handle);
-    *handle = NULL;
-    API_NEEDS(error, text, name);
+    API_MAKES(error, handle, text, name);
     FAIL_IF(new_handle(handle, error) == NULL, IMPACTLAB_NO_MEMORY);
     fault first = {.code = STATUS_OK};
     status code =
@@ -98,9 +93,7 @@ int impactlab_scenario_create(impactlab_scenario **handle, impactlab_error *erro
 int impactlab_scenario_copy(impactlab_scenario **handle, const impactlab_scenario *from,
                             impactlab_error *error)
 {
-    API_NEEDS(error, handle);
-    *handle = NULL;
-    API_NEEDS(error, from);
+    API_MAKES(error, handle, from);
 
     // after a fault the caller has nothing to destroy
     FAIL_IF(new_handle(handle, error) == NULL, IMPACTLAB_NO_MEMORY);
@@ -208,7 +201,7 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
         return api_done(error);
     }
     API_NEEDS(error, assignments);
-    char **given = calloc(count, sizeof *given);
+    SCOPED(free_kept) char **given = calloc(count, sizeof *given);
     FAIL_IF(given == NULL,
             api_fail(error, STATUS_NO_MEMORY, "no memory for %zu assignments", count));
     bool whole = true;
@@ -223,23 +216,12 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
     status code = whole ? scenario_override_all(&handle->scenario, given, (int)count,
                                                 keep_first_fault, &first)
                         : STATUS_BAD_ARGUMENT;
-    free(given);
     if (code == STATUS_OK) {
         return retitle(handle, error);
     }
     handle->scenario.parameters = before;
     FAIL_IF(!whole, api_missing(error, "assignments[i]", 0));
     return api_refused(error, &first, &handle->scenario.refused, code);
-}
-
-// Takes over parameters of which one was set, unless `code` says that it could not be.
-static int take(impactlab_scenario *handle, const parameters *p, status code, fault *f,
-                impactlab_error *error)
-{
-    if (code == STATUS_OK) {
-        code = scenario_take_parameters(&handle->scenario, p, f);
-    }
-    return code == STATUS_OK ? retitle(handle, error) : api_error(error, f);
 }
 
 int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const char *text,
@@ -252,8 +234,9 @@ int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const c
 
     // on a copy, so that a refused value changes nothing
     parameters p = handle->scenario.parameters;
-    fault f = {.text = "", .path = ""};
-    return take(handle, &p, parameter_set_text(&p, index, text, &f), &f, error);
+    API_TRY(error, parameter_set_text(&p, index, text, &f));
+    API_TRY(error, scenario_take_parameters(&handle->scenario, &p, &f));
+    return retitle(handle, error);
 }
 
 int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path, double value,
@@ -263,8 +246,9 @@ int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path, 
     sweep_axis axis;
     TRY((status)api_axis(path, &axis, error));
     parameters p = handle->scenario.parameters;
-    fault f = {.text = "", .path = ""};
-    return take(handle, &p, sweep_axis_apply(&axis, value, &p, &f), &f, error);
+    API_TRY(error, sweep_axis_apply(&axis, value, &p, &f));
+    API_TRY(error, scenario_take_parameters(&handle->scenario, &p, &f));
+    return retitle(handle, error);
 }
 
 // Room for one more action of the script.
@@ -301,11 +285,9 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const
                      "%s holds from the start and cannot change during a run", path));
 
     // the value as the parameter takes it
-    fault f = {.text = "", .path = ""};
     parameters p = scenario_parameters_at(s, time);
-    FAIL_IF(parameter_may_change(&p, index, &f) != STATUS_OK ||
-                parameter_set_text(&p, index, text, &f) != STATUS_OK,
-            api_error(error, &f));
+    API_TRY(error, parameter_may_change(&p, index, &f));
+    API_TRY(error, parameter_set_text(&p, index, text, &f));
     action a = action_of(time, &p, index, text);
     a.added = true;
 

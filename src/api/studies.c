@@ -49,7 +49,7 @@ static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker
                       void *context, impactlab_error *error)
 {
     const size_t turn = (size_t)jobs * RUNS_A_TURN;
-    summary *summaries = calloc(count < turn ? count : turn, sizeof *summaries);
+    SCOPED(free_kept) summary *summaries = calloc(count < turn ? count : turn, sizeof *summaries);
     FAIL_IF(summaries == NULL, api_fail(error, STATUS_NO_MEMORY, "no memory for the outcomes"));
 
     status code = STATUS_OK;
@@ -62,7 +62,6 @@ static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker
                 hand_over(&summaries[i], v->first + i, take, context) ? STATUS_OK : STATUS_STOPPED;
         }
     }
-    free(summaries);
     return code == STATUS_OK ? api_done(error) : api_fail(error, code, "%s", status_text(code));
 }
 
@@ -83,7 +82,7 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
 
     // which parameters
     int code = IMPACTLAB_OK;
-    sweep_axis *axes = calloc(path_count + 1, sizeof *axes);
+    SCOPED(free_kept) sweep_axis *axes = calloc(path_count + 1, sizeof *axes);
     FAIL_IF(axes == NULL, api_fail(error, STATUS_NO_MEMORY, "no memory for a batch"));
     for (size_t k = 0; k < path_count && code == IMPACTLAB_OK; k++) {
         code = paths[k] != NULL ? api_axis(paths[k], &axes[k], error)
@@ -100,9 +99,7 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
                    ? IMPACTLAB_OK
                    : api_fail(error, f.code, "run %zu: %.900s", i, f.text);
     }
-    code = code == IMPACTLAB_OK ? run_varied(&v, count, jobs, take, context, error) : code;
-    free(axes);
-    return code;
+    return code == IMPACTLAB_OK ? run_varied(&v, count, jobs, take, context, error) : code;
 }
 
 // --- modes ------------------------------------------------------------------------------------
@@ -130,22 +127,20 @@ int impactlab_modes(const impactlab_scenario *handle, int hub_locked, int tip_pi
 
     arm a;
     arm_init(&a, &handle->scenario.parameters);
-    double *all = calloc(n + n * n, sizeof *all);
+    SCOPED(free_kept) double *all = calloc(n + n * n, sizeof *all);
     int found = 0;
     FAIL_IF(all == NULL,
             api_fail(error, STATUS_NO_MEMORY, "no memory for the modes of %zu angles", n));
-    status code = modes_compute(&a, hub_locked ? HUB_LOCKED : HUB_FREE,
-                                tip_pinned ? TIP_PINNED : TIP_FREE, &found, all, all + n);
+    const status code = modes_compute(&a, hub_locked ? HUB_LOCKED : HUB_FREE,
+                                      tip_pinned ? TIP_PINNED : TIP_FREE, &found, all, all + n);
+    FAIL_IF(code != STATUS_OK, api_fail(error, code, "%s", status_text(code)));
 
     // as many as there is room for
-    if (code == STATUS_OK) {
-        const size_t copied = (size_t)found < most ? (size_t)found : most;
-        memcpy(frequencies, all, copied * sizeof *all);
-        if (shapes != NULL) {
-            memcpy(shapes, all + n, copied * n * sizeof *all);
-        }
-        *count = (size_t)found;
+    const size_t copied = (size_t)found < most ? (size_t)found : most;
+    memcpy(frequencies, all, copied * sizeof *all);
+    if (shapes != NULL) {
+        memcpy(shapes, all + n, copied * n * sizeof *all);
     }
-    free(all);
-    return code == STATUS_OK ? api_done(error) : api_fail(error, code, "%s", status_text(code));
+    *count = (size_t)found;
+    return api_done(error);
 }

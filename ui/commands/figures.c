@@ -44,7 +44,8 @@ static int check_ids(const arguments *a)
 typedef struct asked_figure {
     const thesis_figure *figure;
     char *tex;   // its figure environment, NULL before it is drawn
-    bool failed; // a file of it could not be written
+    fault fault; // of a file of it that could not be written
+    bool taken;  // it is drawn, and the drawing thread is through with it
 } asked_figure;
 
 // Figures in the order in which they were asked for.
@@ -55,52 +56,42 @@ typedef struct figure_list {
     bool quiet;
     const char *folder, *formats;
     figure_options options;
-    fault failed; // of the first file that could not be written
+    const fault *failed; // of the first file that could not be written, NULL: all could
 } figure_list;
-
-// The result of a piece of work.
-typedef struct figure_result {
-    status code;
-    fault fault;
-    char *tex;
-} figure_result;
 
 static void draw_one(void *context, size_t i, void *scratch, void *result)
 {
     const figure_list *list = context;
-    const thesis_figure *which = list->figures[list->order[i]].figure;
-    figure_result *out = result;
+    asked_figure *drawn = &list->figures[list->order[i]];
+    status *code = result;
     text_stream tex;
-    *out = (figure_result){.tex = NULL};
     if (text_stream_open(&tex)) {
-        out->code = figure_draw(which->id, &list->options, list->folder, list->formats, tex.stream,
-                                &out->fault);
-        out->tex = text_stream_close(&tex, NULL);
+        *code = figure_draw(drawn->figure->id, &list->options, list->folder, list->formats,
+                            tex.stream, &drawn->fault);
+        drawn->tex = text_stream_close(&tex, NULL);
     }
-    if (out->tex == NULL) {
-        out->code = fault_no_memory(&out->fault);
-    }
+    *code = drawn->fault.code = drawn->tex != NULL ? *code : fault_no_memory(&drawn->fault);
 }
 
-// Keeps a figure's text and prints every figure whose predecessors have been printed.
+// Prints every figure whose predecessors have been printed.
 static status take_one(void *context, size_t i, const void *result, fault *f)
 {
     figure_list *list = context;
-    const figure_result *from = result;
     asked_figure *taken = &list->figures[list->order[i]];
-    taken->tex = from->tex;
-    taken->failed = from->code != STATUS_OK;
-    if (taken->failed && list->failed.code == STATUS_OK) {
-        list->failed = from->fault;
+    const status code = *(const status *)result;
+    taken->taken = true;
+    if (code != STATUS_OK && list->failed == NULL) {
+        list->failed = &taken->fault;
     }
-    if (taken->failed && from->code != STATUS_CANNOT_WRITE) {
-        *f = from->fault;
-        return from->code;
+    if (code != STATUS_OK && code != STATUS_CANNOT_WRITE) {
+        *f = taken->fault;
+        return code;
     }
-    for (; list->told < list->count && list->figures[list->told].tex != NULL; list->told++) {
-        const thesis_figure *which = list->figures[list->told].figure;
-        if (!list->quiet && !list->figures[list->told].failed) {
-            say("%-10s  %s/%s  %s\n", which->id, list->folder, which->file, which->caption);
+    for (; list->told < list->count && list->figures[list->told].taken; list->told++) {
+        const asked_figure *told = &list->figures[list->told];
+        if (!list->quiet && told->fault.code == STATUS_OK) {
+            say("%-10s  %s/%s  %s\n", told->figure->id, list->folder, told->figure->file,
+                told->figure->caption);
         }
     }
     return STATUS_OK;
@@ -112,7 +103,7 @@ static status draw_and_write(figure_list *list, const arguments *a, fault *f)
 {
     const pool_work work = {.context = list,
                             .count = list->count,
-                            .result_size = sizeof(figure_result),
+                            .result_size = sizeof(status),
                             .compute = draw_one,
                             .collect = take_one};
     for (size_t i = 0; i < list->count; i++) {
@@ -165,17 +156,17 @@ static int figures(const arguments *a)
         json_t *array = json_array();
         for (size_t i = 0; i < count; i++) {
             const thesis_figure *which = list.figures[i].figure;
-            if (list.figures[i].failed) {
-                continue;
+            if (list.figures[i].fault.code == STATUS_OK) {
+                json_add(array,
+                         json_members(json_object(), "id:t folder:t file:t formats:t caption:t",
+                                      which->id, list.folder, which->file, list.formats,
+                                      which->caption));
             }
-            json_add(array, json_members(json_object(), "id:t folder:t file:t formats:t caption:t",
-                                         which->id, list.folder, which->file, list.formats,
-                                         which->caption));
         }
         code = write_json(a->json, array);
     }
-    if (drawn == STATUS_OK && list.failed.code != STATUS_OK) {
-        code = worse(code, complain_fault(&list.failed));
+    if (drawn == STATUS_OK && list.failed != NULL) {
+        code = worse(code, complain_fault(list.failed));
     }
     for (size_t i = 0; list.figures != NULL && i < count; i++) {
         free(list.figures[i].tex);
