@@ -52,8 +52,7 @@ static int open_all(filmed *m, const arguments *a)
     for (int i = 0; i < a->operand_count + a->besides.count; i++) {
         bool beside = i >= a->operand_count;
         scenario *s = &m->scenarios[i];
-        int code = open_scenario(s, a->operands[beside ? 0 : i], a);
-        FAIL_IF(code != EXIT_DONE, code);
+        TRY_EXIT(open_scenario(s, a->operands[beside ? 0 : i], a));
         m->opened++;
         m->names[i] = s->name;
         if (beside) {
@@ -128,23 +127,17 @@ static int film_runs(const arguments *a, const filmed *m)
 
 static int animate(const arguments *a)
 {
-    fault f = {0};
     FAIL_IF(a->output == NULL,
             complain("animate needs a place for the film: -o FILE.mp4, FILE.webm, FILE.gif, "
                      "FILE.webp, or a folder for PNG frames"));
 
     // errors of the request are reported before anything is simulated
-    int code = check_view(a);
-    if (code == EXIT_DONE && film_file_check(a->output, &f) != STATUS_OK) {
-        code = complain_fault(&f);
-    }
-
-    filmed m = {0};
-    code = code == EXIT_DONE ? open_all(&m, a) : code;
-    code = code == EXIT_DONE ? run_all(&m) : code;
-    code = code == EXIT_DONE ? film_runs(a, &m) : code;
-    finish_filmed(&m);
-    return code;
+    TRY_EXIT(check_view(a));
+    TRY_FAULT(film_file_check(a->output, &f));
+    SCOPED(finish_filmed) filmed m = {0};
+    TRY_EXIT(open_all(&m, a));
+    TRY_EXIT(run_all(&m));
+    return film_runs(a, &m);
 }
 
 static const option_row rows[] = {

@@ -234,6 +234,24 @@ int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 // The same for a fault. Returns the exit status that belongs to its code.
 int complain_fault(const fault *f);
 
+// Ends the calling function with the exit status that a call came to, unless that is EXIT_DONE.
+#define TRY_EXIT(call)                                                                             \
+    do {                                                                                           \
+        const int tried_ = (call);                                                                 \
+        if (tried_ != EXIT_DONE) {                                                                 \
+            return tried_;                                                                         \
+        }                                                                                          \
+    } while (0)
+
+// The same of a call that writes a fault to `f`, which is complained of.
+#define TRY_FAULT(call)                                                                            \
+    do {                                                                                           \
+        fault f = {0};                                                                             \
+        if ((call) != STATUS_OK) {                                                                 \
+            return complain_fault(&f);                                                             \
+        }                                                                                          \
+    } while (0)
+
 // Prints a text that contains words from outside (titles, names of files and scenarios) to the
 // standard output, without unprintable characters and with what is lost noted (src/base/words.h).
 void say(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -143,9 +143,9 @@ static int figures(const arguments *a)
                         .folder = a->output ? a->output : DEFAULT_FOLDER,
                         .formats = a->format ? a->format : DEFAULT_FORMATS};
 
-    int code = check_ids(a);
-    code = code == EXIT_DONE ? read_picture_options(a, &list.options) : code;
-    FAIL_IF(code != EXIT_DONE, code);
+    int code = EXIT_DONE;
+    TRY_EXIT(check_ids(a));
+    TRY_EXIT(read_picture_options(a, &list.options));
 
     // lists of figures to be drawn and of their results
     list.figures = calloc(count, sizeof *list.figures + sizeof *list.order);
@@ -204,45 +204,36 @@ const command figures_command = {
 static int plot(const arguments *a)
 {
     figure_options o;
-    fault f = {0};
-    artwork art;
 
     // what can be refused before the recipe is read
-    int code = read_picture_options(a, &o);
-    if (code == EXIT_DONE && (o.overlay != NULL || o.signals != NULL)) {
-        code = complain("a recipe says itself which signals and data it shows, --%s is for runs",
-                        o.overlay != NULL ? "overlay" : "signals");
-    }
-    FAIL_IF(code != EXIT_DONE, code);
+    TRY_EXIT(read_picture_options(a, &o));
+    FAIL_IF(o.overlay != NULL || o.signals != NULL,
+            complain("a recipe says itself which signals and data it shows, --%s is for runs",
+                     o.overlay != NULL ? "overlay" : "signals"));
 
     // the recipe's name with .png, in the present folder, unless there is another
     const char *slash = strrchr(a->operands[0], '/');
     const char *name = slash != NULL ? slash + 1 : a->operands[0], *dot = strrchr(name, '.');
     const int length = dot != NULL && dot != name ? (int)(dot - name) : (int)strlen(name);
-    char *path = NULL;
+    SCOPED(free_kept) char *path = NULL;
     if (a->plot != NULL ? asprintf(&path, "%s", a->plot) < 0
                         : asprintf(&path, "%.*s.png", length, name) < 0) {
         path = NULL;
     }
-    status done = path != NULL ? picture_check_path(path, &f) : fault_no_memory(&f);
+    TRY_FAULT(path != NULL ? picture_check_path(path, &f) : fault_no_memory(&f));
 
-    // faults in the recipe are reported as they are found and leave f empty
-    if (done == STATUS_OK) {
-        done = recipe_open(a->operands[0], &o, report_to_stderr, NULL, &art, &f);
-        code = done != STATUS_OK && f.code == STATUS_OK ? EXIT_BAD_ARGUMENTS : EXIT_DONE;
-        if (done == STATUS_OK) {
-            done = artwork_publish(&art, &o, path, true, &f);
-            artwork_finish(&art);
-        }
-    }
-    code = done != STATUS_OK && code == EXIT_DONE ? complain_fault(&f) : code;
+    // faults in the recipe are reported as they are found and leave `why` empty
+    SCOPED(artwork_finish) artwork art = {0};
+    fault why = {0};
+    FAIL_IF(recipe_open(a->operands[0], &o, report_to_stderr, NULL, &art, &why) != STATUS_OK,
+            why.code != STATUS_OK ? complain_fault(&why) : EXIT_BAD_ARGUMENTS);
+    TRY_FAULT(artwork_publish(&art, &o, path, true, &f));
 
     // a default name is not known to the user yet
-    if (code == EXIT_DONE && !a->quiet) {
+    if (!a->quiet) {
         say("%s: %s\n", a->operands[0], path);
     }
-    free(path);
-    return code;
+    return EXIT_DONE;
 }
 
 static const option_row plot_rows[] = {

@@ -208,17 +208,16 @@ static glyph_set usual_glyphs(void)
 static int open_explorer(explorer *ex, const arguments *a)
 {
     scenario s;
-    fault f = {0};
+    int code = EXIT_DONE;
 
     // a session brings its own scenarios: the lab opens, and then it
     const char *named = a->operand_count > 0 ? a->operands[0] : first_scenario;
     const size_t length = strlen(named), tail = strlen(".session");
     const bool is_session = length > tail && strcmp(named + length - tail, ".session") == 0;
-    int code = open_scenario(&s, is_session ? first_scenario : named, a);
-    FAIL_IF(code != EXIT_DONE, code);
+    TRY_EXIT(open_scenario(&s, is_session ? first_scenario : named, a));
 
     bool live = a->keys == NULL && a->script == NULL && a->size.width == 0;
-    FAIL_IF(explorer_init(ex, &s, live ? PATIENCE : HUGE_VAL, &f) != STATUS_OK, complain_fault(&f));
+    TRY_FAULT(explorer_init(ex, &s, live ? PATIENCE : HUGE_VAL, &f));
 
     // the terminal's own looks, then those that were kept
     char line[LINE_TEXT];
@@ -262,9 +261,8 @@ static int explore(const arguments *a)
     bool off_screen = a->keys != NULL || a->script != NULL || a->size.width > 0;
     FAIL_IF(!off_screen && !terminal_usable(&f), complain_fault(&f));
 
-    int code = open_explorer(&ex, a);
-    FAIL_IF(code != EXIT_DONE, code);
-
+    TRY_EXIT(open_explorer(&ex, a));
+    int code = EXIT_DONE;
     if (off_screen) {
         code = run_off_screen(&ex, a);
     } else if (terminal_open(&f) != STATUS_OK) {

@@ -39,7 +39,6 @@ static bool is_asked_for(const arguments *a, const char *path)
 
 int read_picture_options(const arguments *a, figure_options *o)
 {
-    fault f = {0};
     const char *font = a->font != NULL ? a->font : "sans";
     bool ranged = !isnan(a->from) || !isnan(a->to);
     *o = (figure_options){.look = {.width = a->width,
@@ -56,40 +55,29 @@ int read_picture_options(const arguments *a, figure_options *o)
                           .latex = a->latex,
                           .command = a->command_line};
 
-    int code = read_theme(a, &o->look.theme);
-    if (code == EXIT_DONE && ranged && !(a->from < a->to)) {
-        code = complain("--from and --to go together, the first below the second");
-    }
-
+    TRY_EXIT(read_theme(a, &o->look.theme));
+    FAIL_IF(ranged && !(a->from < a->to),
+            complain("--from and --to go together, the first below the second"));
     if (ranged) {
         o->from = a->from;
         o->to = a->to;
     }
-
-    if (code == EXIT_DONE && o->look.font != NULL &&
-        text_check_family(o->look.font, &f) != STATUS_OK) {
-        code = complain_fault(&f);
-    }
+    TRY_FAULT(o->look.font != NULL ? text_check_family(o->look.font, &f) : STATUS_OK);
 
     // the text of a picture that has none of its own
     g_autofree char *text = a->bare && a->plot != NULL ? artwork_beside(a->plot, ".txt") : NULL;
-    FAIL_IF(code == EXIT_DONE && text != NULL && is_asked_for(a, text),
+    FAIL_IF(text != NULL && is_asked_for(a, text),
             complain("two results cannot both be written to %s", text));
-    return code;
+    return EXIT_DONE;
 }
 
 static int publish_figure(const arguments *a, const figure *fig)
 {
     figure_options o;
-    fault f = {0};
-    int code = read_picture_options(a, &o);
-    char *csv = artwork_beside(a->plot, ".csv");
-    if (code == EXIT_DONE &&
-        figure_publish(fig, &o, a->plot, !is_asked_for(a, csv), &f) != STATUS_OK) {
-        code = complain_fault(&f);
-    }
-    g_free(csv);
-    return code;
+    TRY_EXIT(read_picture_options(a, &o));
+    g_autofree char *csv = artwork_beside(a->plot, ".csv");
+    TRY_FAULT(figure_publish(fig, &o, a->plot, !is_asked_for(a, csv), &f));
+    return EXIT_DONE;
 }
 
 int publish_titled(const arguments *a, const scenario *s, const char *shows, const figure *fig)
@@ -122,21 +110,14 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs, i
 {
     assert(run_count > 0);
     figure_options o;
-    fault f = {0};
+    fault why = {0};
+    TRY_EXIT(read_picture_options(a, &o));
+    owned_figure *r = run_figure_create(title, NULL, 0, runs, run_count, &o, &why);
+    FAIL_IF(r == NULL, complain_fault(&why));
 
-    int code = read_picture_options(a, &o);
-    FAIL_IF(code != EXIT_DONE, code);
-
-    owned_figure *r = run_figure_create(title, NULL, 0, runs, run_count, &o, &f);
-    FAIL_IF(r == NULL, complain_fault(&f));
-
-    artwork drawn = artwork_of_owned(r);
-    if (artwork_publish(&drawn, &o, a->plot, false, &f) != STATUS_OK) {
-        code = complain_fault(&f);
-    }
-
-    artwork_finish(&drawn);
-    return code;
+    SCOPED(artwork_finish) artwork drawn = artwork_of_owned(r);
+    TRY_FAULT(artwork_publish(&drawn, &o, a->plot, false, &f));
+    return EXIT_DONE;
 }
 
 // --- the arm in space -------------------------------------------------------------------------
@@ -172,8 +153,7 @@ int check_view(const arguments *a)
 
 int check_scene(const arguments *a)
 {
-    fault f = {0};
-    FAIL_IF(check_view(a) != EXIT_DONE, EXIT_BAD_ARGUMENTS);
+    TRY_EXIT(check_view(a));
 
     // there is a picture for each instant, and a limit to them
     FAIL_IF(a->instants.count > SCENE_INSTANTS,
@@ -181,7 +161,7 @@ int check_scene(const arguments *a)
                      SCENE_INSTANTS));
 
     // before the run, which may take long
-    FAIL_IF(a->scene != NULL && scene_check_path(a->scene, &f) != STATUS_OK, complain_fault(&f));
+    TRY_FAULT(a->scene != NULL ? scene_check_path(a->scene, &f) : STATUS_OK);
     return EXIT_DONE;
 }
 
@@ -189,7 +169,6 @@ int write_scene(const arguments *a, const scenario *s, const run_result *result)
 {
     double times[SCENE_INSTANTS];
     int count = a->instants.count;
-    fault f = {0};
     assert(count <= SCENE_INSTANTS);
 
     // the instants asked for in their order, or some that show the approach
@@ -202,6 +181,6 @@ int write_scene(const arguments *a, const scenario *s, const run_result *result)
     }
     const scene_picture shown = {
         .scenario = s, .result = result, .options = read_view(a), .times = times, .count = count};
-    FAIL_IF(scene_write(&shown, a->scene, &f) != STATUS_OK, complain_fault(&f));
+    TRY_FAULT(scene_write(&shown, a->scene, &f));
     return EXIT_DONE;
 }

@@ -176,9 +176,9 @@ static int run_and_report(const arguments *a, scenario *s)
 static int run(const arguments *a)
 {
     figure_options pictures;
-    int result = check_scene(a);
-    result = result == EXIT_DONE ? read_picture_options(a, &pictures) : result;
-    return result == EXIT_DONE ? with_scenario(a->operands[0], a, run_and_report) : result;
+    TRY_EXIT(check_scene(a));
+    TRY_EXIT(read_picture_options(a, &pictures));
+    return with_scenario(a->operands[0], a, run_and_report);
 }
 
 static const option_row rows[] = {

@@ -78,8 +78,8 @@ static int read_listed(const char *name, listed *l)
 static int list(const arguments *a)
 {
     listing l;
-    int width = 0, result = open_listing(&l, a);
-    FAIL_IF(result != EXIT_DONE, result);
+    int width = 0, result = EXIT_DONE;
+    TRY_EXIT(open_listing(&l, a));
 
     // the titles of all stand in a column
     for (int i = 0; i < l.count; i++) {
@@ -119,8 +119,8 @@ static int run_lesson(const arguments *a)
     bool found = false;
     FAIL_IF(a->json != NULL && a->operand_count > 0,
             complain("--json lists the lessons, expected no name beside it"));
-    int code = open_listing(&l, a);
-    FAIL_IF(code != EXIT_DONE, code);
+    int code = EXIT_DONE;
+    TRY_EXIT(open_listing(&l, a));
 
     // without a name all of them, otherwise the one with that name
     const char *wanted = a->operand_count > 0 ? a->operands[0] : NULL;

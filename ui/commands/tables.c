@@ -114,11 +114,10 @@ static int tables(const arguments *a)
 {
     static const command_results r = {tables_object, print_tables};
     thesis_tables t;
-    fault f = {0};
     if (a->fitted) {
         tables_compute_fitted(&t);
-    } else if (tables_compute(&t, &f) != STATUS_OK) {
-        return complain_fault(&f);
+    } else {
+        TRY_FAULT(tables_compute(&t, &f));
     }
     return write_results(a, &r, NULL, &t, true);
 }

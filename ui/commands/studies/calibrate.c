@@ -17,8 +17,6 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
 {
     char standard[128], *given = standard;
     double most = 0.9 * s->parameters.motor.voltage_limit;
-    fault f = {0};
-    sweep series;
 
     // without --vary an even series up to nine tenths of the limit
     decimal_print(standard, sizeof standard, VOLTAGE_PATH "=%.17g:%.17g:%d", most / DEFAULT_PRESSES,
@@ -30,20 +28,18 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
     FAIL_IF(a->varies.count > 1 || strncmp(given, VOLTAGE_PATH "=", strlen(VOLTAGE_PATH "=")) != 0,
             complain("calibrate varies " VOLTAGE_PATH " and nothing else, once"));
 
-    sweep_request request = {.vary = &given, .vary_count = 1};
-    FAIL_IF(sweep_init(&series, s, &request, &f) != STATUS_OK, complain_fault(&f));
+    SCOPED(sweep_finish) sweep series;
+    const sweep_request request = {.vary = &given, .vary_count = 1};
+    TRY_FAULT(sweep_init(&series, s, &request, &f));
 
     // the values, as many as a table holds
-    size_t wanted = series.run_count;
-    for (size_t i = 0; i < wanted && i < K2_TABLE_MOST; i++) {
-        commands[i] = sweep_value(&series, i, 0);
+    FAIL_IF(series.run_count > K2_TABLE_MOST,
+            complain("--vary %s: %zu commands are too many, expected at most %d", given,
+                     series.run_count, K2_TABLE_MOST));
+    *count = (int)series.run_count;
+    for (int i = 0; i < *count; i++) {
+        commands[i] = sweep_value(&series, (size_t)i, 0);
     }
-    sweep_finish(&series);
-
-    FAIL_IF(wanted > K2_TABLE_MOST,
-            complain("--vary %s: %zu commands are too many, expected at most %d", given, wanted,
-                     K2_TABLE_MOST));
-    *count = (int)wanted;
     return EXIT_DONE;
 }
 
@@ -108,8 +104,8 @@ static int press_and_report(const arguments *a, scenario *s)
     fault f = {0};
     calibrated done;
     double commands[K2_TABLE_MOST];
-    int count = 0, result = choose_commands(a, s, commands, &count);
-    FAIL_IF(result != EXIT_DONE, result);
+    int count = 0;
+    TRY_EXIT(choose_commands(a, s, commands, &count));
 
     run_monitor *monitor = work_begin(a, "presses", count);
     status code = calibrate(s, commands, count, monitor, &done.points, &f);

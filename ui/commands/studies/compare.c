@@ -45,10 +45,9 @@ static void finish(comparison *c)
 // The grid of a scenario's combinations, each of which must go with it.
 static int open_sweep(comparison *c, const arguments *a, const scenario *s)
 {
-    fault f = {0};
     sweep own;
     const sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
-    FAIL_IF(sweep_init(&own, s, &request, &f) != STATUS_OK, complain_fault(&f));
+    TRY_FAULT(sweep_init(&own, s, &request, &f));
     if (c->varied.axis_count == 0) {
         c->varied = own;
     } else {
@@ -74,12 +73,9 @@ static int open_all(comparison *c, const arguments *a)
     // the operands, then what they are compared against
     for (int i = 0; i < count; i++) {
         const char *name = i < a->operand_count ? a->operands[i] : a->against;
-        int result = open_scenario(&c->scenarios[i], name, a);
-        c->opened += result == EXIT_DONE;
-        if (result == EXIT_DONE && a->varies.count > 0) {
-            result = open_sweep(c, a, &c->scenarios[i]);
-        }
-        FAIL_IF(result != EXIT_DONE, result);
+        TRY_EXIT(open_scenario(&c->scenarios[i], name, a));
+        c->opened++;
+        TRY_EXIT(a->varies.count > 0 ? open_sweep(c, a, &c->scenarios[i]) : EXIT_DONE);
     }
 
     c->rows = calloc((size_t)c->combinations * (size_t)(c->operands + 1), sizeof *c->rows);
@@ -211,26 +207,22 @@ static int compare(const arguments *a)
                                       write_csv,
                                       .markdown = write_markdown,
                                       .kept = "the table is that of these"};
-    comparison c = {.table.tolerance = a->tolerance / 100};
+    SCOPED(finish) comparison c = {.table.tolerance = a->tolerance / 100};
     fault f = {0};
     FAIL_IF(a->columns != NULL && compare_choose(&c.table, a->columns, &f) != STATUS_OK,
             complain("--columns %s: %s", a->columns, f.text));
 
-    int result = open_all(&c, a);
-    if (result == EXIT_DONE) {
-        c.table.rows = c.rows;
-        c.table.group = c.operands;
-        c.table.varied = c.varied.axes;
-        c.table.varied_count = a->varies.count;
-        c.table.against = a->against != NULL ? c.against : NULL;
-        c.drawn = a->plot != NULL && c.varied.axis_count == 0 && c.opened <= TRACE_RUNS;
-        run_monitor *monitor = work_begin(a, "runs", c.combinations * c.opened);
-        const status code = run_all(&c, monitor);
-        result = work_finish(a, code, &f, &r, NULL, &c);
-        result = c.failed ? worse(result, EXIT_FAILED) : result;
-    }
-    finish(&c);
-    return result;
+    TRY_EXIT(open_all(&c, a));
+    c.table.rows = c.rows;
+    c.table.group = c.operands;
+    c.table.varied = c.varied.axes;
+    c.table.varied_count = a->varies.count;
+    c.table.against = a->against != NULL ? c.against : NULL;
+    c.drawn = a->plot != NULL && c.varied.axis_count == 0 && c.opened <= TRACE_RUNS;
+    run_monitor *monitor = work_begin(a, "runs", c.combinations * c.opened);
+    const status code = run_all(&c, monitor);
+    const int result = work_finish(a, code, &f, &r, NULL, &c);
+    return c.failed ? worse(result, EXIT_FAILED) : result;
 }
 
 static const option_row rows[] = {

@@ -111,11 +111,9 @@ static sweep_request request_of(const robustness *r)
 static int read_set(robustness *r)
 {
     const arguments *a = r->arguments;
-    fault f = {0};
     SCOPED(free_kept) char *path = a->over == NULL ? scenario_folder_file(default_set) : NULL;
     const char *read = a->over != NULL ? a->over : path;
-    status code = read != NULL ? robust_set_read(&r->set, read, &f) : fault_no_memory(&f);
-    FAIL_IF(code != STATUS_OK, complain_fault(&f));
+    TRY_FAULT(read != NULL ? robust_set_read(&r->set, read, &f) : fault_no_memory(&f));
     FAIL_IF(r->set.case_count > 0 && a->plot != NULL,
             complain("--plot shows laws, not the cases of %s", a->over));
 
@@ -124,10 +122,11 @@ static int read_set(robustness *r)
     r->runs = a->runs > 0 ? (size_t)a->runs : cases ? DEFAULT_CASE_RUNS : DEFAULT_RUNS;
     const sweep_request request = request_of(r);
     SCOPED(sweep_finish) sweep plan;
-    FAIL_IF(sweep_plan(&plan, &request, &f) != STATUS_OK, complain_fault(&f));
+    TRY_FAULT(sweep_plan(&plan, &request, &f));
     r->found =
         calloc((size_t)(cases ? r->set.case_count : 1) * (size_t)(r->count + 1), sizeof *r->found);
-    return r->found != NULL ? EXIT_DONE : (fault_no_memory(&f), complain_fault(&f));
+    TRY_FAULT(r->found != NULL ? STATUS_OK : fault_no_memory(&f));
+    return EXIT_DONE;
 }
 
 // "a/b-LAW.sqlite" for --db a/b.sqlite, of case k (from 0) "a/b-LAW-3.sqlite" with its number from
@@ -251,29 +250,26 @@ static int open_law(const robustness *r, const scenario *base, int which, int k,
 // with a case is known before the first one is run.
 static int take_case(robustness *r, int k, bool run)
 {
-    fault f = {0};
     SCOPED(robust_case_finish) scenario base;
     const robust_case *c = k >= 0 ? &r->set.cases[k] : NULL;
-    FAIL_IF(robust_case_scenario(&base, r->scenario, c, &f) != STATUS_OK, complain_fault(&f));
-    int code = EXIT_DONE;
-    for (int i = 0; i < r->count + (r->against == r->count) && code == EXIT_DONE; i++) {
+    TRY_FAULT(robust_case_scenario(&base, r->scenario, c, &f));
+    for (int i = 0; i < r->count + (r->against == r->count); i++) {
         scenario under;
         SCOPED(sweep_finish) sweep s = {0};
-        code = open_law(r, &base, i, k, run && !r->arguments->quiet, &under, &s);
-        if (code == EXIT_DONE && run) {
-            code = judge_law(r, control_law_table[r->laws[i]].word, k, &s);
-        }
+        TRY_EXIT(open_law(r, &base, i, k, run && !r->arguments->quiet, &under, &s));
+        TRY_EXIT(run ? judge_law(r, control_law_table[r->laws[i]].word, k, &s) : EXIT_DONE);
     }
-    return code;
+    return EXIT_DONE;
 }
 
 // Runs all laws under case k, and compares them with that of --against.
 static int run_case(robustness *r, int k)
 {
-    const int first = r->judged, code = take_case(r, k, true);
+    const int first = r->judged;
+    TRY_EXIT(take_case(r, k, true));
 
     // its own line is shown only where it was asked for
-    if (code == EXIT_DONE && r->against >= 0) {
+    if (r->against >= 0) {
         double other = r->found[first + r->against].from_start[ROBUST_WORST];
         for (int i = 0; i < r->count; i++) {
             r->found[first + i].against = r->found[first + i].from_start[ROBUST_WORST] / other;
@@ -282,7 +278,7 @@ static int run_case(robustness *r, int k)
             robust_law_finish(&r->found[--r->judged]);
         }
     }
-    return code;
+    return EXIT_DONE;
 }
 
 RESULT_GIVEN(json_t *, table_json, robust_table, return robust_json(found))
@@ -311,30 +307,32 @@ static int report(const robustness *r)
     return any ? code : worse(code, EXIT_FAILED);
 }
 
+static void finish(robustness *r)
+{
+    for (int i = 0; i < r->judged; i++) {
+        robust_law_finish(&r->found[i]);
+    }
+    free(r->found);
+    robust_set_finish(&r->set);
+}
+
 static int robust(const arguments *a, scenario *s)
 {
-    robustness r = {.arguments = a, .scenario = s};
-    int code = read_laws(&r);
-    code = code == EXIT_DONE ? read_set(&r) : code;
-    code = code == EXIT_DONE ? read_against(&r) : code;
+    SCOPED(finish) robustness r = {.arguments = a, .scenario = s};
+    TRY_EXIT(read_laws(&r));
+    TRY_EXIT(read_set(&r));
+    TRY_EXIT(read_against(&r));
 
     // case by case, or the scenario as it is; faults of all cases are told
     const int last = r.set.case_count - 1, begin = last < 0 ? -1 : 0;
-    const bool ready = code == EXIT_DONE;
-    for (int k = begin; k <= last && ready; k++) {
+    int code = EXIT_DONE;
+    for (int k = begin; k <= last; k++) {
         code = worse(code, take_case(&r, k, false));
     }
     for (int k = begin; k <= last && code == EXIT_DONE; k++) {
         code = run_case(&r, k);
     }
-    code = code == EXIT_DONE ? report(&r) : code;
-
-    for (int i = 0; i < r.judged; i++) {
-        robust_law_finish(&r.found[i]);
-    }
-    free(r.found);
-    robust_set_finish(&r.set);
-    return code;
+    return code == EXIT_DONE ? report(&r) : code;
 }
 
 static const option_row rows[] = {

@@ -110,13 +110,10 @@ static void print_summary(const sweep_order *o, const double *values, size_t fai
 static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_progress *p)
 {
     const arguments *a = o->arguments;
-    fault f = {0};
     size_t failed = 0;
     SCOPED(free_kept) double *values = malloc(o->sweep->run_count * sizeof *values);
-    const status read = values == NULL
-                            ? fault_no_memory(&f)
-                            : sweep_store_quantity(store, o->quantity, values, &failed, &f);
-    FAIL_IF(read != STATUS_OK, complain_fault(&f));
+    TRY_FAULT(values == NULL ? fault_no_memory(&f)
+                             : sweep_store_quantity(store, o->quantity, values, &failed, &f));
 
     // files first: what is printed may be cut off
     int code = worse(write_rows(store, a->csv, false), write_rows(store, a->json, true));
@@ -198,18 +195,15 @@ static int sweep_and_report(const arguments *a, scenario *base)
         .sampling = (sweep_sampling)sweep_sampling_find(a->sampling ? a->sampling : "grid"),
         .runs = (size_t)a->runs,
         .seed = a->seed};
-    fault f = {0};
-    const int code = read_share(a, &o.share);
-    FAIL_IF(code != EXIT_DONE, code);
+    TRY_EXIT(read_share(a, &o.share));
     SCOPED(sweep_finish) sweep s = {0};
     SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
     o.sweep = &s;
 
     // the rows, in the file or in memory
-    FAIL_IF(sweep_init(&s, base, &request, &f) != STATUS_OK ||
-                (a->plot != NULL && sweep_plot_check(&s, a->plot, &f) != STATUS_OK) ||
-                sweep_store_open(&store, a->db, &s, &f) != STATUS_OK,
-            complain_fault(&f));
+    TRY_FAULT(sweep_init(&s, base, &request, &f));
+    TRY_FAULT(a->plot != NULL ? sweep_plot_check(&s, a->plot, &f) : STATUS_OK);
+    TRY_FAULT(sweep_store_open(&store, a->db, &s, &f));
     return compute(&o, store);
 }
 
@@ -249,11 +243,9 @@ const command sweep_command = {
 
 static int merge(const arguments *a)
 {
-    fault f = {0};
     sweep_merged merged;
     FAIL_IF(a->output == NULL, complain("merge: expected -o FILE, the database to write"));
-    FAIL_IF(sweep_merge(a->operands, a->operand_count, a->output, &merged, &f) != STATUS_OK,
-            complain_fault(&f));
+    TRY_FAULT(sweep_merge(a->operands, a->operand_count, a->output, &merged, &f));
 
     // a sweep with missing runs is a valid file: the same sweep continues in it
     if (summary_wanted(a)) {
