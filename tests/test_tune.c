@@ -2,7 +2,6 @@
 #include "src/study/tune.h"
 
 #include "src/base/expression.h"
-#include "src/study/linear/linear.h"
 #include "src/study/store/sweep_store.h"
 #include "tests/rig_fixture.h"
 
@@ -168,8 +167,7 @@ TEST(the_most_damped_pole_is_that_of_eigenvalues)
                                 .vary = vary,
                                 .vary_count = 1,
                                 .minimise = "growth_per_s",
-                                .runs = 60,
-                                .growth = linear_growth};
+                                .runs = 60};
     SCOPED(tune_finish) tuning t;
     search(&t, &asked, 1);
     assert_true(fabs(t.found[0] - 2.162) <= 0.01 * 2.162);

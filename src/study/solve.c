@@ -233,9 +233,8 @@ static status locate_limits(search *s, fault *f)
     solution *found = s->found;
     for (int i = 0; i + 1 < found->points; i++) {
         trial a = s->trials[i], b = s->trials[i + 1];
-        const bool first = holds(s, &a), second = holds(s, &b);
-        if (first == second) {
-            found->ends += isnan(a.quantity) != isnan(b.quantity);
+        const bool first = holds(s, &a);
+        if (first == holds(s, &b)) {
             continue;
         }
 
@@ -243,10 +242,10 @@ static status locate_limits(search *s, fault *f)
         trial *in = first ? &a : &b, *out = first ? &b : &a;
         TRY(locate(s, in, out, f));
         if (isnan(out->quantity)) {
-            found->ends++;
-        } else if (found->count == SOLVE_MOST_LIMITS) {
-            found->more = true;
-        } else {
+            continue;
+        }
+        found->more = found->count == SOLVE_MOST_LIMITS;
+        if (!found->more) {
             // continuous as far as the values at both sides tell
             const double size = fmax(fabs(s->condition->bound), fabs(in->quantity));
             const bool jumps = is_whole(s) || fabs(in->quantity - out->quantity) > 1e-6 * size;

@@ -35,7 +35,6 @@ typedef struct solution {
     int holding, failing; // of them: the condition holds, it does not
     int missing;          // of them: the quantity did not occur
     int unknown;          // of them: the run failed or is inaccurate, or cannot be made
-    int ends;             // neighbours between which the quantity ceases to be there
     char reason[512];     // why the first of the unknown ones is, "" if there are none
 } solution;
 

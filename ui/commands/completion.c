@@ -196,71 +196,57 @@ static const char *listed_word(char list, const command *c, int i)
     }
 }
 
+// What stands for a letter of a shell's text as it is, NULL for all others.
+static const char *letter_text(char letter, const command *c, const option_row *o)
+{
+    switch (letter) {
+    case 'c':
+        return c->name;
+    case '1':
+        return c->takes_scenarios ? "1" : "*";
+    case 'y':
+        return c->takes_scenarios ? "yes" : "";
+    case 'o':
+        return o->name;
+    case '=':
+        return o->type != OPTION_FLAG ? "=" : "";
+    case '*':
+        return option_is_list(o->type) ? "*" : "";
+    default:
+        return NULL;
+    }
+}
+
 // A text of the shell (NULL: none), of a command and an option of it (NULL where there is none).
 static void put(FILE *stream, const shell *h, const char *text, const command *c,
                 const option_row *o)
 {
     const char *word;
     for (; text != NULL && *text != '\0'; text++) {
-        if (*text != '%') {
+        const char letter = *text == '%' ? *++text : '\0';
+        if (letter == '\0') {
             fputc(*text, stream);
-            continue;
-        }
-        switch (*++text) {
-        case 'c':
-            fputs(c->name, stream);
-            break;
-        case 's':
-            put_quoted(stream, h, c->summary);
-            break;
-        case '1':
-            fputs(c->takes_scenarios ? "1" : "*", stream);
-            break;
-        case 'y':
-            fputs(c->takes_scenarios ? "yes" : "", stream);
-            break;
-
-        // of an option
-        case 'o':
-            fputs(o->name, stream);
-            break;
-        case 'l':
+        } else if ((word = letter_text(letter, c, o)) != NULL) {
+            fputs(word, stream);
+        } else if (strchr("shv", letter) != NULL) {
+            put_quoted(stream, h, letter == 's' ? c->summary : letter == 'h' ? o->help : o->value);
+        } else if (letter == 'l') {
             fputc(o->letter, stream);
-            break;
-        case 'h':
-            put_quoted(stream, h, o->help);
-            break;
-        case 'v':
-            put_quoted(stream, h, o->value);
-            break;
-        case 'w':
+        } else if (letter == 'L') {
+            put(stream, h, o->letter != 0 ? h->letter : NULL, c, o);
+        } else if (letter == 'V') {
+            put(stream, h, o->type != OPTION_FLAG ? h->value : NULL, c, o);
+        } else if (letter == 'x') {
+            put(stream, h, h->offers[offers[o->type]], c, o);
+        } else if (letter == 'w') {
             for (word = o->value; *word != '\0'; word++) {
                 fputc(*word == '|' ? ' ' : *word, stream);
             }
-            break;
-        case '=':
-            fputs(o->type != OPTION_FLAG ? "=" : "", stream);
-            break;
-        case '*':
-            fputs(option_is_list(o->type) ? "*" : "", stream);
-            break;
-        case 'L':
-            put(stream, h, o->letter != 0 ? h->letter : NULL, c, o);
-            break;
-        case 'V':
-            put(stream, h, o->type != OPTION_FLAG ? h->value : NULL, c, o);
-            break;
-        case 'x':
-            put(stream, h, h->offers[offers[o->type]], c, o);
-            break;
-
-        // lists
-        default:
-            for (int i = 0; (word = listed_word(*text, c, i)) != NULL; i++) {
-                fprintf(stream, "%s%s%s%s", i > 0 ? " " : "", *text == 'O' ? "--" : "", word,
-                        *text == 'P' ? "=" : "");
+        } else {
+            for (int i = 0; (word = listed_word(letter, c, i)) != NULL; i++) {
+                fprintf(stream, "%s%s%s%s", i > 0 ? " " : "", letter == 'O' ? "--" : "", word,
+                        letter == 'P' ? "=" : "");
             }
-            break;
         }
     }
 }

@@ -65,22 +65,19 @@ static status read_links(const char *text, outcome *o, fault *f)
 // The same data with other numbers of links, from the fitted values on.
 static status compare_links(const arguments *a, outcome *o, fault *f)
 {
-    status code = STATUS_OK;
-    for (int i = 0; i < o->link_count && code == STATUS_OK; i++) {
-        scenario other = o->written;
-        parameters p = other.parameters;
-        identification id = {0};
-        code = parameter_set_number(&p, PARAMETER_INDEX(arm.links), o->links[i], f);
-        code = code == STATUS_OK ? scenario_take_parameters(&other, &p, f) : code;
-        code = code == STATUS_OK ? set_up(a, &other, &id, f) : code;
+    for (int i = 0; i < o->link_count; i++) {
+        scenario other;
+        const parameter_change links = {PARAMETER_INDEX(arm.links), o->links[i]};
+        TRY(scenario_with(&o->written, &links, 1, &other, f));
+        SCOPED(identify_finish) identification id = {0};
+        TRY(set_up(a, &other, &id, f));
         id.starts = 1;
         id.monitor = o->fit.monitor;
-        code = code == STATUS_OK ? identify_fit(&id, f) : code;
+        TRY(identify_fit(&id, f));
         o->aic[i] = id.aic;
         o->white[i] = id.white;
-        identify_finish(&id);
     }
-    return code;
+    return STATUS_OK;
 }
 
 // --- results ----------------------------------------------------------------------------------

@@ -7,7 +7,6 @@
 #include "render/plot/study_plot.h"
 #include "src/base/json.h"
 #include "src/study/store/sweep_store.h"
-#include "src/study/linear/linear.h"
 #include "src/study/tune.h"
 #include "ui/commands/pictures.h"
 #include "ui/commands/progress.h"
@@ -157,31 +156,36 @@ static int search(tuner *t)
 {
     const arguments *a = t->arguments;
     fault f = {0};
-    sweep_store *store = NULL;
+    SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
     const sweep_options options = many_runs_begin(a, NULL);
     t->tuning.improved = keep_best;
     t->tuning.context = t;
 
     status code = sweep_store_open(&store, a->db, &t->tuning.plan, &f);
     code = code == STATUS_OK ? tune_run(&t->tuning, store, &options, &f) : code;
-    sweep_store_close(store);
     code = code == STATUS_OK ? judge_rows(t, &options, &f) : code;
     many_runs_end(&options);
-    if (code == STATUS_STOPPED) {
-        if (a->output != NULL && strcmp(a->output, "-") != 0 &&
-            t->tuning.best.rank < TUNE_REFUSED) {
-            complain("the best numbers so far are in '%s'", a->output);
-        }
-        return many_runs_stopped(a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count);
+    if (code != STATUS_STOPPED) {
+        return code == STATUS_OK ? report(t) : complain_fault(&f);
     }
-    return code == STATUS_OK ? report(t) : complain_fault(&f);
+    if (a->output != NULL && strcmp(a->output, "-") != 0 && t->tuning.best.rank < TUNE_REFUSED) {
+        complain("the best numbers so far are in '%s'", a->output);
+    }
+    return many_runs_stopped(a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count);
+}
+
+static void finish(tuner *t)
+{
+    for (int i = 0; i < t->count; i++) {
+        robust_law_finish(&t->rows[i].law);
+    }
+    tune_finish(&t->tuning);
 }
 
 static int tune(const arguments *a, scenario *s)
 {
-    tuner t = {.arguments = a, .scenario = s};
-    robust_set set = {0};
-    fault f = {0};
+    SCOPED(robust_set_finish) robust_set set = {0};
+    SCOPED(finish) tuner t = {.arguments = a, .scenario = s};
     FAIL_IF(a->varies.count == 0 || a->minimise == NULL,
             complain("tune: expected --vary PATH=a:b and --minimise EXPR"));
     const size_t usual = a->over != NULL ? TUNE_RUNS : TUNE_RUNS_ALONE;
@@ -192,17 +196,10 @@ static int tune(const arguments *a, scenario *s)
                                 .subject = a->subject,
                                 .over = a->over != NULL ? &set : NULL,
                                 .runs = a->runs > 0 ? (size_t)a->runs : usual,
-                                .seed = a->seed,
-                                .growth = linear_growth};
-    status code = a->over != NULL ? robust_set_read(&set, a->over, &f) : STATUS_OK;
-    code = code == STATUS_OK ? tune_init(&t.tuning, &asked, &f) : code;
-    int result = code == STATUS_OK ? search(&t) : complain_fault(&f);
-    for (int i = 0; i < t.count; i++) {
-        robust_law_finish(&t.rows[i].law);
-    }
-    tune_finish(&t.tuning);
-    robust_set_finish(&set);
-    return result;
+                                .seed = a->seed};
+    TRY_FAULT(a->over != NULL ? robust_set_read(&set, a->over, &f) : STATUS_OK);
+    TRY_FAULT(tune_init(&t.tuning, &asked, &f));
+    return search(&t);
 }
 
 static const option_row rows[] = {
