@@ -101,8 +101,10 @@ static status read_lines(robust_set *set, fault *f)
             continue;
         }
         if (strncmp(line, word, strlen(word)) != 0) {
-            set->line_numbers[set->count] = number;
-            set->lines[set->count++] = line;
+            if (set->count <= SWEEP_MOST_AXES) {
+                set->line_numbers[set->count] = number;
+                set->lines[set->count++] = line;
+            }
             continue;
         }
 
@@ -118,8 +120,8 @@ static status read_lines(robust_set *set, fault *f)
     return STATUS_OK;
 }
 
-// Room for everything that the text of the set may have: a line, a case and a setting have at least
-// one character. False without memory.
+// Room for all cases that the text of the set may have, and their settings: they have at least one
+// character each. False without memory.
 static bool make_room(robust_set *set)
 {
     const size_t most = strlen(set->text) + 1;
@@ -127,12 +129,9 @@ static bool make_room(robust_set *set)
     for (const char *c = set->text; *c != '\0'; c++) {
         lines += *c == '\n';
     }
-    set->lines = calloc(lines, sizeof *set->lines);
-    set->line_numbers = calloc(lines, sizeof *set->line_numbers);
     set->settings = calloc(most, sizeof *set->settings);
     set->cases = calloc(lines, sizeof *set->cases);
-    return set->lines != NULL && set->line_numbers != NULL && set->settings != NULL &&
-           set->cases != NULL;
+    return set->settings != NULL && set->cases != NULL;
 }
 
 status robust_set_read(robust_set *set, const char *path, fault *f)
@@ -158,8 +157,6 @@ void robust_set_finish(robust_set *set)
     if (set != NULL) {
         free(set->file);
         free(set->text);
-        free(set->lines);
-        free(set->line_numbers);
         free(set->settings);
         free(set->cases);
         *set = (robust_set){0};

@@ -33,12 +33,12 @@ typedef struct robust_case {
 } robust_case;
 
 typedef struct robust_set {
-    char *file;         // its path; owned
-    char *text;         // owned; the lines point into it
-    char **lines;       // what is drawn; owned
-    int *line_numbers;  // of each in the file, from 1; owned
-    int count;          // of lines
-    robust_case *cases; // owned
+    char *file;                            // its path; owned
+    char *text;                            // owned; the lines point into it
+    char *lines[SWEEP_MOST_AXES + 1];      // what is drawn, up to one too many
+    int line_numbers[SWEEP_MOST_AXES + 1]; // of each in the file, from 1
+    int count;                             // of lines
+    robust_case *cases;                    // owned
     int case_count;
     char **settings; // of all cases, one behind the other; owned
 } robust_set;

@@ -117,18 +117,6 @@ double sweep_axis_get(const sweep_axis *axis, const parameters *p)
                                                                   : value;
 }
 
-// A value of a list's number alone, checked as one of them.
-static status check_value(const sweep_axis *axis, double value, fault *f)
-{
-    parameters scratch = {0};
-    char text[NUMBER_TEXT];
-    if (axis->element == 0) {
-        return sweep_axis_apply(axis, value, &scratch, f);
-    }
-    number_format(text, value);
-    return parameter_set_text(&scratch, axis->parameter, text, f);
-}
-
 // Checks and reads one value of the axis.
 static status read_value(const sweep_axis *axis, const char *text, double *value, fault *f)
 {
@@ -176,6 +164,8 @@ double sweep_axis_point(const sweep_axis *axis, size_t i, size_t n)
 // The values of a range; each is checked as a parameter, and none may come twice.
 static status fill_range(sweep_axis *axis, size_t n, fault *f)
 {
+    char text[SWEEP_VALUE_TEXT];
+    double same;
     axis->values = malloc(n * sizeof *axis->values);
     TRY_MEMORY(axis->values != NULL, f);
     axis->count = n;
@@ -186,11 +176,11 @@ static status fill_range(sweep_axis *axis, size_t n, fault *f)
         const bool whole = sweep_axis_parameter(axis)->type == PARAMETER_INTEGER;
         const double value = sweep_axis_point(axis, i, n);
         axis->values[i] = axis->logarithmic && whole && i > 0 && i + 1 < n ? round(value) : value;
-        TRY(check_value(axis, axis->values[i], f));
+        number_format(text, axis->values[i]);
+        TRY(read_value(axis, text, &same, f));
 
         // whole numbers too close together
         if (i > 0 && axis->values[i] == axis->values[i - 1]) {
-            char text[128];
             sweep_axis_format(axis, axis->values[i], text, sizeof text);
             return fault_set(f, STATUS_BAD_ARGUMENT, "%zu values give %s twice", n, text);
         }
