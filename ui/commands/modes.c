@@ -124,13 +124,8 @@ static int plot_modes(const arguments *args, const scenario *s, const void *foun
             deflections(a, sets[i].shapes + m * a->dof, x, y);
             snprintf(labels[i][m], sizeof labels[i][m], "%.3g\u2009Hz",
                      sets[i].frequencies[m] / TWO_PI);
-            series[i][m] = (figure_series){.name = labels[i][m],
-                                           .label = labels[i][m],
-                                           .x = x,
-                                           .y = y,
-                                           .count = points,
-                                           .colour = colours[m],
-                                           .marker = a->links <= 40 ? MARKER_CIRCLE : MARKER_NONE};
+            series[i][m] = curve_of(labels[i][m], labels[i][m], x, y, points, colours[m]);
+            series[i][m].marker = a->links <= 40 ? MARKER_CIRCLE : MARKER_NONE;
         }
         snprintf(headings[i], sizeof headings[i], "hub %s, tip %s", holds[i].hub_name,
                  holds[i].tip_name);

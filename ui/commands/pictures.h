@@ -10,6 +10,13 @@
 // status.
 int read_picture_options(const arguments *a, figure_options *o);
 
+// A curve of a figure; what else there is to say of it comes afterwards.
+static inline figure_series curve_of(const char *name, const char *label, const double *x,
+                                     const double *y, size_t count, int slot)
+{
+    return (figure_series){name, label, x, y, count, .colour = slot};
+}
+
 // Draws a figure to --plot according to the options, with a CSV of its numbers next to it, with the
 // title "SCENARIO: what it shows" and what was changed of the scenario. Returns the exit status.
 int publish_titled(const arguments *a, const scenario *s, const char *shows, const figure *fig);

@@ -160,22 +160,14 @@ static int plot_predictions(const arguments *a, const scenario *s, const void *f
     line_x[0] = line_x[1] = ((const predicted *)found)->result->landing.peak;
     line_y[0] = 0.4;
     line_y[1] = PREDICTOR_COUNT + 0.6;
-    const figure_series series[] = {{.name = "predicted",
-                                     .label = "predicted",
-                                     .x = peak,
-                                     .y = place,
-                                     .count = PREDICTOR_COUNT,
-                                     .colour = 0,
-                                     .marker = MARKER_CIRCLE,
-                                     .radius = 2.6,
-                                     .no_line = true},
-                                    {.name = "simulation",
-                                     .label = "simulation",
-                                     .x = line_x,
-                                     .y = line_y,
-                                     .count = 2,
-                                     .colour = 5,
-                                     .style = LINE_DASHED}};
+    figure_series series[] = {
+        curve_of("predicted", "predicted", peak, place, PREDICTOR_COUNT, 0),
+        curve_of("simulation", "simulation", line_x, line_y, 2, 5),
+    };
+    series[0].marker = MARKER_CIRCLE;
+    series[0].radius = 2.6;
+    series[0].no_line = true;
+    series[1].style = LINE_DASHED;
 
     // names instead of numbers next to the rows
     const figure_panel panel = {.y = {.name = "predictor",

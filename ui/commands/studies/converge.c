@@ -87,23 +87,14 @@ static int draw(const arguments *a, const scenario *s, const three_steps *r, dou
     for (int i = 0; i < PANEL_STEPS; i++) {
         const trace *t = &r->runs[i].trace;
         decimal_print(label[i], sizeof label[i], "<i>h</i> = %g\u2009ms", 1e3 * r->panel.step[i]);
-        force[i] = (figure_series){.name = names[i],
-                                   .label = label[i],
-                                   .x = &t->rows[0].time,
-                                   .y = &t->rows[0].force,
-                                   .count = t->row_count,
-                                   .stride = sizeof(sample),
-                                   .colour = colours[i]};
+        force[i] = curve_of(names[i], label[i], &t->rows[0].time, &t->rows[0].force, t->row_count,
+                            colours[i]);
+        force[i].stride = sizeof(sample);
 
         if (i < PANEL_STEPS - 1) {
             double *x = work + 2 * room * (size_t)i, *y = x + room;
             size_t count = convergence_difference(t, finest, x, y);
-            less[i] = (figure_series){.name = names[i],
-                                      .label = label[i],
-                                      .x = x,
-                                      .y = y,
-                                      .count = count,
-                                      .colour = colours[i]};
+            less[i] = curve_of(names[i], label[i], x, y, count, colours[i]);
         }
     }
 

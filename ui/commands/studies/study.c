@@ -132,14 +132,11 @@ static int plot_methods(const arguments *a, const scenario *s, const void *found
     raise_zeros(&drawn);
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
         for (int m = 0; m < STUDY_METHODS; m++) {
-            series[k][m] = (figure_series){.name = study_methods[m],
-                                           .label = methods[m].label,
-                                           .x = &drawn.points[m][0].cost,
-                                           .y = &drawn.points[m][0].error[k],
-                                           .count = STUDY_STEPS,
-                                           .stride = sizeof(study_point),
-                                           .colour = methods[m].colour,
-                                           .marker = methods[m].marker};
+            const study_point *first = drawn.points[m];
+            series[k][m] = curve_of(study_methods[m], methods[m].label, &first->cost,
+                                    &first->error[k], STUDY_STEPS, methods[m].colour);
+            series[k][m].stride = sizeof *first;
+            series[k][m].marker = methods[m].marker;
         }
 
         panels[k] = (figure_panel){
@@ -259,13 +256,9 @@ static int plot_links(const arguments *a, const scenario *s, const void *found)
             const double share = 100 * fabs(row->value[i] / aim - 1);
             off[k][i] = share > 0 ? share : (double)NAN;
         }
-        series[drawn++] = (figure_series){.name = row->key,
-                                          .label = row->label,
-                                          .x = study->links,
-                                          .y = off[k],
-                                          .count = LINKS_LENGTHS,
-                                          .colour = colours[k],
-                                          .marker = markers[k]};
+        series[drawn] =
+            curve_of(row->key, row->label, study->links, off[k], LINKS_LENGTHS, colours[k]);
+        series[drawn++].marker = markers[k];
     }
 
     const figure_panel panel = {
@@ -370,15 +363,13 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
         for (int k = 0; k <= FOLLOW_LAWS; k++) {
             const bool law = k < FOLLOW_LAWS;
             const follow_point *p = law ? study->points[k] : study->bound;
-            series[n][k] = (figure_series){.name = law ? follow_laws[k] : "bound",
-                                           .label = law ? follow_laws[k] : "knowing nothing ahead",
-                                           .x = &p->frequency,
-                                           .y = (const double *)((const char *)p + drawn[n].offset),
-                                           .count = FOLLOW_FREQUENCIES,
-                                           .stride = sizeof(follow_point),
-                                           .colour = law ? colours[k] : 7,
-                                           .marker = law ? markers[k] : MARKER_NONE,
-                                           .secondary = !law};
+            const double *y = (const double *)((const char *)p + drawn[n].offset);
+            series[n][k] = curve_of(law ? follow_laws[k] : "bound",
+                                    law ? follow_laws[k] : "knowing nothing ahead", &p->frequency,
+                                    y, FOLLOW_FREQUENCIES, law ? colours[k] : 7);
+            series[n][k].stride = sizeof *p;
+            series[n][k].marker = law ? markers[k] : MARKER_NONE;
+            series[n][k].secondary = !law;
         }
         panels[n] = (figure_panel){.y = drawn[n].axis,
                                    .series = series[n],
