@@ -220,6 +220,12 @@ TAKE(take_difference, panel)
     p->compared = true;
     p->of = recipe_find_source(c, first);
     p->less = recipe_find_source(c, first->next);
+    for (const tree_node *item = first; item != NULL; item = item->next) {
+        const int index = item == first ? p->of : p->less;
+        if (index >= 0 && c->recipe->sources[index].kind == SOURCE_TABLE) {
+            report_node(&c->reader, item, "'%s' is a table, expected a run or data", item->text);
+        }
+    }
 }
 
 TAKE(end_note, note)
@@ -243,7 +249,7 @@ TAKE(end_panel, panel)
     }
 
     // runs and data need a signal, a difference only one
-    bool tables = p->source_count > 0;
+    bool tables = p->source_count > 0 && !p->compared;
     for (int i = 0; i < p->source_count; i++) {
         tables = tables && r->sources[p->sources[i]].kind == SOURCE_TABLE;
     }

@@ -63,8 +63,8 @@ const char *nearest_signal(const char *name)
 static status read_panel(const char *text, trace_panel *p, fault *f)
 {
     g_auto(GStrv) words = g_strsplit(text, "+", -1);
-    for (int i = 0; words[i] != NULL; i++) {
-        const char *name = g_strstrip(words[i]);
+    for (int i = 0; i == 0 || words[i] != NULL; i++) {
+        const char *name = words[i] != NULL ? g_strstrip(words[i]) : "";
         int index = signal_find(name);
 
         // known, with room, and of the panel's one unit
@@ -90,13 +90,13 @@ static status read_signals(const char *text, trace_panel *panels, int *count, fa
 {
     status code = STATUS_OK;
     g_auto(GStrv) words = g_strsplit(text, ",", -1);
-    for (*count = 0; words[*count] != NULL && code == STATUS_OK; ++*count) {
+    for (*count = 0; (*count == 0 || words[*count] != NULL) && code == STATUS_OK; ++*count) {
         FAIL_IF(*count == FIGURE_PANELS - 1,
                 fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a figure has at most %d panels", text,
                           FIGURE_PANELS - 1));
         trace_panel *p = &panels[*count];
         *p = (trace_panel){.weight = 1};
-        code = read_panel(words[*count], p, f);
+        code = read_panel(words[*count] != NULL ? words[*count] : "", p, f);
         if (code == STATUS_OK) {
             // what goes without saying for a panel of its first signal
             const signal_info *signal = &signal_table[signal_index(p->signals[0])];
