@@ -8,11 +8,10 @@ for (const fig of document.querySelectorAll('figure[data-panels]')) {
   // the points of a path on the page, gaps as NaN
   const points = p => {
     const out = [], d = p.getAttribute('d').match(/[A-Za-z]|-?\d*\.?\d+/g) || [];
-    for (let i = 0, c = '', x = 0, y = 0; i < d.length;) {
-      if (/[A-Za-z]/.test(d[i])) { c = d[i++]; continue; }
-      x = (c === 'l' ? x : 0) + +d[i]; y = (c === 'l' ? y : 0) + +d[i + 1]; i += 2;
+    for (let i = 0, c = ''; i < d.length; i += 2) {
+      while (/[A-Za-z]/.test(d[i])) { c = d[i++]; }
       if (c === 'M') { out.push([NaN, NaN]); }
-      out.push([x, y]);
+      if (i < d.length) { out.push([+d[i], +d[i + 1]]); }
     }
     return out;
   };

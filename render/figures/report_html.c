@@ -1,10 +1,11 @@
 // The report as a web page that needs no other file and no network.
 #include <cairo.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "render/figures/report.h"
-#include "render/page/svg.h"
+#include "src/base/json.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 
@@ -90,70 +91,53 @@ static status add_svg(GString *html, const picture *p, guint index, GHashTable *
     return STATUS_OK;
 }
 
-static void add_json_text(GString *out, const char *name, const char *markup)
+// A member of plain text.
+static json_t *plain_json(const char *markup)
 {
     g_autofree char *plain = text_plain(markup != NULL ? markup : "");
-    text_append(out, "\"%s\":\"", name);
-    for (const char *c = plain; *c != '\0'; c++) {
-        if (*c == '"' || *c == '\\') {
-            g_string_append_c(out, '\\');
-        }
-        g_string_append_c(out, (guchar)*c < ' ' ? ' ' : *c);
-    }
-    g_string_append_c(out, '"');
+    return json_text(plain);
 }
 
-// Colour, pattern and name of the curves of a panel.
-static void add_json_series(GString *out, const figure_panel *panel)
+// Colour, pattern and name of the curves of a panel; points alone are no curve.
+static json_t *series_json(const figure_panel *panel)
 {
-    const char *before = "";
-    g_string_append(out, ",\"series\":[");
+    json_t *all = json_array();
     for (int i = 0; i < panel->series_count; i++) {
         const figure_series *s = &panel->series[i];
-        if (s->no_line) {
-            continue; // points alone are no curve
+        if (!s->no_line) {
+            // in bytes, for the script that compares it with the strokes of the drawing
+            const colour c = palette_series(THEME_COLOUR, s->colour, i);
+            const double ink[] = {round(255 * c.red), round(255 * c.green), round(255 * c.blue)};
+            json_add(all, json_members(json_object(), "ink:o dashed:b label:o",
+                                       json_numbers(ink, 3), s->secondary || s->style != LINE_SOLID,
+                                       plain_json(s->label != NULL ? s->label : s->name)));
         }
-
-        // in bytes, for the script that compares it with the strokes of the drawing
-        const colour c = palette_series(THEME_COLOUR, s->colour, i);
-        bool dashed = s->secondary || s->style != LINE_SOLID;
-        text_append(out, "%s{\"ink\":[%d,%d,%d],\"dashed\":%s,", before, (int)(255 * c.red + 0.5),
-                    (int)(255 * c.green + 0.5), (int)(255 * c.blue + 0.5),
-                    dashed ? "true" : "false");
-        add_json_text(out, "label", s->label != NULL ? s->label : s->name);
-        g_string_append_c(out, '}');
-        before = ",";
     }
-    g_string_append(out, "]}");
+    return all;
 }
 
-// Places, ranges and curves of all panels as JSON in an attribute, for the script.
+// Places, ranges and curves of all panels as JSON in an attribute, for the script: to turn a place
+// into values.
 static void add_panels(GString *html, const figure *fig, const figure_report *seen)
 {
-    g_autoptr(GString) json = g_string_new("[");
+    json_t *all = json_array();
     for (int i = 0; i < seen->panel_count; i++) {
         const figure_rect *box = &seen->panels[i];
         const figure_range *range = &seen->ranges[i];
-
-        // where the panel stands and what its edges mean, to turn a place into values
-        text_append(json,
-                    "%s{\"box\":[%.2f,%.2f,%.2f,%.2f],\"x\":[%.9g,%.9g],\"y\":[%.9g,%.9g],"
-                    "\"xlog\":%s,\"ylog\":%s,",
-                    i > 0 ? "," : "", box->x, box->y, box->width, box->height, range->x_low,
-                    range->x_high, range->y_low, range->y_high,
-                    range->x_logarithmic ? "true" : "false",
-                    range->y_logarithmic ? "true" : "false");
-
-        // what stands beside the values
-        add_json_text(json, "xname", fig->x.name);
-        g_string_append_c(json, ',');
-        add_json_text(json, "unit", fig->panels[i].y.unit);
-        add_json_series(json, &fig->panels[i]);
+        const double place[] = {box->x, box->y, box->width, box->height};
+        const double x[] = {range->x_low, range->x_high}, y[] = {range->y_low, range->y_high};
+        json_add(all,
+                 json_members(json_object(), "box:o x:o y:o xlog:b ylog:b xname:o unit:o series:o",
+                              json_numbers(place, 4), json_numbers(x, 2), json_numbers(y, 2),
+                              range->x_logarithmic, range->y_logarithmic, plain_json(fig->x.name),
+                              plain_json(fig->panels[i].y.unit), series_json(&fig->panels[i])));
     }
-    g_string_replace(json, "&", "&amp;", 0);
-    g_string_replace(json, "<", "&lt;", 0);
-    g_string_replace(json, "\"", "&quot;", 0);
-    text_append(html, " data-panels=\"%s]\"", json->str);
+    char *json = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(9));
+    loss_unless(json != NULL);
+    g_autofree char *escaped = g_markup_escape_text(json != NULL ? json : "", -1);
+    text_append(html, " data-panels=\"%s\"", escaped);
+    free(json);
+    json_decref(all);
 }
 
 // The figure with what it shows in words, and for the script what its axes mean.

@@ -13,7 +13,6 @@
 #include <strings.h>
 
 #include "render/page/page.h"
-#include "render/page/svg.h"
 #include "render/page/text.h"
 #include "src/base/shipped.h"
 #include "src/base/whole_file.h"

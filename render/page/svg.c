@@ -1,8 +1,6 @@
 // SVG text: ids that do not depend on what was drawn before, and pictures in fewer bytes.
-#include "render/page/svg.h"
+#include "render/page/picture_file.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "render/page/page.h"
@@ -98,81 +96,33 @@ static char *share_symbols(const char *svg, GHashTable *known)
 
 // ==== fewer bytes
 
-// A number of tenths with its separator: " 12.3", "-.4".
-static void add_tenths(GString *out, long tenths)
-{
-    long size = labs(tenths);
-    g_string_append(out, tenths < 0 ? "-" : g_ascii_isalpha(out->str[out->len - 1]) ? "" : " ");
-    if (size >= 10 || size == 0) {
-        text_append(out, "%ld", size / 10);
-    }
-    if (size % 10 != 0) {
-        text_append(out, ".%ld", size % 10);
-    }
-}
-
-// The data of a path of lines alone: to a tenth of a point, lines relative to where the last one
-// ended.
-static void add_lines(GString *out, const char *at)
-{
-    long x = 0, y = 0;
-    char command = ' ', written = ' ';
-    while (*at != '\0') {
-        double to[2];
-        const char *rest;
-        if (*at == 'Z') {
-            g_string_append_c(out, written = 'z');
-        }
-        if (*at == ' ' || strchr("MLZ", *at) != NULL) {
-            command = *at == ' ' ? command : *at;
-            at++;
-            continue;
-        }
-        if (!decimal_read(at, &to[0], &rest) || !decimal_read(rest, &to[1], &rest)) {
-            g_string_append(out, at);
-            return;
-        }
-
-        // rounded where it is, so that no error adds up; a letter only where it changes, but
-        // numbers after a move would be taken for lines
-        const bool move = command == 'M';
-        long next_x = lround(10 * to[0]), next_y = lround(10 * to[1]);
-        if (move || written != 'l') {
-            g_string_append_c(out, written = move ? 'M' : 'l');
-        }
-        add_tenths(out, move ? next_x : next_x - x);
-        add_tenths(out, move ? next_y : next_y - y);
-        x = next_x;
-        y = next_y;
-        at = rest;
-    }
-}
-
 // What a tag says with too many digits or needlessly: a colour in per cent becomes "#0072b2", of a
-// length to a hundredth zeros at its end go, and so does what goes without saying.
+// number zeros at its end go, and so does what goes without saying.
 #define PER_CENT "([-+.\\d]+)%"
+#define NUMBER   "(-?\\d+(?:\\.\\d+)?)"
 #define VERBOSE                                                                                    \
     "rgb\\(" PER_CENT ", *" PER_CENT ", *" PER_CENT "\\)"                                          \
-    "|(?:stroke-opacity:1|fill-opacity:1|stroke-miterlimit:10|fill-rule:nonzero);"                 \
-    "|(?<=[ \"(,:])(-?\\d+(?:\\.\\d+)?)"
+    "|(?:stroke-opacity:1|fill-opacity:1|stroke-miterlimit:10|fill-rule:nonzero);|xlink:(?=href)"  \
+    "| (?=[MLCZ])|(?<=[MLCZ]) |(?<= )" NUMBER "|(?<=[\"(,:])" NUMBER
 
-static gboolean shorten(const GMatchInfo *match, GString *out, gpointer context)
+// How the tag of a line begins.
+#define LINE_TAG "<path style=\"fill:none;"
+
+static gboolean shorten(const GMatchInfo *match, GString *out, gpointer of_lines)
 {
-    (void)context;
-    double value;
-    if (g_match_info_get_match_count(match) == 4) {
+    const int group = g_match_info_get_match_count(match) - 1;
+    if (group == 3) {
         // a byte each, which is all that a screen shows
         g_string_append_c(out, '#');
         for (int i = 1; i <= 3; i++) {
             g_autofree char *share = g_match_info_fetch(match, i);
             text_append(out, "%02x", (unsigned)(2.55 * decimal_parse(share, NULL) + 0.5));
         }
-        return FALSE;
-    }
-    g_autofree char *number = g_match_info_fetch(match, 4);
-    const char *rest;
-    if (number != NULL && decimal_read(number, &value, &rest)) {
-        g_autofree char *text = text_printf("%.2f", value);
+    } else if (group > 3) {
+        // the places of a path are those after a space
+        g_autofree char *number = g_match_info_fetch(match, group), *text = NULL;
+        text = text_printf("%.*f", group == 4 && *(bool *)of_lines ? 1 : 2,
+                           decimal_parse(number, NULL));
         size_t length = strlen(text);
         while (text[length - 1] == '0') {
             length--;
@@ -186,26 +136,16 @@ static gboolean shorten(const GMatchInfo *match, GString *out, gpointer context)
 // A tag in fewer bytes. Outlines of letters are small and keep their hundredths, lines do not.
 static char *short_tag(const char *tag)
 {
-    const char *data = strstr(tag, " d=\""), *end = data != NULL ? strchr(data + 4, '"') : NULL;
-    if (!g_str_has_prefix(tag, "<path style=\"fill:none;") || end == NULL ||
-        strcspn(data + 4, "CcSsQqTtAaHhVv") < (size_t)(end - data - 4)) {
-        return replaced(tag, VERBOSE, shorten, NULL);
-    }
-    g_autofree char *before = g_strndup(tag, (gsize)(data + 4 - tag));
-    g_autofree char *lines = g_strndup(data + 4, (gsize)(end - data - 4));
-    g_autofree char *head = replaced(before, VERBOSE, shorten, NULL);
-    g_autofree char *tail = replaced(end, VERBOSE, shorten, NULL);
-    GString *out = g_string_new(head);
-    add_lines(out, lines);
-    g_string_append(out, tail);
-    return g_string_free(out, FALSE);
+    const char *data = strstr(tag, " d=\"");
+    bool lines = g_str_has_prefix(tag, LINE_TAG) && data != NULL && strchr(data, 'C') == NULL;
+    return replaced(tag, VERBOSE, shorten, &lines);
 }
 
 // Whether two tags are lines of one style, so that the data of the second can go on the first.
 static bool are_one(const char *a, const char *b)
 {
     const char *data = strstr(b, "d=\"M");
-    return data != NULL && g_str_has_prefix(b, "<path style=\"fill:none;") &&
+    return data != NULL && g_str_has_prefix(b, LINE_TAG) &&
            strncmp(a, b, (size_t)(data - b) + 3) == 0 && strstr(b, "transform=") == NULL;
 }
 
