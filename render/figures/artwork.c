@@ -132,16 +132,11 @@ artwork artwork_of_figure(const figure *fig)
     return a;
 }
 
-static void release_figure(void *what)
-{
-    owned_figure_destroy(what);
-}
-
 artwork artwork_of_owned(owned_figure *o)
 {
     artwork a = artwork_of_figure(&o->figure);
     a.owner = o;
-    a.release = release_figure;
+    a.release = owned_figure_destroy;
     return a;
 }
 
@@ -236,12 +231,9 @@ char *artwork_beside(const char *file, const char *ending)
 static status write_text(const char *path, const char *text, fault *f)
 {
     whole_file file;
-    status code = whole_file_open(&file, path, f);
-    if (code == STATUS_OK) {
-        fputs(text, file.stream);
-        code = whole_file_commit(&file, f);
-    }
-    return code;
+    TRY(whole_file_open(&file, path, f));
+    fputs(text, file.stream);
+    return whole_file_commit(&file, f);
 }
 
 status artwork_publish_csv(const artwork *a, const char *path, fault *f)
@@ -266,21 +258,21 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
                        fault *f)
 {
     picture p = artwork_picture(a, o);
-    status code = picture_write(&p, path, f);
+    TRY(picture_write(&p, path, f));
 
     // text of a picture that has none of its own
-    if (code == STATUS_OK && o->look.bare) {
+    if (o->look.bare) {
         g_autofree char *txt = artwork_beside(path, ".txt");
         g_autofree char *caption = text_plain(a->caption != NULL ? a->caption : "");
         g_autofree char *text = text_printf("%s%s%s\n", a->title != NULL ? a->title : "",
                                             caption[0] != '\0' ? "\n\n" : "", caption);
-        code = write_text(txt, text, f);
+        TRY(write_text(txt, text, f));
     }
-    if (code == STATUS_OK && o->latex != NULL) {
+    if (o->latex != NULL) {
         g_autofree char *text = latex_environment(a, o->latex, path);
-        code = write_text(o->latex, text, f);
+        TRY(write_text(o->latex, text, f));
     }
-    return code == STATUS_OK && with_csv ? artwork_publish_csv(a, path, f) : code;
+    return with_csv ? artwork_publish_csv(a, path, f) : STATUS_OK;
 }
 
 void figure_take_range(figure *fig, const figure_options *o)

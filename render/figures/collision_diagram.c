@@ -155,13 +155,13 @@ static void draw_collision(sketch *s, const diagram *d)
 
 status diagram_collision(const figure_order *order, artwork *out, fault *f)
 {
-    diagram *d = diagram_create(order, 140 + BODY_HEIGHT, draw_collision);
+    diagram *d = diagram_create(order, NULL, 140 + BODY_HEIGHT, draw_collision, f);
+    FAIL_IF(d == NULL, f->code);
 
     // the impact, and what the links do after it
     double speed = 0, impulse = 0;
-    status code = diagram_take_impact(d, order, &speed, f);
-    TRY(code);
-    code = predict_velocity_jump(&d->p, &d->before, d->after, &impulse, f);
+    TRY(diagram_take_impact(d, &speed, f));
+    status code = predict_velocity_jump(&d->p, &d->before, d->after, &impulse, f);
     if (code != STATUS_OK) {
         diagram_release(d);
         return code;

@@ -2,7 +2,6 @@
 #include <math.h>
 
 #include "render/figures/diagram.h"
-#include "render/figures/run_figure.h"
 
 #define CONTACT_ACROSS 6.0  // enlargement of what lies across the reference line, 3.1
 #define PEAK_ACROSS    9.0  // across the line to the contact point, 4.6
@@ -146,19 +145,15 @@ static void add_shape_values(diagram *d, const arm_shape *a)
 
 status diagram_contact(const figure_order *order, artwork *out, fault *f)
 {
-    opened_run *run = run_open(order->which->scenario, "method.step=0.01", f);
-    FAIL_IF(run == NULL, f->code);
+    diagram *d = diagram_create(order, "method.step=0.01", 232, draw_contact, f);
+    FAIL_IF(d == NULL, f->code);
 
     // two steps during contact
-    const trace *t = &run->result.trace;
+    const trace *t = &d->run->result.trace;
     size_t first = liveliest_pair(t);
-    diagram *d = diagram_create(order, 232, draw_contact);
     shapes *of = d->shapes = g_new0(shapes, 1);
-    d->p = run->scenario.parameters;
-    d->parameters = parameters_line(&run->scenario);
     of->one = shape_of(&t->rows[first]);
     of->other = shape_of(&t->rows[first + 1 < t->row_count ? first + 1 : first]);
-    run_close(run);
 
     // the numbers, and what is left of the constraint (3.9)
     double a = d->p.arm.length * cos(d->p.wall.angle), b = d->p.arm.length * sin(d->p.wall.angle);
@@ -243,27 +238,20 @@ static const sample *row_before(const trace *t, double contact)
 
 status diagram_deformation(const figure_order *order, artwork *out, fault *f)
 {
-    opened_run *run = run_open(order->which->scenario, NULL, f);
-    FAIL_IF(run == NULL, f->code);
-    const summary *m = &run->result.summary;
-    if (!isfinite(m->first_pulse_time_to_peak_s)) {
-        run_close(run);
-        return fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse to draw", order->which->scenario);
-    }
+    diagram *d = diagram_create(order, NULL, 148, draw_deformation, f);
+    FAIL_IF(d == NULL, f->code);
+    const summary *m = &d->run->result.summary;
+    FAIL_IF(!isfinite(m->first_pulse_time_to_peak_s), diagram_lacks(d, "pulse", f));
 
     // first contact and the peak
-    const trace *t = &run->result.trace;
+    const trace *t = &d->run->result.trace;
     const sample *before = row_before(t, m->first_contact_s);
-    double delay = m->first_pulse_time_to_peak_s, energy;
-    diagram *d = diagram_create(order, 148, draw_deformation);
+    const double delay = m->first_pulse_time_to_peak_s;
+    const double energy = before->kinetic_energy + before->strain_energy;
     shapes *of = d->shapes = g_new0(shapes, 1);
-    d->p = run->scenario.parameters;
-    d->parameters = parameters_line(&run->scenario);
     of->one = shape_of(row_at(t, m->first_contact_s + delay));
     of->one.force = m->first_pulse_peak_N;
     of->other = shape_of(before);
-    energy = before->kinetic_energy + before->strain_energy;
-    run_close(run);
 
     // half the bend on either side of the line, as the energy principle has it
     double wall = d->p.wall.angle, bend = sqrt(2 * energy / d->p.arm.k2);

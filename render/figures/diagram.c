@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-#include "render/figures/run_figure.h"
-
 void diagram_add_value(diagram *d, const char *name, double value, const char *unit)
 {
     const diagram_value added = {name, unit, value};
@@ -46,11 +44,12 @@ void diagram_release(void *what)
     g_free(d->parameters);
     g_array_free(d->values, TRUE);
     g_free(d->shapes);
+    run_close(d->run);
     g_free(d);
 }
 
-diagram *diagram_create(const figure_order *order, double body,
-                        void (*draw)(sketch *s, const diagram *d))
+diagram *diagram_create(const figure_order *order, const char *change, double body,
+                        void (*draw)(sketch *s, const diagram *d), fault *f)
 {
     diagram *d = g_new0(diagram, 1);
     d->draw = draw;
@@ -59,38 +58,39 @@ diagram *diagram_create(const figure_order *order, double body,
     d->frame = (sketch_frame){.title = d->title, .body_height = body, .look = order->options->look};
     parameters_defaults(&d->p, ARM_CORRECTED);
     parameters_resolve(&d->p, NULL);
+    if (order->which->scenario != NULL) {
+        d->run = run_open(order->which->scenario, change, f);
+        if (d->run == NULL) {
+            diagram_release(d);
+            return NULL;
+        }
+        d->p = d->run->scenario.parameters;
+        d->parameters = parameters_line(&d->run->scenario);
+    }
     return d;
 }
 
-status diagram_take_impact(diagram *d, const figure_order *order, double *speed, fault *f)
+status diagram_lacks(diagram *d, const char *what, fault *f)
 {
-    opened_run *run = run_open(order->which->scenario, NULL, f);
-    if (run == NULL) {
-        diagram_release(d);
-        return f->code;
-    }
-    d->p = run->scenario.parameters;
-    d->parameters = parameters_line(&run->scenario);
+    fault_set(f, STATUS_BAD_SCENARIO, "%s: no %s to draw", d->run->scenario.name, what);
+    diagram_release(d);
+    return STATUS_BAD_SCENARIO;
+}
 
-    // the first impact of the run
-    const trace *t = &run->result.trace;
-    status code = STATUS_OK;
-    size_t first = 0;
-    while (first < t->event_count && t->events[first].kind != EVENT_IMPACT) {
-        first++;
+status diagram_take_impact(diagram *d, double *speed, fault *f)
+{
+    const trace *t = &d->run->result.trace;
+    const double *touch = d->run->result.before_impact;
+    for (size_t i = 0; i < t->event_count; i++) {
+        if (t->events[i].kind == EVENT_IMPACT) {
+            *speed = t->events[i].speed;
+            d->impulse = t->events[i].impulse;
+            d->before =
+                (three_body_state){{touch[0], touch[0], touch[1]}, {touch[2], touch[2], touch[3]}};
+            return STATUS_OK;
+        }
     }
-    if (first < t->event_count) {
-        const double *touch = run->result.before_impact;
-        *speed = t->events[first].speed;
-        d->impulse = t->events[first].impulse;
-        d->before =
-            (three_body_state){{touch[0], touch[0], touch[1]}, {touch[2], touch[2], touch[3]}};
-    } else {
-        code = fault_set(f, STATUS_BAD_SCENARIO, "%s: no impact to draw", order->which->scenario);
-        diagram_release(d);
-    }
-    run_close(run);
-    return code;
+    return diagram_lacks(d, "impact", f);
 }
 
 point view_place(const view *v, point at)

@@ -1,7 +1,7 @@
 // Shared by the thesis's diagrams: a drawing with the numbers it shows.
 #pragma once
 
-#include "render/figures/figures.h"
+#include "render/figures/run_figure.h"
 #include "render/page/sketch.h"
 #include "src/predict/predict.h"
 
@@ -15,6 +15,7 @@ typedef struct diagram {
     sketch_frame frame;
     char *title, *caption, *parameters;
     void (*draw)(sketch *s, const struct diagram *d);
+    opened_run *run; // of its scenario; NULL without one
     parameters p;
     GArray *values;          // diagram_value
     three_body_state before; // 4.2: the instant before the impact
@@ -46,16 +47,19 @@ void diagram_angle(sketch *s, point at, angle_arc a);
 // An angle from a dashed line to the right.
 void diagram_link_angle(sketch *s, point at, double radius, double to, const char *markup);
 
-// The first impact of the figure's scenario: d takes its parameters, its impulse and the arm the
-// instant before, *speed that of the contact point [m/s]. Returns the status of the run,
-// STATUS_BAD_SCENARIO if there is no impact; on failure d is released.
-status diagram_take_impact(diagram *d, const figure_order *order, double *speed, fault *f);
-
-// A diagram with the corrected arm's default parameters, drawn by `draw`; `body` is the drawing's
-// height [pt].
-diagram *diagram_create(const figure_order *order, double body,
-                        void (*draw)(sketch *s, const diagram *d));
+// A diagram of the run of the order's scenario, with one parameter changed if `change` is not NULL,
+// or without a scenario of the corrected arm's default parameters. It is drawn by `draw`; `body` is
+// the drawing's height [pt]. NULL with the reason if the run fails.
+diagram *diagram_create(const figure_order *order, const char *change, double body,
+                        void (*draw)(sketch *s, const diagram *d), fault *f);
 void diagram_release(void *what);
+
+// The first impact of the run: its impulse, the arm the instant before, and *speed that of the
+// contact point [m/s]. Fails as diagram_lacks if there is none.
+status diagram_take_impact(diagram *d, double *speed, fault *f);
+
+// Releases a diagram whose run has not what it shows. Returns STATUS_BAD_SCENARIO.
+status diagram_lacks(diagram *d, const char *what, fault *f);
 
 // Adds a number to those that the diagram's CSV lists.
 void diagram_add_value(diagram *d, const char *name, double value, const char *unit);

@@ -82,8 +82,7 @@ static void add_arm_values(diagram *d)
 
 status diagram_links(const figure_order *order, artwork *out, fault *f)
 {
-    (void)f;
-    diagram *d = diagram_create(order, 190, draw_links);
+    diagram *d = diagram_create(order, NULL, 190, draw_links, f);
     add_arm_values(d);
 
     return diagram_open(
@@ -156,8 +155,7 @@ static void draw_free_bodies(sketch *s, const diagram *d)
 
 status diagram_free_bodies(const figure_order *order, artwork *out, fault *f)
 {
-    (void)f;
-    diagram *d = diagram_create(order, 158, draw_free_bodies);
+    diagram *d = diagram_create(order, NULL, 158, draw_free_bodies, f);
     add_arm_values(d);
     return diagram_open(
         d, out,
@@ -210,13 +208,14 @@ static void draw_springs(sketch *s, const diagram *d)
 
 status diagram_springs(const figure_order *order, artwork *out, fault *f)
 {
-    diagram *d = diagram_create(order, 108, draw_springs);
+    diagram *d = diagram_create(order, NULL, 108, draw_springs, f);
     double speed = 0;
-    parameters defaults = d->p;
-    TRY(diagram_take_impact(d, order, &speed, f));
+    FAIL_IF(d == NULL, f->code);
+    TRY(diagram_take_impact(d, &speed, f));
 
     // drawn with the defaults, not with the run's wall
-    d->p = defaults;
+    parameters_defaults(&d->p, ARM_CORRECTED);
+    parameters_resolve(&d->p, NULL);
     add_arm_values(d);
 
     diagram_add_value(d, "stiffness in series",
@@ -388,9 +387,7 @@ static void draw_sensor(sketch *s, const diagram *d)
 
 status diagram_sensor(const figure_order *order, artwork *out, fault *f)
 {
-    (void)f;
-
-    diagram *d = diagram_create(order, 186 + 52 / 25.4 * 72, draw_sensor);
+    diagram *d = diagram_create(order, NULL, 186 + 52 / 25.4 * 72, draw_sensor, f);
     const sensor_parameters *p = &d->p.sensor;
     diagram_add_value(d, "measuring resistor", p->fsr_divider, "ohm");
     diagram_add_value(d, "gain resistor R5", R_GAIN, "ohm");

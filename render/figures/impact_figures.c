@@ -5,65 +5,51 @@
 
 #include "render/figures/run_figure.h"
 
-enum { PANELS = 2, ASSUMED_POINTS = 101, MARKS = 2 };
+enum { PANELS = 2, ASSUMED_POINTS = 101 };
 
-// A figure of a run's first pulse, owned by its plot.
+// A figure of a run's first pulse.
 typedef struct impact_figure {
     owned_figure *plot;
-    figure_level peak_level;
-    figure_mark marks[MARKS];
-    figure_interval interval;
-    figure_impulse impulse;
-    figure_measure measure;
     const opened_run *run;
     double contact, peak_time, peak; // first pulse [s], [s], [N]
 } impact_figure;
 
-// Runs the scenario and describes what all these figures share. NULL if it fails.
-static impact_figure *new_impact(const figure_order *order, fault *f)
+// Runs the scenario and describes what all these figures share, of `panels` panels. Without a plot
+// if it fails.
+static impact_figure open_impact(const figure_order *order, int panels, fault *f)
 {
-    const char *of = order->which->scenario;
-    opened_run *run = run_open(of, NULL, f);
-    FAIL_IF(run == NULL, NULL);
+    impact_figure fig = {.plot = NULL};
+    owned_figure *o = run_plot_create(order, NULL, panels, &fig.run, f);
+    FAIL_IF(o == NULL, fig);
 
     // the pulse that the figure is about
-    const summary *m = &run->result.summary;
-    const double at = m->first_contact_s + m->first_pulse_time_to_peak_s;
-    if (!isfinite(at)) {
-        fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to draw", of);
-        run_close(run);
-        return NULL;
-    }
-
-    owned_figure *o = owned_figure_create(PANELS, "%s", order->title);
-    owned_figure_own(o, run, run_close);
-    o->figure.parameters = owned_figure_keep(o, parameters_line(&run->scenario));
+    const summary *m = &fig.run->result.summary;
+    fig.contact = m->first_contact_s;
+    fig.peak_time = fig.contact + m->first_pulse_time_to_peak_s;
+    fig.peak = m->first_pulse_peak_N;
     figure_take_look(&o->figure, &order->options->look);
-    impact_figure *fig = owned_figure_keep(o, g_new(impact_figure, 1));
-    *fig = (impact_figure){.plot = o,
-                           .run = run,
-                           .contact = m->first_contact_s,
-                           .peak_time = at,
-                           .peak = m->first_pulse_peak_N};
+    if (isfinite(fig.peak_time)) {
+        fig.plot = o;
+    } else {
+        owned_figure_destroy(o);
+        fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to draw",
+                  order->which->scenario);
+    }
     return fig;
 }
 
-static void add_series(impact_figure *fig, int panel, figure_series s)
-{
-    fig->plot->series[panel][fig->plot->panels[panel].series_count++] = s;
-}
-
 // A recorded signal over time, in the rows' own numbers.
-static void add_signal(impact_figure *fig, int panel, const char *name, const char *label)
+static figure_series *add_signal(impact_figure *fig, int panel, const char *name, const char *label)
 {
     const trace_run rows = {
         .scenario = &fig->run->scenario, .result = &fig->run->result, .points = true};
-    figure_series s = trace_series(&rows, signal_index(name), fig->plot);
-    s.label = label;
-    s.style = LINE_SOLID;
-    add_series(fig, panel, s);
+    const int index = signal_index(name);
+    figure_series *s = owned_figure_add(fig->plot, panel, trace_series(&rows, index, fig->plot));
+    s->label = label;
+    s->style = LINE_SOLID;
     fig->plot->panels[panel].y.name = name;
-    fig->plot->panels[panel].y.unit = signal_table[signal_index(name)].unit;
+    fig->plot->panels[panel].y.unit = signal_table[index].unit;
+    return s;
 }
 
 // ---- the force pulse
@@ -71,63 +57,54 @@ static void add_signal(impact_figure *fig, int panel, const char *name, const ch
 // An axis of time from low to high, with marks at first contact and at the peak.
 static void show_pulse(impact_figure *fig, double low, double high)
 {
-    fig->marks[0] = (figure_mark){fig->contact, "<i>t</i><sub>0</sub>"};
-    fig->marks[1] = (figure_mark){fig->peak_time, "<i>t</i><sub>0</sub> + <i>T</i>"};
-    fig->plot->figure.marks = fig->marks;
+    figure_mark *marks = owned_figure_keep(fig->plot, g_new0(figure_mark, 2));
+    marks[0] = (figure_mark){fig->contact, "<i>t</i><sub>0</sub>"};
+    marks[1] = (figure_mark){fig->peak_time, "<i>t</i><sub>0</sub> + <i>T</i>"};
+    fig->plot->figure.marks = marks;
     fig->plot->figure.mark_count = 2;
-
     fig->plot->figure.x =
         (figure_axis){"time", "Time <i>t</i>", .unit = "s", .low = low, .high = high};
 }
 
 status figure_force_profile(const figure_order *order, artwork *out, fault *f)
 {
-    impact_figure *fig = new_impact(order, f);
-    if (fig == NULL) {
-        return f->code;
-    }
-
-    const summary *m = &fig->run->result.summary;
-    figure_panel *panel = &fig->plot->panels[0];
-    double pulse = isfinite(m->first_pulse_s) ? m->first_pulse_s : fig->peak_time - fig->contact;
-    add_signal(fig, 0, "force", NULL);
+    impact_figure fig = open_impact(order, 1, f);
+    FAIL_IF(fig.plot == NULL, f->code);
+    owned_figure *o = fig.plot;
+    figure_panel *panel = &o->panels[0];
+    const summary *m = &fig.run->result.summary;
+    double pulse = isfinite(m->first_pulse_s) ? m->first_pulse_s : fig.peak_time - fig.contact;
+    add_signal(&fig, 0, "force", NULL);
     panel->y.label = "Contact force <i>f</i>";
     panel->weight = 1.7;
-    panel->y.low = -0.04 * fig->peak;
-    panel->y.high = 1.3 * fig->peak;
+    panel->y.low = -0.04 * fig.peak;
+    panel->y.high = 1.3 * fig.peak;
 
     // the impact, with its own axis
-    fig->impulse = (figure_impulse){fig->contact, m->contact_impulse_Ns};
-    panel->impulses = &fig->impulse;
+    panel->impulses = OWNED(o, figure_impulse, fig.contact, m->contact_impulse_Ns);
     panel->impulse_count = 1;
     panel->impulse_label = "Impulse <i>p</i>";
     panel->impulse_unit = "N s";
 
-    fig->peak_level = (figure_level){
-        fig->peak,
-        owned_figure_printf(fig->plot, "<i>f</i><sub>max</sub> = %.3g\u2009N", fig->peak)};
-    panel->levels = &fig->peak_level;
+    panel->levels = OWNED(o, figure_level, fig.peak,
+                          owned_figure_printf(o, "<i>f</i><sub>max</sub> = %.3g\u2009N", fig.peak));
     panel->level_count = 1;
 
     // the contact is shaded; its labels stand above the measure of T
-    fig->interval = (figure_interval){fig->contact, fig->contact + pulse};
-    fig->plot->figure.marks_above = true;
-    fig->plot->figure.intervals = &fig->interval;
-    fig->plot->figure.interval_count = 1;
-
-    show_pulse(fig, fig->contact - 0.25 * pulse, fig->contact + 1.25 * pulse);
-    fig->plot->figure.panel_count = 1;
-    fig->plot->figure.caption =
+    o->figure.marks_above = true;
+    o->figure.intervals = OWNED(o, figure_interval, fig.contact, fig.contact + pulse);
+    o->figure.interval_count = 1;
+    show_pulse(&fig, fig.contact - 0.25 * pulse, fig.contact + 1.25 * pulse);
+    o->figure.caption =
         "First pulse of corrected/first-impact, 1\u2009V. The impact is an impulse that takes no "
         "time (arrow, its own axis); the force that follows is finite and grows to its peak while "
         "the beam bends. Shaded: contact.";
 
     // T stands above the peak, from contact to it
-    fig->measure = (figure_measure){fig->contact, fig->peak_time, 1.13 * fig->peak,
-                                    owned_figure_printf(fig->plot, "<i>T</i> = %.1f\u2009ms",
-                                                        1e3 * (fig->peak_time - fig->contact))};
-    fig->plot->figure.measure = &fig->measure;
-    *out = artwork_of_owned(fig->plot);
+    o->figure.measure = OWNED(
+        o, figure_measure, fig.contact, fig.peak_time, 1.13 * fig.peak,
+        owned_figure_printf(o, "<i>T</i> = %.1f\u2009ms", 1e3 * (fig.peak_time - fig.contact)));
+    *out = artwork_of_owned(o);
     g_clear_pointer(&out->alternative, g_free); // its title says it
     return STATUS_OK;
 }
@@ -173,9 +150,9 @@ static void add_assumption(impact_figure *fig, int panel, const assumption *a, c
     }
 
     // dashed, as it is no result of the run
-    add_series(fig, panel,
-               (figure_series){"assumed", label, .x = x, .y = y, .count = ASSUMED_POINTS,
-                               .colour = 5, .style = LINE_DASHED});
+    owned_figure_add(fig->plot, panel,
+                     (figure_series){"assumed", label, .x = x, .y = y, .count = ASSUMED_POINTS,
+                                     .colour = 5, .style = LINE_DASHED});
 }
 
 // Largest distance of a recorded signal from the assumption between contact and peak.
@@ -201,37 +178,32 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
         {"Angular velocity <i>θ̇</i><sub>2</sub>", "Angular velocity <i>θ̇</i><sub>3</sub>"},
         {"Angle <i>θ</i><sub>2</sub>", "Angle <i>θ</i><sub>3</sub>"}};
     const bool of_angle = order->which->variant == 1;
-    impact_figure *fig = new_impact(order, f);
-    if (fig == NULL) {
-        return f->code;
-    }
+    impact_figure fig = open_impact(order, PANELS, f);
+    FAIL_IF(fig.plot == NULL, f->code);
 
     // where the assumed motion starts
-    const sample *after = row_after(&fig->run->result.trace);
+    const sample *after = row_after(&fig.run->result.trace);
     const double angles[] = {after->first_angle, after->last_angle};
     const double velocities[] = {after->first_velocity, after->last_velocity};
 
-    double most[PANELS], period = fig->peak_time - fig->contact;
+    double most[PANELS], period = fig.peak_time - fig.contact;
     for (int i = 0; i < PANELS; i++) {
         const char *name = signals[of_angle][i];
-        add_signal(fig, i, name, i == 0 ? "computed" : NULL);
         // one legend speaks for both panels, so both have its colours
-        fig->plot->series[i][0].colour = 0;
+        add_signal(&fig, i, name, i == 0 ? "computed" : NULL)->colour = 0;
 
         const assumption a = {angles[i], velocities[i], period, of_angle};
-        add_assumption(fig, i, &a,
+        add_assumption(&fig, i, &a,
                        i > 0      ? NULL
                        : of_angle ? "quadratic approximation (4.19)"
                                   : "linear approximation");
-        most[i] = departure(fig, name, &a);
-        fig->plot->panels[i].y.label = labels[of_angle][i];
+        most[i] = departure(&fig, name, &a);
+        fig.plot->panels[i].y.label = labels[of_angle][i];
     }
 
-    show_pulse(fig, fig->contact - 0.4 * period, fig->contact + 1.4 * period);
-    fig->plot->figure.panel_count = PANELS;
-
-    fig->plot->figure.caption =
-        owned_figure_printf(fig->plot,
+    show_pulse(&fig, fig.contact - 0.4 * period, fig.contact + 1.4 * period);
+    fig.plot->figure.caption =
+        owned_figure_printf(fig.plot,
                             "First and last link of corrected/first-impact from first contact to "
                             "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
                             "departure between them: %.2g and %.2g\u2009%s.",
@@ -241,7 +213,6 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
                                      : "The predictors assume that velocities fall to zero in a "
                                        "straight line",
                             most[0], most[1], of_angle ? "rad" : "rad/s");
-
-    *out = artwork_of_owned(fig->plot);
+    *out = artwork_of_owned(fig.plot);
     return STATUS_OK;
 }

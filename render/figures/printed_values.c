@@ -112,9 +112,7 @@ status printed_values_figure(const figure_order *order, artwork *out, fault *f)
     static const figure_tick voltages[] = {{1, "1"}, {2, "2"}, {5, "5"}, {10, "10"}};
     const printed_kind *kind = &kinds[order->which->variant];
     const thesis_tables *all = computed_tables(f);
-    if (all == NULL) {
-        return f->code;
-    }
+    FAIL_IF(all == NULL, f->code);
 
     owned_figure *plot = owned_figure_create(PANELS, "%s", order->title);
     figure *fig = &plot->figure;

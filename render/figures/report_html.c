@@ -82,9 +82,7 @@ static status add_png(GString *html, const picture *p, const char *alternative, 
 static status add_svg(GString *html, const picture *p, guint index, GHashTable *letters, fault *f)
 {
     g_autofree char *svg = picture_svg(p, f);
-    if (svg == NULL) {
-        return f->code;
-    }
+    FAIL_IF(svg == NULL, f->code);
     g_autofree char *prefix = text_printf("i%u-", index);
     g_autofree char *small = svg_for_page(svg, prefix, letters);
     g_string_append(html, small);

@@ -48,6 +48,17 @@ opened_run *run_open_changed(const char *name, const char *const *changes, int c
     return NULL;
 }
 
+owned_figure *run_plot_create(const figure_order *order, const char *change, int panels,
+                              const opened_run **run, fault *f)
+{
+    opened_run *opened = run_open(order->which->scenario, change, f);
+    FAIL_IF(opened == NULL, NULL);
+    owned_figure *o = owned_figure_create(panels, "%s", order->title);
+    *run = owned_figure_own(o, opened, run_close);
+    o->figure.parameters = owned_figure_keep(o, parameters_line(&opened->scenario));
+    return o;
+}
+
 // ---- the signals asked for
 
 const char *nearest_signal(const char *name)

@@ -2,8 +2,7 @@
 // data.
 #pragma once
 
-#include "render/figures/artwork.h"
-#include "render/plot/trace_plot.h"
+#include "render/figures/figures.h"
 
 // --- scenarios run for figures
 
@@ -22,6 +21,11 @@ void run_close(void *run);
 // requested it.
 opened_run *run_open_changed(const char *name, const char *const *changes, int count,
                              run_monitor *monitor, fault *f);
+
+// A figure of empty panels with an order's title and a run of its scenario, which it owns: *run.
+// NULL with the reason if the run fails.
+owned_figure *run_plot_create(const figure_order *order, const char *change, int panels,
+                              const opened_run **run, fault *f);
 
 // The recorded signal whose name is nearest to a misspelt one.
 const char *nearest_signal(const char *name);

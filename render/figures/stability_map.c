@@ -31,14 +31,11 @@ typedef struct newmark_kind {
 // A map with everything its figure borrows.
 struct newmark_map {
     const newmark_kind *kind;
-    const opened_run *run; // of reference
-    scenario base;         // borrowed from it
+    scenario base;         // of the run of reference, which the plot owns
     double from, peak;     // of its first pulse: first contact [s] and force [N]
     double force[SAMPLES]; // in the window [N]
 
-    owned_figure *plot; // owns this
-    figure_map maps[MAP_PANELS];
-    figure_colours colours[MAP_PANELS];
+    owned_figure *plot;                        // owns this
     double beta[MAP_COLUMNS], gamma[MAP_ROWS]; // middles of the cells
     double values[MAP_PANELS][MAP_COLUMNS * MAP_ROWS];
     double ring_beta[MAP_RINGS], ring_gamma[MAP_RINGS];
@@ -61,9 +58,8 @@ struct newmark_map {
 static void add_layer(newmark_map *m, figure_series layer)
 {
     for (int panel = 0; panel < MAP_PANELS; panel++) {
-        figure_series *out = &m->plot->series[panel][m->plot->panels[panel].series_count++];
-        *out = layer;
-        out->shade = layer.shade != NULL ? m->ring_value[panel] : NULL;
+        layer.shade = layer.shade != NULL ? m->ring_value[panel] : NULL;
+        owned_figure_add(m->plot, panel, layer);
     }
 }
 
@@ -82,34 +78,6 @@ static gpointer compute_cells(gpointer data)
             m->kind->value(m, panel, m->beta[cell / rows], m->gamma[cell % rows]);
     }
     return NULL;
-}
-
-// A map with its run of reference; NULL with STATUS_BAD_SCENARIO if that has no pulse, or with the
-// run's status.
-static newmark_map *newmark_map_create(const newmark_kind *kind, const figure_order *order,
-                                       fault *f)
-{
-    opened_run *run = run_open(order->which->scenario, kind->change, f);
-    FAIL_IF(run == NULL, NULL);
-    const summary *pulse = &run->result.summary;
-    if (!isfinite(pulse->first_contact_s) || !(pulse->first_pulse_peak_N > 0)) {
-        fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to compare",
-                  order->which->scenario);
-        run_close(run);
-        return NULL;
-    }
-
-    owned_figure *o = owned_figure_create(MAP_PANELS, "%s", order->title);
-    newmark_map *m = owned_figure_keep(o, g_new0(newmark_map, 1));
-    m->plot = o;
-    m->kind = kind;
-    m->run = owned_figure_own(o, run, run_close);
-    m->base = run->scenario;
-    m->from = pulse->first_contact_s;
-    m->peak = pulse->first_pulse_peak_N;
-    m->base.parameters.run.duration = m->from + WINDOW + kind->beyond;
-    o->figure.parameters = owned_figure_keep(o, parameters_line(&run->scenario));
-    return m;
 }
 
 static void compute(newmark_map *m)
@@ -144,19 +112,18 @@ static void compute(newmark_map *m)
 
 // ---- the picture
 
-static artwork open_map(newmark_map *m, const figure_options *o)
+static void describe(newmark_map *m, const figure_options *o)
 {
+    const newmark_kind *kind = m->kind;
     for (int panel = 0; panel < MAP_PANELS; panel++) {
-        m->maps[panel] = (figure_map){m->beta, m->gamma, .columns = (size_t)m->kind->columns,
-                                      .rows = (size_t)m->kind->rows, .z = m->values[panel]};
-        m->colours[panel] = (figure_colours){
-            .axis = m->kind->scale, .reversed = true, .bar = panel == MAP_PANELS - 1};
         figure_panel *p = &m->plot->panels[panel];
-        p->heading = m->kind->headings[panel];
+        p->heading = kind->headings[panel];
         p->y = (figure_axis){"gamma", "<i>γ</i>", .low = GAMMA_LOW, .high = GAMMA_HIGH};
         p->weight = WEIGHT;
-        p->map = &m->maps[panel];
-        p->colours = &m->colours[panel];
+        p->map = OWNED(m->plot, figure_map, m->beta, m->gamma, .columns = (size_t)kind->columns,
+                       .rows = (size_t)kind->rows, .z = m->values[panel]);
+        p->colours = OWNED(m->plot, figure_colours, .axis = kind->scale, .reversed = true,
+                           .bar = panel == MAP_PANELS - 1);
     }
 
     figure *fig = &m->plot->figure;
@@ -164,8 +131,30 @@ static artwork open_map(newmark_map *m, const figure_options *o)
     fig->columns = MAP_PANELS;
     fig->common_legend = fig->shared_y = true;
     figure_take_look(fig, &o->look);
+}
 
-    return artwork_of_owned(m->plot);
+// A map without its cells, and the run of reference; NULL with STATUS_BAD_SCENARIO if that has no
+// pulse, or with the run's status.
+static newmark_map *newmark_map_create(const newmark_kind *kind, const figure_order *order,
+                                       const opened_run **run, fault *f)
+{
+    owned_figure *o = run_plot_create(order, kind->change, MAP_PANELS, run, f);
+    FAIL_IF(o == NULL, NULL);
+    newmark_map *m = owned_figure_keep(o, g_new0(newmark_map, 1));
+    m->plot = o;
+    m->kind = kind;
+    m->base = (*run)->scenario;
+    m->from = (*run)->result.summary.first_contact_s;
+    m->peak = (*run)->result.summary.first_pulse_peak_N;
+    m->base.parameters.run.duration = m->from + WINDOW + kind->beyond;
+    if (!isfinite(m->from) || !(m->peak > 0)) {
+        fault_set(f, STATUS_BAD_SCENARIO, "%s: no pulse of the contact force to compare",
+                  order->which->scenario);
+        owned_figure_destroy(o);
+        return NULL;
+    }
+    describe(m, order->options);
+    return m;
 }
 
 // ==== the figures
@@ -253,10 +242,9 @@ status stability_map(const figure_order *order, artwork *out, fault *f)
                   .low = 0.01,
                   .high = 100},
         .value = newmark_error};
-    newmark_map *m = newmark_map_create(&kind, order, f);
-    if (m == NULL) {
-        return f->code;
-    }
+    const opened_run *run;
+    newmark_map *m = newmark_map_create(&kind, order, &run, f);
+    FAIL_IF(m == NULL, f->code);
     m->plot->figure.caption = owned_figure_printf(
         m->plot,
         "Newmark's method on the corrected arm (corrected/first-impact, 1\u2009V). Error: root of "
@@ -268,10 +256,10 @@ status stability_map(const figure_order *order, artwork *out, fault *f)
         "energy no longer balanced. Rings have the colour of their own method's error.",
         1e3 * WINDOW);
 
-    sample_force(&m->run->result.trace, m->from, m->force);
+    sample_force(&run->result.trace, m->from, m->force);
     compute(m);
     add_rings(m);
-    *out = open_map(m, order->options);
+    *out = artwork_of_owned(m->plot);
     return STATUS_OK;
 }
 
@@ -311,10 +299,9 @@ status printed_stability_map(const figure_order *order, artwork *out, fault *f)
                                                 .low = 0.5,
                                                 .high = 500},
                                       .value = printed_force};
-    newmark_map *m = newmark_map_create(&kind, order, f);
-    if (m == NULL) {
-        return f->code;
-    }
+    const opened_run *run;
+    newmark_map *m = newmark_map_create(&kind, order, &run, f);
+    FAIL_IF(m == NULL, f->code);
     m->plot->figure.caption = owned_figure_printf(
         m->plot,
         "The printed model (thesis/fig-3-4, 1\u2009V), largest contact force of the %g\u2009ms "
@@ -326,6 +313,6 @@ status printed_stability_map(const figure_order *order, artwork *out, fault *f)
         1e3 * WINDOW, m->peak);
 
     compute(m);
-    *out = open_map(m, order->options);
+    *out = artwork_of_owned(m->plot);
     return STATUS_OK;
 }

@@ -257,9 +257,7 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
 {
     const char *table = order->which->id + 1;
     const thesis_tables *all = computed_tables(f);
-    if (all == NULL) {
-        return f->code;
-    }
+    FAIL_IF(all == NULL, f->code);
 
     // a column for each voltage
     table_page *t = new_table(order);
@@ -299,9 +297,7 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
 status table_errors(const figure_order *order, artwork *out, fault *f)
 {
     const thesis_tables *all = computed_tables(f);
-    if (all == NULL) {
-        return f->code;
-    }
+    FAIL_IF(all == NULL, f->code);
 
     table_page *t = new_table(order);
     table_add_column(t, "Row", 3, TEXT_LEFT);

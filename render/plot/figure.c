@@ -1,4 +1,5 @@
 // A figure: its look and size, its layers painted from the lowest to the uppermost, and its files.
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -37,12 +38,21 @@ owned_figure *owned_figure_create(int panels, const char *format, ...)
     return o;
 }
 
-void owned_figure_destroy(owned_figure *o)
+void owned_figure_destroy(void *owned)
 {
+    owned_figure *o = owned;
     if (o != NULL) {
         g_array_free(o->kept, TRUE);
         g_free(o);
     }
+}
+
+figure_series *owned_figure_add(owned_figure *o, int panel, figure_series s)
+{
+    assert(o->panels[panel].series_count < PANEL_SERIES);
+    figure_series *added = &o->series[panel][o->panels[panel].series_count++];
+    *added = s;
+    return added;
 }
 
 void *owned_figure_own(owned_figure *o, void *thing, GDestroyNotify end)

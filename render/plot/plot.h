@@ -9,6 +9,7 @@
 
 #include <cairo.h>
 #include <glib.h>
+#include <string.h>
 
 #include "render/page/page.h"
 #include "src/base/csv.h"
@@ -182,7 +183,10 @@ typedef struct owned_figure {
 // accepted.
 owned_figure *owned_figure_create(int panels, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
-void owned_figure_destroy(owned_figure *o);
+void owned_figure_destroy(void *owned);
+
+// Adds a series to a panel, and returns it.
+figure_series *owned_figure_add(owned_figure *o, int panel, figure_series s);
 
 // Gives something to the figure, which ends it by `end`, and returns it; a block from g_malloc;
 // room for numbers; and a text as text_printf makes it.
@@ -191,6 +195,10 @@ void *owned_figure_keep(owned_figure *o, void *block);
 double *owned_figure_numbers(owned_figure *o, size_t count);
 const char *owned_figure_printf(owned_figure *o, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+
+// A copy of what an initialiser says, kept by the figure: OWNED(o, figure_level, angle, "wall").
+#define OWNED(o, type, ...)                                                                        \
+    ((type *)memcpy(owned_figure_keep(o, g_new(type, 1)), &(type){__VA_ARGS__}, sizeof(type)))
 
 // Applies the given look to a figure; fields that are zero have no effect.
 void figure_take_look(figure *fig, const page_look *look);
