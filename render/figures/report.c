@@ -70,9 +70,8 @@ static void put_title_page(cairo_t *cr, PangoContext *context, const report_cont
 static status paint_page(cairo_t *cr, const void *what, fault *f)
 {
     const report_page *page = what;
-    status code = text_check_font(f);
-    TRY(code);
-
+    TRY(text_check_font(f));
+    status code = STATUS_OK;
     double y = PAGE_MARGIN;
     PangoContext *context = text_context_create();
     if (page->number == 0) {
@@ -163,13 +162,10 @@ static status add_figures(report_content *r, fault *f)
     for (int i = 0; i < thesis_figure_count(); i++) {
         const thesis_figure *which = thesis_figure_at(i);
         report_item item = {.scenario = which->scenario, .model = which->model};
-        status code = figure_open(which, &options, &item.drawn, f);
-        TRY(code);
-
+        TRY(figure_open(which, &options, &item.drawn, f));
         item.command = text_printf("impactlab figures %s", which->id);
         g_array_append_val(r->items, item);
-        code = report_item_done(r, f);
-        TRY(code);
+        TRY(report_item_done(r, f));
     }
     return STATUS_OK;
 }
@@ -184,16 +180,13 @@ static void add_parameters(report_content *r)
     parameters_resolve(&printed, NULL);
 
     // a table for each group
+    static const table_column columns[] = {
+        {"Parameter", 3.7}, {"Corrected", 1.1}, {"Printed", 1.1}, {"Unit", 0.9}, {"Meaning", 3.2}};
     for (int i = 0; i < parameter_count;) {
         const char *group = parameter_table[i].path;
         size_t length = strcspn(group, ".");
         g_autofree char *title = text_printf("Parameters: %.*s", (int)length, group);
-        table_page *t = table_create(title);
-        table_add_column(t, "Parameter", 3.7, TEXT_LEFT);
-        table_add_column(t, "Corrected", 1.1, TEXT_LEFT);
-        table_add_column(t, "Printed", 1.1, TEXT_LEFT);
-        table_add_column(t, "Unit", 0.9, TEXT_LEFT);
-        table_add_column(t, "Meaning", 3.2, TEXT_LEFT);
+        table_page *t = table_create(title, columns, G_N_ELEMENTS(columns));
 
         for (; i < parameter_count && strncmp(parameter_table[i].path, group, length + 1) == 0;
              i++) {
@@ -222,20 +215,16 @@ static void clear_item(gpointer data)
     g_free(item->command);
 }
 
-// ---- the whole
-
 // ---- scenarios and recipes of one's own
 
 static status open_scenario(report_item *item, const char *name, run_monitor *monitor, fault *f)
 {
     const scenario *s;
-    status code = scenario_figure_open(name, monitor, &item->drawn, &s, f);
-    if (code == STATUS_OK) {
-        item->scenario = s->name;
-        item->model = s->parameters.arm.model == ARM_PRINTED ? "printed" : "corrected";
-        item->command = text_printf("impactlab run %s --plot FILE.pdf", name);
-    }
-    return code;
+    TRY(scenario_figure_open(name, monitor, &item->drawn, &s, f));
+    item->scenario = s->name;
+    item->model = s->parameters.arm.model == ARM_PRINTED ? "printed" : "corrected";
+    item->command = text_printf("impactlab run %s --plot FILE.pdf", name);
+    return STATUS_OK;
 }
 
 static status open_recipe(report_item *item, const char *path, fault *f)
@@ -253,18 +242,17 @@ static status open_recipe(report_item *item, const char *path, fault *f)
 
 static status add_own(report_content *r, char *const *names, int count, fault *f)
 {
-    status code = STATUS_OK;
-    for (int i = 0; i < count && code == STATUS_OK; i++) {
+    for (int i = 0; i < count; i++) {
         report_item item = {0};
-        code = recipe_is(names[i]) ? open_recipe(&item, names[i], f)
-                                   : open_scenario(&item, names[i], r->monitor, f);
-        if (code == STATUS_OK) {
-            g_array_append_val(r->items, item);
-            code = report_item_done(r, f);
-        }
+        TRY(recipe_is(names[i]) ? open_recipe(&item, names[i], f)
+                                : open_scenario(&item, names[i], r->monitor, f));
+        g_array_append_val(r->items, item);
+        TRY(report_item_done(r, f));
     }
-    return code;
+    return STATUS_OK;
 }
+
+// ---- the whole
 
 status report_write(const char *folder, char *const *names, int count, run_monitor *monitor,
                     fault *f)

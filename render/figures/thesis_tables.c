@@ -36,9 +36,9 @@ const table_row *computed_row(const thesis_tables *t, const char *table, const c
 
 // ==== pages
 
-static table_page *new_table(const figure_order *order)
+static table_page *new_table(const figure_order *order, const table_column *columns, size_t count)
 {
-    table_page *t = table_create(order->title);
+    table_page *t = table_create(order->title, columns, count);
     t->look = order->options->look;
     return t;
 }
@@ -60,46 +60,44 @@ __attribute__((format(printf, 3, 4))) static status open_table(table_page *t, ar
 // Below this width a parameter's description stands above its row [mm].
 #define DESCRIPTIONS_BESIDE 120.0
 
-// A parameter of the lab with what the thesis prints for it.
-static void add_motor_row(table_page *t, const parameters *p, const char *symbol,
-                          const char *printed, const char *path)
-{
-    char unit[64];
-    int index = parameter_find(path);
-    const parameter_info *info = &parameter_table[index];
-    text_unit(info->unit, unit, sizeof unit);
-    g_autofree char *used =
-        text_printf("%.6g\u2009%s", parameter_get(p, index), strcmp(unit, "ohm") == 0 ? "Ω" : unit);
-    g_autofree char *name = text_printf("%s: %s", path, info->description);
-    if (t->column_count == 3) {
-        table_add_group(t, name);
-    }
-    table_add_row(t, (const char *[]){symbol, printed, used, name});
-}
+// Parameters of the lab with what the thesis prints for them.
+static const struct {
+    const char *symbol, *printed, *path;
+} constants[] = {
+    {"<i>k</i><sub>B</sub>", "2.443\u2009V·s/rad", "motor.back_emf"},
+    {"<i>k</i><sub>T</sub>", "0.249092\u2009kg·m/A", "motor.torque_constant"},
+    {"<i>R</i><sub>a</sub>", "33.6\u2009Ω", "motor.resistance"},
+    {"<i>k</i><sub>fr</sub>", "5.4192·10<sup>−3</sup>\u2009N·m·s/rad", "motor.viscous_friction"},
+    {"<i>k</i><sub>st</sub>", "0.045\u2009N·m", "motor.stiction"},
+    {"", "6.02 (section 2.3)", "motor.amplifier_gain"},
+    {"", "10\u2009V (section 2.3)", "motor.voltage_limit"},
+};
 
 status table_motor(const figure_order *order, artwork *out, fault *f)
 {
+    static const table_column columns[] = {
+        {"Symbol", 0.75}, {"Thesis", 1.75}, {"As used", 1.75}, {"Parameter", 3.2}};
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
     TRY(parameters_resolve(&p, f));
 
-    table_page *t = new_table(order);
-    table_add_column(t, "Symbol", 0.75, TEXT_LEFT);
-    table_add_column(t, "Thesis", 1.75, TEXT_LEFT);
-    table_add_column(t, "As used", 1.75, TEXT_LEFT);
-    if (!(t->look.width > 0 && t->look.width < DESCRIPTIONS_BESIDE)) {
-        table_add_column(t, "Parameter", 3.2, TEXT_LEFT);
+    // a parameter's description beside its row, or above it
+    const page_look *look = &order->options->look;
+    const bool above = look->width > 0 && look->width < DESCRIPTIONS_BESIDE;
+    table_page *t = new_table(order, columns, above ? 3 : 4);
+    for (size_t i = 0; i < G_N_ELEMENTS(constants); i++) {
+        char unit[64];
+        const int index = parameter_find(constants[i].path);
+        const parameter_info *info = &parameter_table[index];
+        text_unit(info->unit, unit, sizeof unit);
+        g_autofree char *used = text_printf("%.6g\u2009%s", parameter_get(&p, index),
+                                            strcmp(unit, "ohm") == 0 ? "Ω" : unit);
+        g_autofree char *name = text_printf("%s: %s", info->path, info->description);
+        if (above) {
+            table_add_group(t, name);
+        }
+        table_add_row(t, (const char *[]){constants[i].symbol, constants[i].printed, used, name});
     }
-
-    add_motor_row(t, &p, "<i>k</i><sub>B</sub>", "2.443\u2009V·s/rad", "motor.back_emf");
-    add_motor_row(t, &p, "<i>k</i><sub>T</sub>", "0.249092\u2009kg·m/A", "motor.torque_constant");
-    add_motor_row(t, &p, "<i>R</i><sub>a</sub>", "33.6\u2009Ω", "motor.resistance");
-    add_motor_row(t, &p, "<i>k</i><sub>fr</sub>", "5.4192·10<sup>−3</sup>\u2009N·m·s/rad",
-                  "motor.viscous_friction");
-    add_motor_row(t, &p, "<i>k</i><sub>st</sub>", "0.045\u2009N·m", "motor.stiction");
-    add_motor_row(t, &p, "", "6.02 (section 2.3)", "motor.amplifier_gain");
-    add_motor_row(t, &p, "", "10\u2009V (section 2.3)", "motor.voltage_limit");
-
     return open_table(t, out,
                       "The printed <i>k</i><sub>T</sub> counts kilograms of force; times "
                       "9.80665\u2009m/s² it is equal to <i>k</i><sub>B</sub>, as it must be.");
@@ -137,13 +135,12 @@ status table_stability(const figure_order *order, artwork *out, fault *f)
             fault_set(f, STATUS_SINGULAR, "the modes of the two-link arm cannot be computed"));
     double fastest = frequencies[count - 1];
 
-    table_page *t = new_table(order);
-    table_add_column(t, "Method", 2.3, TEXT_LEFT);
-    table_add_column(t, "<i>β</i>, <i>γ</i>", 1.5, TEXT_LEFT);
-    table_add_column(t, "Largest <i>ωh</i>", 1.1, TEXT_RIGHT);
-    table_add_column(t, "Longest step", 1.2, TEXT_RIGHT);
-    table_add_column(t, "Order", 0.7, TEXT_RIGHT);
-
+    static const table_column columns[] = {{"Method", 2.3},
+                                           {"<i>β</i>, <i>γ</i>", 1.5},
+                                           {"Largest <i>ωh</i>", 1.1, TEXT_RIGHT},
+                                           {"Longest step", 1.2, TEXT_RIGHT},
+                                           {"Order", 0.7, TEXT_RIGHT}};
+    table_page *t = new_table(order, columns, G_N_ELEMENTS(columns));
     table_add_group(t, "Stable at any step: 2<i>β</i> ≥ <i>γ</i> ≥ ½");
     add_pair(t, "trapezoidal rule", 0.25, 0.5, fastest);
     add_pair(t, "the thesis's choice", 0.4, 0.5, fastest);
@@ -188,13 +185,11 @@ status table_algorithm(const figure_order *order, artwork *out, fault *f)
         {"3.2", "It would pull, contact is over: as in 2.1.", "printed_motion_step"},
         {"4", "The next time step.", "printed_motion_step"},
     };
+    static const table_column columns[] = {
+        {"", 0.35}, {"What happens in a step", 4}, {"In the lab", 1.2}};
     (void)f;
 
-    table_page *t = new_table(order);
-    table_add_column(t, "", 0.35, TEXT_LEFT);
-    table_add_column(t, "What happens in a step", 4, TEXT_LEFT);
-    table_add_column(t, "In the lab", 1.2, TEXT_LEFT);
-
+    table_page *t = new_table(order, columns, G_N_ELEMENTS(columns));
     for (size_t i = 0; i < G_N_ELEMENTS(rows); i++) {
         table_add_row(t, rows[i]);
     }
@@ -231,14 +226,12 @@ static char *cell_text(const char *format, double value)
 static void add_values(table_page *t, const char *name, const double *values, double scale,
                        const char *format)
 {
-    char *cells[TABLE_VOLTAGES + 1] = {(char *)name};
+    g_auto(GStrv) cells = g_new0(char *, TABLE_VOLTAGES + 2);
+    cells[0] = g_strdup(name);
     for (int i = 0; i < TABLE_VOLTAGES; i++) {
         cells[i + 1] = cell_text(format, scale * values[i]);
     }
     table_add_row(t, (const char *const *)cells);
-    for (int i = 0; i < TABLE_VOLTAGES; i++) {
-        g_free(cells[i + 1]);
-    }
 }
 
 static void add_model(table_page *t, const table_row *row, double scale, const char *format)
@@ -260,13 +253,12 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
     FAIL_IF(all == NULL, f->code);
 
     // a column for each voltage
-    table_page *t = new_table(order);
-    table_add_column(t, "Command", 2.2, TEXT_LEFT);
-    static const char *const heads[TABLE_VOLTAGES] = {"1\u2009V", "2\u2009V", "5\u2009V",
-                                                      "10\u2009V"};
-    for (int i = 0; i < TABLE_VOLTAGES; i++) {
-        table_add_column(t, heads[i], 1, TEXT_RIGHT);
-    }
+    static const table_column columns[TABLE_VOLTAGES + 1] = {{"Command", 2.2},
+                                                             {"1\u2009V", 1, TEXT_RIGHT},
+                                                             {"2\u2009V", 1, TEXT_RIGHT},
+                                                             {"5\u2009V", 1, TEXT_RIGHT},
+                                                             {"10\u2009V", 1, TEXT_RIGHT}};
+    table_page *t = new_table(order, columns, G_N_ELEMENTS(columns));
 
     // a group for each quantity
     for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
@@ -299,11 +291,9 @@ status table_errors(const figure_order *order, artwork *out, fault *f)
     const thesis_tables *all = computed_tables(f);
     FAIL_IF(all == NULL, f->code);
 
-    table_page *t = new_table(order);
-    table_add_column(t, "Row", 3, TEXT_LEFT);
-    table_add_column(t, "Printed (%)", 1.2, TEXT_RIGHT);
-    table_add_column(t, "Corrected (%)", 1.2, TEXT_RIGHT);
-
+    static const table_column columns[] = {
+        {"Row", 3}, {"Printed (%)", 1.2, TEXT_RIGHT}, {"Corrected (%)", 1.2, TEXT_RIGHT}};
+    table_page *t = new_table(order, columns, G_N_ELEMENTS(columns));
     for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
         g_autofree char *printed =
             cell_text("%.1f", 100 * tables_mean_error(all, "printed", quantities[q].quantity));
@@ -312,10 +302,7 @@ status table_errors(const figure_order *order, artwork *out, fault *f)
         table_add_row(t, (const char *[]){quantities[q].label, printed, corrected});
     }
 
-    t->caption =
-        g_strdup("Mean size of the difference from the thesis over the cells of a row that "
-                 "have a value, three stiffnesses at four voltages.");
-
-    *out = artwork_of_table(t);
-    return STATUS_OK;
+    return open_table(t, out,
+                      "Mean size of the difference from the thesis over the cells of a row that "
+                      "have a value, three stiffnesses at four voltages.");
 }

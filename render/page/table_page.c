@@ -6,10 +6,13 @@
 #define CELL_SPACE 3.0 // above and below a row's text, and left and right of a cell's
 #define CELL_SIZE  7.0
 
-table_page *table_create(const char *title)
+table_page *table_create(const char *title, const table_column *columns, size_t count)
 {
+    assert(count > 0 && count <= TABLE_COLUMNS);
     table_page *t = g_new0(table_page, 1);
     t->title = g_strdup(title);
+    t->columns = columns;
+    t->column_count = (int)count;
     t->rows = g_ptr_array_new_with_free_func((GDestroyNotify)g_strfreev);
     return t;
 }
@@ -24,15 +27,8 @@ void table_destroy(void *table)
     g_free(t);
 }
 
-void table_add_column(table_page *t, const char *label, double share, text_align align)
-{
-    assert(t->column_count < TABLE_COLUMNS);
-    t->columns[t->column_count++] = (table_column){label, share, align};
-}
-
 void table_add_row(table_page *t, const char *const *cells)
 {
-    assert(t->column_count > 0);
     char **row = g_new0(char *, (gsize)t->column_count + 1);
     for (int i = 0; i < t->column_count; i++) {
         row[i] = g_strdup(cells[i]);

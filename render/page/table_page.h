@@ -17,17 +17,15 @@ typedef struct table_page {
     char *title;      // plain
     char *caption;    // NULL for none
     char *parameters; // plain, for the file's metadata; NULL for none
-    table_column columns[TABLE_COLUMNS];
-    int column_count;
-    GPtrArray *rows; // of char **: column_count cells, or one cell and NULL for a group's heading
+    const table_column *columns;
+    int column_count; // at most TABLE_COLUMNS
+    GPtrArray *rows;  // of char **: column_count cells, or one cell and NULL for a group's heading
     page_look look;
 } table_page;
 
-// An empty table; the title is copied.
-table_page *table_create(const char *title);
+// An empty table of borrowed columns; the title is copied.
+table_page *table_create(const char *title, const table_column *columns, size_t count);
 void table_destroy(void *table);
-
-void table_add_column(table_page *t, const char *label, double share, text_align align);
 
 // A row of column_count cells, copied; and a group's heading.
 void table_add_row(table_page *t, const char *const *cells);
