@@ -41,22 +41,28 @@ static uint32_t rgb_of(colour c, double threshold)
            (uint32_t)(255 * c.green + threshold) << 8 | (uint32_t)(255 * c.blue + threshold);
 }
 
+static double floor_level(const scene *sc)
+{
+    return FLOOR_LEVEL * sc->length;
+}
+
 // Colour of the floor at (x, y) within its reach, a pixel being `wide` by `deep` there.
-static colour floor_colour(const scene_floor *floor, double x, double y, double wide, double deep)
+static colour floor_colour(const scene *sc, double x, double y, double wide, double deep)
 {
     // fades out towards its reach
+    const scene_floor *floor = &sc->floor;
     double away_x = x - floor->middle.x, away_y = y - floor->middle.y;
     double left = 1 - (away_x * away_x + away_y * away_y) / (floor->reach * floor->reach);
 
-    double fade = left * sqrt(left), over_x = line_cover(x, floor->grid, wide);
-    double over_y = line_cover(y, floor->grid, deep);
+    double fade = left * sqrt(left), over_x = line_cover(x, sc->grid, wide);
+    double over_y = line_cover(y, sc->grid, deep);
 
     // lines closer than a few pixels would only flicker
-    double dense = fmin(1, fmax(0, floor->grid / fmax(wide, deep) / 6 - 0.5));
+    double dense = fmin(1, fmax(0, sc->grid / fmax(wide, deep) / 6 - 0.5));
     double cover = dense * (1 - (1 - over_x) * (1 - over_y));
 
-    colour c = colour_between(floor->ground_colour, floor->line, cover);
-    return colour_between(floor->page, c, fade);
+    colour c = colour_between(sc->around->ground, sc->around->line, cover);
+    return colour_between(sc->around->page, c, fade);
 }
 
 // Rays through pixels: of the first one's centre, and how they change to the right and downwards.
@@ -65,11 +71,13 @@ typedef struct ray_field {
 } ray_field;
 
 // Where a pixel meets the floor, and how wide and deep it is there.
-static void paint_pixel(scene_floor *floor, const camera *c, const ray_field *rays, vector ray,
-                        size_t at)
+static void paint_pixel(scene *sc, const ray_field *rays, vector ray, int column, int row)
 {
     // where the ray meets the floor
-    double along = (floor->level - c->eye.z) / ray.z;
+    scene_floor *floor = &sc->floor;
+    const camera *c = &sc->camera;
+    const size_t at = (size_t)row * (size_t)sc->options.width + (size_t)column;
+    double along = (floor_level(sc) - c->eye.z) / ray.z;
     double x = c->eye.x + along * ray.x, y = c->eye.y + along * ray.y;
     double away_x = x - floor->middle.x, away_y = y - floor->middle.y;
 
@@ -77,7 +85,7 @@ static void paint_pixel(scene_floor *floor, const camera *c, const ray_field *ra
     bool meets = ray.z < 0 && away_x * away_x + away_y * away_y < floor->reach * floor->reach;
     floor->x[at] = meets ? (float)x : 1e30F;
     floor->y[at] = meets ? (float)y : 1e30F;
-    floor->ground[at] = rgb_of(floor->page, 0.5);
+    floor->ground[at] = rgb_of(sc->around->page, 0.5);
 
     // how far a pixel reaches on the floor along both directions
     if (meets) {
@@ -85,48 +93,45 @@ static void paint_pixel(scene_floor *floor, const camera *c, const ray_field *ra
         const vector *r = &rays->right, *d = &rays->down;
         double wide = fabs(along * (r->x - slope_x * r->z)) + fabs(along * (d->x - slope_x * d->z));
         double deep = fabs(along * (r->y - slope_y * r->z)) + fabs(along * (d->y - slope_y * d->z));
-        int column = (int)(at % (size_t)floor->width), row = (int)(at / (size_t)floor->width);
-        floor->ground[at] =
-            rgb_of(floor_colour(floor, x, y, wide, deep), threshold_at(column, row));
+        floor->ground[at] = rgb_of(floor_colour(sc, x, y, wide, deep), threshold_at(column, row));
     }
 }
 
-static void paint_ground(scene_floor *floor, const camera *c)
+static void paint_ground(scene *sc)
 {
+    const camera *c = &sc->camera;
     ray_field rays = {.first = camera_ray(c, 0.5, 0.5)};
     rays.right = vector_sum(camera_ray(c, 1.5, 0.5), -1, rays.first);
     rays.down = vector_sum(camera_ray(c, 0.5, 1.5), -1, rays.first);
-    for (int row = 0; row < floor->height; row++) {
+    for (int row = 0; row < sc->options.height; row++) {
         vector start = vector_sum(rays.first, row, rays.down);
-        for (int column = 0; column < floor->width; column++) {
-            paint_pixel(floor, c, &rays, vector_sum(start, column, rays.right),
-                        (size_t)row * (size_t)floor->width + (size_t)column);
+        for (int column = 0; column < sc->options.width; column++) {
+            paint_pixel(sc, &rays, vector_sum(start, column, rays.right), column, row);
         }
     }
 }
 
-status scene_floor_init(scene_floor *floor, const camera *c, fault *f)
+status scene_floor_init(scene *sc, vector middle, double reach, fault *f)
 {
-    assert(floor->reach > 0);
-    floor->width = (int)c->width;
-    floor->height = (int)c->height;
-    floor->camera = *c;
-
-    size_t pixels = (size_t)floor->width * (size_t)floor->height;
-    floor->ground = malloc(pixels * sizeof *floor->ground);
-    floor->x = malloc(pixels * sizeof *floor->x);
-    floor->y = malloc(pixels * sizeof *floor->y);
-    floor->mask = malloc((size_t)MAP * MAP);
-    floor->spare = malloc((size_t)MAP * MAP);
-    FAIL_IF(!floor->ground || !floor->x || !floor->y || !floor->mask || !floor->spare,
-            fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", floor->width,
-                      floor->height));
+    assert(reach > 0);
+    size_t pixels = (size_t)sc->options.width * (size_t)sc->options.height;
 
     // the map of the shadow covers all of the floor
-    floor->map_left = floor->middle.x - floor->reach;
-    floor->map_low = floor->middle.y - floor->reach;
-    floor->map_cell = 2 * floor->reach / MAP;
-    paint_ground(floor, c);
+    scene_floor *floor = &sc->floor;
+    *floor = (scene_floor){.middle = middle,
+                           .reach = reach,
+                           .ground = malloc(pixels * sizeof *floor->ground),
+                           .x = malloc(pixels * sizeof *floor->x),
+                           .y = malloc(pixels * sizeof *floor->y),
+                           .mask = malloc((size_t)MAP * MAP),
+                           .spare = malloc((size_t)MAP * MAP),
+                           .map_left = middle.x - reach,
+                           .map_low = middle.y - reach,
+                           .map_cell = 2 * reach / MAP};
+    FAIL_IF(!floor->ground || !floor->x || !floor->y || !floor->mask || !floor->spare,
+            fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels",
+                      sc->options.width, sc->options.height));
+    paint_ground(sc);
     return STATUS_OK;
 }
 
@@ -172,8 +177,11 @@ static int within_map(double cell)
 
 // Draws the mesh's triangles, thrown onto the floor along the light, into the map. *covered is what
 // they and their soft edge may cover.
-static status cast_shadow(scene_floor *floor, const mesh *m, cell_box *covered, fault *f)
+static status cast_shadow(scene *sc, cell_box *covered, fault *f)
 {
+    scene_floor *floor = &sc->floor;
+    const mesh *m = &sc->mesh;
+    const vector light = sc->light;
     double left = MAP, right = 0, low = MAP, high = 0;
     memset(floor->mask, 0, (size_t)MAP * MAP);
     cairo_surface_t *map =
@@ -183,15 +191,15 @@ static status cast_shadow(scene_floor *floor, const mesh *m, cell_box *covered, 
 
     for (size_t i = 0; i + 2 < m->corner_count; i += 3) {
         // a closed solid's shadow is that of its lit side
-        if (vector_dot(m->vertices[m->corners[i]].normal, floor->light) <= 0) {
+        if (vector_dot(m->vertices[m->corners[i]].normal, light) <= 0) {
             continue;
         }
 
         // its corners, moved along the light onto the floor
         for (size_t k = 0; k < 3; k++) {
             vector p = m->vertices[m->corners[i + k]].place;
-            double along = fmax(0, p.z - floor->level) / floor->light.z;
-            double x = p.x - along * floor->light.x, y = p.y - along * floor->light.y;
+            double along = fmax(0, p.z - floor_level(sc)) / light.z;
+            double x = p.x - along * light.x, y = p.y - along * light.y;
             double across = (x - floor->map_left) / floor->map_cell;
             double up = (y - floor->map_low) / floor->map_cell;
             cairo_line_to(cr, across, up);
@@ -236,17 +244,19 @@ static float shadow_at(const scene_floor *floor, float x, float y)
 }
 
 // The pixels that show a box of the map, some to spare.
-static cell_box seen_box(const scene_floor *floor, cell_box cells)
+static cell_box seen_box(const scene *sc, cell_box cells)
 {
-    double left = floor->width, right = 0, top = floor->height, bottom = 0;
+    const scene_floor *floor = &sc->floor;
+    const int width = sc->options.width, height = sc->options.height;
+    double left = width, right = 0, top = height, bottom = 0;
     for (int i = 0; i < 4; i++) {
         const vector corner = {
             floor->map_left + (i & 1 ? cells.left : cells.right) * floor->map_cell,
-            floor->map_low + (i & 2 ? cells.low : cells.high) * floor->map_cell, floor->level};
-        const vector at = camera_project(&floor->camera, corner);
-        if (at.z < floor->camera.nearest) {
+            floor->map_low + (i & 2 ? cells.low : cells.high) * floor->map_cell, floor_level(sc)};
+        const vector at = camera_project(&sc->camera, corner);
+        if (at.z < sc->camera.nearest) {
             // it reaches behind the eye
-            return (cell_box){0, floor->width, 0, floor->height};
+            return (cell_box){0, width, 0, height};
         }
         left = fmin(left, at.x);
         right = fmax(right, at.x);
@@ -255,8 +265,8 @@ static cell_box seen_box(const scene_floor *floor, cell_box cells)
     }
 
     // one pixel more on each side
-    return (cell_box){(int)fmax(0, left - 1), (int)fmin(floor->width, right + 2),
-                      (int)fmax(0, top - 1), (int)fmin(floor->height, bottom + 2)};
+    return (cell_box){(int)fmax(0, left - 1), (int)fmin(width, right + 2), (int)fmax(0, top - 1),
+                      (int)fmin(height, bottom + 2)};
 }
 
 // A colour under a shadow of 0 to 255; threshold [1/65536] as of threshold_at.
@@ -268,21 +278,23 @@ static uint32_t darkened(uint32_t rgb, float shadow, uint32_t threshold)
     return 0xFF000000U | red << 16 | green << 8 | ((rgb & 255) * light + threshold) >> 16;
 }
 
-status scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto, fault *f)
+status scene_floor_paint(scene *sc, cairo_surface_t *onto, fault *f)
 {
     cell_box shade;
-    TRY(cast_shadow(floor, m, &shade, f));
-    const cell_box seen = seen_box(floor, shade);
+    TRY(cast_shadow(sc, &shade, f));
+    const cell_box seen = seen_box(sc, shade);
+    const scene_floor *floor = &sc->floor;
+    const size_t width = (size_t)sc->options.width;
 
     cairo_surface_flush(onto);
     unsigned char *data = cairo_image_surface_get_data(onto);
     ptrdiff_t stride = cairo_image_surface_get_stride(onto);
 
-    for (int row = 0; row < floor->height; row++) {
+    for (int row = 0; row < sc->options.height; row++) {
         // as it is without shadows
         uint32_t *to = (uint32_t *)(void *)(data + row * stride), thresholds[8];
-        size_t at = (size_t)row * (size_t)floor->width;
-        memcpy(to, floor->ground + at, (size_t)floor->width * sizeof *to);
+        size_t at = (size_t)row * width;
+        memcpy(to, floor->ground + at, width * sizeof *to);
         if (row < seen.low || row >= seen.high) {
             continue;
         }

@@ -11,11 +11,21 @@
 #define FACT_LETTERS  LABELS_LEAST
 #define MARGIN        22.0
 
-static void draw_text(const labels *l, double x, double y, const char *markup, double size,
-                      bool bold, colour ink)
+double labels_scale(const scene *sc)
 {
-    const text_block t = {.markup = markup, .size = size * l->scale, .bold = bold};
-    text_put(l->cr, l->context, &t, x, y, (anchor){0, 0}, ink);
+    const double own = sc->options.letters;
+    return own > 0 ? own : fmin(sc->camera.height / 720, sc->camera.width / 800);
+}
+
+// A line of facts.
+static text_block fact(const scene *sc, const char *markup)
+{
+    return (text_block){.markup = markup, .size = FACT_LETTERS * labels_scale(sc)};
+}
+
+static void draw_text(const scene *sc, cairo_t *cr, text_block t, double x, double y, colour ink)
+{
+    text_put(cr, sc->context, &t, x, y, (anchor){0, 0}, ink);
 }
 
 double labels_pixels(const camera *c, vector place, double length)
@@ -23,109 +33,115 @@ double labels_pixels(const camera *c, vector place, double length)
     return length * c->focal_y * c->height / 2 / camera_project(c, place).z;
 }
 
-void labels_flash(const labels *l, vector place, double radius, double strength)
+void labels_flash(const scene *sc, cairo_t *cr, vector place, double radius, double strength)
 {
     assert(radius > 0);
     enum { RAYS = 12 };
-    vector at = camera_project(l->camera, place);
-    double r = labels_pixels(l->camera, place, radius) * (0.55 + 0.45 * strength);
+    vector at = camera_project(&sc->camera, place);
+    double r = labels_pixels(&sc->camera, place, radius) * (0.55 + 0.45 * strength);
 
     // a glow that fades outward
     cairo_pattern_t *glow = cairo_pattern_create_radial(at.x, at.y, 0, at.x, at.y, r);
     cairo_pattern_add_color_stop_rgba(glow, 0, 1, 0.93, 0.65, 0.95 * strength);
     cairo_pattern_add_color_stop_rgba(glow, 0.3, 1, 0.75, 0.2, 0.6 * strength);
     cairo_pattern_add_color_stop_rgba(glow, 1, 1, 0.6, 0.1, 0);
-    cairo_set_source(l->cr, glow);
-    cairo_arc(l->cr, at.x, at.y, r, 0, 2 * M_PI);
-    cairo_fill(l->cr);
+    cairo_set_source(cr, glow);
+    cairo_arc(cr, at.x, at.y, r, 0, 2 * M_PI);
+    cairo_fill(cr);
     cairo_pattern_destroy(glow);
 
     // rays, long and short in turn
-    cairo_set_line_width(l->cr, 1.6 * l->scale);
-    cairo_set_line_cap(l->cr, CAIRO_LINE_CAP_ROUND);
-    cairo_set_source_rgba(l->cr, 0.88, 0.5, 0.02, strength);
+    cairo_set_line_width(cr, 1.6 * labels_scale(sc));
+    cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+    cairo_set_source_rgba(cr, 0.88, 0.5, 0.02, strength);
     for (int i = 0; i < RAYS; i++) {
         double angle = 2 * M_PI * (i + 0.5) / RAYS, far = i % 2 ? 0.8 : 1.1;
-        cairo_move_to(l->cr, at.x + 0.5 * r * cos(angle), at.y + 0.5 * r * sin(angle));
-        cairo_line_to(l->cr, at.x + far * r * cos(angle), at.y + far * r * sin(angle));
+        cairo_move_to(cr, at.x + 0.5 * r * cos(angle), at.y + 0.5 * r * sin(angle));
+        cairo_line_to(cr, at.x + far * r * cos(angle), at.y + far * r * sin(angle));
     }
-    picture_stroke(l->cr);
+    picture_stroke(cr);
 }
 
-void labels_force(const labels *l, vector from, vector end, double force, colour ink)
+void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double force)
 {
+    static const colour light = {0.70, 0.28, 0}, dark = {1, 0.62, 0.30};
     char text[48];
 
     // text and its size
     decimal_print(text, sizeof text, "%.*f\u2009N", force < 10 ? 2 : force < 100 ? 1 : 0, force);
-    const text_block t = {.markup = text, .size = TITLE_LETTERS * l->scale, .bold = true};
-    const text_size size = text_measure(l->context, &t);
-    vector start = camera_project(l->camera, from), tip = camera_project(l->camera, end);
+    const double scale = labels_scale(sc);
+    const text_block t = {.markup = text, .size = TITLE_LETTERS * scale, .bold = true};
+    const text_size size = text_measure(sc->context, &t);
+    vector start = camera_project(&sc->camera, from), tip = camera_project(&sc->camera, end);
     double dx = tip.x - start.x, dy = tip.y - start.y, length = fmax(1e-9, hypot(dx, dy));
 
     // beyond the arrow's point, the box touching a circle round it
-    double x = tip.x + dx / length * (size.width / 2 + 8 * l->scale) - size.width / 2;
-    double y = tip.y + dy / length * (size.height / 2 + 6 * l->scale) - size.height / 2;
+    double x = tip.x + dx / length * (size.width / 2 + 8 * scale) - size.width / 2;
+    double y = tip.y + dy / length * (size.height / 2 + 6 * scale) - size.height / 2;
 
     // inside the picture
-    x = fmin(fmax(x, 4), l->camera->width - size.width - 4);
-    y = fmin(fmax(y, 4), l->camera->height - size.height - 4);
-    draw_text(l, x, y, text, TITLE_LETTERS, true, ink);
+    x = fmin(fmax(x, 4), sc->camera.width - size.width - 4);
+    y = fmin(fmax(y, 4), sc->camera.height - size.height - 4);
+    draw_text(sc, cr, t, x, y, sc->options.theme == THEME_DARK ? dark : light);
 }
 
-void labels_caption(const labels *l, const char *title, const char *facts, double width)
+void labels_caption(const scene *sc, cairo_t *cr, const char *title, const char *facts,
+                    double width)
 {
     assert(width > 0);
-    double bottom = l->camera->height - MARGIN * l->scale, left = MARGIN * l->scale;
-    double top = bottom - (TITLE_LETTERS + FACT_LETTERS) * 1.45 * l->scale;
+    const double scale = labels_scale(sc), left = MARGIN * scale;
+    double bottom = sc->camera.height - MARGIN * scale;
+    double top = bottom - (TITLE_LETTERS + FACT_LETTERS) * 1.45 * scale;
     g_autofree char *escaped = text_escape(title);
 
     // a title of several lines grows upwards
-    text_block t = {.markup = escaped, .size = TITLE_LETTERS * l->scale, .bold = true};
-    const double line = text_measure(l->context, &t).height;
+    text_block t = {.markup = escaped, .size = TITLE_LETTERS * scale, .bold = true};
+    const double line = text_measure(sc->context, &t).height;
     t.width = width;
-    text_put(l->cr, l->context, &t, left, top - (text_measure(l->context, &t).height - line),
-             (anchor){0, 0}, l->strong);
-    draw_text(l, left, bottom - FACT_LETTERS * 1.25 * l->scale, facts, FACT_LETTERS, false,
-              l->faint);
+    draw_text(sc, cr, t, left, top - (text_measure(sc->context, &t).height - line),
+              sc->around->strong);
+    draw_text(sc, cr, fact(sc, facts), left, bottom - FACT_LETTERS * 1.25 * scale,
+              sc->around->faint);
 }
 
-void labels_inset(const labels *l, double left, double bottom, double larger)
+void labels_inset(const scene *sc, cairo_t *cr, double left, double bottom, double larger)
 {
     assert(larger > 0);
     char text[64];
     decimal_print(text, sizeof text, "contact, %.1f times", larger);
-    draw_text(l, left, bottom + 4 * l->scale, text, FACT_LETTERS, false, l->faint);
+    draw_text(sc, cr, fact(sc, text), left, bottom + 4 * labels_scale(sc), sc->around->faint);
 }
 
-// "12.3 ms" in the letters of facts. Returns its size.
-static text_size print_instant(const labels *l, double time, char *text, size_t size)
+// "12.3 ms" as a line of facts.
+static text_block print_instant(const scene *sc, double time, char *text, size_t size)
 {
     decimal_print(text, size, "%.1f\u2009ms", 1e3 * time);
-    const text_block t = {.markup = text, .size = FACT_LETTERS * l->scale};
-    return text_measure(l->context, &t);
+    return fact(sc, text);
 }
 
-void labels_instants(const labels *l, const double *times, const colour *inks, int count)
+void labels_instants(const scene *sc, cairo_t *cr, const double *times, const colour *inks,
+                     int count)
 {
     assert(count > 0);
-    double swatch = 26 * l->scale, step = FACT_LETTERS * 1.55 * l->scale;
-    double bottom = l->camera->height - MARGIN * l->scale, width = 0;
-    double right = l->camera->width - MARGIN * l->scale;
+    const double scale = labels_scale(sc), swatch = 26 * scale, step = FACT_LETTERS * 1.55 * scale;
+    double bottom = sc->camera.height - MARGIN * scale, width = 0;
+    double right = sc->camera.width - MARGIN * scale;
     char text[48];
 
     // all swatches stand left of the widest text
     for (int i = 0; i < count; i++) {
-        width = fmax(width, print_instant(l, times[i], text, sizeof text).width);
+        const text_block t = print_instant(sc, times[i], text, sizeof text);
+        width = fmax(width, text_measure(sc->context, &t).width);
     }
 
     for (int i = 0; i < count; i++) {
         double y = bottom - (count - i) * step;
-        const text_size own = print_instant(l, times[i], text, sizeof text);
-        draw_text(l, right - own.width, y, text, FACT_LETTERS, false, l->faint);
-        set_colour(l->cr, inks[i]);
-        cairo_rectangle(l->cr, right - width - 10 * l->scale - swatch,
-                        y + own.height / 2 - 2.5 * l->scale, swatch, 5 * l->scale);
-        cairo_fill(l->cr);
+        const text_block t = print_instant(sc, times[i], text, sizeof text);
+        const text_size own = text_measure(sc->context, &t);
+        draw_text(sc, cr, t, right - own.width, y, sc->around->faint);
+        set_colour(cr, inks[i]);
+        cairo_rectangle(cr, right - width - 10 * scale - swatch, y + own.height / 2 - 2.5 * scale,
+                        swatch, 5 * scale);
+        cairo_fill(cr);
     }
 }

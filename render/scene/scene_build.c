@@ -401,14 +401,6 @@ status scene_set_view(scene *sc, fault *f)
     sc->light = vector_unit(vector_sum(lamp, 0.95, (vector){0, 0, 1}));
 
     // the floor, as far as its middle and beyond
-    sc->floor =
-        (scene_floor){.level = FLOOR_LEVEL * sc->length,
-                      .grid = sc->grid,
-                      .middle = vector_scaled(vector_add(low, high), 0.5),
-                      .reach = 0.62 * hypot(high.x - low.x, high.y - low.y) + 0.35 * sc->length,
-                      .page = sc->around->page,
-                      .ground_colour = sc->around->ground,
-                      .line = sc->around->line,
-                      .light = sc->light};
-    return scene_floor_init(&sc->floor, &sc->camera, f);
+    const double reach = 0.62 * hypot(high.x - low.x, high.y - low.y) + 0.35 * sc->length;
+    return scene_floor_init(sc, vector_scaled(vector_add(low, high), 0.5), reach, f);
 }

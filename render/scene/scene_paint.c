@@ -138,7 +138,7 @@ const char *scene_renderer_name(const scene *sc)
 // ---- the picture
 
 // The flash of every impact shortly before `time`.
-static void draw_flashes(scene *sc, const labels *l, double time)
+static void draw_flashes(scene *sc, cairo_t *cr, double time)
 {
     const trace *t = &sc->result->trace;
     for (size_t i = 0; i < t->event_count && t->events[i].time <= time; i++) {
@@ -147,38 +147,25 @@ static void draw_flashes(scene *sc, const labels *l, double time)
         if (e->kind == EVENT_IMPACT && e->impulse > 0 && strength > 0.03) {
             double size = FLASH_RADIUS * sqrt(e->impulse / sc->options.impulse);
             const sample row = scene_joints(t, &sc->scenario->parameters, e->time, sc->joints);
-            labels_flash(l, scene_contact(sc, &row), size * sc->length, strength);
+            labels_flash(sc, cr, scene_contact(sc, &row), size * sc->length, strength);
         }
     }
-}
-
-static labels labels_of(const scene *sc, cairo_surface_t *onto)
-{
-    const surroundings *around = sc->around;
-    const double own = sc->options.letters; // 1 for a picture 720 pixels high
-    return (labels){
-        cairo_create(onto), sc->context,
-        &sc->camera,        around->strong,
-        around->faint,      own > 0 ? own : fmin(sc->camera.height / 720, sc->camera.width / 800)};
 }
 
 static status draw_labels(scene *sc, const double *times, const colour *inks, int count,
                           cairo_surface_t *onto, fault *f)
 {
-    labels l = labels_of(sc, onto);
+    cairo_t *cr = cairo_create(onto);
     double time = times[count - 1];
     vector start, end;
-    draw_flashes(sc, &l, time);
+    draw_flashes(sc, cr, time);
 
     // what a plain scene goes without
     if (!sc->options.plain) {
         char facts[160], bending[64] = "";
         sample row = scene_shape(sc, time);
-
         if (scene_force_arrow(sc, &row, &start, &end)) {
-            bool dark = sc->options.theme == THEME_DARK;
-            labels_force(&l, start, end, row.force,
-                         dark ? (colour){1, 0.62, 0.30} : (colour){0.70, 0.28, 0});
+            labels_force(sc, cr, start, end, row.force);
         }
 
         // what is not as it is has to be said
@@ -189,19 +176,19 @@ static status draw_labels(scene *sc, const double *times, const colour *inks, in
         decimal_print(facts, sizeof facts, "<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m%s",
                       1e3 * time, sc->grid, bending);
         g_autofree char *title = scenario_title(sc->scenario);
-        labels_caption(&l, title, facts, TITLE_SHARE * sc->camera.width);
+        labels_caption(sc, cr, title, facts, TITLE_SHARE * sc->camera.width);
         if (count > 1 && !sc->options.keyless) {
-            labels_instants(&l, times, inks, count);
+            labels_instants(sc, cr, times, inks, count);
         }
     }
-    return picture_end_drawing(l.cr, STATUS_OK, f);
+    return picture_end_drawing(cr, STATUS_OK, f);
 }
 
 // The ground on which all else is painted, with the shadow of what does not hover.
 static status paint_ground(scene *sc, cairo_surface_t *onto, fault *f)
 {
     if (!sc->options.transparent) {
-        return scene_floor_paint(&sc->floor, &sc->mesh, onto, f);
+        return scene_floor_paint(sc, onto, f);
     }
     cairo_t *cr = cairo_create(onto);
     cairo_set_operator(cr, CAIRO_OPERATOR_CLEAR);
@@ -225,17 +212,17 @@ static status paint_inset(scene *sc, const double *times, int count, cairo_surfa
         const vector at = scene_contact(sc, &row);
         const double larger =
             labels_pixels(&tip->camera, at, 1) / labels_pixels(&sc->camera, at, 1);
-        labels l = labels_of(sc, onto);
-        cairo_set_source_surface(l.cr, view, left, margin);
-        cairo_paint(l.cr);
-        set_colour(l.cr, sc->around->faint);
-        cairo_set_line_width(l.cr, fmax(1, l.scale));
-        cairo_rectangle(l.cr, left, margin, width, height);
-        picture_stroke(l.cr);
+        cairo_t *cr = cairo_create(onto);
+        cairo_set_source_surface(cr, view, left, margin);
+        cairo_paint(cr);
+        set_colour(cr, sc->around->faint);
+        cairo_set_line_width(cr, fmax(1, labels_scale(sc)));
+        cairo_rectangle(cr, left, margin, width, height);
+        picture_stroke(cr);
         if (!sc->options.plain) {
-            labels_inset(&l, left, margin + height, larger);
+            labels_inset(sc, cr, left, margin + height, larger);
         }
-        code = picture_end_drawing(l.cr, STATUS_OK, f);
+        code = picture_end_drawing(cr, STATUS_OK, f);
     }
     cairo_surface_destroy(view);
     return code;
@@ -245,7 +232,6 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
 {
     assert(count > 0);
     colour inks[SCENE_INSTANTS];
-    status code = STATUS_OK;
     double now = times[count - 1];
     painting full = {.mesh = &sc->mesh, .camera = &sc->camera, .light = sc->light, .opacity = 1};
 
@@ -255,10 +241,10 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
     sample last = scene_joints(&sc->result->trace, &sc->scenario->parameters, now, sc->joints);
     scene_build_hub(sc, last.hub_angle);
     scene_build_wall(sc, &last);
-    code = paint_ground(sc, onto, f);
+    TRY(paint_ground(sc, onto, f));
 
     // ghosts of earlier instants behind it
-    for (int i = 0; i < count && code == STATUS_OK; i++) {
+    for (int i = 0; i < count; i++) {
         double pale = count > 1 ? PALEST * (count - 1 - i) / (count - 1) : 0;
         inks[i] = scene_paler(sc, beam_steel, pale).colour;
         if (i < count - 1) {
@@ -267,15 +253,15 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
             ghost.opacity = 1 - pale;
             sc->ghost.vertex_count = sc->ghost.corner_count = 0;
             scene_build_arm(sc, &sc->ghost, times[i]);
-            code = scene_painter_paint(sc->painter, &ghost, onto, f);
+            TRY(scene_painter_paint(sc->painter, &ghost, onto, f));
         }
     }
 
     // the trail hovers and throws no shadow
     scene_build_trail(sc, sc->result->trace.rows[0].time, now);
-    code = code == STATUS_OK ? scene_painter_paint(sc->painter, &full, onto, f) : code;
-    code = code == STATUS_OK ? draw_labels(sc, times, inks, count, onto, f) : code;
-    return code == STATUS_OK && sc->tip != NULL ? paint_inset(sc, times, count, onto, f) : code;
+    TRY(scene_painter_paint(sc->painter, &full, onto, f));
+    TRY(draw_labels(sc, times, inks, count, onto, f));
+    return sc->tip != NULL ? paint_inset(sc, times, count, onto, f) : STATUS_OK;
 }
 
 // ==== files

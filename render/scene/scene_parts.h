@@ -12,58 +12,51 @@
 // --- the floor: a pale plane with a grid that fades into the page, and soft shadows on it
 
 typedef struct scene_floor {
-    double level;                     // height of the floor [m]
-    double grid;                      // distance of the lines [m]
-    vector middle;                    // point about which the floor fades out
-    double reach;                     // distance from there at which it has faded completely [m]
-    colour page, ground_colour, line; // colours of the page, the floor and the grid
-    vector light;                     // unit vector towards the light
-    int width, height;                // of the picture [pixels]
-    camera camera;                    // camera of the picture
-    unsigned *ground;                 // the floor without shadows, 0xFFRRGGBB
-    float *x, *y;                     // position of every pixel on the floor [m]
-    unsigned char *mask;              // shadow on a map of the floor, and room for smoothing
+    vector middle;       // point about which the floor fades out
+    double reach;        // distance from there at which it has faded completely [m]
+    unsigned *ground;    // the floor without shadows, 0xFFRRGGBB
+    float *x, *y;        // position of every pixel on the floor [m]
+    unsigned char *mask; // shadow on a map of the floor, and room for smoothing
     unsigned char *spare;
     double map_left, map_low, map_cell; // corner of the map and size of its cells [m]
 } scene_floor;
 
-// Prepares the floor of a picture: level, grid, middle, reach and light and colours are set by the
-// caller. STATUS_NO_MEMORY if there is no room.
-status scene_floor_init(scene_floor *floor, const camera *c, fault *f);
+// Prepares the floor of a scene that has its camera and light. STATUS_NO_MEMORY if there is no
+// room.
+status scene_floor_init(scene *sc, vector middle, double reach, fault *f);
 void scene_floor_finish(scene_floor *floor);
 
-// Paints the floor with the mesh's shadow over the whole image surface (RGB24, of the picture's
-// size). STATUS_NO_MEMORY if cairo has none.
-status scene_floor_paint(scene_floor *floor, const mesh *m, cairo_surface_t *onto, fault *f);
+// Paints the floor with the shadow of the scene's mesh over the whole image surface (RGB24, of the
+// picture's size). STATUS_NO_MEMORY if cairo has none.
+status scene_floor_paint(scene *sc, cairo_surface_t *onto, fault *f);
+
+// --- labels, in letters of a scene: labels.c
 
 #define LABELS_LEAST 16.0 // least letters [pixels of a picture 720 high]
 
-typedef struct labels {
-    cairo_t *cr;
-    PangoContext *context;
-    const camera *camera;
-    colour strong, faint; // inks of titles and of facts
-    double scale;         // scale of letters and lines: 1 for a picture 720 pixels high
-} labels;
+// The scale of a scene's letters and lines: 1 for a picture 720 pixels high.
+double labels_scale(const scene *sc);
 
 // A flash at a point, with a radius [m] and a strength of 0 to 1.
-void labels_flash(const labels *l, vector place, double radius, double strength);
+void labels_flash(const scene *sc, cairo_t *cr, vector place, double radius, double strength);
 
 // "1.34 N" next to the head of an arrow that starts at `from`.
-void labels_force(const labels *l, vector from, vector end, double force, colour ink);
+void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double force);
 
 // Title, in lines of at most `width` [pixels], and a line of facts at the lower left corner;
 // `facts` is markup, `title` plain.
-void labels_caption(const labels *l, const char *title, const char *facts, double width);
+void labels_caption(const scene *sc, cairo_t *cr, const char *title, const char *facts,
+                    double width);
 
 // The length in pixels of a length [m] at a point.
 double labels_pixels(const camera *c, vector place, double length);
 
 // "contact, 1.8 times" below the left corner of an inset [pixels].
-void labels_inset(const labels *l, double left, double bottom, double larger);
+void labels_inset(const scene *sc, cairo_t *cr, double left, double bottom, double larger);
 
 // A legend of instants [s] with their colours at the lower right corner.
-void labels_instants(const labels *l, const double *times, const colour *inks, int count);
+void labels_instants(const scene *sc, cairo_t *cr, const double *times, const colour *inks,
+                     int count);
 
 // --- lit triangles, painted by OpenGL without a screen, or with a depth buffer of our own
 
