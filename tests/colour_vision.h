@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "render/page/palette.h"
+#include "render/page/page.h"
 
 static inline double linear(double part)
 {

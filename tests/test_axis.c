@@ -2,7 +2,7 @@
 // pixels of an image; contour lines and the colour scale of maps.
 #include "tests/plot_fixture.h"
 
-#include "render/page/palette.h"
+#include "render/page/page.h"
 #include "render/plot/drawing.h"
 
 // Middle of the pixels of a series' colour between two columns; false if there is none.

@@ -2,7 +2,6 @@
 #include "tests/scene_fixture.h"
 
 #include "render/scene/film.h"
-#include "render/scene/film_file.h"
 
 static status film_of(const recorded *r, const film_options *options, const char *path, fault *f)
 {

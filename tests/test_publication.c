@@ -3,8 +3,6 @@
 
 #include "render/figures/figures.h"
 #include "render/figures/artwork.h"
-#include "render/figures/recipe.h"
-#include "render/figures/run_figure.h"
 
 // ---- files
 

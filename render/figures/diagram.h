@@ -1,7 +1,7 @@
 // Shared by the thesis's diagrams: a drawing with the numbers it shows.
 #pragma once
 
-#include "render/figures/run_figure.h"
+#include "render/figures/figures.h"
 #include "render/page/sketch.h"
 #include "src/predict/predict.h"
 

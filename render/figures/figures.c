@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "render/figures/run_figure.h"
-
 // Panels that several figures have.
 #define FORCE              .signals = {"force"}, .with_zero = true, .inset = true, .weight = 1.6
 #define VELOCITY(body)     .signals = {body "_velocity"}

@@ -2,6 +2,7 @@
 // runs of the program.
 #pragma once
 
+#include "src/scenario/scenario.h"
 #include "render/figures/artwork.h"
 #include "render/plot/trace_plot.h"
 #include "src/study/thesis_tables.h"
@@ -82,3 +83,50 @@ const thesis_tables *computed_tables(fault *f);
 // exist.
 const table_row *computed_row(const thesis_tables *t, const char *table, const char *model,
                               const char *quantity);
+
+// --- scenarios run for figures
+
+// A run with its scenario; of measured data the trace alone.
+typedef struct opened_run {
+    scenario scenario;
+    run_result result; // with its trace
+} opened_run;
+
+// Opens and runs a scenario, with one parameter changed if `change` ("arm.model=corrected") is not
+// NULL. NULL with the reason if that fails. To be ended with run_close, which accepts NULL.
+opened_run *run_open(const char *name, const char *change, fault *f);
+void run_close(void *run);
+
+// The same with several changes, each "PATH=VALUE". STATUS_STOPPED if `monitor` (may be NULL)
+// requested it.
+opened_run *run_open_changed(const char *name, const char *const *changes, int count,
+                             run_monitor *monitor, fault *f);
+
+// A figure of empty panels with an order's title and a run of its scenario, which it owns: *run.
+// NULL with the reason if the run fails.
+owned_figure *run_plot_create(const figure_order *order, const char *change, int panels,
+                              const opened_run **run, fault *f);
+
+// The recorded signal whose name is nearest to a misspelt one.
+const char *nearest_signal(const char *name);
+
+// --- their figures
+
+// A figure of the runs, which it borrows: o->signals in place of `panels` (NULL: the usual ones of
+// a run), o->overlay as points with a panel of residuals, o->from to o->to, and the look. NULL with
+// the status of overlay_read, or STATUS_BAD_ARGUMENT for an unknown signal or too many runs.
+owned_figure *run_figure_create(const char *title, const trace_panel *panels, int panel_count,
+                                const trace_run *runs, int run_count, const figure_options *o,
+                                fault *f);
+
+// --- from recipes: files that define which runs, data and tables a figure shows, and how
+
+// Opens the recipe at `path`: reads it, makes its runs and describes its figure with the look of
+// the options. Faults in the recipe are reported with file:line:column. To be ended with
+// artwork_finish. STATUS_BAD_SCENARIO if any was reported (*f is then empty), otherwise the status
+// of runs and files.
+status recipe_open(const char *path, const figure_options *o, fault_handler report, void *context,
+                   artwork *out, fault *f);
+
+// Whether a file is a recipe: YAML with panels. False for a file that cannot be read.
+bool recipe_is(const char *path);

@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-#include "render/figures/run_figure.h"
-
 enum { PANELS = 2, ASSUMED_POINTS = 101 };
 
 // A figure of a run's first pulse.

@@ -1,10 +1,9 @@
-#include "render/figures/recipe.h"
+#include "render/figures/figures.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "render/figures/recipe_parts.h"
-#include "src/base/numbers.h"
+#include "render/plot/study_plot.h"
 
 // ---- opening what the recipe names
 
@@ -95,104 +94,45 @@ static figure_axis column_axis(recipe *r, const char *key)
                                         : NULL;
 
     // what neither table describes goes by its own name, without a unit
-    g_autofree char *label = words != NULL ? text_label(words) : g_strdup(key);
-    figure_axis axis = {.name = key,
-                        .label = owned_figure_keep(r->plot, text_escape(label)),
-                        .unit = parameter >= 0  ? parameter_table[parameter].unit
-                                : quantity >= 0 ? summary_table[quantity].unit
-                                                : ""};
-    return axis;
+    return described_axis(r->plot, key, words,
+                          parameter >= 0  ? parameter_table[parameter].unit
+                          : quantity >= 0 ? summary_table[quantity].unit
+                                          : "");
 }
 
 // ---- tables
 
 static void add_curve(recipe *r, int panel, const recipe_source *s)
 {
-    static const marker_kind markers[] = {MARKER_CIRCLE, MARKER_SQUARE, MARKER_TRIANGLE,
-                                          MARKER_DIAMOND};
-    figure_panel *p = &r->plot->panels[panel];
-
     // more curves than a panel has room for are left out
-    if (p->series_count == PANEL_SERIES) {
+    const int index = r->plot->panels[panel].series_count;
+    if (index == PANEL_SERIES) {
         return;
     }
 
     // points are marked while they are few enough to be told apart
-    r->plot->series[panel][p->series_count] =
-        (figure_series){.name = s->name,
-                        .label = label_of(r, s),
-                        .x = s->columns[0],
-                        .y = s->columns[1],
-                        .count = s->count,
-                        .colour = colour_of(p->series_count),
-                        .marker = s->count > 80 ? MARKER_NONE : markers[p->series_count % 4]};
-    p->series_count++;
-}
-
-// The different values of a column, ascending. Returns their number.
-static size_t different_values(const double *column, size_t count, double *out)
-{
-    size_t kept = 0;
-    for (size_t i = 0; i < count; i++) {
-        out[i] = column[i];
-    }
-    qsort(out, count, sizeof *out, compare_numbers);
-    for (size_t i = 0; i < count; i++) {
-        if (kept == 0 || out[i] != out[kept - 1]) {
-            out[kept++] = out[i];
-        }
-    }
-    return kept;
-}
-
-static size_t place_among(const double *values, size_t count, double value)
-{
-    const double *found = bsearch(&value, values, count, sizeof *values, compare_numbers);
-    return (size_t)(found - values);
-}
-
-// Cells over the grid that the first two columns make; a point without a run is hatched.
-static void describe_cells(recipe *r, int panel, const recipe_source *s, figure_map *map)
-{
-    size_t cells = map->columns * map->rows;
-    double *z = owned_figure_numbers(r->plot, cells);
-
-    // the map goes column by column; cells that no run fills keep no number
-    for (size_t i = 0; i < cells; i++) {
-        z[i] = (double)NAN;
-    }
-    for (size_t i = 0; i < s->count; i++) {
-        size_t column = place_among(map->x, map->columns, s->columns[0][i]);
-        size_t row = place_among(map->y, map->rows, s->columns[1][i]);
-        z[column * map->rows + row] = s->columns[2][i];
-    }
-    map->z = z;
-    map->contours = true;
-    r->plot->panels[panel].map = map;
+    owned_figure_add(
+        r->plot, panel,
+        (figure_series){s->name, label_of(r, s), s->columns[0], s->columns[1], s->count,
+                        .colour = colour_of(index),
+                        .marker = s->count > 80 ? MARKER_NONE : MARKER_CIRCLE + index % 4});
 }
 
 static void add_map(recipe *r, int panel, const recipe_source *s)
 {
     figure_panel *p = &r->plot->panels[panel];
-    figure_colours *colours = owned_figure_keep(r->plot, g_new(figure_colours, 1));
-    figure_map *map = owned_figure_keep(r->plot, g_new(figure_map, 1));
-    double *x = owned_figure_numbers(r->plot, s->count + 1);
-    double *y = owned_figure_numbers(r->plot, s->count + 1);
-    size_t columns = different_values(s->columns[0], s->count, x);
-    size_t rows = different_values(s->columns[1], s->count, y);
-
-    *colours = (figure_colours){.axis = column_axis(r, s->z), .bar = true};
-    p->colours = colours;
-    *map = (figure_map){.x = x, .y = y, .columns = columns, .rows = rows};
+    p->colours = OWNED(r->plot, figure_colours, .axis = column_axis(r, s->z), .bar = true);
+    figure_map *map = figure_grid(r->plot, s->columns[0], s->columns[1], s->columns[2], s->count);
 
     // values that were drawn at random make no grid: dots with their shade
-    if (columns * rows <= 2 * s->count && columns > 1 && rows > 1) {
-        describe_cells(r, panel, s, map);
+    if (map != NULL && map->columns > 1 && map->rows > 1) {
+        p->map = map;
         return;
     }
-    r->plot->series[panel][p->series_count++] = (figure_series){
-        s->name,           .x = s->columns[0], .y = s->columns[1],      .shade = s->columns[2],
-        .count = s->count, .no_line = true,    .marker = MARKER_CIRCLE, .radius = 2.4};
+    owned_figure_add(r->plot, panel,
+                     (figure_series){s->name, NULL, s->columns[0], s->columns[1], s->count,
+                                     .shade = s->columns[2], .no_line = true,
+                                     .marker = MARKER_CIRCLE, .radius = 2.4});
 }
 
 // ---- curves
@@ -208,8 +148,8 @@ static void add_signal(recipe *r, int panel, const recipe_source *s, int index, 
     }
 
     const trace_run run = {&s->run->scenario, &s->run->result, .points = data};
-    figure_series *out = &r->plot->series[panel][p->series_count];
-    *out = trace_series(&run, index, r->plot);
+    const int slot = data ? 6 : colour_of(p->series_count);
+    figure_series *out = owned_figure_add(r->plot, panel, trace_series(&run, index, r->plot));
 
     // several signals of one run are told by their symbols, several runs by their labels
     const char *label = label_of(r, s);
@@ -223,10 +163,9 @@ static void add_signal(recipe *r, int panel, const recipe_source *s, int index, 
     out->label = label;
     out->name = owned_figure_printf(r->plot, "%s %s", s->name, signal_table[index].name);
     out->style = LINE_SOLID;
-    out->colour = data ? 6 : colour_of(p->series_count);
+    out->colour = slot;
     out->no_line = data;
     out->marker = data ? MARKER_CIRCLE : MARKER_NONE;
-    p->series_count++;
 }
 
 // One signal of one source less that of another, at the instants of the first.
@@ -234,9 +173,10 @@ static void add_difference(recipe *r, int panel)
 {
     const recipe_panel *from = &r->panels[panel];
     const recipe_source *of = &r->sources[from->of], *less = &r->sources[from->less];
-    figure_series *s = &r->plot->series[panel][0];
-    *s = trace_difference(&of->run->result.trace, &less->run->result.trace,
-                          signal_index(from->signals[0]), r->plot);
+    figure_series *s =
+        owned_figure_add(r->plot, panel,
+                         trace_difference(&of->run->result.trace, &less->run->result.trace,
+                                          signal_index(from->signals[0]), r->plot));
 
     // points where data are compared, else a line
     const bool data = of->kind == SOURCE_DATA;
@@ -244,7 +184,6 @@ static void add_difference(recipe *r, int panel)
     s->colour = data ? 6 : 7;
     s->no_line = data;
     s->marker = data ? MARKER_CIRCLE : MARKER_NONE;
-    r->plot->panels[panel].series_count = 1;
 }
 
 // ---- panels

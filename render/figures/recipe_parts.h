@@ -3,7 +3,7 @@
 
 #include <glib.h>
 
-#include "render/figures/run_figure.h"
+#include "render/figures/figures.h"
 #include "render/plot/trace_plot.h"
 #include "src/scenario/reader.h"
 #include "src/study/store/sweep_store.h"

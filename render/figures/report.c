@@ -7,8 +7,6 @@
 #include <string.h>
 
 #include "render/figures/figures.h"
-#include "render/figures/recipe.h"
-#include "render/figures/run_figure.h"
 #include "src/base/shipped.h"
 
 // A4 [pt].

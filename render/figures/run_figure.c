@@ -1,4 +1,4 @@
-#include "render/figures/run_figure.h"
+#include "render/figures/figures.h"
 
 #include <assert.h>
 #include <string.h>

@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "render/figures/figures.h"
-#include "render/figures/run_figure.h"
 
 enum {
     MAP_PANELS = 3,

@@ -1,4 +1,4 @@
-#include "render/page/palette.h"
+#include "render/page/page.h"
 
 #include <assert.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 // scaled, while letters and lines keep their size as far as needed to be readable.
 #pragma once
 
-#include "render/page/palette.h"
+#include "render/page/page.h"
 #include "render/page/text.h"
 
 #define SKETCH_WIDTH  370.0 // a page as designed (130 mm)

@@ -1,4 +1,4 @@
-#include "render/plot/curve.h"
+#include "render/plot/axis.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,10 +1,9 @@
 // Internal to the figure library: the layout of a figure, and the strokes used by all layers.
 #pragma once
 
-#include "render/page/palette.h"
+#include "render/page/page.h"
 #include "render/page/text.h"
 #include "render/plot/axis.h"
-#include "render/plot/curve.h"
 #include "render/plot/plot.h"
 
 // --- free places in a panel, by a grid of cells with the ink in each: placement.c

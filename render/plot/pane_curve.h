@@ -3,7 +3,7 @@
 
 #include <cairo.h>
 
-#include "render/page/palette.h"
+#include "render/page/page.h"
 #include "src/run/trace.h"
 
 // The values at the edges of a pane.

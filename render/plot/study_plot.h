@@ -44,6 +44,21 @@ status sweep_plot_check(const sweep *s, const char *path, fault *f);
 // borrowed.
 owned_figure *sweep_figure_create(const sweep_picture *p);
 
+// --- of numbers over varied parameters, in any picture
+
+// The radius of markers of so many points [pt].
+double marker_radius(size_t points);
+
+// An axis with a name, its label the beginning of a description (NULL: the name); name and unit
+// are borrowed.
+figure_axis described_axis(owned_figure *o, const char *name, const char *description,
+                           const char *unit);
+
+// The map of z over the grid that points make, with contours and hatched where there is no point,
+// kept by the figure. NULL if most of the grid would be: the points make none.
+figure_map *figure_grid(owned_figure *o, const double *x, const double *y, const double *z,
+                        size_t count);
+
 // --- identify: what the fit leaves of the readings
 
 // Describes the picture: a panel for each trace, the residuals of every channel over time in

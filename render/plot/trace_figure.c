@@ -5,9 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "render/page/palette.h"
+#include "render/page/page.h"
 #include "render/page/text.h"
-#include "render/plot/trace_parts.h"
 
 // Whether a run has a signal of a panel to show: not the first link's where it equals the hub's,
 // and of data only what was measured.

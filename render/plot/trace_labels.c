@@ -1,5 +1,5 @@
 // What is written on figures of recorded runs: symbols, labels and captions.
-#include "render/plot/trace_parts.h"
+#include "render/plot/trace_plot.h"
 
 #include <string.h>
 

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "render/page/text.h"
-#include "render/plot/curve.h"
-#include "render/plot/trace_parts.h"
+#include "render/plot/axis.h"
+#include "render/plot/trace_plot.h"
 
 // ==== what happened
 

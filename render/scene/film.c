@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "render/plot/trace_plot.h"
-#include "render/scene/film_file.h"
 #include "src/run/background_run.h"
 
 enum { MOST_THREADS = 2, BUFFERS = 2 };

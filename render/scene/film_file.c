@@ -1,4 +1,4 @@
-#include "render/scene/film_file.h"
+#include "render/scene/film.h"
 
 #include <assert.h>
 #include <errno.h>

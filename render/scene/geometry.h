@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "render/page/palette.h"
+#include "render/page/page.h"
 #include "src/base/fault.h"
 
 typedef struct vector {

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "render/figures/recipe.h"
+#include "render/figures/figures.h"
 #include "render/figures/recipe_parts.h"
 
 enum { DRAWN_OF = 4 };

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include "render/scene/film.h"
-#include "render/scene/film_file.h"
 #include "ui/commands/pictures.h"
 
 enum { BAR_LENGTH = 40 };

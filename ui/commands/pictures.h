@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/figures/artwork.h"
-#include "render/figures/run_figure.h"
+#include "render/figures/figures.h"
 #include "render/scene/scene.h"
 #include "ui/commands/command.h"
 

@@ -1,0 +1,353 @@
+// Pictures of sweeps: lines, maps and dots over one or two varied parameters.
+#include "render/plot/study_plot.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "render/page/picture_file.h"
+#include "render/page/text.h"
+#include "src/base/numbers.h"
+#include "src/base/shipped.h"
+#include "src/tables/settings.h"
+
+#define PANEL_WEIGHT 2.4  // of its height
+#define DOTS_ROOM    0.03 // of an axis, free at both ends
+#define LINE_ROOM    0.05 // of the quantity's range, free above and below it
+
+enum { LABELLED_VALUES = 9, MOST_MARKERS = 80, MOST_CURVES = 16 };
+
+// A varied parameter as an axis: where its points lie, in order.
+typedef struct varied {
+    const sweep_axis *axis;
+    bool words;    // its points are counted
+    double *place; // ascending, count of them; NULL if the values were drawn
+    size_t *order; // place[i] belongs to value order[i] of the sweep's axis
+    size_t count;
+} varied;
+
+// ---- what pictures of a sweep's numbers have in common with others
+
+double marker_radius(size_t points)
+{
+    return points > 500 ? 1.1 : points > 12 ? 1.9 : 2.4;
+}
+
+figure_axis described_axis(owned_figure *o, const char *name, const char *description,
+                           const char *unit)
+{
+    g_autofree char *label = description != NULL ? text_label(description) : g_strdup(name);
+    return (figure_axis){name, owned_figure_keep(o, text_escape(label)), unit};
+}
+
+// The different values of a column, ascending. Returns their number.
+static size_t different_values(const double *column, size_t count, double *out)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        out[i] = column[i];
+    }
+    qsort(out, count, sizeof *out, compare_numbers);
+    for (size_t i = 0; i < count; i++) {
+        if (kept == 0 || out[i] != out[kept - 1]) {
+            out[kept++] = out[i];
+        }
+    }
+    return kept;
+}
+
+static size_t place_among(const double *values, size_t count, double value)
+{
+    const double *found = bsearch(&value, values, count, sizeof *values, compare_numbers);
+    return (size_t)(found - values);
+}
+
+figure_map *figure_grid(owned_figure *o, const double *x, const double *y, const double *z,
+                        size_t count)
+{
+    double *columns = owned_figure_numbers(o, count), *rows = owned_figure_numbers(o, count);
+    figure_map *map = OWNED(o, figure_map, columns, rows, .contours = true,
+                            .columns = different_values(x, count, columns),
+                            .rows = different_values(y, count, rows));
+    const size_t cells = map->columns * map->rows;
+    FAIL_IF(cells > 2 * count, NULL);
+
+    // the map goes column by column; cells that no point fills keep no number
+    double *values = owned_figure_numbers(o, cells);
+    for (size_t i = 0; i < cells; i++) {
+        values[i] = (double)NAN;
+    }
+    for (size_t i = 0; i < count; i++) {
+        size_t column = place_among(map->x, map->columns, x[i]);
+        values[column * map->rows + place_among(map->y, map->rows, y[i])] = z[i];
+    }
+    map->z = values;
+    return map;
+}
+
+// ---- axes
+
+static int compare_values(const void *a, const void *b, void *context)
+{
+    const double *values = context, x = values[*(const size_t *)a], y = values[*(const size_t *)b];
+    return (x > y) - (x < y);
+}
+
+// Sets the points of an axis in ascending order; words stay in theirs.
+static void order_points(owned_figure *o, varied *v)
+{
+    const sweep_axis *axis = v->axis;
+    v->count = axis->count;
+    v->place = owned_figure_numbers(o, v->count);
+    v->order = owned_figure_keep(o, g_new(size_t, v->count));
+    for (size_t i = 0; i < v->count; i++) {
+        v->order[i] = i;
+    }
+
+    // numbers ascend
+    if (!v->words) {
+        g_qsort_with_data(v->order, (int)v->count, sizeof *v->order, compare_values, axis->values);
+    }
+    for (size_t i = 0; i < v->count; i++) {
+        v->place[i] = v->words ? (double)i : axis->values[v->order[i]];
+    }
+}
+
+// True for a few values that are spaced unevenly and have no long digits.
+static bool points_are_good_ticks(const varied *v)
+{
+    const sweep_axis *axis = v->axis;
+    bool good =
+        (axis->logarithmic || !axis->is_range) && v->count > 0 && v->count <= LABELLED_VALUES;
+
+    for (size_t i = 0; i < v->count && good; i++) {
+        char digits[32];
+        decimal_print(digits, sizeof digits, "%.3g", axis->values[i]);
+        good = fabs(decimal_parse(digits, NULL) - axis->values[i]) <= 1e-9 * fabs(axis->values[i]);
+    }
+    return good;
+}
+
+static const char *point_label(owned_figure *o, const varied *v, size_t i)
+{
+    char word[PARAMETER_TEXT_SIZE] = "";
+    double value = v->axis->values[v->order[i]];
+    if (!v->words) {
+        return owned_figure_keep(o, text_number(value, 6));
+    }
+
+    // a word of the parameter table
+    sweep_axis_format(v->axis, value, word, sizeof word);
+    return owned_figure_keep(o, text_escape(word));
+}
+
+// The axis of a varied parameter.
+static figure_axis describe_axis(owned_figure *o, varied *v, const sweep_axis *axis)
+{
+    const parameter_info *info = sweep_axis_parameter(axis);
+    *v = (varied){.axis = axis,
+                  .words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN};
+    const bool own_name = axis->element > 0 || info == &setting_info;
+    figure_axis out =
+        described_axis(o, axis->name, own_name ? NULL : info->description, info->unit);
+    out.scale = axis->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR;
+    out.room = DOTS_ROOM;
+
+    // words are counted
+    if (axis->values != NULL) {
+        order_points(o, v);
+    }
+    if (v->words) {
+        out.low = -0.5;
+        out.high = (double)v->count - 0.5;
+    }
+
+    // ticks at the points themselves
+    if (v->words || points_are_good_ticks(v)) {
+        figure_tick *ticks = owned_figure_keep(o, g_new0(figure_tick, v->count));
+        for (size_t i = 0; i < v->count; i++) {
+            ticks[i] = (figure_tick){v->place[i], point_label(o, v, i)};
+        }
+        out.ticks = ticks;
+        out.tick_count = (int)v->count;
+    }
+    return out;
+}
+
+// Where a run's value lies on the axis.
+static double place_of(const varied *v, double value)
+{
+    for (size_t i = 0; v->words && i < v->count; i++) {
+        if (v->axis->values[i] == value) {
+            return (double)i;
+        }
+    }
+    return value;
+}
+
+// Places of all runs along an axis.
+static double *run_places(owned_figure *o, const sweep *from, const varied *v, int axis)
+{
+    double *places = owned_figure_numbers(o, from->run_count);
+    for (size_t run = 0; run < from->run_count; run++) {
+        places[run] = place_of(v, sweep_value(from, run, axis));
+    }
+    return places;
+}
+
+// ---- layers
+
+// One parameter: a curve; dots alone where nothing lies between the points.
+static void describe_line(owned_figure *o, const sweep_picture *p, const varied *v)
+{
+    const size_t count = p->sweep->run_count;
+    const bool grid = p->sweep->sampling == SWEEP_GRID, joined = grid && !v->words;
+    double *y = owned_figure_numbers(o, count);
+    for (size_t i = 0; i < count; i++) {
+        y[i] = p->values[grid ? v->order[i] : i];
+    }
+    owned_figure_add(
+        o, 0,
+        (figure_series){p->key, NULL, grid ? v->place : run_places(o, p->sweep, v, 0), y, count,
+                        .no_line = !joined, .radius = marker_radius(count),
+                        .marker = joined && count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE});
+}
+
+// A parameter of words and one of numbers: a curve for each word, over the numbers.
+static void describe_words(owned_figure *o, const sweep_picture *p, const varied *both, int words)
+{
+    const varied *word = &both[words], *number = &both[1 - words];
+    const size_t inner = both[1].count, count = number->count;
+    for (size_t k = 0; k < word->count; k++) {
+        double *y = owned_figure_numbers(o, count);
+        for (size_t i = 0; i < count; i++) {
+            size_t w = word->order[k], n = number->order[i];
+            y[i] = p->values[words == 0 ? w * inner + n : n * inner + w];
+        }
+        const char *name = point_label(o, word, k);
+        owned_figure_add(
+            o, 0,
+            (figure_series){name, name, number->place, y, count, .colour = palette_slot((int)k),
+                            .radius = marker_radius(count),
+                            .marker = count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE + k % 4});
+    }
+}
+
+// The axis of words that gives a curve each, -1 if the picture is a map.
+static int axis_of_curves(const varied *both, const sweep *from)
+{
+    for (int i = 0; i < 2 && from->sampling == SWEEP_GRID && from->axis_count == 2; i++) {
+        if (both[i].words && !both[1 - i].words && both[i].count <= MOST_CURVES) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+// Two parameters: a map of every combination, or dots where they were drawn.
+static void describe_map(owned_figure *o, const sweep_picture *p, const varied *both,
+                         figure_axis quantity)
+{
+    const size_t count = p->sweep->run_count;
+    const double *x = run_places(o, p->sweep, &both[0], 0);
+    const double *y = run_places(o, p->sweep, &both[1], 1);
+    o->panels[0].colours = OWNED(o, figure_colours, .axis = quantity, .bar = true);
+    if (p->sweep->sampling != SWEEP_GRID) {
+        const double radius = count > 1000 ? 1.5 : count > 200 ? 2.2 : 3.2;
+        owned_figure_add(o, 0,
+                         (figure_series){p->key, NULL, x, y, count, .shade = p->values,
+                                         .no_line = true, .marker = MARKER_CIRCLE,
+                                         .radius = radius});
+        return;
+    }
+    figure_map *map = figure_grid(o, x, y, p->values, count);
+    map->contours = !both[0].words && !both[1].words;
+    o->panels[0].map = map;
+    o->figure.x.room = o->panels[0].y.room = 0;
+}
+
+// ---- the picture
+
+// What was varied, and how many runs have no value.
+static char *caption_of(const sweep *s, size_t missing)
+{
+    GString *out = g_string_new("Varied: ");
+    for (int i = 0; i < s->axis_count; i++) {
+        text_append(out, "%s%s", i > 0 ? ", " : "", s->axes[i].name);
+    }
+    if (missing > 0) {
+        text_append(out, "; %zu %s without a value%s", missing, missing == 1 ? "run" : "runs",
+                    s->axis_count == 1          ? ""
+                    : s->sampling == SWEEP_GRID ? " (hatched, or a gap)"
+                                                : " (empty)");
+    }
+    text_append(out, ". impactlab %s.", lab_version());
+    return g_string_free(out, FALSE);
+}
+
+// What was varied, as on the command line.
+static char *command_of(const sweep *s)
+{
+    GString *command = g_string_new(NULL);
+    for (int i = 0; i < s->axis_count; i++) {
+        const sweep_axis *axis = &s->axes[i];
+        text_append(command, "%s--vary %s%s=%s", i > 0 ? " " : "", axis->together ? "with " : "",
+                    axis->name, axis->text);
+    }
+    return g_string_free(command, FALSE);
+}
+
+status sweep_plot_check(const sweep *s, const char *path, fault *f)
+{
+    FAIL_IF(s->axis_count > 2,
+            fault_set(f, STATUS_BAD_ARGUMENT,
+                      "--plot shows one or two varied parameters, but %d are varied",
+                      s->axis_count));
+    TRY(picture_check_path(path, f));
+    return text_check_font(f);
+}
+
+owned_figure *sweep_figure_create(const sweep_picture *p)
+{
+    static const char *const how[] = {
+        [SWEEP_GRID] = "", [SWEEP_RANDOM] = " at random", [SWEEP_LATIN] = " of a Latin hypercube"};
+    const sweep *from = p->sweep;
+    const summary_info *info = p->info != NULL ? p->info : &summary_table[summary_index(p->key)];
+    char changes[SCENARIO_CHANGES];
+    assert(from->axis_count >= 1 && from->axis_count <= 2);
+    owned_figure *o = owned_figure_create(1, "%s: %s of %zu runs%s%s", from->base->name,
+                                          info->label, from->run_count, how[from->sampling],
+                                          scenario_changes(from->base, changes));
+    size_t missing = 0;
+    for (size_t i = 0; i < from->run_count; i++) {
+        missing += !isfinite(p->values[i]);
+    }
+
+    // axes and layers
+    varied both[2] = {0};
+    figure_axis axes[2] = {describe_axis(o, &both[0], &from->axes[0])};
+    if (from->axis_count > 1) {
+        axes[1] = describe_axis(o, &both[1], &from->axes[1]);
+    }
+    const int words = axis_of_curves(both, from);
+    const figure_axis quantity = described_axis(o, p->key, info->label, info->unit);
+    figure_panel *panel = &o->panels[0];
+    o->figure.x = axes[words == 0];
+    panel->y = quantity;
+    panel->y.room = LINE_ROOM;
+    if (from->axis_count == 1) {
+        describe_line(o, p, &both[0]);
+    } else if (words >= 0) {
+        describe_words(o, p, both, words);
+    } else {
+        panel->y = axes[1];
+        describe_map(o, p, both, quantity);
+    }
+
+    // the page
+    panel->remark = missing == from->run_count ? "the quantity did not occur in any run" : NULL;
+    panel->weight = PANEL_WEIGHT;
+    o->figure.caption = owned_figure_keep(o, caption_of(from, missing));
+    o->figure.parameters = owned_figure_keep(o, command_of(from));
+    return o;
+}
