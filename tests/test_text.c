@@ -72,9 +72,7 @@ TEST(words_are_set_as_printers_set_them)
                  {'t', "Newmark&#39;s", "Newmark\u2019s"},
                  {'t', "named 'a'", "named 'a'"}};
     for (EACH(c, cases)) {
-        char unit[64];
-        text_unit(c->plain, unit, sizeof unit);
-        g_autofree char *shown = c->kind == 'u'   ? g_strdup(unit)
+        g_autofree char *shown = c->kind == 'u'   ? text_unit(c->plain)
                                  : c->kind == 'q' ? text_quantity(atof(c->plain), 3, "N")
                                                   : text_translate(c->plain, 8, 1);
         assert_string_equal(shown, c->set);

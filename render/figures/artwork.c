@@ -91,8 +91,7 @@ static void append_axis(GString *out, const char *before, const figure_axis *a)
 {
     append_plain(out, before, a->label != NULL ? a->label : a->name);
     if (a->unit != NULL && a->unit[0] != '\0') {
-        char unit[64];
-        text_unit(a->unit, unit, sizeof unit);
+        g_autofree char *unit = text_unit(a->unit);
         text_append(out, " in %s", unit);
     }
 }
@@ -202,8 +201,7 @@ char *latex_environment(const artwork *a, const char *tex, const char *file)
 {
     g_autofree char *tex_folder = g_path_get_dirname(tex), *folder = g_path_get_dirname(file);
     g_autofree char *name = g_path_get_basename(file);
-    const char *dot = strrchr(name, '.');
-    const int stem = dot != NULL && dot != name ? (int)(dot - name) : (int)strlen(name);
+    const int dot = (int)(picture_ending(name) - name), stem = dot > 0 ? dot : (int)strlen(name);
     g_autofree char *title = text_escape(a->title != NULL ? a->title : ""),
                     *heading = latex_of_markup(title);
     g_autofree char *caption = latex_of_markup(a->caption != NULL ? a->caption : "");
@@ -223,9 +221,7 @@ char *latex_environment(const artwork *a, const char *tex, const char *file)
 
 char *artwork_beside(const char *file, const char *ending)
 {
-    const char *slash = strrchr(file, '/'), *dot = strrchr(slash ? slash : file, '.');
-    size_t length = dot != NULL ? (size_t)(dot - file) : strlen(file);
-    return text_printf("%.*s%s", (int)length, file, ending);
+    return text_printf("%.*s%s", (int)(picture_ending(file) - file), file, ending);
 }
 
 static status write_text(const char *path, const char *text, fault *f)

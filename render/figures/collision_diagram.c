@@ -48,9 +48,7 @@ static cut_body cut_last_body(const diagram *d)
 static void write_value(sketch *s, point at, double ax, const char *symbol, double value,
                         const char *unit)
 {
-    g_autofree char *number = text_number(value, 3);
-    char shown[32];
-    text_unit(unit, shown, sizeof shown);
+    g_autofree char *number = text_number(value, 3), *shown = text_unit(unit);
     sketch_small(s, at, (anchor){ax, 0.5}, "%s = %s\u2009%s", symbol, number, shown);
 }
 

@@ -78,10 +78,9 @@ static void add_printed_peak(owned_figure *o, const summary *m, const thesis_fig
     double *peak = owned_figure_numbers(o, 2);
     peak[0] = m->first_contact_s + delays[column];
     peak[1] = forces[column];
-    o->series[0][o->panels[0].series_count++] =
-        (figure_series){"Table 4.3",  "Table 4.3", .x = peak,       .y = peak + 1,
-                        .count = 1,   .colour = 5, .no_line = true, .marker = MARKER_DIAMOND,
-                        .radius = 2.6};
+    owned_figure_add(o, 0,
+                     (figure_series){"Table 4.3", "Table 4.3", peak, peak + 1, 1, .colour = 5,
+                                     .no_line = true, .marker = MARKER_DIAMOND, .radius = 2.6});
 
     // how far the run is from it
     double more = m->first_pulse_peak_N - forces[column];
@@ -201,13 +200,12 @@ status figure_draw(const char *id, const figure_options *o, const char *folder, 
                           "there is no figure format '%s', expected png, pdf or svg", format));
     }
     artwork drawn;
-    status code = figure_open(which, o, &drawn, f);
-    TRY(code);
+    TRY(figure_open(which, o, &drawn, f));
 
     // caption and what LaTeX needs go with the first picture, numbers with them all
     figure_options beside = *o;
     beside.latex = NULL;
-    code = make_folder(folder, f);
+    status code = make_folder(folder, f);
     for (int i = 0; list[i] != NULL && code == STATUS_OK; i++) {
         g_autofree char *path = text_printf("%s/%s.%s", folder, which->file, list[i]);
         beside.look.bare = o->look.bare && i == 0;

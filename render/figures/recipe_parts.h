@@ -112,6 +112,7 @@ struct recipe_form {
     size_t size;
     int most;
     recipe_taker *end;
+    const void *blank; // what an item is before it is read; NULL: zeros
 };
 
 #define FIELD_KEY(name, value, type, field)                                                        \

@@ -54,8 +54,7 @@ static const char *heading_of(recipe_context *c, const multiples *m, int index)
 {
     const parameter_info *info = &parameter_table[parameter_find(m->parameter)];
     const char *value = m->value[index], *rest = value + strspn(value, "+-.0123456789eE");
-    char unit[64];
-    text_unit(rest[0] == '\0' ? info->unit : "", unit, sizeof unit);
+    g_autofree char *unit = text_unit(rest[0] == '\0' ? info->unit : "");
     g_autofree char *escaped = text_escape(value);
 
     // the name of the parameter says what a number without any unit is

@@ -65,6 +65,9 @@ static void take_item(recipe_context *c, const tree_node *node, const recipe_key
         return;
     }
     void *item = (char *)into + key->offset + (size_t)(*count)++ * form->size;
+    if (form->blank != NULL) {
+        memcpy(item, form->blank, form->size);
+    }
     recipe_map(c, node, form, item);
     if (form->end != NULL) {
         form->end(c, node, item);
@@ -191,10 +194,9 @@ TAKE(take_set, source)
 }
 
 // What every source has, and what each kind needs: what is missing shows only at its end.
-static void check_source(recipe_context *c, const tree_node *node, recipe_source *s,
-                         source_kind kind)
+TAKE(end_source, source)
 {
-    s->kind = kind;
+    recipe_source *s = into;
     s->at = (place){node->line, node->column};
     const char *needed = s->kind == SOURCE_RUN ? s->scenario : s->file;
 
@@ -226,21 +228,6 @@ static void check_source(recipe_context *c, const tree_node *node, recipe_source
     }
 }
 
-TAKE(end_run, source)
-{
-    check_source(c, node, into, SOURCE_RUN);
-}
-
-TAKE(end_data, source)
-{
-    check_source(c, node, into, SOURCE_DATA);
-}
-
-TAKE(end_table, source)
-{
-    check_source(c, node, into, SOURCE_TABLE);
-}
-
 #define SOURCE_TEXT(name) FIELD_KEY(#name, VALUE_TEXT, recipe_source, name)
 #define SOURCE_ROOM       "a recipe", "runs, data and tables", sizeof(recipe_source), RECIPE_SOURCES
 
@@ -249,7 +236,8 @@ const recipe_form recipe_runs = {
     "scenario: thesis/fig-3-4",
     {SOURCE_TEXT(scenario), SOURCE_TEXT(name), SOURCE_TEXT(label), OWN_KEY("set", take_set)},
     SOURCE_ROOM,
-    end_run};
+    end_source,
+    &(const recipe_source){SOURCE_RUN}};
 const recipe_form recipe_data = {
     "data",
     "file: bench.csv",
@@ -259,13 +247,15 @@ const recipe_form recipe_data = {
      SOURCE_TEXT(column),
      {"shift", VALUE_NUMBER, offsetof(recipe_source, shift), .unit = "s"}},
     SOURCE_ROOM,
-    end_data};
+    end_source,
+    &(const recipe_source){SOURCE_DATA}};
 const recipe_form recipe_tables = {"a table",
                                    "file: sweep.sqlite",
                                    {SOURCE_TEXT(file), SOURCE_TEXT(name), SOURCE_TEXT(label),
                                     SOURCE_TEXT(x), SOURCE_TEXT(y), SOURCE_TEXT(z)},
                                    SOURCE_ROOM,
-                                   end_table};
+                                   end_source,
+                                   &(const recipe_source){SOURCE_TABLE}};
 
 int recipe_find_source(recipe_context *c, const tree_node *node)
 {

@@ -189,10 +189,10 @@ static void add_parameters(report_content *r)
         for (; i < parameter_count && strncmp(parameter_table[i].path, group, length + 1) == 0;
              i++) {
             const parameter_info *info = &parameter_table[i];
-            char own[128], theirs[128], unit[64];
+            char own[128], theirs[128];
             parameter_format(&corrected, i, own, sizeof own);
             parameter_format(&printed, i, theirs, sizeof theirs);
-            text_unit(info->unit, unit, sizeof unit);
+            g_autofree char *unit = text_unit(info->unit);
             g_auto(GStrv) cells = g_new0(char *, 6);
             const char *const texts[] = {info->path, own, theirs, unit, info->description};
             for (size_t k = 0; k < G_N_ELEMENTS(texts); k++) {

@@ -86,10 +86,9 @@ status table_motor(const figure_order *order, artwork *out, fault *f)
     const bool above = look->width > 0 && look->width < DESCRIPTIONS_BESIDE;
     table_page *t = new_table(order, columns, above ? 3 : 4);
     for (size_t i = 0; i < G_N_ELEMENTS(constants); i++) {
-        char unit[64];
         const int index = parameter_find(constants[i].path);
         const parameter_info *info = &parameter_table[index];
-        text_unit(info->unit, unit, sizeof unit);
+        g_autofree char *unit = text_unit(info->unit);
         g_autofree char *used = text_printf("%.6g\u2009%s", parameter_get(&p, index),
                                             strcmp(unit, "ohm") == 0 ? "Ω" : unit);
         g_autofree char *name = text_printf("%s: %s", info->path, info->description);

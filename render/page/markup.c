@@ -118,9 +118,8 @@ char *text_translate(const char *markup, double size, double scale)
     return g_string_free(out, FALSE);
 }
 
-void text_unit(const char *unit, char *out, size_t size)
+char *text_unit(const char *unit)
 {
-    assert(size > 0);
     static const char *const powers[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                          "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
 
@@ -137,21 +136,19 @@ void text_unit(const char *unit, char *out, size_t size)
             g_string_append_c(shown, *c);
         }
     }
-
-    g_strlcpy(out, shown->str, size);
-    g_string_free(shown, TRUE);
+    return g_string_free(shown, FALSE);
 }
 
 char *text_quantity(double value, int digits, const char *unit)
 {
     assert(digits > 0);
-    char number[48], shown[64];
+    char number[48];
     decimal_print(number, sizeof number, "%#.*g", digits, fabs(value));
     size_t length = strlen(number);
     if (length > 0 && number[length - 1] == '.') {
         number[length - 1] = '\0';
     }
-    text_unit(unit, shown, sizeof shown);
+    g_autofree char *shown = text_unit(unit);
     return text_printf("%s%s\u2009%s", value < 0 ? "\u2212" : "", number, shown);
 }
 

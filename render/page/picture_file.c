@@ -139,6 +139,13 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const 
 #define MOST_DPI    2400.0
 #define MOST_PIXELS 20000.0 // along one edge
 
+const char *picture_ending(const char *path)
+{
+    // only in the last part of the path: a dot in a folder's name begins no ending
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    return dot != NULL ? dot : path + strlen(path);
+}
+
 picture_format picture_format_of(const char *path)
 {
     static const struct {
@@ -146,11 +153,10 @@ picture_format picture_format_of(const char *path)
         picture_format format;
     } known[] = {{"png", FORMAT_PNG}, {"pdf", FORMAT_PDF}, {"svg", FORMAT_SVG}};
 
-    // only in the last part of the path: a dot in a folder's name begins no ending
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-    const char *dot = strrchr(name, '.');
+    const char *ending = picture_ending(path), *slash = strrchr(path, '/');
+    const char *word = ending[0] == '.' ? ending + 1 : slash ? slash + 1 : path;
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        if (strcasecmp(dot ? dot + 1 : name, known[i].name) == 0) {
+        if (strcasecmp(word, known[i].name) == 0) {
             return known[i].format;
         }
     }
@@ -169,8 +175,8 @@ static status check_extension(const char *path, fault *f)
 
 status picture_check_path(const char *path, fault *f)
 {
-    status code = check_extension(path, f);
-    return code == STATUS_OK ? whole_file_check(path, f) : code;
+    TRY(check_extension(path, f));
+    return whole_file_check(path, f);
 }
 
 const char *picture_software(void)
@@ -399,17 +405,13 @@ static status write_svg(const picture *p, FILE *stream, fault *f)
 
 status picture_write(const picture *p, const char *path, fault *f)
 {
-    whole_file file;
-
     // only a name that tells its format
-    status code = check_extension(path, f);
-    code = code == STATUS_OK ? whole_file_open(&file, path, f) : code;
-    if (code == STATUS_OK) {
-        const picture_format format = picture_format_of(path);
-        code = format == FORMAT_PNG   ? picture_write_png(p, file.stream, f)
-               : format == FORMAT_SVG ? write_svg(p, file.stream, f)
-                                      : write_pages(file.stream, p, 1, f);
-        code = whole_file_close(&file, code, f);
-    }
-    return code;
+    whole_file file;
+    TRY(check_extension(path, f));
+    TRY(whole_file_open(&file, path, f));
+    const picture_format format = picture_format_of(path);
+    const status code = format == FORMAT_PNG   ? picture_write_png(p, file.stream, f)
+                        : format == FORMAT_SVG ? write_svg(p, file.stream, f)
+                                               : write_pages(file.stream, p, 1, f);
+    return whole_file_close(&file, code, f);
 }

@@ -40,6 +40,9 @@ void picture_line(cairo_t *cr, double x0, double y0, double x1, double y1);
 // writing are found by the caller when closing the stream.
 status picture_end_drawing(cairo_t *cr, status code, fault *f);
 
+// The ending of a path's last part with its dot; without one its end.
+const char *picture_ending(const char *path);
+
 // The format that a path's extension (.png, .pdf, .svg) or a bare word (png) names.
 picture_format picture_format_of(const char *path);
 

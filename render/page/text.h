@@ -16,8 +16,9 @@
 // straight apostrophe within a word by a typographic one. Free the result with g_free.
 char *text_translate(const char *markup, double size, double scale);
 
-// A unit as the SI brochure sets it: "rad/s2" gives "rad/s²", "kg m2" gives "kg·m²".
-void text_unit(const char *unit, char *out, size_t size);
+// A unit as the SI brochure sets it: "rad/s2" gives "rad/s²", "kg m2" gives "kg·m²". Free the
+// result with g_free.
+char *text_unit(const char *unit);
 
 // A number of `digits` significant digits, zeros at its end too, and its unit: "5.40\u2009N". Free
 // the result with g_free.

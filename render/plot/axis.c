@@ -211,32 +211,28 @@ int axis_minor_ticks(const axis *a, double length, double at[AXIS_MINOR])
 // A unit with its factor, as markup that is never broken into lines.
 static char *unit_markup(const char *unit, int exponent)
 {
-    char shown[64], factor[64] = "";
+    char factor[64] = "";
     bool has_unit = unit != NULL && unit[0] != '\0';
     const ticks scaled = {.exponent = exponent};
-    text_unit(has_unit ? unit : "", shown, sizeof shown);
+    g_autofree char *shown = text_unit(has_unit ? unit : "");
     tick_factor(&scaled, factor, sizeof factor);
 
     // before a unit the factor goes without its multiplication sign
     const char *power = has_unit && factor[0] ? factor + strlen("\u00d7") : factor;
     // Pango would break the line after a slash
-    char **parts = g_strsplit(shown, "/", -1), *unbroken = g_strjoinv("\u2060/\u2060", parts);
-    char *whole = text_printf("(%s%s%s)", power, has_unit && factor[0] ? "\u2009" : "", unbroken);
-    g_strfreev(parts);
-    g_free(unbroken);
-    return whole;
+    g_auto(GStrv) parts = g_strsplit(shown, "/", -1);
+    g_autofree char *unbroken = g_strjoinv("\u2060/\u2060", parts);
+    return text_printf("(%s%s%s)", power, has_unit && factor[0] ? "\u2009" : "", unbroken);
 }
 
 char *axis_label(const char *label, const char *unit, int exponent)
 {
-    bool bare = (unit == NULL || unit[0] == '\0') && exponent == 0;
-    if (bare) {
+    if ((unit == NULL || unit[0] == '\0') && exponent == 0) {
         return g_strdup(label ? label : "");
     }
     g_autofree char *whole = unit_markup(unit, exponent);
     bool named = label != NULL && label[0] != '\0';
-    char *both = g_strconcat(named ? label : "", named ? " " : "", whole, NULL);
-    return both;
+    return text_printf("%s%s%s", named ? label : "", named ? " " : "", whole);
 }
 
 char *axis_title(const axis *a)

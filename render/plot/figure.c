@@ -252,9 +252,8 @@ static status check_description(const figure *fig, fault *f)
 
 status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault *f)
 {
-    status code = check_description(fig, f);
-    code = code == STATUS_OK ? text_check_font(f) : code;
-    TRY(code);
+    TRY(check_description(fig, f));
+    TRY(text_check_font(f));
 
     // too large for a thread's stack
     drawing *d = g_new0(drawing, 1);
@@ -278,20 +277,13 @@ status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault
     // placed first, then drawn
     cairo_save(cr);
     d->context = text_context_create();
-    code = layout_figure(d, f);
+    const status code = layout_figure(d, f);
     if (code == STATUS_OK) {
         draw_all(d);
     }
     g_object_unref(d->context);
     g_free(d);
     cairo_restore(cr);
-
-    // a stream that cannot be written is reported when it is closed
-    cairo_status_t state = cairo_status(cr);
-    if (code == STATUS_OK && state != CAIRO_STATUS_SUCCESS && state != CAIRO_STATUS_WRITE_ERROR) {
-        code = fault_set(f, STATUS_NO_MEMORY, "a figure could not be drawn: %s",
-                         cairo_status_to_string(state));
-    }
     return code;
 }
 

@@ -33,19 +33,19 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
     csv_table table;
     trace_init(t, 0);
     *name = NULL;
-    status code = csv_table_read(&table, path, 1, f);
-    TRY(code);
+    TRY(csv_table_read(&table, path, 1, f));
 
     // named by its file
     g_autofree char *file = g_path_get_basename(path);
     *name = column != NULL ? text_printf("%s: %s", file, column) : g_strdup(file);
 
     const int signal = column != NULL ? signal_of(&table, column, panels, panel_count) : 0;
-    code = column == NULL || (signal > 0 && csv_table_find(&table, column) >= 0)
-               ? measured_rows(t, &table, column, signal, f)
-               : fault_set(f, STATUS_BAD_ARGUMENT,
-                           "%s:1: there is no column '%s' with the unit of a signal that is shown",
-                           path, column);
+    const status code =
+        column == NULL || (signal > 0 && csv_table_find(&table, column) >= 0)
+            ? measured_rows(t, &table, column, signal, f)
+            : fault_set(f, STATUS_BAD_ARGUMENT,
+                        "%s:1: there is no column '%s' with the unit of a signal that is shown",
+                        path, column);
     csv_table_finish(&table);
 
     // as the clocks were apart

@@ -208,7 +208,8 @@ void figure_size(const figure *fig, double *width, double *height);
 
 // Draws the figure with the page's upper left corner at the origin of cr, in points. *report (may
 // be NULL) is filled. STATUS_BAD_ARGUMENT for a page that is too small or an invalid description,
-// such as a logarithmic axis without a value above zero, STATUS_CANNOT_READ if the font is missing.
+// such as a logarithmic axis without a value above zero, STATUS_CANNOT_READ if the font is missing;
+// errors of cairo stay in cr.
 status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault *f)
     __attribute__((warn_unused_result));
 

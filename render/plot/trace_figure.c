@@ -176,8 +176,7 @@ static void add_series(owned_figure *o, const trace_key *key, int panel_index,
         }
 
         // as the signal table has it
-        figure_series *out = &o->series[panel_index][panel->series_count++];
-        *out = trace_series(&runs[run], index, o);
+        figure_series *out = owned_figure_add(o, panel_index, trace_series(&runs[run], index, o));
         for (int k = 0; k + 1 < panel->series_count && run == 0; k++) {
             // two readings of one quantity: the second in grey
             out->colour = o->series[panel_index][k].colour == out->colour ? 7 : out->colour;
@@ -258,9 +257,7 @@ static void describe_panel(owned_figure *o, const trace_key *key, int index,
         panel->impulse_unit = signal_table[SIGNAL_INDEX(impulse)].unit;
     }
     if (from->wall && wall->kind != WALL_NONE) {
-        figure_level *level = owned_figure_keep(o, g_new(figure_level, 1));
-        *level = (figure_level){wall->angle, "wall"};
-        panel->levels = level;
+        panel->levels = OWNED(o, figure_level, wall->angle, "wall");
         panel->level_count = 1;
     }
     if (from->inset) {
@@ -289,17 +286,15 @@ static void add_residuals(owned_figure *o, const trace_panel *panels, const trac
     }
 
     int index = signal_index(panels[panel].signals[0]);
-    figure_series *s = &o->series[last][0];
-    *s = trace_difference(data, &computed->result->trace, index, o);
+    figure_series *s =
+        owned_figure_add(o, last, trace_difference(data, &computed->result->trace, index, o));
     s->name = "residual";
     s->colour = 6;
     s->marker = MARKER_CIRCLE;
     s->no_line = true;
-    o->panels[last] = (figure_panel){.y = {"residual", "Residual", .symbol = "Δ",
-                                           .unit = signal_table[index].unit, .with_zero = true},
-                                     .series = s,
-                                     .series_count = 1,
-                                     .weight = 0.6};
+    o->panels[last].y =
+        (figure_axis){"residual", "Residual", signal_table[index].unit, "Δ", .with_zero = true};
+    o->panels[last].weight = 0.6;
     o->figure.panel_count++;
 }
 

@@ -24,9 +24,9 @@ static char *action_label(const scenario *s, const event *e)
     }
 
     const action *a = &s->actions[e->index];
-    char value[128], unit[64], path[ACTION_PATH];
+    char value[128], path[ACTION_PATH];
     action_format_value(a, value, sizeof value);
-    text_unit(parameter_table[a->parameter].unit, unit, sizeof unit);
+    g_autofree char *unit = text_unit(parameter_table[a->parameter].unit);
 
     // the parameter's last name and its value with its unit
     const char *name = strchr(action_path(a, path), '.') + 1;

@@ -180,11 +180,7 @@ static status record(film_making *m, const char *path, fault *f)
                               {"Software", picture_software()},
                               {"Parameters", values},
                               {"Renderer", scene_renderer_name(m->painter->scenes[0])}};
-    const film_facts facts = {
-        plan->options.width, plan->options.height, plan->options.frames_per_second,
-        .notes = notes,      .note_count = 4,      .stop = plan->options.stop};
-
-    TRY(film_file_open(&m->file, path, &facts, f));
+    TRY(film_file_open(&m->file, path, &plan->options, notes, 4, f));
     status code = add_frames(m, f);
     if (code == STATUS_OK) {
         return film_file_commit(m->file, f);

@@ -114,14 +114,6 @@ status film_write(const film_run *runs, int run_count, const film_options *optio
 // --- films as files: made from frames with the ffmpeg program, or a folder of PNG frames:
 // film_file.c
 
-typedef struct film_facts {
-    int width, height; // of each frame [pixels]
-    int frames_per_second;
-    const png_note *notes; // for the metadata
-    int note_count;
-    const volatile sig_atomic_t *stop; // not 0: stops waiting; may be NULL
-} film_facts;
-
 typedef struct film_file film_file;
 
 // Checks in advance whether a film can be written: STATUS_BAD_ARGUMENT for an unknown extension,
@@ -130,8 +122,10 @@ typedef struct film_file film_file;
 status film_file_check(const char *path, fault *f);
 
 // Opens a film: path ends in .mp4, .webm, .gif or .webp, or names a folder that is created for PNG
-// frames.
-status film_file_open(film_file **out, const char *path, const film_facts *facts, fault *f);
+// frames; size and rate of the frames and `stop` are the options', which outlive it, as do the
+// notes for the metadata.
+status film_file_open(film_file **out, const char *path, const film_options *options,
+                      const png_note *notes, int note_count, fault *f);
 
 // True if the first frame is not shown but defines the colours of all others: it should contain
 // every colour of the film.

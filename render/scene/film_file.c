@@ -58,7 +58,9 @@ static const film_format formats[] = {
 
 struct film_file {
     const film_format *format; // NULL: frames in a folder
-    film_facts facts;
+    const film_options *options;
+    const png_note *notes;
+    int note_count;
     char *path;
     int frames;      // written so far
     whole_file file; // of a film
@@ -72,9 +74,8 @@ struct film_file {
 // The format that a path's ending names, or NULL.
 static const film_format *format_of(const char *path)
 {
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    for (size_t i = 0; dot != NULL && i < G_N_ELEMENTS(formats); i++) {
-        if (strcasecmp(dot, formats[i].ending) == 0) {
+    for (size_t i = 0; i < G_N_ELEMENTS(formats); i++) {
+        if (strcasecmp(picture_ending(path), formats[i].ending) == 0) {
             return &formats[i];
         }
     }
@@ -107,8 +108,8 @@ status film_file_check(const char *path, fault *f)
     const bool film = format_of(path) != NULL;
 
     // a name without an ending means a folder, as does one that is there
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    bool folder = !film && (dot == NULL || dot[1] == '\0' || g_file_test(path, G_FILE_TEST_IS_DIR));
+    const bool bare = strlen(picture_ending(path)) < 2;
+    const bool folder = !film && (bare || g_file_test(path, G_FILE_TEST_IS_DIR));
     FAIL_IF((!film && !folder) || strcmp(path, "-") == 0,
             fault_set(f, STATUS_BAD_ARGUMENT,
                       "'%s' is no name for a film: expected one that ends in .mp4, .webm, "
@@ -140,20 +141,20 @@ static const char *key_of(const char *keyword)
 // To be freed with g_strfreev.
 static char **list_arguments(const film_file *film, const char *target)
 {
-    const film_facts *facts = &film->facts;
+    const film_options *o = film->options;
     GPtrArray *list = g_ptr_array_new();
 
     // raw frames from the pipe
     g_autofree char *words = text_printf(
         "ffmpeg -hide_banner -loglevel error -nostats -y -f rawvideo -pix_fmt bgr0 -s %dx%d -r %d "
         "-i pipe:0 -an %s -fflags +bitexact -flags:v +bitexact",
-        facts->width, facts->height, facts->frames_per_second, film->format->codec);
+        o->width, o->height, o->frames_per_second, film->format->codec);
     g_autofree char **each = g_strsplit(words, " ", -1); // the list takes the words themselves
     for (int i = 0; each[i] != NULL; i++) {
         g_ptr_array_add(list, each[i]);
     }
-    for (int i = 0; i < facts->note_count; i++) {
-        const png_note *note = &facts->notes[i];
+    for (int i = 0; i < film->note_count; i++) {
+        const png_note *note = &film->notes[i];
         if (note->text != NULL) {
             g_ptr_array_add(list, g_strdup("-metadata"));
             g_ptr_array_add(list, text_printf("%s=%s", key_of(note->keyword), note->text));
@@ -208,7 +209,7 @@ static status start_encoder(film_file *film, fault *f)
 
 static bool is_asked_to_stop(const film_file *film)
 {
-    return film->facts.stop != NULL && *film->facts.stop != 0;
+    return film->options->stop != NULL && *film->options->stop != 0;
 }
 
 static void close_pipe(film_file *film)
@@ -321,14 +322,14 @@ static status open_target(film_file *film, fault *f)
     return STATUS_OK;
 }
 
-status film_file_open(film_file **out, const char *path, const film_facts *facts, fault *f)
+status film_file_open(film_file **out, const char *path, const film_options *options,
+                      const png_note *notes, int note_count, fault *f)
 {
-    assert(facts->width > 0 && facts->height > 0);
+    assert(options->width > 0 && options->height > 0);
     *out = NULL;
     TRY(film_file_check(path, f));
     film_file *film = g_new0(film_file, 1);
-    *film =
-        (film_file){.format = format_of(path), .facts = *facts, .path = g_strdup(path), .pipe = -1};
+    *film = (film_file){format_of(path), options, notes, note_count, g_strdup(path), .pipe = -1};
     status code = open_target(film, f);
     if (code != STATUS_OK) {
         film_file_abandon(film);
@@ -343,8 +344,7 @@ static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
     whole_file file;
     g_autofree char *path = text_printf("%s/frame-%05d.png", film->path, film->frames + 1);
     TRY(whole_file_open(&file, path, f));
-    status code =
-        png_file_write(file.stream, frame, FRAME_DPI, film->facts.notes, film->facts.note_count, f);
+    status code = png_file_write(file.stream, frame, FRAME_DPI, film->notes, film->note_count, f);
     return whole_file_close(&file, code, f);
 }
 
@@ -372,8 +372,8 @@ static status send_frame(film_file *film, cairo_surface_t *frame, fault *f)
     cairo_surface_flush(frame);
     const unsigned char *data = cairo_image_surface_get_data(frame);
     ptrdiff_t stride = cairo_image_surface_get_stride(frame);
-    for (int row = 0; row < film->facts.height && code == STATUS_OK; row++) {
-        code = send_bytes(film, data + row * stride, 4 * (size_t)film->facts.width);
+    for (int row = 0; row < film->options->height && code == STATUS_OK; row++) {
+        code = send_bytes(film, data + row * stride, 4 * (size_t)film->options->width);
     }
     if (code == STATUS_OK || code == STATUS_STOPPED) {
         return code == STATUS_OK ? code : stopped(film, f);

@@ -66,23 +66,23 @@ static unsigned add_vertex(mesh *m, vector place, vector normal, material of)
     return (unsigned)m->vertex_count++;
 }
 
-static void add_triangle(mesh *m, unsigned a, unsigned b, unsigned c)
+// Adds two triangles.
+static void add_quad(mesh *m, unsigned a, unsigned b, unsigned c, unsigned d)
 {
-    m->corners = grown(m->corners, m->corner_count, 3, &m->corner_capacity, sizeof *m->corners);
-    m->corners[m->corner_count++] = a;
-    m->corners[m->corner_count++] = b;
-    m->corners[m->corner_count++] = c;
+    const unsigned corners[] = {a, b, c, a, c, d};
+    m->corners = grown(m->corners, m->corner_count, 6, &m->corner_capacity, sizeof *m->corners);
+    memcpy(m->corners + m->corner_count, corners, sizeof corners);
+    m->corner_count += 6;
 }
 
 // A quadrilateral of one normal.
 static void add_flat(mesh *m, const vector corners[4], vector normal, material of)
 {
-    unsigned at[4];
+    const unsigned first = (unsigned)m->vertex_count;
     for (int i = 0; i < 4; i++) {
-        at[i] = add_vertex(m, corners[i], normal, of);
+        add_vertex(m, corners[i], normal, of);
     }
-    add_triangle(m, at[0], at[1], at[2]);
-    add_triangle(m, at[0], at[2], at[3]);
+    add_quad(m, first, first + 1, first + 2, first + 3);
 }
 
 // Two unit vectors that make a right-handed frame with the axis.
@@ -91,6 +91,13 @@ static void frame_of(vector axis, vector *across, vector *other)
     vector least = fabs(axis.z) < 0.9 ? (vector){0, 0, 1} : (vector){1, 0, 0};
     *across = vector_unit(vector_cross(least, axis));
     *other = vector_cross(axis, *across);
+}
+
+// The unit vector across the axis of that frame at step `i` of a circle of `sides`.
+static vector circle_at(vector across, vector other, int i, int sides)
+{
+    const double angle = 2 * M_PI * i / sides;
+    return vector_sum(vector_scaled(across, cos(angle)), sin(angle), other);
 }
 
 void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count, material of)
@@ -107,8 +114,7 @@ void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int 
         unsigned before_low = 0, before_high = 0;
 
         for (int i = 0; i <= LATHE_SIDES; i++) {
-            double angle = 2 * M_PI * i / LATHE_SIDES;
-            vector out = vector_sum(vector_scaled(across, cos(angle)), sin(angle), other);
+            vector out = circle_at(across, other, i, LATHE_SIDES);
             vector normal = vector_unit(vector_sum(vector_scaled(out, rise), taper, axis));
 
             vector foot = vector_sum(base, low->along, axis);
@@ -117,8 +123,7 @@ void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int 
             unsigned at_high = add_vertex(m, vector_sum(head, high->radius, out), normal, of);
 
             if (i > 0) {
-                add_triangle(m, before_low, at_low, at_high);
-                add_triangle(m, before_low, at_high, before_high);
+                add_quad(m, before_low, at_low, at_high, before_high);
             }
             before_low = at_low;
             before_high = at_high;
@@ -227,8 +232,7 @@ void mesh_ribbon(mesh *m, const vector *places, int count, double height, double
                 add_vertex(m, section_point(&s, (edge + 1) % 8, places[i], across), normal, of);
 
             if (i > 0) {
-                add_triangle(m, before_low, high, low);
-                add_triangle(m, before_low, before_high, high);
+                add_quad(m, before_low, before_high, high, low);
             }
             before_low = low;
             before_high = high;
@@ -250,18 +254,15 @@ void mesh_tube(mesh *m, const vector *places, const material *of, int count, dou
         frame_of(direction_at(places, count, i), &across, &other);
 
         // a circle of vertices
-        unsigned first = 0;
+        const unsigned first = (unsigned)m->vertex_count;
         for (int k = 0; k <= TUBE_SIDES; k++) {
-            double angle = 2 * M_PI * k / TUBE_SIDES;
-            vector out = vector_sum(vector_scaled(across, cos(angle)), sin(angle), other);
-            unsigned at = add_vertex(m, vector_sum(places[i], radius, out), out, of[i]);
-            first = k == 0 ? at : first;
+            vector out = circle_at(across, other, k, TUBE_SIDES);
+            add_vertex(m, vector_sum(places[i], radius, out), out, of[i]);
         }
 
         // joined with the circle before
         for (unsigned k = 0; k < TUBE_SIDES && i > 0; k++) {
-            add_triangle(m, before + k, first + k + 1, first + k);
-            add_triangle(m, before + k, before + k + 1, first + k + 1);
+            add_quad(m, before + k, before + k + 1, first + k + 1, first + k);
         }
         before = first;
     }
