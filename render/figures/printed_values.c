@@ -12,8 +12,7 @@ enum { TABLES = 3, QUANTITIES = 3, PANELS = 2 * TABLES };
 
 // A quantity that all three tables have.
 typedef struct printed_quantity {
-    const char *key, *printed; // names of what is computed and of what the thesis has, for the CSV
-    const char *label;
+    const char *key, *label; // its name, for the CSV too
     marker_kind marker;
     int colour;
 } printed_quantity;
@@ -22,27 +21,18 @@ typedef struct printed_quantity {
 typedef struct printed_kind {
     const char *name, *axis, *unit; // of the values
     double scale;                   // from N or s to that unit
-    int count;                      // of quantities
-    printed_quantity quantities[QUANTITIES];
+    const printed_quantity *quantities;
+    int count; // of quantities
 } printed_kind;
 
-static const printed_kind kinds[] = {
-    {"force",
-     "Peak force",
-     "N",
-     1,
-     3,
-     {{"max_force_energy", "max_force_energy printed", "energy principle", MARKER_CIRCLE, 0},
-      {"max_force_dynamics", "max_force_dynamics printed", "impact dynamics", MARKER_SQUARE, 5},
-      {"max_force_simulation", "max_force_simulation printed", "simulation", MARKER_TRIANGLE, 2}}},
-    {"delay",
-     "Delay",
-     "ms",
-     1e3,
-     2,
-     {{"delay_dynamics", "delay_dynamics printed", "impact dynamics", MARKER_SQUARE, 5},
-      {"delay_simulation", "delay_simulation printed", "simulation", MARKER_TRIANGLE, 2}}},
-};
+static const printed_quantity forces[] = {
+    {"max_force_energy", "energy principle", MARKER_CIRCLE, 0},
+    {"max_force_dynamics", "impact dynamics", MARKER_SQUARE, 5},
+    {"max_force_simulation", "simulation", MARKER_TRIANGLE, 2}};
+static const printed_quantity delays[] = {{"delay_dynamics", "impact dynamics", MARKER_SQUARE, 5},
+                                          {"delay_simulation", "simulation", MARKER_TRIANGLE, 2}};
+static const printed_kind kinds[] = {{"force", "Peak force", "N", 1, forces, 3},
+                                     {"delay", "Delay", "ms", 1e3, delays, 2}};
 
 // The points and lines of a table, and the panel of their distances.
 static void add_table(owned_figure *plot, const printed_kind *kind, const double *voltage,
@@ -63,18 +53,15 @@ static void add_table(owned_figure *plot, const printed_kind *kind, const double
         }
 
         // lines first, so that points lie on them
-        lines[q] = (figure_series){.name = of->key,
-                                   .x = voltage,
-                                   .y = computed,
-                                   .count = TABLE_VOLTAGES,
-                                   .colour = of->colour,
-                                   .style = LINE_SOLID,
+        const char *thesis = owned_figure_printf(plot, "%s printed", of->key);
+        lines[q] = (figure_series){of->key,          NULL,           voltage,
+                                   computed,         TABLE_VOLTAGES, .colour = of->colour,
                                    .secondary = true};
-        points[q] = (figure_series){.name = of->printed,
-                                    .label = of->label,
-                                    .x = voltage,
-                                    .y = printed,
-                                    .count = TABLE_VOLTAGES,
+        points[q] = (figure_series){thesis,
+                                    of->label,
+                                    voltage,
+                                    printed,
+                                    TABLE_VOLTAGES,
                                     .colour = of->colour,
                                     .no_line = true,
                                     .marker = of->marker,

@@ -55,9 +55,8 @@ static void put_title_page(cairo_t *cr, PangoContext *context, const report_cont
     for (guint i = 0; i < r->items->len; i++, y += step) {
         const report_item *item = report_item_at(r, i);
         g_autofree char *title = text_escape(item->drawn.title);
-        char page[16];
+        g_autofree char *page = text_printf("%d", item->page);
         g_autofree char *target = text_printf("dest='item-%u'", i);
-        g_snprintf(page, sizeof page, "%d", item->page);
         cairo_tag_begin(cr, CAIRO_TAG_LINK, target);
         put_text(cr, context, title, fmin(8, 0.7 * step), false, PAGE_MARGIN, y);
         put_text(cr, context, page, fmin(8, 0.7 * step), false, PAGE_WIDTH - PAGE_MARGIN - 14, y);
@@ -103,8 +102,7 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
     }
 
     if (page->number > 0) {
-        char number[16];
-        g_snprintf(number, sizeof number, "%d", page->number + 1);
+        g_autofree char *number = text_printf("%d", page->number + 1);
         put_text(cr, context, number, 8, false, PAGE_WIDTH / 2, PAGE_HEIGHT - 30);
     }
     g_object_unref(context);

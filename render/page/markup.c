@@ -12,110 +12,80 @@
 
 #define INDEX_SIZE 0.72 // of its line's letters, but never too small to read
 
-// Whether the word at `text` is a unit and ends there.
-static bool is_unit(const char *text)
-{
-    static const char *const units[] = {"N",  "N·s", "N·m", "V", "A",   "s",  "ms",    "µs",
-                                        "Hz", "kHz", "mm",  "m", "kg",  "J",  "mJ",    "rad",
-                                        "dB", "%",   "Ω",   "W", "N s", "kΩ", "rad/s", "m/s"};
+// ---- one text in place of another
 
-    // neither the start of a longer word nor the numerator of a longer unit
-    for (size_t i = 0; i < G_N_ELEMENTS(units); i++) {
-        size_t length = strlen(units[i]);
-        bool ends = strncmp(text, units[i], length) == 0 && !g_ascii_isalnum(text[length]) &&
-                    text[length] != '/' && (unsigned char)text[length] < 0x80;
-        if (ends) {
-            return true;
+char *text_replaced(text_pattern *p, const char *text, GRegexEvalCallback give, gpointer context)
+{
+    page_libraries++;
+    // compiled by whichever thread comes first
+    if (g_once_init_enter(&p->compiled)) {
+        GRegex *regex =
+            g_regex_new(p->expression, G_REGEX_RAW | G_REGEX_DOTALL | G_REGEX_OPTIMIZE, 0, NULL);
+        if (regex == NULL) {
+            g_error("out of memory");
         }
+        g_once_init_leave(&p->compiled, (gsize)regex);
     }
-    return false;
-}
-
-// Whether the space at `space` joins what must stay in one line: a number and its unit, both sides
-// of an equals sign, a name and the number after it.
-static bool space_joins(const char *start, const char *space)
-{
-    bool equals = space[1] == '=' && space[2] == ' ';
-    bool after_equals = space - start >= 2 && space[-1] == '=' && space[-2] == ' ';
-    bool number = space > start && g_ascii_isdigit(space[-1]) && is_unit(space + 1);
-    bool version = space > start && g_ascii_isalpha(space[-1]) && g_ascii_isdigit(space[1]) &&
-                   strchr(space + 1, '.') != NULL &&
-                   strspn(space + 1, "0123456789") == strcspn(space + 1, ".");
-    bool figure = space - start >= 4 && strncmp(space - 4, "Fig.", 4) == 0;
-    return equals || after_equals || number || version || figure;
-}
-
-// Whether the slash at `slash` stands before the last part of a unit: "N·m/rad", "m/s²".
-static bool slash_joins(const char *start, const char *slash)
-{
-    static const char *const lower[] = {"rad", "s", "m", "V", "A", "N"};
-
-    // a path has longer words
-    bool after_letter = slash > start && g_ascii_isalpha(slash[-1]);
-    for (size_t i = 0; i < G_N_ELEMENTS(lower); i++) {
-        size_t length = strlen(lower[i]);
-        if (after_letter && strncmp(slash + 1, lower[i], length) == 0 &&
-            !g_ascii_isalpha(slash[1 + length])) {
-            return true;
-        }
+    char *out = g_regex_replace_eval((GRegex *)p->compiled, text, -1, 0, 0, give, context, NULL);
+    if (out == NULL) {
+        g_error("out of memory");
     }
-    return false;
+    page_libraries--;
+    return out;
 }
 
-// Length of a typewriter's apostrophe within a word ("Newmark's", or as g_markup_escape_text writes
-// it) that begins at `mark`; 0 if none does.
-static size_t apostrophe_length(const char *start, const char *mark)
-{
-    size_t length = *mark == '\'' ? 1 : strncmp(mark, "&apos;", 6) == 0 ? 6 : 0;
-    length = strncmp(mark, "&#39;", 5) == 0 ? 5 : length;
-    bool within = mark > start && g_ascii_isalpha(mark[-1]) && g_ascii_isalpha(mark[length]);
-    return within ? length : 0;
-}
+// A unit, neither the start of a longer word nor the numerator of a longer unit.
+#define UNIT                                                                                       \
+    "(?:N|N·s|N·m|V|A|s|ms|µs|Hz|kHz|mm|m|kg|J|mJ|rad|dB|%|Ω|W|N s|kΩ|rad/s|m/s)"             \
+    "(?![A-Za-z0-9/\\x80-\\xff])"
+
+// Spaces that join what must stay in one line: both sides of an equals sign, a number and its unit,
+// a name and the version or the number after it.
+#define JOINT " (?== )|(?<= =) |(?<=[0-9]) (?=" UNIT ")|(?<=[A-Za-z]) (?=[0-9]+\\.)|(?<=Fig\\.) "
+
+// A typewriter's apostrophe within a word, also as g_markup_escape_text writes it; the slash before
+// the last part of a unit, "N·m/rad", for a path has longer words.
+#define APOSTROPHE "(?<=[A-Za-z])(?:'|&apos;|&#39;)(?=[A-Za-z])"
+#define SLASH      "(?<=[A-Za-z])/(?=(?:rad|s|m|V|A|N)(?![A-Za-z]))"
 
 double text_index_letters(double size)
 {
     return fmax(INDEX_SIZE * size, fmin(size, LETTERS_LEAST));
 }
 
+// Sizes of a line's letters, and points of the page to a point of them.
+typedef struct line_letters {
+    double size, scale;
+} line_letters;
+
+static gboolean translate(const GMatchInfo *match, GString *out, gpointer context)
+{
+    // a thin space stands between a number and its unit: its twin does not break, and behind a word
+    // joiner no line ends
+    static const char *const instead[] = {[3] = "</span>", "\u202f", "\u00a0", "\u2019", "/\u2060"};
+    const int group = g_match_info_get_match_count(match) - 1;
+    if (group == 0) {
+        // any other tag stays as it is
+        g_autofree char *tag = g_match_info_fetch(match, 0);
+        g_string_append(out, tag);
+    } else if (group > 2) {
+        g_string_append(out, instead[group]);
+    } else {
+        // in 1/1024 of a point, which every version of Pango understands
+        const line_letters *l = context;
+        double small = text_index_letters(l->size * l->scale) / l->scale;
+        text_append(out, "<span size=\"%d\" rise=\"%d\">", (int)(small * 1024),
+                    (int)((group == 2 ? 0.35 : -0.2) * l->size * 1024));
+    }
+    return FALSE;
+}
+
 char *text_translate(const char *markup, double size, double scale)
 {
     assert(size > 0 && scale > 0);
-    GString *out = g_string_new(NULL);
-
-    bool in_tag = false;
-    for (const char *c = markup; *c != '\0';) {
-        in_tag = *c == '<' || (in_tag && *c != '>');
-        bool lowered = strncmp(c, "<sub>", 5) == 0, raised = strncmp(c, "<sup>", 5) == 0;
-        if (lowered || raised) {
-            // in 1/1024 of a point, which every version of Pango understands
-            double small = text_index_letters(size * scale) / scale;
-            text_append(out, "<span size=\"%d\" rise=\"%d\">", (int)(small * 1024),
-                        (int)((raised ? 0.35 : -0.2) * size * 1024));
-            in_tag = false;
-            c += 5;
-        } else if (strncmp(c, "</sub>", 6) == 0 || strncmp(c, "</sup>", 6) == 0) {
-            g_string_append(out, "</span>");
-            in_tag = false;
-            c += 6;
-        } else if (strncmp(c, "\u2009", 3) == 0) {
-            // a thin space stands between a number and its unit: its twin that does not break
-            g_string_append(out, "\u202f");
-            c += 3;
-        } else if (*c == ' ' && !in_tag && space_joins(markup, c)) {
-            g_string_append(out, "\u00a0");
-            c++;
-        } else if (!in_tag && apostrophe_length(markup, c) > 0) {
-            g_string_append(out, "\u2019");
-            c += apostrophe_length(markup, c);
-        } else if (*c == '/' && !in_tag && slash_joins(markup, c)) {
-            // a word joiner: no line ends after the slash
-            g_string_append(out, "/\u2060");
-            c++;
-        } else {
-            g_string_append_c(out, *c++);
-        }
-    }
-    return g_string_free(out, FALSE);
+    static text_pattern words = {"(<sub>)|(<sup>)|(</su[bp]>)|<[^<>]*|(\u2009)|(" JOINT
+                                 ")|(" APOSTROPHE ")|(" SLASH ")"};
+    return text_replaced(&words, markup, translate, &(line_letters){size, scale});
 }
 
 char *text_unit(const char *unit)

@@ -24,10 +24,14 @@ point shifted(point from, double right, double down)
 
 // ---- the page
 
+static double design_width(const sketch_frame *frame)
+{
+    return frame->design_width > 0 ? frame->design_width : SKETCH_WIDTH;
+}
+
 static double page_scale(const sketch_frame *frame)
 {
-    double design = frame->design_width > 0 ? frame->design_width : SKETCH_WIDTH;
-    return frame->look.width > 0 ? frame->look.width * MM / design : 1;
+    return frame->look.width > 0 ? frame->look.width * MM / design_width(frame) : 1;
 }
 
 double sketch_letters(const sketch_frame *frame, double size)
@@ -39,8 +43,7 @@ double sketch_letters(const sketch_frame *frame, double size)
 
 static double inner_width(const sketch_frame *frame)
 {
-    double design = frame->design_width > 0 ? frame->design_width : SKETCH_WIDTH;
-    return design - 2 * SKETCH_MARGIN;
+    return design_width(frame) - 2 * SKETCH_MARGIN;
 }
 
 // Size of the letters round a drawing, in designed points: that of a plot's on any page.

@@ -7,27 +7,11 @@
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 
-// Appends to a text what comes in place of a match.
-typedef gboolean replacer(const GMatchInfo *match, GString *out, gpointer context);
-
-// The text with what `give` makes of every match of the pattern. Without memory the program ends.
-static char *replaced(const char *text, const char *pattern, replacer *give, gpointer context)
-{
-    page_libraries++;
-    g_autoptr(GRegex) regex = g_regex_new(pattern, G_REGEX_RAW | G_REGEX_DOTALL, 0, NULL);
-    char *out = regex ? g_regex_replace_eval(regex, text, -1, 0, 0, give, context, NULL) : NULL;
-    if (out == NULL) {
-        g_error("out of memory");
-    }
-    page_libraries--;
-    return out;
-}
-
 // ==== ids
 
 // Where an id is set, and where it or a reference to it stands.
-#define SET_ID "( id=\")([^\"')]*)"
-#define ANY_ID "( id=\"|\"#|url\\(#)([^\"')]*)"
+static text_pattern set_id = {"( id=\")([^\"')]*)"};
+static text_pattern any_id = {"( id=\"|\"#|url\\(#)([^\"')]*)"};
 
 // Gives an id a new name: its letters and its place among all.
 static gboolean collect_id(const GMatchInfo *match, GString *out, gpointer names)
@@ -59,8 +43,8 @@ static gboolean prefix_id(const GMatchInfo *match, GString *out, gpointer prefix
 char *svg_renumber_ids(const char *svg)
 {
     g_autoptr(GHashTable) names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
-    g_free(replaced(svg, SET_ID, collect_id, names));
-    return replaced(svg, ANY_ID, rename_id, names);
+    g_free(text_replaced(&set_id, svg, collect_id, names));
+    return text_replaced(&any_id, svg, rename_id, names);
 }
 
 // Outlines of earlier SVGs by what is in them, and what this SVG's ids become.
@@ -89,9 +73,9 @@ static gboolean drop_known(const GMatchInfo *match, GString *out, gpointer conte
 static char *share_symbols(const char *svg, GHashTable *known)
 {
     g_autoptr(GHashTable) renamed = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
-    g_autofree char *kept = replaced(svg, "<symbol [^>]*? id=\"([^\"')]*)[^>]*>(.*?)</symbol>",
-                                     drop_known, &(letters){known, renamed});
-    return replaced(kept, ANY_ID, rename_id, renamed);
+    static text_pattern symbol = {"<symbol [^>]*? id=\"([^\"')]*)[^>]*>(.*?)</symbol>"};
+    g_autofree char *kept = text_replaced(&symbol, svg, drop_known, &(letters){known, renamed});
+    return text_replaced(&any_id, kept, rename_id, renamed);
 }
 
 // ==== fewer bytes
@@ -100,10 +84,10 @@ static char *share_symbols(const char *svg, GHashTable *known)
 // number zeros at its end go, and so does what goes without saying.
 #define PER_CENT "([-+.\\d]+)%"
 #define NUMBER   "(-?\\d+(?:\\.\\d+)?)"
-#define VERBOSE                                                                                    \
-    "rgb\\(" PER_CENT ", *" PER_CENT ", *" PER_CENT "\\)"                                          \
-    "|(?:stroke-opacity:1|fill-opacity:1|stroke-miterlimit:10|fill-rule:nonzero);|xlink:(?=href)"  \
-    "| (?=[MLCZ])|(?<=[MLCZ]) |(?<= )" NUMBER "|(?<=[\"(,:])" NUMBER
+static text_pattern verbose = {
+    "rgb\\(" PER_CENT ", *" PER_CENT ", *" PER_CENT "\\)"
+    "|(?:stroke-opacity:1|fill-opacity:1|stroke-miterlimit:10|fill-rule:nonzero);|xlink:(?=href)"
+    "| (?=[MLCZ])|(?<=[MLCZ]) |(?<= )" NUMBER "|(?<=[\"(,:])" NUMBER};
 
 // How the tag of a line begins.
 #define LINE_TAG "<path style=\"fill:none;"
@@ -138,7 +122,7 @@ static char *short_tag(const char *tag)
 {
     const char *data = strstr(tag, " d=\"");
     bool lines = g_str_has_prefix(tag, LINE_TAG) && data != NULL && strchr(data, 'C') == NULL;
-    return replaced(tag, VERBOSE, shorten, &lines);
+    return text_replaced(&verbose, tag, shorten, &lines);
 }
 
 // Whether two tags are lines of one style, so that the data of the second can go on the first.
@@ -179,7 +163,7 @@ static gboolean compact(const GMatchInfo *match, GString *out, gpointer context)
 char *svg_for_page(const char *svg, const char *prefix, GHashTable *known)
 {
     const char *root = strstr(svg, "<svg");
-    g_autofree char *own = replaced(root ? root : svg, ANY_ID, prefix_id, (gpointer)prefix);
+    g_autofree char *own = text_replaced(&any_id, root ? root : svg, prefix_id, (gpointer)prefix);
 
     // the page that holds the picture says what it is
     char *from = strstr(own, "<metadata>"), *to = from ? strstr(from, "</metadata>") : NULL;
@@ -188,6 +172,7 @@ char *svg_for_page(const char *svg, const char *prefix, GHashTable *known)
         memmove(from, to, strlen(to) + 1);
     }
     size_t last = SIZE_MAX;
-    g_autofree char *small = replaced(own, "(<[^>]*>)([^<]*)", compact, &last);
+    static text_pattern tags = {"(<[^>]*>)([^<]*)"};
+    g_autofree char *small = text_replaced(&tags, own, compact, &last);
     return share_symbols(small, known);
 }

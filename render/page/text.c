@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <errno.h>
-#include <fontconfig/fontconfig.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -19,30 +18,19 @@ bool page_in_libraries(void)
     return page_libraries > 0 || (atomic_load(&has_context) && gettid() != getpid());
 }
 
-static bool family_matches(const char *wanted_family)
+// Whether a font of the family is installed.
+static bool family_is_there(const char *family)
 {
-    FcPattern *wanted = FcPatternCreate();
-    if (wanted == NULL) {
-        return false;
+    PangoFontFamily **families = NULL;
+    int count = 0;
+    bool there = false;
+    atomic_store(&has_context, true);
+    pango_font_map_list_families(pango_cairo_font_map_get_default(), &families, &count);
+    for (int i = 0; i < count && !there; i++) {
+        there = g_ascii_strcasecmp(pango_font_family_get_name(families[i]), family) == 0;
     }
-
-    FcPatternAddString(wanted, FC_FAMILY, (const FcChar8 *)wanted_family);
-    FcConfigSubstitute(NULL, wanted, FcMatchPattern);
-    FcDefaultSubstitute(wanted);
-
-    // fontconfig always finds some font: is it of this family?
-    FcResult result;
-    FcPattern *found = FcFontMatch(NULL, wanted, &result);
-    FcChar8 *family = NULL;
-    bool matches = found != NULL &&
-                   FcPatternGetString(found, FC_FAMILY, 0, &family) == FcResultMatch &&
-                   g_ascii_strcasecmp((const char *)family, wanted_family) == 0;
-
-    if (found != NULL) {
-        FcPatternDestroy(found);
-    }
-    FcPatternDestroy(wanted);
-    return matches;
+    g_free(families);
+    return there;
 }
 
 status text_check_font(fault *f)
@@ -52,8 +40,7 @@ status text_check_font(fault *f)
     static gsize known;
     if (g_once_init_enter(&known)) {
         page_libraries++;
-        FcFontSet *fonts = FcInit() ? FcConfigGetFonts(NULL, FcSetSystem) : NULL;
-        bool there = fonts != NULL && fonts->nfont > 0 && family_matches(TEXT_FAMILY);
+        const bool there = family_is_there(TEXT_FAMILY);
         page_libraries--;
         g_once_init_leave(&known, there ? THERE : MISSING);
     }
@@ -69,7 +56,7 @@ status text_check_font(fault *f)
 status text_check_family(const char *family, fault *f)
 {
     page_libraries++;
-    const bool there = FcInit() && family_matches(family);
+    const bool there = family_is_there(family);
     page_libraries--;
     FAIL_IF(!there, fault_set(f, STATUS_BAD_ARGUMENT, "the font '%s' is not installed", family));
     return STATUS_OK;

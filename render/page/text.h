@@ -10,6 +10,16 @@
 #include "render/page/page.h"
 #include "src/base/fault.h"
 
+// An expression over bytes, of GLib's regular expressions, kept compiled: static.
+typedef struct text_pattern {
+    const char *expression;
+    gsize compiled;
+} text_pattern;
+
+// The text with what `give` makes of every match, as g_regex_replace_eval has it. Free the result
+// with g_free; without memory the program ends.
+char *text_replaced(text_pattern *p, const char *text, GRegexEvalCallback give, gpointer context);
+
 // Replaces <sub>..</sub> and <sup>..</sup> by spans for letters of the given size on a page of the
 // given scale (points of the page to a point of the size), spaces at which a line must not end by
 // no-break spaces (between a number and its unit, around an equals sign, before a version), and a

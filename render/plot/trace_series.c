@@ -139,48 +139,25 @@ figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o)
 
 // ==== series
 
-// A point that lies between two rows.
-typedef struct located_point {
-    double x, y;
-} located_point;
-
-// Where the force is largest in the first pulse and in the whole run, in the order of time. Returns
-// their number.
-static int located_peaks(const summary *m, located_point peaks[2])
-{
-    int count = 0;
-
-    const located_point first = {m->first_contact_s + m->first_pulse_time_to_peak_s,
-                                 m->first_pulse_peak_N};
-    const located_point whole = {m->first_contact_s + m->time_to_peak_s, m->peak_force_N};
-
-    // the whole run's comes later, or it is the first pulse's
-    if (isfinite(first.x) && isfinite(first.y)) {
-        peaks[count++] = first;
-    }
-    if (isfinite(whole.x) && isfinite(whole.y) && (count == 0 || whole.x > first.x)) {
-        peaks[count++] = whole;
-    }
-    return count;
-}
-
-// The force with its peaks among the rows, so that no mark stands above the curve.
+// The force with its peaks, of the first pulse and of the whole run, among the rows that they lie
+// between, so that no mark stands above the curve.
 static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
 {
-    located_point peaks[2];
-    int count = located_peaks(m, peaks), next = 0;
+    const double first = m->first_contact_s + m->first_pulse_time_to_peak_s;
+    const double at[] = {first, m->first_contact_s + m->time_to_peak_s};
+    const double height[] = {m->first_pulse_peak_N, m->peak_force_N};
     double *x = owned_figure_numbers(o, s->count + 2);
     double *y = owned_figure_numbers(o, s->count + 2);
-
-    // a peak goes between the rows that it lies between
     size_t out = 0;
     for (size_t i = 0; i < s->count; i++) {
-        while (next < count && i > 0 && peaks[next].x < series_x(s, i)) {
-            if (peaks[next].x > series_x(s, i - 1)) {
-                x[out] = peaks[next].x;
-                y[out++] = peaks[next].y;
+        // the whole run's comes later, or it is the first pulse's
+        for (int k = 0; k < 2 && i > 0; k++) {
+            const bool again = k == 1 && at[1] <= first;
+            if (at[k] > series_x(s, i - 1) && at[k] < series_x(s, i) && isfinite(height[k]) &&
+                !again) {
+                x[out] = at[k];
+                y[out++] = height[k];
             }
-            next++;
         }
         x[out] = series_x(s, i);
         y[out++] = series_y(s, i);
