@@ -33,25 +33,21 @@ static int print_welcome(void)
 // Whether a word is "--NAME" or "--NAME=VALUE".
 static bool is_called(const char *name, const char *word)
 {
-    size_t length = strlen(name);
-    return strncmp(word + 2, name, length) == 0 &&
-           (word[2 + length] == '\0' || word[2 + length] == '=');
+    return name != NULL && strncmp(word, "--", 2) == 0 &&
+           strncmp(word + 2, name, strlen(name)) == 0 &&
+           strchr("=", word[2 + strlen(name)]) != NULL;
 }
 
 // The lab's own options may stand without a command.
 static bool is_lab_option(const char *word)
 {
     const option_row *o;
-    if (strncmp(word, "--", 2) != 0) {
-        return false;
-    }
+    bool found = false;
     for (int i = 0; (o = command_option(&lab_command, i)) != NULL; i++) {
-        bool named = is_called(o->name, word) || (o->alias != NULL && is_called(o->alias, word));
-        if (named && o != help_options.rows) {
-            return true;
-        }
+        const bool named = is_called(o->name, word) || is_called(o->alias, word);
+        found = found || (named && o != help_options.rows);
     }
-    return false;
+    return found;
 }
 
 // Reads what follows the command's name argv[0] and runs it. Returns the exit status.
@@ -106,10 +102,7 @@ static int dispatch(int argc, char **argv)
 // list | head).
 static int close_output(int result)
 {
-    int reason = stream_failure(stdout);
-    if (loss_noted()) {
-        reason = ENOMEM;
-    }
+    const int reason = loss_noted() ? ENOMEM : stream_failure(stdout);
     if (reason == 0 || reason == EPIPE || result != EXIT_DONE) {
         return result;
     }

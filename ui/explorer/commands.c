@@ -26,7 +26,7 @@ static action_function *const functions[] = {
 static bool find_command(explorer_state *st, const char *line, int *index)
 {
     char name[32];
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(line, " \t"), line);
+    text_cut(line, " \t", name, sizeof name);
     *index = explorer_command_find(name);
     if (*index >= 0) {
         return true;
@@ -96,9 +96,11 @@ static bool read_key(explorer_state *st, const char *argument, int *key, const c
     return true;
 }
 
-static bool no_room(explorer_state *st)
+// Gives a key a line, unless there is no room for another one.
+static bool bind_key(explorer_state *st, int key, const char *line)
 {
-    return act_refuse(st, "there are %d keys of your own already, no more fit", USER_KEYS);
+    return key_bind(&st->keys, key, line) ||
+           act_refuse(st, "there are %d keys of your own already, no more fit", USER_KEYS);
 }
 
 bool act_key(explorer_state *st, const char *argument)
@@ -106,29 +108,23 @@ bool act_key(explorer_state *st, const char *argument)
     const char *line;
     char name[KEY_NAME], before[LINE_TEXT] = "";
     int key;
-    if (!read_key(st, argument, &key, &line)) {
-        return false;
-    }
+    NEED(read_key(st, argument, &key, &line));
 
     // without a command it is asked what the key does
     key_name(key, name, sizeof name);
     const char *old = key_line(&st->keys, key);
-    if (line[0] == '\0') {
-        return old ? act_tell(st, "%s does '%s'", name, old)
-                   : act_tell(st, "%s does nothing", name);
-    }
+    FAIL_IF(line[0] == '\0', act_tell(st, old ? "%s does '%s'" : "%s does nothing", name, old));
 
     // a copy of the old meaning: its place gets the new one
     int index;
     snprintf(before, sizeof before, "%s", old ? old : "");
-    if (!find_command(st, line, &index) || !key_bind(&st->keys, key, line)) {
+    if (!find_command(st, line, &index) || !bind_key(st, key, line)) {
         st->message.at = (int)(line - argument);
-        return index >= 0 && no_room(st);
+        return false;
     }
-    if (before[0] != '\0' && strcmp(before, line) != 0) {
-        return act_tell(st, "%s does '%s' now, no longer '%s'", name, line, before);
-    }
-    return act_tell(st, "%s does '%s' now", name, line);
+    const bool other = before[0] != '\0' && strcmp(before, line) != 0;
+    return act_tell(st, other ? "%s does '%s' now, no longer '%s'" : "%s does '%s' now", name, line,
+                    before);
 }
 
 bool act_unkey(explorer_state *st, const char *argument)
@@ -136,9 +132,7 @@ bool act_unkey(explorer_state *st, const char *argument)
     const char *rest;
     char name[KEY_NAME];
     int key;
-    if (!read_key(st, argument, &key, &rest)) {
-        return false;
-    }
+    NEED(read_key(st, argument, &key, &rest));
     if (rest[0] != '\0') {
         st->message.at = (int)(rest - argument);
         return act_refuse(st, "unkey takes one key, what is '%s' for?", rest);
@@ -150,40 +144,36 @@ bool act_unkey(explorer_state *st, const char *argument)
     const int own = key_own(&st->keys, key);
     if (own >= 0) {
         st->keys.own[own] = st->keys.own[--st->keys.count];
-        return built_in ? act_tell(st, "%s does '%s' again", name, built_in)
-                        : act_tell(st, "%s does nothing now", name);
+        return act_tell(st, built_in ? "%s does '%s' again" : "%s does nothing now", name,
+                        built_in);
     }
 
     // one of the explorer's own does nothing then
     FAIL_IF(built_in == NULL, act_refuse(st, "%s does nothing as it is", name));
-    FAIL_IF(!key_bind(&st->keys, key, ""), no_room(st));
-    return act_tell(st, "%s does nothing now, no longer '%s' (unkey it again to have that back)",
+    return bind_key(st, key, "") &&
+           act_tell(st, "%s does nothing now, no longer '%s' (unkey it again to have that back)",
                     name, built_in);
 }
 
 // --- settings ---------------------------------------------------------------------------------
 
-static const char *const remembered[] = {
-    "theme", "glyphs", "colours", "pixels", "closeup", "mouse", "bending", "colourby",
-    "rate",  "lanes",  "slow",    "speed",  "panes",   "axis",  "key",     "unkey"};
+#define REMEMBERED                                                                                 \
+    " theme glyphs colours pixels closeup mouse bending colourby rate lanes slow speed panes "     \
+    "axis "                                                                                        \
+    "key unkey "
 
-// Whether a line's first word is one of `count`.
-static bool begins_with_one(const char *line, const char *const *words, size_t count)
+// Whether a line's first word is one of some with blanks round each.
+static bool begins_with_one(const char *line, const char *words)
 {
-    const size_t length = strcspn(line, " \t");
-    bool found = false;
-    for (size_t i = 0; i < count; i++) {
-        found = found || (strlen(words[i]) == length && strncmp(line, words[i], length) == 0);
-    }
-    return found;
+    char word[LINE_TEXT];
+    snprintf(word, sizeof word, " %.*s ", (int)strcspn(line, " \t"), line);
+    return strstr(words, word) != NULL;
 }
 
 bool explorer_look(explorer_state *st, const char *line)
 {
-    static const char *const looking[] = {"panes",    "axis",     "zoom",   "mark",    "trace",
-                                          "phase",    "spectrum", "signal", "lanes",   "limit",
-                                          "residual", "band",     "note",   "colourby"};
-    return begins_with_one(line, looking, sizeof looking / sizeof looking[0])
+    return begins_with_one(line, " panes axis zoom mark trace phase spectrum signal lanes limit "
+                                 "residual band note colourby ")
                ? explorer_execute(st, line)
                : act_refuse(st, "'%.60s' does not belong into a session", line);
 }
@@ -196,8 +186,7 @@ static bool execute_line(explorer_state *st, const char *path, int number, const
     // only what :remember writes is taken from a file
     st->message.at = begin;
     const bool taken =
-        strchr("#", line[begin]) != NULL ||
-        begins_with_one(line + begin, remembered, sizeof remembered / sizeof remembered[0]);
+        strchr("#", line[begin]) != NULL || begins_with_one(line + begin, REMEMBERED);
     const bool done = taken ? explorer_execute(st, line) : act_refuse(st, "this is no setting");
 
     // the place in the file comes before what is wrong
@@ -289,12 +278,10 @@ bool act_remember(explorer_state *st, const char *argument)
             act_refuse(st, "%s has faults and is left alone: mend or remove it", path));
 
     // whole or not at all
-    status code = whole_file_open(&file, path, &st->fault);
-    if (code == STATUS_OK) {
-        write_settings(st, file.stream);
-        code = whole_file_commit(&file, &st->fault);
-    }
-    return code == STATUS_OK ? act_tell(st, "settings kept in %s", path) : act_worked(st, code);
+    NEED(act_worked(st, whole_file_open(&file, path, &st->fault)));
+    write_settings(st, file.stream);
+    return act_worked(st, whole_file_commit(&file, &st->fault)) &&
+           act_tell(st, "settings kept in %s", path);
 }
 
 // --- the first visit --------------------------------------------------------------------------

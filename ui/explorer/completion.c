@@ -6,7 +6,7 @@
 
 #include "ui/explorer/state/command_list.h"
 
-enum { CANDIDATE = 160 };
+enum { CANDIDATE = 160, FITTING = 1024 }; // bytes of one, and how many
 
 // The i-th of words with a bar between them; false beyond the last.
 static bool word_between_bars(const char *words, int i, char *text)
@@ -15,9 +15,7 @@ static bool word_between_bars(const char *words, int i, char *text)
         words = strchr(words, '|');
         words = words != NULL ? words + 1 : NULL;
     }
-    if (words != NULL) {
-        snprintf(text, CANDIDATE, "%.*s", (int)strcspn(words, "|"), words);
-    }
+    text_cut(words != NULL ? words : "", "|", text, CANDIDATE);
     return words != NULL;
 }
 
@@ -25,11 +23,9 @@ static bool word_between_bars(const char *words, int i, char *text)
 static bool parameter_value(int parameter, int i, char *text)
 {
     const parameter_info *info = parameter >= 0 ? &parameter_table[parameter] : NULL;
-    if (info != NULL && info->type == PARAMETER_CHOICE) {
-        return word_between_bars(info->choices, i, text);
-    }
-    return info != NULL && info->type == PARAMETER_BOOLEAN &&
-           word_between_bars("true|false", i, text);
+    return info != NULL && (info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN) &&
+           word_between_bars(info->type == PARAMETER_CHOICE ? info->choices : "true|false", i,
+                             text);
 }
 
 // The i-th of the words that a command's argument chooses from; those in capitals stand for others.
@@ -74,12 +70,8 @@ static place place_in(const char *line, const char *word)
     for (const char *c = line; c < word; c++) {
         p.word += *c == ' ' && (c == line || c[-1] != ' ');
     }
-    const char *argument = line + strcspn(line, " ");
-    argument += strspn(argument, " ");
-    snprintf(p.command, sizeof p.command, "%.*s", (int)strcspn(line, " "), line);
-    if (p.word > 1) {
-        snprintf(p.first, sizeof p.first, "%.*s", (int)strcspn(argument, " "), argument);
-    }
+    const char *argument = text_cut(line, " ", p.command, sizeof p.command);
+    text_cut(p.word > 1 ? argument : "", " ", p.first, sizeof p.first);
     const int index = explorer_command_find(p.command);
     if (p.word > 0 && index >= 0) {
         read_kind(explorer_command_table[index].argument, p.word, p.kind);
@@ -97,7 +89,6 @@ static bool is_of(const place *p, const char *name)
 static bool candidate(explorer_state *st, const place *p, int i, char *text)
 {
     const char *name = NULL;
-    text[0] = '\0';
 
     // names of one kind, by the command's description or its name
     if (p->word == 0) {
@@ -124,10 +115,7 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
         return is_of(p, "|") && argument_word(p->kind, i, text);
     }
 
-    // only one of those that have a name is a candidate
-    if (name != NULL) {
-        snprintf(text, CANDIDATE, "%s", name);
-    }
+    snprintf(text, CANDIDATE, "%s", name != NULL ? name : "");
     return name != NULL;
 }
 
@@ -140,31 +128,15 @@ static bool fits(const char *name, const char *word)
            (part != NULL && length > 0 && strncmp(part + 1, word, length) == 0);
 }
 
-// The number of candidates that fit; the i-th of them into `text` (may be NULL).
-static int count_fitting(explorer_state *st, const place *p, const char *word, int wanted,
-                         char *text)
+// Collects the candidates that fit; returns how many.
+static int collect(explorer_state *st, const place *p, const char *word,
+                   char fitting[FITTING][CANDIDATE])
 {
-    char name[CANDIDATE];
     int count = 0;
-    for (int i = 0; candidate(st, p, i, name); i++) {
-        if (fits(name, word)) {
-            if (count == wanted && text != NULL) {
-                snprintf(text, CANDIDATE, "%s", name);
-            }
-            count++;
-        }
+    for (int i = 0; count < FITTING && candidate(st, p, i, fitting[count]); i++) {
+        count += fits(fitting[count], word);
     }
     return count;
-}
-
-// Shortens a text to what it has in common with another one.
-static void keep_common(char *text, const char *other)
-{
-    size_t same = 0;
-    while (text[same] != '\0' && text[same] == other[same]) {
-        same++;
-    }
-    text[same] = '\0';
 }
 
 // Puts a word in the place of the one that is completed.
@@ -176,17 +148,19 @@ static void put_word(prompt *p, const char *word, const char *after)
 }
 
 // As far as all candidates agree, and what they are.
-static bool complete_common(explorer_state *st, const place *where, int count)
+static bool complete_common(explorer_state *st, char fitting[FITTING][CANDIDATE], int count)
 {
     prompt *p = &st->prompt;
-    char common[CANDIDATE] = "", name[CANDIDATE], listed[512] = "";
+    char listed[512] = "", *common = fitting[0];
     for (int i = 0; i < count; i++) {
-        count_fitting(st, where, p->stem, i, name);
-        if (i == 0) {
-            snprintf(common, sizeof common, "%s", name);
+        text_add(listed, sizeof listed, "%s ", fitting[i]);
+    }
+    for (int i = 1; i < count; i++) {
+        size_t same = 0;
+        while (common[same] != '\0' && common[same] == fitting[i][same]) {
+            same++;
         }
-        keep_common(common, name);
-        text_add(listed, sizeof listed, "%s ", name);
+        common[same] = '\0';
     }
 
     // what agrees may be less than what is typed, where last parts fit
@@ -212,8 +186,8 @@ static int word_begins(const char *text)
 
 bool complete_prompt(explorer_state *st)
 {
+    static char fitting[FITTING][CANDIDATE];
     prompt *p = &st->prompt;
-    char name[CANDIDATE];
 
     // the first time what all agree in, then one after the other
     if (!p->cycling) {
@@ -222,16 +196,12 @@ bool complete_prompt(explorer_state *st)
         p->cycle = -1;
     }
     const place where = place_in(p->text, p->text + p->stem_at);
-    const int count = count_fitting(st, &where, p->stem, -1, NULL);
-    if (count == 0) {
+    const int count = collect(st, &where, p->stem, fitting);
+    if (p->cycling && count > 0) {
+        p->cycle = (p->cycle + 1) % count;
+        put_word(p, fitting[p->cycle], "");
         return true;
     }
-    if (!p->cycling) {
-        p->cycling = count > 1;
-        return complete_common(st, &where, count);
-    }
-    p->cycle = (p->cycle + 1) % count;
-    count_fitting(st, &where, p->stem, p->cycle, name);
-    put_word(p, name, "");
-    return true;
+    p->cycling = count > 1;
+    return count == 0 || complete_common(st, fitting, count);
 }

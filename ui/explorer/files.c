@@ -75,42 +75,16 @@ static bool exists(const char *path)
     return access(path, F_OK) == 0;
 }
 
-// A file's whole path, or its name as given if there is none.
-static void whole_path(const char *name, char *path, size_t size)
+// Says that a file was written, or is there already, by its whole path, or its name as given if
+// there is none.
+static bool tell_file(explorer_state *st, bool done, const char *name)
 {
-    char *found = realpath(name, NULL);
-    snprintf(path, size, "%s", found != NULL ? found : name);
+    char *found = realpath(name, NULL), path[MESSAGE_TEXT / 2];
+    snprintf(path, sizeof path, "%s", found != NULL ? found : name);
     free(found);
-}
-
-static bool tell_saved(explorer_state *st, const char *name)
-{
-    char path[MESSAGE_TEXT / 2];
-    whole_path(name, path, sizeof path);
-    return act_tell(st, "saved %s", path);
-}
-
-// Refused where something would be lost.
-static bool need_new_file(explorer_state *st, const char *name, const char *command)
-{
-    char path[MESSAGE_TEXT / 2];
-    if (!exists(name)) {
-        return true;
-    }
-    whole_path(name, path, sizeof path);
-    return act_refuse(st, "%s is there already: another name, or :%s! %.100s replaces it", path,
-                      command, name);
-}
-
-// Appends a word to a file's name, letters, digits and a few marks only.
-static void append_word(char *name, size_t size, const char *word)
-{
-    size_t used = strlen(name);
-    for (; *word != '\0' && used + 2 < size; word++) {
-        const bool plain = isalnum((unsigned char)*word) || strchr(".-_", *word) != NULL;
-        name[used++] = plain ? *word : '-';
-    }
-    name[used] = '\0';
+    return done ? act_tell(st, "saved %s", path)
+                : act_refuse(st, "%s is there already: another name, or :save! %.100s replaces it",
+                             path, name);
 }
 
 // A name that no file has: the scenario's, what the last change changed, and a number if need be.
@@ -118,20 +92,21 @@ static void propose_name(const explorer_state *st, const char *ending, char *nam
 {
     const session *s = &st->session;
     char stem[LINE_TEXT / 2] = "";
-    append_word(stem, 60, scenario_leaf(s->base.name));
+    text_add(stem, 59, "%s", scenario_leaf(s->base.name));
 
     // what the last change changed
     const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
     if (last != NULL && last->kind == SESSION_INPUT_PUSH) {
-        append_word(stem, sizeof stem, "-push");
+        text_add(stem, sizeof stem, "-push");
     } else if (last != NULL) {
-        append_word(stem, 80, "-");
-        append_word(stem, 80, strchr(parameter_table[last->parameter].path, '.') + 1);
-        append_word(stem, 100, "-");
-        append_word(stem, 100, last->text);
+        text_add(stem, 79, "-%s", strchr(parameter_table[last->parameter].path, '.') + 1);
+        text_add(stem, 99, "-%s", last->text);
     }
 
-    // the first that is free
+    // letters, digits and a few marks only; the first that is free
+    for (char *c = stem; *c != '\0'; c++) {
+        *c = isalnum((unsigned char)*c) || strchr(".-_", *c) != NULL ? *c : '-';
+    }
     snprintf(name, size, "%s%s", stem, ending);
     for (int i = 2; exists(name) && i < 10000; i++) {
         snprintf(name, size, "%s-%d%s", stem, i, ending);
@@ -147,11 +122,7 @@ static bool save_over(explorer_state *st, const char *name)
     while (kind < KINDS && !ends_with(name, kinds[kind].ending)) {
         kind++;
     }
-    if (kind == KINDS || kinds[kind].needs_whole_run) {
-        if (!act_need_whole_run(st)) {
-            return false;
-        }
-    }
+    NEED((kind < KINDS && !kinds[kind].needs_whole_run) || act_need_whole_run(st));
     FAIL_IF(kind == KINDS,
             act_refuse(st, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt"));
 
@@ -163,10 +134,9 @@ static bool save_over(explorer_state *st, const char *name)
         kinds[kind].write(st, file.stream);
         code = whole_file_commit(&file, &st->fault);
     }
-    if (code == STATUS_OK && ends_with(name, ".yaml")) {
-        st->saved_version = state_run_id(st);
-    }
-    return code == STATUS_OK ? tell_saved(st, name) : act_worked(st, code);
+    NEED(act_worked(st, code));
+    st->saved_version = ends_with(name, ".yaml") ? state_run_id(st) : st->saved_version;
+    return tell_file(st, true, name);
 }
 
 bool act_save(explorer_state *st, const char *argument)
@@ -175,11 +145,11 @@ bool act_save(explorer_state *st, const char *argument)
     if (argument[0] == '\0') {
         char name[LINE_TEXT / 2];
         propose_name(st, ".png", name, sizeof name);
-        prompt_open_value(&st->prompt, "save ", name);
+        prompt_open(&st->prompt, name, "save ");
         return act_tell(st, ".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
                             "gives this run; .txt: the screen");
     }
-    return need_new_file(st, argument, "save") && save_over(st, argument);
+    return exists(argument) ? tell_file(st, false, argument) : save_over(st, argument);
 }
 
 bool act_save_now(explorer_state *st, const char *argument)
@@ -198,16 +168,14 @@ bool act_scene(explorer_state *st, const char *argument)
     if (argument[0] == '\0') {
         char name[LINE_TEXT / 2];
         propose_name(st, "-arm.png", name, sizeof name);
-        prompt_open_value(&st->prompt, "scene ", name);
+        prompt_open(&st->prompt, name, "scene ");
         return true;
     }
 
     // nothing is replaced, and nothing incomplete is drawn
     FAIL_IF(exists(argument),
             act_refuse(st, "%.200s is there already: give the scene another name", argument));
-    if (!act_need_whole_run(st)) {
-        return false;
-    }
+    NEED(act_need_whole_run(st));
 
     // the cursor's instant
     const scene_picture picture = {.scenario = &s->effective,
@@ -215,7 +183,8 @@ bool act_scene(explorer_state *st, const char *argument)
                                    .options = options,
                                    .times = &s->now,
                                    .count = 1};
-    return act_worked(st, scene_write(&picture, argument, &st->fault)) && tell_saved(st, argument);
+    return act_worked(st, scene_write(&picture, argument, &st->fault)) &&
+           tell_file(st, true, argument);
 }
 
 // --- the clipboard ----------------------------------------------------------------------------

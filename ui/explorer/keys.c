@@ -13,21 +13,17 @@ bool explorer_keys(explorer *ex, const char *text, fault *f)
     while (*text != '\0' && !ex->state.quit) {
         // a character by itself, unless it begins a name
         const char *close = *text == '<' ? strchr(text, '>') : NULL;
-        if (close == NULL) {
-            bool plain = (unsigned char)*text < 0x80;
-            explorer_key(ex, plain ? *text++ : (int)glyph_decode(&text));
-            continue;
-        }
-
-        // a key by its name
-        int key = key_of_name(text + 1, (size_t)(close - text - 1));
-        if (key == 0) {
+        const bool plain = (unsigned char)*text < 0x80;
+        const int key = close != NULL ? key_of_name(text + 1, (size_t)(close - text - 1))
+                        : plain       ? *text++
+                                      : (int)glyph_decode(&text);
+        if (close != NULL && key == 0) {
             fault_set(f, STATUS_BAD_ARGUMENT, "there is no key '%.*s'", (int)(close - text + 1),
                       text);
             return false;
         }
+        text = close != NULL ? close + 1 : text;
         explorer_key(ex, key);
-        text = close + 1;
     }
     return true;
 }
@@ -47,7 +43,7 @@ static void enter_prompt(explorer *ex)
     p->open = false;
     act_hush(st);
     if (goes_on) {
-        prompt_open(p, "%s", line);
+        prompt_open(p, NULL, "%s", line);
         return;
     }
     snprintf(p->history, sizeof p->history, "%s", line);
@@ -97,7 +93,7 @@ static void key_in_prompt(explorer *ex, int key)
         complete_prompt(&ex->state);
         break;
     case KEY_CODE_UP:
-        prompt_open(p, "%s", p->history);
+        prompt_open(p, NULL, "%s", p->history);
         break;
     default:
         // other words, another list
@@ -142,13 +138,11 @@ static void escape(explorer *ex)
     explorer_state *st = &ex->state;
     char *filter = st->filters.text[st->side.panel];
 
-    // a computation is stopped first, and nothing else
+    // a computation is stopped first, and nothing else; then a filter, the sweep, else the mark
     if (st->session.computing != NULL) {
         explorer_carry_out(ex, "stop");
         return;
     }
-
-    // the nearest thing: a filter, the sweep, else the mark
     if (filter[0] != '\0') {
         filter[0] = '\0';
     } else if (st->side.panel == PANEL_SWEEP) {
@@ -205,7 +199,7 @@ void explorer_key(explorer *ex, int key)
     } else if (st->filters.typing != PANEL_NONE) {
         key_in_filter(ex, key);
     } else if (key == ':') {
-        prompt_open(&st->prompt, "%s", "");
+        prompt_open(&st->prompt, NULL, "%s", "");
         st->palette.selected = -1;
         act_hush(st);
     } else if (st->page != PANEL_NONE && !leaves) {
@@ -289,12 +283,6 @@ static void drag(explorer *ex, pointer_event e)
     give(ex, &g);
 }
 
-static void release(explorer *ex, pointer_event e)
-{
-    give(ex, &(panel_gesture){.event = e, .hit = ex->grip.hit, .dragged = ex->grip.dragged});
-    ex->grip = (pointer_grip){0};
-}
-
 static void turn_wheel(explorer *ex, pointer_event e)
 {
     const explorer_state *st = &ex->state;
@@ -326,7 +314,8 @@ void explorer_point(explorer *ex, pointer_event e)
         drag(ex, e);
         break;
     case POINTER_RELEASE:
-        release(ex, e);
+        give(ex, &(panel_gesture){.event = e, .hit = ex->grip.hit, .dragged = ex->grip.dragged});
+        ex->grip = (pointer_grip){0};
         break;
     default:
         turn_wheel(ex, e);

@@ -65,11 +65,8 @@ static void add_pane(const explorer_state *st, session_file *file, int index, in
 static void add_looks(const explorer_state *st, session_file *file)
 {
     char shown[PANES + 1] = "";
-    for (int i = 0, n = 0; i < PANES_OF_TABLE; i++) {
-        if (st->panes.pane[i].shown) {
-            shown[n++] = (char)('1' + i);
-            shown[n] = '\0';
-        }
+    for (int i = 0; i < PANES_OF_TABLE; i++) {
+        text_add(shown, sizeof shown, st->panes.pane[i].shown ? "%d" : "", i + 1);
     }
     add_line(file, "lanes %s", look_word(&st->looks, look_choice_of("lanes")));
     if (st->panes.chosen) {
@@ -119,8 +116,7 @@ static status write_session(explorer_state *st, const char *path, fault *f)
     whole_file whole;
     const run_list *pins = &st->pinned;
     file = (session_file){.run_count = 1 + pins->count, .baseline = pins->baseline};
-    status code = run_origin_take(&file.runs[0].from, &st->session, f);
-    TRY(code);
+    TRY(run_origin_take(&file.runs[0].from, &st->session, f));
 
     // the pinned runs stay the list's: nothing of them is freed here
     for (int i = 0; i < pins->count; i++) {
@@ -129,7 +125,7 @@ static status write_session(explorer_state *st, const char *path, fault *f)
         snprintf(k->name, sizeof k->name, "%s", pins->runs[i].name);
     }
     add_looks(st, &file);
-    code = check_lines(&file, f);
+    status code = check_lines(&file, f);
     code = code == STATUS_OK ? whole_file_open(&whole, path, f) : code;
     if (code == STATUS_OK) {
         session_file_write(whole.stream, &file);
@@ -142,13 +138,10 @@ static status write_session(explorer_state *st, const char *path, fault *f)
 
 static bool save_session(explorer_state *st, const char *path)
 {
-
     // a file is replaced only if it is the one this visit goes on with
     FAIL_IF(access(path, F_OK) == 0 && strcmp(path, st->session_path) != 0,
             act_refuse(st, "%.200s is there already: give the session another name", path));
-    if (!act_need_whole_run(st) || !act_worked(st, write_session(st, path, &st->fault))) {
-        return false;
-    }
+    NEED(act_need_whole_run(st) && act_worked(st, write_session(st, path, &st->fault)));
     snprintf(st->session_path, sizeof st->session_path, "%s", path);
     st->saved_version = state_run_id(st);
     st->kept_pins = st->pinned.pinned;
@@ -161,10 +154,9 @@ static bool save_session(explorer_state *st, const char *path)
 static status pin_kept(explorer_state *st, const kept_run *k, fault *f)
 {
     session s;
-    status code = session_reopen(&s, &k->from, HUGE_VAL, f);
-    TRY(code);
+    TRY(session_reopen(&s, &k->from, HUGE_VAL, f));
     const int before = st->pinned.count;
-    code = run_list_pin(&st->pinned, &s, k->name, f);
+    const status code = run_list_pin(&st->pinned, &s, k->name, f);
     if (code == STATUS_OK && st->pinned.count > before) {
         st->pinned.runs[before].hidden = k->hidden;
     }
@@ -180,18 +172,17 @@ static bool take_session(explorer_state *st, const session_file *file)
     FAIL_IF(before + file->run_count - 1 > PINNED_RUNS,
             act_refuse(st, "its %d pinned runs have no room beside the %d here: R drops some",
                        file->run_count - 1, before));
-    status code = session_reopen(&fresh, &file->runs[0].from, st->session.patience, &st->fault);
-    if (code != STATUS_OK) {
-        return act_worked(st, code);
-    }
+    fault *f = &st->fault;
+    NEED(act_worked(st, session_reopen(&fresh, &file->runs[0].from, st->session.patience, f)));
+    status code = STATUS_OK;
     for (int i = 1; i < file->run_count && code == STATUS_OK; i++) {
-        code = pin_kept(st, &file->runs[i], &st->fault);
+        code = pin_kept(st, &file->runs[i], f);
     }
 
     // the baseline is the file's, else the one that was
     const int kept = file->baseline >= 0 ? before + file->baseline : baseline;
     st->pinned.baseline = kept < st->pinned.count ? kept : st->pinned.count - 1;
-    code = code == STATUS_OK ? state_take_session(st, &fresh, &st->fault) : code;
+    code = code == STATUS_OK ? state_take_session(st, &fresh, f) : code;
     if (code != STATUS_OK) {
         while (st->pinned.count > before) {
             run_list_drop(&st->pinned, st->pinned.count - 1);
@@ -206,9 +197,7 @@ static bool take_session(explorer_state *st, const session_file *file)
 bool explorer_open_session(explorer_state *st, const char *path)
 {
     static session_file file;
-    if (!act_worked(st, session_file_read(&file, path, &st->fault))) {
-        return false;
-    }
+    NEED(act_worked(st, session_file_read(&file, path, &st->fault)));
 
     // then how they are looked at; a line that says nothing of that is told
     bool done = take_session(st, &file);
@@ -239,16 +228,15 @@ bool explorer_open_session(explorer_state *st, const char *path)
 
 bool act_session(explorer_state *st, const char *argument)
 {
-    const char *path = argument + strcspn(argument, " ");
-    path += strspn(path, " ");
-    const size_t length = strcspn(argument, " ");
-    const bool saves = length == 4 && strncmp(argument, "save", 4) == 0;
+    char word[8];
+    const char *path = text_cut(argument, " ", word, sizeof word);
+    const bool saves = strcmp(word, "save") == 0;
     if (saves && path[0] == '\0') {
-        prompt_open_value(&st->prompt, "session save ",
-                          st->session_path[0] ? st->session_path : "lab.session");
+        prompt_open(&st->prompt, st->session_path[0] ? st->session_path : "lab.session",
+                    "session save ");
         return true;
     }
-    FAIL_IF((!saves && !(length == 4 && strncmp(argument, "open", 4) == 0)) || path[0] == '\0',
+    FAIL_IF((!saves && strcmp(word, "open") != 0) || path[0] == '\0',
             act_refuse(st, "session takes save or open, and a file such as lab.session"));
     return saves ? save_session(st, path) : explorer_open_session(st, path);
 }

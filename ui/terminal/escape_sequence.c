@@ -34,9 +34,8 @@ static sequence_result end(escape_sequence *e, int last, pointer_event *report)
     char rest;
     e->text[e->length] = '\0';
     e->state = SEQUENCE_NONE;
-    bool is_report = (last == 'M' || last == 'm') &&
-                     sscanf(e->text, "<%d;%d;%d%c", &button, &column, &row, &rest) == 3;
-    if (is_report) {
+    if ((last == 'M' || last == 'm') &&
+        sscanf(e->text, "<%d;%d;%d%c", &button, &column, &row, &rest) == 3) {
         return mouse(button, column, row, last == 'M', report);
     }
     if (last == '~' && (strcmp(e->text, "200") == 0 || strcmp(e->text, "201") == 0)) {
@@ -50,17 +49,14 @@ static sequence_result end(escape_sequence *e, int last, pointer_event *report)
 // A character of an answer's text, which a bell or ESC \ ends.
 static sequence_result take_string(escape_sequence *e, int character)
 {
-    const bool ends = e->state == SEQUENCE_STRING_END ? character == '\\' : character == '\a';
-    if (ends) {
-        e->state = SEQUENCE_NONE;
-        e->text[e->length] = '\0';
-        return SEQUENCE_ANSWER;
-    }
+    const bool escaped = e->state == SEQUENCE_STRING_END;
+    const bool ends = character == (escaped ? '\\' : '\a');
 
     // anything else after the escape, or what no text holds: broken off
-    if (e->state == SEQUENCE_STRING_END || character == '\b' || character == '\r') {
+    if (ends || escaped || character == '\b' || character == '\r') {
         e->state = SEQUENCE_NONE;
-        return SEQUENCE_OTHER_KEY;
+        e->text[e->length] = '\0';
+        return ends ? SEQUENCE_ANSWER : SEQUENCE_OTHER_KEY;
     }
     if (character == 27) {
         e->state = SEQUENCE_STRING_END;
@@ -72,23 +68,19 @@ static sequence_result take_string(escape_sequence *e, int character)
 
 static sequence_result take_parameter(escape_sequence *e, int character, pointer_event *report)
 {
-    if (character == 'M' && e->length == 0) {
-        e->state = SEQUENCE_OLD_MOUSE;
-        return SEQUENCE_GOES_ON;
-    }
-
+    // broken off: a control character or another escape begins something new
     if (character < ' ' || character > 0x7e) {
-        // broken off: a control character or another escape begins something new
         e->state = SEQUENCE_NONE;
         return SEQUENCE_OTHER_KEY;
     }
-
-    if (character >= 0x40) {
+    if (character >= 0x40 && (character != 'M' || e->length > 0)) {
         return end(e, character, report);
     }
 
     // one that is longer than any we know loses its end
-    if (e->length + 1 < (int)sizeof e->text) {
+    if (character == 'M') {
+        e->state = SEQUENCE_OLD_MOUSE;
+    } else if (e->length + 1 < (int)sizeof e->text) {
         e->text[e->length++] = (char)character;
     }
     return SEQUENCE_GOES_ON;

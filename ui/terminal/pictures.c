@@ -7,9 +7,7 @@
 void pictures_finish(picture_layer *layer)
 {
     for (int i = 0; i < PICTURES; i++) {
-        if (layer->items[i].surface != NULL) {
-            cairo_surface_destroy(layer->items[i].surface);
-        }
+        cairo_surface_destroy(layer->items[i].surface);
     }
     *layer = (picture_layer){0};
 }
@@ -24,21 +22,15 @@ void pictures_clear(screen *s)
 // Makes sure that a picture has a surface of its size without an error; false without memory.
 static bool fit_surface(screen_picture *p, int width, int height)
 {
-    if (p->surface != NULL && cairo_surface_status(p->surface) == CAIRO_STATUS_SUCCESS &&
-        cairo_image_surface_get_width(p->surface) == width &&
-        cairo_image_surface_get_height(p->surface) == height) {
-        return true;
-    }
-    if (p->surface != NULL) {
+    const bool fits = p->surface != NULL &&
+                      cairo_surface_status(p->surface) == CAIRO_STATUS_SUCCESS &&
+                      cairo_image_surface_get_width(p->surface) == width &&
+                      cairo_image_surface_get_height(p->surface) == height;
+    if (!fits) {
         cairo_surface_destroy(p->surface);
+        p->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
     }
-    p->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
-    if (cairo_surface_status(p->surface) == CAIRO_STATUS_SUCCESS) {
-        return true;
-    }
-    cairo_surface_destroy(p->surface);
-    p->surface = NULL;
-    return false;
+    return cairo_surface_status(p->surface) == CAIRO_STATUS_SUCCESS;
 }
 
 cairo_t *picture_begin(screen *s, int x, int y, int width, int height)
@@ -104,16 +96,6 @@ void picture_end(screen *s, cairo_t *cr)
     }
 }
 
-// How many cells from (x, y) on show a picture, in one row.
-static int run_length(const screen *s, int x, int y, uint32_t glyph)
-{
-    int length = 0;
-    while (x + length < s->width && s->cells[(long)y * s->width + x + length].glyph == glyph) {
-        length++;
-    }
-    return length;
-}
-
 // The regions of one picture, behind the `count` there are: rows with the same run hang together.
 static int add_regions(const screen *s, int picture, int most_width, int most_height,
                        picture_region *regions, int count)
@@ -122,16 +104,15 @@ static int add_regions(const screen *s, int picture, int most_width, int most_he
     const uint32_t glyph = GLYPH_PICTURE + (uint32_t)picture;
     const int first = count;
     for (int y = p->y; y < p->y + p->height; y++) {
-        for (int x = p->x; x < p->x + p->width;) {
-            int length = run_length(s, x, y, glyph);
-            length = length > most_width ? most_width : length;
-            if (length == 0) {
-                x++;
-                continue;
+        const cell *row = s->cells + (long)y * s->width;
+        for (int x = p->x, length; x<p->x + p->width; x += length> 0 ? length : 1) {
+            for (length = 0;
+                 x + length < s->width && length < most_width && row[x + length].glyph == glyph;) {
+                length++;
             }
 
             // continues the one above, or begins another
-            bool goes_on = false;
+            bool goes_on = length == 0;
             for (int k = first; k < count && !goes_on; k++) {
                 picture_region *above = &regions[k];
                 goes_on = above->x == x && above->width == length &&
@@ -141,7 +122,6 @@ static int add_regions(const screen *s, int picture, int most_width, int most_he
             if (!goes_on && count < PICTURE_REGIONS) {
                 regions[count++] = (picture_region){picture, x, y, length, 1};
             }
-            x += length;
         }
     }
     return count;

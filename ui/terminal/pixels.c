@@ -38,10 +38,7 @@ static int bin_of(uint32_t pixel)
 static int by_count(const void *a, const void *b)
 {
     const colour_bin *x = a, *y = b;
-    if (x->count != y->count) {
-        return x->count < y->count ? 1 : -1;
-    }
-    return x->bin - y->bin;
+    return x->count < y->count ? 1 : x->count > y->count ? -1 : x->bin - y->bin;
 }
 
 // The nearest of the picture's colours.
@@ -261,16 +258,13 @@ const char *pixel_answers_begin(pixel_answers *a, bool multiplexer)
 static int read_numbers(const char *text, int *numbers, int most)
 {
     int count = 0;
-    while (count < most) {
+    for (bool more = true; more && count < most;) {
         char *end;
         const long value = strtol(text, &end, 10);
-        if (end == text || value < 0 || value > MOST_SAID) {
-            break;
-        }
-        numbers[count++] = (int)value;
-        if (*end != ';') {
-            break;
-        }
+        const bool taken = end != text && value >= 0 && value <= MOST_SAID;
+        numbers[count] = (int)value;
+        count += taken;
+        more = taken && *end == ';';
         text = end + 1;
     }
     return count;
@@ -327,41 +321,32 @@ static void take_sizes(pixel_answers *a, const char *text, char final)
 
 const char *pixel_answers_take(pixel_answers *a, const escape_sequence *answer)
 {
-    const char *text = answer->text;
-    const bool asked = a->stage == PIXELS_ASKED;
+    const char *text = answer->text, kind = answer->introducer;
+    const bool asked = a->stage == PIXELS_ASKED, private = text[0] == '?';
     int number = 0;
     if (a->stage == PIXELS_UNASKED) {
         return "";
     }
 
-    // by what begins and ends it
-    switch (answer->introducer) {
-    case '[':
-        if (answer->final == 'c' && text[0] == '?' && a->stage != PIXELS_ANSWERED) {
-            return take_attributes(a, text + 1);
-        }
-        take_sizes(a, text + (text[0] == '?'), answer->final);
-        break;
-    case 'P':
+    // by what begins and ends it; "Gi=31;OK": the picture could be read
+    if (kind == '[' && answer->final == 'c' && private && a->stage != PIXELS_ANSWERED) {
+        return take_attributes(a, text + 1);
+    } else if (kind == '[') {
+        take_sizes(a, text + private, answer->final);
+    } else if (kind == 'P') {
         a->multiplexer = a->multiplexer || strncmp(text, ">|tmux", 6) == 0;
-        break;
-    case ']':
-        if (asked && strncmp(text, "11;", 3) == 0) {
-            take_ground(a, text + 3);
-        }
-        break;
-    default:
-        // "Gi=31;OK": the picture could be read
-        a->kitty = a->kitty || (asked && sscanf(text, "Gi=%d;", &number) == 1 &&
-                                number == KITTY_QUESTION && strstr(text, ";OK") != NULL);
+    } else if (kind == ']' && asked && strncmp(text, "11;", 3) == 0) {
+        take_ground(a, text + 3);
+    } else if (kind != ']' && asked && sscanf(text, "Gi=%d;", &number) == 1) {
+        a->kitty = a->kitty || (number == KITTY_QUESTION && strstr(text, ";OK") != NULL);
     }
     return "";
 }
 
 pixel_protocol pixel_answers_protocol(const pixel_answers *a)
 {
-    if (a->stage != PIXELS_ANSWERED) {
-        return PIXELS_NONE;
-    }
-    return a->kitty ? PIXELS_KITTY : a->sixel ? PIXELS_SIXEL : PIXELS_NONE;
+    return a->stage != PIXELS_ANSWERED ? PIXELS_NONE
+           : a->kitty                  ? PIXELS_KITTY
+           : a->sixel                  ? PIXELS_SIXEL
+                                       : PIXELS_NONE;
 }

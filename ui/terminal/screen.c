@@ -244,49 +244,33 @@ static uint32_t quadrants(uint32_t dots)
 // The dots as the ASCII character that is most like them.
 static uint32_t ascii_dots(uint32_t dots)
 {
-    bool row[4] = {dots & 0x09, dots & 0x12, dots & 0x24, dots & 0xc0};
-    bool left = (dots & 0x47) != 0, right = (dots & 0xb8) != 0;
-    int rows = row[0] + row[1] + row[2] + row[3];
-    if (rows >= 3) {
-        return left && right && rows == 4 ? '#' : '|';
-    }
-    if (rows == 2) {
-        return row[0] && row[1] ? '"' : row[2] && row[3] ? '.' : row[1] && row[2] ? '=' : ':';
-    }
-    return row[0] ? (left && right ? '~' : '\'') : row[3] ? (left && right ? '_' : '.') : '-';
+    // by the rows that have dots, the uppermost in the lowest bit: on one side, and on both
+    static const char one[] = "-'-\"-:=|.::|.|||", both[] = "-~-\"-:=|_::|.||#";
+    const int upper = ((dots & 0x09) != 0) | ((dots & 0x12) != 0) << 1;
+    const int rows = upper | ((dots & 0x24) != 0) << 2 | ((dots & 0xc0) != 0) << 3;
+    return (uint32_t)((dots & 0x47) != 0 && (dots & 0xb8) != 0 ? both : one)[rows];
 }
 
 static uint32_t ascii_glyph(uint32_t glyph)
 {
-    static const struct {
-        uint32_t glyph;
-        char ascii;
-    } twins[] = {{0x2500, '-'}, {0x2502, '|'}, {0x250c, '+'}, {0x2510, '+'}, {0x2514, '+'},
-                 {0x2518, '+'}, {0x25b6, '>'}, {0x25c0, '<'}, {0x25b2, '^'}, {0x25bc, 'v'},
-                 {0x25cf, 'o'}, {0x25c6, '*'}, {0x2592, '%'}, {0x2591, '.'}, {0x2593, '#'},
-                 {0x2588, '@'}, {0x0394, 'd'}, {0x2016, '='}, {0x00d7, 'x'}, {0x2025, '~'},
-                 {0x2026, '~'}, {0x25b8, '>'}, {0x2506, ':'}, {0x2524, '+'}, {0x252c, '+'},
-                 {0x254c, '='}, {0x2508, '.'}, {0x2574, '~'}, {0x25be, 'v'}, {0x25cb, '.'},
-                 {0x2191, '^'}, {0x222b, 'S'}, {0x2193, 'v'}};
-
-    for (size_t i = 0; i < sizeof twins / sizeof twins[0]; i++) {
-        if (twins[i].glyph == glyph) {
-            return (uint32_t)twins[i].ascii;
-        }
+    // each behind the ASCII character that stands for it
+    static const wchar_t twins[] =
+        L"-─|│+┌+┐+└+┘>▶<◀^▲v▼o●*◆%▒.░#▓@█dΔ=‖x×~‥~…>▸:┆+┤+┬=╌.┈~╴v▾.○^↑S∫v↓";
+    int i = 1;
+    while (twins[i - 1] != 0 && (uint32_t)twins[i] != glyph) {
+        i += 2;
     }
-    return '?';
+    return twins[i - 1] != 0 ? (uint32_t)twins[i - 1] : '?';
 }
 
 uint32_t glyph_in_set(uint32_t glyph, glyph_set set)
 {
-    bool dots = glyph >= BRAILLE && glyph < BRAILLE + 256;
-    if (glyph >= GLYPH_PICTURE) {
-        return ' ';
-    }
-    if (set == GLYPHS_ASCII && glyph >= 0x80) {
-        return dots ? ascii_dots(glyph - BRAILLE) : ascii_glyph(glyph);
-    }
-    return set == GLYPHS_BLOCKS && dots ? quadrants(glyph - BRAILLE) : glyph;
+    const bool dots = glyph >= BRAILLE && glyph < BRAILLE + 256;
+    return glyph >= GLYPH_PICTURE                 ? ' '
+           : set == GLYPHS_ASCII && dots          ? ascii_dots(glyph - BRAILLE)
+           : set == GLYPHS_ASCII && glyph >= 0x80 ? ascii_glyph(glyph)
+           : set == GLYPHS_BLOCKS && dots         ? quadrants(glyph - BRAILLE)
+                                                  : glyph;
 }
 
 void glyph_encode(uint32_t glyph, char *text)
@@ -311,13 +295,11 @@ void screen_dump(const screen *s, glyph_set set, FILE *stream)
         while (length > 0 && row[length - 1].glyph == ' ') {
             length--;
         }
-
         for (int x = 0; x < length; x++) {
             char text[5];
             glyph_encode(glyph_in_set(row[x].glyph, set), text);
             fputs(text, stream);
         }
-
         fputc('\n', stream);
     }
 }

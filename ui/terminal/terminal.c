@@ -18,16 +18,13 @@ terminal_state tty = {.wake = {-1, -1}};
 volatile sig_atomic_t terminal_leaving;    // the signal that asks to leave
 volatile sig_atomic_t terminal_suspending; // ^Z was pressed
 
-static const int polite_signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGWINCH, SIGCONT, SIGTSTP};
-static const int fatal_signals[] = {SIGSEGV, SIGABRT, SIGFPE,  SIGBUS,   SIGILL,  SIGTRAP,
-                                    SIGXCPU, SIGSYS,  SIGUSR1, SIGUSR2,  SIGALRM, SIGVTALRM,
-                                    SIGPROF, SIGIO,   SIGPWR,  SIGSTKFLT};
-enum {
-    POLITE = sizeof polite_signals / sizeof polite_signals[0],
-    FATAL = sizeof fatal_signals / sizeof fatal_signals[0],
-    SIGNAL_STACK = 64 * 1024
-};
-static struct sigaction polite_before[POLITE], fatal_before[FATAL];
+// those that ask for something, then those that end the program at once
+static const int signals[] = {SIGINT,    SIGTERM, SIGHUP,  SIGQUIT, SIGWINCH, SIGCONT,
+                              SIGTSTP,   SIGSEGV, SIGABRT, SIGFPE,  SIGBUS,   SIGILL,
+                              SIGTRAP,   SIGXCPU, SIGSYS,  SIGUSR1, SIGUSR2,  SIGALRM,
+                              SIGVTALRM, SIGPROF, SIGIO,   SIGPWR,  SIGSTKFLT};
+enum { SIGNALS = sizeof signals / sizeof signals[0], POLITE = 7, SIGNAL_STACK = 64 * 1024 };
+static struct sigaction before[SIGNALS];
 static char signal_stack[SIGNAL_STACK];
 
 static void on_polite(int number)
@@ -50,9 +47,9 @@ static void on_fatal(int number)
     ssize_t ignored = write(STDOUT_FILENO, tty.restore, tty.restore_length);
     (void)ignored;
     tcsetattr(STDIN_FILENO, TCSANOW, &tty.saved);
-    for (int i = 0; i < FATAL; i++) {
-        if (fatal_signals[i] == number) {
-            sigaction(number, &fatal_before[i], NULL);
+    for (int i = POLITE; i < SIGNALS; i++) {
+        if (signals[i] == number) {
+            sigaction(number, &before[i], NULL);
         }
     }
     raise(number);
@@ -62,33 +59,23 @@ static void take_signals(void)
 {
     stack_t stack = {.ss_sp = signal_stack, .ss_size = sizeof signal_stack};
     sigaltstack(&stack, NULL);
+    for (int i = 0; i < SIGNALS; i++) {
+        const struct sigaction polite = {.sa_handler = on_polite};
+        const struct sigaction fatal = {.sa_handler = on_fatal, .sa_flags = SA_ONSTACK};
+        sigaction(signals[i], NULL, &before[i]);
 
-    for (int i = 0; i < POLITE; i++) {
-        struct sigaction act = {.sa_handler = on_polite};
-        sigaction(polite_signals[i], &act, &polite_before[i]);
-        // a shell without jobs asks for ^Z to be ignored
-        if (polite_signals[i] == SIGTSTP && polite_before[i].sa_handler == SIG_IGN) {
-            sigaction(SIGTSTP, &polite_before[i], NULL);
-        }
-    }
-
-    for (int i = 0; i < FATAL; i++) {
-        // one that is ignored ends nothing and stays ignored
-        struct sigaction act = {.sa_handler = on_fatal, .sa_flags = SA_ONSTACK};
-        sigaction(fatal_signals[i], NULL, &fatal_before[i]);
-        if (fatal_before[i].sa_handler != SIG_IGN) {
-            sigaction(fatal_signals[i], &act, NULL);
+        // one that is ignored ends nothing and stays ignored; so does ^Z of a shell without jobs
+        const bool stays = i >= POLITE || signals[i] == SIGTSTP;
+        if (!stays || before[i].sa_handler != SIG_IGN) {
+            sigaction(signals[i], i < POLITE ? &polite : &fatal, NULL);
         }
     }
 }
 
 static void give_signals_back(void)
 {
-    for (int i = 0; i < POLITE; i++) {
-        sigaction(polite_signals[i], &polite_before[i], NULL);
-    }
-    for (int i = 0; i < FATAL; i++) {
-        sigaction(fatal_signals[i], &fatal_before[i], NULL);
+    for (int i = 0; i < SIGNALS; i++) {
+        sigaction(signals[i], &before[i], NULL);
     }
     stack_t none = {.ss_flags = SS_DISABLE};
     sigaltstack(&none, NULL);

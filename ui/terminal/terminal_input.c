@@ -14,20 +14,15 @@
 
 static int key_of_curses(int key)
 {
-    static const struct {
-        int curses, ours;
-    } keys[] = {
-#define KEY_OF_CURSES(code, name, curses) {curses, KEY_CODE_##code},
+    switch (key) {
+#define KEY_OF_CURSES(code, name, curses)                                                          \
+    case curses:                                                                                   \
+        return KEY_CODE_##code;
         KEY_LIST(KEY_OF_CURSES)
 #undef KEY_OF_CURSES
-            {KEY_ENTER, KEY_CODE_ENTER}};
-
-    for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
-        if (keys[i].curses == key) {
-            return keys[i].ours;
-        }
+    default:
+        return key == KEY_ENTER ? KEY_CODE_ENTER : 0;
     }
-    return 0;
 }
 
 // Reads an answer of the terminal; true if the screen should be redrawn.
@@ -108,42 +103,36 @@ static terminal_input pending_input(void)
     int kind;
     while ((kind = get_wch(&key)) != ERR) {
         // in the middle of a sequence
+        bool taken = false;
         if (tty.sequence.state != SEQUENCE_NONE) {
-            if (take_sequence(key, kind, &in)) {
-                if (in.kind != TERMINAL_NONE) {
-                    return in;
-                }
-                continue;
-            }
-            if (in.kind != TERMINAL_NONE) {
-                // the key after the escape is the next one
-                if (kind == KEY_CODE_YES) {
-                    ungetch((int)key);
-                } else {
-                    unget_wch((wchar_t)key);
-                }
-                return in;
+            taken = take_sequence(key, kind, &in);
+
+            // the key after an escape that stood alone is the next one
+            if (!taken && in.kind != TERMINAL_NONE && kind == KEY_CODE_YES) {
+                ungetch((int)key);
+            } else if (!taken && in.kind != TERMINAL_NONE) {
+                unget_wch((wchar_t)key);
             }
         }
-
-        if (kind == KEY_CODE_YES) {
+        if (in.kind != TERMINAL_NONE) {
+            return in;
+        }
+        if (!taken && kind == KEY_CODE_YES) {
             return key == KEY_RESIZE ? (terminal_input){.kind = TERMINAL_RESIZE}
                                      : key_input(key_of_curses((int)key));
         }
-
-        if (key != KEY_CODE_ESCAPE) {
+        if (!taken && key != KEY_CODE_ESCAPE) {
             return key_input((int)key);
         }
-        tty.sequence.state = SEQUENCE_ESCAPED;
+        tty.sequence.state = taken ? tty.sequence.state : SEQUENCE_ESCAPED;
     }
 
     // no more came after an escape: it was the key
     if (tty.sequence.state == SEQUENCE_ESCAPED) {
         tty.sequence.state = SEQUENCE_NONE;
-        return key_input(KEY_CODE_ESCAPE);
+        in = key_input(KEY_CODE_ESCAPE);
     }
-
-    return (terminal_input){.kind = TERMINAL_NONE};
+    return in;
 }
 
 // Gives the terminal back, mouse included, stops until the shell lets us go on, and takes the

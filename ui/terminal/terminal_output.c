@@ -33,13 +33,12 @@ void terminal_send(const char *bytes, size_t count)
 {
     sent_in_all += count;
     for (size_t sent = 0; sent < count;) {
-        ssize_t taken = write(STDOUT_FILENO, bytes + sent, count - sent);
-        if (taken > 0) {
-            sent += (size_t)taken;
-        } else if (taken < 0 && errno == EAGAIN) {
+        const ssize_t taken = write(STDOUT_FILENO, bytes + sent, count - sent);
+        sent += taken > 0 ? (size_t)taken : 0;
+        if (taken < 0 && errno == EAGAIN) {
             struct pollfd room = {STDOUT_FILENO, POLLOUT, 0};
             poll(&room, 1, 1000);
-        } else if (taken == 0 || errno != EINTR) {
+        } else if (taken == 0 || (taken < 0 && errno != EINTR)) {
             break; // the terminal is gone, which reading will find out
         }
     }
@@ -92,10 +91,8 @@ static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
     } else if (bright || (bold && !faint) || (mono && i == INK_FORCE)) {
         put_capability(stream, "bold", 0);
     }
-    if (mono && (i == INK_DIM || i == INK_OTHER)) {
-        put_capability(stream, "dim", 0);
-    } else if (mono && i == INK_WARNING) {
-        put_capability(stream, "smul", 0);
+    if (mono && (i == INK_DIM || i == INK_OTHER || i == INK_WARNING)) {
+        put_capability(stream, i == INK_WARNING ? "smul" : "dim", 0);
     }
 
     // the colour in the terminal's own units
@@ -148,16 +145,12 @@ static void paint_cells(FILE *stream, const screen *s, glyph_set glyphs, bool wh
 
 // --- pictures ---------------------------------------------------------------------------------
 
-enum { USUAL_REGISTERS = SIXEL_COLOURS, LARGEST = 1 << 16 };
+enum { LARGEST = 1 << 16 }; // cells of a region
 
-// A region on the terminal.
-typedef struct shown_region {
-    picture_region place;
-    uint64_t hash; // of its pixels
-} shown_region;
-
+// The regions on the terminal.
 typedef struct shown_pictures {
-    shown_region regions[PICTURE_REGIONS];
+    picture_region regions[PICTURE_REGIONS];
+    uint64_t hashes[PICTURE_REGIONS]; // of their pixels
     int count;
 } shown_pictures;
 
@@ -213,14 +206,14 @@ static void write_regions(FILE *stream, const screen *s, const picture_region *r
                           bool whole)
 {
     const bool kitty = tty.pixels.kitty;
-    int colours = tty.pixels.registers > 0 ? tty.pixels.registers : USUAL_REGISTERS;
-    colours = colours > SIXEL_COLOURS ? SIXEL_COLOURS : colours;
+    const int said = tty.pixels.registers;
+    const int colours = said > 0 && said < SIXEL_COLOURS ? said : SIXEL_COLOURS;
     for (int i = 0; i < count; i++) {
         const picture_region *r = &regions[i];
         const pixel_block block = block_of(s, r);
         const uint64_t hash = hash_of(&block);
-        if (!whole && i < shown.count && memcmp(&shown.regions[i].place, r, sizeof *r) == 0 &&
-            shown.regions[i].hash == hash) {
+        if (!whole && i < shown.count && memcmp(&shown.regions[i], r, sizeof *r) == 0 &&
+            shown.hashes[i] == hash) {
             continue;
         }
 
@@ -232,7 +225,8 @@ static void write_regions(FILE *stream, const screen *s, const picture_region *r
             sixel_write(stream, &block, colours);
         }
         fputs("\0338", stream);
-        shown.regions[i] = (shown_region){*r, hash};
+        shown.regions[i] = *r;
+        shown.hashes[i] = hash;
     }
 
     // those that are no longer there: blanks have cleared sixels, others are told to go
@@ -289,10 +283,7 @@ colour_depth terminal_depth(void)
     // GNU screen and the console hand the claim of the terminal they were started from on
     bool hearsay = name != NULL && (strcmp(name, "linux") == 0 ||
                                     (strncmp(name, "screen", 6) == 0 && getenv("TMUX") == NULL));
-    if (described || (claimed && !hearsay)) {
-        return DEPTH_TRUE;
-    }
-    return COLORS >= 256 ? DEPTH_256 : DEPTH_16;
+    return described || (claimed && !hearsay) ? DEPTH_TRUE : COLORS >= 256 ? DEPTH_256 : DEPTH_16;
 }
 
 bool terminal_is_light(void)

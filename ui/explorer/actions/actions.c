@@ -117,10 +117,8 @@ bool act_tell_failed_run(explorer_state *st)
 bool act_need_whole_run(explorer_state *st)
 {
     const session *s = &st->session;
-    if (s->computing == NULL) {
-        return true;
-    }
-    return act_refuse(st, "the run is at %.3g of %g s: wait for its end, or stop it with Esc",
+    return s->computing == NULL ||
+           act_refuse(st, "the run is at %.3g of %g s: wait for its end, or stop it with Esc",
                       session_end(s), s->effective.parameters.run.duration);
 }
 

@@ -33,6 +33,8 @@ bool act_hush(explorer_state *st);
 #define act_refuse(st, ...) act_say(st, true, false, __VA_ARGS__)
 // Whether a call that returned `code` worked; if not, the state's fault is the message.
 bool act_worked(explorer_state *st, status code);
+// Ends an action in which another one, which it needs, was refused or failed.
+#define NEED(done) FAIL_IF(!(done), false)
 
 // --- what is read -----------------------------------------------------------------------------
 

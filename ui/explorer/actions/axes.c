@@ -39,7 +39,7 @@ bool act_zoom(explorer_state *st, const char *argument)
 
     // all of it, nearer or further, or two instants
     if (strcmp(argument, "all") == 0) {
-        time_window_show_all(&st->window);
+        st->window = (time_window){0};
     } else if (strcmp(argument, "in") == 0 || strcmp(argument, "out") == 0) {
         double now = st->session.now;
         bool visible = now >= from && now <= to;
@@ -114,57 +114,41 @@ static void set_scaling(explorer_state *st, int index, axis_scaling scaling)
 
 static bool tell_axis(explorer_state *st, int index)
 {
-    const pane *p = &st->panes.pane[index];
-    const int number = index + 1;
-    if (p->scaling == AXIS_FIXED) {
-        return act_tell(st, "pane %d: from %.4g to %.4g", number, p->fixed.low, p->fixed.high);
-    }
     static const char *const says[AXIS_SCALINGS] = {
         [AXIS_AUTO] = "the range of what is visible",
         [AXIS_GROW] = "the range of all that was seen, it only grows",
         [AXIS_CALM] = "the range of what is visible, but for spikes"};
-    return act_tell(st, "pane %d: %s", number, says[p->scaling]);
-}
-
-// Fixes a pane's axis to two limits given as text.
-static bool set_limits(explorer_state *st, int index, const char *from, const char *to)
-{
-    value_range limits;
-    if (!act_read_number(st, from, &limits.low) || !act_read_number(st, to, &limits.high)) {
-        return false;
-    }
-
-    // limits the wrong way round, or none at all: NAN is not below anything
-    FAIL_IF(!(limits.low < limits.high),
-            act_refuse(st, "an axis goes from a lower to a higher value, not from %g to %g",
-                       limits.low, limits.high));
-    pane_fix_axis(&st->panes.pane[index], limits);
-    return true;
+    const pane *p = &st->panes.pane[index];
+    return p->scaling == AXIS_FIXED
+               ? act_tell(st, "pane %d: from %.4g to %.4g", index + 1, p->fixed.low, p->fixed.high)
+               : act_tell(st, "pane %d: %s", index + 1, says[p->scaling]);
 }
 
 // Gives a pane's axis what the first `count` words say, one or two.
 static bool apply(explorer_state *st, int index, char *const words[4], int count)
 {
     const char *word = words[0];
+    value_range limits;
     if (count == 2) {
-        return set_limits(st, index, words[0], words[1]);
-    }
-
-    // a kind of scaling by name, or the next one
-    for (int i = 0; i < AXIS_SCALINGS; i++) {
-        if (strcmp(word, axis_scaling_words[i]) == 0) {
-            set_scaling(st, index, (axis_scaling)i);
-            return true;
-        }
-    }
-    if (strcmp(word, "next") == 0) {
-        int next = (int)(st->panes.pane[index].scaling + 1) % AXIS_SCALINGS;
-        set_scaling(st, index, (axis_scaling)next);
+        NEED(act_read_number(st, word, &limits.low) && act_read_number(st, words[1], &limits.high));
+        FAIL_IF(!(limits.low < limits.high),
+                act_refuse(st, "an axis goes from a lower to a higher value, not from %g to %g",
+                           limits.low, limits.high));
+        pane_fix_axis(&st->panes.pane[index], limits);
         return true;
     }
 
-    // the axis as it is now, changed
-    if (strcmp(word, "in") == 0 || strcmp(word, "out") == 0) {
+    // a kind of scaling by name, or the next one
+    const int present = (int)st->panes.pane[index].scaling;
+    int scaling = strcmp(word, "next") == 0 ? (present + 1) % AXIS_SCALINGS : -1;
+    for (int i = 0; i < AXIS_SCALINGS; i++) {
+        scaling = strcmp(word, axis_scaling_words[i]) == 0 ? i : scaling;
+    }
+
+    // or the axis as it is now, changed
+    if (scaling >= 0) {
+        set_scaling(st, index, (axis_scaling)scaling);
+    } else if (strcmp(word, "in") == 0 || strcmp(word, "out") == 0) {
         act_scale_axis(st, index, word[0] == 'i' ? 0.5 : 2, 0.5);
     } else if (strcmp(word, "up") == 0 || strcmp(word, "down") == 0) {
         act_shift_axis(st, index, word[0] == 'u' ? 0.25 : -0.25);
@@ -192,16 +176,12 @@ bool act_axis(explorer_state *st, const char *argument)
     FAIL_IF(count < used, act_refuse(st, "an axis has two limits, such as 0 2, and then a pane"));
     FAIL_IF(count > used + 1, act_refuse(st, "what is '%s' for?", words[2]));
     FAIL_IF(count == used && index < 0, act_refuse(st, "no pane of curves is shown"));
-    if (count > used && !act_read_pane(st, words[used], &index)) {
-        return false;
-    }
+    NEED(count == used || act_read_pane(st, words[used], &index));
 
     // that pane, or all of them
     for (int i = 0; i < PANES; i++) {
-        if ((i == index || index < 0) && st->panes.pane[i].count > 0 &&
-            !apply(st, i, words, used)) {
-            return false;
-        }
+        const bool meant = (i == index || index < 0) && st->panes.pane[i].count > 0;
+        NEED(!meant || apply(st, i, words, used));
     }
     return tell_axis(st, index < 0 ? 0 : index);
 }

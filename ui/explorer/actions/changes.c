@@ -18,9 +18,7 @@ static bool act_adjust(explorer_state *st, int parameter, double value)
     char text[LINE_TEXT];
 
     // checked and rounded as the table has it
-    if (!act_worked(st, parameter_set_number(&p, parameter, value, &st->fault))) {
-        return false;
-    }
+    NEED(act_worked(st, parameter_set_number(&p, parameter, value, &st->fault)));
     parameter_format(&p, parameter, text, sizeof text);
 
     // a value that is as it was leaves no change
@@ -38,9 +36,8 @@ static bool find_parameter(explorer_state *st, const char *name, int *parameter)
     *parameter = parameter_of_name(name);
     FAIL_IF(*parameter == -2,
             act_refuse(st, "several parameters begin with '%s' (Tab lists them)", name));
-    if (*parameter < 0 && parameter_look_up(name, &st->fault) < 0) {
-        return act_worked(st, STATUS_BAD_ARGUMENT);
-    }
+    FAIL_IF(*parameter < 0 && parameter_look_up(name, &st->fault) < 0,
+            act_worked(st, STATUS_BAD_ARGUMENT));
     return true;
 }
 
@@ -49,13 +46,10 @@ bool act_set(explorer_state *st, const char *argument)
     // the path, and the value after blanks or an equals sign
     char path[LINE_TEXT];
     int parameter;
-    size_t length = strcspn(argument, " =");
-    FAIL_IF(length == 0, act_refuse(st, "set takes a parameter and a value, such as arm.k2 10"));
-    snprintf(path, sizeof path, "%.*s", (int)length, argument);
-    const char *value = argument + length + strspn(argument + length, " =");
-    if (!find_parameter(st, path, &parameter)) {
-        return false;
-    }
+    const char *value = text_cut(argument, " =", path, sizeof path);
+    FAIL_IF(path[0] == '\0',
+            act_refuse(st, "set takes a parameter and a value, such as arm.k2 10"));
+    NEED(find_parameter(st, path, &parameter));
 
     // without a value it is only selected
     parameter_list_select(&st->parameters, (parameter_line){parameter, false});
@@ -84,10 +78,8 @@ static double nudge_step(int parameter, double value)
     }
 
     // what rounding leaves just below a power of ten counts as that power
-    if (scale.logarithmic) {
-        return pow(10, floor(log10(fabs(value)) + 1e-9)) / 10;
-    }
-    return pow(10, floor(log10((scale.high - scale.low) / LEAST_STEPS) + 1e-9));
+    return scale.logarithmic ? pow(10, floor(log10(fabs(value)) + 1e-9)) / 10
+                             : pow(10, floor(log10((scale.high - scale.low) / LEAST_STEPS) + 1e-9));
 }
 
 // A real parameter's value one nudge up or down; what goes down comes up to where it was.
@@ -135,14 +127,13 @@ static bool take_swept(explorer_state *st)
 
     // a change from the start, whatever is looked at
     const double now = s->now;
+    const sweep_axis *axes[] = {&sweep->axis, &sweep->second};
+    bool changed = true;
     lab_sweep_values(sweep, sweep->selected, values);
-    session_seek(s, 0);
-    sweep_axis_format(&sweep->axis, values[0], value, sizeof value);
-    bool changed = act_give(st, sweep->axis.parameter, value);
-    if (changed && lab_sweep_is_map(sweep)) {
+    for (int i = 0; i <= lab_sweep_is_map(sweep) && changed; i++) {
         session_seek(s, 0);
-        sweep_axis_format(&sweep->second, values[1], value, sizeof value);
-        changed = act_give(st, sweep->second.parameter, value);
+        sweep_axis_format(axes[i], values[i], value, sizeof value);
+        changed = act_give(st, axes[i]->parameter, value);
     }
     const double seen = s->seen;
     session_seek(s, now);
@@ -153,41 +144,34 @@ static bool take_swept(explorer_state *st)
 bool act_edit(explorer_state *st, const char *argument)
 {
     // a parameter by name is selected first
+    int index = st->parameters.parameter;
     if (argument[0] != '\0') {
-        int parameter;
-        if (!find_parameter(st, argument, &parameter)) {
-            return false;
-        }
-        parameter_list_select(&st->parameters, (parameter_line){parameter, false});
+        NEED(find_parameter(st, argument, &index));
+        parameter_list_select(&st->parameters, (parameter_line){index, false});
     } else if (st->side.panel == PANEL_SWEEP) {
         return take_swept(st);
     }
     if (st->parameters.on_heading) {
-        parameter_list_fold(&st->parameters, st->parameters.parameter);
+        parameter_list_fold(&st->parameters, index);
         return true;
     }
     char value[LINE_TEXT];
-    parameters p = state_parameters(st);
-    parameter_format(&p, st->parameters.parameter, value, sizeof value);
-    if (parameter_table[st->parameters.parameter].type == PARAMETER_REAL && value[0] != '\0') {
-        snprintf(value, sizeof value, "%.15g", parameter_get(&p, st->parameters.parameter));
+    const parameters p = state_parameters(st);
+    const parameter_info *info = &parameter_table[index];
+    parameter_format(&p, index, value, sizeof value);
+    if (info->type == PARAMETER_REAL && value[0] != '\0') {
+        snprintf(value, sizeof value, "%.15g", parameter_get(&p, index));
     }
-    const parameter_info *info = &parameter_table[st->parameters.parameter];
-    char line[LINE_TEXT];
-    snprintf(line, sizeof line, "set %s ", info->path);
-    prompt_open_value(&st->prompt, line, value);
+    prompt_open(&st->prompt, value, "set %s ", info->path);
 
     // what can be typed, or why it makes no difference
-    const char *inert = state_inert_reason(st, st->parameters.parameter);
+    const char *inert = state_inert_reason(st, index), *about = info->description;
     FAIL_IF(inert != NULL, act_warn(st, "%s has no effect: %s", info->path, inert));
-    if (info->choices != NULL && info->type == PARAMETER_CHOICE) {
-        return act_tell(st, "%s: %s", info->description, info->choices);
-    }
-    if (info->type != PARAMETER_TEXT && info->type != PARAMETER_BOOLEAN) {
-        return act_tell(st, "%s: %g to %g %s", info->description, info->minimum, info->maximum,
-                        info->unit);
-    }
-    return act_tell(st, "%s", info->description);
+    return info->choices != NULL && info->type == PARAMETER_CHOICE
+               ? act_tell(st, "%s: %s", about, info->choices)
+           : info->type != PARAMETER_TEXT && info->type != PARAMETER_BOOLEAN
+               ? act_tell(st, "%s: %g to %g %s", about, info->minimum, info->maximum, info->unit)
+               : act_tell(st, "%s", about);
 }
 
 bool act_push(explorer_state *st, const char *argument)
@@ -200,31 +184,29 @@ bool act_push(explorer_state *st, const char *argument)
             act_tell(st, "pushed with %g N s at %.4f s", impulse, st->session.now));
 }
 
-// Opening a scenario is undone and done again as changes are.
+// Takes the last change back (direction -1) or puts it in again (1), and so with the opening of a
+// scenario, which is before the first change and after the last.
 static bool turn(explorer_state *st, int direction)
 {
-    const bool turned = act_worked(st, state_turn(st, direction, &st->fault));
-    return turned && act_tell(st, "in %s again, %s", st->session.base.name,
-                              direction < 0 ? "U opens the one you left" : "u goes back");
+    session *s = &st->session;
+    session_forget_ghost(s);
+    if (s->input_count == (direction < 0 ? 0 : s->input_total) && state_can_turn(st, direction)) {
+        NEED(act_worked(st, state_turn(st, direction, &st->fault)));
+        return act_tell(st, "in %s again, %s", s->base.name,
+                        direction < 0 ? "U opens the one you left" : "u goes back");
+    }
+    NEED(act_worked(st, (direction < 0 ? session_undo : session_redo)(s, &st->fault)));
+    return act_tell(st, direction < 0 ? "undone, U puts it in again" : "put in again");
 }
 
 bool act_undo(explorer_state *st, const char *argument)
 {
-    session_forget_ghost(&st->session);
-    if (st->session.input_count == 0 && state_can_turn(st, -1)) {
-        return turn(st, -1);
-    }
-    return act_worked(st, session_undo(&st->session, &st->fault)) &&
-           act_tell(st, "undone, U puts it in again");
+    return turn(st, -1);
 }
 
 bool act_redo(explorer_state *st, const char *argument)
 {
-    session_forget_ghost(&st->session);
-    if (st->session.input_count == st->session.input_total && state_can_turn(st, 1)) {
-        return turn(st, 1);
-    }
-    return act_worked(st, session_redo(&st->session, &st->fault)) && act_tell(st, "put in again");
+    return turn(st, 1);
 }
 
 bool act_model(explorer_state *st, const char *argument)
@@ -237,9 +219,7 @@ bool act_extend(explorer_state *st, const char *argument)
 {
     char text[NUMBER_TEXT];
     double duration = st->session.effective.parameters.run.duration, more = duration;
-    if (!act_read_number_or(st, argument, "", &more)) {
-        return false;
-    }
+    NEED(act_read_number_or(st, argument, "", &more));
 
     // what has been seen stays seen: only rows are added
     const double seen = st->session.seen;
@@ -296,21 +276,16 @@ static int read_change(explorer_state *st, const char **text)
 bool act_change(explorer_state *st, const char *argument)
 {
     const int index = read_change(st, &argument);
-    if (index < 0) {
-        return false;
-    }
+    NEED(index >= 0);
     char text[LINE_TEXT];
     const session_input *in = &st->session.inputs[index];
 
     // without a value it is asked for
     if (argument[0] == '\0' && in->kind != SESSION_INPUT_PUSH) {
-        snprintf(text, sizeof text, "change %d ", index + 1);
-        prompt_open_value(&st->prompt, text, in->text);
+        prompt_open(&st->prompt, in->text, "change %d ", index + 1);
         return act_tell(st, "%s", parameter_table[in->parameter].description);
     }
-    if (!act_worked(st, session_change_input(&st->session, index, argument, &st->fault))) {
-        return false;
-    }
+    NEED(act_worked(st, session_change_input(&st->session, index, argument, &st->fault)));
     st->change = st->session.input_count - 1;
     state_change_text(st, st->change, text, sizeof text);
     return act_tell(st, "%s at the same instant, u takes it back", text);
@@ -320,15 +295,11 @@ bool act_drop(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT];
     const int index = read_change(st, &argument);
-    if (index < 0) {
-        return false;
-    }
+    NEED(index >= 0);
 
     // the text first: the change is gone afterwards
     state_change_text(st, index, text, sizeof text);
-    if (!act_worked(st, session_drop_input(&st->session, index, &st->fault))) {
-        return false;
-    }
+    NEED(act_worked(st, session_drop_input(&st->session, index, &st->fault)));
 
     // the selection stays within the list
     const int last = st->session.input_count - 1;

@@ -16,12 +16,9 @@ static bool is_release(const char *word)
 static bool lock_prevents(const session *s, const char *name)
 {
     scenario wanted = s->effective;
-    if (parameter_set_text(&wanted.parameters, PARAMETER_INDEX(control.law), name, NULL) !=
-        STATUS_OK) {
-        return false;
-    }
-    const controller *law = controller_of(wanted.parameters.control.law);
-    return scenario_check_locks(&wanted, law, NULL) != STATUS_OK;
+    parameters *p = &wanted.parameters;
+    return parameter_set_text(p, PARAMETER_INDEX(control.law), name, NULL) == STATUS_OK &&
+           scenario_check_locks(&wanted, controller_of(p->control.law), NULL) != STATUS_OK;
 }
 
 // Says which law is near to a name that none has.
@@ -56,9 +53,8 @@ bool act_law(explorer_state *st, const char *argument)
     }
 
     // a name of the table, however the parameter would refuse another one
-    if (named && !off && parameter_set_text(&scratch, law, argument, NULL) != STATUS_OK) {
-        return refuse_law(st, argument);
-    }
+    FAIL_IF(named && !off && parameter_set_text(&scratch, law, argument, NULL) != STATUS_OK,
+            refuse_law(st, argument));
 
     // without a name: off, or on again
     const char *again = st->last_law[0] ? st->last_law : "hybrid";
@@ -85,17 +81,6 @@ static const char *wanted_lock(explorer_state *st, const char *argument)
     return next == 0 ? "none" : m->names[next - 1];
 }
 
-// Whether the last change is a lock at this very instant: going on through the modes replaces it.
-static bool locked_just_now(const session *s)
-{
-    if (s->input_count == 0) {
-        return false;
-    }
-    const session_input *last = &s->inputs[s->input_count - 1];
-    return last->kind == SESSION_INPUT_TIMED && last->time == s->now &&
-           last->parameter == PARAMETER_INDEX(control.lock);
-}
-
 static bool tell_modes(explorer_state *st)
 {
     const law_modes *m = state_law_modes(st);
@@ -109,29 +94,25 @@ static bool tell_modes(explorer_state *st)
 static bool lock(explorer_state *st, const char *wanted)
 {
     session *s = &st->session;
+    const int parameter = PARAMETER_INDEX(control.lock);
 
     // going on through the modes at one instant replaces the lock there
-    const bool replaces = locked_just_now(s);
-    if (replaces && !act_worked(st, session_undo(s, &st->fault))) {
-        return false;
-    }
+    const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
+    const bool replaces = last != NULL && last->kind == SESSION_INPUT_TIMED &&
+                          last->time == s->now && last->parameter == parameter;
+    NEED(!replaces || act_worked(st, session_undo(s, &st->fault)));
 
     // a lock that is refused leaves the one before in effect
-    parameters p = state_parameters(st);
+    const parameters p = state_parameters(st);
     const bool other = strcmp(p.control.lock, wanted) != 0;
-    if (other && !act_give(st, PARAMETER_INDEX(control.lock), wanted)) {
-        if (replaces) {
-            loss_unless(session_redo(s, &st->fault) == STATUS_OK);
-        }
+    if (other && !act_give(st, parameter, wanted)) {
+        loss_unless(!replaces || session_redo(s, NULL) == STATUS_OK);
         return false;
     }
-    if (other && st->message.warning) {
-        return true;
-    }
-    if (strcmp(wanted, "none") == 0) {
-        return act_tell(st, "the law chooses its mode itself from %.4f s on", s->now);
-    }
-    return act_tell(st, "held in '%s' from %.4f s on", wanted, s->now);
+    return (other && st->message.warning) ||
+           (strcmp(wanted, "none") == 0
+                ? act_tell(st, "the law chooses its mode itself from %.4f s on", s->now)
+                : act_tell(st, "held in '%s' from %.4f s on", wanted, s->now));
 }
 
 bool act_lock(explorer_state *st, const char *argument)

@@ -12,25 +12,23 @@
 // The force by which two traces are aligned, -1 if none is in both.
 static int common_force(const trace *a, const trace *b)
 {
-    static const int forces[] = {SIGNAL_INDEX(force), SIGNAL_INDEX(force_reading),
-                                 SIGNAL_INDEX(piezo_force)};
+    static const int forces[] = {SIGNAL_INDEX(piezo_force), SIGNAL_INDEX(force_reading),
+                                 SIGNAL_INDEX(force)};
+    int found = -1;
     for (size_t i = 0; i < sizeof forces / sizeof forces[0]; i++) {
-        if (trace_has(a, forces[i]) && trace_has(b, forces[i])) {
-            return forces[i];
-        }
+        found = trace_has(a, forces[i]) && trace_has(b, forces[i]) ? forces[i] : found;
     }
-    return -1;
+    return found;
 }
 
 // The first instant at which a signal is above a level [s], NaN if it never is.
 static double first_above(const trace *t, int signal, double level)
 {
-    for (size_t r = 0; r < t->row_count; r++) {
-        if (signal_value(&t->rows[r], signal) > level) {
-            return t->rows[r].time;
-        }
+    size_t r = 0;
+    while (r < t->row_count && !(signal_value(&t->rows[r], signal) > level)) {
+        r++;
     }
-    return (double)NAN;
+    return r < t->row_count ? t->rows[r].time : (double)NAN;
 }
 
 // Measured columns under the run, shifted as the file's name says, else to the run's first touch.
@@ -48,12 +46,8 @@ bool act_data(explorer_state *st, const char *argument)
         st->measured = (trace){0};
         return act_tell(st, "no measured data");
     }
-    if (!act_need_whole_run(st)) {
-        return false;
-    }
-    if (at != NULL && !act_read_number(st, at + 1, &shift)) {
-        return false;
-    }
+    NEED(act_need_whole_run(st));
+    NEED(at == NULL || act_read_number(st, at + 1, &shift));
     snprintf(path, sizeof path, "%.*s", at != NULL ? (int)(at - argument) : (int)strlen(argument),
              argument);
     trace_init(&fresh, 1);
@@ -124,20 +118,18 @@ bool act_identify(explorer_state *st, const char *argument)
     FAIL_IF(argument[0] == '\0' || st->measured.row_count == 0,
             act_refuse(st, argument[0] == '\0' ? "identify takes parameters, such as k2 stiction"
                                                : "there are no measured data: :data FILE.csv"));
-    if (!act_need_whole_run(st) || !act_need_short_runs(st, "identify", FIT_RUNS)) {
-        return false;
-    }
+    NEED(act_need_whole_run(st) && act_need_short_runs(st, "identify", FIT_RUNS));
 
     // a parameter may be given by the last part of its path
-    status code = identify_available(&st->fault);
+    fault *f = &st->fault;
+    status code = identify_available(f);
     snprintf(words, sizeof words, "%s", argument);
     for (char *word; code == STATUS_OK && (word = strtok_r(rest, " ", &rest)) != NULL;) {
         char path[2 * LINE_TEXT];
-        code = identify_add_path(&id, act_whole_path(word, path, sizeof path), &st->fault);
+        code = identify_add_path(&id, act_whole_path(word, path, sizeof path), f);
     }
-    code =
-        code == STATUS_OK ? identify_add_trace(&id, st->measured_file, NULL, 0, &st->fault) : code;
-    code = code == STATUS_OK ? identify_fit(&id, &st->fault) : code;
+    code = code == STATUS_OK ? identify_add_trace(&id, st->measured_file, NULL, 0, f) : code;
+    code = code == STATUS_OK ? identify_fit(&id, f) : code;
     int count = 0;
     for (int i = 0; i < id.count && code == STATUS_OK; i++) {
         if (id.fit[i].determined) {
@@ -146,10 +138,9 @@ bool act_identify(explorer_state *st, const char *argument)
         }
     }
     if (code == STATUS_OK && count > 0) {
-        code = act_pin_values(st, axes, values, count, "identified", &st->fault);
+        code = act_pin_values(st, axes, values, count, "identified", f);
     }
-    const bool done = act_worked(st, code) && tell_fit(st, &id);
-    const bool all = id.undetermined == 0;
+    const bool done = act_worked(st, code) && tell_fit(st, &id), all = id.undetermined == 0;
     identify_finish(&id);
     return done && act_settle_baseline(st) && all;
 }

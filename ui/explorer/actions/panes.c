@@ -19,12 +19,11 @@ static int free_place(const explorer_state *st, const pane *own)
             }
         }
     }
-    for (int i = 0; i < DERIVED_SIGNALS; i++) {
-        if (!used[i]) {
-            return i;
-        }
+    int place = 0;
+    while (place < DERIVED_SIGNALS && used[place]) {
+        place++;
     }
-    return -1;
+    return place < DERIVED_SIGNALS ? place : -1;
 }
 
 // Adds the signal of a name or an expression.
@@ -37,9 +36,7 @@ static bool add_signal(explorer_state *st, const char *text, pane *own)
         const int place = free_place(st, own);
         FAIL_IF(place < 0, act_refuse(st, "%d expressions are shown already", DERIVED_SIGNALS));
         signal = signal_derive(place, text, &st->fault);
-        if (signal < 0) {
-            return act_worked(st, st->fault.code);
-        }
+        FAIL_IF(signal < 0, act_worked(st, st->fault.code));
         for (int i = 0; i < SHOWN_RUNS; i++) {
             extremes_forget(&st->extremes[i]);
         }
@@ -65,9 +62,7 @@ static bool read_signals(explorer_state *st, const char *argument, pane *own)
             length = 0;
             FAIL_IF(own->count == PANE_SIGNALS,
                     act_refuse(st, "a pane has at most %d signals", PANE_SIGNALS));
-            if (!add_signal(st, word, own)) {
-                return false;
-            }
+            NEED(add_signal(st, word, own));
         }
         if (*c == '\0') {
             return true;
@@ -81,9 +76,7 @@ static bool show_own(explorer_state *st, const char *argument, pane_view view, i
                      const char *refusal)
 {
     pane own = {.view = view};
-    if (!read_signals(st, argument, &own)) {
-        return false;
-    }
+    NEED(read_signals(st, argument, &own));
     FAIL_IF(own.count < least || own.count > most, act_refuse(st, "%s", refusal));
     const int index = panes_add(&st->panes, &own);
     return act_tell(st, "pane %d: :trace %d hides it", index + 1, index + 1);
@@ -132,11 +125,9 @@ bool act_panes(explorer_state *st, const char *argument)
 {
     FAIL_IF(argument[strspn(argument, "123456789")] != '\0',
             act_refuse(st, "panes takes numbers from 1 to 9, such as 134"));
-    for (int i = PANES_OF_TABLE; i < PANES; i++) {
-        st->panes.pane[i].shown = false;
-    }
-    for (int i = 0; i < PANES_OF_TABLE; i++) {
-        st->panes.pane[i].shown = st->panes.pane[i].count > 0 && strchr(argument, '1' + i) != NULL;
+    for (int i = 0; i < PANES; i++) {
+        pane *p = &st->panes.pane[i];
+        p->shown = i < PANES_OF_TABLE && p->count > 0 && strchr(argument, '1' + i) != NULL;
     }
     st->panes.chosen = true;
     return true;
@@ -169,9 +160,7 @@ bool act_signal(explorer_state *st, const char *argument)
     char text[LINE_TEXT], *words[4] = {argument[0] == '\0' ? text : NULL};
     int index = panes_focused(&st->panes);
     snprintf(text, sizeof text, "%s", argument);
-    if (act_split(text, words) == 2 && !act_read_pane(st, words[1], &index)) {
-        return false;
-    }
+    NEED(act_split(text, words) != 2 || act_read_pane(st, words[1], &index));
     const int signal = signal_find_any(words[0]);
     FAIL_IF(index < 0, act_refuse(st, "no pane of curves is shown, 1 to 9 show them"));
     pane *p = &st->panes.pane[index];
@@ -223,9 +212,7 @@ bool act_limit(explorer_state *st, const char *argument)
 bool act_band(explorer_state *st, const char *argument)
 {
     solved_limit band;
-    if (!read_bound(st, argument, "band", &band)) {
-        return false;
-    }
+    NEED(read_bound(st, argument, "band", &band));
     FAIL_IF(band.signal >= 0 && !(band.bound > 0),
             act_refuse(st, "a band has a tolerance above 0"));
     st->band = band;
@@ -240,10 +227,11 @@ bool act_band(explorer_state *st, const char *argument)
     const bool told = signal_is_derived(band.signal) || signal_is_state(band.signal);
     const double first = told ? -1 : difference_first_beyond(&d, band.signal, band.bound);
     difference_finish(&d);
-    const char *name = st->pinned.runs[st->pinned.baseline].name;
-    return told        ? act_tell(st, "the band is round '%s'", name)
-           : first < 0 ? act_tell(st, "this run stays within the band round '%s'", name)
-                       : act_tell(st, "this run leaves the band round '%s' at %.5f s", name, first);
+    return act_tell(st,
+                    told        ? "the band is round '%s'"
+                    : first < 0 ? "this run stays within the band round '%s'"
+                                : "this run leaves the band round '%s' at %.5f s",
+                    st->pinned.runs[st->pinned.baseline].name, first);
 }
 
 bool act_alone(explorer_state *st, const char *argument)

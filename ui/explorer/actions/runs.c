@@ -72,14 +72,11 @@ bool act_forget(explorer_state *st, const char *argument)
 ACTION_ON_RUN(take)
 {
     run_list *list = &st->pinned;
-    if (run_origin_is_of(&list->runs[index].from, &st->session)) {
-        return act_tell(st, "this is that run");
-    }
+    FAIL_IF(run_origin_is_of(&list->runs[index].from, &st->session),
+            act_tell(st, "this is that run"));
 
     // the present one must not be lost; pinning it moves none of the others
-    if (!pin(st, "")) {
-        return false;
-    }
+    NEED(pin(st, ""));
     const pinned_run *taken = &list->runs[index];
     const run_origin *from = &taken->from;
     session other;
@@ -114,13 +111,11 @@ ACTION_ON_RUN(rename)
     pinned_run *p = &st->pinned.runs[index];
 
     // without a name it is asked for
-    if (rest[0] == '\0') {
-        char line[32];
-        snprintf(line, sizeof line, "rename %d ", index + 1);
-        prompt_open_value(&st->prompt, line, p->name);
-        return true;
+    if (rest[0] != '\0') {
+        snprintf(p->name, sizeof p->name, "%s", rest);
+    } else {
+        prompt_open(&st->prompt, p->name, "rename %d ", index + 1);
     }
-    snprintf(p->name, sizeof p->name, "%s", rest);
     return true;
 }
 
@@ -134,14 +129,11 @@ bool act_difference(explorer_state *st, const char *argument)
 {
     run_difference *d = &st->difference;
     double tolerance = 0;
-    const bool off = strcmp(argument, "off") == 0 || (argument[0] == '\0' && d->on);
-    if (off) {
+    if (strcmp(argument, "off") == 0 || (argument[0] == '\0' && d->on)) {
         d->on = false;
         return act_tell(st, "the runs themselves");
     }
-    if (!act_read_number_or(st, argument, "", &tolerance)) {
-        return false;
-    }
+    NEED(act_read_number_or(st, argument, "", &tolerance));
     FAIL_IF(!st->session.has_other,
             act_refuse(st, "there is nothing to subtract: b pins this run first"));
     FAIL_IF(tolerance < 0, act_refuse(st, "a tolerance is not negative"));
@@ -152,26 +144,18 @@ bool act_difference(explorer_state *st, const char *argument)
     // where the first signal of the pane in focus leaves the tolerance
     const char *name = st->pinned.runs[st->pinned.baseline].name;
     const int focused = panes_focused(&st->panes);
-    if (focused < 0) {
-        return act_tell(st, "minus '%s'; D shows the runs again", name);
-    }
+    FAIL_IF(focused < 0, act_tell(st, "minus '%s'; D shows the runs again", name));
     const int signal = st->panes.pane[focused].signals[0];
     const signal_info *info = &signal_table[signal];
-    if (signal_is_derived(signal)) {
-        return act_tell(st, "minus '%s', but an expression has no difference; D shows the runs",
-                        name);
-    }
-    if (signal_is_state(signal)) {
-        return act_tell(st, "minus '%s', but states such as %s are this run's; D shows the runs",
-                        name, info->name);
-    }
-    const double first = difference_first_beyond(d, signal, tolerance);
-    return first < 0 ? act_tell(st, "minus '%s': %s never differs by more than %g %s", name,
-                                info->name, tolerance, info->unit)
-                     : act_tell(st,
-                                "minus '%s': %s differs by more than %g %s from %.5f s on; D shows "
-                                "the runs",
-                                name, info->name, tolerance, info->unit, first);
+    const bool derived = signal_is_derived(signal), none = derived || signal_is_state(signal);
+    const double first = none ? 0 : difference_first_beyond(d, signal, tolerance);
+    return act_tell(
+        st,
+        derived     ? "minus '%s', but an expression has no difference; D shows the runs"
+        : none      ? "minus '%s', but states such as %s are this run's; D shows the runs"
+        : first < 0 ? "minus '%s': %s never differs by more than %g %s"
+                    : "minus '%s': %s differs by more than %g %s from %.5f s on; D shows the runs",
+        name, info->name, tolerance, info->unit, first);
 }
 
 // --- limits -----------------------------------------------------------------------------------
@@ -182,18 +166,17 @@ enum { SOLVE_THREADS = 4 };
 static int signal_of_quantity(int quantity)
 {
     static const struct {
-        const char *key, *signal;
-    } pairs[] = {{"peak_force_N", "force"},
-                 {"first_pulse_peak_N", "force"},
-                 {"steady_force_N", "force"},
-                 {"largest_command_V", "command"},
-                 {"approach_speed_m_s", "gap_velocity"}};
+        int quantity, signal;
+    } pairs[] = {{SUMMARY_INDEX(peak_force_N), SIGNAL_INDEX(force)},
+                 {SUMMARY_INDEX(first_pulse_peak_N), SIGNAL_INDEX(force)},
+                 {SUMMARY_INDEX(steady_force_N), SIGNAL_INDEX(force)},
+                 {SUMMARY_INDEX(largest_command_V), SIGNAL_INDEX(command)},
+                 {SUMMARY_INDEX(approach_speed_m_s), SIGNAL_INDEX(gap_velocity)}};
+    int found = -1;
     for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
-        if (strcmp(summary_table[quantity].key, pairs[i].key) == 0) {
-            return signal_find(pairs[i].signal);
-        }
+        found = pairs[i].quantity == quantity ? pairs[i].signal : found;
     }
-    return -1;
+    return found;
 }
 
 status act_pin_values(explorer_state *st, const sweep_axis *const *axes, const double *values,
@@ -202,11 +185,10 @@ status act_pin_values(explorer_state *st, const sweep_axis *const *axes, const d
     parameters p = st->session.effective.parameters;
     run_origin from;
     session other;
-    status code = run_origin_take(&from, &st->session, f);
-    TRY(code);
+    TRY(run_origin_take(&from, &st->session, f));
 
     // the present run's changes, and the values from the start
-    code = session_reopen(&other, &from, HUGE_VAL, f);
+    status code = session_reopen(&other, &from, HUGE_VAL, f);
     run_origin_finish(&from);
     TRY(code);
     session_seek(&other, 0);
@@ -226,9 +208,9 @@ status act_pin_values(explorer_state *st, const sweep_axis *const *axes, const d
 const char *act_whole_path(const char *word, char *text, size_t size)
 {
     char name[LINE_TEXT];
-    snprintf(name, sizeof name, "%.*s", (int)strcspn(word, "="), word);
-    const int parameter = parameter_of_name(name);
-    snprintf(text, size, "%s%s", parameter >= 0 ? parameter_table[parameter].path : name,
+    text_cut(word, "=", name, sizeof name);
+    const int index = parameter_of_name(name);
+    snprintf(text, size, "%s%s", index >= 0 ? parameter_table[index].path : name,
              word + strcspn(word, "="));
     return text;
 }
@@ -281,28 +263,27 @@ bool act_solve(explorer_state *st, const char *argument)
     static solution found;
     char path[LINE_TEXT];
     const char *rest = argument + strcspn(argument, " ");
-    snprintf(path, sizeof path, "%.*s", (int)strcspn(argument, " "), argument);
+    fault *f = &st->fault;
+    snprintf(path, sizeof path, "%.*s", (int)(rest - argument), argument);
     FAIL_IF(*rest == '\0',
             act_refuse(st, "solve takes a parameter and a condition, such as motor.voltage "
                            "peak_force_N<2"));
-    if (!act_need_whole_run(st) || !act_need_short_runs(st, "solve", 2 * SOLVE_POINTS)) {
-        return false;
-    }
+    NEED(act_need_whole_run(st) && act_need_short_runs(st, "solve", 2 * SOLVE_POINTS));
 
     // a parameter may be given by the last part of its path
     char whole[2 * LINE_TEXT], name[RUN_NAME];
     act_whole_path(path, whole, sizeof whole);
-    status code = solve_condition_read(rest, &condition, &st->fault);
+    status code = solve_condition_read(rest, &condition, f);
     const scenario *s = &st->session.effective;
-    code = code == STATUS_OK ? solve_axis_read(&axis, whole, s, &st->fault) : code;
-    code = code == STATUS_OK
-               ? solve(s, &axis, &condition, SOLVE_POINTS, SOLVE_THREADS, NULL, &found, &st->fault)
-               : code;
+    code = code == STATUS_OK ? solve_axis_read(&axis, whole, s, f) : code;
+    if (code == STATUS_OK) {
+        code = solve(s, &axis, &condition, SOLVE_POINTS, SOLVE_THREADS, NULL, &found, f);
+    }
     if (code == STATUS_OK && found.count > 0) {
         st->limit = (solved_limit){signal_of_quantity(condition.quantity), condition.bound};
         const double value = found.limits[nearest_limit(st, &axis, &found)].value;
         snprintf(name, sizeof name, "%s %.5g", strchr(axis.name, '.') + 1, value);
-        code = act_pin_values(st, (const sweep_axis *[]){&axis}, &value, 1, name, &st->fault);
+        code = act_pin_values(st, (const sweep_axis *[]){&axis}, &value, 1, name, f);
     }
     const bool done = act_worked(st, code) && tell_limits(st, &axis, &condition, &found);
     sweep_axis_finish(&axis);
@@ -323,17 +304,13 @@ bool act_continue_sweep(explorer_state *st)
     // one run a call, of a map as many as a picture may wait for, so that keys are read in between
     const double begin = clock_seconds(CLOCK_MONOTONIC);
     do {
-        if (!act_worked(st, lab_sweep_compute_next(sweep, &st->session.effective, &st->fault))) {
-            return false;
-        }
+        NEED(act_worked(st, lab_sweep_compute_next(sweep, &st->session.effective, &st->fault)));
     } while (lab_sweep_is_map(sweep) && !lab_sweep_is_done(sweep) &&
              clock_seconds(CLOCK_MONOTONIC) - begin < LONGEST_MAP_PIECE);
 
     // only the last one is news
-    if (!lab_sweep_is_done(sweep)) {
-        return true;
-    }
-    return act_tell(st,
+    return !lab_sweep_is_done(sweep) ||
+           act_tell(st,
                     "%d runs: arrows%s choose one, Enter opens it, M another metric, Esc ends it",
                     sweep->count, lab_sweep_is_map(sweep) ? " and < >" : "");
 }
@@ -347,31 +324,24 @@ bool act_sweep(explorer_state *st, const char *argument)
         return true;
     }
 
-    // without an argument the selected parameter's is begun
+    // without an argument the selected parameter's is begun, about its value if that is positive
     if (argument[0] == '\0') {
-        char line[LINE_TEXT];
         slider_scale scale = {0};
         const int parameter = st->parameters.parameter;
         const parameters p = state_parameters(st);
         const double value = parameter_get(&p, parameter);
-        snprintf(line, sizeof line, "sweep %s=", parameter_table[parameter].path);
-        if (slider_scale_of(parameter, value, &scale) && value > 0) {
-            // about the value that it has, of its sign
-            prompt_open(&st->prompt, "%s%g:%g:8%s", line, fmax(scale.low, value / 4),
-                        fmin(scale.high, value * 4), scale.logarithmic ? ":log" : "");
-        } else if (slider_scale_of(parameter, value, &scale)) {
-            prompt_open(&st->prompt, "%s%g:%g:8", line, scale.low, scale.high);
-        } else {
-            prompt_open(&st->prompt, "%s", line);
-        }
+        const bool number = slider_scale_of(parameter, value, &scale), about = value > 0;
+        prompt_open(&st->prompt, NULL,
+                    number ? "sweep %s=%g:%g:8%s" : "sweep %s=", parameter_table[parameter].path,
+                    about ? fmax(scale.low, value / 4) : scale.low,
+                    about ? fmin(scale.high, value * 4) : scale.high,
+                    about && scale.logarithmic ? ":log" : "");
         return act_tell(st, "first value, last value, number of runs; or values with commas");
     }
 
     // each run is computed while the lab waits, so they must be short
-    if (!act_need_whole_run(st) || !act_need_short_runs(st, "sweep", SWEPT_RUNS) ||
-        !act_worked(st, lab_sweep_begin(sweep, argument, &st->fault))) {
-        return false;
-    }
+    NEED(act_need_whole_run(st) && act_need_short_runs(st, "sweep", SWEPT_RUNS) &&
+         act_worked(st, lab_sweep_begin(sweep, argument, &st->fault)));
     st->side.panel = PANEL_SWEEP;
     st->difference.on = false;
 

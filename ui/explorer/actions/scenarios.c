@@ -17,9 +17,7 @@ bool act_open_scenario(explorer_state *st, const char *name)
         s.parameters.code_allowed = consent_needed(&s) && consent_remembered(&s);
         code = session_open(&fresh, &s, st->session.patience, &st->fault);
     }
-    if (code != STATUS_OK) {
-        return act_worked(st, code);
-    }
+    FAIL_IF(code != STATUS_OK, act_worked(st, code));
 
     // the new session takes the old one's place, to which u returns
     const int changes = st->session.input_count;
@@ -56,13 +54,10 @@ bool act_open(explorer_state *st, const char *argument)
     }
 
     // the neighbour in the list, or one by name
-    bool next = strcmp(argument, "+1") == 0;
-    if ((next || strcmp(argument, "-1") == 0) && menu->count > 0) {
-        int at = scenario_menu_find(menu, st->session.base.name);
-        at = (at + (next ? 1 : menu->count - 1) + menu->count) % menu->count;
-        return act_open_scenario(st, menu->names[at]);
-    }
-    return act_open_scenario(st, argument);
+    const bool next = strcmp(argument, "+1") == 0, near = next || strcmp(argument, "-1") == 0;
+    const int at = scenario_menu_find(menu, st->session.base.name) + (next ? 1 : -1);
+    return act_open_scenario(
+        st, near && menu->count > 0 ? menu->names[(at + 2 * menu->count) % menu->count] : argument);
 }
 
 bool act_find(explorer_state *st, const char *argument)
@@ -91,15 +86,12 @@ bool act_allow(explorer_state *st, const char *argument)
             act_refuse(st, "the run asks for no permission"));
 
     // a visit's changes are the user's own: what is remembered is the scenario as it was opened
-    if (!act_worked(st, session_allow_code(s, &st->fault))) {
-        return false;
-    }
-    const status code = consent_remember(&s->base, &kept, &st->fault);
+    NEED(act_worked(st, session_allow_code(s, &st->fault)));
+    const bool done = act_worked(st, consent_remember(&s->base, &kept, &st->fault));
     st->playback.playing = true;
     return act_tell_failed_run(st) ||
-           (act_worked(st, code) &&
-            act_tell(st, kept ? "allowed, and remembered for just this scenario and program"
-                              : "allowed for this visit"));
+           (done && act_tell(st, kept ? "allowed, and remembered for just this scenario and program"
+                                      : "allowed for this visit"));
 }
 
 void act_tell_replay(explorer_state *st)
@@ -131,25 +123,21 @@ static const char *lesson_named(explorer_state *st, const char *name)
     const char *found = NULL;
     scenario_menu_read_titles(&st->scenarios);
     for (int i = 0; i < menu->count; i++) {
-        if (scenario_menu_text(menu, i).is_lesson &&
-            (strcmp(menu->names[i], name) == 0 ||
-             strcmp(scenario_leaf(menu->names[i]), name) == 0)) {
-            found = menu->names[i];
-        }
+        const char *whole = menu->names[i];
+        const bool same = strcmp(whole, name) == 0 || strcmp(scenario_leaf(whole), name) == 0;
+        found = same && scenario_menu_text(menu, i).is_lesson ? whole : found;
     }
     return found;
 }
 
 bool act_lesson(explorer_state *st, const char *argument)
 {
-    // without a name the list of them
+    // without a name the list of them, or the word that ends one
     if (argument[0] == '\0') {
         act_find(st, "lesson");
         st->scenarios.filtering = false;
         return true;
     }
-
-    // the word that ends one
     if (strcmp(argument, "off") == 0) {
         st->lesson.on = false;
         return true;
@@ -173,18 +161,16 @@ void act_follow_lesson(explorer_state *st)
 bool act_answer(explorer_state *st, const char *argument)
 {
     const lesson_step *step = present_step(st);
+    double value;
     FAIL_IF(step == NULL, act_refuse(st, "there is no lesson here (:lesson lists them)"));
-    FAIL_IF(step->check != LESSON_NUMBER && step->check != LESSON_CHOICE,
+    const bool choice = step->check == LESSON_CHOICE;
+    FAIL_IF(step->check != LESSON_NUMBER && !choice,
             act_refuse(st, "this step wants no answer: do what it says"));
     if (argument[0] == '\0') {
-        prompt_open(&st->prompt, "answer ");
-        return act_tell(st, "%s",
-                        step->check == LESSON_CHOICE ? "the number of an answer" : "a number");
+        prompt_open(&st->prompt, NULL, "answer ");
+        return act_tell(st, choice ? "the number of an answer" : "a number");
     }
-    double value;
-    if (!act_read_number(st, argument, &value)) {
-        return false;
-    }
+    NEED(act_read_number(st, argument, &value));
 
     // a wrong one may be followed by another
     st->lesson.answered = true;

@@ -108,9 +108,7 @@ bool act_advance(explorer_state *st, double seconds)
     const double before = s->now, duration = s->effective.parameters.run.duration;
     play->slowed = playback_slowness(play, &s->run.trace, duration, before);
     const double next = before + seconds * play->speed / play->slowed;
-    if (!pull_until(st, next)) {
-        return false;
-    }
+    NEED(pull_until(st, next));
 
     // the cursor waits at the end of what has been computed
     session_seek(s, next);
@@ -132,12 +130,10 @@ bool act_play(explorer_state *st, const char *argument)
     session *s = &st->session;
     session_forget_ghost(s);
     st->playback.playing = !st->playback.playing;
-    if (!st->playback.playing || s->now < session_end(s)) {
-        return act_hush(st);
-    }
+    const bool at_end = st->playback.playing && s->now >= session_end(s);
 
     // a run that was stopped there is computed on, a complete one begins again
-    if (session_go_on(s, NULL) != STATUS_OK && s->computing == NULL) {
+    if (at_end && session_go_on(s, NULL) != STATUS_OK && s->computing == NULL) {
         session_seek(s, 0);
     }
     return act_hush(st);
@@ -146,9 +142,7 @@ bool act_play(explorer_state *st, const char *argument)
 bool act_step(explorer_state *st, const char *argument)
 {
     double rows = 1;
-    if (!act_read_number_or(st, argument, "", &rows)) {
-        return false;
-    }
+    NEED(act_read_number_or(st, argument, "", &rows));
     st->playback.playing = false;
     session_step(&st->session, (long)fmax(-1e9, fmin(1e9, rows)));
     return true;
@@ -160,12 +154,11 @@ bool act_tell_event(explorer_state *st)
     const event *e = session_event(&st->session);
 
     // an event with its numbers
-    if (e != NULL && e->kind == EVENT_IMPACT) {
-        return act_tell(st, "impact at %.6f s: %.4g N s at %.4g m/s, %.4g J lost", e->time,
-                        e->impulse, e->speed, e->loss);
-    }
     if (e != NULL) {
-        return act_tell(st, "%s at %.6f s", event_name(e->kind), e->time);
+        return act_tell(st,
+                        e->kind == EVENT_IMPACT ? "%s at %.6f s: %.4g N s at %.4g m/s, %.4g J lost"
+                                                : "%s at %.6f s",
+                        event_name(e->kind), e->time, e->impulse, e->speed, e->loss);
     }
 
     // else it may be the instant of another mode
@@ -226,9 +219,7 @@ bool act_touch(explorer_state *st, const char *argument)
 bool act_seek(explorer_state *st, const char *argument)
 {
     double time = session_end(&st->session);
-    if (!act_read_number_or(st, argument, "end", &time)) {
-        return false;
-    }
+    NEED(act_read_number_or(st, argument, "end", &time));
     act_scrub(st, time);
     return fabs(st->session.now - time) < 1e-9 ||
            act_warn(st, "the run goes from 0 to %g s: :extend makes it longer",
@@ -256,14 +247,14 @@ bool act_speed(explorer_state *st, const char *argument)
 bool act_slow(explorer_state *st, const char *argument)
 {
     double factor = 1;
-    if (!act_read_number_or(st, argument, "off", &factor)) {
-        return false;
-    }
+    NEED(act_read_number_or(st, argument, "off", &factor));
     FAIL_IF(!(factor >= 1 && factor <= MOST_SLOW),
             act_refuse(st, "impacts are shown 1 to %d times slower", MOST_SLOW));
     st->playback.slow = factor;
-    return factor > 1 ? act_tell(st, "impacts are shown %g times slower", factor)
-                      : act_tell(st, "impacts are shown at the speed of the rest");
+    return act_tell(st,
+                    factor > 1 ? "impacts are shown %g times slower"
+                               : "impacts are shown at the speed of the rest",
+                    factor);
 }
 
 bool act_restart(explorer_state *st, const char *argument)

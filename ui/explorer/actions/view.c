@@ -11,27 +11,22 @@
 bool act_select(explorer_state *st, const char *argument)
 {
     parameter_line lines[PARAMETER_LINES];
+    const lab_sweep *sweep = &st->sweep;
     const int direction = argument[0] == '-' ? -1 : 1;
 
-    // panels in which nothing is selected scroll
-    if (st->side.panel != PANEL_PARAMETERS && st->side.panel != PANEL_SWEEP) {
-        st->drawn.scroll[st->side.panel] += direction;
-        return true;
-    }
-
-    // the sweep selects among its runs
+    // the sweep selects among its runs, panels in which nothing is selected scroll
     if (st->side.panel == PANEL_SWEEP) {
-        const lab_sweep *sweep = &st->sweep;
         act_select_swept(st,
                          lab_sweep_is_map(sweep) ? -direction * (int)sweep->axis.count : direction);
-        return true;
-    }
-
-    // the parameters end at both ends, without a way around
-    const int count = state_parameter_lines(st, lines);
-    const int next = parameter_list_selected(&st->parameters, lines, count) + direction;
-    if (next >= 0 && next < count) {
-        parameter_list_select(&st->parameters, lines[next]);
+    } else if (st->side.panel != PANEL_PARAMETERS) {
+        st->drawn.scroll[st->side.panel] += direction;
+    } else {
+        // the parameters end at both ends, without a way around
+        const int count = state_parameter_lines(st, lines);
+        const int next = parameter_list_selected(&st->parameters, lines, count) + direction;
+        if (next >= 0 && next < count) {
+            parameter_list_select(&st->parameters, lines[next]);
+        }
     }
     return true;
 }
@@ -43,25 +38,21 @@ bool act_fold(explorer_state *st, const char *argument)
 
     // all groups at once, the one of the selected parameter, or one by name
     if (strcmp(argument, "all") == 0 || strcmp(argument, "none") == 0) {
-        for (int i = 0; i < PARAMETER_GROUPS; i++) {
-            list->folded[i] = argument[0] == 'a';
-        }
         list->on_heading = argument[0] == 'a';
+        for (int i = 0; i < parameter_count; i++) {
+            list->folded[i] = list->on_heading;
+        }
         return true;
     }
-    if (argument[0] == '\0') {
-        parameter_list_fold(list, list->parameter);
-        return true;
-    }
-    for (int i = 0; i < parameter_count; i++) {
+    int found = argument[0] == '\0' ? list->parameter : -1;
+    for (int i = 0; i < parameter_count && found < 0; i++) {
         char name[PARAMETER_NAME];
         parameter_group_name(i, name, sizeof name);
-        if (strcmp(name, argument) == 0) {
-            parameter_list_fold(list, i);
-            return true;
-        }
+        found = strcmp(name, argument) == 0 ? i : found;
     }
-    return act_refuse(st, "there is no group '%s' of parameters", argument);
+    FAIL_IF(found < 0, act_refuse(st, "there is no group '%s' of parameters", argument));
+    parameter_list_fold(list, found);
+    return true;
 }
 
 bool act_filter(explorer_state *st, const char *argument)
@@ -91,12 +82,10 @@ void act_settle_filter(explorer_state *st, panel_id panel)
     const bool there =
         count > 0 && !lines[selected].heading && lines[selected].parameter == list->parameter;
     int best = -1;
-    for (int i = 0; i < count && !there; i++) {
-        const bool better = best < 0 || state_inert_reason(st, lines[best].parameter) != NULL;
-        const bool acts = state_inert_reason(st, lines[i].parameter) == NULL;
-        if (!lines[i].heading && better && (best < 0 || acts)) {
-            best = i;
-        }
+    bool best_acts = false;
+    for (int i = 0; i < count && !there && !best_acts; i++) {
+        best_acts = !lines[i].heading && state_inert_reason(st, lines[i].parameter) == NULL;
+        best = best_acts || (best < 0 && !lines[i].heading) ? i : best;
     }
     if (best >= 0) {
         parameter_list_select(&st->parameters, lines[best]);
@@ -106,15 +95,11 @@ void act_settle_filter(explorer_state *st, panel_id panel)
 bool act_mark(explorer_state *st, const char *argument)
 {
     st->mark.time = st->session.now;
-    if (!act_read_number_or(st, argument, "", &st->mark.time)) {
-        return false;
-    }
+    NEED(act_read_number_or(st, argument, "", &st->mark.time));
     st->mark.set = argument[0] != '\0' || !st->mark.set;
-    return act_tell(st, "%s",
-                    st->mark.set
-                        ? "mark set: values now show the difference to it, X statistics from "
-                          "it to the cursor"
-                        : "no mark");
+    return act_tell(st, st->mark.set ? "mark set: values now show the difference to it, X "
+                                       "statistics from it to the cursor"
+                                     : "no mark");
 }
 
 bool act_side(explorer_state *st, const char *argument)
@@ -203,11 +188,9 @@ bool act_note(explorer_state *st, const char *argument)
     }
     const bool there = at < st->note_count && same_instant(st->notes[at].time, time);
     if (*text == '\0') {
-        if (there) {
-            act_drop_note(st, at);
-        }
-        return there ? act_tell(st, "no note at %.5f s", time)
-                     : act_refuse(st, "note takes a text; there is none at %.5f s", time);
+        FAIL_IF(!there, act_refuse(st, "note takes a text; there is none at %.5f s", time));
+        act_drop_note(st, at);
+        return act_tell(st, "no note at %.5f s", time);
     }
     FAIL_IF(!there && st->note_count == NOTES,
             act_refuse(st, "%d notes are the most there can be (:notes drops some)", NOTES));
@@ -265,34 +248,36 @@ ACTION_OF_CHOICE(colourby)
 bool act_rate(explorer_state *st, const char *argument)
 {
     double rate = 0;
-    if (!act_read_number_or(st, argument, "off", &rate)) {
-        return false;
-    }
+    NEED(act_read_number_or(st, argument, "off", &rate));
     FAIL_IF(rate < 0 || (rate > 0 && rate < 1),
             act_refuse(st, "a rate is at least 1 kB/s, or off"));
     st->looks.rate = rate;
-    return rate > 0 ? act_tell(st, "pictures take at most %g kB/s", rate)
-                    : act_tell(st, "pictures as fast as they are drawn");
+    return act_tell(
+        st, rate > 0 ? "pictures take at most %g kB/s" : "pictures as fast as they are drawn",
+        rate);
 }
 
 bool act_bending(explorer_state *st, const char *argument)
 {
     enum { MOST = 100 };
     double factor = 1;
-    if (!act_read_number_or(st, argument, "", &factor)) {
-        return false;
-    }
+    NEED(act_read_number_or(st, argument, "", &factor));
     FAIL_IF(!(factor >= 1 && factor <= MOST),
             act_refuse(st, "bending is drawn 1 to %d times as large", MOST));
     st->looks.bending = factor;
-    return factor == 1 ? act_tell(st, "bending is drawn as it is")
-                       : act_tell(st, "bending is drawn %g times as large", factor);
+    return act_tell(
+        st, factor == 1 ? "bending is drawn as it is" : "bending is drawn %g times as large",
+        factor);
 }
 
 bool act_redraw(explorer_state *st, const char *argument)
 {
-    st->looks.redraw = true;
-    return true;
+    return st->looks.redraw = true;
+}
+
+bool act_quit_now(explorer_state *st, const char *argument)
+{
+    return st->quit = true;
 }
 
 bool act_quit(explorer_state *st, const char *argument)
@@ -305,10 +290,7 @@ bool act_quit(explorer_state *st, const char *argument)
     }
 
     // work is lost only if quitting is requested twice
-    if (changes + pins == 0 || st->asked_to_quit) {
-        st->quit = true;
-        return true;
-    }
+    FAIL_IF(changes + pins == 0 || st->asked_to_quit, act_quit_now(st, ""));
     char lost[96] = "", pinned[48] = "";
     if (changes > 0) {
         snprintf(lost, sizeof lost, "%d change%s", changes, changes == 1 ? "" : "s");
@@ -321,12 +303,6 @@ bool act_quit(explorer_state *st, const char *argument)
                     changes > 0 && pins > 0 ? " and " : "", pinned);
 }
 
-bool act_quit_now(explorer_state *st, const char *argument)
-{
-    st->quit = true;
-    return true;
-}
-
 bool act_interrupt(explorer_state *st, const char *argument)
 {
     return st->session.computing != NULL ? act_stop(st, "") : act_quit(st, argument);
@@ -337,7 +313,7 @@ bool act_interrupt(explorer_state *st, const char *argument)
 bool act_palette(explorer_state *st, const char *argument)
 {
     scenario_menu_read_titles(&st->scenarios);
-    prompt_open(&st->prompt, "%s", argument);
+    prompt_open(&st->prompt, NULL, "%s", argument);
     st->prompt.searches = true;
     st->palette = (palette_view){0};
     return act_hush(st);
@@ -359,9 +335,7 @@ bool act_line_of_palette(const explorer_state *st, char line[LINE_TEXT], bool *g
     static palette_entry entries[PALETTE_ENTRIES];
     const int count = palette_find(&st->scenarios, &st->keys, st->prompt.text, entries);
     const int at = st->palette.selected;
-    if (at < 0 || at >= count) {
-        return false;
-    }
+    NEED(at >= 0 && at < count);
     palette_line(&st->scenarios, &st->keys, entries[at], line, goes_on);
     return true;
 }

@@ -85,12 +85,9 @@ static plan_view whole_view(const explorer_state *st, const arm_extent *extent, 
     v.scale = width / (1.25 * length);
     v.left = -0.1 * length;
     double room = height * 0.62 / fmax(v.scale * (high - low), 1e-9);
-    static const double factors[] = {20, 10, 5, 4, 3, 2, 1.5};
+    static const double factors[] = {1.5, 2, 3, 4, 5, 10, 20};
     for (size_t i = 0; i < sizeof factors / sizeof factors[0]; i++) {
-        if (factors[i] <= room) {
-            v.magnified = factors[i];
-            break;
-        }
+        v.magnified = factors[i] <= room ? factors[i] : v.magnified;
     }
     // the force's arrow comes from above, so leave more room there
     double spare = height / (v.scale * v.magnified) - (high - low);
@@ -108,6 +105,13 @@ int arm_rows(const explorer_state *st, layout *lay, screen_size room)
     const double spread = (lay->extent.highest - lay->extent.lowest) * v.scale / 4;
     const int wanted = lay->extent.most_angle > 0.8 ? room.height : 6 + (int)spread;
     return wanted < LEAST ? LEAST : wanted;
+}
+
+// The run that the arm is drawn beside, NULL if there is none of as many bodies.
+static const trace *other_run(const session *e)
+{
+    return e->has_other && e->other.trace.angle_count == e->run.trace.angle_count ? &e->other.trace
+                                                                                  : NULL;
 }
 
 // Where the tip is at the cursor, as it was recorded [m].
@@ -157,31 +161,33 @@ static void draw_hub(const stage *v, double angle)
     canvas_line(&v->canvas, x, y, x + radius * cos(angle), y - radius * sin(angle), INK_HUB);
 }
 
-static void draw_wall(const stage *v, const parameters *p, const sample *at)
+// A line from place to place [m].
+static void draw_line(const stage *g, double x0, double y0, double x1, double y1, ink in)
 {
+    const plan_view *v = &g->view;
+    canvas_line(&g->canvas, plan_x(v, x0), plan_y(v, y0), plan_x(v, x1), plan_y(v, y1), in);
+}
+
+static void draw_wall(const stage *g, const parameters *p, const sample *at)
+{
+    const canvas *c = &g->canvas;
     const vector shift = scene_wall_shift(p, at);
-    double x = p->arm.length * cos(p->wall.angle), y = p->arm.length * sin(p->wall.angle);
+    const double x = p->arm.length * cos(p->wall.angle), y = p->arm.length * sin(p->wall.angle);
 
     // a plane: a stretch of the line that the arm lies along
     if (p->wall.kind == WALL_PLANE) {
-        canvas_line(&v->canvas, plan_x(&v->view, 0.8 * x + shift.x),
-                    plan_y(&v->view, 0.8 * y + shift.y), plan_x(&v->view, 1.1 * x + shift.x),
-                    plan_y(&v->view, 1.1 * y + shift.y), INK_WALL);
+        draw_line(g, 0.8 * x + shift.x, 0.8 * y + shift.y, 1.1 * x + shift.x, 1.1 * y + shift.y,
+                  INK_WALL);
     }
 
-    // where the tip meets a wall of any kind
-    x += shift.x;
-    y += shift.y;
-    int column = v->canvas.x + (int)(plan_x(&v->view, x) / 2),
-        row = v->canvas.y + (int)(plan_y(&v->view, y) / 4);
-    bool inside = row > v->canvas.y && row < v->canvas.y + v->canvas.height;
-
-    if (p->wall.kind != WALL_NONE && inside) {
-        // the cell beyond the wall, on the side that the arm cannot reach
+    // where the tip meets a wall of any kind, and the cell beyond, which the arm cannot reach
+    const int column = c->x + (int)(plan_x(&g->view, x + shift.x) / 2);
+    const int row = c->y + (int)(plan_y(&g->view, y + shift.y) / 4);
+    if (p->wall.kind != WALL_NONE && row > c->y && row < c->y + c->height) {
         for (int i = 0; i < 3; i++) {
-            screen_put(v->canvas.screen, column + i, row - 1, 0x2592, INK_WALL);
+            screen_put(c->screen, column + i, row - 1, 0x2592, INK_WALL);
         }
-        screen_put(v->canvas.screen, column + 1, row, 0x25c6, INK_WALL);
+        screen_put(c->screen, column + 1, row, 0x25c6, INK_WALL);
     }
 }
 
@@ -209,17 +215,16 @@ static void draw_dots(const explorer_state *st, const stage *g)
     const session *e = &st->session;
     const sample *row = session_sample(e);
     draw_wall(g, &e->effective.parameters, row);
-    if (e->has_other && e->other.trace.angle_count == e->run.trace.angle_count) {
-        draw_links(st, g, &e->other.trace, e->now, INK_OTHER, true);
+    if (other_run(e) != NULL) {
+        draw_links(st, g, other_run(e), e->now, INK_OTHER, true);
     }
     draw_hub(g, row->hub_angle);
     draw_links(st, g, &e->run.trace, e->now, INK_ARM, false);
+    const plane_vector tip = tip_of(st);
     if (st->pull.held) {
-        const plane_vector tip = tip_of(st);
-        canvas_line(&g->canvas, plan_x(&g->view, tip.x), plan_y(&g->view, tip.y),
-                    plan_x(&g->view, st->pull.x), plan_y(&g->view, st->pull.y), INK_FORCE);
+        draw_line(g, tip.x, tip.y, st->pull.x, st->pull.y, INK_FORCE);
     }
-    draw_force(g, tip_of(st), row->contact != 0 ? row->force : 0, e->run.summary.peak_force_N);
+    draw_force(g, tip, row->contact != 0 ? row->force : 0, e->run.summary.peak_force_N);
 }
 
 // --- as pixels --------------------------------------------------------------------------------
@@ -234,9 +239,7 @@ static void draw_pixels(const explorer_state *st, const stage *g)
         .rows = &e->run.trace,
         .parameters = &e->effective.parameters,
         .time = e->now,
-        .other = e->has_other && e->other.trace.angle_count == e->run.trace.angle_count
-                     ? &e->other.trace
-                     : NULL,
+        .other = other_run(e),
         .exaggerate = st->looks.bending,
         .peak = e->run.summary.peak_force_N,
         .pulled = st->pull.held,
@@ -268,11 +271,10 @@ static stage plan_stage(screen *s, area a)
 static void draw_stage(const explorer_state *st, stage *g)
 {
     const canvas *c = &g->canvas;
-    cairo_t *picture = picture_begin(c->screen, c->x, c->y, c->width, c->height);
-    if (picture != NULL) {
-        g->picture = picture;
+    g->picture = picture_begin(c->screen, c->x, c->y, c->width, c->height);
+    if (g->picture != NULL) {
         draw_pixels(st, g);
-        picture_end(c->screen, picture);
+        picture_end(c->screen, g->picture);
     } else if (c->screen->pictures == NULL) {
         draw_dots(st, g);
     }
@@ -369,29 +371,22 @@ static bool point(explorer_state *st, const panel_gesture *g)
 {
     enum { NEAR_ACROSS = 4, NEAR_DOWN = 2 }; // [cells]
     int x, y;
-    if (st->drawn.stage.width < 1 || st->drawn.stage.height < 1) {
+    const arm_stage *drawn = &st->drawn.stage;
+    const pointer_event e = g->event;
+    if (drawn->width < 1 || drawn->height < 1 || pointer_wheel(e) != 0) {
         return false;
     }
-    const plane_vector place = stage_place(&st->drawn.stage, g->event.x, g->event.y);
-
-    switch (g->event.kind) {
-    case POINTER_PRESS:
-        stage_cell(&st->drawn.stage, tip_of(st), &x, &y);
-        if (abs(x - g->event.x) <= NEAR_ACROSS && abs(y - g->event.y) <= NEAR_DOWN) {
-            act_hold_tip(st, place);
-        }
-        return true;
-    case POINTER_DRAG:
-        if (st->pull.held) {
-            act_move_pull(st, place);
-        }
-        return true;
-    case POINTER_RELEASE:
+    const plane_vector place = stage_place(drawn, e.x, e.y);
+    stage_cell(drawn, tip_of(st), &x, &y);
+    const bool near = abs(x - e.x) <= NEAR_ACROSS && abs(y - e.y) <= NEAR_DOWN;
+    if (e.kind == POINTER_PRESS && near) {
+        act_hold_tip(st, place);
+    } else if (e.kind == POINTER_DRAG && st->pull.held) {
+        act_move_pull(st, place);
+    } else if (e.kind == POINTER_RELEASE) {
         act_drop_pull(st);
-        return true;
-    default:
-        return false;
     }
+    return true;
 }
 
 const panel arm_panel = {.name = "arm", .draw = draw, .point = point};

@@ -92,16 +92,10 @@ static int write_status(const explorer_state *st, bar_item items[BAR_ITEMS])
     const char *state = st->playback.playing                 ? (old ? "replaying" : "playing")
                         : failed && e->now >= session_end(e) ? how
                                                              : "paused";
-    char model[64], law[64] = "", speed[32] = "";
+    const bool has_law = p->control.law != LAW_NONE;
+    char model[64], speed[32] = "";
     int n = 0;
-
-    // words for the parts that may be missing
     parameter_format(p, PARAMETER_INDEX(arm.model), model, sizeof model);
-    if (p->control.law != LAW_NONE) {
-        char name[40];
-        parameter_format(p, PARAMETER_INDEX(control.law), name, sizeof name);
-        snprintf(law, sizeof law, ", %s", name);
-    }
     if (st->playback.playing) {
         const bool slowed = st->playback.slowed > 1.05;
         snprintf(speed, sizeof speed, slowed ? " slow motion (%.2g)" : " (%.3g)",
@@ -125,7 +119,8 @@ static int write_status(const explorer_state *st, bar_item items[BAR_ITEMS])
     ITEM(1, "t %.5f s", e->now);
     ITEM(5, "row %zu/%zu", e->row + 1, e->run.trace.row_count);
     ITEM(3, "\u00d7%g%s", st->playback.speed, speed);
-    ITEM(4, "%.40s%.50s", model, law);
+    ITEM(4, "%.40s%s%.38s", model, has_law ? ", " : "",
+         has_law ? control_law_table[p->control.law].word : "");
     ITEM(2, "%s%s", row->contact != 0 ? "in contact" : "free flight",
          row->sticking != 0 ? ", hub sticks" : "");
     if (st->mark.set) {
@@ -155,8 +150,7 @@ static int draw_message(const explorer_state *st, screen *s, int below, ink shad
     enum { MOST = 3 };
     text_line lines[MOST];
     const int count = text_wrap(st->message.text, s->width - 2, lines, MOST, NULL);
-    for (int i = 0; i < count; i++) {
-        const int y = below - count + i;
+    for (int i = 0, y = below - count; i < count; i++, y++) {
         blank_row(s, y);
         if (i == MOST - 1 && !st->prompt.open) {
             screen_words(s, 1, y, s->width - 2, shade, lines[i].start);
@@ -170,28 +164,26 @@ static int draw_message(const explorer_state *st, screen *s, int below, ink shad
 // The end of the prompt if it is wider than the screen, and what was said about it.
 static int draw_prompt(const explorer_state *st, screen *s)
 {
-    int y = s->height - 1, room = s->width - 2, over = text_cells(st->prompt.text) - (room - 1);
-    const char *text = st->prompt.text;
-    int rows = 1;
+    const prompt *p = &st->prompt;
+    const char *text = p->text, *said = st->message.text;
+    int y = s->height - 1, room = s->width - 2, over = text_cells(text) - (room - 1);
     for (int i = 0; i < over; i++) {
         glyph_decode(&text);
     }
     blank_row(s, y);
-    int x =
-        screen_print(s, 0, y, room, INK_TITLE, "%s%s", st->prompt.searches ? "find " : ":", text);
+    int x = screen_print(s, 0, y, room, INK_TITLE, "%s%s", p->searches ? "find " : ":", text);
     screen_put(s, x, y, ' ', INK_SELECTED);
 
     // a value that typing replaces looks selected
-    if (st->prompt.replaces) {
-        int value = text_cells(st->prompt.text + st->prompt.fixed);
+    if (p->replaces) {
+        int value = text_cells(p->text + p->fixed);
         screen_tint(s, x - value, y, value, 1, INK_SELECTED);
     }
-    if (st->message.text[0] != '\0' && x + 4 + text_cells(st->message.text) <= s->width) {
-        screen_text(s, x + 3, y, s->width - x - 3, INK_DIM, st->message.text);
-    } else if (st->message.text[0] != '\0') {
-        rows += draw_message(st, s, y, INK_DIM);
+    if (x + 4 + text_cells(said) > s->width) {
+        return 1 + draw_message(st, s, y, INK_DIM);
     }
-    return rows;
+    screen_text(s, x + 3, y, s->width - x - 3, INK_DIM, said);
+    return 1;
 }
 
 // What the most wanted keys do, as many as there is room for; the last two always.
@@ -229,28 +221,23 @@ static void draw_hints(const explorer_state *st, screen *s)
 // Draws the prompt, the message or hints in the last rows and returns how many it took.
 static int draw_bottom(const explorer_state *st, screen *s)
 {
-    // what is being typed comes first
+    const int y = s->height - 1;
+    int rows = 1;
     if (st->prompt.open) {
-        return draw_prompt(st, s);
-    }
-    if (st->filters.typing != PANEL_NONE) {
-        blank_row(s, s->height - 1);
-        int x = screen_print(s, 0, s->height - 1, s->width - 2, INK_TITLE, "/%s",
+        rows = draw_prompt(st, s);
+    } else if (st->filters.typing != PANEL_NONE) {
+        blank_row(s, y);
+        int x = screen_print(s, 0, y, s->width - 2, INK_TITLE, "/%s",
                              st->filters.text[st->filters.typing]);
-        screen_put(s, x, s->height - 1, ' ', INK_SELECTED);
-        screen_text(s, x + 3, s->height - 1, s->width - x - 3, INK_DIM,
+        screen_put(s, x, y, ' ', INK_SELECTED);
+        screen_text(s, x + 3, y, s->width - x - 3, INK_DIM,
                     "filters by words and their parts; Enter takes, Esc shows all");
-        return 1;
-    }
-
-    // without a message there are hints
-    if (st->message.text[0] == '\0') {
+    } else if (st->message.text[0] == '\0') {
         draw_hints(st, s);
-        return 1;
+    } else {
+        // a long message covers some of the panels until the next key
+        rows = draw_message(st, s, s->height, st->message.warning ? INK_WARNING : INK_TEXT);
     }
-
-    // a long message covers some of the panels until the next key
-    const int rows = draw_message(st, s, s->height, st->message.warning ? INK_WARNING : INK_TEXT);
     return rows < 1 ? 1 : rows;
 }
 
@@ -259,33 +246,28 @@ static int draw_bottom(const explorer_state *st, screen *s)
 // That the screen is too small, in the longest text that fits.
 static void draw_too_small(screen *s)
 {
-    // the longest one that fits without a broken word
-    char texts[6][96];
+    // from a sentence down to a sign, of the width and height that are needed and that there are
+    static const char *const forms[] = {
+        "The lab needs %1$d x %2$d characters, here are %3$d x %4$d. q quits.",
+        "%3$d x %4$d: the lab needs %1$d x %2$d (q quits)",
+        "%3$dx%4$d < %1$dx%2$d",
+        "< %1$dx%2$d",
+        "small",
+        "<"};
+    enum { FORMS = sizeof forms / sizeof forms[0] };
+    char text[96];
     text_line lines[24];
-    int w = s->width, h = s->height;
-
-    // from a sentence down to a sign
-    snprintf(texts[0], sizeof texts[0],
-             "The lab needs %d x %d characters, here are %d x %d. q quits.", LEAST_WIDTH,
-             LEAST_HEIGHT, w, h);
-    snprintf(texts[1], sizeof texts[1], "%d x %d: the lab needs %d x %d (q quits)", w, h,
-             LEAST_WIDTH, LEAST_HEIGHT);
-    snprintf(texts[2], sizeof texts[2], "%dx%d < %dx%d", w, h, LEAST_WIDTH, LEAST_HEIGHT);
-    snprintf(texts[3], sizeof texts[3], "< %dx%d", LEAST_WIDTH, LEAST_HEIGHT);
-    snprintf(texts[4], sizeof texts[4], "small");
-    snprintf(texts[5], sizeof texts[5], "<");
+    const int w = s->width, h = s->height;
+    int count = 0;
+    bool split = true;
 
     // the first whose words all fit
-    for (int i = 0; i < 6; i++) {
-        bool split;
-        int count = text_wrap(texts[i], w, lines, h < 24 ? h : 24, &split);
-        if (split && i < 5) {
-            continue;
-        }
-        for (int k = 0; k < count; k++) {
-            screen_print(s, 0, k, w, INK_WARNING, "%.*s", lines[k].bytes, lines[k].start);
-        }
-        return;
+    for (int i = 0; i < FORMS && split; i++) {
+        snprintf(text, sizeof text, forms[i], LEAST_WIDTH, LEAST_HEIGHT, w, h);
+        count = text_wrap(text, w, lines, h < 24 ? h : 24, &split);
+    }
+    for (int k = 0; k < count; k++) {
+        screen_print(s, 0, k, w, INK_WARNING, "%.*s", lines[k].bytes, lines[k].start);
     }
 }
 
@@ -294,15 +276,11 @@ static void draw_too_small(screen *s)
 // The width of the stack on the right; from 120 on there is room for sliders next to the values.
 static int side_width(int screen_width)
 {
-    static const struct {
-        int screen, side;
-    } widths[] = {{200, 60}, {120, 46}, {100, 40}, {SIDE_WIDTH, 34}};
-    for (size_t i = 0; i < sizeof widths / sizeof widths[0]; i++) {
-        if (screen_width >= widths[i].screen) {
-            return widths[i].side;
-        }
-    }
-    return 0;
+    return screen_width >= 200          ? 60
+           : screen_width >= 120        ? 46
+           : screen_width >= 100        ? 40
+           : screen_width >= SIDE_WIDTH ? 34
+                                        : 0;
 }
 
 // Whether a panel of the stack leaves its rows to the chosen one, which has more to show than they
@@ -314,7 +292,7 @@ static bool gives_way(const explorer_state *st, panel_id id)
 }
 
 // Folds panels of the stack until the chosen one has enough of the rows, of which it has `left`:
-// first those without anything to show. Returns the rows that became free.
+// first those without anything to show. Returns the rows that it has then.
 static int fold_stack(const explorer_state *st, layout *lay, int rows[PANEL_IDS], int left)
 {
     enum { SHORT = 14, ENOUGH = 8, LITTLE = 3 }; // rows of all; six lines in a frame, or one
@@ -326,13 +304,12 @@ static int fold_stack(const explorer_state *st, layout *lay, int rows[PANEL_IDS]
     const bool log_is_empty = st->log.count == 0 || st->session.seen <= 0;
     const panel_id order[] = {log_is_empty ? PANEL_LOG : PANEL_NONE, PANEL_PREDICTORS,
                               PANEL_CONTROLLER, PANEL_LOG, PANEL_RUNS};
-    int freed = 0;
-    for (size_t i = 0; i < sizeof order / sizeof order[0] && left + freed < enough; i++) {
-        lay->drawn.folded[order[i]] = rows[order[i]] > 0 || lay->drawn.folded[order[i]];
-        freed += rows[order[i]];
+    for (size_t i = 0; i < sizeof order / sizeof order[0] && left < enough; i++) {
+        lay->drawn.folded[order[i]] |= rows[order[i]] > 0;
+        left += rows[order[i]];
         rows[order[i]] = 0;
     }
-    return freed;
+    return left;
 }
 
 // What is folded, in the lower edge of the chosen panel.
@@ -369,9 +346,7 @@ static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
             left -= rows[id];
         }
     }
-    left += fold_stack(st, lay, rows, left);
-
-    area at = {a.x, a.y, a.width, left};
+    area at = {a.x, a.y, a.width, fold_stack(st, lay, rows, left)};
     panel_of(st->side.panel)->draw(st, lay, s, at);
     draw_tabs(lay, s, at);
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {

@@ -22,16 +22,16 @@ static void draw_modes(const explorer_state *st, screen *s, area a, double prese
         width -= (int)strlen(m->names[first]) + 1;
     }
 
-    // the present one in brackets
-    for (int i = first, x = a.x; i < m->count; i++) {
-        bool now = i == present;
-        int length = (int)strlen(m->names[i]) + 2 * now;
-        if (x + length > a.x + a.width && !now) {
+    // the present one in brackets, and no other one that has no room
+    const int end = a.x + a.width;
+    for (int i = first, x = a.x, length; i < m->count; i++, x += length + 1) {
+        const bool now = i == present;
+        length = (int)strlen(m->names[i]) + 2 * now;
+        if (x + length > end && !now) {
             break;
         }
-        screen_print(s, x, a.y, a.x + a.width - x, now ? INK_EVENT : INK_DIM, now ? "[%s]" : "%s",
+        screen_print(s, x, a.y, end - x, now ? INK_EVENT : INK_DIM, now ? "[%s]" : "%s",
                      m->names[i]);
-        x += length + 1;
     }
 }
 
@@ -78,31 +78,25 @@ static void draw_command(screen *s, area a, const parameters *p, double command)
 }
 
 // A number in a few cells, "-" for none.
-static void brief(char *text, size_t size, int decimals, double value)
+static number_text brief(int decimals, double value)
 {
-    if (!isfinite(value)) {
-        snprintf(text, size, "-");
-    } else {
-        snprintf(text, size, fabs(value) < 10 ? "%.*f" : "%.*g", decimals, value);
+    number_text n = {"-"};
+    if (isfinite(value)) {
+        snprintf(n.text, sizeof n.text, fabs(value) < 10 ? "%.*f" : "%.*g", decimals, value);
     }
+    return n;
 }
 
 // Two lines for what the tall panel has a table for.
 static void draw_brief(screen *s, area a, const sample *row, const parameters *p)
 {
-    char angle[24], velocity[24], read[24], calculated[24];
-    brief(angle, sizeof angle, 3, row->desired_angle);
-    brief(velocity, sizeof velocity, 2, row->desired_velocity);
-    brief(read, sizeof read, 2, row->force_reading);
-    brief(calculated, sizeof calculated, 2, row->calculated_force);
-
     // not every law needs an angle
-    if (isfinite(row->desired_angle)) {
-        screen_print(s, a.x, a.y, a.width, INK_TEXT, "wants %s rad, %s rad/s", angle, velocity);
-    } else {
-        screen_text(s, a.x, a.y, a.width, INK_DIM, "wants no angle");
-    }
-    screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, "force %s, calc. %s of %g N", read, calculated,
+    const bool angle = isfinite(row->desired_angle);
+    screen_print(s, a.x, a.y, a.width, angle ? INK_TEXT : INK_DIM,
+                 angle ? "wants %s rad, %s rad/s" : "wants no angle",
+                 brief(3, row->desired_angle).text, brief(2, row->desired_velocity).text);
+    screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, "force %s, calc. %s of %g N",
+                 brief(2, row->force_reading).text, brief(2, row->calculated_force).text,
                  p->control.force);
 }
 
@@ -129,11 +123,9 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     // modes, lock and command always
     area line = {a.x + 2, a.y + 1, a.width - 4, 1};
     draw_modes(st, s, line, row->controller_mode);
-    line.y++;
-    draw_lock(st, s, line);
-    line.y++;
-    draw_command(s, line, &p, row->command);
-    line.y++;
+    draw_lock(st, s, (area){line.x, line.y + 1, line.width, 1});
+    draw_command(s, (area){line.x, line.y + 2, line.width, 1}, &p, row->command);
+    line.y += 3;
 
     // the rest in brief where rows are few
     if (a.height < TALL) {

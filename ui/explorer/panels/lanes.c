@@ -71,7 +71,8 @@ static int find_lanes(const explorer_state *st, const lane_survey *known, lane l
 {
     int count = 0;
     bool others = false;
-    for (int run = 1; run < state_run_count(st); run++) {
+    const int runs = state_run_count(st);
+    for (int run = 1; run < runs; run++) {
         others = others || state_run_name(st, run)[0] != '\0';
     }
 
@@ -81,7 +82,7 @@ static int find_lanes(const explorer_state *st, const lane_survey *known, lane l
         known->saturates, has_lock(st),      known->sticks};
     for (int kind = 0; kind < LANE_KINDS; kind++) {
         // contact of the other runs, to compare, before the least informative: its place is left
-        for (int run = 1; kind == LANE_STICKING && run < state_run_count(st); run++) {
+        for (int run = 1; kind == LANE_STICKING && run < runs; run++) {
             if (state_run_name(st, run)[0] != '\0' && count < MOST_LANES - 1) {
                 lanes[count++] = (lane){LANE_CONTACT, run};
             }
@@ -130,49 +131,37 @@ static bool any_row(const trace *t, double from, double to, int signal, double a
 static lane_band band_between(const explorer_state *st, lane l, double from, double to)
 {
     enum { COLOURS = 6 }; // of modes
+    static const ink colours[LANE_KINDS] = {[LANE_CONTACT] = INK_FORCE,
+                                            [LANE_SATURATION] = INK_WARNING,
+                                            [LANE_LOCK] = INK_EVENT,
+                                            [LANE_STICKING] = INK_HUB};
     // what the run did, also where panes show a difference
     const trace *t = l.run == 0 ? &st->session.run.trace : state_run(st, l.run).trace;
-    lane_band band = {-1, INK_FORCE, ""};
-
-    // on or off, if anything in between is on
-    switch (l.kind) {
-    case LANE_CONTACT:
-        band.value = any_row(t, from, to, SIGNAL_INDEX(contact), 0) ? 1 : -1;
-        break;
-    case LANE_STICKING:
-        band.value = any_row(t, from, to, SIGNAL_INDEX(sticking), 0) ? 1 : -1;
-        band.colour = INK_HUB;
-        break;
-    case LANE_SATURATION: {
-        const parameters p = session_parameters_at(&st->session, to);
-        band.value = any_row(t, from, to, SIGNAL_INDEX(command), p.motor.voltage_limit) ? 1 : -1;
-        band.colour = INK_WARNING;
-        break;
-    }
+    lane_band band = {-1, colours[l.kind], ""};
 
     // one value for each name
-    case LANE_MODE: {
+    if (l.kind == LANE_MODE) {
         const double mode = t->rows[trace_row_at(t, to)].controller_mode;
         if (mode >= 0) {
             band.value = (int)mode;
             band.colour = (ink)(INK_SERIES_0 + (int)mode % COLOURS);
             law_mode_name(&st->modes, mode, band.name, sizeof band.name);
         }
-        break;
-    }
-    case LANE_LOCK: {
+    } else if (l.kind == LANE_LOCK) {
         const parameters p = session_parameters_at(&st->session, to);
         for (int i = 0; i < st->modes.count; i++) {
             band.value = strcmp(st->modes.names[i], p.control.lock) == 0 ? i : band.value;
         }
         snprintf(band.name, sizeof band.name, "%.*s", (int)sizeof band.name - 1, p.control.lock);
-        band.colour = INK_EVENT;
-        break;
-    }
-
-    // changes have no bands, they are written
-    default:
-        break;
+    } else {
+        // on or off, if anything in between is on
+        const int signal = l.kind == LANE_CONTACT    ? SIGNAL_INDEX(contact)
+                           : l.kind == LANE_STICKING ? SIGNAL_INDEX(sticking)
+                                                     : SIGNAL_INDEX(command);
+        const double above = l.kind == LANE_SATURATION
+                                 ? session_parameters_at(&st->session, to).motor.voltage_limit
+                                 : 0;
+        band.value = any_row(t, from, to, signal, above) ? 1 : -1;
     }
     return band;
 }

@@ -11,9 +11,9 @@ static void draw_change(const explorer_state *st, screen *s, area a, const event
     const action *c = &st->session.effective.actions[v->index];
     const char *path = action_path(c, room);
     action_format_value(c, value, sizeof value);
-    int length = snprintf(text, sizeof text, "%s = %s", path, value);
-    if (length > a.width) {
-        // the parameter's own name, without its group
+
+    // the parameter's own name, without its group, where the whole has no room
+    if (snprintf(text, sizeof text, "%s = %s", path, value) > a.width) {
         snprintf(text, sizeof text, "%s %s", strchr(path, '.') + 1, value);
     }
     screen_text(s, a.x, a.y, a.width, INK_EVENT, text);
@@ -80,10 +80,9 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     const int count = (int)seen + find_later_inputs(st, seen, later);
 
     // that one in the middle, or the last ones; scrolling counts from there
-    int still = draw_first_line(current, count, height), last = count - height;
-    int first = still + st->drawn.scroll[PANEL_LOG];
-    first = first > last ? last : first;
-    first = first < 0 ? 0 : first;
+    const int still = draw_first_line(current, count, height), last = count - height;
+    const int wanted = still + st->drawn.scroll[PANEL_LOG], least = wanted > last ? last : wanted;
+    const int first = least < 0 ? 0 : least;
     lay->drawn.scroll[PANEL_LOG] = first - still;
     const area lines = {a.x + 1, a.y + 1, a.width - 2, height};
     layout_add_hit(lay, (hit_area){PANEL_LOG, PART_LINES, first, lines});
@@ -104,16 +103,13 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 static bool point(explorer_state *st, const panel_gesture *g)
 {
     const run_log *log = state_run_log(st);
-    size_t index = (size_t)(g->hit.index + g->event.y - g->hit.area.y);
-
-    if (g->event.kind != POINTER_PRESS) {
-        return false;
-    }
-    if (index < log->count && log->entries[index].time <= st->session.seen) {
+    const size_t index = (size_t)(g->hit.index + g->event.y - g->hit.area.y);
+    const bool pressed = g->event.kind == POINTER_PRESS;
+    if (pressed && index < log->count && log->entries[index].time <= st->session.seen) {
         act_scrub(st, log->entries[index].time);
         st->drawn.scroll[PANEL_LOG] = 0;
     }
-    return true;
+    return pressed;
 }
 
 const panel log_panel = {.name = "log",

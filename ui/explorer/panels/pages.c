@@ -1,8 +1,9 @@
-// The pages that are read: help, the scenario, the comparison of two runs.
+// The pages that are read: help, the scenario, what one stands on, the poles.
 #include "ui/explorer/panels/panel.h"
 
 #include <assert.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,7 +46,7 @@ static help_line *new_line(page *p)
 }
 
 // A text in as many lines as it takes, from a column on; the first line may be begun already.
-static void add_text(page *p, int column, const char *text, help_line *begun)
+static void add_column(page *p, int column, const char *text, help_line *begun)
 {
     text_line parts[WRAPPED];
     int room = p->width - column;
@@ -64,6 +65,18 @@ static void add_text(page *p, int column, const char *text, help_line *begun)
     }
 }
 
+static void add_text(page *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void add_text(page *p, const char *format, ...)
+{
+    char text[1024];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    add_column(p, 0, text, NULL);
+}
+
 static void add_heading(page *p, const char *title)
 {
     if (p->count > 0) {
@@ -80,7 +93,7 @@ static void add_entry(page *p, const char *keys, const char *text)
     help_line *line = new_line(p);
     snprintf(line->text, sizeof line->text, "%s", keys);
     line->keys = (int)strlen(keys);
-    add_text(p, p->column, text, line->keys + 1 < p->column ? line : NULL);
+    add_column(p, p->column, text, line->keys + 1 < p->column ? line : NULL);
 }
 
 // What the commands do, in groups, with the keys that carry each out.
@@ -128,13 +141,13 @@ int help_write(const key_bindings *b, int width, help_line *lines, int most)
     assert(most > 0);
     page p = {.lines = lines, .most = most, .width = width};
     p.column = width >= 96 ? 26 : width >= 60 ? 20 : 12;
-    add_text(&p, 0, first_visit, NULL);
+    add_text(&p, "%s", first_visit);
     new_line(&p);
-    add_text(&p, 0, everywhere, NULL);
+    add_text(&p, "%s", everywhere);
     add_commands(&p, b);
     add_user_keys(&p, b);
     new_line(&p);
-    add_text(&p, 0, mouse, NULL);
+    add_text(&p, "%s", mouse);
     return p.count;
 }
 
@@ -144,18 +157,14 @@ int help_write(const key_bindings *b, int width, help_line *lines, int most)
 static int keep_matching(help_line *lines, int count, const char *filter)
 {
     int kept = 0;
-    for (int i = 0; i < count && filter[0] != '\0'; i++) {
-        if (lines[i].text[0] != '\0' && filter_passes(filter, lines[i].text)) {
-            lines[kept++] = lines[i];
-        }
+    for (int i = 0; i < count; i++) {
+        lines[kept] = lines[i];
+        kept += lines[i].text[0] != '\0' && filter_passes(filter, lines[i].text);
     }
-    return filter[0] != '\0' ? kept : count;
+    return kept;
 }
 
-#define PAGE(title) .name = title, .point = page_point, .key = page_key
-
-// The frame of a page, which says how many of its lines are shown down to its end.
-static void draw_page_frame(screen *s, area a, const char *title, int last, int count)
+void draw_page_frame(screen *s, area a, const char *title, int last, int count)
 {
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
     if (last < count || count > a.height - 2) {
@@ -195,9 +204,10 @@ static void draw_help(const explorer_state *st, layout *lay, screen *s, area bod
     const char *filter = st->filters.text[PANEL_HELP];
     char title[LINE_TEXT] = "keys and commands (/ filters, Esc closes)";
     page p = begin_page(body, 114);
-    p.count = keep_matching(p.lines, help_write(&st->keys, p.width, p.lines, p.most), filter);
+    p.count = help_write(&st->keys, p.width, p.lines, p.most);
     if (filter[0] != '\0') {
         snprintf(title, sizeof title, "keys and commands /%.200s", filter);
+        p.count = keep_matching(p.lines, p.count, filter);
     }
     draw_page(st, lay, s, body, &p, title, 0);
 }
@@ -212,12 +222,12 @@ static void draw_info(const explorer_state *st, layout *lay, screen *s, area bod
     page p = begin_page(body, TEXT_WIDTH);
     char title[LINE_TEXT];
     const scenario *base = &st->session.base;
-    add_text(&p, 0, base->title != NULL ? base->title : "", NULL);
+    add_column(&p, 0, base->title != NULL ? base->title : "", NULL);
     p.lines[0].keys = text_cells(p.lines[0].text); // in their colour
     if (p.count > 0) {
         new_line(&p);
     }
-    add_text(&p, 0, base->description != NULL ? base->description : "", NULL);
+    add_column(&p, 0, base->description != NULL ? base->description : "", NULL);
     if (p.count > 0 && p.lines[p.count - 1].text[0] != '\0') {
         new_line(&p);
     }
@@ -225,13 +235,12 @@ static void draw_info(const explorer_state *st, layout *lay, screen *s, area bod
     // what its script does
     for (int i = 0; i < base->action_count; i++) {
         const action *a = &base->actions[i];
-        char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH];
+        char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH], *line = new_line(&p)->text;
         if (a->kind == ACTION_PUSH) {
-            snprintf(new_line(&p)->text, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
+            snprintf(line, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
         } else {
             action_format_value(a, value, sizeof value);
-            snprintf(new_line(&p)->text, LINE_TEXT, "%9.5f s  %s = %s", a->time,
-                     action_path(a, path), value);
+            snprintf(line, LINE_TEXT, "%9.5f s  %s = %s", a->time, action_path(a, path), value);
         }
     }
     p.count -= p.count > 0 && p.lines[p.count - 1].text[0] == '\0';
@@ -249,22 +258,19 @@ static void explain_parameter(const explorer_state *st, page *p)
     const int index = st->parameters.parameter;
     const parameter_info *info = &parameter_table[index];
     const char *inert = state_inert_reason(st, index);
-    char text[3 * LINE_TEXT];
     add_heading(p, info->path);
     if (info->choices != NULL) {
-        snprintf(text, sizeof text, "%s. One of %s.", info->description, info->choices);
+        add_text(p, "%s. One of %s.", info->description, info->choices);
     } else if (info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER) {
-        snprintf(text, sizeof text, "%s. From %g to %g %s.", info->description, info->minimum,
-                 info->maximum, info->unit);
+        add_text(p, "%s. From %g to %g %s.", info->description, info->minimum, info->maximum,
+                 info->unit);
     } else {
-        snprintf(text, sizeof text, "%s.", info->description);
+        add_text(p, "%s.", info->description);
     }
-    add_text(p, 0, text, NULL);
     if (inert != NULL) {
-        snprintf(text, sizeof text, "Without effect here: %s.", inert);
-        add_text(p, 0, text, NULL);
+        add_text(p, "Without effect here: %s.", inert);
     }
-    add_text(p, 0, "Enter edits it, < and > nudge it, :sweep and :solve vary it.", NULL);
+    add_text(p, "Enter edits it, < and > nudge it, :sweep and :solve vary it.");
 }
 
 // What the predictors say, and from what.
@@ -275,10 +281,9 @@ static void explain_predictors(page *p)
 #undef PREDICTOR_WORDS
     add_heading(p, "predictors: the largest force of the pulse if the tip touched now");
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
-        add_text(p, 0, words[i], NULL);
+        add_text(p, "%s", words[i]);
     }
-    add_text(p, 0, "\"would not hold\": the touch would throw the tip off. What came: the run.",
-             NULL);
+    add_text(p, "\"would not hold\": the touch would throw the tip off. What came: the run.");
 }
 
 static void draw_explain(const explorer_state *st, layout *lay, screen *s, area body)
@@ -286,7 +291,6 @@ static void draw_explain(const explorer_state *st, layout *lay, screen *s, area 
     page p = begin_page(body, TEXT_WIDTH);
     const int focused = panes_focused(&st->panes);
     const event *e = session_event(&st->session);
-    char text[2 * LINE_TEXT];
     explain_parameter(st, &p);
 
     // the signals in focus, their symbols spelled out, then the event at the cursor
@@ -295,15 +299,12 @@ static void draw_explain(const explorer_state *st, layout *lay, screen *s, area 
         if (k == 0) {
             add_heading(&p, "signals of the pane in focus (w: next pane)");
         }
-        snprintf(text, sizeof text, "%s (%s%s%s): %s.", info->name, info->ascii,
-                 info->unit[0] ? ", in " : "", info->unit, info->description);
-        add_text(&p, 0, text, NULL);
+        add_text(&p, "%s (%s%s%s): %s.", info->name, info->ascii, info->unit[0] ? ", in " : "",
+                 info->unit, info->description);
     }
     if (e != NULL) {
         add_heading(&p, "the event at the cursor");
-        snprintf(text, sizeof text, "%s: %s.", event_name(e->kind),
-                 event_description((int)e->kind));
-        add_text(&p, 0, text, NULL);
+        add_text(&p, "%s: %s.", event_name(e->kind), event_description((int)e->kind));
     }
     explain_predictors(&p);
     draw_page(st, lay, s, body, &p, "what is here (? lists keys and commands, Esc closes)", 0);
@@ -314,13 +315,15 @@ const panel explain_panel = {PAGE("explain"), .draw = draw_explain};
 // The page of a first visit: what is behind it goes on, the first key closes it and acts.
 static void draw_welcome(const explorer_state *st, layout *lay, screen *s, area body)
 {
+    static const char *const steps[] = {
+        "The arm hits the wall by itself. Space stops it, I goes back to just before.",
+        "b keeps this run; Enter, 0.5, Enter halves the voltage: both are compared.",
+        "o / hybrid Enter presses with 1 N by a control law. ? lists all keys."};
     page p = begin_page(body, 76);
     p.column = 3;
-    add_entry(&p, "1",
-              "The arm hits the wall by itself. Space stops it, I goes back to just before.");
-    add_entry(&p, "2",
-              "b keeps this run; Enter, 0.5, Enter halves the voltage: both are compared.");
-    add_entry(&p, "3", "o / hybrid Enter presses with 1 N by a control law. ? lists all keys.");
+    for (int i = 0; i < 3; i++) {
+        add_entry(&p, (char[]){(char)('1' + i), '\0'}, steps[i]);
+    }
     draw_page(st, lay, s, body, &p, "a first visit (any key goes on)", 0);
 }
 
@@ -334,7 +337,7 @@ static void draw_why(const explorer_state *st, layout *lay, screen *s, area body
     page p = begin_page(body, TEXT_WIDTH);
     const int count = run_account(&st->session.effective, &st->session.run, sentences);
     for (int i = 0; i < count; i++) {
-        add_text(&p, 0, sentences[i], NULL);
+        add_text(&p, "%s", sentences[i]);
     }
     draw_page(st, lay, s, body, &p, "why (Esc closes)", 0);
 }
@@ -353,27 +356,24 @@ static void add_poles(page *p, const parameters *values, linear_place place)
     double complex *poles = NULL;
     add_heading(p, names[place]);
     status code = linear_arm_init(&of, values, place, &f);
+    const int count = code == STATUS_OK ? of.system.states : 0;
     if (code == STATUS_OK) {
-        poles = calloc((size_t)of.system.states + 1, sizeof *poles);
+        poles = calloc((size_t)count + 1, sizeof *poles);
         code = poles != NULL ? linear_poles(&of.system, poles, &f) : fault_no_memory(&f);
     }
     loss_unless(code != STATUS_NO_MEMORY);
-    if (code != STATUS_OK) {
-        add_text(p, 0, f.text, NULL);
+    if (code != STATUS_OK || count == 0) {
+        add_text(p, "%s", code != STATUS_OK ? f.text : "none: nothing is left that could move");
     }
-    for (int i = 0; code == STATUS_OK && i < of.system.states; i++) {
+    for (int i = 0; code == STATUS_OK && i < count; i++) {
         const double complex s = poles[i];
         const bool rests = cabs(s) < 1e-6; // rounding of a pole at the origin
-        if (cimag(s) < 0) {
-            continue;
+        if (cimag(s) >= 0) {
+            snprintf(new_line(p)->text, LINE_TEXT, "%12s%12s%12s",
+                     draw_number(rests ? 0 : cabs(s) / (2 * acos(-1))).text,
+                     draw_number(rests ? (double)NAN : linear_damping(s)).text,
+                     draw_number(rests ? (double)NAN : -1 / creal(s)).text);
         }
-        snprintf(new_line(p)->text, LINE_TEXT, "%12s%12s%12s",
-                 draw_number(rests ? 0 : cabs(s) / (2 * acos(-1))).text,
-                 draw_number(rests ? (double)NAN : linear_damping(s)).text,
-                 draw_number(rests ? (double)NAN : -1 / creal(s)).text);
-    }
-    if (code == STATUS_OK && of.system.states == 0) {
-        add_text(p, 0, "none: nothing is left that could move", NULL);
     }
     free(poles);
     linear_system_finish(&of.system);
@@ -431,7 +431,7 @@ static void draw_poles(const explorer_state *st, layout *lay, screen *s, area bo
     if (p.width != width || memcmp(&shown, &now, sizeof now) != 0) {
         memcpy(&shown, &now, sizeof now);
         p = (page){.lines = lines, .most = MOST_LINES, .width = width};
-        add_text(&p, 0, "The arm near rest with the values at the cursor, without its law.", NULL);
+        add_text(&p, "The arm near rest with the values at the cursor, without its law.");
         snprintf(new_line(&p)->text, LINE_TEXT, "%12s%12s%12s", "[Hz]", "damping", "decay [s]");
         for (linear_place place = LINEAR_FREE; place <= LINEAR_STUCK; place++) {
             add_poles(&p, &now, place);
@@ -446,77 +446,3 @@ static void draw_poles(const explorer_state *st, layout *lay, screen *s, area bo
 }
 
 const panel poles_panel = {PAGE("poles"), .draw = draw_poles};
-
-// --- the comparison ---------------------------------------------------------------------------
-
-// A quantity of the comparison as a name and as columns; returns whether it means anything in
-// either run.
-static bool compare_quantity(const session *e, int index, int width, char *columns, size_t size,
-                             bool *differs)
-{
-    // smaller differences are rounding, of numbers near zero too
-    const double relative = 1e-6, absolute = 1e-9;
-    const double value = summary_value(&e->run.summary, index);
-    const double other = e->has_other ? summary_value(&e->other.summary, index) : (double)NAN;
-    *differs = e->has_other && !(isnan(value) && isnan(other)) &&
-               !(fabs(value - other) <= absolute + relative * fmax(fabs(value), fabs(other)));
-
-    // a single run has no change
-    const number_text none = {""}, two = e->has_other ? draw_number(other) : none;
-    const number_text change =
-        e->has_other ? draw_number(*differs ? value - other : (double)NAN) : none;
-    snprintf(columns, size, "%*s%*s%*s", width, draw_number(value).text, width, two.text, width,
-             change.text);
-    return !summary_table[index].timing && !(isnan(value) && isnan(other));
-}
-
-static void draw_comparison(const explorer_state *st, layout *lay, screen *s, area body)
-{
-    enum { NAMES = 30, WIDE = 12, NARROW = 11 };
-    const session *e = &st->session;
-    char columns[128];
-    bool differs;
-    int count = 0, line = 0;
-
-    // what means anything in either run
-    for (int i = 0; i < summary_count; i++) {
-        count += compare_quantity(e, i, WIDE, columns, sizeof columns, &differs);
-    }
-
-    // a narrow screen has the name and the numbers below each other
-    int rows = s->width - 6 < NAMES + 3 * WIDE ? 2 : 1, names = rows == 1 ? NAMES : 0;
-    int width = rows == 1 ? WIDE : NARROW;
-    area a = page_area(body, names + 3 * width + 4, rows * count + 3);
-    int room = a.width - 4, shown = a.height - 3;
-    int scroll = page_scroll(lay, PANEL_COMPARISON, a, rows * count, 3);
-    const int all = rows * count, last = scroll + shown;
-    draw_page_frame(s, a,
-                    e->has_other ? "two runs (Esc closes)" : "this run (b branches, Esc closes)",
-                    (last < all ? last : all) / rows, count);
-    screen_print(s, a.x + 2 + names, a.y + 1, room - names, INK_DIM, "%*s", width, "now");
-    if (e->has_other) {
-        // under the name that the legend has
-        const int at = a.x + 3 + names + width;
-        screen_words(s, at, a.y + 1, width - 1, INK_DIM, st->pinned.runs[st->pinned.baseline].name);
-        screen_print(s, at + width - 1, a.y + 1, width, INK_DIM, "%*s", width, "change");
-    }
-
-    // the lines that it is scrolled to
-    for (int i = 0; i < summary_count; i++) {
-        if (!compare_quantity(e, i, width, columns, sizeof columns, &differs)) {
-            continue;
-        }
-        const ink colour = differs || !e->has_other ? INK_TEXT : INK_DIM;
-        const summary_info *info = &summary_table[i];
-        int y = rows * line++ - scroll, below = y + rows - 1;
-        if (y >= 0 && y < shown) {
-            screen_print(s, a.x + 2, a.y + 2 + y, room, colour, "%s%s%s%s", info->label,
-                         info->unit[0] ? " [" : "", info->unit, info->unit[0] ? "]" : "");
-        }
-        if (below >= 0 && below < shown) {
-            screen_text(s, a.x + 2 + names, a.y + 2 + below, room - names, colour, columns);
-        }
-    }
-}
-
-const panel comparison_panel = {PAGE("comparison"), .draw = draw_comparison};

@@ -66,16 +66,14 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 // A click takes an entry, the wheel moves the selection.
 static bool point(explorer_state *st, const panel_gesture *g)
 {
-    if (g->event.kind == POINTER_PRESS && g->hit.part == PART_LINES) {
-        st->palette.selected = g->hit.index + g->event.y - g->hit.area.y;
-        st->palette.picked = true;
-        return true;
+    const bool picked = g->event.kind == POINTER_PRESS && g->hit.part == PART_LINES;
+    const int wheel = pointer_wheel(g->event);
+    if (picked) {
+        st->palette = (palette_view){g->hit.index + g->event.y - g->hit.area.y, true};
+    } else if (wheel != 0) {
+        act_move_in_palette(st, wheel);
     }
-    if (pointer_wheel(g->event) != 0) {
-        act_move_in_palette(st, pointer_wheel(g->event));
-        return true;
-    }
-    return false;
+    return picked || wheel != 0;
 }
 
 const panel palette_panel = {.name = "palette", .draw = draw, .point = point};

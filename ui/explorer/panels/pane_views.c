@@ -37,8 +37,8 @@ static void draw_ends(screen *s, area a, value_range x, const char *name)
 
 static void widen_by(value_range *r, const trace *t, int signal, double from, double to)
 {
-    const size_t first = trace_row_at(t, from), last = trace_row_at(t, to);
-    for (size_t i = first; i <= last; i++) {
+    const size_t last = trace_row_at(t, to);
+    for (size_t i = trace_row_at(t, from); i <= last; i++) {
         value_range_add(r, signal_value(&t->rows[i], signal));
     }
 }
@@ -46,9 +46,9 @@ static void widen_by(value_range *r, const trace *t, int signal, double from, do
 static void draw_path(const plane *p, const trace *t, const pane *of, double from, double to,
                       ink colour)
 {
-    const size_t first = trace_row_at(t, from), last = trace_row_at(t, to);
     double x0 = (double)NAN, y0 = (double)NAN;
-    for (size_t i = first; i <= last; i++) {
+    const size_t last = trace_row_at(t, to);
+    for (size_t i = trace_row_at(t, from); i <= last; i++) {
         const double x = dot_x(p, signal_value(&t->rows[i], of->signals[1]));
         const double y = dot_y(p, signal_value(&t->rows[i], of->signals[0]));
         canvas_line(&p->canvas, x0, y0, x, y, colour);
@@ -122,9 +122,8 @@ static int lines_that_matter(const double *amplitude)
     for (int k = 1; k < SERIES / 2; k++) {
         all += amplitude[k] * amplitude[k];
     }
-    while (lines < SERIES / 2 && sum < 0.99 * all) {
+    for (; lines < SERIES / 2 && sum < 0.99 * all; lines++) {
         sum += amplitude[lines] * amplitude[lines];
-        lines++;
     }
     lines += lines / 4 + 8;
     return lines < SERIES / 2 ? lines : SERIES / 2;

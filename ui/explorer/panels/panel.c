@@ -145,14 +145,11 @@ bool page_key(explorer_state *st, int key)
     const int lines = st->drawn.page_lines;
 
     // drawing keeps it within the page
-    if (key == KEY_CODE_DOWN || key == 'j') {
-        *scroll += 1;
-    } else if (key == KEY_CODE_UP || key == 'k') {
-        *scroll -= *scroll > 0;
-    } else if (key == KEY_CODE_PAGE_DOWN || key == ' ') {
-        *scroll += lines;
-    } else if (key == KEY_CODE_PAGE_UP) {
-        *scroll = *scroll > lines ? *scroll - lines : 0;
+    if (key == KEY_CODE_DOWN || key == 'j' || key == KEY_CODE_PAGE_DOWN || key == ' ') {
+        *scroll += key == KEY_CODE_DOWN || key == 'j' ? 1 : lines;
+    } else if (key == KEY_CODE_UP || key == 'k' || key == KEY_CODE_PAGE_UP) {
+        const int by = key == KEY_CODE_PAGE_UP ? lines : 1;
+        *scroll = *scroll > by ? *scroll - by : 0;
     } else if (key == KEY_CODE_END || key == 'G') {
         *scroll = INT_MAX / 2;
     } else if (key == KEY_CODE_HOME || key == 'g') {
@@ -177,14 +174,11 @@ int page_scroll(layout *lay, panel_id id, area a, int lines, int head)
 
 bool page_point(explorer_state *st, const panel_gesture *g)
 {
-    if (pointer_wheel(g->event) == 0) {
-        return false;
+    const int wheel = pointer_wheel(g->event);
+    for (int i = 0; wheel != 0 && i < WHEEL_LINES && st->page != PANEL_NONE; i++) {
+        panel_of(st->page)->key(st, wheel < 0 ? KEY_CODE_UP : KEY_CODE_DOWN);
     }
-    for (int i = 0; i < WHEEL_LINES && st->page != PANEL_NONE; i++) {
-        int key = pointer_wheel(g->event) < 0 ? KEY_CODE_UP : KEY_CODE_DOWN;
-        panel_of(st->page)->key(st, key);
-    }
-    return true;
+    return wheel != 0;
 }
 
 // --- lists ------------------------------------------------------------------------------------
@@ -229,13 +223,11 @@ bool list_point(explorer_state *st, const panel_gesture *g)
 {
     const page_list *list = panel_of(g->hit.panel)->list;
     const int index = g->hit.index + g->event.y - g->hit.area.y;
-    if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
-        return page_point(st, g);
-    }
-    if (index < *list_number(st, list->count)) {
+    const bool pressed = g->event.kind == POINTER_PRESS && g->hit.part == PART_LINES;
+    if (pressed && index < *list_number(st, list->count)) {
         *list_number(st, list->selected) = index;
     }
-    return true;
+    return pressed || page_point(st, g);
 }
 
 bool list_key_pressed(explorer_state *st, int key)

@@ -177,6 +177,12 @@ bool page_key(explorer_state *st, int key);
 // not lines; returns how far it is scrolled.
 int page_scroll(layout *lay, panel_id id, area a, int lines, int head);
 
+// The frame of a page, which says how many of its lines are shown down to its end.
+void draw_page_frame(screen *s, area a, const char *title, int last, int count);
+
+// What the description of such a page has in common.
+#define PAGE(title) .name = title, .point = page_point, .key = page_key
+
 // A key of a page that is a list: what it does with the number of the selected line, from 1, as its
 // argument.
 typedef struct list_key {

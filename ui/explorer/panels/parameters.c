@@ -11,26 +11,24 @@ enum {
     MOST_SLIDER = 24
 };
 
-// The value at the cursor, or the one that the mouse is about to give.
-static double shown_value(const explorer_state *st, const parameters *p, int parameter,
-                          slider_scale *scale, bool *has_slider)
-{
-    bool held = st->slider.held && st->slider.parameter == parameter;
-    double value = held ? st->slider.value : parameter_get(p, parameter);
-    *has_slider = slider_scale_of(parameter, value, scale);
-    if (held) {
-        *scale = st->slider.scale;
-    }
-    return value;
-}
-
 // A slider that is drawn.
 typedef struct track {
     int parameter;
     slider_scale scale;
-    double value;
+    double value; // at the cursor, or the one that the mouse is about to give
     ink knob;
 } track;
+
+// Fills in scale and value of the slider of track's parameter; false if it has none.
+static bool find_track(const explorer_state *st, const parameters *p, track *k)
+{
+    const slider_grip *grip = &st->slider;
+    const bool held = grip->held && grip->parameter == k->parameter;
+    k->value = held ? grip->value : parameter_get(p, k->parameter);
+    const bool found = slider_scale_of(k->parameter, k->value, &k->scale);
+    k->scale = held ? grip->scale : k->scale;
+    return found;
+}
 
 static void draw_track(layout *lay, screen *s, area a, const track *k)
 {
@@ -69,16 +67,15 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a, 
 {
     const parameter_info *info = &parameter_table[parameter];
     char value[PARAMETER_TEXT_SIZE], shown[PARAMETER_TEXT_SIZE + 32];
-    slider_scale scale;
-    bool has_slider, held = st->slider.held && st->slider.parameter == parameter;
     const bool inert = state_inert_reason(st, parameter) != NULL;
-    double number = shown_value(st, p, parameter, &scale, &has_slider);
+    const bool held = st->slider.held && st->slider.parameter == parameter;
+    track k = {.parameter = parameter};
+    k.knob = inert ? INK_FRAME : held ? INK_EVENT : info->timed ? INK_ARM : INK_DIM;
+    const bool has_slider = find_track(st, p, &k);
+    parameter_format(p, parameter, value, sizeof value);
     if (info->type == PARAMETER_REAL || held) {
-        snprintf(value, sizeof value, "%.6g", number);
-    } else {
-        parameter_format(p, parameter, value, sizeof value);
+        snprintf(value, sizeof value, "%.6g", k.value);
     }
-    ink colour = inert ? INK_FRAME : held ? INK_EVENT : info->timed ? INK_ARM : INK_DIM;
     int slider = a.width - PATH_ROOM, room = a.width;
     if (slider >= LEAST_SLIDER) {
         slider = slider > MOST_SLIDER ? MOST_SLIDER : slider;
@@ -92,10 +89,9 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a, 
     const int length = fit_value(shown, sizeof shown, room - (int)strlen(name) - 3, value, info);
     const int start = room - length;
     screen_text(s, a.x + 1, a.y, start - 2, inert ? INK_FRAME : given ? INK_TITLE : INK_TEXT, name);
-    screen_text(s, a.x + start, a.y, room - start, colour, shown);
+    screen_text(s, a.x + start, a.y, room - start, k.knob, shown);
     if (has_slider && slider >= LEAST_SLIDER && !inert) {
-        const track beside = {parameter, scale, number, colour};
-        draw_track(lay, s, (area){a.x + room + 1, a.y, slider, 1}, &beside);
+        draw_track(lay, s, (area){a.x + room + 1, a.y, slider, 1}, &k);
     }
 }
 
@@ -104,19 +100,18 @@ static void draw_heading(const explorer_state *st, layout *lay, screen *s, area 
 {
     char name[PARAMETER_NAME];
     const bool filtered = st->filters.text[PANEL_PARAMETERS][0] != '\0';
-    const bool folded = st->parameters.folded[parameter_group(parameter)] && !filtered;
+    const bool folded = st->parameters.folded[parameter] && !filtered;
     parameter_group_name(parameter, name, sizeof name);
 
     // its name, and how many parameters are folded away
     int x = a.x + screen_print(s, a.x, a.y, a.width, INK_EVENT, "%s %s",
                                folded ? "\u25b8" : "\u25be", name);
     if (folded) {
-        int hidden = 0;
-        const int group = parameter_group(parameter);
-        for (int i = parameter; i < parameter_count && parameter_group(i) == group; i++) {
-            hidden++;
+        int end = parameter;
+        while (end < parameter_count && parameter_group(end) == parameter) {
+            end++;
         }
-        screen_print(s, x + 1, a.y, a.x + a.width - x - 1, INK_FRAME, "%d", hidden);
+        screen_print(s, x + 1, a.y, a.x + a.width - x - 1, INK_FRAME, "%d", end - parameter);
     }
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_HEADING, parameter, a});
 }
@@ -146,7 +141,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     char title[LINE_TEXT + 32] = "parameters (Tab: values, / filters)";
     int line = 0, height = a.height - 2;
     track wide = {.parameter = list->parameter, .knob = st->slider.held ? INK_EVENT : INK_CURSOR};
-    bool number;
+    const bool number = find_track(st, &p, &wide);
     if (filter[0] != '\0') {
         snprintf(title, sizeof title, "parameters /%s", filter);
     } else if (a.width < 46) {
@@ -157,7 +152,6 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     // a number that is selected takes a second line, and so does what has no effect
     int count = state_parameter_lines(st, lines);
     const int selected = parameter_list_selected(list, lines, count);
-    wide.value = shown_value(st, &p, list->parameter, &wide.scale, &number);
     const bool shows_parameter =
         count > 0 && !lines[selected].heading && lines[selected].parameter == list->parameter;
     const bool expands = shows_parameter && height >= 2 &&
@@ -189,41 +183,34 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 static bool point_at_slider(explorer_state *st, const panel_gesture *g)
 {
     const hit_area *h = &g->hit;
-    int cells = h->area.width;
-    double share = cells > 1 ? (double)(g->event.x - h->area.x) / (cells - 1) : 0;
-
-    switch (g->event.kind) {
-    case POINTER_PRESS:
-    case POINTER_DRAG:
-        act_hold_slider(st, (slider_drag){h->index, share, cells});
-        return true;
-    case POINTER_RELEASE:
-        act_drop_slider(st);
-        return true;
-    default:
+    const int cells = h->area.width, wheel = pointer_wheel(g->event);
+    const double share = cells > 1 ? (double)(g->event.x - h->area.x) / (cells - 1) : 0;
+    if (wheel != 0) {
         parameter_list_select(&st->parameters, (parameter_line){h->index, false});
-        act_nudge(st, g->event.kind == POINTER_WHEEL_UP ? "" : "-1");
-        return true;
+        act_nudge(st, wheel < 0 ? "" : "-1");
+    } else if (g->event.kind == POINTER_RELEASE) {
+        act_drop_slider(st);
+    } else {
+        act_hold_slider(st, (slider_drag){h->index, share, cells});
     }
+    return true;
 }
 
 // A click selects a line; a slider takes the mouse in its own way.
 static bool point(explorer_state *st, const panel_gesture *g)
 {
+    const bool pressed = g->event.kind == POINTER_PRESS;
     if (g->hit.part == PART_SLIDER) {
         return point_at_slider(st, g);
     }
 
     // a press folds the group of a heading and selects any other line
-    if (g->event.kind == POINTER_PRESS && g->hit.part == PART_HEADING) {
+    if (pressed && g->hit.part == PART_HEADING) {
         parameter_list_fold(&st->parameters, g->hit.index);
-        return true;
-    }
-    if (g->event.kind == POINTER_PRESS) {
+    } else if (pressed) {
         parameter_list_select(&st->parameters, (parameter_line){g->hit.index, false});
-        return true;
     }
-    return false;
+    return pressed;
 }
 
 const panel parameters_panel = {.name = "parameters", .draw = draw, .point = point};

@@ -51,30 +51,26 @@ static double plot_y(const plot_frame *f, double value)
 static void draw_rows(const plot_frame *f, const trace *t, int signal, double until)
 {
     double x0 = (double)NAN, y0 = (double)NAN;
+    bool visible = true;
 
     // joined as long as they are visible and seen
-    for (size_t r = trace_row_at(t, f->from); r < t->row_count; r++) {
+    for (size_t r = trace_row_at(t, f->from);
+         visible && r < t->row_count && t->rows[r].time <= until; r++) {
         double x = plot_x(f, t->rows[r].time), y = plot_y(f, signal_value(&t->rows[r], signal));
-        if (t->rows[r].time > until) {
-            break;
-        }
         if (line_has_dot(f->pattern, lround(x))) {
             canvas_line(&f->canvas, x0, y0, x, y, f->colour);
         }
         x0 = x;
         y0 = y;
-        if (t->rows[r].time > f->to) {
-            break;
-        }
+        visible = t->rows[r].time <= f->to;
     }
 }
 
 // One column of dots.
-static void draw_column(const plot_frame *f, long column, double low, double high)
+static void draw_column(const plot_frame *f, long column, value_range y)
 {
-    bool drawn = high >= low && (high - low > 4 || line_has_dot(f->pattern, column));
-    if (drawn) {
-        canvas_line(&f->canvas, (double)column, low, (double)column, high, f->colour);
+    if (y.high >= y.low && (y.high - y.low > 4 || line_has_dot(f->pattern, column))) {
+        canvas_line(&f->canvas, (double)column, y.low, (double)column, y.high, f->colour);
     }
 }
 
@@ -83,7 +79,8 @@ static void draw_column(const plot_frame *f, long column, double low, double hig
 static void draw_columns(const plot_frame *f, const trace *t, int signal, double until,
                          const double *pairs)
 {
-    double low = (double)INFINITY, high = (double)-INFINITY, last = (double)NAN;
+    value_range y = value_range_empty;
+    double last = (double)NAN;
     long column = -1;
 
     // row by row, or block by block where one lies within a column
@@ -91,30 +88,25 @@ static void draw_columns(const plot_frame *f, const trace *t, int signal, double
         size_t end = r + EXTREMES_BLOCK, take = 1;
         long here = lround(plot_x(f, t->rows[r].time));
         if (here != column) {
-            draw_column(f, column, low, high);
+            draw_column(f, column, y);
             // from where the last one ended, so that curves hang together
             column = here;
-            low = isfinite(last) ? last : (double)INFINITY;
-            high = isfinite(last) ? last : (double)-INFINITY;
+            y = value_range_empty;
+            value_range_add(&y, last);
         }
         bool whole = pairs != NULL && r % EXTREMES_BLOCK == 0 && end < t->row_count &&
                      t->rows[end].time <= until && lround(plot_x(f, t->rows[end].time)) == column;
         if (whole) {
             const double *pair = pairs + 2 * (r / EXTREMES_BLOCK);
             take = EXTREMES_BLOCK;
-            if (pair[1] >= pair[0]) {
-                low = fmin(low, plot_y(f, pair[1]));
-                high = fmax(high, plot_y(f, pair[0]));
-            }
+            value_range_add(&y, plot_y(f, pair[1]));
+            value_range_add(&y, plot_y(f, pair[0]));
         }
         last = plot_y(f, signal_value(&t->rows[r + take - 1], signal));
-        if (isfinite(last)) {
-            low = fmin(low, last);
-            high = fmax(high, last);
-        }
+        value_range_add(&y, last);
         r += take;
     }
-    draw_column(f, column, low, high);
+    draw_column(f, column, y);
 }
 
 colour picture_colour(const screen *s, colour_theme theme, ink i)
@@ -218,28 +210,19 @@ static long row_of(value_range axis, int height, double value)
     return lround((axis.high - value) / (axis.high - axis.low) * (4.0 * height - 1)) / 4;
 }
 
-// Whether each tick has a row of its own.
-static bool have_rows(const ticks *t, value_range axis, int height)
-{
-    for (int i = 1; i < t->count; i++) {
-        if (row_of(axis, height, t->value[i]) == row_of(axis, height, t->value[i - 1])) {
-            return false;
-        }
-    }
-    return true;
-}
-
 void draw_value_axis(screen *s, area a, value_range axis)
 {
     assert(axis.high > axis.low);
-    const double low = axis.low, high = axis.high;
+    const int h = a.height;
     ticks t;
 
     // as many as have a row each: one that is left out would make the others look uneven
-    for (int wanted = a.height >= 12 ? 5 : a.height >= 6 ? 4 : 3; wanted > 1; wanted--) {
-        ticks_between(&t, low, high, wanted);
-        if (have_rows(&t, axis, a.height)) {
-            break;
+    bool fit = false;
+    for (int wanted = h >= 12 ? 5 : h >= 6 ? 4 : 3; wanted > 1 && !fit; wanted--) {
+        ticks_between(&t, axis.low, axis.high, wanted);
+        fit = true;
+        for (int i = 1; i < t.count; i++) {
+            fit = fit && row_of(axis, h, t.value[i]) != row_of(axis, h, t.value[i - 1]);
         }
     }
     for (int y = 0; y < a.height; y++) {
@@ -320,12 +303,9 @@ area draw_time_axis(const explorer_state *st, screen *s, area a)
         const event *v = &t->events[i];
         const bool input = v->kind == EVENT_CHANGE || v->kind == EVENT_PUSH;
         const bool seen = v->time <= e->seen, impact = v->kind == EVENT_IMPACT && seen;
+        const uint32_t mark = impact ? 0x25b2 : seen ? 0x25cf : 0x25cb;
         if (impact || input) {
-            screen_put(s, time_column(st, line, v->time), a.y,
-                       impact ? 0x25b2
-                       : seen ? 0x25cf
-                              : 0x25cb,
-                       seen ? INK_EVENT : INK_DIM);
+            screen_put(s, time_column(st, line, v->time), a.y, mark, seen ? INK_EVENT : INK_DIM);
         }
     }
 

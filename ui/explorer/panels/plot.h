@@ -51,3 +51,8 @@ void draw_value_axis(screen *s, area a, value_range axis);
 // The time axis below the curves: contact as a bar, impacts and changes as marks, seconds. Returns
 // the area of its line and numbers.
 area draw_time_axis(const explorer_state *st, screen *s, area a);
+
+// --- the mouse --------------------------------------------------------------------------------
+
+// Handles the mouse on a part of the panel of curves.
+bool curves_point(explorer_state *st, const panel_gesture *g);

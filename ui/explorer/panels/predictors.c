@@ -84,40 +84,30 @@ static const char *reason_of(const prediction_answer *answer, area a)
 {
     const char *reason = prediction_reason(answer);
     loss_unless(answer->fault.code != STATUS_NO_MEMORY);
-    if (answer->outcome == PREDICTION_LINKS_UNKNOWN) {
-        return "-";
-    }
-    if (a.width - 20 >= (int)strlen(reason)) {
-        return reason;
-    }
-    return answer->outcome == PREDICTION_DOUBTFUL ? "cannot be told"
-           : answer->outcome == PREDICTION_FAILED ? "failed"
-                                                  : "does not apply";
+    return answer->outcome == PREDICTION_LINKS_UNKNOWN ? "-"
+           : a.width - 20 >= (int)strlen(reason)       ? reason
+           : answer->outcome == PREDICTION_DOUBTFUL    ? "cannot be told"
+           : answer->outcome == PREDICTION_FAILED      ? "failed"
+                                                       : "does not apply";
 }
 
 // A line of the panel; `unknown` is shown instead of a force that is not known, otherwise NULL.
 static void predictor_line(screen *s, area a, int line, const char *label, const prediction *p,
                            const char *unknown)
 {
-    int y = a.y + 1 + line;
-    if (y >= a.y + a.height - 1) {
-        return;
-    }
-    screen_text(s, a.x + 2, y, a.width - 4, INK_TEXT, label);
+    const int y = a.y + 1 + line, room = line < a.height - 2 ? a.width : 0;
+    screen_text(s, a.x + 2, y, room - 4, INK_TEXT, label);
 
     // force and delay as far as they are known and there is room
-    if (unknown != NULL) {
-        screen_text(s, a.x + 18, y, a.width - 20, INK_DIM, unknown);
-    } else if (!p->holds) {
-        screen_text(s, a.x + 18, y, a.width - 20, INK_DIM, "would not hold");
-    } else if (isfinite(p->delay) && a.width < 36) {
-        screen_print(s, a.x + 18, y, a.width - 20, INK_FORCE, "%.2f N, %.0f ms", p->force,
-                     1e3 * p->delay);
-    } else if (isfinite(p->delay)) {
-        screen_print(s, a.x + 18, y, a.width - 20, INK_FORCE, "%.3f N in %.0f ms", p->force,
-                     1e3 * p->delay);
+    if (unknown != NULL || !p->holds) {
+        screen_text(s, a.x + 18, y, room - 20, INK_DIM,
+                    unknown != NULL ? unknown : "would not hold");
     } else {
-        screen_print(s, a.x + 18, y, a.width - 20, INK_FORCE, "%.3f N", p->force);
+        screen_print(s, a.x + 18, y, room - 20, INK_FORCE,
+                     !isfinite(p->delay) ? "%.3f N"
+                     : a.width < 36      ? "%.2f N, %.0f ms"
+                                         : "%.3f N in %.0f ms",
+                     p->force, 1e3 * p->delay);
     }
 }
 

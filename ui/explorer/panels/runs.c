@@ -1,5 +1,8 @@
-// The runs: their legend beside the curves, and the page of those that are pinned.
+// The runs: their legend beside the curves, the page of those that are pinned, the comparison of
+// two.
 #include "ui/explorer/panels/panel.h"
+
+#include <math.h>
 
 // --- the legend -------------------------------------------------------------------------------
 // The legend of runs: the present one and those pinned, with their lines and peaks.
@@ -48,13 +51,10 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 // A click hides a run or shows it.
 static bool point(explorer_state *st, const panel_gesture *g)
 {
-    char number[16];
-    if (g->event.kind != POINTER_PRESS) {
-        return false;
-    }
-    snprintf(number, sizeof number, "%d", g->hit.index + 1);
-    act_hide(st, number);
-    return true;
+    const bool pressed = g->event.kind == POINTER_PRESS;
+    pinned_run *p = &st->pinned.runs[g->hit.index];
+    p->hidden = p->hidden != pressed;
+    return pressed;
 }
 
 const panel runs_panel = {.name = "runs",
@@ -122,3 +122,77 @@ static const page_list list = {.title = "pinned runs (Esc closes)",
                                         {'D', subtract, true}}};
 
 const panel run_list_panel = {.name = "run list", .list = &list, LIST_PAGE};
+
+// --- the comparison ---------------------------------------------------------------------------
+
+// A quantity of the comparison as a name and as columns; returns whether it means anything in
+// either run.
+static bool compare_quantity(const session *e, int index, int width, char *columns, size_t size,
+                             bool *differs)
+{
+    // smaller differences are rounding, of numbers near zero too
+    const double relative = 1e-6, absolute = 1e-9;
+    const double value = summary_value(&e->run.summary, index);
+    const double other = e->has_other ? summary_value(&e->other.summary, index) : (double)NAN;
+    *differs = e->has_other && !(isnan(value) && isnan(other)) &&
+               !(fabs(value - other) <= absolute + relative * fmax(fabs(value), fabs(other)));
+
+    // a single run has no change
+    const number_text none = {""}, two = e->has_other ? draw_number(other) : none;
+    const number_text change =
+        e->has_other ? draw_number(*differs ? value - other : (double)NAN) : none;
+    snprintf(columns, size, "%*s%*s%*s", width, draw_number(value).text, width, two.text, width,
+             change.text);
+    return !summary_table[index].timing && !(isnan(value) && isnan(other));
+}
+
+static void draw_comparison(const explorer_state *st, layout *lay, screen *s, area body)
+{
+    enum { NAMES = 30, WIDE = 12, NARROW = 11 };
+    const session *e = &st->session;
+    char columns[128];
+    bool differs;
+    int count = 0, line = 0;
+
+    // what means anything in either run
+    for (int i = 0; i < summary_count; i++) {
+        count += compare_quantity(e, i, WIDE, columns, sizeof columns, &differs);
+    }
+
+    // a narrow screen has the name and the numbers below each other
+    int rows = s->width - 6 < NAMES + 3 * WIDE ? 2 : 1, names = rows == 1 ? NAMES : 0;
+    int width = rows == 1 ? WIDE : NARROW;
+    area a = page_area(body, names + 3 * width + 4, rows * count + 3);
+    int room = a.width - 4, shown = a.height - 3;
+    int scroll = page_scroll(lay, PANEL_COMPARISON, a, rows * count, 3);
+    const int all = rows * count, last = scroll + shown;
+    draw_page_frame(s, a,
+                    e->has_other ? "two runs (Esc closes)" : "this run (b branches, Esc closes)",
+                    (last < all ? last : all) / rows, count);
+    screen_print(s, a.x + 2 + names, a.y + 1, room - names, INK_DIM, "%*s", width, "now");
+    if (e->has_other) {
+        // under the name that the legend has
+        const int at = a.x + 3 + names + width;
+        screen_words(s, at, a.y + 1, width - 1, INK_DIM, st->pinned.runs[st->pinned.baseline].name);
+        screen_print(s, at + width - 1, a.y + 1, width, INK_DIM, "%*s", width, "change");
+    }
+
+    // the lines that it is scrolled to
+    for (int i = 0; i < summary_count; i++) {
+        if (!compare_quantity(e, i, width, columns, sizeof columns, &differs)) {
+            continue;
+        }
+        const ink colour = differs || !e->has_other ? INK_TEXT : INK_DIM;
+        const summary_info *info = &summary_table[i];
+        int y = rows * line++ - scroll, below = y + rows - 1;
+        if (y >= 0 && y < shown) {
+            screen_print(s, a.x + 2, a.y + 2 + y, room, colour, "%s%s%s%s", info->label,
+                         info->unit[0] ? " [" : "", info->unit, info->unit[0] ? "]" : "");
+        }
+        if (below >= 0 && below < shown) {
+            screen_text(s, a.x + 2 + names, a.y + 2 + below, room - names, colour, columns);
+        }
+    }
+}
+
+const panel comparison_panel = {PAGE("comparison"), .draw = draw_comparison};

@@ -12,8 +12,10 @@ static int first_line(const scenario_menu *menu, int first, int height)
         selected = i == menu->selected ? count : selected;
         count += scenario_menu_shows(menu, i);
     }
-    first = first < 0                    ? draw_first_line(selected, count, height)
-            : selected < first           ? selected
+    if (first < 0) {
+        return draw_first_line(selected, count, height);
+    }
+    first = selected < first             ? selected
             : selected >= first + height ? selected - height + 1
                                          : first;
     first = first > count - height ? count - height : first;
@@ -93,10 +95,8 @@ static bool open_selected(explorer_state *st)
 {
     const scenario_menu *menu = &st->scenarios;
     st->page = PANEL_NONE;
-    if (menu->selected < menu->count && scenario_menu_shows(menu, menu->selected)) {
-        return act_open_scenario(st, menu->names[menu->selected]);
-    }
-    return true;
+    return menu->selected >= menu->count || !scenario_menu_shows(menu, menu->selected) ||
+           act_open_scenario(st, menu->names[menu->selected]);
 }
 
 // Keys go to the filter until it is closed; Enter opens what is selected.
@@ -122,17 +122,16 @@ static bool menu_key(explorer_state *st, int key)
     // the filter takes all keys while it is typed
     if (menu->filtering) {
         return filter_key(st, key);
-    } else if (key == '/') {
+    }
+    const bool up = key == KEY_CODE_UP || key == 'k' || key == KEY_CODE_PAGE_UP;
+    const bool down = key == KEY_CODE_DOWN || key == 'j' || key == KEY_CODE_PAGE_DOWN;
+    const bool page = key == KEY_CODE_PAGE_UP || key == KEY_CODE_PAGE_DOWN;
+    for (int i = 0; (up || down) && i < (page ? 10 : 1); i++) {
+        scenario_menu_move(menu, up ? -1 : 1);
+    }
+    if (key == '/') {
         menu->filtering = true;
         menu->filter[0] = '\0';
-    } else if (key == KEY_CODE_UP || key == 'k') {
-        scenario_menu_move(menu, -1);
-    } else if (key == KEY_CODE_DOWN || key == 'j') {
-        scenario_menu_move(menu, 1);
-    } else if (key == KEY_CODE_PAGE_UP || key == KEY_CODE_PAGE_DOWN) {
-        for (int i = 0; i < 10; i++) {
-            scenario_menu_move(menu, key == KEY_CODE_PAGE_UP ? -1 : 1);
-        }
     } else if (key == KEY_CODE_ENTER) {
         return open_selected(st);
     } else if (key == KEY_CODE_ESCAPE || key == 'q' || key == 'o') {

@@ -23,11 +23,9 @@ static double share_of(const lab_sweep *sweep, int index)
 {
     const sweep_axis *axis = &sweep->axis;
     const double last = (double)axis->count - 1, value = axis->values[index];
-    if (!axis->is_range || axis->high == axis->low) {
-        return last > 0 ? index / last : 0.5;
-    }
-    return axis->logarithmic ? log(value / axis->low) / log(axis->high / axis->low)
-                             : (value - axis->low) / (axis->high - axis->low);
+    return !axis->is_range || axis->high == axis->low ? (last > 0 ? index / last : 0.5)
+           : axis->logarithmic ? log(value / axis->low) / log(axis->high / axis->low)
+                               : (value - axis->low) / (axis->high - axis->low);
 }
 
 // A value of the axis in few cells: a real one as the metric is written.
@@ -63,31 +61,26 @@ static void draw_chart(const explorer_state *st, screen *s, area a)
     screen_print(s, a.x, a.y + a.height - 2, LABEL_WIDTH, INK_DIM, "%8s",
                  draw_number(range.low).text);
 
-    // from point to point, but words are no numbers
+    // from point to point, but words are no numbers; the selected one over all others
     const parameter_info *varied = sweep_axis_parameter(&sweep->axis);
     const bool joined = varied->type == PARAMETER_REAL || varied->type == PARAMETER_INTEGER;
     const canvas c = {s, a.x + LABEL_WIDTH, a.y, a.width - LABEL_WIDTH, a.height - 1};
     draw_ends(s, (area){c.x, a.y + c.height, c.width, 1}, sweep);
     double x0 = (double)NAN, y0 = (double)NAN;
-    for (int i = 0; i < sweep->count; i++) {
-        const double value = lab_sweep_metric(sweep, i, sweep->metric);
-        const double x = share_of(sweep, i) * (2.0 * c.width - 1);
+    for (int i = 0; i <= sweep->count && sweep->selected < sweep->count; i++) {
+        const bool last = i == sweep->count;
+        const int run = last ? sweep->selected : i;
+        const double value = lab_sweep_metric(sweep, run, sweep->metric);
+        const double x = share_of(sweep, run) * (2.0 * c.width - 1);
         const double y = (range.high - value) / (range.high - range.low) * (4.0 * c.height - 1);
-        if (joined) {
+        if (joined && !last) {
             canvas_line(&c, x0, y0, x, y, INK_SERIES_0);
         } else if (isfinite(y)) {
-            screen_put(s, c.x + (int)(x / 2), c.y + (int)(y / 4), 0x25cb, INK_SERIES_0);
+            screen_put(s, c.x + (int)(x / 2), c.y + (int)(y / 4), last ? 0x25cf : 0x25cb,
+                       last ? INK_EVENT : INK_SERIES_0);
         }
         x0 = x;
         y0 = y;
-    }
-    const int chosen = sweep->selected;
-    const double value =
-        chosen < sweep->count ? lab_sweep_metric(sweep, chosen, sweep->metric) : (double)NAN;
-    if (isfinite(value)) {
-        const double y = (range.high - value) / (range.high - range.low) * (4.0 * c.height - 1);
-        screen_put(s, c.x + (int)(share_of(sweep, chosen) * (2.0 * c.width - 1) / 2),
-                   c.y + (int)(y / 4), 0x25cf, INK_EVENT);
     }
 }
 
@@ -108,7 +101,7 @@ static void draw_runs(const explorer_state *st, layout *lay, screen *s, area a)
         // a run that stopped says so in the unit's place
         screen_words(s, a.x, y, VALUE - 1, INK_TITLE, value);
         screen_print(s, a.x + VALUE, y, a.width - VALUE, INK_TEXT, "%10s %s",
-                     draw_number(summary_value(&r->run.summary, sweep->metric)).text,
+                     draw_number(lab_sweep_metric(sweep, i, sweep->metric)).text,
                      r->run.summary.status == STATUS_OK ? summary_table[sweep->metric].unit
                                                         : "stopped");
         if (i == sweep->selected) {
@@ -240,23 +233,20 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 // A click selects a run, the wheel goes through them.
 static bool point(explorer_state *st, const panel_gesture *g)
 {
-    if (pointer_wheel(g->event) != 0) {
-        act_select_swept(st, pointer_wheel(g->event));
-        return true;
+    const area a = g->hit.area;
+    const int wheel = pointer_wheel(g->event), across = (int)st->sweep.axis.count;
+    const bool pressed = g->event.kind == POINTER_PRESS;
+    int to = st->sweep.selected + wheel;
+    if (pressed && g->hit.part == PART_CELLS) {
+        to = (a.y + a.height - 1 - g->event.y) / g->hit.index * across +
+             (g->event.x - a.x) / (a.width / across);
+    } else if (pressed) {
+        to = g->hit.index + g->event.y - a.y;
     }
-    if (g->event.kind == POINTER_PRESS && g->hit.part == PART_CELLS) {
-        const area a = g->hit.area;
-        const int across = (int)st->sweep.axis.count;
-        const int to = (a.y + a.height - 1 - g->event.y) / g->hit.index * across +
-                       (g->event.x - a.x) / (a.width / across);
+    if (pressed || wheel != 0) {
         act_select_swept(st, to - st->sweep.selected);
-        return true;
     }
-    if (g->event.kind == POINTER_PRESS) {
-        act_select_swept(st, g->hit.index + g->event.y - g->hit.area.y - st->sweep.selected);
-        return true;
-    }
-    return false;
+    return pressed || wheel != 0;
 }
 
 const panel sweep_panel = {.name = "sweep", .draw = draw, .point = point};

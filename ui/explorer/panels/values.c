@@ -93,7 +93,7 @@ static int find_signals(const explorer_state *st, int signals[PANES * PANE_SIGNA
 {
     int count = 0;
     const int focused = panes_focused(&st->panes);
-    const bool subtracts = state_run(st, 0).kind == SHOWN_DIFFERENCE;
+    const bool subtracts = state_subtracts(st);
 
     // from the pane in focus on and around, a signal of several panes once
     for (int i = 0; i < PANES && focused >= 0; i++) {
@@ -124,7 +124,7 @@ static void integral_unit(const char *unit, char *text, size_t size)
     }
 }
 
-// The three lines of a signal, as far as they are in the area's rows.
+// The three lines of a signal.
 static void draw_signal(screen *s, area a, int signal, const signal_statistics *x)
 {
     const signal_info *info = &signal_table[signal];
@@ -133,27 +133,21 @@ static void draw_signal(screen *s, area a, int signal, const signal_statistics *
     integral_unit(info->unit, unit, sizeof unit);
 
     // name, then two rows of numbers
-    screen_print(s, a.x, a.y, a.width, INK_TITLE, "%s", info->name);
+    screen_text(s, a.x, a.y, a.width, INK_TITLE, info->name);
     if (info->unit[0] != '\0') {
         screen_print(s, a.x + a.width - 8, a.y, 8, INK_DIM, "%8s", info->unit);
     }
-    if (a.height > 1) {
-        screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, " min %-9s max %s",
-                     draw_number(x->minimum).text, draw_number(x->maximum).text);
-    }
+    screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, " min %-9s max %s",
+                 draw_number(x->minimum).text, draw_number(x->maximum).text);
 
     // a state has no mean and no integral, one that is on or off the time it is on
-    if (signal_is_state(signal)) {
-        if (a.height > 2 && x->maximum <= 1) {
-            screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " for %s s in all", integral.text);
-        }
-        return;
-    }
-    if (a.height > 1 && a.width >= 40) {
+    if (signal_is_state(signal) && x->maximum <= 1) {
+        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " for %s s in all", integral.text);
+    } else if (!signal_is_state(signal) && a.width >= 40) {
         screen_print(s, a.x + 28, a.y + 1, a.width - 28, INK_TEXT, "mean %s", mean.text);
         screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " rms %-9s integral %s %s",
                      draw_number(x->rms).text, integral.text, unit);
-    } else if (a.height > 2) {
+    } else if (!signal_is_state(signal)) {
         screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " mean %-8s \u222b %s %s", mean.text,
                      integral.text, unit);
     }
@@ -176,7 +170,7 @@ static void draw_statistics(const explorer_state *st, layout *lay, screen *s, ar
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "statistics (m sets the mark)");
     layout_add_hit(lay, (hit_area){.panel = PANEL_STATISTICS, .area = a});
     screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s%s %.5g to %.5g s",
-                 state_run(st, 0).kind == SHOWN_DIFFERENCE ? "minus baseline, " : "",
+                 state_subtracts(st) ? "minus baseline, " : "",
                  st->mark.set ? "mark and cursor," : "visible part,", from, to);
     for (int i = first; i < count && i - first < fit; i++) {
         const signal_statistics x = trace_statistics(t, signals[i], from, to);

@@ -20,6 +20,13 @@ void text_add(char *text, size_t size, const char *format, ...)
     va_end(list);
 }
 
+const char *text_cut(const char *text, const char *ends, char *word, size_t size)
+{
+    const size_t length = strcspn(text, ends);
+    snprintf(word, size, "%.*s", (int)length, text);
+    return text + length + strspn(text + length, ends);
+}
+
 const explorer_command explorer_command_table[] = {
 #define COMMAND_INFO(group, name, keys, argument, help) {group, #name, keys, argument, help},
 #define COMMAND_NOW(group, name, keys, argument, help)  {group, #name "!", keys, argument, help},
@@ -66,44 +73,40 @@ static const struct {
 
 int key_of_name(const char *name, size_t length)
 {
-    for (size_t i = 0; i < sizeof key_names / sizeof key_names[0]; i++) {
-        if (strlen(key_names[i].name) == length && strncmp(key_names[i].name, name, length) == 0) {
-            return key_names[i].key;
-        }
-    }
-    if (length == 3 && name[0] == 'C' && name[1] == '-') {
-        return name[2] & 0x1f;
-    }
-
-    // one character and no more
-    char text[8] = "";
+    char text[KEY_NAME] = "";
     if (length >= sizeof text || length == 0) {
         return 0;
     }
     memcpy(text, name, length);
+    for (size_t i = 0; i < sizeof key_names / sizeof key_names[0]; i++) {
+        if (strcmp(key_names[i].name, text) == 0) {
+            return key_names[i].key;
+        }
+    }
+
+    // Ctrl with a letter, or one character and no more
+    const bool control = length == 3 && text[0] == 'C' && text[1] == '-';
     const char *rest = text;
-    uint32_t glyph = glyph_decode(&rest);
-    return *rest == '\0' && (glyph != '?' || name[0] == '?') ? (int)glyph : 0;
+    const uint32_t glyph = glyph_decode(&rest);
+    return control                                             ? text[2] & 0x1f
+           : *rest == '\0' && (glyph != '?' || name[0] == '?') ? (int)glyph
+                                                               : 0;
 }
 
 void key_name(int key, char *text, size_t size)
 {
-    char glyph[8];
+    char name[8] = {'C', '-', (char)(key | 0x60)};
 
-    // by name, as Ctrl with a letter, or as itself
+    // by name, as Ctrl with a letter, or as itself; what a binding can hold needs no other name
+    if (key >= ' ') {
+        glyph_encode((uint32_t)key, name);
+    }
+    snprintf(text, size, "%s", name);
     for (size_t i = 0; i < sizeof key_names / sizeof key_names[0]; i++) {
-        // what a binding can hold needs no other name
         if (key_names[i].key == key && key != '<') {
             snprintf(text, size, "%s", key_names[i].name);
-            return;
         }
     }
-    if (key < ' ') {
-        snprintf(text, size, "C-%c", key | 0x60);
-        return;
-    }
-    glyph_encode((uint32_t)key, glyph);
-    snprintf(text, size, "%s", glyph);
 }
 
 // A key of the explorer's own.
@@ -122,15 +125,15 @@ static const binding *built_in_keys(void)
     static int count, read;
     for (; read < explorer_command_count; read++) {
         const explorer_command *c = &explorer_command_table[read];
-        for (const char *word = c->keys; *word != '\0'; word += strspn(word, " ")) {
-            const int length = (int)strcspn(word, " "), name = (int)strcspn(word, ": ");
+        for (const char *keys = c->keys; *keys != '\0';) {
+            char word[2 * KEY_NAME];
             binding *b = &all[count++];
             assert(count <= BINDINGS);
-            b->key = key_of_name(word, (size_t)name);
-            snprintf(b->name, sizeof b->name, "%.*s", name, word);
-            snprintf(b->line, sizeof b->line, name < length ? "%s %.*s" : "%s", c->name,
-                     length - name - 1, word + name + 1);
-            word += length;
+            keys = text_cut(keys, " ", word, sizeof word);
+            const char *argument = text_cut(word, ":", b->name, sizeof b->name);
+            b->key = key_of_name(b->name, strlen(b->name));
+            snprintf(b->line, sizeof b->line, *argument != '\0' ? "%s %s" : "%s", c->name,
+                     argument);
         }
     }
     return all;
@@ -168,11 +171,9 @@ bool key_bind(key_bindings *b, int key, const char *line)
 
 const char *key_line(const key_bindings *b, int key)
 {
-    int index = key_own(b, key);
-    if (index >= 0) {
-        return b->own[index].line[0] ? b->own[index].line : NULL;
-    }
-    return key_built_in_line(key);
+    const int index = key_own(b, key);
+    const char *line = index >= 0 ? b->own[index].line : key_built_in_line(key);
+    return line != NULL && line[0] != '\0' ? line : NULL;
 }
 
 // Whether a line is a command with any arguments.

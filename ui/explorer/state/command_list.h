@@ -11,6 +11,10 @@ enum { LINE_TEXT = 256 }; // bytes of a command, a filter or a name
 void text_add(char *text, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+// Cuts the first word off a text, which one of `ends` ends; returns what follows, from the next
+// word on.
+const char *text_cut(const char *text, const char *ends, char *word, size_t size);
+
 // X: group that begins with this command, or ""; name, also of the action that executes it,
 // act_NAME; its keys, each KEY or KEY:ARGUMENT (names as in --keys without their brackets);
 // argument as shown in the help; description. Y: the same of NAME!, which asks no questions:

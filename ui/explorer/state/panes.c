@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <math.h>
 #include <stddef.h>
-#include <stdlib.h>
 
 // Panes of an arm under a script, and of one with sensors and a controller.
 static const char *const scripted_panes[PANES_OF_TABLE][PANE_SIGNALS] = {
@@ -151,22 +150,20 @@ void panes_define(pane_set *set, const pane_wishes *wishes)
 
 int panes_focused(const pane_set *set)
 {
-    for (int i = 0; i < PANES; i++) {
-        int index = (set->focus + i) % PANES;
-        if (set->pane[index].shown) {
-            return index;
-        }
+    int i = 0;
+    while (i < PANES && !set->pane[(set->focus + i) % PANES].shown) {
+        i++;
     }
-    return -1;
+    return i < PANES ? (set->focus + i) % PANES : -1;
 }
 
 bool pane_has_amounts(const pane *p)
 {
-    bool found = false;
+    bool states = true;
     for (int k = 0; k < p->count; k++) {
-        found = found || !signal_is_state(p->signals[k]);
+        states = states && signal_is_state(p->signals[k]);
     }
-    return found;
+    return !states;
 }
 
 bool pane_is_over_time(const pane *p)
@@ -188,9 +185,8 @@ int panes_add(pane_set *set, const pane *own)
     assert(own->count > 0);
     int index = PANES - 1;
     for (int i = PANES - 1; i >= PANES_OF_TABLE; i--) {
-        index = set->pane[i].count == 0 || (!set->pane[i].shown && set->pane[index].count > 0)
-                    ? i
-                    : index;
+        const bool hidden = !set->pane[i].shown && set->pane[index].count > 0;
+        index = set->pane[i].count == 0 || hidden ? i : index;
     }
     set->pane[index] = *own;
     set->pane[index].shown = true;
@@ -208,118 +204,4 @@ void pane_fix_axis(pane *p, value_range limits)
         p->scaling = AXIS_FIXED;
         p->fixed = limits;
     }
-}
-
-// --- the visible part -------------------------------------------------------------------------
-
-#define SHORTEST 1e-6 // visible part of a run [s]
-
-static bool shows_all(const time_window *w)
-{
-    return w->to <= w->from;
-}
-
-void time_window_range(const time_window *w, double duration, double *from, double *to)
-{
-    *from = shows_all(w) ? 0 : w->from;
-    *to = shows_all(w) ? duration : w->to;
-}
-
-void time_window_show(time_window *w, double duration, double from, double to)
-{
-    assert(isfinite(duration));
-    double width = fmax(to - from, SHORTEST);
-    if (width >= duration) {
-        time_window_show_all(w);
-        return;
-    }
-    w->from = fmax(0, fmin(duration - width, from));
-    w->to = w->from + width;
-}
-
-void time_window_show_all(time_window *w)
-{
-    *w = (time_window){0};
-}
-
-void time_window_follow(time_window *w, double duration, double now)
-{
-    double from, to;
-    time_window_range(w, duration, &from, &to);
-    double width = to - from;
-
-    // a shorter run may have ended before a part that was panned to
-    if (shows_all(w) || w->adrift) {
-        if (w->to > duration) {
-            time_window_show(w, duration, from, to);
-        }
-        return;
-    }
-
-    // some of what comes is visible while it plays
-    if (now > from + 0.8 * width) {
-        from = now - 0.8 * width;
-    } else if (now < from + 0.1 * width) {
-        from = now - 0.1 * width;
-    }
-    time_window_show(w, duration, from, from + width);
-}
-
-// --- extremes ---------------------------------------------------------------------------------
-
-void extremes_forget(extremes *e)
-{
-    for (size_t i = 0; i < sizeof e->pairs / sizeof e->pairs[0]; i++) {
-        free(e->pairs[i]);
-    }
-    *e = (extremes){0};
-}
-
-// The blocks from `first` on, from the rows of a trace.
-static void fill_blocks(double *pairs, size_t first, size_t blocks, const trace *t, int signal)
-{
-    for (size_t b = first; b < blocks; b++) {
-        value_range found = value_range_empty;
-        const size_t end = (b + 1) * EXTREMES_BLOCK;
-        for (size_t r = b * EXTREMES_BLOCK; r < t->row_count && r < end; r++) {
-            value_range_add(&found, signal_value(&t->rows[r], signal));
-        }
-
-        // without any value low stays above high
-        pairs[2 * b] = found.low;
-        pairs[2 * b + 1] = found.high;
-    }
-}
-
-void extremes_update(extremes *e, unsigned long run, const trace *t, int signal)
-{
-    assert(run != 0);
-    assert(signal >= 0 && signal < EXTREMES_SIGNALS);
-
-    // another run: the blocks of the old one are not valid
-    if (e->run != run) {
-        extremes_forget(e);
-        e->run = run;
-    }
-    if (extremes_pairs(e, run, t, signal) != NULL) {
-        return;
-    }
-
-    // the last block may have been begun only: it is done again, and then what is new
-    e->blocks = (t->row_count + EXTREMES_BLOCK - 1) / EXTREMES_BLOCK;
-    double *pairs = realloc(e->pairs[signal], 2 * e->blocks * sizeof *pairs);
-    if (pairs == NULL) {
-        free(e->pairs[signal]);
-    } else {
-        fill_blocks(pairs, e->rows[signal] / EXTREMES_BLOCK, e->blocks, t, signal);
-    }
-    e->pairs[signal] = pairs;
-    e->rows[signal] = pairs != NULL ? t->row_count : 0;
-}
-
-const double *extremes_pairs(const extremes *e, unsigned long run, const trace *t, int signal)
-{
-    assert(signal >= 0 && signal < EXTREMES_SIGNALS);
-    bool covers = e->run == run && e->rows[signal] == t->row_count;
-    return covers ? e->pairs[signal] : NULL;
 }

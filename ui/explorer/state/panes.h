@@ -104,24 +104,12 @@ typedef struct time_window {
     bool adrift;     // it was shifted by the user and does not follow the cursor
 } time_window;
 
-// The visible part of a run of the given duration [s].
-void time_window_range(const time_window *w, double duration, double *from, double *to);
-
-// Makes a part visible, limited to the run and not too short [s].
-void time_window_show(time_window *w, double duration, double from, double to);
-
 // A box that is being drawn over a pane of curves, to see what is in it.
 typedef struct zoom_box {
     bool held;
     int pane;
     int x0, y0, x1, y1; // cells
 } zoom_box;
-
-// Makes the whole run visible.
-void time_window_show_all(time_window *w);
-
-// Moves the window so that the cursor (at `now` [s]) is in it, unless it is adrift.
-void time_window_follow(time_window *w, double duration, double now);
 
 // --- extremes ---------------------------------------------------------------------------------
 // Smallest and largest values of blocks of rows, so that long runs can be drawn and their ranges
@@ -130,18 +118,9 @@ void time_window_follow(time_window *w, double duration, double now);
 enum { EXTREMES_BLOCK = 64, EXTREMES_SIGNALS = 64 };
 
 typedef struct extremes {
-    unsigned long run; // the run of the rows; 0: none
-    size_t blocks;     // number of blocks of EXTREMES_BLOCK rows, the last one perhaps incomplete
+    unsigned long run;               // the run of the rows; 0: none
     double *pairs[EXTREMES_SIGNALS]; // by signal: low, high of each block; NULL if not computed yet
     size_t rows[EXTREMES_SIGNALS];   // by signal: number of rows included
 } extremes;
-
-// Extends the blocks of a signal to all rows of a trace, including those that a growing run has
-// gained. `run` identifies the trace and is not 0. Without memory the signal has no blocks.
-void extremes_update(extremes *e, unsigned long run, const trace *t, int signal);
-
-// Low and high of each block, low above high in a block without a finite value; NULL if they do not
-// cover all rows of the trace.
-const double *extremes_pairs(const extremes *e, unsigned long run, const trace *t, int signal);
 
 void extremes_forget(extremes *e);

@@ -21,28 +21,16 @@ static bool begins_group(int parameter)
 int parameter_group(int parameter)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    int group = -1;
-    for (int i = 0; i <= parameter; i++) {
-        group += begins_group(i);
+    while (!begins_group(parameter)) {
+        parameter--;
     }
-    assert(group < PARAMETER_GROUPS);
-    return group;
+    return parameter;
 }
 
 void parameter_group_name(int parameter, char *name, size_t size)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    const char *path = parameter_table[parameter].path;
-    snprintf(name, size, "%.*s", (int)strcspn(path, "."), path);
-}
-
-// The first parameter of a parameter's group.
-static int group_begin(int parameter)
-{
-    while (!begins_group(parameter)) {
-        parameter--;
-    }
-    return parameter;
+    text_cut(parameter_table[parameter].path, ".", name, size);
 }
 
 // Whether a path matches one of some patterns with blanks between them.
@@ -50,11 +38,9 @@ static bool is_among(const char *path, const char *patterns)
 {
     char pattern[PARAMETER_NAME];
     bool found = false;
-    for (; *patterns != '\0' && !found; patterns += strspn(patterns, " ")) {
-        const int length = (int)strcspn(patterns, " ");
-        snprintf(pattern, sizeof pattern, "%.*s", length, patterns);
+    while (*patterns != '\0' && !found) {
+        patterns = text_cut(patterns, " ", pattern, sizeof pattern);
         found = fnmatch(pattern, path, 0) == 0;
-        patterns += length;
     }
     return found;
 }
@@ -64,7 +50,7 @@ void parameter_list_arrange(parameter_list *list, const parameters *p, int selec
     assert(selected >= 0 && selected < parameter_count);
 
     // groups without effect are folded, and those of sensors and nominal models without a value set
-    bool shown[PARAMETER_GROUPS] = {false}, given[PARAMETER_GROUPS] = {false};
+    bool shown[PARAMETER_LINES] = {false}, given[PARAMETER_LINES] = {false};
     for (int i = 0; i < parameter_count; i++) {
         const int group = parameter_group(i);
         const bool is_long = is_among(parameter_table[i].path, "sensor.* belief.*");
@@ -83,23 +69,18 @@ int parameter_list_lines(const parameter_list *list, const char *filter,
                          parameter_line lines[PARAMETER_LINES])
 {
     int count = 0, group = -1;
-    bool headed = false;
     for (int i = 0; i < parameter_count && count + 2 <= PARAMETER_LINES; i++) {
         const parameter_info *info = &parameter_table[i];
         char text[512];
-        if (begins_group(i)) {
-            group++;
-            headed = false;
-        }
         snprintf(text, sizeof text, "%s %s", info->path, info->description);
         if (filter[0] != '\0' && !filter_passes(filter, text)) {
             continue;
         }
 
         // a group's heading before its first line that passes the filter
-        if (!headed) {
-            lines[count++] = (parameter_line){group_begin(i), true};
-            headed = true;
+        if (parameter_group(i) != group) {
+            group = parameter_group(i);
+            lines[count++] = (parameter_line){group, true};
         }
         if (filter[0] != '\0' || !list->folded[group]) {
             lines[count++] = (parameter_line){i, false};
@@ -110,22 +91,15 @@ int parameter_list_lines(const parameter_list *list, const char *filter,
 
 int parameter_list_selected(const parameter_list *list, const parameter_line *lines, int count)
 {
-    const int group = parameter_group(list->parameter);
-    int heading = 0;
-
     // itself, else its group's heading
-    for (int i = 0; i < count; i++) {
-        const bool own_group = parameter_group(lines[i].parameter) == group;
-        if (lines[i].heading && own_group) {
-            heading = i;
-            if (list->on_heading) {
-                return i;
-            }
-        } else if (lines[i].parameter == list->parameter && !list->on_heading) {
-            return i;
-        }
+    int found = 0;
+    for (int i = count; i-- > 0;) {
+        const bool heading = lines[i].heading;
+        const bool meant = heading ? lines[i].parameter == parameter_group(list->parameter)
+                                   : !list->on_heading && lines[i].parameter == list->parameter;
+        found = meant && (!heading || found == 0) ? i : found;
     }
-    return heading;
+    return found;
 }
 
 void parameter_list_select(parameter_list *list, parameter_line line)
@@ -141,10 +115,9 @@ void parameter_list_select(parameter_list *list, parameter_line line)
 void parameter_list_fold(parameter_list *list, int parameter)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    bool *folded = &list->folded[parameter_group(parameter)];
-    *folded = !*folded;
-    list->parameter = group_begin(parameter);
+    list->parameter = parameter_group(parameter);
     list->on_heading = true;
+    list->folded[list->parameter] = !list->folded[list->parameter];
 }
 
 int parameter_of_name(const char *name)
@@ -166,12 +139,8 @@ int parameter_of_name(const char *name)
             count[k] += fits[k];
         }
     }
-    for (int k = 0; k < 3; k++) {
-        if (count[k] > 0) {
-            return count[k] == 1 ? found[k] : -2;
-        }
-    }
-    return -1;
+    const int k = count[0] > 0 ? 0 : count[1] > 0 ? 1 : 2;
+    return count[k] > 1 ? -2 : found[k];
 }
 
 // --- sliders ----------------------------------------------------------------------------------
@@ -282,10 +251,10 @@ const char *inert_reason(const parameters *p, int parameter)
          "it belongs to method.name = newmark"},
         {p->method.name != METHOD_GENERALIZED_ALPHA, "method.spectral_radius",
          "it belongs to method.name = generalized-alpha"}};
-    for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
-        if (rules[i].applies && is_among(path, rules[i].paths)) {
-            return rules[i].reason;
-        }
+    enum { RULES = sizeof rules / sizeof rules[0] };
+    int i = 0;
+    while (i < RULES && !(rules[i].applies && is_among(path, rules[i].paths))) {
+        i++;
     }
-    return NULL;
+    return i < RULES ? rules[i].reason : NULL;
 }

@@ -6,12 +6,12 @@
 
 #include "src/tables/parameters.h"
 
-enum { PARAMETER_GROUPS = 16, PARAMETER_LINES = 256, PARAMETER_NAME = 80 };
+enum { PARAMETER_LINES = 256, PARAMETER_NAME = 80 };
 
 typedef struct parameter_list {
-    bool folded[PARAMETER_GROUPS]; // by group, in the order of the table
-    int parameter;                 // selected, index in parameter_table
-    bool on_heading;               // the heading of its group is selected instead
+    bool folded[PARAMETER_LINES]; // by group
+    int parameter;                // selected, index in parameter_table
+    bool on_heading;              // the heading of its group is selected instead
 } parameter_list;
 
 // A line: a parameter, or the heading of the group whose first parameter it is.
@@ -20,7 +20,7 @@ typedef struct parameter_line {
     bool heading;
 } parameter_line;
 
-// The group of a parameter, counted from 0, and its name ("motor").
+// The group of a parameter, which is the index of the first one in it, and its name ("motor").
 int parameter_group(int parameter);
 void parameter_group_name(int parameter, char *name, size_t size);
 

@@ -2,9 +2,13 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include "render/scene/film.h"
+#include "src/base/text_stream.h"
+
+// --- playing ----------------------------------------------------------------------------------
 
 #define APART 0.05 // of the run, between impacts that are slowed down each for itself
 
@@ -34,12 +38,9 @@ double playback_next_speed(const playback *p, int direction)
 
     // from the far end, so that the nearest one beyond the present speed stays
     for (int i = 0; i < count; i++) {
-        double faster = speeds[count - 1 - i], slower = speeds[i];
-        if (direction > 0 && faster > p->speed * 1.001) {
-            wanted = faster;
-        } else if (direction < 0 && slower < p->speed * 0.999) {
-            wanted = slower;
-        }
+        const double next = speeds[direction > 0 ? count - 1 - i : i];
+        const bool beyond = direction > 0 ? next > p->speed * 1.001 : next < p->speed * 0.999;
+        wanted = beyond ? next : wanted;
     }
     return wanted;
 }
@@ -79,4 +80,82 @@ void recorded_tip(const trace *t, const arm_parameters *beam, size_t row, plane_
 double pull_force(const tip_pull *p, plane_vector tip, plane_vector across)
 {
     return PULL_STIFFNESS * ((p->x - tip.x) * across.x + (p->y - tip.y) * across.y);
+}
+
+// --- the log ----------------------------------------------------------------------------------
+
+static void add_entry(run_log *log, log_entry entry)
+{
+    if (log->count == log->capacity) {
+        const size_t more = log->capacity ? 2 * log->capacity : 64;
+        log_entry *grown = realloc(log->entries, more * sizeof *grown);
+        loss_unless(grown != NULL);
+        log->entries = grown != NULL ? grown : log->entries;
+        log->capacity = grown != NULL ? more : log->capacity;
+    }
+    if (log->count < log->capacity) {
+        log->entries[log->count++] = entry;
+    }
+}
+
+// The events up to a time.
+static void add_events(run_log *log, const trace *t, double until)
+{
+    for (; log->events < t->event_count && t->events[log->events].time <= until; log->events++) {
+        add_entry(log, (log_entry){t->events[log->events].time, (int)log->events, 0});
+    }
+}
+
+void run_log_update(run_log *log, unsigned long run, const trace *t, bool complete)
+{
+    assert(run != 0);
+    if (log->run != run) {
+        run_log_forget(log);
+        log->run = run;
+        log->mode = (double)NAN;
+    }
+
+    // a run that is being computed grows: continue from the rows that were read before
+    for (; log->rows < t->row_count; log->rows++) {
+        const sample *row = &t->rows[log->rows];
+
+        // an event at an instant comes before the resulting mode
+        const double mode = isfinite(row->controller_mode) ? row->controller_mode : log->mode;
+        add_events(log, t, row->time);
+        if (isfinite(log->mode) && mode != log->mode) {
+            add_entry(log, (log_entry){row->time, -1, mode});
+        }
+        log->mode = mode;
+    }
+    if (complete) {
+        add_events(log, t, (double)INFINITY);
+    }
+}
+
+double run_log_next(const run_log *log, double time, int direction)
+{
+    // from the far end, so that the nearest one beyond the instant stays
+    double found = -1;
+    for (size_t i = 0; i < log->count; i++) {
+        const double at = log->entries[direction > 0 ? log->count - 1 - i : i].time;
+        found = direction > 0 ? (at > time ? at : found) : at < time ? at : found;
+    }
+    return found;
+}
+
+void run_log_forget(run_log *log)
+{
+    free(log->entries);
+    *log = (run_log){0};
+}
+
+// --- modes of the control law -----------------------------------------------------------------
+
+void law_mode_name(const law_modes *m, double mode, char *text, size_t size)
+{
+    if (mode >= 0 && mode < m->count) {
+        snprintf(text, size, "%s", m->names[(int)mode]);
+    } else {
+        snprintf(text, size, "mode %g", mode);
+    }
 }

@@ -13,69 +13,50 @@
 #include "ui/terminal/keys.h"
 #include "ui/terminal/screen.h"
 
-void prompt_open(prompt *p, const char *format, ...)
+void prompt_open(prompt *p, const char *value, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
     vsnprintf(p->text, sizeof p->text, format, list);
     va_end(list);
     p->open = true;
-    p->fixed = 0;
-    p->replaces = p->cycling = p->searches = false;
+    p->fixed = value != NULL ? (int)strlen(p->text) : 0;
+    p->replaces = value != NULL && value[0] != '\0';
+    p->cycling = p->searches = false;
+    text_add(p->text, sizeof p->text, "%s", value != NULL ? value : "");
 }
 
-void prompt_open_value(prompt *p, const char *text, const char *value)
+void prompt_type(prompt *p, int key)
 {
-    prompt_open(p, "%s%s", text, value);
-    p->fixed = (int)strlen(text);
-    p->replaces = value[0] != '\0';
-}
-
-bool prompt_type(prompt *p, int key)
-{
-    const bool erases = key == KEY_CODE_BACKSPACE;
-    const bool has_value = strlen(p->text) > (size_t)p->fixed;
-    const bool replaces = p->replaces;
+    const bool has_value = strlen(p->text) > (size_t)p->fixed, replaces = p->replaces;
+    const bool erases = key == ('u' & 0x1f) || (replaces && key == KEY_CODE_BACKSPACE);
     p->replaces = false;
 
-    // the end of the line keeps the value and continues after it
-    if (key == KEY_CODE_RIGHT || key == KEY_CODE_END || key == KEY_CODE_LEFT ||
-        key == KEY_CODE_HOME) {
-        return replaces;
-    }
-    if (has_value && (key == ('u' & 0x1f) || (replaces && erases))) {
-        p->text[p->fixed] = '\0';
-        return true;
-    }
-    if (replaces && key >= ' ' && key < KEY_CODE_FIRST) {
+    // the value goes at once; the other keys of the line keep it and continue after it
+    if (has_value && (erases || (replaces && key >= ' ' && key < KEY_CODE_FIRST))) {
         p->text[p->fixed] = '\0';
     }
-    return text_type(p->text, key);
+    if (!has_value || !erases) {
+        text_type(p->text, key);
+    }
 }
 
-bool text_type(char *text, int key)
+void text_type(char *text, int key)
 {
     size_t length = strlen(text);
 
-    // backspace takes a whole UTF-8 character, C-u everything
+    // backspace takes a whole UTF-8 character, C-u everything; there must be room for the longest
+    // character and the zero behind it
     if (key == KEY_CODE_BACKSPACE) {
         while (length > 0 && (text[length - 1] & 0xc0) == 0x80) {
             length--;
         }
         text[length > 0 ? length - 1 : 0] = '\0';
-        return true;
-    }
-    if (key == ('u' & 0x1f)) {
+    } else if (key == ('u' & 0x1f)) {
         text[0] = '\0';
-        return true;
+    } else if (key >= ' ' && key < KEY_CODE_FIRST && length + 5 < LINE_TEXT) {
+        glyph_encode((uint32_t)key, text + length);
     }
-
-    // room for the longest character and the zero behind it
-    if (key < ' ' || key >= KEY_CODE_FIRST || length + 5 >= LINE_TEXT) {
-        return false;
-    }
-    glyph_encode((uint32_t)key, text + length);
-    return true;
 }
 
 // --- the palette ------------------------------------------------------------------------------
@@ -158,14 +139,13 @@ static int rank_of(const palette_text *text, const char *words)
     // the best one first
     snprintf(all, sizeof all, "%s %s %s %s", text->name, text->keys, text->about,
              synonyms_of(text->name));
-    if (strcasecmp(text->name, words) == 0) {
-        return IS_NAME;
-    }
-    if (strncasecmp(text->name, words, length) == 0 ||
-        (part != NULL && strncasecmp(part + 1, words, length) == 0)) {
-        return BEGINS;
-    }
-    return filter_passes(words, text->name) ? IN_NAME : filter_passes(words, all) ? SAID : -1;
+    const bool begins = strncasecmp(text->name, words, length) == 0 ||
+                        (part != NULL && strncasecmp(part + 1, words, length) == 0);
+    return strcasecmp(text->name, words) == 0 ? IS_NAME
+           : begins                           ? BEGINS
+           : filter_passes(words, text->name) ? IN_NAME
+           : filter_passes(words, all)        ? SAID
+                                              : -1;
 }
 
 static int compare_entries(const void *a, const void *b)

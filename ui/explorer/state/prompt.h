@@ -19,18 +19,14 @@ typedef struct prompt {
     char history[LINE_TEXT]; // the last line that was entered
 } prompt;
 
-// Opens the prompt with an initial text.
-void prompt_open(prompt *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+// Opens the prompt with an initial text, and after it a value, which typing replaces; NULL: none.
+void prompt_open(prompt *p, const char *value, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+// Enters a key into an open prompt: C-u clears the value first, then everything.
+void prompt_type(prompt *p, int key);
 
-// The same with a value after the text, which typing replaces.
-void prompt_open_value(prompt *p, const char *text, const char *value);
-// Enters a key into an open prompt: C-u clears the value first, then everything. False if the key
-// has no effect.
-bool prompt_type(prompt *p, int key);
-
-// Appends a key's character to a text of LINE_TEXT bytes, or deletes the last one. False if the key
-// does neither.
-bool text_type(char *text, int key);
+// Appends a key's character to a text of LINE_TEXT bytes, or deletes the last one.
+void text_type(char *text, int key);
 
 // --- the palette ------------------------------------------------------------------------------
 // The palette: one searchable list of commands with their keys, parameters, signals, scenarios and

@@ -15,12 +15,11 @@
 
 static bool has_input(const session_input *inputs, int count, const session_input *wanted)
 {
+    bool found = false;
     for (int i = 0; i < count; i++) {
-        if (session_same_input(&inputs[i], wanted)) {
-            return true;
-        }
+        found = found || session_same_input(&inputs[i], wanted);
     }
-    return false;
+    return found;
 }
 
 int run_list_of_scenario(const run_list *list, const session *s)
@@ -52,11 +51,8 @@ static void run_list_input_text(const session_input *in, char *text, size_t size
     const char *name = strchr(parameter_table[in->parameter].path, '.') + 1;
     char value[SESSION_INPUT_TEXT];
     input_value_text(in, value);
-    if (in->kind == SESSION_INPUT_TIMED) {
-        snprintf(text, size, "%s %s from %.4g s", name, value, in->time);
-    } else {
-        snprintf(text, size, "%s %s", name, value);
-    }
+    snprintf(text, size, in->kind == SESSION_INPUT_TIMED ? "%s %s from %.4g s" : "%s %s", name,
+             value, in->time);
 }
 
 // Appends the changes of one list that another one does not have.
@@ -115,16 +111,13 @@ static void propose_name(const run_list *list, const session *s, char name[RUN_N
     }
 
     // a number follows where that name is taken
-    snprintf(name, RUN_NAME, "%s", text);
-    for (int n = 2; n < 100; n++) {
-        bool taken = false;
+    bool taken = true;
+    for (int n = 1; taken && n <= 100; n++) {
+        snprintf(name, RUN_NAME, n > 1 ? "%s (%d)" : "%s", text, n);
+        taken = false;
         for (int i = 0; i < list->count; i++) {
             taken = taken || strcmp(list->runs[i].name, name) == 0;
         }
-        if (!taken) {
-            return;
-        }
-        snprintf(name, RUN_NAME, "%s (%d)", text, n);
     }
 }
 
@@ -155,9 +148,8 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
                       "%d runs are pinned already: R lists them, d there drops one", PINNED_RUNS));
 
     // the rows are shared, the changes are copied
-    if (name[0] != '\0') {
-        snprintf(p.name, sizeof p.name, "%s", name);
-    } else {
+    snprintf(p.name, sizeof p.name, "%s", name);
+    if (name[0] == '\0') {
         propose_name(list, s, p.name);
     }
     TRY(run_origin_take(&p.from, s, f));
@@ -181,13 +173,9 @@ void run_list_drop(run_list *list, int index)
     list->count--;
 
     // without the baseline the last one takes its place
-    if (list->baseline == index) {
-        list->baseline = list->count - 1;
-    } else if (list->baseline > index) {
-        list->baseline--;
-    }
-    list->selected = list->selected >= list->count ? list->count - 1 : list->selected;
-    list->selected = list->selected < 0 ? 0 : list->selected;
+    list->baseline =
+        list->baseline == index ? list->count - 1 : list->baseline - (list->baseline > index);
+    list->selected -= list->selected > 0 && list->selected >= list->count;
 }
 
 // --- a sweep ----------------------------------------------------------------------------------
@@ -220,8 +208,7 @@ int lab_sweep_curves(const lab_sweep *sweep)
 double lab_sweep_metric(const lab_sweep *sweep, int index, int metric)
 {
     assert(index >= 0 && index < sweep->count);
-    return summary_value(
-        lab_sweep_is_map(sweep) ? &sweep->cells[index] : &sweep->runs[index].run.summary, metric);
+    return summary_value(&sweep->summaries[index], metric);
 }
 
 void lab_sweep_values(const lab_sweep *sweep, int index, double values[2])
@@ -239,9 +226,9 @@ void lab_sweep_end(lab_sweep *sweep)
     }
     sweep_axis_finish(&sweep->axis);
     sweep_axis_finish(&sweep->second);
-    free(sweep->cells);
+    free(sweep->summaries);
     sweep->axis = sweep->second = (sweep_axis){0};
-    sweep->cells = NULL;
+    sweep->summaries = NULL;
     sweep->count = sweep->selected = 0;
 }
 
@@ -265,14 +252,12 @@ static status read_axis(sweep_axis *axis, const char *definition, fault *f)
     return sweep_axis_parse(axis, values, false, f);
 }
 
-// Reads the axes of a sweep, and makes room for the cells of a map.
+// Reads the axes of a sweep, and makes room for what its runs come to.
 static status read_sweep(lab_sweep *fresh, const char *definition, fault *f)
 {
-    const size_t length = strcspn(definition, " ");
-    const char *rest = definition + length + strspn(definition + length, " ");
-    const bool map = *rest != '\0';
     char first[256];
-    snprintf(first, sizeof first, "%.*s", (int)length, definition);
+    const char *rest = text_cut(definition, " ", first, sizeof first);
+    const bool map = *rest != '\0';
     TRY(read_axis(&fresh->axis, first, f));
     TRY(map ? read_axis(&fresh->second, rest, f) : STATUS_OK);
     const size_t runs = fresh->axis.count * (map ? fresh->second.count : 1);
@@ -283,8 +268,8 @@ static status read_sweep(lab_sweep *fresh, const char *definition, fault *f)
                                    runs, most));
     FAIL_IF(map && fresh->axis.parameter == fresh->second.parameter,
             fault_set(f, STATUS_BAD_ARGUMENT, "a map takes two different parameters"));
-    fresh->cells = map ? calloc(runs, sizeof *fresh->cells) : NULL;
-    TRY_MEMORY(!map || fresh->cells != NULL, f);
+    fresh->summaries = calloc(runs, sizeof *fresh->summaries);
+    TRY_MEMORY(fresh->summaries != NULL, f);
     return STATUS_OK;
 }
 
@@ -300,40 +285,39 @@ status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f)
 status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f)
 {
     assert(!lab_sweep_is_done(sweep));
+    const bool map = lab_sweep_is_map(sweep);
+    const sweep_axis *axes[] = {&sweep->axis, &sweep->second};
     double values[2];
     run_result run = {0};
     lab_sweep_values(sweep, sweep->count, values);
 
     // everything but the parameters is the present run's
     scenario s = *base;
-    status code = parameter_set_number(&s.parameters, sweep->axis.parameter, values[0], f);
-    if (code == STATUS_OK && lab_sweep_is_map(sweep)) {
-        code = parameter_set_number(&s.parameters, sweep->second.parameter, values[1], f);
+    status code = STATUS_OK;
+    for (int i = 0; i <= map && code == STATUS_OK; i++) {
+        code = parameter_set_number(&s.parameters, axes[i]->parameter, values[i], f);
     }
+    code = code == STATUS_OK ? parameters_resolve(&s.parameters, f) : code;
     if (code == STATUS_OK) {
-        code = parameters_resolve(&s.parameters, f);
-    }
-    if (code == STATUS_OK) {
-        run_scenario(&s, !lab_sweep_is_map(sweep), &run);
+        run_scenario(&s, !map, &run);
         loss_unless(run.summary.status != STATUS_NO_MEMORY);
-        code = lab_sweep_is_map(sweep) || run.trace.row_count > 0 ? STATUS_OK
-                                                                  : summary_fault(&run.summary, f);
-    }
-    if (code != STATUS_OK) {
-        run_finish(&run);
-        lab_sweep_end(sweep);
-        return code;
+        code = map || run.trace.row_count > 0 ? STATUS_OK : summary_fault(&run.summary, f);
     }
 
     // of a map the summary alone is kept
-    if (lab_sweep_is_map(sweep)) {
-        sweep->cells[sweep->count] = run.summary;
-        run_finish(&run);
-    } else {
+    const bool kept = code == STATUS_OK && !map;
+    if (kept) {
         sweep->runs[sweep->count] = (swept_run){values[0], run, ++sweep->computed};
     }
-    sweep->count++;
-    return STATUS_OK;
+    if (code == STATUS_OK) {
+        sweep->summaries[sweep->count++] = run.summary;
+    } else {
+        lab_sweep_end(sweep);
+    }
+    if (!kept) {
+        run_finish(&run);
+    }
+    return code;
 }
 
 // --- the difference ---------------------------------------------------------------------------
@@ -349,10 +333,8 @@ void difference_finish(run_difference *d)
 static sample sample_at(const trace *t, double time, bool before)
 {
     size_t r = trace_row_at(t, time);
-    if (before && r > 0 && same_instant(t->rows[r].time, time) &&
-        same_instant(t->rows[r - 1].time, time)) {
-        r--;
-    }
+    r -= before && r > 0 && same_instant(t->rows[r].time, time) &&
+         same_instant(t->rows[r - 1].time, time);
     const sample *a = &t->rows[r];
     if (same_instant(a->time, time) || r + 1 >= t->row_count) {
         return *a;
@@ -419,11 +401,11 @@ void difference_update(run_difference *d, unsigned long run, const trace *t, con
 
 double difference_first_beyond(const run_difference *d, int signal, double tolerance)
 {
+    const trace *t = &d->trace;
+    size_t r = 0;
     assert(signal >= 0 && signal < signal_count);
-    for (size_t r = 0; r < d->trace.row_count; r++) {
-        if (fabs(signal_value(&d->trace.rows[r], signal)) > tolerance) {
-            return d->trace.rows[r].time;
-        }
+    while (r < t->row_count && !(fabs(signal_value(&t->rows[r], signal)) > tolerance)) {
+        r++;
     }
-    return -1;
+    return r < t->row_count ? t->rows[r].time : -1;
 }

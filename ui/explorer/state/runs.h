@@ -67,7 +67,7 @@ typedef struct lab_sweep {
     sweep_axis axis;            // axis.text NULL: no sweep
     sweep_axis second;          // of a map; second.text NULL: none
     swept_run runs[SWEPT_RUNS]; // of a sweep
-    summary *cells;             // of a map, the first parameter's values one after the other
+    summary *summaries;         // of all, the first parameter's values one after the other
     int count;                  // computed so far
     int selected;               // index of the selected one
     int metric;                 // index in summary_table

@@ -16,13 +16,6 @@ void scenario_menu_read(scenario_menu *menu)
     menu->count = code == STATUS_OK ? menu->count : 0;
 }
 
-// A scenario with faults is listed all the same; opening it tells them.
-static void ignore_fault(void *context, const char *sentence)
-{
-    (void)context;
-    (void)sentence;
-}
-
 // Puts the lessons, which lie side by side, in the order of the numbers in their titles.
 static void sort_lessons(scenario_menu *menu)
 {
@@ -49,10 +42,16 @@ void scenario_menu_read_titles(scenario_menu *menu)
     menu->texts = calloc((size_t)menu->count, sizeof *menu->texts);
     loss_unless(menu->texts != NULL);
 
-    // a file that cannot be read has only its name
-    for (int i = 0; menu->texts != NULL && i < menu->count; i++) {
+    if (menu->texts == NULL) {
+        return;
+    }
+
+    // a file that cannot be read has only its name; opening it tells its faults; opening it tells
+    // its faults
+    for (int i = 0; i < menu->count; i++) {
         scenario s;
-        const status code = scenario_open(&s, menu->names[i], ignore_fault, NULL);
+        fault f = {0};
+        const status code = scenario_open(&s, menu->names[i], keep_first_fault, &f);
         if (code == STATUS_OK) {
             menu->texts[i] = (menu_text){s.title, s.description, s.lesson.step_count > 0};
             s.title = s.description = NULL;
@@ -60,9 +59,7 @@ void scenario_menu_read_titles(scenario_menu *menu)
         }
         loss_unless(code != STATUS_NO_MEMORY);
     }
-    if (menu->texts != NULL) {
-        sort_lessons(menu);
-    }
+    sort_lessons(menu);
 }
 
 void scenario_menu_finish(scenario_menu *menu)

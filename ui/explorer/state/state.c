@@ -1,19 +1,12 @@
 #include "ui/explorer/state/state.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/numbers.h"
 #include "src/base/text_stream.h"
 #include "src/rig/controller.h"
 #include "src/rig/rig.h"
-
-static double duration_of(const explorer_state *st)
-{
-    return st->session.effective.parameters.run.duration;
-}
 
 // --- opening and closing ----------------------------------------------------------------------
 
@@ -34,21 +27,20 @@ static void define_panes(explorer_state *st)
 // The parameter that a run is about: what its law presses with, or the voltage.
 static int main_parameter(const explorer_state *st)
 {
-    const parameters *p = &st->session.effective.parameters;
-    const controller *law = controller_of(p->control.law);
-    int found = state_has_law(st) ? PARAMETER_INDEX(control.rate) : PARAMETER_INDEX(motor.voltage);
+    const controller *law = controller_of(st->session.effective.parameters.control.law);
+    const int force = PARAMETER_INDEX(control.force);
+    int found = -1;
 
     // what the law presses with, if it does, else the first number of its own
-    for (int i = law != NULL ? law->parameter_count : 0; i-- > 0;) {
+    for (int i = 0; law != NULL && i < law->parameter_count && found != force; i++) {
         char path[PARAMETER_NAME];
         snprintf(path, sizeof path, "control.%s", law->parameters[i].name);
         const int own = parameter_find(path);
-        found = own >= 0 && (i == 0 || own == PARAMETER_INDEX(control.force)) &&
-                        found != PARAMETER_INDEX(control.force)
-                    ? own
-                    : found;
+        found = i == 0 || own == force ? own : found;
     }
-    return found;
+    return found >= 0          ? found
+           : state_has_law(st) ? PARAMETER_INDEX(control.rate)
+                               : PARAMETER_INDEX(motor.voltage);
 }
 
 // Begins the scenario's lesson, if it has one, with the parameters that matter to it.
@@ -56,7 +48,7 @@ static void begin_lesson(explorer_state *st)
 {
     const lesson *l = &st->session.base.lesson;
     st->lesson = (lesson_progress){.on = l->step_count > 0};
-    for (int i = 0; l->parameter_count > 0 && i < PARAMETER_GROUPS; i++) {
+    for (int i = 0; l->parameter_count > 0 && i < parameter_count; i++) {
         st->parameters.folded[i] = true;
     }
     for (int i = l->parameter_count; i-- > 0;) {
@@ -74,7 +66,7 @@ static void show_anew(explorer_state *st)
     parameter_list_arrange(&st->parameters, &st->session.effective.parameters, main_parameter(st));
     st->mark.set = false;
     begin_lesson(st);
-    time_window_show_all(&st->window);
+    st->window = (time_window){0};
     for (int i = 0; i < PANES_OF_TABLE; i++) {
         st->panes.pane[i].hidden = 0;
     }
@@ -201,6 +193,11 @@ unsigned long state_run_id(const explorer_state *st)
     return ((unsigned long)st->opened << 32) | st->session.version;
 }
 
+bool state_subtracts(const explorer_state *st)
+{
+    return st->difference.on && st->session.has_other;
+}
+
 int state_visible_pins(const explorer_state *st)
 {
     int count = 0;
@@ -210,66 +207,58 @@ int state_visible_pins(const explorer_state *st)
     return count;
 }
 
-int state_run_count(const explorer_state *st)
+int state_runs(const explorer_state *st, const pane *p, shown_run runs[SHOWN_RUNS])
 {
-    if (st->difference.on && st->session.has_other) {
+    const session *s = &st->session;
+    const run_list *pins = &st->pinned;
+    const unsigned long pinned_id = 1ul << 62, swept_id = 1ul << 63;
+    int count = 0;
+
+    // data minus the run, or the run minus the baseline, alone
+    if (p != NULL && p->view == VIEW_RESIDUAL) {
+        runs[0] =
+            (shown_run){SHOWN_MEASURED, 0, &st->residual.trace, 3ul << 61 | st->residual.built};
+        return st->residual.trace.row_count > 0;
+    }
+    if (state_subtracts(st)) {
+        runs[0] = (shown_run){SHOWN_DIFFERENCE, 0, &st->difference.trace,
+                              pinned_id | swept_id | st->difference.built};
         return 1;
     }
-    return 1 + state_visible_pins(st) + lab_sweep_curves(&st->sweep) + st->session.has_ghost +
-           (st->measured.row_count > 0);
+
+    // the present one, the pinned ones, the sweep's, the one before, what was measured
+    runs[count++] = (shown_run){SHOWN_PRESENT, 0, &s->run.trace, state_run_id(st)};
+    for (int i = 0; i < pins->count; i++) {
+        const pinned_run *r = &pins->runs[i];
+        runs[count] = (shown_run){SHOWN_PINNED, i, &r->run.trace, pinned_id | r->id};
+        count += !r->hidden;
+    }
+    for (int i = 0; i < lab_sweep_curves(&st->sweep); i++) {
+        const swept_run *r = &st->sweep.runs[i];
+        runs[count++] = (shown_run){SHOWN_SWEPT, i, &r->run.trace, swept_id | r->id};
+    }
+    if (s->has_ghost) {
+        runs[count++] = (shown_run){SHOWN_BEFORE, 0, &s->ghost.trace, state_run_id(st)};
+    }
+    if (st->measured.row_count > 0) {
+        runs[count++] =
+            (shown_run){SHOWN_MEASURED, 0, &st->measured, pinned_id >> 1 | st->measured_id};
+    }
+    return count;
 }
 
-// The number of a pinned run by its number among those that are not hidden.
-static int visible_pin(const explorer_state *st, int wanted)
+int state_run_count(const explorer_state *st)
 {
-    int index = 0;
-    for (; st->pinned.runs[index].hidden || wanted > 0; index++) {
-        wanted -= !st->pinned.runs[index].hidden;
-    }
-    return index;
+    shown_run runs[SHOWN_RUNS];
+    return state_runs(st, NULL, runs);
 }
 
 shown_run state_run(const explorer_state *st, int index)
 {
-    assert(index >= 0 && index < state_run_count(st));
-    const session *s = &st->session;
-    const int pins = state_visible_pins(st);
-    const unsigned long pinned_id = 1ul << 62, swept_id = 1ul << 63, difference_id = 3ul << 62;
-
-    // the present one, the pinned ones, the sweep's, the one before
-    if (index == 0 && st->difference.on && s->has_other) {
-        return (shown_run){SHOWN_DIFFERENCE, 0, &st->difference.trace,
-                           difference_id | st->difference.built};
-    }
-    if (index == 0) {
-        return (shown_run){SHOWN_PRESENT, 0, &s->run.trace, state_run_id(st)};
-    }
-    if (st->measured.row_count > 0 && index == state_run_count(st) - 1) {
-        return (shown_run){SHOWN_MEASURED, 0, &st->measured, pinned_id >> 1 | st->measured_id};
-    }
-    if (index <= pins) {
-        const int pin = visible_pin(st, index - 1);
-        const pinned_run *p = &st->pinned.runs[pin];
-        return (shown_run){SHOWN_PINNED, pin, &p->run.trace, pinned_id | p->id};
-    }
-    if (index <= pins + lab_sweep_curves(&st->sweep)) {
-        const swept_run *r = &st->sweep.runs[index - 1 - pins];
-        return (shown_run){SHOWN_SWEPT, index - 1 - pins, &r->run.trace, swept_id | r->id};
-    }
-    return (shown_run){SHOWN_BEFORE, 0, &s->ghost.trace, state_run_id(st)};
-}
-
-int state_pane_run_count(const explorer_state *st, const pane *p)
-{
-    return p->view == VIEW_RESIDUAL ? st->residual.trace.row_count > 0 : state_run_count(st);
-}
-
-shown_run state_pane_run(const explorer_state *st, const pane *p, int index)
-{
-    if (p->view != VIEW_RESIDUAL) {
-        return state_run(st, index);
-    }
-    return (shown_run){SHOWN_MEASURED, 0, &st->residual.trace, 3ul << 61 | st->residual.built};
+    shown_run runs[SHOWN_RUNS];
+    const int count = state_runs(st, NULL, runs);
+    assert(index >= 0 && index < count);
+    return runs[index];
 }
 
 const char *state_run_name(const explorer_state *st, int index)
@@ -330,138 +319,7 @@ const char *state_inert_reason(const explorer_state *st, int parameter)
     return inert_reason(&st->session.effective.parameters, parameter);
 }
 
-// --- the visible part -------------------------------------------------------------------------
-
-void state_window(const explorer_state *st, double *from, double *to)
-{
-    time_window_range(&st->window, duration_of(st), from, to);
-}
-
-void state_show_part(explorer_state *st, double from, double to)
-{
-    time_window_show(&st->window, duration_of(st), from, to);
-}
-
-// --- axes of values ---------------------------------------------------------------------------
-
-// What a signal does in the rows from `first` to `last`, whole blocks at once where they are known.
-static value_range range_of_rows(const trace *t, int signal, const double *pairs, size_t first,
-                                 size_t last)
-{
-    value_range found = value_range_empty;
-
-    // a whole block where it lies in the range, else one row
-    for (size_t r = first; r <= last && r < t->row_count;) {
-        if (pairs != NULL && r % EXTREMES_BLOCK == 0 && r + EXTREMES_BLOCK <= last + 1) {
-            const double *pair = pairs + 2 * (r / EXTREMES_BLOCK);
-            value_range_widen(&found, (value_range){pair[0], pair[1]});
-            r += EXTREMES_BLOCK;
-        } else {
-            value_range_add(&found, signal_value(&t->rows[r++], signal));
-        }
-    }
-    return found;
-}
-
-// The same without the share of rows that sticks out at either end, so that a spike does not
-// flatten all else; of many rows some, evenly spread.
-static value_range calm_range(const trace *t, int signal, size_t first, size_t last)
-{
-    enum { ROWS = 4096, STICKS_OUT = 50 }; // one in so many
-    static double values[ROWS];
-    const size_t end = last < t->row_count ? last + 1 : t->row_count;
-    const size_t stride = (end - first) / ROWS + 1;
-    size_t count = 0;
-    for (size_t r = first; r < end; r += stride) {
-        const double value = signal_value(&t->rows[r], signal);
-        if (isfinite(value)) {
-            values[count++] = value;
-        }
-    }
-    if (count == 0) {
-        return value_range_empty;
-    }
-    qsort(values, count, sizeof *values, compare_numbers);
-    const double low = values[count / STICKS_OUT], high = values[count - 1 - count / STICKS_OUT];
-    const double margin = 0.05 * (high - low);
-    return (value_range){low - margin, high + margin};
-}
-
-// What a pane's signals do between two instants, in the first `runs` of the runs shown.
-static value_range range_between(const explorer_state *st, const pane *p, double from, double to,
-                                 int runs)
-{
-    value_range found = value_range_empty;
-    for (int run = 0; run < runs; run++) {
-        const shown_run shown = state_pane_run(st, p, run);
-        const trace *t = shown.trace;
-        // one more row at the end, to which the line continues
-        const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
-        for (int k = 0; k < p->count; k++) {
-            if (p->hidden >> k & 1) {
-                continue;
-            }
-            const double *pairs = extremes_pairs(&st->extremes[run], shown.id, t, p->signals[k]);
-            value_range_widen(&found, p->scaling == AXIS_CALM
-                                          ? calm_range(t, p->signals[k], first, last)
-                                          : range_of_rows(t, p->signals[k], pairs, first, last));
-        }
-    }
-    return found;
-}
-
-bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
-{
-    assert(index >= 0 && index < PANES);
-    const pane *p = &st->panes.pane[index];
-    double from, to;
-    const bool subtracts = state_run(st, 0).kind == SHOWN_DIFFERENCE;
-    if (!pane_is_over_time(p) || ((subtracts || p->view == VIEW_RESIDUAL) && pane_is_derived(p))) {
-        return false;
-    }
-    state_window(st, &from, &to);
-    value_range found = range_between(st, p, from, to, state_pane_run_count(st, p));
-    if (!(found.high >= found.low)) {
-        return false;
-    }
-
-    // what was found counts unless the axis grows or is fixed
-    if (p->scaling == AXIS_GROW && p->grown.high >= p->grown.low) {
-        found = p->grown;
-    } else if (p->scaling == AXIS_FIXED) {
-        found = p->fixed;
-    }
-    *axis = p->scaling == AXIS_FIXED ? found : value_range_opened(found);
-    return true;
-}
-
 // --- up to date -------------------------------------------------------------------------------
-
-// The blocks of all signals that are shown.
-static void update_extremes(explorer_state *st)
-{
-    for (int run = 0; run < state_run_count(st); run++) {
-        const shown_run shown = state_run(st, run);
-        for (int i = 0; i < PANES; i++) {
-            const pane *p = &st->panes.pane[i];
-            for (int k = 0; p->shown && k < p->count; k++) {
-                extremes_update(&st->extremes[run], shown.id, shown.trace, p->signals[k]);
-            }
-        }
-    }
-}
-
-// Takes what has been seen into the axes that grow.
-static void grow_axes(explorer_state *st)
-{
-    for (int i = 0; i < PANES; i++) {
-        pane *p = &st->panes.pane[i];
-        if (p->scaling == AXIS_GROW && p->shown && pane_is_over_time(p)) {
-            const int runs = p->view == VIEW_TIME ? 1 : state_pane_run_count(st, p);
-            value_range_widen(&p->grown, range_between(st, p, 0, st->session.seen, runs));
-        }
-    }
-}
 
 // The measured data minus the run, where a pane shows them.
 static void update_residual(explorer_state *st)
@@ -498,9 +356,7 @@ void state_update(explorer_state *st)
         difference_update(&st->difference, state_run_id(st), &s->run.trace, &s->other.trace);
     }
     update_residual(st);
-    update_extremes(st);
-    grow_axes(st);
-    time_window_follow(&st->window, duration_of(st), st->session.now);
+    state_update_axes(st);
     state_law_modes(st);
     state_run_log(st);
 }

@@ -7,7 +7,6 @@
 #include "ui/explorer/state/parameter_list.h"
 #include "ui/explorer/state/playback.h"
 #include "ui/explorer/state/prompt.h"
-#include "ui/explorer/state/run_log.h"
 #include "ui/explorer/state/runs.h"
 #include "ui/explorer/state/scenario_menu.h"
 #include "ui/explorer/state/view.h"
@@ -145,13 +144,13 @@ void state_update(explorer_state *st);
 
 // A number that identifies the present run among the runs of all sessions opened; never 0.
 unsigned long state_run_id(const explorer_state *st);
-// The runs with visible curves: 0 is the present one (or, alone, its difference from the baseline),
-// the others are for comparison.
+// Whether panes show the difference from the baseline in the place of the runs.
+bool state_subtracts(const explorer_state *st);
+// The runs whose curves a pane shows, or any that is not of residuals (NULL); returns how many. 0
+// is the present one (or, alone, its difference from the baseline), the others are for comparison.
+int state_runs(const explorer_state *st, const pane *p, shown_run runs[SHOWN_RUNS]);
 int state_run_count(const explorer_state *st);
 shown_run state_run(const explorer_state *st, int index);
-// The same of the runs whose curves a pane shows: of residuals there is one.
-int state_pane_run_count(const explorer_state *st, const pane *p);
-shown_run state_pane_run(const explorer_state *st, const pane *p, int index);
 // The name of a run, "" for the present one and for runs without a name.
 const char *state_run_name(const explorer_state *st, int index);
 // The number of pinned runs that are not hidden.
@@ -164,8 +163,16 @@ void state_window(const explorer_state *st, double *from, double *to);
 // Makes a part visible, limited to the run [s].
 void state_show_part(explorer_state *st, double from, double to);
 
+// Low and high of each block of a signal of a run, low above high in a block without a finite
+// value; NULL if they do not cover all rows of its trace.
+const double *extremes_pairs(const extremes *e, const shown_run *run, int signal);
+
 // The axis of a pane in the visible part of the run; false if no signal of it has a value there.
 bool state_pane_axis(const explorer_state *st, int index, value_range *axis);
+
+// Brings extremes and growing axes up to date, and the visible part to the cursor, unless that is
+// adrift.
+void state_update_axes(explorer_state *st);
 
 // Whether there is a control law, and its modes.
 bool state_has_law(const explorer_state *st);

@@ -24,15 +24,12 @@ panel_place panel_place_of(panel_id id)
 bool filter_passes(const char *filter, const char *text)
 {
     char word[LINE_TEXT];
-    while (*(filter += strspn(filter, " ")) != '\0') {
-        const size_t length = strcspn(filter, " ");
-        snprintf(word, sizeof word, "%.*s", (int)length, filter);
-        if (strcasestr(text, word) == NULL) {
-            return false;
-        }
-        filter += length;
+    bool passes = true;
+    while (*filter != '\0' && passes) {
+        filter = text_cut(filter, " ", word, sizeof word);
+        passes = strcasestr(text, word) != NULL;
     }
-    return true;
+    return passes;
 }
 
 // --- looks ------------------------------------------------------------------------------------

@@ -1,0 +1,222 @@
+// The visible part of the runs, the extremes of their values, and the axes of panes.
+#include "ui/explorer/state/state.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "src/base/numbers.h"
+
+// --- the visible part -------------------------------------------------------------------------
+
+#define SHORTEST 1e-6 // visible part of a run [s]
+
+static bool shows_all(const time_window *w)
+{
+    return w->to <= w->from;
+}
+
+void state_window(const explorer_state *st, double *from, double *to)
+{
+    const time_window *w = &st->window;
+    *from = shows_all(w) ? 0 : w->from;
+    *to = shows_all(w) ? st->session.effective.parameters.run.duration : w->to;
+}
+
+void state_show_part(explorer_state *st, double from, double to)
+{
+    time_window *w = &st->window;
+    const double duration = st->session.effective.parameters.run.duration;
+    const double width = fmax(to - from, SHORTEST);
+    assert(isfinite(duration));
+    if (width >= duration) {
+        *w = (time_window){0};
+        return;
+    }
+    w->from = fmax(0, fmin(duration - width, from));
+    w->to = w->from + width;
+}
+
+// Moves the visible part so that the cursor is in it, unless it is adrift.
+static void follow_cursor(explorer_state *st)
+{
+    const time_window *w = &st->window;
+    double from, to;
+    state_window(st, &from, &to);
+    const double now = st->session.now, width = to - from;
+
+    // a shorter run may have ended before a part that was panned to
+    if (shows_all(w) || w->adrift) {
+        if (w->to > st->session.effective.parameters.run.duration) {
+            state_show_part(st, from, to);
+        }
+        return;
+    }
+
+    // some of what comes is visible while it plays
+    from = now > from + 0.8 * width   ? now - 0.8 * width
+           : now < from + 0.1 * width ? now - 0.1 * width
+                                      : from;
+    state_show_part(st, from, from + width);
+}
+
+// --- extremes ---------------------------------------------------------------------------------
+
+void extremes_forget(extremes *e)
+{
+    for (size_t i = 0; i < sizeof e->pairs / sizeof e->pairs[0]; i++) {
+        free(e->pairs[i]);
+    }
+    *e = (extremes){0};
+}
+
+const double *extremes_pairs(const extremes *e, const shown_run *run, int signal)
+{
+    assert(signal >= 0 && signal < EXTREMES_SIGNALS);
+    const bool covers = e->run == run->id && e->rows[signal] == run->trace->row_count;
+    return covers ? e->pairs[signal] : NULL;
+}
+
+// What a signal does in the rows from `first` to `last`, whole blocks at once where they are known.
+static value_range range_of_rows(const trace *t, int signal, const double *pairs, size_t first,
+                                 size_t last)
+{
+    value_range found = value_range_empty;
+
+    // a whole block where it lies in the range, else one row
+    for (size_t r = first; r <= last && r < t->row_count;) {
+        if (pairs != NULL && r % EXTREMES_BLOCK == 0 && r + EXTREMES_BLOCK <= last + 1) {
+            const double *pair = pairs + 2 * (r / EXTREMES_BLOCK);
+            value_range_widen(&found, (value_range){pair[0], pair[1]});
+            r += EXTREMES_BLOCK;
+        } else {
+            value_range_add(&found, signal_value(&t->rows[r++], signal));
+        }
+    }
+    return found;
+}
+
+// Extends the blocks of a signal to all rows of a run, including those that it has gained. Without
+// memory the signal has no blocks.
+static void update_extremes(extremes *e, const shown_run *run, int signal)
+{
+    const trace *t = run->trace;
+    assert(run->id != 0);
+
+    // another run: the blocks of the old one are not valid
+    if (e->run != run->id) {
+        extremes_forget(e);
+        e->run = run->id;
+    }
+    if (extremes_pairs(e, run, signal) != NULL) {
+        return;
+    }
+
+    // the last block may have been begun only: it is done again, and then what is new
+    const size_t blocks = (t->row_count + EXTREMES_BLOCK - 1) / EXTREMES_BLOCK;
+    double *pairs = realloc(e->pairs[signal], 2 * blocks * sizeof *pairs);
+    if (pairs == NULL) {
+        free(e->pairs[signal]);
+    }
+    for (size_t b = e->rows[signal] / EXTREMES_BLOCK; pairs != NULL && b < blocks; b++) {
+        const size_t begin = b * EXTREMES_BLOCK;
+        const value_range found = range_of_rows(t, signal, NULL, begin, begin + EXTREMES_BLOCK - 1);
+        pairs[2 * b] = found.low;
+        pairs[2 * b + 1] = found.high;
+    }
+    e->pairs[signal] = pairs;
+    e->rows[signal] = pairs != NULL ? t->row_count : 0;
+}
+
+// --- axes of values ---------------------------------------------------------------------------
+
+// The range of some rows without the share that sticks out at either end, so that a spike does not
+// flatten all else; of many rows some, evenly spread.
+static value_range calm_range(const trace *t, int signal, size_t first, size_t last)
+{
+    enum { ROWS = 4096, STICKS_OUT = 50 }; // one in so many
+    static double values[ROWS];
+    const size_t end = last < t->row_count ? last + 1 : t->row_count;
+    const size_t stride = (end - first) / ROWS + 1;
+    size_t count = 0;
+    for (size_t r = first; r < end; r += stride) {
+        values[count] = signal_value(&t->rows[r], signal);
+        count += isfinite(values[count]) != 0;
+    }
+    if (count == 0) {
+        return value_range_empty;
+    }
+    qsort(values, count, sizeof *values, compare_numbers);
+    const double low = values[count / STICKS_OUT], high = values[count - 1 - count / STICKS_OUT];
+    const double margin = 0.05 * (high - low);
+    return (value_range){low - margin, high + margin};
+}
+
+// What a pane's signals do between two instants, in the first of the runs shown or in all.
+static value_range range_between(const explorer_state *st, const pane *p, double from, double to,
+                                 bool first_only)
+{
+    shown_run runs[SHOWN_RUNS];
+    const int count = state_runs(st, p, runs);
+    value_range found = value_range_empty;
+    for (int run = 0; run < (first_only ? 1 : count); run++) {
+        const trace *t = runs[run].trace;
+        // one more row at the end, to which the line continues
+        const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
+        for (int k = 0; k < p->count; k++) {
+            const double *pairs = extremes_pairs(&st->extremes[run], &runs[run], p->signals[k]);
+            const value_range seen = p->hidden >> k & 1 ? value_range_empty
+                                     : p->scaling == AXIS_CALM
+                                         ? calm_range(t, p->signals[k], first, last)
+                                         : range_of_rows(t, p->signals[k], pairs, first, last);
+            value_range_widen(&found, seen);
+        }
+    }
+    return found;
+}
+
+bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
+{
+    assert(index >= 0 && index < PANES);
+    const pane *p = &st->panes.pane[index];
+    const bool subtracts = state_subtracts(st) || p->view == VIEW_RESIDUAL;
+    double from, to;
+    if (!pane_is_over_time(p) || (subtracts && pane_is_derived(p))) {
+        return false;
+    }
+    state_window(st, &from, &to);
+    const value_range seen = range_between(st, p, from, to, false);
+    if (!(seen.high >= seen.low)) {
+        return false;
+    }
+
+    // what was found counts unless the axis grows or is fixed
+    const bool grown = p->scaling == AXIS_GROW && p->grown.high >= p->grown.low;
+    *axis = p->scaling == AXIS_FIXED ? p->fixed : value_range_opened(grown ? p->grown : seen);
+    return true;
+}
+
+void state_update_axes(explorer_state *st)
+{
+    // the blocks of all signals that are shown
+    shown_run runs[SHOWN_RUNS];
+    const int count = state_runs(st, NULL, runs);
+    for (int run = 0; run < count; run++) {
+        for (int i = 0; i < PANES; i++) {
+            const pane *p = &st->panes.pane[i];
+            for (int k = 0; p->shown && k < p->count; k++) {
+                update_extremes(&st->extremes[run], &runs[run], p->signals[k]);
+            }
+        }
+    }
+
+    // what has been seen, into the axes that grow
+    for (int i = 0; i < PANES; i++) {
+        pane *p = &st->panes.pane[i];
+        if (p->scaling == AXIS_GROW && p->shown && pane_is_over_time(p)) {
+            value_range_widen(&p->grown,
+                              range_between(st, p, 0, st->session.seen, p->view == VIEW_TIME));
+        }
+    }
+    follow_cursor(st);
+}
