@@ -282,6 +282,18 @@ TEST_IN_FOLDER(the_first_visit_is_the_only_one)
     assert_int_equal(access("impactlab/visited", F_OK), 0);
 }
 
+TEST_IN_FOLDER(what_could_not_be_kept_is_not_told_of_another_command)
+{
+    assert_int_equal(setenv("XDG_CONFIG_HOME", test_folder, 1), 0);
+    assert_int_equal(mkdir("impactlab", 0700), 0);
+    assert_int_equal(mkdir("impactlab/allowed", 0700), 0);
+    put_file("asks.yaml", "control: {law: process, command: \"false\", rate: 100 Hz}\n"
+                          "run: {duration: 0.1 s}\n");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press_warns(&ex, ":open asks.yaml<Enter>y", "ended without an answer");
+    press_warns(&ex, ":open nosuch<Enter>", "'nosuch' is neither");
+}
+
 TEST(predictors_and_modes_are_explained)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
