@@ -113,7 +113,9 @@ bool act_key(explorer_state *st, const char *argument)
     // without a command it is asked what the key does
     key_name(key, name, sizeof name);
     const char *old = key_line(&st->keys, key);
-    FAIL_IF(line[0] == '\0', act_tell(st, old ? "%s does '%s'" : "%s does nothing", name, old));
+    if (line[0] == '\0') {
+        return act_tell(st, old ? "%s does '%s'" : "%s does nothing", name, old);
+    }
 
     // a copy of the old meaning: its place gets the new one
     int index;

@@ -11,11 +11,9 @@ status explorer_init(explorer *ex, scenario *s, double patience, fault *f)
     if (consent_needed(s)) {
         s->parameters.code_allowed = consent_remembered(s);
     }
-    status code = state_init(&ex->state, s, patience, f);
-    if (code == STATUS_OK) {
-        act_tell_failed_run(&ex->state);
-    }
-    return code;
+    TRY(state_init(&ex->state, s, patience, f));
+    act_tell_failed_run(&ex->state);
+    return STATUS_OK;
 }
 
 void explorer_finish(explorer *ex)
@@ -28,22 +26,19 @@ void explorer_finish(explorer *ex)
 
 bool explorer_follow(explorer *ex)
 {
-    session *s = &ex->state.session;
+    explorer_state *st = &ex->state;
 
     // a run of a sweep, or more of the present one
-    if (!lab_sweep_is_done(&ex->state.sweep)) {
-        act_continue_sweep(&ex->state);
-        session_follow(s);
-        return true;
+    const bool sweeps = !lab_sweep_is_done(&st->sweep);
+    if (sweeps) {
+        act_continue_sweep(st);
     }
-    if (!session_follow(s)) {
-        return false;
+    const bool more = session_follow(&st->session);
+    if (!sweeps && more && st->session.computing == NULL) {
+        act_tell_failed_run(st);
+        act_tell_replay(st);
     }
-    if (s->computing == NULL) {
-        act_tell_failed_run(&ex->state);
-        act_tell_replay(&ex->state);
-    }
-    return true;
+    return sweeps || more;
 }
 
 bool explorer_is_busy(const explorer *ex)

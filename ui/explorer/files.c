@@ -87,11 +87,12 @@ static bool tell_file(explorer_state *st, bool done, const char *name)
                              path, name);
 }
 
-// A name that no file has: the scenario's, what the last change changed, and a number if need be.
-static void propose_name(const explorer_state *st, const char *ending, char *name, size_t size)
+// Asks for a name and proposes one that no file has: the scenario's, what the last change changed,
+// and a number if need be.
+static void propose_name(explorer_state *st, const char *command, const char *ending)
 {
     const session *s = &st->session;
-    char stem[LINE_TEXT / 2] = "";
+    char stem[LINE_TEXT / 2] = "", name[LINE_TEXT / 2];
     text_add(stem, 59, "%s", scenario_leaf(s->base.name));
 
     // what the last change changed
@@ -107,10 +108,11 @@ static void propose_name(const explorer_state *st, const char *ending, char *nam
     for (char *c = stem; *c != '\0'; c++) {
         *c = isalnum((unsigned char)*c) || strchr(".-_", *c) != NULL ? *c : '-';
     }
-    snprintf(name, size, "%s%s", stem, ending);
+    snprintf(name, sizeof name, "%s%s", stem, ending);
     for (int i = 2; exists(name) && i < 10000; i++) {
-        snprintf(name, size, "%s-%d%s", stem, i, ending);
+        snprintf(name, sizeof name, "%s-%d%s", stem, i, ending);
     }
+    prompt_open(&st->prompt, name, "%s ", command);
 }
 
 // --- the commands -----------------------------------------------------------------------------
@@ -143,9 +145,7 @@ bool act_save(explorer_state *st, const char *argument)
 {
     // without a name the prompt proposes one
     if (argument[0] == '\0') {
-        char name[LINE_TEXT / 2];
-        propose_name(st, ".png", name, sizeof name);
-        prompt_open(&st->prompt, name, "save ");
+        propose_name(st, "save", ".png");
         return act_tell(st, ".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
                             "gives this run; .txt: the screen");
     }
@@ -166,9 +166,7 @@ bool act_scene(explorer_state *st, const char *argument)
 
     // without a name the prompt proposes one
     if (argument[0] == '\0') {
-        char name[LINE_TEXT / 2];
-        propose_name(st, "-arm.png", name, sizeof name);
-        prompt_open(&st->prompt, name, "scene ");
+        propose_name(st, "scene", "-arm.png");
         return true;
     }
 
@@ -227,20 +225,17 @@ bool act_copy(explorer_state *st, const char *argument)
         const char *word;
         void (*write)(explorer_state *st, FILE *stream);
     } what[] = {{"value", write_value}, {"run", write_command}, {"screen", write_screen}};
-    for (size_t i = 0; i < sizeof what / sizeof what[0]; i++) {
-        if (strcmp(argument[0] != '\0' ? argument : "value", what[i].word) == 0) {
-            size_t size = 0;
-            free(st->copied);
-            st->copied = NULL;
-            FILE *stream = open_memstream(&st->copied, &size);
-            if (stream != NULL) {
-                what[i].write(st, stream);
-            }
-            return stream != NULL && fclose(stream) == 0
-                       ? act_tell(st, "%s is on the clipboard of a terminal that knows OSC 52",
-                                  what[i].word)
-                       : act_refuse(st, "%s", status_text(STATUS_NO_MEMORY));
-        }
+    size_t i = 0, size = 0;
+    while (i < 3 && strcmp(argument[0] != '\0' ? argument : "value", what[i].word) != 0) {
+        i++;
     }
-    return act_refuse(st, "copy takes value, run or screen");
+    FAIL_IF(i == 3, act_refuse(st, "copy takes value, run or screen"));
+    free(st->copied);
+    st->copied = NULL;
+    FILE *stream = open_memstream(&st->copied, &size);
+    if (stream != NULL) {
+        what[i].write(st, stream);
+    }
+    FAIL_IF(stream == NULL || fclose(stream) != 0, act_worked(st, STATUS_NO_MEMORY));
+    return act_tell(st, "%s is on the clipboard of a terminal that knows OSC 52", what[i].word);
 }

@@ -32,13 +32,16 @@ bool explorer_keys(explorer *ex, const char *text, fault *f)
 static void enter_prompt(explorer *ex)
 {
     explorer_state *st = &ex->state;
+    static palette_entry entries[PALETTE_ENTRIES];
     prompt *p = &st->prompt;
     char line[LINE_TEXT];
     bool goes_on = false;
+    const int at = palette_shows(p) ? st->palette.selected : -1;
 
     // a copy: the command may open the prompt again
-    if (!palette_shows(p) || !act_line_of_palette(st, line, &goes_on)) {
-        snprintf(line, sizeof line, "%s", p->text);
+    snprintf(line, sizeof line, "%s", p->text);
+    if (at >= 0 && at < palette_find(&st->scenarios, &st->keys, p->text, entries)) {
+        palette_line(&st->scenarios, &st->keys, entries[at], line, &goes_on);
     }
     p->open = false;
     act_hush(st);
@@ -50,6 +53,12 @@ static void enter_prompt(explorer *ex)
     if (!explorer_carry_out(ex, line) && ex->first_failure[0] == '\0') {
         snprintf(ex->first_failure, sizeof ex->first_failure, "%s", st->message.text);
     }
+}
+
+// Whether a key leaves what is being typed.
+static bool leaves(int key)
+{
+    return key == KEY_CODE_ESCAPE || key == ('c' & 0x1f);
 }
 
 // Whether a key moved in the palette that the prompt shows: Up leaves it at its top.
@@ -73,29 +82,21 @@ static void key_in_prompt(explorer *ex, int key)
     if (key_in_palette(&ex->state, key) || (p->searches && key == KEY_CODE_TAB)) {
         return;
     }
-    switch (key) {
-    case KEY_CODE_ESCAPE:
-    case 'c' & 0x1f:
+    if (leaves(key)) {
         p->open = false;
         act_hush(&ex->state);
-        break;
-    case KEY_CODE_ENTER:
+    } else if (key == KEY_CODE_ENTER) {
         enter_prompt(ex);
-        break;
-    case 'p' & 0x1f: {
+    } else if (key == ('p' & 0x1f)) {
         // what was typed so far is searched for everywhere
         char words[LINE_TEXT];
         snprintf(words, sizeof words, "%s", p->text);
         act_palette(&ex->state, words);
-        break;
-    }
-    case KEY_CODE_TAB:
+    } else if (key == KEY_CODE_TAB) {
         complete_prompt(&ex->state);
-        break;
-    case KEY_CODE_UP:
+    } else if (key == KEY_CODE_UP) {
         prompt_open(p, NULL, "%s", p->history);
-        break;
-    default:
+    } else {
         // other words, another list
         prompt_type(p, key);
         ex->state.palette.selected = p->searches ? 0 : -1;
@@ -106,30 +107,20 @@ static void key_in_prompt(explorer *ex, int key)
 static void key_in_filter(explorer *ex, int key)
 {
     explorer_state *st = &ex->state;
-
     const panel_id filtered = st->filters.typing;
-    switch (key) {
-    case KEY_CODE_ESCAPE:
-    case 'c' & 0x1f:
+    const bool enters = key == KEY_CODE_ENTER;
+    if (leaves(key)) {
         st->filters.text[filtered][0] = '\0';
-        st->filters.typing = PANEL_NONE;
-        break;
-    case KEY_CODE_ENTER:
-        st->filters.typing = PANEL_NONE;
-        if (filtered == PANEL_PARAMETERS && !st->parameters.on_heading) {
-            explorer_carry_out(ex, "edit");
-        }
-        return;
-    case KEY_CODE_UP:
-        explorer_carry_out(ex, "select -1");
-        return;
-    case KEY_CODE_DOWN:
-        explorer_carry_out(ex, "select");
-        return;
-    default:
-        text_type(st->filters.text[filtered], key);
     }
-    act_settle_filter(st, filtered);
+    st->filters.typing = enters || leaves(key) ? PANEL_NONE : filtered;
+    if (key == KEY_CODE_UP || key == KEY_CODE_DOWN) {
+        explorer_carry_out(ex, key == KEY_CODE_UP ? "select -1" : "select");
+    } else if (enters && filtered == PANEL_PARAMETERS && !st->parameters.on_heading) {
+        explorer_carry_out(ex, "edit");
+    } else if (!enters) {
+        text_type(st->filters.text[filtered], key);
+        act_settle_filter(st, filtered);
+    }
 }
 
 // Esc takes back one thing at a time: what is computed, a filter, the mark.
@@ -193,7 +184,7 @@ void explorer_key(explorer *ex, int key)
     if (st->page == PANEL_WELCOME) {
         st->page = PANEL_NONE;
     }
-    bool leaves = key == ('c' & 0x1f) && st->page != PANEL_SCENARIOS;
+    const bool quits = key == ('c' & 0x1f) && st->page != PANEL_SCENARIOS;
     if (st->prompt.open) {
         key_in_prompt(ex, key);
     } else if (st->filters.typing != PANEL_NONE) {
@@ -202,7 +193,7 @@ void explorer_key(explorer *ex, int key)
         prompt_open(&st->prompt, NULL, "%s", "");
         st->palette.selected = -1;
         act_hush(st);
-    } else if (st->page != PANEL_NONE && !leaves) {
+    } else if (st->page != PANEL_NONE && !quits) {
         panel_of(st->page)->key(st, key);
     } else {
         key_by_table(ex, key);

@@ -12,17 +12,18 @@
 
 // --- saving -----------------------------------------------------------------------------------
 
-// Adds a line on how the runs are looked at.
-static void add_line(session_file *file, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+// Adds a line on how the runs are looked at, if it is needed.
+static void add_line(session_file *file, bool needed, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
-static void add_line(session_file *file, const char *format, ...)
+static void add_line(session_file *file, bool needed, const char *format, ...)
 {
+    const bool adds = needed && file->line_count < SESSION_FILE_LINES;
     va_list list;
     va_start(list, format);
-    char *line = file->line_count < SESSION_FILE_LINES ? decimal_vtext(format, list) : NULL;
+    char *line = adds ? decimal_vtext(format, list) : NULL;
     va_end(list);
-    loss_unless(line != NULL || file->line_count == SESSION_FILE_LINES);
+    loss_unless(line != NULL || !adds);
     if (line != NULL) {
         file->lines[file->line_count++] = line;
     }
@@ -38,26 +39,18 @@ static void add_pane(const explorer_state *st, session_file *file, int index, in
         text_add(signals, sizeof signals, "%s%s", k > 0 ? "," : " ",
                  signal_table[p->signals[k]].name);
     }
-    if (index >= PANES_OF_TABLE && p->shown) {
-        add_line(file, "%s%s", views[p->view], signals);
-    }
+    add_line(file, index >= PANES_OF_TABLE && p->shown, "%s%s", views[p->view], signals);
 
     // axes and hidden signals of what can be shown again; a lesson hides signals of its own
-    if (p->count == 0 || (index >= PANES_OF_TABLE && !p->shown)) {
-        return;
-    }
-    if (p->scaling == AXIS_FIXED) {
-        add_line(file, "axis %.17g %.17g %d", p->fixed.low, p->fixed.high, number);
-    } else if (p->scaling != AXIS_AUTO) {
-        add_line(file, "axis %s %d", axis_scaling_words[p->scaling], number);
-    }
-    if (p->hidden != 0 || st->lesson.on) {
-        add_line(file, "signal all %d", number);
-    }
+    const bool again = p->count > 0 && (index < PANES_OF_TABLE || p->shown);
+    const bool fixed = p->scaling == AXIS_FIXED;
+    add_line(file, again && fixed, "axis %.17g %.17g %d", p->fixed.low, p->fixed.high, number);
+    add_line(file, again && !fixed && p->scaling != AXIS_AUTO, "axis %s %d",
+             axis_scaling_words[p->scaling], number);
+    add_line(file, again && (p->hidden != 0 || st->lesson.on), "signal all %d", number);
     for (int k = 0; k < p->count; k++) {
-        if (p->hidden >> k & 1) {
-            add_line(file, "signal %s %d", signal_table[p->signals[k]].name, number);
-        }
+        add_line(file, again && (p->hidden >> k & 1), "signal %s %d",
+                 signal_table[p->signals[k]].name, number);
     }
 }
 
@@ -68,32 +61,24 @@ static void add_looks(const explorer_state *st, session_file *file)
     for (int i = 0; i < PANES_OF_TABLE; i++) {
         text_add(shown, sizeof shown, st->panes.pane[i].shown ? "%d" : "", i + 1);
     }
-    add_line(file, "lanes %s", look_word(&st->looks, look_choice_of("lanes")));
-    if (st->panes.chosen) {
-        add_line(file, "panes %s", shown);
-    }
+    add_line(file, true, "lanes %s", look_word(&st->looks, look_choice_of("lanes")));
+    add_line(file, st->panes.chosen, "panes %s", shown);
     for (int i = 0, number = 1; i < PANES; i++) {
         add_pane(st, file, i, number);
         number += i < PANES_OF_TABLE || st->panes.pane[i].shown;
     }
-    if (st->window.to > st->window.from) {
-        add_line(file, "zoom %.17g %.17g", st->window.from, st->window.to);
-    }
+    const time_window *w = &st->window;
+    const int band = st->band.signal, limit = st->limit.signal;
+    add_line(file, w->to > w->from, "zoom %.17g %.17g", w->from, w->to);
     for (int i = 0; i < st->note_count; i++) {
-        add_line(file, "note @%.17g %.200s", st->notes[i].time, st->notes[i].text);
+        add_line(file, true, "note @%.17g %.200s", st->notes[i].time, st->notes[i].text);
     }
-    if (st->looks.by_run) {
-        add_line(file, "colourby run");
-    }
-    if (st->band.signal >= 0) {
-        add_line(file, "band %s %.17g", signal_table[st->band.signal].name, st->band.bound);
-    }
-    if (st->limit.signal >= 0) {
-        add_line(file, "limit %s %.17g", signal_table[st->limit.signal].name, st->limit.bound);
-    }
-    if (st->mark.set) {
-        add_line(file, "mark %.17g", st->mark.time);
-    }
+    add_line(file, st->looks.by_run, "colourby run");
+    add_line(file, band >= 0, "band %s %.17g", band >= 0 ? signal_table[band].name : "",
+             st->band.bound);
+    add_line(file, limit >= 0, "limit %s %.17g", limit >= 0 ? signal_table[limit].name : "",
+             st->limit.bound);
+    add_line(file, st->mark.set, "mark %.17g", st->mark.time);
 }
 
 // A line that could not be typed could not be carried out again.

@@ -45,15 +45,6 @@ static bool take_answer(void)
     return before.cell_width != now.cell_width || before.cell_height != now.cell_height;
 }
 
-// Asks for the size of a cell again, which a change of size may change, if it was known.
-static void ask_cell(void)
-{
-    if (tty.pixels.stage == PIXELS_ANSWERED && tty.pixels.cell_width > 0) {
-        tty.sequence.awaits = true;
-        terminal_send(pixel_ask_cell, strlen(pixel_ask_cell));
-    }
-}
-
 // Goes on with a sequence by the next character. False if that is a key of its own; *in is then the
 // escape before it, if that stood alone.
 static bool take_sequence(wint_t key, int kind, terminal_input *in)
@@ -182,7 +173,11 @@ static terminal_input after_signal(void)
     if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
         resizeterm(size.ws_row, size.ws_col);
     }
-    ask_cell();
+    // of a cell again, too, which a change of size may change, if it was known
+    if (tty.pixels.stage == PIXELS_ANSWERED && tty.pixels.cell_width > 0) {
+        tty.sequence.awaits = true;
+        terminal_send(pixel_ask_cell, strlen(pixel_ask_cell));
+    }
     return (terminal_input){.kind = TERMINAL_RESIZE};
 }
 

@@ -62,9 +62,10 @@ int act_read_index(explorer_state *st, const char **text, int count, const char 
     return (int)number - 1;
 }
 
-int act_split(char *text, char *words[4])
+int act_split(const char *argument, char text[LINE_TEXT], char *words[4])
 {
     int count = 0;
+    snprintf(text, LINE_TEXT, "%s", argument);
     for (char *word, *rest = text; (word = strtok_r(rest, " \t", &rest)) != NULL; count++) {
         if (count < 4) {
             words[count] = word;

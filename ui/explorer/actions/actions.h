@@ -49,9 +49,9 @@ bool act_read_number_or(explorer_state *st, const char *text, const char *word, 
 int act_read_index(explorer_state *st, const char **text, int count, const char *what,
                    const char *lister);
 
-// Cuts a text into words at its blanks; returns how many there are, of which the first four are in
-// words[].
-int act_split(char *text, char *words[4]);
+// Cuts an argument into words at its blanks; returns how many there are, of which the first four
+// are in words[], in `text`.
+int act_split(const char *argument, char text[LINE_TEXT], char *words[4]);
 
 // Reads the pane of a word, a number from 1 or "all": *index -1.
 bool act_read_pane(explorer_state *st, const char *word, int *index);
@@ -146,10 +146,6 @@ void act_follow_lesson(explorer_state *st);
 // move above the first entry.
 void act_move_in_palette(explorer_state *st, int direction);
 
-// The command line of the selected entry; false if none is selected. *goes_on: it still needs an
-// argument.
-bool act_line_of_palette(const explorer_state *st, char line[LINE_TEXT], bool *goes_on);
-
 // --- axes of values ---------------------------------------------------------------------------
 
 // Scales a pane's axis about a point, given as a share of its height from the top, or shifts it up
@@ -162,15 +158,9 @@ bool act_toggle_signal(explorer_state *st, int index, int k);
 
 // --- sliders ----------------------------------------------------------------------------------
 
-// A slider that is being dragged: its parameter, the share of its scale, its width in cells.
-typedef struct slider_drag {
-    int parameter;
-    double share; // 0 to 1
-    int cells;
-} slider_drag;
-
-// Starts dragging a slider or moves it; only stores its position.
-void act_hold_slider(explorer_state *st, slider_drag d);
+// Starts dragging a parameter's slider or moves it to a share of its scale, 0 to 1; only stores its
+// position. It is some cells wide.
+void act_hold_slider(explorer_state *st, int parameter, double share, int cells);
 // Sets the parameter to the value of the slider; called once for each picture, however often the
 // mouse has moved.
 bool act_follow_slider(explorer_state *st);

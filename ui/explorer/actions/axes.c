@@ -163,12 +163,8 @@ static bool apply(explorer_state *st, int index, char *const words[4], int count
 bool act_axis(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT], *words[4], *end;
-    snprintf(text, sizeof text, "%s", argument);
-    int count = act_split(text, words), index = panes_focused(&st->panes);
-    if (count == 0 || count > 3) {
-        char none[] = "";
-        return apply(st, 0, (char *[4]){none}, 1);
-    }
+    int count = act_split(argument, text, words), index = panes_focused(&st->panes);
+    FAIL_IF(count == 0 || count > 3, apply(st, 0, (char *[4]){(char[]){""}}, 1));
 
     // limits are two words, everything else is one; a pane may follow
     bool limits = (strtod(words[0], &end), end != words[0]);

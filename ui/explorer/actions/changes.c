@@ -231,21 +231,21 @@ bool act_extend(explorer_state *st, const char *argument)
 
 // --- sliders ----------------------------------------------------------------------------------
 
-void act_hold_slider(explorer_state *st, slider_drag d)
+void act_hold_slider(explorer_state *st, int parameter, double share, int cells)
 {
-    assert(d.parameter >= 0 && d.parameter < parameter_count);
+    assert(parameter >= 0 && parameter < parameter_count);
     slider_grip *grip = &st->slider;
-    parameters p = state_parameters(st);
+    const parameters p = state_parameters(st);
 
     // the scale stays as it was when the mouse took hold
-    bool begins = !grip->held || grip->parameter != d.parameter;
-    if (begins && !slider_scale_of(d.parameter, parameter_get(&p, d.parameter), &grip->scale)) {
+    const bool begins = !grip->held || grip->parameter != parameter;
+    if (begins && !slider_scale_of(parameter, parameter_get(&p, parameter), &grip->scale)) {
         return;
     }
     grip->held = true;
-    grip->parameter = d.parameter;
-    parameter_list_select(&st->parameters, (parameter_line){d.parameter, false});
-    grip->value = slider_value(&grip->scale, d.parameter, d.share, d.cells);
+    grip->parameter = parameter;
+    parameter_list_select(&st->parameters, (parameter_line){parameter, false});
+    grip->value = slider_value(&grip->scale, parameter, share, cells);
 }
 
 bool act_follow_slider(explorer_state *st)

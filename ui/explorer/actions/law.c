@@ -81,16 +81,6 @@ static const char *wanted_lock(explorer_state *st, const char *argument)
     return next == 0 ? "none" : m->names[next - 1];
 }
 
-static bool tell_modes(explorer_state *st)
-{
-    const law_modes *m = state_law_modes(st);
-    char text[LINE_TEXT] = "";
-    for (int i = 0; i < m->count; i++) {
-        text_add(text, sizeof text, "%s%s", i > 0 ? ", " : "", m->names[i]);
-    }
-    return act_tell(st, "lock takes off, next or a mode of this law: %s", text);
-}
-
 static bool lock(explorer_state *st, const char *wanted)
 {
     session *s = &st->session;
@@ -119,13 +109,17 @@ bool act_lock(explorer_state *st, const char *argument)
 {
     FAIL_IF(!state_has_law(st),
             act_refuse(st, "no law is on that could be held in a mode (:law NAME)"));
-    FAIL_IF(!state_law_modes(st)->lockable, act_refuse(st, "this law cannot be held in a mode"));
+    const law_modes *m = state_law_modes(st);
+    char wanted[LINE_TEXT] = "";
+    FAIL_IF(!m->lockable, act_refuse(st, "this law cannot be held in a mode"));
     if (argument[0] == '\0') {
-        return tell_modes(st);
+        for (int i = 0; i < m->count; i++) {
+            text_add(wanted, sizeof wanted, "%s%s", i > 0 ? ", " : "", m->names[i]);
+        }
+        return act_tell(st, "lock takes off, next or a mode of this law: %s", wanted);
     }
 
     // a copy: the modes are read anew when the run changes
-    char wanted[LINE_TEXT];
     snprintf(wanted, sizeof wanted, "%s", wanted_lock(st, argument));
     return lock(st, wanted);
 }

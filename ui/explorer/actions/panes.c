@@ -103,22 +103,15 @@ bool act_trace(explorer_state *st, const char *argument)
                     "trace takes a number from 1 to 9 or names of signals");
 }
 
-bool act_residual(explorer_state *st, const char *argument)
-{
-    return show_own(st, argument, VIEW_RESIDUAL, 1, PANE_SIGNALS,
-                    "residual takes signals that were measured");
-}
-
-bool act_phase(explorer_state *st, const char *argument)
-{
-    return show_own(st, argument, VIEW_PHASE, 2, 2,
-                    "phase takes two signals: what goes up, and what across");
-}
-
-bool act_spectrum(explorer_state *st, const char *argument)
-{
-    return show_own(st, argument, VIEW_SPECTRUM, 1, 1, "spectrum takes one signal");
-}
+#define ACTION_OF_VIEW(command, view, least, most, refusal)                                        \
+    bool act_##command(explorer_state *st, const char *argument)                                   \
+    {                                                                                              \
+        return show_own(st, argument, view, least, most, refusal);                                 \
+    }
+ACTION_OF_VIEW(residual, VIEW_RESIDUAL, 1, PANE_SIGNALS,
+               "residual takes signals that were measured")
+ACTION_OF_VIEW(phase, VIEW_PHASE, 2, 2, "phase takes two signals: what goes up, and what across")
+ACTION_OF_VIEW(spectrum, VIEW_SPECTRUM, 1, 1, "spectrum takes one signal")
 
 // Shows the panes of these numbers and no others.
 bool act_panes(explorer_state *st, const char *argument)
@@ -159,8 +152,7 @@ bool act_signal(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT], *words[4] = {argument[0] == '\0' ? text : NULL};
     int index = panes_focused(&st->panes);
-    snprintf(text, sizeof text, "%s", argument);
-    NEED(act_split(text, words) != 2 || act_read_pane(st, words[1], &index));
+    NEED(act_split(argument, text, words) != 2 || act_read_pane(st, words[1], &index));
     const int signal = signal_find_any(words[0]);
     FAIL_IF(index < 0, act_refuse(st, "no pane of curves is shown, 1 to 9 show them"));
     pane *p = &st->panes.pane[index];
@@ -194,9 +186,8 @@ static bool read_bound(explorer_state *st, const char *argument, const char *com
 {
     char text[LINE_TEXT], *words[4];
     solved_limit read = {.signal = -1};
-    snprintf(text, sizeof text, "%s", argument);
     const bool done =
-        act_split(text, words) == 2 && (read.signal = signal_find_any(words[0])) >= 0
+        act_split(argument, text, words) == 2 && (read.signal = signal_find_any(words[0])) >= 0
             ? act_read_number(st, words[1], &read.bound)
             : strcmp(argument, "off") == 0 ||
                   act_refuse(st, "%s takes a signal and a value, such as force 2, or off", command);

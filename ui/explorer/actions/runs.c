@@ -72,8 +72,9 @@ bool act_forget(explorer_state *st, const char *argument)
 ACTION_ON_RUN(take)
 {
     run_list *list = &st->pinned;
-    FAIL_IF(run_origin_is_of(&list->runs[index].from, &st->session),
-            act_tell(st, "this is that run"));
+    if (run_origin_is_of(&list->runs[index].from, &st->session)) {
+        return act_tell(st, "this is that run");
+    }
 
     // the present one must not be lost; pinning it moves none of the others
     NEED(pin(st, ""));
@@ -144,7 +145,9 @@ bool act_difference(explorer_state *st, const char *argument)
     // where the first signal of the pane in focus leaves the tolerance
     const char *name = st->pinned.runs[st->pinned.baseline].name;
     const int focused = panes_focused(&st->panes);
-    FAIL_IF(focused < 0, act_tell(st, "minus '%s'; D shows the runs again", name));
+    if (focused < 0) {
+        return act_tell(st, "minus '%s'; D shows the runs again", name);
+    }
     const int signal = st->panes.pane[focused].signals[0];
     const signal_info *info = &signal_table[signal];
     const bool derived = signal_is_derived(signal), none = derived || signal_is_state(signal);

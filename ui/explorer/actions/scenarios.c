@@ -65,7 +65,7 @@ bool act_find(explorer_state *st, const char *argument)
     open_list(st);
     snprintf(st->scenarios.filter, sizeof st->scenarios.filter, "%s", argument);
     st->scenarios.filtering = true;
-    scenario_menu_keep_selection_shown(&st->scenarios);
+    scenario_menu_move(&st->scenarios, 0);
     return true;
 }
 

@@ -22,8 +22,9 @@ bool act_select(explorer_state *st, const char *argument)
         st->drawn.scroll[st->side.panel] += direction;
     } else {
         // the parameters end at both ends, without a way around
-        const int count = state_parameter_lines(st, lines);
-        const int next = parameter_list_selected(&st->parameters, lines, count) + direction;
+        int next;
+        const int count = state_parameter_lines(st, lines, &next);
+        next += direction;
         if (next >= 0 && next < count) {
             parameter_list_select(&st->parameters, lines[next]);
         }
@@ -76,9 +77,9 @@ void act_settle_filter(explorer_state *st, panel_id panel)
 
     // the selected parameter if it is still there, else the first that has an effect, else the
     // first
-    const int count = state_parameter_lines(st, lines);
+    int selected;
+    const int count = state_parameter_lines(st, lines, &selected);
     const parameter_list *list = &st->parameters;
-    const int selected = parameter_list_selected(list, lines, count);
     const bool there =
         count > 0 && !lines[selected].heading && lines[selected].parameter == list->parameter;
     int best = -1;
@@ -228,7 +229,8 @@ static bool choose(explorer_state *st, const look_choice *c, const char *argumen
             act_refuse(st, "'%s' is none of %s", argument, all));
     *value = found >= 0 ? found : (*value + 1) % count;
     st->looks.redraw |= found >= 0;
-    return c->says[*value] == NULL || act_tell(st, "%s", c->says[*value]);
+    const char *says = c->says[c->says[1] != NULL ? *value : 0];
+    return says == NULL || act_tell(st, says, c->words[*value]);
 }
 
 #define ACTION_OF_CHOICE(command)                                                                  \
@@ -290,7 +292,9 @@ bool act_quit(explorer_state *st, const char *argument)
     }
 
     // work is lost only if quitting is requested twice
-    FAIL_IF(changes + pins == 0 || st->asked_to_quit, act_quit_now(st, ""));
+    if (changes + pins == 0 || st->asked_to_quit) {
+        return act_quit_now(st, "");
+    }
     char lost[96] = "", pinned[48] = "";
     if (changes > 0) {
         snprintf(lost, sizeof lost, "%d change%s", changes, changes == 1 ? "" : "s");
@@ -328,14 +332,4 @@ void act_move_in_palette(explorer_state *st, int direction)
     int at = st->palette.selected + direction;
     at = at >= count ? count - 1 : at;
     st->palette.selected = at < least ? least : at;
-}
-
-bool act_line_of_palette(const explorer_state *st, char line[LINE_TEXT], bool *goes_on)
-{
-    static palette_entry entries[PALETTE_ENTRIES];
-    const int count = palette_find(&st->scenarios, &st->keys, st->prompt.text, entries);
-    const int at = st->palette.selected;
-    NEED(at >= 0 && at < count);
-    palette_line(&st->scenarios, &st->keys, entries[at], line, goes_on);
-    return true;
 }

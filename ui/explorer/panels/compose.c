@@ -283,14 +283,6 @@ static int side_width(int screen_width)
                                         : 0;
 }
 
-// Whether a panel of the stack leaves its rows to the chosen one, which has more to show than they
-// have: that of a sweep or of statistics.
-static bool gives_way(const explorer_state *st, panel_id id)
-{
-    const bool wants_room = st->side.panel == PANEL_SWEEP || st->side.panel == PANEL_STATISTICS;
-    return wants_room && (id == PANEL_CONTROLLER || id == PANEL_PREDICTORS);
-}
-
 // Folds panels of the stack until the chosen one has enough of the rows, of which it has `left`:
 // first those without anything to show. Returns the rows that it has then.
 static int fold_stack(const explorer_state *st, layout *lay, int rows[PANEL_IDS], int left)
@@ -335,13 +327,15 @@ static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
     const screen_size body = {s->width, a.height};
     int rows[PANEL_IDS] = {0}, left = a.height;
 
-    // the rows of those below; the chosen one gets what they leave
+    // the rows of those below; the chosen one gets what they leave, and of some all where it has
+    // more to show than they have
+    const bool much = st->side.panel == PANEL_SWEEP || st->side.panel == PANEL_STATISTICS;
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         const panel *p = panel_of((panel_id)id);
-        if (panel_place_of((panel_id)id) == PLACE_STACK && panel_fits(p, body) &&
-            id != (int)st->side.panel) {
+        if (panel_place_of((panel_id)id) == PLACE_STACK && id != (int)st->side.panel) {
             rows[id] = p->rows(st, body);
-            lay->drawn.folded[id] = rows[id] > 0 && gives_way(st, (panel_id)id);
+            lay->drawn.folded[id] =
+                rows[id] > 0 && much && (id == PANEL_CONTROLLER || id == PANEL_PREDICTORS);
             rows[id] = lay->drawn.folded[id] ? 0 : rows[id];
             left -= rows[id];
         }

@@ -103,11 +103,7 @@ static void draw_brief(screen *s, area a, const sample *row, const parameters *p
 // Tall enough for its table, or brief, or not at all; before the predictors, which may fold.
 static int rows(const explorer_state *st, screen_size body)
 {
-    const panel *predictors = panel_of(PANEL_PREDICTORS);
-    int room = body.height;
-    if (panel_fits(predictors, body)) {
-        room -= predictors->rows(st, body);
-    }
+    const int room = body.height - panel_of(PANEL_PREDICTORS)->rows(st, body);
     return !state_has_law(st) ? 0 : room >= 30 ? TALL : body.height >= 13 ? BRIEF : 0;
 }
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "src/rig/controller.h"
-#include "ui/terminal/ink_colours.h"
+#include "ui/terminal/pictures.h"
 
 // --- titles -----------------------------------------------------------------------------------
 
@@ -341,7 +341,9 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
         plot_frame_cursor(&f, s, st->mark.time);
     }
     plot_frame_cursor(&f, s, st->session.now);
-    plot_frame_close(&f);
+    if (f.picture != NULL) {
+        picture_end(s, f.picture);
+    }
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)

@@ -168,23 +168,6 @@ static lane_band band_between(const explorer_state *st, lane l, double from, dou
 
 // --- drawing ----------------------------------------------------------------------------------
 
-// The instant at the left edge of a column [s].
-static double column_time(const explorer_state *st, area line, int column)
-{
-    double from, to;
-    state_window(st, &from, &to);
-    return from + (to - from) * column / line.width;
-}
-
-static void draw_label(const explorer_state *st, screen *s, area a, lane l)
-{
-    if (l.run > 0) {
-        screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "\u2592 %s", state_run_name(st, l.run));
-        return;
-    }
-    screen_text(s, a.x, a.y, LABEL_WIDTH, INK_DIM, labels[l.kind]);
-}
-
 // A name in a band, as far as that is long enough to tell it.
 static void name_band(screen *s, int start, int end, int y, const lane_band *band)
 {
@@ -199,9 +182,12 @@ static void draw_bands(const explorer_state *st, screen *s, area line, lane l)
 {
     const bool future = st->session.has_ghost || l.run > 0;
     lane_band before = {.value = -1};
+    double left, right;
     int start = 0;
+    state_window(st, &left, &right);
     for (int i = 0; i <= line.width; i++) {
-        const double from = column_time(st, line, i), to = column_time(st, line, i + 1);
+        const double from = left + (right - left) * i / line.width;
+        const double to = left + (right - left) * (i + 1) / line.width;
         const bool known = i < line.width && (future || from <= st->session.seen);
         const lane_band band =
             known ? band_between(st, l, from, future ? to : fmin(to, st->session.seen))
@@ -298,7 +284,9 @@ void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a)
     const area all = {line.x, line.y, line.width, left};
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LANES, 0, all});
     for (int i = 0; i < count && left > 0; i++, left--, a.y++, line.y++) {
-        draw_label(st, s, a, lanes[i]);
+        const bool other = lanes[i].run > 0;
+        screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, other ? "\u2592 %s" : "%s",
+                     other ? state_run_name(st, lanes[i].run) : labels[lanes[i].kind]);
         if (lanes[i].kind == LANE_CHANGES) {
             draw_changes(st, s, line);
         } else {

@@ -61,7 +61,7 @@ static int find_later_inputs(const explorer_state *st, size_t seen, int later[MO
 
 static int rows(const explorer_state *st, screen_size body)
 {
-    return body.height / 4;
+    return body.width >= SIDE_WIDTH && body.height >= 26 ? body.height / 4 : 0;
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
@@ -112,10 +112,5 @@ static bool point(explorer_state *st, const panel_gesture *g)
     return pressed;
 }
 
-const panel log_panel = {.name = "log",
-                         .least_width = SIDE_WIDTH,
-                         .least_body = 26,
-                         .rows = rows,
-                         .draw = draw,
-                         .wheel = WHEEL_LINES,
-                         .point = point};
+const panel log_panel = {
+    .name = "log", .rows = rows, .draw = draw, .wheel = WHEEL_LINES, .point = point};

@@ -16,11 +16,6 @@ const panel *panel_of(panel_id id)
     return panels[id];
 }
 
-bool panel_fits(const panel *p, screen_size body)
-{
-    return body.width >= p->least_width && body.height >= p->least_body;
-}
-
 int pointer_wheel(pointer_event e)
 {
     return e.kind == POINTER_WHEEL_UP ? -1 : e.kind == POINTER_WHEEL_DOWN ? 1 : 0;

@@ -137,10 +137,9 @@ int pointer_wheel(pointer_event e);
 
 typedef struct panel {
     const char *name;
-    int least_width; // of the screen on which it is shown [cells]
-    int least_body;  // rows between title and status that it needs to be shown [cells]
 
-    // The number of rows in a stack in `body`, 0 if it has nothing to show. Stacked panels only.
+    // The number of rows in a stack in `body`, 0 if it has nothing to show or there is no room.
+    // Stacked panels only.
     int (*rows)(const explorer_state *st, screen_size body);
 
     // Draws it into an area of the screen; pages are centred in the area of all panels.
@@ -163,9 +162,6 @@ PANEL_LIST(PANEL_DECLARATION)
 
 // The description of a panel; not for PANEL_NONE.
 const panel *panel_of(panel_id id);
-
-// Whether a panel has room on a screen whose panels have the area `body`.
-bool panel_fits(const panel *p, screen_size body);
 
 // --- pages ------------------------------------------------------------------------------------
 // Keys and mouse in pages that are scrolled line by line.

@@ -150,8 +150,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
 
     // a number that is selected takes a second line, and so does what has no effect
-    int count = state_parameter_lines(st, lines);
-    const int selected = parameter_list_selected(list, lines, count);
+    int selected;
+    const int count = state_parameter_lines(st, lines, &selected);
     const bool shows_parameter =
         count > 0 && !lines[selected].heading && lines[selected].parameter == list->parameter;
     const bool expands = shows_parameter && height >= 2 &&
@@ -191,7 +191,7 @@ static bool point_at_slider(explorer_state *st, const panel_gesture *g)
     } else if (g->event.kind == POINTER_RELEASE) {
         act_drop_slider(st);
     } else {
-        act_hold_slider(st, (slider_drag){h->index, share, cells});
+        act_hold_slider(st, h->index, share, cells);
     }
     return true;
 }

@@ -29,14 +29,6 @@ void plot_frame_open(const explorer_state *st, plot_frame *f)
                              .line = pixels->cell_height >= LARGE_CELL ? 2 : 1.5};
 }
 
-void plot_frame_close(plot_frame *f)
-{
-    if (f->picture != NULL) {
-        picture_end(f->canvas.screen, f->picture);
-        f->picture = NULL;
-    }
-}
-
 static double plot_x(const plot_frame *f, double time)
 {
     return (time - f->from) / (f->to - f->from) * (2.0 * f->canvas.width - 1);

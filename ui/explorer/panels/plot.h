@@ -25,10 +25,8 @@ typedef struct plot_frame {
     colour_theme theme;
 } plot_frame;
 
-// Draws the pane in pixels if the screen has them, until plot_frame_close.
+// Begins a picture of the pane if the screen has pixels; it is to be ended.
 void plot_frame_open(const explorer_state *st, plot_frame *f);
-
-void plot_frame_close(plot_frame *f);
 
 // Draws one signal of a run up to the instant `until` [s] with the frame's pattern and colour:
 // every row if there are few, otherwise the smallest and largest value of each column. `pairs`: the

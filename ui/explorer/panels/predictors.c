@@ -113,7 +113,7 @@ static void predictor_line(screen *s, area a, int line, const char *label, const
 
 static int rows(const explorer_state *st, screen_size body)
 {
-    return ROWS;
+    return body.width >= SIDE_WIDTH && body.height >= 15 ? ROWS : 0;
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
@@ -153,5 +153,4 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     }
 }
 
-const panel predictors_panel = {
-    .name = "predictors", .least_width = SIDE_WIDTH, .least_body = 15, .rows = rows, .draw = draw};
+const panel predictors_panel = {.name = "predictors", .rows = rows, .draw = draw};

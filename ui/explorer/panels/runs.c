@@ -11,7 +11,8 @@ enum { SAMPLE = 4, PEAK = 10 };
 
 static int rows(const explorer_state *st, screen_size body)
 {
-    return st->pinned.count > 0 ? st->pinned.count + 3 : 0;
+    const bool fits = body.width >= SIDE_WIDTH && body.height >= 12;
+    return fits && st->pinned.count > 0 ? st->pinned.count + 3 : 0;
 }
 
 // A run in a line: how it is drawn, its name, its peak force.
@@ -57,12 +58,7 @@ static bool point(explorer_state *st, const panel_gesture *g)
     return pressed;
 }
 
-const panel runs_panel = {.name = "runs",
-                          .least_width = SIDE_WIDTH,
-                          .least_body = 12,
-                          .rows = rows,
-                          .draw = draw,
-                          .point = point};
+const panel runs_panel = {.name = "runs", .rows = rows, .draw = draw, .point = point};
 
 // --- the page ---------------------------------------------------------------------------------
 // The page of pinned runs: what differs, and what can be done with them.

@@ -5,13 +5,8 @@ enum { PREVIEW = 6, TALL_SCREEN = 22 }; // rows of the preview, and of a screen 
 
 // The first line to show. It moves only as far as it must, so that a second click meets what the
 // first one selected.
-static int first_line(const scenario_menu *menu, int first, int height)
+static int first_line(int selected, int count, int first, int height)
 {
-    int count = 0, selected = 0;
-    for (int i = 0; i < menu->count; i++) {
-        selected = i == menu->selected ? count : selected;
-        count += scenario_menu_shows(menu, i);
-    }
     if (first < 0) {
         return draw_first_line(selected, count, height);
     }
@@ -44,12 +39,12 @@ static void draw_preview(const scenario_menu *menu, screen *s, area a)
         screen_put(s, a.x + x, a.y, 0x2500, INK_FRAME);
     }
 
-    // a filter may hide the selected one
-    if (menu->selected >= menu->count || !scenario_menu_shows(menu, menu->selected)) {
+    // as much of it as there is room for, unless the filter hides it
+    int at;
+    scenario_menu_lines(menu, &at);
+    if (at < 0) {
         return;
     }
-
-    // as much of it as there is room for
     const char *text = scenario_menu_text(menu, menu->selected).description;
     const int count = text_wrap(text, a.width, lines, a.height - 1, NULL);
     for (int i = 0; i < count; i++) {
@@ -63,7 +58,9 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     const scenario_menu *menu = &st->scenarios;
     const int preview = s->height >= TALL_SCREEN ? PREVIEW : 0;
     area a = page_area(body, 96, menu->count + 4 + preview);
-    int height = a.height - 4 - preview, first = first_line(menu, st->drawn.first_scenario, height);
+    int height = a.height - 4 - preview, selected;
+    const int count = scenario_menu_lines(menu, &selected);
+    const int first = first_line(selected, count, st->drawn.first_scenario, height);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
                  "scenarios (Enter opens, / filters, Esc closes)");
     screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "/ filter: %s%s", menu->filter,
@@ -77,14 +74,9 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_LINES, first, lines});
 
     // entries that pass the filter, as far as there is room
-    for (int i = 0, line = 0; i < menu->count; i++) {
-        if (!scenario_menu_shows(menu, i)) {
-            continue;
-        }
-        int y = lines.y + line++ - first;
-        if (y >= lines.y && y < lines.y + height) {
-            draw_scenario(menu, i, s, (area){a.x + 2, y, a.width - 4, 1});
-        }
+    for (int i = first; i < count && i < first + height; i++) {
+        draw_scenario(menu, menu->shown[i], s,
+                      (area){a.x + 2, lines.y + i - first, a.width - 4, 1});
     }
     if (preview > 0) {
         draw_preview(menu, s, (area){a.x + 2, lines.y + height, a.width - 4, preview});
@@ -94,9 +86,10 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
 static bool open_selected(explorer_state *st)
 {
     const scenario_menu *menu = &st->scenarios;
+    int at;
     st->page = PANEL_NONE;
-    return menu->selected >= menu->count || !scenario_menu_shows(menu, menu->selected) ||
-           act_open_scenario(st, menu->names[menu->selected]);
+    scenario_menu_lines(menu, &at);
+    return at < 0 || act_open_scenario(st, menu->names[menu->selected]);
 }
 
 // Keys go to the filter until it is closed; Enter opens what is selected.
@@ -111,8 +104,8 @@ static bool filter_key(explorer_state *st, int key)
     } else {
         text_type(menu->filter, key);
     }
-    scenario_menu_keep_selection_shown(menu);
-    return opens ? open_selected(st) : true;
+    scenario_menu_move(menu, 0);
+    return !opens || open_selected(st);
 }
 
 static bool menu_key(explorer_state *st, int key)
@@ -126,10 +119,9 @@ static bool menu_key(explorer_state *st, int key)
     const bool up = key == KEY_CODE_UP || key == 'k' || key == KEY_CODE_PAGE_UP;
     const bool down = key == KEY_CODE_DOWN || key == 'j' || key == KEY_CODE_PAGE_DOWN;
     const bool page = key == KEY_CODE_PAGE_UP || key == KEY_CODE_PAGE_DOWN;
-    for (int i = 0; (up || down) && i < (page ? 10 : 1); i++) {
-        scenario_menu_move(menu, up ? -1 : 1);
-    }
-    if (key == '/') {
+    if (up || down) {
+        scenario_menu_move(menu, (page ? 10 : 1) * (up ? -1 : 1));
+    } else if (key == '/') {
         menu->filtering = true;
         menu->filter[0] = '\0';
     } else if (key == KEY_CODE_ENTER) {
@@ -151,12 +143,12 @@ static bool point(explorer_state *st, const panel_gesture *g)
     }
 
     // in a line without a scenario nothing happens
-    int index = scenario_menu_in_line(menu, g->hit.index + g->event.y - g->hit.area.y);
-    if (index >= 0 && index == menu->selected) {
+    int selected, line = g->hit.index + g->event.y - g->hit.area.y;
+    if (line < scenario_menu_lines(menu, &selected) && line == selected) {
         menu->filtering = false;
         open_selected(st);
-    } else if (index >= 0) {
-        menu->selected = index;
+    } else if (line < scenario_menu_lines(menu, &selected)) {
+        menu->selected = menu->shown[line];
     }
     return true;
 }

@@ -66,9 +66,11 @@ void parameter_list_arrange(parameter_list *list, const parameters *p, int selec
 }
 
 int parameter_list_lines(const parameter_list *list, const char *filter,
-                         parameter_line lines[PARAMETER_LINES])
+                         parameter_line lines[PARAMETER_LINES], int *selected)
 {
+    const int own = parameter_group(list->parameter);
     int count = 0, group = -1;
+    *selected = 0;
     for (int i = 0; i < parameter_count && count + 2 <= PARAMETER_LINES; i++) {
         const parameter_info *info = &parameter_table[i];
         char text[512];
@@ -80,26 +82,15 @@ int parameter_list_lines(const parameter_list *list, const char *filter,
         // a group's heading before its first line that passes the filter
         if (parameter_group(i) != group) {
             group = parameter_group(i);
+            *selected = group == own ? count : *selected;
             lines[count++] = (parameter_line){group, true};
         }
         if (filter[0] != '\0' || !list->folded[group]) {
+            *selected = i == list->parameter && !list->on_heading ? count : *selected;
             lines[count++] = (parameter_line){i, false};
         }
     }
     return count;
-}
-
-int parameter_list_selected(const parameter_list *list, const parameter_line *lines, int count)
-{
-    // itself, else its group's heading
-    int found = 0;
-    for (int i = count; i-- > 0;) {
-        const bool heading = lines[i].heading;
-        const bool meant = heading ? lines[i].parameter == parameter_group(list->parameter)
-                                   : !list->on_heading && lines[i].parameter == list->parameter;
-        found = meant && (!heading || found == 0) ? i : found;
-    }
-    return found;
 }
 
 void parameter_list_select(parameter_list *list, parameter_line line)

@@ -29,12 +29,10 @@ void parameter_group_name(int parameter, char *name, size_t size);
 void parameter_list_arrange(parameter_list *list, const parameters *p, int selected);
 
 // Fills the lines that are shown and returns how many. With a filter, matching parameters are shown
-// even in folded groups.
+// even in folded groups. *selected is the index of the selected line, else of its group's heading,
+// else 0.
 int parameter_list_lines(const parameter_list *list, const char *filter,
-                         parameter_line lines[PARAMETER_LINES]);
-
-// The index of the selected line among those shown; 0 if it is not shown.
-int parameter_list_selected(const parameter_list *list, const parameter_line *lines, int count);
+                         parameter_line lines[PARAMETER_LINES], int *selected);
 
 // Selects a line.
 void parameter_list_select(parameter_list *list, parameter_line line);

@@ -12,8 +12,9 @@
 void scenario_menu_read(scenario_menu *menu)
 {
     const status code = scenario_list(&menu->names, &menu->count, NULL);
-    loss_unless(code != STATUS_NO_MEMORY);
     menu->count = code == STATUS_OK ? menu->count : 0;
+    menu->shown = calloc((size_t)menu->count + 1, sizeof *menu->shown);
+    loss_unless(code != STATUS_NO_MEMORY && menu->shown != NULL);
 }
 
 // Puts the lessons, which lie side by side, in the order of the numbers in their titles.
@@ -41,13 +42,11 @@ void scenario_menu_read_titles(scenario_menu *menu)
     }
     menu->texts = calloc((size_t)menu->count, sizeof *menu->texts);
     loss_unless(menu->texts != NULL);
-
     if (menu->texts == NULL) {
         return;
     }
 
-    // a file that cannot be read has only its name; opening it tells its faults; opening it tells
-    // its faults
+    // a file that cannot be read has only its name; opening it tells its faults
     for (int i = 0; i < menu->count; i++) {
         scenario s;
         fault f = {0};
@@ -71,6 +70,7 @@ void scenario_menu_finish(scenario_menu *menu)
     }
     free(menu->texts);
     free(menu->names);
+    free(menu->shown);
     *menu = (scenario_menu){0};
 }
 
@@ -92,42 +92,27 @@ menu_text scenario_menu_text(const scenario_menu *menu, int index)
     return text;
 }
 
-bool scenario_menu_shows(const scenario_menu *menu, int index)
+int scenario_menu_lines(const scenario_menu *menu, int *selected)
 {
-    assert(index >= 0 && index < menu->count);
-    char text[1024];
-    snprintf(text, sizeof text, "%s %s", menu->names[index], scenario_menu_text(menu, index).title);
-    return filter_passes(menu->filter, text);
-}
-
-int scenario_menu_in_line(const scenario_menu *menu, int line)
-{
-    for (int i = 0; i < menu->count; i++) {
-        if (scenario_menu_shows(menu, i) && line-- == 0) {
-            return i;
+    int count = 0;
+    *selected = -1;
+    for (int i = 0; i < menu->count && menu->shown != NULL; i++) {
+        char text[1024];
+        snprintf(text, sizeof text, "%s %s", menu->names[i], scenario_menu_text(menu, i).title);
+        if (filter_passes(menu->filter, text)) {
+            *selected = i == menu->selected ? count : *selected;
+            menu->shown[count++] = i;
         }
     }
-    return -1;
+    return count;
 }
 
-void scenario_menu_move(scenario_menu *menu, int direction)
+void scenario_menu_move(scenario_menu *menu, int lines)
 {
-    assert(direction == 1 || direction == -1);
-    for (int i = menu->selected + direction; i >= 0 && i < menu->count; i += direction) {
-        if (scenario_menu_shows(menu, i)) {
-            menu->selected = i;
-            return;
-        }
-    }
-}
-
-void scenario_menu_keep_selection_shown(scenario_menu *menu)
-{
-    if (menu->selected < menu->count && !scenario_menu_shows(menu, menu->selected)) {
-        menu->selected = -1;
-        scenario_menu_move(menu, 1);
-        menu->selected = menu->selected < 0 ? 0 : menu->selected;
-    }
+    int at;
+    const int count = scenario_menu_lines(menu, &at), to = at < 0 ? 0 : at + lines;
+    const int last = count - 1, kept = to > last ? last : to < 0 ? 0 : to;
+    menu->selected = count > 0 ? menu->shown[kept] : 0;
 }
 
 // --- lessons ----------------------------------------------------------------------------------

@@ -16,6 +16,7 @@ typedef struct scenario_menu {
     char **names;     // of all scenarios
     menu_text *texts; // of each; NULL before they are read
     int count;
+    int *shown; // indices of those that are in a line
     char filter[LINE_TEXT];
     bool filtering; // the filter receives the keys
     int selected;   // index
@@ -31,15 +32,13 @@ void scenario_menu_finish(scenario_menu *menu);
 int scenario_menu_find(const scenario_menu *menu, const char *name);
 // What a scenario says of itself, "" where it has nothing or nothing was read.
 menu_text scenario_menu_text(const scenario_menu *menu, int index);
-// Whether a scenario passes the filter by its name or title.
-bool scenario_menu_shows(const scenario_menu *menu, int index);
-// The index of the scenario in a displayed line, -1 after the last.
-int scenario_menu_in_line(const scenario_menu *menu, int line);
+// Finds the scenarios that pass the filter by their names or titles: menu->shown. Returns how many;
+// *selected is the line of the selected one, -1 if it is hidden.
+int scenario_menu_lines(const scenario_menu *menu, int *selected);
 
-// Moves the selection to the next scenario shown (direction 1) or the previous one (-1).
-void scenario_menu_move(scenario_menu *menu, int direction);
-// Moves the selection to the first scenario shown if the filter hides the selected one.
-void scenario_menu_keep_selection_shown(scenario_menu *menu);
+// Moves the selection by some of the lines shown, as far as there are any; a hidden one first to
+// the first line.
+void scenario_menu_move(scenario_menu *menu, int lines);
 
 // --- lessons ----------------------------------------------------------------------------------
 

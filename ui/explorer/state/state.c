@@ -131,17 +131,11 @@ static void replace_session(explorer_state *st, session *fresh)
     show_anew(st);
 }
 
-// What there is, to be returned to.
-static status take_visit(const explorer_state *st, visit *v, fault *f)
-{
-    v->lesson = st->lesson;
-    return run_origin_take(&v->from, &st->session, f);
-}
-
 status state_take_session(explorer_state *st, session *fresh, fault *f)
 {
-    visit left;
-    TRY(take_visit(st, &left, f));
+    // what there is, to be returned to
+    visit left = {.lesson = st->lesson};
+    TRY(run_origin_take(&left.from, &st->session, f));
 
     // what undoing had left is given up, and the oldest where there is no room
     for (int i = st->present_visit + 1; i < st->visit_count; i++) {
@@ -169,13 +163,12 @@ bool state_can_turn(const explorer_state *st, int direction)
 status state_turn(explorer_state *st, int direction, fault *f)
 {
     assert(state_can_turn(st, direction));
-    visit left, *to = &st->visits[st->present_visit + direction];
+    visit left = {.lesson = st->lesson}, *to = &st->visits[st->present_visit + direction];
     session fresh;
-    status code = session_reopen(&fresh, &to->from, st->session.patience, f);
-    TRY(code);
-    code = take_visit(st, &left, f);
+    TRY(run_origin_take(&left.from, &st->session, f));
+    const status code = session_reopen(&fresh, &to->from, st->session.patience, f);
     if (code != STATUS_OK) {
-        session_finish(&fresh);
+        run_origin_finish(&left.from);
         return code;
     }
     replace_session(st, &fresh);
@@ -309,9 +302,11 @@ void state_change_text(const explorer_state *st, int index, char *text, size_t s
     snprintf(text, size, "%s = %s%s%s", info->path, value, info->unit[0] ? " " : "", info->unit);
 }
 
-int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES])
+int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES],
+                          int *selected)
 {
-    return parameter_list_lines(&st->parameters, st->filters.text[PANEL_PARAMETERS], lines);
+    return parameter_list_lines(&st->parameters, st->filters.text[PANEL_PARAMETERS], lines,
+                                selected);
 }
 
 const char *state_inert_reason(const explorer_state *st, int parameter)

@@ -180,8 +180,9 @@ const law_modes *state_law_modes(explorer_state *st);
 // The log of the present run.
 const run_log *state_run_log(explorer_state *st);
 
-// The lines of the list of parameters that are shown; returns how many.
-int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES]);
+// The lines of the list of parameters that are shown, as of parameter_list_lines.
+int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES],
+                          int *selected);
 // A change as a line of text: parameter and value, without its instant.
 void state_change_text(const explorer_state *st, int index, char *text, size_t size);
 // Why a parameter has no effect on the run, half a sentence; NULL if it has one.

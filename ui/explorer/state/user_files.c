@@ -13,22 +13,17 @@
 #include "src/base/whole_file.h"
 #include "src/base/words.h"
 #include "src/scenario/outside.h"
+#include "ui/explorer/state/command_list.h"
 
 bool user_file(const char *name, char *path, size_t size, bool make)
 {
     assert(size > 0);
     const char *base = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
-    int length;
 
     // where settings belong, or the usual place below the home folder
-    if (base != NULL && base[0] == '/') {
-        length = snprintf(path, size, "%s", base);
-    } else if (home != NULL && home[0] == '/') {
-        length = snprintf(path, size, "%s/.config", home);
-    } else {
-        return false;
-    }
-    if (length < 0 || (size_t)length + 24 > size) {
+    const bool given = base != NULL && base[0] == '/', usual = home != NULL && home[0] == '/';
+    snprintf(path, size, given ? "%s" : "%s/.config", given ? base : usual ? home : "");
+    if ((!given && !usual) || strlen(path) + 24 > size) {
         return false;
     }
 
@@ -36,9 +31,9 @@ bool user_file(const char *name, char *path, size_t size, bool make)
     if (make) {
         mkdir(path, 0700);
     }
-    length += snprintf(path + length, size - (size_t)length, "/impactlab");
+    text_add(path, size, "/impactlab");
     const bool there = !make || mkdir(path, 0700) == 0 || errno == EEXIST;
-    snprintf(path + length, size - (size_t)length, "/%s", name);
+    text_add(path, size, "/%s", name);
     return there;
 }
 
@@ -56,14 +51,14 @@ bool consent_needed(const scenario *s)
 static bool add_scenario(sha256 *h, const scenario *s)
 {
     text_stream written;
-    if (!text_stream_open(&written)) {
-        return false;
+    size_t size = 0;
+    char *text = NULL;
+    if (text_stream_open(&written)) {
+        scenario_write(written.stream, s);
+        text = text_stream_close(&written, &size);
     }
-    scenario_write(written.stream, s);
 
     // one that is not whole is another one
-    size_t size;
-    char *text = text_stream_close(&written, &size);
     if (text != NULL) {
         sha256_add(h, text, size);
     }
@@ -107,8 +102,8 @@ static bool look_through(const char *path, const char *digest, FILE *copy)
     bool found = false;
     FILE *stream = fopen(path, "r");
     while (stream != NULL && getline(&line, &room, stream) >= 0) {
-        found =
-            found || (strncmp(line, digest, SHA256_TEXT - 1) == 0 && line[SHA256_TEXT - 1] == ' ');
+        const bool same = strncmp(line, digest, SHA256_TEXT - 1) == 0;
+        found = found || (same && line[SHA256_TEXT - 1] == ' ');
         if (copy != NULL) {
             fputs(line, copy);
         }
@@ -139,8 +134,7 @@ status consent_remember(const scenario *s, bool *kept, fault *f)
 
     // whole or not at all
     whole_file file;
-    status code = whole_file_open(&file, path, f);
-    TRY(code);
+    TRY(whole_file_open(&file, path, f));
     if (!look_through(path, digest, file.stream)) {
         const control_parameters *c = &s->parameters.control;
         snprintf(what, sizeof what, "%s: %s", s->name,
@@ -148,7 +142,7 @@ status consent_remember(const scenario *s, bool *kept, fault *f)
         make_printable(what, 0);
         fprintf(file.stream, "%s %s\n", digest, what);
     }
-    code = whole_file_commit(&file, f);
-    *kept = code == STATUS_OK;
-    return code;
+    TRY(whole_file_commit(&file, f));
+    *kept = true;
+    return STATUS_OK;
 }

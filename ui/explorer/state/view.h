@@ -112,7 +112,7 @@ typedef struct look_choice {
     bool goes_round; // without a word it goes on to the next one
     const char
         *words[LOOK_WORDS + 1];   // of the values of its enumeration, in their order; then NULL
-    const char *says[LOOK_WORDS]; // when one is chosen, NULL for nothing
+    const char *says[LOOK_WORDS]; // when one is chosen, or the first for any word (%s), if anything
 } look_choice;
 
 // All of them; the last one has no command.
