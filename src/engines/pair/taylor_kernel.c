@@ -183,13 +183,7 @@ KERNEL mask goes_on(const real *block, const equations *e, const factors *x, ptr
 KERNEL void put_gap(real *block, const equations *e, factors *x, ptrdiff_t order, sums *sum,
                     const int point)
 {
-    const real w1 = block[AT_RATE_1 + order], w2 = block[AT_RATE_2 + order];
-    keep_rates(x, order, w2 - w1, w1, w2);
-    add_products(sum, x, order, order - 1, TURNING | (point ? 0 : TURNING1), point);
-    turn(&sum->turning, inverse[order + 1], &DIRECTIONS(x, order + 1));
-    if (!point) {
-        turn_one(&sum->turning1, inverse[order + 1], &DIRECTION1(x, order + 1));
-    }
+    add_directions(x, order, block[AT_RATE_1 + order], block[AT_RATE_2 + order], sum, point);
     for (int n = 0; n <= order + 1; n++) {
         block[AT_GAP + n] = gap_term(x, n, e->l, point);
     }

@@ -107,6 +107,53 @@ typedef struct newest {
     sums sum;
 } newest;
 
+// The directions of the order after n from velocities of order n; `sum` has been left open for
+// them.
+KERNEL void add_directions(factors *x, ptrdiff_t n, real w1, real w2, sums *sum, const int point)
+{
+    keep_rates(x, n, w2 - w1, w1, w2);
+    add_products(sum, x, n, n - 1, TURNING | (point ? 0 : TURNING1), point);
+    turn(&sum->turning, inverse[n + 1], &DIRECTIONS(x, n + 1));
+    if (!point) {
+        turn_one(&sum->turning1, inverse[n + 1], &DIRECTION1(x, n + 1));
+    }
+}
+
+// What joints, motor and friction give to the n-th coefficients of p1' and p2'; a hub on its spring
+// goes on to the next ones.
+KERNEL void push_links(real *block, const equations *e, const newest *last, real *hub_rate,
+                       ptrdiff_t n, const int hub_spring, real push[2])
+{
+    const real *q0 = block + AT_ANGLE_0, *q1 = block + AT_ANGLE_1, *q2 = block + AT_ANGLE_2;
+    const real pull = e->k * (q2[n] - q1[n]) + e->kd * (last->rate2 - last->rate1);
+    const real driven = n == 0 ? e->drive : (real){0};
+    push[0] = pull;
+    push[1] = -pull;
+    if (!hub_spring) {
+        push[0] += driven - e->viscous * last->rate1;
+        return;
+    }
+    const real hub = block[AT_RATE_0 + n];
+    hub_rate[n] = last->rate1 - hub;
+    const real hub_pull = e->kh * (q1[n] - q0[n]) + e->khd * hub_rate[n];
+    const real moment = driven - e->viscous * hub + hub_pull;
+    push[0] -= hub_pull;
+    block[AT_HOLD + n] = -moment;
+    block[AT_RATE_0 + n + 1] = moment * e->inverse_hub * inverse[n + 1];
+    block[AT_ANGLE_0 + n + 1] = hub * inverse[n + 1];
+}
+
+// The n-th coefficient of what springs lose, the hub's at its rates of bending.
+KERNEL void add_dissipation(real *block, const equations *e, const factors *x, const real *hub_rate,
+                            ptrdiff_t n, const int hub_spring)
+{
+    real lost = e->kd * square(x->v, n);
+    if (hub_spring) {
+        lost += e->khd * square(hub_rate, n);
+    }
+    block[AT_DISSIPATION + n] = lost;
+}
+
 // The n-th coefficients, and of angles and velocities those after them.
 //
 // An order waits for what is known last: the products with its rates, then those with the newest
@@ -114,26 +161,16 @@ typedef struct newest {
 KERNEL void add_order(real *block, const equations *e, factors *x, real *hub_rate, ptrdiff_t n,
                       newest *last, const int contact, const int point, const int hub_spring)
 {
-    const real *q0 = block + AT_ANGLE_0, *q1 = block + AT_ANGLE_1, *q2 = block + AT_ANGLE_2;
-    real *hold = block + AT_HOLD, *dissipation = block + AT_DISSIPATION;
     const int directions = TURNING | (point ? 0 : TURNING1);
-    const real zero = (real){0}, first2 = block[AT_RATE_2];
+    const real first2 = block[AT_RATE_2];
     const real first_hub = hub_spring ? block[AT_RATE_0] : block[AT_RATE_1];
     const real rate1 = last->rate1, rate2 = last->rate2, m12 = e->m12, l = e->l;
     sums *sum = &last->sum;
 
-    // directions of the next order end what the last pass has left open
+    // directions of the next order
     const double share = inverse[n + 1];
     const real hub = hub_spring ? block[AT_RATE_0 + n] : rate1;
-    const real bend_rate = rate2 - rate1;
-    keep_rates(x, n, bend_rate, rate1, rate2);
-    add_products(sum, x, n, n - 1, directions, point);
-    four next;
-    turn(&sum->turning, share, &next);
-    DIRECTIONS(x, n + 1) = next;
-    if (!point) {
-        turn_one(&sum->turning1, share, &DIRECTION1(x, n + 1));
-    }
+    add_directions(x, n, rate1, rate2, sum, point);
 
     // products: what is known of (c w2)_(n+1), (w1 w2)_n, (s w1 w2)_n, the hub's square; of the
     // turning of the order after next
@@ -147,39 +184,28 @@ KERNEL void add_order(real *block, const equations *e, factors *x, real *hub_rat
         add_products(sum, x, n, n, directions, point);
     }
     add_products(sum, x, 0, n, directions, point);
-    const real product = PART(sum->products, 1) + rate1 * first2;
+    last->product = PART(sum->products, 1) + rate1 * first2;
     block[AT_HUB_SQUARE + n] = PART(sum->products, 3) + hub * first_hub;
-    const real swung = PART(sum->products, 0) + PART(next, 0) * first2;
-    const real turned = e->s0 * product + PART(sum->products, 2), bent = PART(sum->turning, 0);
+    const real swung = PART(sum->products, 0) + PART(DIRECTIONS(x, n + 1), 0) * first2;
+    const real turned = e->s0 * last->product + PART(sum->products, 2),
+               bent = PART(sum->turning, 0);
 
     // derivatives of the momenta without what f_n and these give
-    const real pull = e->k * (q2[n] - q1[n]) + e->kd * bend_rate;
-    const real driven = n == 0 ? e->drive : zero;
-    real push1 = pull, push2 = -pull;
-    if (hub_spring) {
-        hub_rate[n] = rate1 - hub;
-        const real hub_pull = e->kh * (q1[n] - q0[n]) + e->khd * hub_rate[n];
-        const real moment = driven - e->viscous * hub + hub_pull;
-        push1 -= hub_pull;
-        hold[n] = -moment;
-        block[AT_RATE_0 + n + 1] = moment * e->inverse_hub * share;
-        block[AT_ANGLE_0 + n + 1] = hub * share;
-    } else {
-        push1 += driven - e->viscous * rate1;
-    }
+    real push[2];
+    push_links(block, e, last, hub_rate, n, hub_spring, push);
     if (contact && n > 0) {
         add_products(sum, x, 0, n, LEVERED, point);
         const real first = point ? l * PART(sum->levered, 0) : PART(sum->levered, 0);
-        push1 -= first;
-        push2 -= point ? PART(sum->levered, 1) - first : PART(sum->levered, 1);
+        push[0] -= first;
+        push[1] -= point ? PART(sum->levered, 1) - first : PART(sum->levered, 1);
     }
-    push1 += m12 * turned;
-    push2 -= m12 * turned;
+    push[0] += m12 * turned;
+    push[1] -= m12 * turned;
 
     // velocities, and in contact the force that keeps the gap from changing
     const real coupled = m12 * swung;
-    const real b1 = push1 * share - coupled, b2 = (push2 * share + m12 * bent) - coupled;
-    real x1 = e->i11 * b1 + e->i12 * b2, x2 = e->i12 * b1 + e->i22 * b2, force = zero;
+    const real b1 = push[0] * share - coupled, b2 = (push[1] * share + m12 * bent) - coupled;
+    real x1 = e->i11 * b1 + e->i12 * b2, x2 = e->i12 * b1 + e->i22 * b2, force = (real){0};
     if (contact) {
         const real closing = point ? PART(sum->turning, 2) - l * bent
                                    : PART(sum->turning1, 0) + PART(sum->turning, 2);
@@ -193,21 +219,15 @@ KERNEL void add_order(real *block, const equations *e, factors *x, real *hub_rat
     block[AT_RATE_2 + n + 1] = x2;
     block[AT_ANGLE_1 + n + 1] = rate1 * share;
     block[AT_ANGLE_2 + n + 1] = rate2 * share;
-    last->product = product;
     last->rate1 = x1;
     last->rate2 = x2;
 
     // what holds a stuck hub, and what springs lose
     if (!hub_spring && e->sticks) {
-        hold[n] = (e->coupling * x2 + m12 * swung) * (double)(n + 1) - push1;
-        if (contact) {
-            hold[n] += e->j1 * force;
-        }
+        const real held = (e->coupling * x2 + m12 * swung) * (double)(n + 1) - push[0];
+        block[AT_HOLD + n] = contact ? held + e->j1 * force : held;
     }
     if (e->damped) {
-        dissipation[n] = e->kd * square(x->v, n);
-        if (hub_spring) {
-            dissipation[n] += e->khd * square(hub_rate, n);
-        }
+        add_dissipation(block, e, x, hub_rate, n, hub_spring);
     }
 }

@@ -55,7 +55,7 @@ typedef struct order_factors {
 } order_factors;
 typedef struct factors {
     order_factors of[TAYLOR_MOST + 2];
-    real v[TAYLOR_MOST + 2]; // of the bend
+    real v[TAYLOR_MOST + 2], coupled[TAYLOR_MOST + 2]; // of the bend; (w1 w2)_(n-1)
 } factors;
 
 #define DIRECTIONS(x, n) ((x)->of[n].directions)
@@ -193,67 +193,37 @@ KERNEL real square(const real *x, int n)
 
 // What the newest coefficients are to the products, where that is not read from the series.
 #if LANES == 1
-KERNEL void keep_rates(factors *x, ptrdiff_t n, real v, real w1, real w2)
-{
-    x->v[n] = v;
-    x->of[n].rates = FOUR(v, v, w2, w2);
-    x->of[n].rate1 = TWO(w1, w1);
-}
-
-KERNEL void keep_products(factors *x, ptrdiff_t n, real w1, real w2, real coupled, real hub)
-{
-    const four next = x->of[n + 1].directions;
-    x->of[n].left = FOUR(next[0], w1, next[1], hub);
-    x->of[n].right = FOUR(w2, w2, coupled, hub);
-}
-
-KERNEL void keep_levers(factors *x, ptrdiff_t n, const int point)
-{
-    const order_factors *at = &x->of[n];
-    x->of[n].levers = TWO(point ? at->directions[0] : at->direction1[0], at->directions[2]);
-}
-
-KERNEL void keep_force(factors *x, ptrdiff_t n, real f)
-{
-    x->of[n].forces = TWO(f, f);
-}
+#define KEEP(x, n, factor, value) ((x)->of[n].factor = (value))
 #else
+#define KEEP(x, n, factor, value) ((void)(x), (void)(n), (void)(value))
+#endif
 KERNEL void keep_rates(factors *x, ptrdiff_t n, real v, real w1, real w2)
 {
     x->v[n] = v;
-    (void)w1, (void)w2;
+    KEEP(x, n, rates, FOUR(v, v, w2, w2));
+    KEEP(x, n, rate1, TWO(w1, w1));
 }
 
 KERNEL void keep_products(factors *x, ptrdiff_t n, real w1, real w2, real coupled, real hub)
 {
-    (void)w1, (void)w2, (void)hub;
+    const four next = DIRECTIONS(x, n + 1);
     x->coupled[n] = coupled;
+    KEEP(x, n, left, FOUR(PART(next, 0), w1, PART(next, 1), hub));
+    KEEP(x, n, right, FOUR(w2, w2, coupled, hub));
 }
 
 KERNEL void keep_levers(factors *x, ptrdiff_t n, const int point)
 {
-    (void)x, (void)n, (void)point;
+    const real first = point ? PART(DIRECTIONS(x, n), 0) : PART(DIRECTION1(x, n), 0);
+    KEEP(x, n, levers, TWO(first, PART(DIRECTIONS(x, n), 2)));
 }
 
 KERNEL void keep_force(factors *x, ptrdiff_t n, real f)
 {
-    (void)x, (void)n, (void)f;
+    KEEP(x, n, forces, TWO(f, f));
 }
-#endif
 
 // Cosines and sines of two angles, and of one, from the sums of the order before, v c and v s.
-#if LANES == 1
-KERNEL void turn(const four *sum, double share, four *direction)
-{
-    *direction =
-        __builtin_shufflevector(*sum, *sum, 1, 0, 3, 2) * FOUR(-share, share, -share, share);
-}
-
-KERNEL void turn_one(const two *sum, double share, two *direction)
-{
-    *direction = __builtin_shufflevector(*sum, *sum, 1, 0) * TWO(-share, share);
-}
-#else
 KERNEL void turn(const four *sum, double share, four *direction)
 {
     *direction = FOUR(PART(*sum, 1) * -share, PART(*sum, 0) * share, PART(*sum, 3) * -share,
@@ -264,4 +234,3 @@ KERNEL void turn_one(const two *sum, double share, two *direction)
 {
     *direction = TWO(PART(*sum, 1) * -share, PART(*sum, 0) * share);
 }
-#endif
