@@ -22,11 +22,11 @@
 //
 // The two are coupled: an impact may set a stuck hub sliding, a hub that sticks may lift the arm
 // off. So each transition sets only what the event itself determines (a velocity, that the wall is
-// touched) and leaves the rest to resolve(), which finds the one pair of states that violates no
-// condition. The calls from outside, motion_push(), motion_retorque() and motion_rebind(), end in
-// resolve() too. Where steps do not resolve the fastest modes, accelerations at an instant carry no
-// information: release(), stick() and slip() then take the state that the event suggests, and the
-// next step corrects it.
+// touched) and leaves the rest to contact_resolve(), which finds the one pair of states that
+// violates no condition. The calls from outside, motion_push(), motion_retorque() and
+// motion_rebind(), end in contact_resolve() too. Where steps do not resolve the fastest modes,
+// accelerations at an instant carry no information: release(), stick() and slip() then take the
+// state that the event suggests, and the next step corrects it.
 //
 // A wall that gives has a face, which goes with the arm in contact and moves on its own while the
 // arm is free (motion_try_step); gap and speed are those to the face. One with a mass is met as a
@@ -53,154 +53,12 @@
 #include <string.h>
 
 #include "src/arm/impact.h"
-#include "src/base/extremes.h"
-#include "src/contact/edge_limits.h"
 #include "src/contact/locate.h"
 
 #define SHORT_FLIGHT 0.01  // of the arm's shortest period, a flight that says nothing by itself
 #define SAME_PLACE   1e-12 // as that of the wall's face, but for rounding [m]
-#define AT_REST      1e-20 // velocities all of which are below it are rounding of rest [rad/s]
 
-// --- what holds at an instant -----------------------------------------------------------------
-
-// Checks the numbered invariants.
-static void check_invariants(const arm *a, const motion *m)
-{
-    const double *state = m->state;
-    const double friction = state[SLOT_FRICTION], hub_velocity = state[SLOT_COUNT + m->dof];
-    const bool contact = state[SLOT_CONTACT] != 0, settled = state[SLOT_IMPULSE] == 0;
-
-    assert(state[SLOT_CONTACT] == 0 || state[SLOT_CONTACT] == 1);                         // 1
-    assert(friction == HUB_STICK || friction == HUB_FORWARD || friction == HUB_BACKWARD); // 1
-    assert(!contact || wall_stands(&a->wall));                                            // 2
-    assert(contact || state[SLOT_FORCE] == 0);                                            // 3
-    assert(!settled || friction != HUB_STICK || hub_velocity == 0);                       // 4
-    assert(!settled || a->motor.stiction == 0 || !(friction * hub_velocity < 0));         // 5
-    assert(!settled || !motion_held_still(m) || hub_velocity == 0);                       // 6
-    (void)a, (void)friction, (void)hub_velocity, (void)contact, (void)settled;
-}
-
-// By how much the state violates the conditions of its contact state: tension in contact, imminent
-// penetration of a released touch, friction beyond its limit, sliding against the chosen direction.
-static double violation(const arm *a, const motion *m, const double *state, bool touching,
-                        bool hub_rests)
-{
-    contact_state now = contact_state_of(state);
-    double worst = 0;
-
-    // the wall: no tension, no acceleration into it
-    if (now.contact && !m->wall_gives) {
-        worst = fmax(worst, -state[SLOT_FORCE]);
-    } else if (touching && !m->wall_gives) {
-        // of a light face the force that moves it: its acceleration amplifies the force's rounding
-        const double mass = m->wall_has_face ? fmin(a->wall.face_mass, 1) : 1;
-        worst = fmax(worst, -state[SLOT_GAP_ACCELERATION] * mass);
-    }
-
-    // the hub: within stiction, or sliding the way it was taken to
-    if (now.friction == HUB_STICK) {
-        worst = fmax(worst, fabs(state[SLOT_FRICTION_TORQUE]) - a->motor.stiction);
-    } else if (hub_rests) {
-        worst = fmax(worst, -now.friction * state[SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT]);
-    }
-    return worst;
-}
-
-// Ends a motion that is only rounding, which would say that contact or friction end.
-static void end_rounding(motion *m)
-{
-    double *w = state_velocities(m, m->state);
-    bool rests = true;
-    for (int i = 0; i < m->dof; i++) {
-        rests = rests && fabs(w[i]) < AT_REST;
-    }
-    if (rests) {
-        memset(w, 0, (size_t)m->dof * sizeof *w);
-    }
-}
-
-// Finds the one combination of contact and hub friction that violates nothing and evaluates the
-// state under it. Gauss's principle makes the problem a strictly convex one, since the friction
-// torque is bounded independently of the contact force: there is exactly one solution. At an event
-// two combinations satisfy the conditions to rounding; `event` tells which of them the motion has
-// just left. A wall that gives leaves no choice: it is touched if `touching`, and friction alone is
-// to be found.
-static void resolve(const arm *a, motion *m, bool touching, motion_event event)
-{
-    static const hub_friction orders[][3] = {{HUB_STICK, HUB_FORWARD, HUB_BACKWARD},
-                                             {HUB_FORWARD, HUB_BACKWARD, HUB_STICK},
-                                             {HUB_BACKWARD, HUB_FORWARD, HUB_STICK}};
-    double *state = m->state;
-    end_rounding(m);
-
-    // a hub that breaks away continues doing so where the contact changes at that instant; it gives
-    // way to what friction has held
-    const bool breaks_away =
-        (event == MOTION_RELEASE || event == MOTION_TOUCH) && state[SLOT_FRICTION] != HUB_STICK;
-    const bool slides = event == MOTION_SLIP || breaks_away;
-    const bool backwards =
-        breaks_away ? state[SLOT_FRICTION] == HUB_BACKWARD : state[SLOT_FRICTION_TORQUE] > 0;
-    const hub_friction *at_rest = orders[!slides ? 0 : backwards ? 2 : 1];
-    if (touching && m->dof == 1 && motion_wall_is_rigid(m) && !m->wall_moves) {
-        state_velocities(m, state)[0] = 0; // but for rounding it is
-    }
-    double hub_velocity = state_velocities(m, state)[0];
-    bool hub_rests = hub_velocity == 0 && a->motor.stiction > 0;
-    hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
-
-    int choices = hub_rests ? 3 : 1, ways = touching && !m->wall_gives ? 2 : 1;
-
-    // the state that the event has ended would be violated an instant later: its successor is taken
-    // even if rounding makes it look worse
-    const bool accelerates = event == MOTION_RELEASE || event == MOTION_SLIP;
-    const int preferred = event == MOTION_RELEASE || event == MOTION_TOUCH ? choices
-                          : event == MOTION_SLIP                           ? 2
-                          : event == MOTION_STICK                          ? 1
-                                                                           : 0;
-    const double more = event == MOTION_RELEASE ? larger(m->engine->left_out, 1) : 1;
-    const double beyond =
-        accelerates ? more * (motion_rounding(a, m) - 1 + motion_wall_rounding(a, m)) : 0;
-    const double rounding = FORCE_TOLERANCE * (1 + beyond) + motion_face_rounding(a, m);
-    double least = 0;
-    contact_state best = {false, sliding}, tried = best;
-
-    // at a release the released arm is tried first, else the one in contact
-    for (int i = 0; i < ways * choices; i++) {
-        bool second = i >= choices;
-        state[SLOT_CONTACT] = touching && (m->wall_gives || second == (event == MOTION_RELEASE));
-        state[SLOT_FRICTION] = hub_rests ? at_rest[i % choices] : sliding;
-        motion_evaluate(a, m, state);
-        double v = violation(a, m, state, touching, hub_rests);
-        tried = contact_state_of(state);
-        if (i == 0 || v < least) {
-            least = v;
-            best = tried;
-        }
-        if (v <= (i < preferred ? rounding : FORCE_TOLERANCE / 1000)) {
-            best = tried;
-            break;
-        }
-    }
-
-    // the state under it, unless the last one tried was that
-    state[SLOT_CONTACT] = best.contact;
-    state[SLOT_FRICTION] = best.friction;
-    if (motion_held_still(m)) {
-        memset(state_velocities(m, state), 0, (size_t)m->dof * sizeof(double));
-        motion_evaluate(a, m, state);
-    } else if (tried.contact != best.contact || tried.friction != best.friction) {
-        motion_evaluate(a, m, state);
-    }
-    if (motion_held_still(m)) {
-        memset(state_accelerations(m, state), 0, (size_t)m->dof * sizeof(double));
-    }
-
-    // the implicit methods start anew from the accelerations of this instant
-    memcpy(state_algorithmic(m, state), state_accelerations(m, state),
-           (size_t)m->dof * sizeof(double));
-    state[SLOT_JUMPED] = 1;
-    check_invariants(a, m);
-}
+// --- a face that is left -------------------------------------------------------------------------
 
 // The arm leaves the face of a wall that gives, which returns by itself from now on. What does so
 // at once gives up its energy at once, if there is a damper to take it.
@@ -288,7 +146,7 @@ static void impact(const arm *a, motion *m, motion_report *report)
     if (m->wall_has_face) {
         m->state[SLOT_FACE_VELOCITY] += result.impulse / a->wall.face_mass;
     }
-    resolve(a, m, e == 0, MOTION_IMPACT);
+    contact_resolve(a, m, e == 0, MOTION_IMPACT);
 }
 
 // The wall would have to pull: the arm leaves it.
@@ -299,9 +157,9 @@ static void release(const arm *a, motion *m)
         m->state[SLOT_JUMPED] = 1;
     } else if (m->wall_gives) {
         leave_face(a, m);
-        resolve(a, m, false, MOTION_REACHED);
+        contact_resolve(a, m, false, MOTION_REACHED);
     } else {
-        resolve(a, m, true, MOTION_RELEASE);
+        contact_resolve(a, m, true, MOTION_RELEASE);
     }
 }
 
@@ -314,7 +172,7 @@ static void stick(const arm *a, motion *m)
         m->state[SLOT_FRICTION] = HUB_STICK;
         m->state[SLOT_JUMPED] = 1;
     } else {
-        resolve(a, m, contact, MOTION_STICK);
+        contact_resolve(a, m, contact, MOTION_STICK);
     }
 }
 
@@ -328,7 +186,7 @@ static void slip(const arm *a, motion *m)
         state[SLOT_FRICTION_TORQUE] = forward ? -a->motor.stiction : a->motor.stiction;
         state[SLOT_JUMPED] = 1;
     } else {
-        resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_SLIP);
+        contact_resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_SLIP);
     }
 }
 
@@ -344,7 +202,7 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
         impact(a, m, report);
         break;
     case MOTION_TOUCH:
-        resolve(a, m, true, MOTION_TOUCH); // at no speed, or on a wall that gives at any
+        contact_resolve(a, m, true, MOTION_TOUCH); // at no speed, or on a wall that gives at any
         break;
     case MOTION_RELEASE:
         release(a, m);
@@ -362,7 +220,7 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
         m->state[SLOT_FORCE] = fmax(m->state[SLOT_FORCE], 0);
     }
     report->holds = m->state[SLOT_CONTACT] != 0;
-    check_invariants(a, m);
+    contact_check(a, m);
 }
 
 // --- from outside ------------------------------------------------------------------------------
@@ -390,7 +248,7 @@ void motion_start_at(const arm *a, motion *m, const double *angles, const double
     // that follows immediately; a gap of rounding is none
     const bool closed = g >= -START_ROUNDING * a->links * a->link_length;
     const bool touching = closed && (m->wall_gives ? rate >= 0 : rate == 0);
-    resolve(a, m, touching, MOTION_REACHED);
+    contact_resolve(a, m, touching, MOTION_REACHED);
     m->record.start_energy += motion_wall_energy(a, m, m->state); // of a depth by rounding
 }
 
@@ -422,7 +280,7 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
 
     // in contact the wall takes up the part of the push that is directed into it
     if (m->wall_gives) {
-        resolve(a, m, contact && face_follows(a, m), MOTION_REACHED);
+        contact_resolve(a, m, contact && face_follows(a, m), MOTION_REACHED);
     } else {
         double speed;
         chain_penetration(a, q, w, NULL, &speed);
@@ -432,7 +290,7 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
             impact(a, m, report);
         } else {
             // a speed that is only rounding causes neither an impact nor a release
-            resolve(a, m, contact && speed >= -TOUCH_SPEED, MOTION_REACHED);
+            contact_resolve(a, m, contact && speed >= -TOUCH_SPEED, MOTION_REACHED);
         }
     }
     report->holds = m->state[SLOT_CONTACT] != 0;
@@ -463,7 +321,7 @@ void motion_retorque(const arm *a, motion *m, double before)
         motion_evaluate(a, m, state);
     }
     if (!moves || (state[SLOT_CONTACT] != 0 && state[SLOT_FORCE] <= 0)) {
-        resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_REACHED);
+        contact_resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_REACHED);
         return;
     }
     memcpy(state_algorithmic(m, state), state_accelerations(m, state),
@@ -495,5 +353,6 @@ void motion_rebind(const arm *before, const arm *after, motion *m)
         }
     }
     after = motion_arm_at(after, m, m->state[SLOT_TIME]);
-    resolve(after, m, contact && (!m->wall_gives || face_follows(after, m)), MOTION_REACHED);
+    contact_resolve(after, m, contact && (!m->wall_gives || face_follows(after, m)),
+                    MOTION_REACHED);
 }

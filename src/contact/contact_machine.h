@@ -11,21 +11,11 @@
 // event_step.c has the steps between them.
 #pragma once
 
-#include "src/contact/motion.h"
+#include "src/contact/contact_state.h"
 
 // Chatter rule: after more than this number of flights in a row, each shorter than a hundredth of
 // the arm's shortest period, the next impact is plastic whatever the coefficient of restitution.
 enum { MOTION_MOST_SHORT_FLIGHTS = 50 };
-
-// Kinds of event the machine meets.
-typedef enum motion_event {
-    MOTION_REACHED, // the wanted time
-    MOTION_IMPACT,
-    MOTION_TOUCH, // contact begins without an approach velocity
-    MOTION_RELEASE,
-    MOTION_STICK,
-    MOTION_SLIP,
-} motion_event;
 
 typedef struct motion_report {
     motion_event event;

@@ -1,0 +1,152 @@
+#include "src/contact/contact_state.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#include "src/base/extremes.h"
+#include "src/contact/locate.h"
+
+#define AT_REST 1e-20 // velocities all of which are below it are rounding of rest [rad/s]
+
+void contact_check(const arm *a, const motion *m)
+{
+    const double *state = m->state;
+    const double friction = state[SLOT_FRICTION], hub_velocity = state[SLOT_COUNT + m->dof];
+    const bool contact = state[SLOT_CONTACT] != 0, settled = state[SLOT_IMPULSE] == 0;
+
+    assert(state[SLOT_CONTACT] == 0 || state[SLOT_CONTACT] == 1);                         // 1
+    assert(friction == HUB_STICK || friction == HUB_FORWARD || friction == HUB_BACKWARD); // 1
+    assert(!contact || wall_stands(&a->wall));                                            // 2
+    assert(contact || state[SLOT_FORCE] == 0);                                            // 3
+    assert(!settled || friction != HUB_STICK || hub_velocity == 0);                       // 4
+    assert(!settled || a->motor.stiction == 0 || !(friction * hub_velocity < 0));         // 5
+    assert(!settled || !motion_held_still(m) || hub_velocity == 0);                       // 6
+    (void)a, (void)friction, (void)hub_velocity, (void)contact, (void)settled;
+}
+
+// By how much the state violates the conditions of its contact state: tension in contact, imminent
+// penetration of a released touch, friction beyond its limit, sliding against the chosen direction.
+static double violation(const arm *a, const motion *m, const double *state, bool touching,
+                        bool hub_rests)
+{
+    contact_state now = contact_state_of(state);
+    double worst = 0;
+
+    // the wall: no tension, no acceleration into it
+    if (now.contact && !m->wall_gives) {
+        worst = fmax(worst, -state[SLOT_FORCE]);
+    } else if (touching && !m->wall_gives) {
+        // of a light face the force that moves it: its acceleration amplifies the force's rounding
+        const double mass = m->wall_has_face ? fmin(a->wall.face_mass, 1) : 1;
+        worst = fmax(worst, -state[SLOT_GAP_ACCELERATION] * mass);
+    }
+
+    // the hub: within stiction, or sliding the way it was taken to
+    if (now.friction == HUB_STICK) {
+        worst = fmax(worst, fabs(state[SLOT_FRICTION_TORQUE]) - a->motor.stiction);
+    } else if (hub_rests) {
+        worst = fmax(worst, -now.friction * state[SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT]);
+    }
+    return worst;
+}
+
+// Ends a motion that is only rounding, which would say that contact or friction end.
+static void end_rounding(motion *m)
+{
+    double *w = state_velocities(m, m->state);
+    bool rests = true;
+    for (int i = 0; i < m->dof; i++) {
+        rests = rests && fabs(w[i]) < AT_REST;
+    }
+    if (rests) {
+        memset(w, 0, (size_t)m->dof * sizeof *w);
+    }
+}
+
+// The ways of friction of a hub at rest in the order in which they are tried: what holds it, or
+// which way it slides. A hub that breaks away continues doing so where the contact changes at that
+// instant; it gives way to what friction has held.
+static const hub_friction *friction_order(const double *state, motion_event event)
+{
+    static const hub_friction orders[][3] = {{HUB_STICK, HUB_FORWARD, HUB_BACKWARD},
+                                             {HUB_FORWARD, HUB_BACKWARD, HUB_STICK},
+                                             {HUB_BACKWARD, HUB_FORWARD, HUB_STICK}};
+    const bool breaks_away =
+        (event == MOTION_RELEASE || event == MOTION_TOUCH) && state[SLOT_FRICTION] != HUB_STICK;
+    const bool slides = event == MOTION_SLIP || breaks_away;
+    const bool backwards =
+        breaks_away ? state[SLOT_FRICTION] == HUB_BACKWARD : state[SLOT_FRICTION_TORQUE] > 0;
+    return orders[!slides ? 0 : backwards ? 2 : 1];
+}
+
+// What of a violation is rounding in the states that an event leads to.
+static double rounding_after(const arm *a, const motion *m, motion_event event)
+{
+    const double more = event == MOTION_RELEASE ? larger(m->engine->left_out, 1) : 1;
+    const bool accelerates = event == MOTION_RELEASE || event == MOTION_SLIP;
+    const double beyond =
+        accelerates ? more * (motion_rounding(a, m) - 1 + motion_wall_rounding(a, m)) : 0;
+    return FORCE_TOLERANCE * (1 + beyond) + motion_face_rounding(a, m);
+}
+
+void contact_resolve(const arm *a, motion *m, bool touching, motion_event event)
+{
+    double *state = m->state;
+    end_rounding(m);
+    const hub_friction *at_rest = friction_order(state, event);
+    if (touching && m->dof == 1 && motion_wall_is_rigid(m) && !m->wall_moves) {
+        state_velocities(m, state)[0] = 0; // but for rounding it is
+    }
+    double hub_velocity = state_velocities(m, state)[0];
+    bool hub_rests = hub_velocity == 0 && a->motor.stiction > 0;
+    hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
+    int choices = hub_rests ? 3 : 1, ways = touching && !m->wall_gives ? 2 : 1;
+
+    // the state that the event has ended would be violated an instant later: its successor is taken
+    // even if rounding makes it look worse
+    const int preferred = event == MOTION_RELEASE || event == MOTION_TOUCH ? choices
+                          : event == MOTION_SLIP                           ? 2
+                          : event == MOTION_STICK                          ? 1
+                                                                           : 0;
+    const double rounding = rounding_after(a, m, event);
+    double least = 0;
+    contact_state best = {false, sliding}, tried = best;
+
+    // at a release the released arm is tried first, else the one in contact
+    for (int i = 0; i < ways * choices; i++) {
+        bool second = i >= choices;
+        state[SLOT_CONTACT] = touching && (m->wall_gives || second == (event == MOTION_RELEASE));
+        state[SLOT_FRICTION] = hub_rests ? at_rest[i % choices] : sliding;
+        motion_evaluate(a, m, state);
+        double v = violation(a, m, state, touching, hub_rests);
+        tried = contact_state_of(state);
+        if (i == 0 || v < least) {
+            least = v;
+            best = tried;
+        }
+        if (v <= (i < preferred ? rounding : FORCE_TOLERANCE / 1000)) {
+            best = tried;
+            break;
+        }
+    }
+
+    // the state under it, unless the last one tried was that
+    state[SLOT_CONTACT] = best.contact;
+    state[SLOT_FRICTION] = best.friction;
+    if (motion_held_still(m)) {
+        memset(state_velocities(m, state), 0, (size_t)m->dof * sizeof(double));
+        motion_evaluate(a, m, state);
+    } else if (tried.contact != best.contact || tried.friction != best.friction) {
+        motion_evaluate(a, m, state);
+    }
+    if (motion_held_still(m)) {
+        memset(state_accelerations(m, state), 0, (size_t)m->dof * sizeof(double));
+    }
+
+    // the implicit methods start anew from the accelerations of this instant
+    memcpy(state_algorithmic(m, state), state_accelerations(m, state),
+           (size_t)m->dof * sizeof(double));
+    state[SLOT_JUMPED] = 1;
+    contact_check(a, m);
+}
