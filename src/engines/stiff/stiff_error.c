@@ -76,7 +76,7 @@ static void inertia_and_damping(stiff_step *s, double gamma, const double *v, co
 }
 
 // y of a right side, in place, by the real system without its borders: solve_bare of
-// stiff_tangent.h for its first lane.
+// stiff_kernel.c for its first lane.
 static void solve_bare(const stiff_step *s, double *y)
 {
     double fx = 0, fy = 0, t = 0;

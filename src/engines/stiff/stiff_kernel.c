@@ -2,7 +2,241 @@
 // vectors (src/engines/meson.build). The derivation stands in stiff_step.h.
 #include <math.h>
 
-#include "src/engines/stiff/stiff_tangent.h"
+#include "src/engines/stiff/stiff_sweeps.h"
+
+// --- the tangent
+// ------------------------------------------------------------------------------------
+
+// y of a right side without borders, in place.
+KERNEL void solve_bare(const stiff_step *s, complex_lanes *y)
+{
+    complex_lanes fx = number(0), fy = fx, t = fx;
+    for (int k = s->links - 1; k >= 0; k--) {
+        const stiff_pivot *p = &s->pivot[k];
+        complex_lanes *own = &y[s->first + k];
+        const complex_lanes beyond = minus(scaled(p->lc, fy), scaled(p->ls, fx));
+        const complex_lanes f = times(minus(minus(*own, t), beyond), p->inverse);
+        *own = f;
+        fx = plus(fx, times(p->ux, f));
+        fy = plus(fy, times(p->uy, f));
+        t = scaled(-1, times(p->kappa, f));
+    }
+    if (s->first > 0) {
+        y[0] = times(minus(y[0], t), s->hub_inverse);
+    }
+
+    complex_lanes ax = number(0), ay = ax, before = y[0];
+    for (int k = 0; k < s->links; k++) {
+        const stiff_pivot *p = &s->pivot[k];
+        complex_lanes *own = &y[s->first + k];
+        if (s->first + k > 0) {
+            const complex_lanes base = plus(times(p->ux, ax), times(p->uy, ay));
+            *own = plus(minus(*own, times(base, p->inverse)), times(p->share, before));
+        }
+        before = *own;
+        ax = minus(ax, scaled(p->ls, before));
+        ay = plus(ay, scaled(p->lc, before));
+    }
+}
+
+// Sum of a row's numbers times y.
+KERNEL complex_lanes along(const stiff_step *s, const double *row, const complex_lanes *y)
+{
+    complex_lanes sum = number(0);
+    for (int k = 0; k < s->dof; k++) {
+        sum = plus(sum, scaled(row[k], y[k]));
+    }
+    return sum;
+}
+
+// The middle stage, of which the tangent is.
+enum { HALF = RADAU_MIDDLE / 4, LANE = RADAU_MIDDLE % 4 };
+
+// J there.
+KERNEL void find_jacobian(stiff_step *s)
+{
+    double x = 0, y = 0;
+    const int last = s->links - 1;
+    for (int k = 0; k < last; k++) {
+        x += s->pivot[k].lc;
+        y += s->pivot[k].ls;
+    }
+    const stiff_pivot *p = &s->pivot[last];
+    x -= s->wall->sine * s->shift[0].half[HALF][LANE];
+    y += s->wall->cosine * s->shift[0].half[HALF][LANE];
+    const double l = s->link[last].length;
+    const double c = s->body[last].c[HALF][LANE], sn = s->body[last].s[HALF][LANE];
+    const bool point = s->wall->kind == WALL_POINT;
+    const double ex = point ? -sn : -s->wall->sine, ey = point ? c : s->wall->cosine;
+    s->jacobian[0] = 0;
+    for (int k = 0; k < last; k++) {
+        s->jacobian[s->first + k] = s->pivot[k].lc * ey - s->pivot[k].ls * ex;
+    }
+    const double lever = point ? c * (s->wall->x - x) + sn * (s->wall->y - y) - l : 0;
+    s->jacobian[s->first + last] = lever + p->lc * ey - p->ls * ex;
+    if (s->stuck) {
+        s->jacobian[0] = 0;
+    }
+}
+
+// The links' rows, from the tip inwards; what they show to the hub, tau of stiff_step.h.
+KERNEL complex_lanes factor_links(stiff_step *s, complex_lanes g, complex_lanes g2)
+{
+    complex_lanes pxx = number(s->tip_mass), pxy = number(0), pyy = pxx;
+    complex_lanes px = number(0), py = px, tau = px;
+    double carried = s->tip_mass;
+    for (int k = s->links - 1; k >= 0; k--) {
+        const stiff_link *l = &s->link[k];
+        const stiff_stage *at = &s->stage[s->first + k];
+        stiff_pivot *p = &s->pivot[k];
+        const double lc = l->length * s->body[k].c[HALF][LANE];
+        const double ls = l->length * s->body[k].s[HALF][LANE];
+        const double square = 0.25 * l->length * l->length;
+        complex_lanes mass = number(l->mass), own = number(l->inertia + l->mass * square);
+        if (s->drags) {
+            mass = plus(mass, scaled(l->air, g));
+            own = plus(own, scaled(l->turning + l->air * square, g));
+        }
+        own = minus(own, scaled(s->gravity * (carried + 0.5 * l->mass) * ls, g2));
+        carried += l->mass;
+        const complex_lanes ptx = minus(scaled(lc, pxy), scaled(ls, pxx));
+        const complex_lanes pty = minus(scaled(lc, pyy), scaled(ls, pxy));
+        complex_lanes d = plus(minus(scaled(lc, pty), scaled(ls, ptx)), plus(tau, own));
+        d = plus(d, minus(scaled(2 * lc, py), scaled(2 * ls, px)));
+        const complex_lanes ux = minus(plus(ptx, px), scaled(0.5 * ls, mass));
+        const complex_lanes uy = plus(plus(pty, py), scaled(0.5 * lc, mass));
+        complex_lanes kappa = number(0);
+        if (s->first + k > 0) {
+            double stiffness = l->stiffness;
+            if (s->stiffens) {
+                const double bend = at->q[HALF][LANE] - at[-1].q[HALF][LANE];
+                stiffness += 3 * l->stiffening * bend * bend;
+            }
+            kappa = plus(scaled(stiffness, g2), scaled(l->damping, g));
+        } else {
+            tau = d; // the hub's own
+        }
+        const complex_lanes inv = inverse(plus(d, kappa)), share = times(kappa, inv);
+        *p = (stiff_pivot){ux, uy, inv, kappa, share, lc, ls};
+        if (s->first + k > 0) {
+            pxx = plus(minus(pxx, times(ux, times(ux, inv))), mass);
+            pxy = minus(pxy, times(ux, times(uy, inv)));
+            pyy = plus(minus(pyy, times(uy, times(uy, inv))), mass);
+            px = times(ux, share);
+            py = times(uy, share);
+            tau = times(share, d);
+        }
+    }
+
+    return tau;
+}
+
+// The hub, whose back EMF works through the current.
+KERNEL void factor_hub(stiff_step *s, complex_lanes g, complex_lanes g2, complex_lanes tau)
+{
+    complex_lanes hub = plus(tau, plus(number(s->hub_inertia), scaled(s->hub_damping, g)));
+    if (s->drive == STIFF_FOLLOWS) {
+        const double brakes = s->motor->torque_constant * s->motor->back_emf / s->motor->resistance;
+        hub = plus(hub, scaled(brakes, g));
+    } else if (s->drive == STIFF_FLOWS) {
+        const complex_lanes slows =
+            plus(number(s->motor->inductance), scaled(s->motor->resistance, g));
+        const double brakes = s->motor->torque_constant * s->motor->back_emf;
+        hub = plus(hub, scaled(brakes, times(g2, inverse(slows))));
+    }
+    s->hub_inverse = s->stuck ? number(0) : inverse(hub);
+    if (s->first == 0) {
+        s->pivot[0].inverse = s->hub_inverse;
+    }
+}
+
+// The borders' answers and their equations, the contact's last; eliminated in that order.
+KERNEL void factor_borders(stiff_step *s, complex_lanes g, complex_lanes g2)
+{
+    const int count = stiff_borders(s);
+    if (s->contact != STIFF_FREE) {
+        find_jacobian(s);
+    }
+    for (int b = 0; b < count; b++) {
+        const double *row = stiff_border_row(s, b);
+        for (int k = 0; k < s->dof; k++) {
+            s->border[b][k] = number(-row[k]);
+        }
+        solve_bare(s, s->border[b]);
+    }
+
+    if (s->contact == STIFF_GIVES) {
+        const double depth = -s->gap.at[RADAU_MIDDLE], rate = -s->rate.at[RADAU_MIDDLE];
+        double stiffness = s->wall->stiffness, damping = s->wall->damping;
+        if (s->wall->law == WALL_HUNT_CROSSLEY) {
+            const double power = wall_power(s->wall, depth);
+            stiffness =
+                depth > 0 ? s->wall->exponent * power / depth * (stiffness + damping * rate) : 0;
+            damping *= power;
+        }
+        s->wall_damping = damping;
+        s->press =
+            plus(plus(scaled(stiffness, g2), scaled(damping, g)), number(s->wall->face_mass));
+    }
+    for (int i = 0; i < count; i++) {
+        const bool wall = i == s->modes;
+        for (int j = 0; j < count; j++) {
+            const complex_lanes sum = along(s, stiff_border_row(s, i), s->border[j]);
+            const complex_lanes by = !wall ? g : s->contact == STIFF_GIVES ? s->press : number(-1);
+            const bool one = i == j && !(wall && s->contact == STIFF_RIGID);
+            s->corner[i][j] = minus(number(one ? 1 : 0), times(by, sum));
+        }
+    }
+    for (int p = 0; p < count; p++) {
+        s->corner[p][p] = inverse(s->corner[p][p]);
+        for (int i = p + 1; i < count; i++) {
+            s->corner[i][p] = times(s->corner[i][p], s->corner[p][p]);
+            for (int j = p + 1; j < count; j++) {
+                s->corner[i][j] = minus(s->corner[i][j], times(s->corner[i][p], s->corner[p][j]));
+            }
+        }
+    }
+}
+
+static void factor(stiff_step *s)
+{
+    const complex_lanes g = s->g, g2 = times(g, g);
+    factor_hub(s, g, g2, factor_links(s, g, g2));
+    factor_borders(s, g, g2);
+}
+
+// y of the right side that stands there, with its borders.
+static void solve(stiff_step *s, const complex_lanes *target)
+{
+    const int count = stiff_borders(s);
+    complex_lanes *x = s->unknown;
+    solve_bare(s, s->y);
+    for (int i = 0; i < count; i++) {
+        const complex_lanes sum = along(s, stiff_border_row(s, i), s->y);
+        x[i] = i < s->modes                ? times(s->g, sum)
+               : s->contact == STIFF_GIVES ? plus(*target, times(s->press, sum))
+                                           : minus(*target, sum);
+    }
+    for (int i = 1; i < count; i++) {
+        for (int j = 0; j < i; j++) {
+            x[i] = minus(x[i], times(s->corner[i][j], x[j]));
+        }
+    }
+    for (int i = count - 1; i >= 0; i--) {
+        for (int j = i + 1; j < count; j++) {
+            x[i] = minus(x[i], times(s->corner[i][j], x[j]));
+        }
+        x[i] = times(x[i], s->corner[i][i]);
+    }
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < s->dof; k++) {
+            s->y[k] = plus(s->y[k], times(x[i], s->border[i][k]));
+        }
+    }
+}
+
+// --- an iteration
+// ----------------------------------------------------------------------------------
 
 // Radau's embedded sums of the stages, x of velocities and v of accelerations.
 static void differences(const stiff_step *s, double *x, double *v)
