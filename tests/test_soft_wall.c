@@ -414,7 +414,7 @@ static double step_error(double h)
     SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &explicit_engine);
     motion_start(&a, m, 0, SPEED); // right at the wall
     assert_true(m->state[SLOT_CONTACT] != 0);
-    assert_int_equal(motion_try_step(&a, m, h), STATUS_OK);
+    assert_int_equal(motion_try_step(&a, m, h, STATE_WHOLE), STATUS_OK);
     double error = fabs(motion_energy_residual(&a, m, m->trial));
     return error;
 }

@@ -60,7 +60,7 @@ static void check_place(moving_arm *moving, double h)
 {
     const arm *a = &moving->arm;
     motion *m = moving->motion;
-    assert_int_equal(motion_try_step(a, m, h), STATUS_OK);
+    assert_int_equal(motion_try_step(a, m, h, STATE_WHOLE), STATUS_OK);
     double alpha[3], *at = state_accelerations(m, m->trial);
     memcpy(alpha, at, (size_t)m->dof * sizeof(double));
     double force = m->trial[SLOT_FORCE], friction = m->trial[SLOT_FRICTION_TORQUE];
@@ -126,7 +126,7 @@ TEST(instants_together_are_those_one_by_one)
         m->state = now;
         for (int k = 0; k < count; k++) {
             double *at = m->between + k * m->size;
-            assert_int_equal(motion_try_step(a, m, times[k]), STATUS_OK);
+            assert_int_equal(motion_try_step(a, m, times[k], STATE_WHOLE), STATUS_OK);
             m->trial[SLOT_TIME] = times[k];
             assert_memory_equal(at, m->trial, (size_t)m->size * sizeof *at);
             const state_energy has = motion_energy(a, m, at);
@@ -150,7 +150,7 @@ TEST(orders_agree_and_the_ledger_closes)
             chain_strain_energy(&moving.arm, q);
         double h = m->engine->advance(&moving.arm, m, 0.1, 1e-3),
                whole[SLOT_COUNT + 4 * 3 + QUADRATURE_COUNT + KEPT_COUNT];
-        assert_int_equal(motion_try_step(&moving.arm, m, h), STATUS_OK);
+        assert_int_equal(motion_try_step(&moving.arm, m, h, STATE_WHOLE), STATUS_OK);
         check_below(fabs(motion_energy_residual(&moving.arm, m, m->trial)), 1e-12);
         memcpy(whole, m->trial, (size_t)m->size * sizeof(double));
 
@@ -160,7 +160,7 @@ TEST(orders_agree_and_the_ledger_closes)
                 double left = h * k / 8 - m->state[SLOT_TIME];
                 motion_end_internal_step(m);
                 double step = m->engine->advance(&moving.arm, m, left, 1e-3);
-                assert_int_equal(motion_try_step(&moving.arm, m, step), STATUS_OK);
+                assert_int_equal(motion_try_step(&moving.arm, m, step, STATE_WHOLE), STATUS_OK);
                 memcpy(m->state, m->trial, (size_t)m->size * sizeof(double));
                 strides++;
             }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/arm/chain.h"
+#include "src/arm/chain_pair.h"
 #include "src/arm/modes.h"
 #include "src/base/sincos.h"
 
@@ -133,10 +134,8 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
 // b.
 static double one_spring_eigenvalue(const arm *a)
 {
-    const double l = a->link_length, mass = a->link_mass;
-    const double m22 = a->link_inertia + mass * l * l / 4, m12 = mass * l * l / 2;
-    const double m11 = m22 + mass * l * l + a->hub_inertia;
-    return a->joint_stiffness * (m11 + 2 * m12 + m22) / (m11 * m22 - m12 * m12);
+    const pair_mass m = pair_mass_of(a);
+    return a->joint_stiffness * (m.m11 + 2 * m.m12 + m.m22) / (m.m11 * m.m22 - m.m12 * m.m12);
 }
 
 // Upper estimate of the highest frequency of the straight, free chain.

@@ -10,6 +10,15 @@
 #include "src/base/plain_math.h"
 #include "src/base/sincos.h"
 
+// Adds a spring between body k and the one before.
+static void add_spring(int n, int k, double stiffness, double *matrix)
+{
+    matrix[(k - 1) * n + k - 1] += stiffness;
+    matrix[k * n + k] += stiffness;
+    matrix[(k - 1) * n + k] -= stiffness;
+    matrix[k * n + k - 1] -= stiffness;
+}
+
 void modes_matrices(const arm *a, double *mass, double *stiffness)
 {
     const int n = a->dof, N = a->links;
@@ -30,11 +39,7 @@ void modes_matrices(const arm *a, double *mass, double *stiffness)
 
     // a spring between each body and the one before
     for (int k = 1; k < n; k++) {
-        double s = arm_joint_stiffness(a, k - a->first);
-        stiffness[(k - 1) * n + k - 1] += s;
-        stiffness[k * n + k] += s;
-        stiffness[(k - 1) * n + k] -= s;
-        stiffness[k * n + k - 1] -= s;
+        add_spring(n, k, arm_joint_stiffness(a, k - a->first), stiffness);
     }
 }
 
@@ -126,11 +131,7 @@ static status add_sag(const arm *a, tip_end tip, double *q, double *mass, double
             chain_weight(a, link) * inline_sin(q[k]) + force * l * inline_sin(turned);
         if (k > 0) {
             const double bend = q[k] - q[k - 1];
-            const double more = 3 * arm_stiffening_torque(a, link, 1) * bend * bend;
-            stiffness[(k - 1) * n + k - 1] += more;
-            stiffness[k * n + k] += more;
-            stiffness[(k - 1) * n + k] -= more;
-            stiffness[k * n + k - 1] -= more;
+            add_spring(n, k, 3 * arm_stiffening_torque(a, link, 1) * bend * bend, stiffness);
         }
     }
     return code;

@@ -43,7 +43,7 @@ static void count_step(motion *m, double passed, double step)
     const long whole = (long)steps; // rounded up, and one at least
     m->record.steps += steps > 0 ? whole + ((double)whole < steps) : 1;
     m->record.largest_penetration =
-        larger(-state_rest_gap(m->state), m->record.largest_penetration);
+        larger(-state_rest_gap(m->state).value, m->record.largest_penetration);
 }
 
 static void accept(motion *m, double step)
@@ -104,10 +104,10 @@ static motion_event event_of(const motion *m, event_function w)
 // there is one.
 static status step_to_event(const arm *a, motion *m, step_end *end)
 {
-    status s = motion_try_step(a, m, end->length);
+    status s = motion_try_step(a, m, end->length, STATE_WHOLE);
     for (int i = 0; i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
         end->length /= 2;
-        s = motion_try_step(a, m, end->length);
+        s = motion_try_step(a, m, end->length, STATE_WHOLE);
     }
     return s == STATUS_OK ? locate_first_event(a, m, end) : s;
 }
@@ -124,7 +124,7 @@ static status tried_step(const arm *a, motion *m, double until, double step, ste
     const double spare = s == STATUS_OK && end->any ? 0 : LEAST_AFTER_TSTOP * step;
     if (!(reached <= left - spare)) {
         *end = (step_end){.length = left};
-        s = s == STATUS_OK ? motion_try_step(a, m, left) : s;
+        s = s == STATUS_OK ? motion_try_step(a, m, left, STATE_WHOLE) : s;
         s = s == STATUS_OK ? s : step_to_event(a, m, end);
     }
     const bool touches = s == STATUS_OK && m->state[SLOT_CONTACT] != 0;
@@ -214,7 +214,7 @@ static status dense_step(const arm *a, motion *m, double until, double step, ste
         }
         return isfinite(sum) ? STATUS_NO_PROGRESS : STATUS_NOT_FINITE;
     }
-    return motion_try_step(a, m, end->length);
+    return motion_try_step(a, m, end->length, STATE_WHOLE);
 }
 
 // A requested instant is reached to the last bit.
@@ -294,7 +294,7 @@ double *motion_between(const arm *a, motion *m, double time, state_extent extent
     m->state = start;
     m->trial = m->between;
     m->step.aim = time;
-    status s = motion_try_step_for(a, m, time - start[SLOT_TIME], extent);
+    status s = motion_try_step(a, m, time - start[SLOT_TIME], extent);
     m->state = now;
     m->trial = start;
     m->between[SLOT_TIME] = time;

@@ -152,7 +152,7 @@ static status narrow(const arm *a, motion *m, event_function w, double s, bracke
     double evaluated = -1;
     for (int i = 0; i < 200 && b->hi - b->lo > resolution; i++) {
         s = fmin(fmax(s, b->lo + 0.5 * resolution), b->hi - 0.5 * resolution);
-        TRY(motion_try_step(a, m, s));
+        TRY(motion_try_step(a, m, s, STATE_WHOLE));
         evaluated = s;
 
         // the bracket, and the end that the new point replaces
@@ -176,7 +176,7 @@ static status narrow(const arm *a, motion *m, event_function w, double s, bracke
         double next = s + t * (other - s);
         s = fabs(next - s) < 0.5 * resolution ? s + copysign(resolution, other - s) : next;
     }
-    return evaluated == b->hi ? STATUS_OK : motion_try_step(a, m, b->hi);
+    return evaluated == b->hi ? STATUS_OK : motion_try_step(a, m, b->hi, STATE_WHOLE);
 }
 
 // Looks for the first instant in (0, end->length] at which `w` leaves its admissible side; if there
@@ -194,10 +194,10 @@ static status search(const arm *a, motion *m, event_function w, step_end *end)
         if (dip < 0) {
             return STATUS_OK;
         }
-        status s = motion_try_step(a, m, dip * h);
+        status s = motion_try_step(a, m, dip * h, STATE_WHOLE);
         v1 = event_value(a, m, m->trial, w);
         if (s != STATUS_OK || v1 >= -tolerance) {
-            return s == STATUS_OK ? motion_try_step(a, m, h) : s;
+            return s == STATUS_OK ? motion_try_step(a, m, h, STATE_WHOLE) : s;
         }
         hi = dip * h;
         guess = 0.5 * hi;
@@ -211,7 +211,7 @@ static status search(const arm *a, motion *m, event_function w, step_end *end)
         double s = hi;
         for (int i = 0; i < 20; i++) {
             s /= 2;
-            TRY(motion_try_step(a, m, s));
+            TRY(motion_try_step(a, m, s, STATE_WHOLE));
             double v = event_value(a, m, m->trial, w);
             if (v > 0) {
                 lo = s;
@@ -248,7 +248,7 @@ static status search(const arm *a, motion *m, event_function w, step_end *end)
     bool within_impact = m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0 && hi < least;
     if (s == STATUS_OK && within_impact && motion_unresolved(a, m)) {
         hi = least;
-        s = motion_try_step(a, m, hi);
+        s = motion_try_step(a, m, hi, STATE_WHOLE);
     }
     end->length = hi;
     return s;
@@ -284,23 +284,18 @@ void locate_deepest(const arm *a, motion *m, step_point lo, step_point hi, doubl
     }
 }
 
-static value_and_slope rest_gap_of(const double *state)
-{
-    return (value_and_slope){state_rest_gap(state), state_rest_gap_velocity(state)};
-}
-
 // The gap to the wall at rest and its rate after a step h; NaN where that fails.
 static value_and_slope stepped_gap(const arm *a, motion *m, double h)
 {
-    const bool fails = motion_try_step(a, m, h) != STATUS_OK;
-    return fails ? (value_and_slope){(double)NAN, (double)NAN} : rest_gap_of(m->trial);
+    const bool fails = motion_try_step(a, m, h, STATE_WHOLE) != STATUS_OK;
+    return fails ? (value_and_slope){(double)NAN, (double)NAN} : state_rest_gap(m->trial);
 }
 
 status locate_peak(const arm *a, motion *m, double h)
 {
     memcpy(m->between, m->trial, (size_t)m->size * sizeof(double));
     if (!motion_wall_is_rigid(m)) {
-        const step_point lo = {0, rest_gap_of(m->state)}, hi = {h, rest_gap_of(m->trial)};
+        const step_point lo = {0, state_rest_gap(m->state)}, hi = {h, state_rest_gap(m->trial)};
         locate_deepest(a, m, lo, hi, 1e-9 * h, stepped_gap);
         memcpy(m->trial, m->between, (size_t)m->size * sizeof(double));
     }
@@ -328,7 +323,7 @@ status locate_peak(const arm *a, motion *m, double h)
         double f[3];
         s = fmin(fmax(s, width), h - width);
         for (int i = 0; i < 3; i++) {
-            TRY(motion_try_step(a, m, s + (i - 1) * width));
+            TRY(motion_try_step(a, m, s + (i - 1) * width, STATE_WHOLE));
             f[i] = m->trial[SLOT_FORCE];
             motion_note_force(m, m->trial[SLOT_TIME], f[i]);
         }

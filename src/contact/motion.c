@@ -259,12 +259,7 @@ static bool is_finite(const motion *m, double *state)
     return isfinite(sum);
 }
 
-status motion_try_step(const arm *a, motion *m, double h)
-{
-    return motion_try_step_for(a, m, h, STATE_WHOLE);
-}
-
-status motion_try_step_for(const arm *a, motion *m, double h, state_extent extent)
+status motion_try_step(const arm *a, motion *m, double h, state_extent extent)
 {
     double *trial = m->trial;
     m->step.trial_energy = unknown_energy;

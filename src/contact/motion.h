@@ -106,6 +106,11 @@ typedef struct motion_steps {
     } coming;
 } motion_steps;
 
+// Coefficients of the implicit methods (implicit_stepper.c) [-].
+typedef struct implicit_coefficients {
+    double alpha_m, alpha_f, beta, gamma;
+} implicit_coefficients;
+
 struct motion {
     // A checkpoint is a copy of `state`, size doubles:
     // slots, q[n], w[n], quadratures, accelerations a[n], algorithmic accelerations[n], what is
@@ -119,16 +124,16 @@ struct motion {
 
     // how the smooth motion is advanced
     const engine *engine;
-    bool chosen;                          // by the caller: it stays when the arm changes
-    double nominal_step;                  // method.step [s]
-    double tolerance;                     // method.tolerance, of the stiff engine's steps [-]
-    bool wall_gives;                      // contact is no constraint
-    bool wall_has_face;                   // contact ties the arm to a mass on a spring
-    bool electric;                        // the motor's current is followed
-    bool wall_moves;                      // nothing rests for long
-    bool wall_is_shaken;                  // and shakes a face with a mass
-    bool out_of_memory;                   // no memory for the engine that a changed arm asks for
-    double alpha_m, alpha_f, beta, gamma; // implicit engines' coefficients [-]
+    bool chosen;                    // by the caller: it stays when the arm changes
+    double nominal_step;            // method.step [s]
+    double tolerance;               // method.tolerance, of the stiff engine's steps [-]
+    bool wall_gives;                // contact is no constraint
+    bool wall_has_face;             // contact ties the arm to a mass on a spring
+    bool electric;                  // the motor's current is followed
+    bool wall_moves;                // nothing rests for long
+    bool wall_is_shaken;            // and shakes a face with a mass
+    bool out_of_memory;             // no memory for the engine that a changed arm asks for
+    implicit_coefficients implicit; // of an implicit engine
 
     // scratch, nothing of it outlives a step
     double *trial;   // state at the end of the step tried; after it, at the step's start
@@ -191,13 +196,11 @@ static inline bool state_face_swings(const motion *m, const double *state)
 }
 
 // Gap to where the wall's face stands at rest [m], and its rate [m/s].
-static inline double state_rest_gap(const double *state)
+static inline value_and_slope state_rest_gap(const double *state)
 {
-    return state[SLOT_GAP] - (state[SLOT_CONTACT] != 0 ? 0 : state[SLOT_FACE]);
-}
-static inline double state_rest_gap_velocity(const double *state)
-{
-    return state[SLOT_GAP_VELOCITY] - (state[SLOT_CONTACT] != 0 ? 0 : state[SLOT_FACE_VELOCITY]);
+    const wall_face face = state[SLOT_CONTACT] != 0 ? (wall_face){0} : state_face(state);
+    return (value_and_slope){state[SLOT_GAP] - face.position,
+                             state[SLOT_GAP_VELOCITY] - face.velocity};
 }
 
 // Bounds of a contact force [N].
@@ -283,12 +286,10 @@ static inline bool motion_held_still(const motion *m)
     return state_is_held_still(m, m->state);
 }
 
-// Computes the state at h in the internal step in hand into m->trial, updates its energy ledger and
-// checks that it is finite. Stepping engines need no internal step: they step from m->state.
-status motion_try_step(const arm *a, motion *m, double h);
-
-// The same with no more of the state than `extent`.
-status motion_try_step_for(const arm *a, motion *m, double h, state_extent extent);
+// Computes the state at h in the internal step in hand, as much of it as `extent` says, into
+// m->trial, updates its energy ledger and checks that it is finite. Stepping engines need no
+// internal step: they step from m->state.
+status motion_try_step(const arm *a, motion *m, double h, state_extent extent);
 
 // A quantity of the internal step of a dense engine, and its slope, at h.
 static inline value_and_slope motion_output(const arm *a, motion *m, output_quantity of, double h)

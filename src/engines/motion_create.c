@@ -38,15 +38,14 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
     // the engine, and its coefficients
     if (method->name == METHOD_NEWMARK) {
         m->engine = &newmark_engine;
-        m->beta = method->beta;
-        m->gamma = method->gamma;
+        m->implicit = (implicit_coefficients){.beta = method->beta, .gamma = method->gamma};
     } else if (method->name == METHOD_GENERALIZED_ALPHA) {
         m->engine = &generalized_alpha_engine;
         // Chung and Hulbert (1993), equations (17), (18), (25)
-        m->alpha_m = (2 * rho - 1) / (rho + 1);
-        m->alpha_f = rho / (rho + 1);
-        m->gamma = 0.5 - m->alpha_m + m->alpha_f;
-        m->beta = 0.25 * (1 - m->alpha_m + m->alpha_f) * (1 - m->alpha_m + m->alpha_f);
+        const double alpha_m = (2 * rho - 1) / (rho + 1), alpha_f = rho / (rho + 1);
+        const double more = 1 - alpha_m + alpha_f;
+        m->implicit =
+            (implicit_coefficients){alpha_m, alpha_f, 0.25 * more * more, 0.5 - alpha_m + alpha_f};
     } else {
         static const engine *const named[] = {
             [ENGINE_AUTO] = NULL, [ENGINE_PAIR] = &taylor_engine, [ENGINE_STIFF] = &stiff_engine};

@@ -47,6 +47,7 @@ static sample row_of(const corrected_run *c, double *state, state_energy has, do
     double *q = state_angles(m, state), *w = state_velocities(m, state);
     double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
     const bool rigid = motion_wall_is_rigid(m);
+    const value_and_slope gap = state_rest_gap(state);
     const double held = motion_held_energy(a, m, state);
     int first = a->first, last = a->dof - 1;
     sample row = {
@@ -61,8 +62,8 @@ static sample row_of(const corrected_run *c, double *state, state_energy has, do
         .hub_acceleration = al[0],
         .first_acceleration = al[first],
         .last_acceleration = al[last],
-        .gap = state_rest_gap(state),
-        .gap_velocity = state_rest_gap_velocity(state),
+        .gap = gap.value,
+        .gap_velocity = gap.slope,
         .force = state[SLOT_FORCE],
         .impulse = impulse,
         .contact = state[SLOT_CONTACT],

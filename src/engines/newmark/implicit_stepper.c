@@ -43,13 +43,8 @@ static void project_velocity(const arm *a, motion *m, const double *q, double *w
     }
 }
 
-// Coefficients of the step at hand.
-typedef struct coefficients {
-    double alpha_m, alpha_f, beta, gamma;
-} coefficients;
-
 // Accelerations and velocities that belong to the trial's angles; a stuck hub has none.
-static void update_rates(motion *m, const coefficients *k, double h, bool stuck)
+static void update_rates(motion *m, const implicit_coefficients *k, double h, bool stuck)
 {
     const double *q1 = state_angles(m, m->trial);
     double *w1 = state_velocities(m, m->trial), *A1 = state_algorithmic(m, m->trial);
@@ -69,7 +64,7 @@ static void update_rates(motion *m, const coefficients *k, double h, bool stuck)
 
 // Newton's iteration for the angles and the force at the end of the step; it->q etc. point into the
 // trial state.
-static status solve_step(const arm *a, motion *m, double h, const coefficients *k,
+static status solve_step(const arm *a, motion *m, double h, const implicit_coefficients *k,
                          implicit_iterate *it)
 {
     const int n = a->dof;
@@ -186,10 +181,8 @@ static status step(const arm *a, motion *m, double h, state_extent extent)
     const bool resolved = !motion_unresolved(a, m);
 
     // the method's coefficients, or backward Euler's
-    coefficients k = {m->alpha_m, m->alpha_f, m->beta, m->gamma};
-    if (!resolved && (mode.contact || m->state[SLOT_JUMPED] != 0)) {
-        k = (coefficients){0, 0, 1, 1};
-    }
+    const bool euler = !resolved && (mode.contact || m->state[SLOT_JUMPED] != 0);
+    const implicit_coefficients k = euler ? (implicit_coefficients){0, 0, 1, 1} : m->implicit;
     implicit_iterate it = {.q = state_angles(m, m->trial),
                            .w = state_velocities(m, m->trial),
                            .acceleration = state_accelerations(m, m->trial),

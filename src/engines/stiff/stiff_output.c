@@ -13,7 +13,7 @@
 // --- states --------------------------------------------------------------------------------------
 
 // What numbers at the stages add up to with such weights.
-static double weighted(const double *weight, const double *stages)
+static inline double weighted(const double *weight, const double *stages)
 {
     double sum = 0;
     for (int j = 0; j < RADAU_STAGES; j++) {
@@ -32,13 +32,9 @@ static inline body_motion body_at(const stiff_integrator *s, int k, double x,
 {
     const double h = s->kept[STIFF_LENGTH], w0 = stiff_velocities(s)[k];
     const double *stages = stiff_accelerations(s) + RADAU_LANES * k;
-    double value = 0, once = 0, twice = 0;
-    for (int j = 0; j < RADAU_STAGES; j++) {
-        value += weight->value[j] * stages[j];
-        once += weight->integral[j] * stages[j];
-        twice += weight->twice[j] * stages[j];
-    }
-    return (body_motion){stiff_angles(s)[k] + h * (x * w0 + h * twice), w0 + h * once, value};
+    return (body_motion){stiff_angles(s)[k] + h * (x * w0 + h * weighted(weight->twice, stages)),
+                         w0 + h * weighted(weight->integral, stages),
+                         weighted(weight->value, stages)};
 }
 
 // What the power of a quadrature at the step's start adds there to that by the stages, which have
