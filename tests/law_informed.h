@@ -85,10 +85,10 @@ static informed_arm informed_arm_of(const parameters *p, double force)
     modes_matrices(&m.arm, m.mass, m.stiffness);
     m.damping[0] = m.arm.motor.damping;
     for (int k = 0; k < n; k++) {
-        m.reach[k] = arm_link_length(&m.arm, k);
+        m.reach[k] = arm_link_of(&m.arm, k).length;
     }
     for (int k = 1; k < n; k++) {
-        const double d = arm_joint_damping(&m.arm, k);
+        const double d = arm_link_of(&m.arm, k).damping;
         m.damping[(k - 1) * (n + 1)] += d;
         m.damping[k * (n + 1)] += d;
         m.damping[(k - 1) * n + k] -= d;

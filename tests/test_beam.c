@@ -145,7 +145,7 @@ TEST(any_arm_has_the_damping_asked_for)
         check_close(a.hub_joint_damping, a.hub_stiffness * seconds,
                     1e-5 * a.hub_stiffness * seconds);
         for (int k = 1; a.uneven && k < a.links; k++) {
-            check_relative(a.each.damping[k] / a.each.stiffness[k], seconds, 1e-5);
+            check_relative(a.each[k].damping / a.each[k].stiffness, seconds, 1e-5);
         }
     }
 

@@ -61,8 +61,8 @@ TEST(structural_damping_is_of_the_first_mode)
         const double per_stiffness = 2 * 0.03 / m.frequencies[0];
         const bool root = p.arm.hub_joint == HUB_BEAM || p.arm.links == 1;
         for (int k = root ? 0 : 1; k < p.arm.links; k++) {
-            check_relative(arm_joint_damping(&m.arm, k),
-                           per_stiffness * arm_joint_stiffness(&m.arm, k), 1e-6);
+            check_relative(arm_link_of(&m.arm, k).damping,
+                           per_stiffness * arm_link_of(&m.arm, k).stiffness, 1e-6);
         }
     }
 

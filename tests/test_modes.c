@@ -142,16 +142,16 @@ TEST(every_mode_balances_but_for_what_holds_the_arm)
                 scale = fmax(scale, stiffness[j * n + j]);
                 largest = fmax(largest, x[j]);
                 assert_true(fabs(x[j]) <= 1);
-                deflection += j >= a.first ? arm_link_length(&a, j - a.first) * x[j] : 0;
+                deflection += j >= a.first ? arm_link_of(&a, j - a.first).length * x[j] : 0;
             }
             check_close(largest, 1, 0);
             assert_true(mode == 0 || w[mode] >= w[mode - 1]);
             check_close(hub == HUB_LOCKED ? x[0] : 0, 0, 0);
             check_close(tip == TIP_PINNED ? deflection : 0, 0, 1e-12);
             const double force =
-                tip == TIP_PINNED ? left[n - 1] / arm_link_length(&a, a.links - 1) : 0;
+                tip == TIP_PINNED ? left[n - 1] / arm_link_of(&a, a.links - 1).length : 0;
             for (int j = hub == HUB_LOCKED; j < n; j++) {
-                const double lever = j >= a.first ? arm_link_length(&a, j - a.first) : 0;
+                const double lever = j >= a.first ? arm_link_of(&a, j - a.first).length : 0;
                 check_close(left[j], force * lever, 1e-9 * scale);
             }
         }

@@ -12,15 +12,14 @@
 #include "src/arm/motor.h"
 #include "src/arm/wall.h"
 
-// Links and joints of a chain whose links or joints are not all alike; [k] is the k-th from the
-// hub.
-typedef struct link_table {
-    double length[PARAMETER_LIST_MOST];    // [m]
-    double mass[PARAMETER_LIST_MOST];      // [kg]
-    double inertia[PARAMETER_LIST_MOST];   // about the centre of mass [kg m2]
-    double stiffness[PARAMETER_LIST_MOST]; // of the joint before it [N m/rad]
-    double damping[PARAMETER_LIST_MOST];   // of the joint before it [N m s/rad]
-} link_table;
+// A link and the joint before it.
+typedef struct arm_link {
+    double length;    // [m]
+    double mass;      // [kg]
+    double inertia;   // about the centre of mass [kg m2]
+    double stiffness; // of the joint [N m/rad]
+    double damping;   // structural, of the joint [N m s/rad]
+} arm_link;
 
 typedef struct arm {
     int links;                // N
@@ -45,10 +44,10 @@ typedef struct arm {
     int damped_modes;  // how many rows modal_damping has
     motor_model motor; // with the command in force
     wall_model wall;
-    double highest_frequency; // upper estimate over the arm's free modes [rad/s]
-    double fastest_decay;     // of overdamped modes and of the hub alone [1/s]
-    double fastest_rate;      // of vibrations and, weighted, decays: sets the steps [1/s]
-    link_table each;          // of an uneven arm
+    double highest_frequency;           // upper estimate over the arm's free modes [rad/s]
+    double fastest_decay;               // of overdamped modes and of the hub alone [1/s]
+    double fastest_rate;                // of vibrations and, weighted, decays: sets the steps [1/s]
+    arm_link each[PARAMETER_LIST_MOST]; // of an uneven arm, from the hub
     // row i, g, gives the joints the torques g (g'(bend rates)); g[k] belongs to the joint before
     // link k
     double modal_damping[PARAMETER_MODES_MOST][PARAMETER_LIST_MOST]; // [(N m s/rad)^(1/2)]
@@ -63,26 +62,17 @@ static inline bool arm_is_plain(const arm *a)
            a->stiffening == 0 && a->air_drag == 0 && a->damped_modes == 0 && !a->motor.electric;
 }
 
-// Length [m], mass [kg] and moment of inertia about the centre of mass [kg m2] of link k, and
-// stiffness [N m/rad] and structural damping [N m s/rad] of the joint before it.
-static inline double arm_link_length(const arm *a, int k)
+// Link k from the hub, from 0.
+static inline arm_link arm_link_of(const arm *a, int k)
 {
-    return a->uneven ? a->each.length[k] : a->link_length;
+    return a->uneven ? a->each[k]
+                     : (arm_link){a->link_length, a->link_mass, a->link_inertia,
+                                  k > 0 ? a->joint_stiffness : a->hub_stiffness,
+                                  k > 0 ? a->joint_damping : a->hub_joint_damping};
 }
-static inline double arm_link_mass(const arm *a, int k)
-{
-    return a->uneven ? a->each.mass[k] : a->link_mass;
-}
-static inline double arm_link_inertia(const arm *a, int k)
-{
-    return a->uneven ? a->each.inertia[k] : a->link_inertia;
-}
-static inline double arm_joint_stiffness(const arm *a, int k)
-{
-    return a->uneven ? a->each.stiffness[k] : k > 0 ? a->joint_stiffness : a->hub_stiffness;
-}
-// Torque of that joint at a bend [rad] beyond its linear one, and the energy it holds there, [N m]
-// and [J]: stiffness x stiffening x bend^3. A hub spring of its own does not stiffen.
+
+// Torque of the joint before it at a bend [rad] beyond its linear one, and the energy it holds
+// there, [N m] and [J]: stiffness x stiffening x bend^3. A hub spring of its own does not stiffen.
 static inline double arm_stiffening_torque(const arm *a, int k, double bend)
 {
     if (a->stiffening == 0 || (k == 0 && !a->root_bends)) {
@@ -90,11 +80,7 @@ static inline double arm_stiffening_torque(const arm *a, int k, double bend)
     }
     // a root is half a joint: it bends half as far at the same curvature
     const double share = k == 0 ? 4 * a->stiffening : a->stiffening;
-    return arm_joint_stiffness(a, k) * share * bend * bend * bend;
-}
-static inline double arm_joint_damping(const arm *a, int k)
-{
-    return a->uneven ? a->each.damping[k] : k > 0 ? a->joint_damping : a->hub_joint_damping;
+    return arm_link_of(a, k).stiffness * share * bend * bend * bend;
 }
 
 // Derives the constants from resolved parameters (corrected model); the command is motor.voltage.

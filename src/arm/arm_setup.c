@@ -43,21 +43,21 @@ static double first_clamped_frequency(const arm *a)
         double y = 0, moment_beyond = 0;
         double tip_y[LONGEST];
         for (int k = 0; k < a->links; k++) {
-            y += arm_link_length(a, k) * shape[k];
+            y += arm_link_of(a, k).length * shape[k];
             tip_y[k] = y;
         }
 
         // M x as the moment on each joint, from the tip inwards
         double force = a->tip_mass * y;
         for (int k = a->links - 1; k >= (root ? 0 : 1); k--) {
-            const double l = arm_link_length(a, k);
+            const double l = arm_link_of(a, k).length;
             double base = tip_y[k] - l * shape[k];
-            double own_force = arm_link_mass(a, k) * (base + l * shape[k] / 2);
-            double moment =
-                moment_beyond + force * l + own_force * l / 2 + arm_link_inertia(a, k) * shape[k];
+            double own_force = arm_link_of(a, k).mass * (base + l * shape[k] / 2);
+            double moment = moment_beyond + force * l + own_force * l / 2 +
+                            arm_link_of(a, k).inertia * shape[k];
             moment_beyond = moment;
             force += own_force;
-            next[k] = moment / arm_joint_stiffness(a, k); // bend of joint k
+            next[k] = moment / arm_link_of(a, k).stiffness; // bend of joint k
         }
 
         // the next shape, and Rayleigh's quotient on the way
@@ -90,7 +90,9 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
     arm a = *source;
     a.motor.electric = false;
     a.motor.torque = a.motor.damping = a.motor.stiction = a.joint_damping = a.hub_joint_damping = 0;
-    memset(a.each.damping, 0, sizeof a.each.damping);
+    for (int k = 0; k < (int)PARAMETER_LIST_MOST; k++) {
+        a.each[k].damping = 0;
+    }
     a.stiffening = a.air_drag = a.gravity = 0;
     a.damped_modes = of_velocities ? a.damped_modes : 0;
     a.wall.kind = WALL_NONE;
@@ -156,8 +158,8 @@ static double fastest_decay(const arm *a)
     double damping = fmax(a->joint_damping, a->hub_joint_damping);
     const double ratio = 0.5 * w * damping / stiffest;
     double decay = ratio > 1 ? w * (ratio + sqrt(ratio * ratio - 1)) : 0;
-    double reach = arm_link_length(a, 0) * (a->hub_spring ? 0 : 1);
-    double hub = a->hub_inertia + arm_link_mass(a, 0) * reach * reach / 12;
+    double reach = arm_link_of(a, 0).length * (a->hub_spring ? 0 : 1);
+    double hub = a->hub_inertia + arm_link_of(a, 0).mass * reach * reach / 12;
     assert(stiffest > 0 && hub > 0);
     decay = fmax(decay, a->air_drag * a->link_length / a->link_mass);
     if (a->damped_modes > 0) {
@@ -177,27 +179,25 @@ static double fastest_decay(const arm *a)
 // Links and joints one by one, where lists make them differ; equal ones are a chain like any other.
 static void set_links(arm *a, const arm_parameters *p)
 {
-    link_table *each = &a->each;
+    double lengths[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST];
     if (p->joint_stiffness[0] == '\0' && p->link_lengths[0] == '\0') {
         return;
     }
-    parameters_link_lengths(p, each->length);
-    parameters_joint_stiffness(p, each->stiffness);
+    parameters_link_lengths(p, lengths);
+    parameters_joint_stiffness(p, stiffness);
     a->uneven = !parameters_even_links(p);
 
     // rods of one beam
     const double density = p->mass / p->length;
     for (int k = 0; k < p->links; k++) {
-        const double l = each->length[k];
-        each->mass[k] = density * l;
-        each->inertia[k] = each->mass[k] * l * l / 12;
-        each->damping[k] = 0;
+        const double l = lengths[k], mass = density * l;
+        a->each[k] = (arm_link){l, mass, mass * l * l / 12, stiffness[k], 0};
     }
 
     // as it stands in the list; of different ones the largest says how long steps may be
-    a->joint_stiffness = a->links > 1 ? each->stiffness[a->links - 1] : a->joint_stiffness;
+    a->joint_stiffness = a->links > 1 ? stiffness[a->links - 1] : a->joint_stiffness;
     for (int k = 1; k < a->links; k++) {
-        a->joint_stiffness = fmax(a->joint_stiffness, each->stiffness[k]);
+        a->joint_stiffness = fmax(a->joint_stiffness, stiffness[k]);
     }
 }
 
@@ -234,7 +234,7 @@ void arm_init(arm *a, const parameters *p)
         a->joint_damping = per_stiffness * a->joint_stiffness;
         a->hub_joint_damping = per_stiffness * a->hub_stiffness;
         for (int k = 0; a->uneven && k < a->links; k++) {
-            a->each.damping[k] = per_stiffness * a->each.stiffness[k];
+            a->each[k].damping = per_stiffness * a->each[k].stiffness;
         }
     }
 

@@ -11,8 +11,8 @@ void chain_node(const arm *a, const double *q, int k, double *x, double *y)
 {
     *x = *y = 0;
     for (int i = 0; i < k; i++) {
-        *x += arm_link_length(a, i) * inline_cos(q[a->first + i]);
-        *y += arm_link_length(a, i) * inline_sin(q[a->first + i]);
+        *x += arm_link_of(a, i).length * inline_cos(q[a->first + i]);
+        *y += arm_link_of(a, i).length * inline_sin(q[a->first + i]);
     }
 }
 
@@ -29,14 +29,14 @@ static tip_contact contact_of(const arm *a, const double *q, const double *w)
     tip_contact at = {.vx = 0, .vy = 0};
     double x = 0, y = 0, c, s;
     for (int k = a->first; k < last; k++) {
-        const double l = arm_link_length(a, k - a->first);
+        const double l = arm_link_of(a, k - a->first).length;
         inline_sincos(q[k], &s, &c);
         x += l * c;
         y += l * s;
         at.vx -= l * s * w[k];
         at.vy += l * c * w[k];
     }
-    const double l = arm_link_length(a, a->links - 1);
+    const double l = arm_link_of(a, a->links - 1).length;
     inline_sincos(q[last], &s, &c);
     at.wall = wall_contact_at(&a->wall, l, x, y, at.vx, at.vy, c, s, w[last]);
     at.lever = wall_last_lever(&at.wall, l, c, s);
@@ -92,12 +92,13 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
     // tip to hub: each link's answer if its base rested
     double pxx = a->tip_mass, pxy = 0, pyy = a->tip_mass, fx = ex, fy = ey;
     for (int k = a->links - 1; k >= 0; k--) {
-        const double l = arm_link_length(a, k), m = arm_link_mass(a, k), half = 0.5 * l;
+        const arm_link own = arm_link_of(a, k);
+        const double l = own.length, m = own.mass, half = 0.5 * l;
         double c, s;
         inline_sincos(q[a->first + k], &s, &c);
         double ptx = -pxx * s + pxy * c, pty = -pxy * s + pyy * c;
         double ux = l * ptx - m * half * s, uy = l * pty + m * half * c;
-        double d = arm_link_inertia(a, k) + m * half * half + l * l * (c * pty - s * ptx);
+        double d = own.inertia + m * half * half + l * l * (c * pty - s * ptx);
         double moment = -l * (c * fy - s * fx) - (k == a->links - 1 ? lever : 0);
         if (k == 0 && !a->hub_spring) {
             d += a->hub_inertia;
@@ -119,8 +120,8 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
     response[0] = 0; // a hub behind a spring does not feel an impulse
     for (int k = 0; k < a->links; k++) {
         double jump = link[k].unit - (link[k].ux * bx + link[k].uy * by) * link[k].inv_d;
-        bx -= arm_link_length(a, k) * link[k].s * jump;
-        by += arm_link_length(a, k) * link[k].c * jump;
+        bx -= arm_link_of(a, k).length * link[k].s * jump;
+        by += arm_link_of(a, k).length * link[k].c * jump;
         response[a->first + k] = jump;
     }
 }
@@ -151,11 +152,11 @@ double chain_kinetic_energy(const arm *a, const double *q, const double *w)
     for (int k = a->first; k < a->dof; k++) {
         double s, c;
         inline_sincos(q[k], &s, &c);
-        const double l = arm_link_length(a, k - a->first);
+        const arm_link own = arm_link_of(a, k - a->first);
+        const double l = own.length;
         double across_x = -l * s * w[k], across_y = l * c * w[k];
         double cx = vx + across_x / 2, cy = vy + across_y / 2;
-        twice += arm_link_mass(a, k - a->first) * (cx * cx + cy * cy) +
-                 arm_link_inertia(a, k - a->first) * w[k] * w[k];
+        twice += own.mass * (cx * cx + cy * cy) + own.inertia * w[k] * w[k];
         vx += across_x;
         vy += across_y;
     }
@@ -169,7 +170,7 @@ double chain_strain_energy(const arm *a, const double *q)
     double twice = 0;
     for (int k = 1; k < a->dof; k++) {
         double bend = q[k] - q[k - 1];
-        twice += arm_joint_stiffness(a, k - a->first) * bend * bend +
+        twice += arm_link_of(a, k - a->first).stiffness * bend * bend +
                  arm_stiffening_torque(a, k - a->first, bend) * bend / 2;
     }
     return twice / 2;
@@ -177,19 +178,19 @@ double chain_strain_energy(const arm *a, const double *q)
 
 double chain_weight(const arm *a, int k)
 {
-    double mass = a->tip_mass + arm_link_mass(a, k) / 2;
+    double mass = a->tip_mass + arm_link_of(a, k).mass / 2;
     for (int i = k + 1; i < a->links; i++) {
-        mass += arm_link_mass(a, i);
+        mass += arm_link_of(a, i).mass;
     }
-    return a->gravity * mass * arm_link_length(a, k);
+    return a->gravity * mass * arm_link_of(a, k).length;
 }
 
 double chain_weight_energy(const arm *a, const double *q)
 {
     double y = 0, moment = 0;
     for (int k = 0; k < a->links && a->gravity != 0; k++) {
-        const double rise = arm_link_length(a, k) * inline_sin(q[a->first + k]);
-        moment += arm_link_mass(a, k) * (y + rise / 2);
+        const double rise = arm_link_of(a, k).length * inline_sin(q[a->first + k]);
+        moment += arm_link_of(a, k).mass * (y + rise / 2);
         y += rise;
     }
     return a->gravity * (moment + a->tip_mass * y);

@@ -49,7 +49,7 @@ KERNEL void reach_wall(sweep *c)
     const int last = a->links - 1;
     double x = 0, y = 0;
     for (int k = 0; k <= last; k++) {
-        const double l = arm_link_length(a, k);
+        const double l = arm_link_of(a, k).length;
         inline_sincos(c->theta[k], &c->link[k].s, &c->link[k].c);
         if (k < last) {
             x += l * c->link[k].c;
@@ -58,7 +58,7 @@ KERNEL void reach_wall(sweep *c)
             c->vy += l * c->link[k].c * c->omega[k];
         }
     }
-    c->l_last = arm_link_length(a, last);
+    c->l_last = arm_link_of(a, last).length;
     if (wall_stands(&a->wall)) {
         c->wall = wall_contact_at(&a->wall, c->l_last, x, y, c->vx, c->vy, c->link[last].c,
                                   c->link[last].s, c->omega[last]);
@@ -113,13 +113,13 @@ KERNEL double drag(sweep *c, int k, double l, beyond *b, double *x, double *y)
 // Torque of the joint before link k at a bend [rad] and its rate [rad/s].
 KERNEL double joint_torque(sweep *c, int k, double bend, double rate)
 {
-    const double damping = arm_joint_damping(c->a, k);
+    const double damping = arm_link_of(c->a, k).damping;
     double modal = 0;
     for (int i = 0; i < c->a->damped_modes; i++) {
         modal += c->a->modal_damping[i][k] * c->modal[i];
     }
     c->damping_power += damping * rate * rate;
-    return (arm_joint_stiffness(c->a, k) * bend + damping * rate) +
+    return (arm_link_of(c->a, k).stiffness * bend + damping * rate) +
            (arm_stiffening_torque(c->a, k, bend) + modal);
 }
 
@@ -128,7 +128,7 @@ KERNEL void eliminate(sweep *c, int k, beyond *b)
 {
     const arm *a = c->a;
     const bool tip = k == a->links - 1, root = k == 0;
-    const double l = arm_link_length(a, k), m = arm_link_mass(a, k), half = 0.5 * l;
+    const double l = arm_link_of(a, k).length, m = arm_link_of(a, k).mass, half = 0.5 * l;
     const double cosine = c->link[k].c, sine = c->link[k].s, w2 = c->omega[k] * c->omega[k];
     const double ptx = -b->pxx * sine + b->pxy * cosine; // P t
     const double pty = -b->pxy * sine + b->pyy * cosine;
@@ -136,7 +136,7 @@ KERNEL void eliminate(sweep *c, int k, beyond *b)
     const double pry = b->pxy * cosine + b->pyy * sine;
     const double ux = -m * half * sine + l * ptx, uy = m * half * cosine + l * pty;
     const double fx = b->qx - l * w2 * prx, fy = b->qy - l * w2 * pry;
-    double d = arm_link_inertia(a, k) + m * half * half + l * l * (cosine * pty - sine * ptx);
+    double d = arm_link_of(a, k).inertia + m * half * half + l * l * (cosine * pty - sine * ptx);
     if (root && !a->hub_spring) {
         d += a->hub_inertia;
     }
@@ -199,7 +199,7 @@ KERNEL tip_base substitute(const sweep *c, double *out)
             at->unit -= (at->ux * bx + at->uy * by) * at->inv_d;
         }
         if (k < c->a->links - 1) {
-            const double l = arm_link_length(c->a, k), w2 = c->omega[k] * c->omega[k];
+            const double l = arm_link_of(c->a, k).length, w2 = c->omega[k] * c->omega[k];
             ax -= l * (at->s * out[k] + at->c * w2);
             ay += l * (at->c * out[k] - at->s * w2);
             if (c->constrained) {

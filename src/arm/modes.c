@@ -26,20 +26,20 @@ void modes_matrices(const arm *a, double *mass, double *stiffness)
     // straight, all cosines are 1: every link beyond the outer one counts whole, that one half
     double beyond = a->tip_mass;
     for (int j = N - 1; j >= 0; j--) {
-        const double l = arm_link_length(a, j), m = arm_link_mass(a, j);
+        const double l = arm_link_of(a, j).length, m = arm_link_of(a, j).mass;
         double *row = mass + (a->first + j) * n + a->first;
         for (int i = 0; i < j; i++) {
             row[i] = mass[(a->first + i) * n + a->first + j] =
-                l * arm_link_length(a, i) * (beyond + 0.5 * m);
+                l * arm_link_of(a, i).length * (beyond + 0.5 * m);
         }
-        row[j] = l * l * (beyond + 0.25 * m) + arm_link_inertia(a, j);
+        row[j] = l * l * (beyond + 0.25 * m) + arm_link_of(a, j).inertia;
         beyond += m;
     }
     mass[0] += a->hub_inertia;
 
     // a spring between each body and the one before
     for (int k = 1; k < n; k++) {
-        add_spring(n, k, arm_joint_stiffness(a, k - a->first), stiffness);
+        add_spring(n, k, arm_link_of(a, k - a->first).stiffness, stiffness);
     }
 }
 
@@ -78,16 +78,16 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
             memset(matrix, 0, (size_t)(size * (size + 1)) * sizeof *matrix);
             for (int k = 1; k < n; k++) {
                 const int own = k - 1, link = k - a->first;
+                const arm_link is = arm_link_of(a, link);
                 const double bend = q[k] - q[k - 1], s = inline_sin(q[k] - line);
                 const double stiffens = arm_stiffening_torque(a, link, 1);
-                const double torque =
-                    (arm_joint_stiffness(a, link) + stiffens * bend * bend) * bend;
-                const double slope = arm_joint_stiffness(a, link) + 3 * stiffens * bend * bend;
+                const double torque = (is.stiffness + stiffens * bend * bend) * bend;
+                const double slope = is.stiffness + 3 * stiffens * bend * bend;
                 const double weight = chain_weight(a, link) * load / LOADS;
-                const double reach = arm_link_length(a, link) * inline_cos(q[k] - line);
+                const double reach = is.length * inline_cos(q[k] - line);
                 change[own] -= torque + weight * inline_cos(q[k]) + *force * reach;
                 matrix[own * size + own] +=
-                    slope - weight * inline_sin(q[k]) - *force * arm_link_length(a, link) * s;
+                    slope - weight * inline_sin(q[k]) - *force * is.length * s;
                 if (own > 0) {
                     change[own - 1] += torque;
                     matrix[(own - 1) * size + own - 1] += slope;
@@ -95,7 +95,7 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
                 }
                 if (tip == TIP_PINNED) {
                     matrix[own * size + last] = matrix[last * size + own] = reach;
-                    change[last] -= arm_link_length(a, link) * s;
+                    change[last] -= is.length * s;
                 }
             }
             found = dense_solve(size, matrix, change);
@@ -122,7 +122,7 @@ static status add_sag(const arm *a, tip_end tip, double *q, double *mass, double
     const status code = modes_sag(a, tip, q, &force);
     for (int k = a->first; k < n && code == STATUS_OK; k++) {
         const int link = k - a->first;
-        const double l = arm_link_length(a, link), turned = q[k] - line_angle(a, tip);
+        const double l = arm_link_of(a, link).length, turned = q[k] - line_angle(a, tip);
         constraint[k] = l * inline_cos(turned);
         for (int j = a->first; j < n; j++) {
             mass[k * n + j] *= inline_cos(q[k] - q[j]);
@@ -256,8 +256,8 @@ static void scaled_mass(const arm *a, double *scaled)
             double *here = common + i * EDGE + j;
             const double below = here[EDGE], right = here[1], both = here[EDGE + 1];
             *here = mass[i * n + j] + (below + right - both);
-            const double own = arm_joint_stiffness(a, i - a->first);
-            const double other = arm_joint_stiffness(a, j - a->first);
+            const double own = arm_link_of(a, i - a->first).stiffness;
+            const double other = arm_link_of(a, j - a->first).stiffness;
             scaled[(i - 1) * size + j - 1] = *here / sqrt(own * other);
         }
     }
@@ -284,7 +284,7 @@ int modal_damping_rows(const arm *a, const char *ratios, double rows[][PARAMETER
         memset(rows[i], 0, sizeof rows[i]);
         for (int k = 0; k < size; k++) {
             const int joint = k + 1 - a->first;
-            rows[i][joint] = factor * sqrt(arm_joint_stiffness(a, joint)) * y[k];
+            rows[i][joint] = factor * sqrt(arm_link_of(a, joint).stiffness) * y[k];
         }
     }
     return count;

@@ -35,7 +35,7 @@ static bool is_of_wall(motion_event event)
 // Whether the fastest mode vibrates on and on, and is what steps follow.
 static bool rings_on(const arm *a, const motion *m)
 {
-    const bool damped = arm_joint_damping(a, a->links - 1) > 0 || a->damped_modes > 0;
+    const bool damped = arm_link_of(a, a->links - 1).damping > 0 || a->damped_modes > 0;
     return !damped && a->fastest_decay <= a->highest_frequency && motion_wall_is_rigid(m) &&
            a->motor.inductance == 0;
 }

@@ -52,15 +52,6 @@ static void solve(int n, double m[][ROWS], double *b)
     solve_factored(n, ROWS, m[0], pivot, b);
 }
 
-static double length_of(const simulation *s, int k)
-{
-    return s->a->uneven ? s->a->each.length[k] : s->a->link_length;
-}
-static double mass_of(const simulation *s, int k)
-{
-    return s->a->uneven ? s->a->each.mass[k] : s->a->link_mass;
-}
-
 void build_chain(simulation *s)
 {
     const arm *a = s->a;
@@ -69,13 +60,14 @@ void build_chain(simulation *s)
     for (int k = 0; k < a->links; k++) {
         for (int i = 0; i <= k; i++) {
             for (int j = 0; j <= k; j++) {
-                const double li = length_of(s, i) * (i < k ? 1 : 0.5);
-                const double lj = length_of(s, j) * (j < k ? 1 : 0.5);
-                s->coupling[i][j] += mass_of(s, k) * li * lj;
+                const double li = arm_link_of(s->a, i).length * (i < k ? 1 : 0.5);
+                const double lj = arm_link_of(s->a, j).length * (j < k ? 1 : 0.5);
+                s->coupling[i][j] += arm_link_of(s->a, k).mass * li * lj;
             }
         }
         for (int j = 0; j < a->links; j++) {
-            s->coupling[k][j] += a->tip_mass * length_of(s, k) * length_of(s, j);
+            s->coupling[k][j] +=
+                a->tip_mass * arm_link_of(s->a, k).length * arm_link_of(s->a, j).length;
         }
     }
 }
@@ -92,7 +84,7 @@ touch touch_at(const simulation *s, const double *q, const double *w)
     if (a->wall.kind == WALL_PLANE) { // the tip's distance from a line through the hub's axis
         const double direction = atan2(a->wall.sine, a->wall.cosine);
         for (int k = 0; k < N; k++) {
-            const double l = length_of(s, k), z = q[f + k] - direction;
+            const double l = arm_link_of(s->a, k).length, z = q[f + k] - direction;
             t.g += l * sin(z);
             t.j[f + k] += l * cos(z);
             t.velocity_terms -= l * sin(z) * w[f + k] * w[f + k];
@@ -101,7 +93,8 @@ touch touch_at(const simulation *s, const double *q, const double *w)
         const double c = cos(q[f + N - 1]), si = sin(q[f + N - 1]), spin = w[f + N - 1];
         double x = a->wall.x, y = a->wall.y, vx = 0, vy = 0, ax = 0, ay = 0;
         for (int k = 0; k < N - 1; k++) {
-            const double l = length_of(s, k), ck = cos(q[f + k]), sk = sin(q[f + k]), wk = w[f + k];
+            const double l = arm_link_of(s->a, k).length, ck = cos(q[f + k]), sk = sin(q[f + k]),
+                         wk = w[f + k];
             x -= l * ck;
             y -= l * sk;
             vx -= l * sk * wk;
@@ -129,16 +122,11 @@ static double passive_torques(const simulation *s, const double *q, const double
     for (int k = f == 1 ? 0 : 1; k < N; k++) {
         const int i = f + k;
         const double bend = q[i] - q[i - 1], rate = w[i] - w[i - 1];
-        const double stiffness = a->uneven ? a->each.stiffness[k]
-                                 : k > 0   ? a->joint_stiffness
-                                           : a->hub_stiffness;
-        const double damping = a->uneven ? a->each.damping[k]
-                               : k > 0   ? a->joint_damping
-                                         : a->hub_joint_damping;
+        const arm_link link = arm_link_of(a, k);
         // a joint stands for a whole link's bending, a beam's root for half a link's
         const double share = k > 0 ? a->stiffening : a->root_bends ? 4 * a->stiffening : 0;
-        double torque = stiffness * bend * (1 + share * bend * bend) + damping * rate;
-        power += damping * rate * rate;
+        double torque = link.stiffness * bend * (1 + share * bend * bend) + link.damping * rate;
+        power += link.damping * rate * rate;
         for (int row = 0; row < a->damped_modes; row++) {
             double sum = 0;
             for (int j = f == 1 ? 0 : 1; j < N; j++) {
@@ -153,7 +141,8 @@ static double passive_torques(const simulation *s, const double *q, const double
     // air: a force against the velocity of each piece of the beam
     double vx = 0, vy = 0, velocity_x[MOST_BODIES], velocity_y[MOST_BODIES];
     for (int k = 0; k < N && a->air_drag > 0; k++) {
-        const double l = length_of(s, k), c = cos(q[f + k]), si = sin(q[f + k]), wk = w[f + k];
+        const double l = arm_link_of(s->a, k).length, c = cos(q[f + k]), si = sin(q[f + k]),
+                     wk = w[f + k];
         velocity_x[k] = vx - l / 2 * si * wk;
         velocity_y[k] = vy + l / 2 * c * wk;
         vx -= l * si * wk;
@@ -163,7 +152,7 @@ static double passive_torques(const simulation *s, const double *q, const double
                  spin * wk * wk;
         Q[f + k] -= spin * wk;
         for (int i = 0; i <= k; i++) {
-            const double lever = i < k ? length_of(s, i) : l / 2;
+            const double lever = i < k ? arm_link_of(s->a, i).length : l / 2;
             Q[f + i] -=
                 whole * lever * (cos(q[f + i]) * velocity_y[k] - sin(q[f + i]) * velocity_x[k]);
         }
@@ -178,7 +167,7 @@ void mass_matrix(const simulation *s, const double *q, double m[][ROWS])
         for (int j = 0; j < s->n; j++) {
             m[i][j] = i >= f && j >= f ? s->coupling[i - f][j - f] * cos(q[i] - q[j]) : 0;
         }
-        m[i][i] += i >= f ? (s->a->uneven ? s->a->each.inertia[i - f] : s->a->link_inertia) : 0;
+        m[i][i] += i >= f ? arm_link_of(s->a, i - f).inertia : 0;
     }
     m[0][0] += s->a->hub_inertia;
 }

@@ -91,7 +91,7 @@ static void deflections(const arm *a, const double *shape, double *x, double *y)
     // from joint to joint, each link at its own angle
     x[0] = y[0] = 0;
     for (int i = 0; i < a->links; i++) {
-        const double length = arm_link_length(a, i);
+        const double length = arm_link_of(a, i).length;
         x[i + 1] = x[i] + length;
         y[i + 1] = y[i] + length * links[i];
         largest = fmax(largest, fabs(y[i + 1]));

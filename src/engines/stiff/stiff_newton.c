@@ -48,15 +48,16 @@ void stiff_set_arm(stiff_integrator *integrator, const arm *a, const motion *m)
     s->dof = a->dof;
     s->first = a->first;
     for (int k = 0; k < a->links; k++) {
-        stiff_link *l = &s->link[k];
-        l->length = arm_link_length(a, k);
-        l->mass = arm_link_mass(a, k);
-        l->inertia = arm_link_inertia(a, k);
-        l->stiffness = arm_joint_stiffness(a, k);
-        l->damping = arm_joint_damping(a, k);
-        l->stiffening = arm_stiffening_torque(a, k, 1);
-        l->air = a->air_drag * l->length;
-        l->turning = l->air * l->length * l->length / 12;
+        const arm_link own = arm_link_of(a, k);
+        const double air = a->air_drag * own.length;
+        s->link[k] = (stiff_link){.length = own.length,
+                                  .mass = own.mass,
+                                  .inertia = own.inertia,
+                                  .stiffness = own.stiffness,
+                                  .damping = own.damping,
+                                  .stiffening = arm_stiffening_torque(a, k, 1),
+                                  .air = air,
+                                  .turning = air * own.length * own.length / 12};
     }
     s->stiffens = a->stiffening != 0;
     s->drags = a->air_drag > 0;
