@@ -174,6 +174,23 @@ TEST(wall_and_friction_leave_open_what_the_force_is)
     }
 }
 
+// In a tilted plane the weight presses, too, or pulls.
+TEST(the_weight_of_a_link_shifts_what_is_open)
+{
+    for (EACH_OF(double, tilt, -0.4, 0.2, 0.5)) {
+        char text[200];
+        snprintf(text, sizeof text,
+                 "arm: {links: 1, mass: 0.4, tilt: %g}\nmotor: {voltage: 4}\n"
+                 "wall: {angle: 0.2}\nrun: {duration: 4}\n",
+                 *tilt);
+        SCOPED(run_finish) run_result r = run_of(text);
+        const summary *s = &r.summary;
+        const double balanced = torque_of(4) - 0.4 * 9.80665 * sin(*tilt) / 2 * cos(0.2);
+        check_bounds(s->steady_force_low_N, s->steady_force_high_N, balanced - kst, balanced + kst);
+        check_close(s->steady_force_N, balanced, 1e-12);
+    }
+}
+
 // Where the motor pulls, less than friction holds, the wall may press as hard as that.
 TEST(a_link_that_rests_may_be_pressed_or_not)
 {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/base/extremes.h"
+#include "src/base/sincos.h"
 #include "src/contact/edge_limits.h"
 
 // The remainders of decays change little within this share of the time since the event.
@@ -67,8 +68,9 @@ void motion_evaluate(const arm *a, motion *m, double *state)
 force_bounds motion_held_forces(const arm *a, const motion *m, double *state)
 {
     assert(m->dof == 1 && wall_stands(&a->wall));
-    const double one = 1, lever = chain_penetration_rate(a, state_angles(m, state), &one);
-    const double balanced = (a->motor.torque + state[SLOT_MOTOR_TORQUE]) / lever;
+    const double one = 1, *q = state_angles(m, state), lever = chain_penetration_rate(a, q, &one);
+    const double weight = a->gravity != 0 ? chain_weight(a, 0) * inline_cos(q[0]) : 0;
+    const double balanced = (a->motor.torque + state[SLOT_MOTOR_TORQUE] - weight) / lever;
     const double friction = a->motor.stiction / fabs(lever);
     return (force_bounds){larger(balanced - friction, 0), larger(balanced + friction, 0)};
 }

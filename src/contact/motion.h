@@ -209,7 +209,7 @@ typedef struct force_bounds {
 } force_bounds;
 
 // The forces with which friction can hold one link on a rigid hub at rest in an evaluated state: f
-// >= 0 with |T - J f| <= kst, T the motor's torque and J = dg/dq.
+// >= 0 with |T - J f| <= kst, T the torque of motor and weight and J = dg/dq.
 force_bounds motion_held_forces(const arm *a, const motion *m, double *state);
 
 // The bounds of the contact force in an evaluated state, both the force itself where it is
