@@ -363,6 +363,28 @@ TEST(more_links_are_predicted_as_the_two_link_arm)
     }
 }
 
+// Equal links are the same arm whether a list says so or not, damping included.
+TEST(a_list_of_equal_joints_changes_no_prediction)
+{
+    parameters plain, listed;
+    parameters_defaults(&plain, ARM_CORRECTED);
+    assert_int_equal(parameter_set_number(&plain, PARAMETER_INDEX(arm.links), 4, NULL), STATUS_OK);
+    plain.arm.damping_ratio = 0.1;
+    listed = plain;
+    assert_int_equal(
+        parameter_set_text(&listed, PARAMETER_INDEX(arm.joint_stiffness), "9.84,9.84,9.84", NULL),
+        STATUS_OK);
+    assert_int_equal(parameters_resolve(&plain, NULL), STATUS_OK);
+    assert_int_equal(parameters_resolve(&listed, NULL), STATUS_OK);
+    three_body_state s = {{0.1, 0.1, 0.1}, {1, 1, 1}};
+    for (int i = 0; i < 3; i++) {
+        prediction a, b;
+        assert_int_equal(predictors[i](&plain, &s, &a, NULL), STATUS_OK);
+        assert_int_equal(predictors[i](&listed, &s, &b, NULL), STATUS_OK);
+        check_relative(b.force, a.force, 1e-12);
+    }
+}
+
 TEST(a_state_that_is_not_finite_is_refused)
 {
     parameters p = parameters_of(ARM_CORRECTED);

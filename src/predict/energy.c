@@ -84,6 +84,7 @@ static double share_undamped(const parameters *p, const two_link *t, const three
     two.arm.links = 2;
     two.arm.hub_joint = HUB_RIGID;
     two.arm.link_inertia = two_link_inertia(p);
+    two.arm.joint_stiffness[0] = two.arm.link_lengths[0] = '\0'; // p's own joints
     arm_init(&a, &two);
     double seconds = a.joint_damping / a.joint_stiffness;
 
