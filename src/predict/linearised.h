@@ -8,7 +8,7 @@
 // at rest. In free flight the wall is assumed to be where the contact point of the arm is now. Two
 // links on a rigid hub that press on a rigid wall have a closed form, that of a linear constrained
 // arm by pieces (linearised.c), with the exact impact, (4.10)-(4.17), force just after it, motor
-// and friction. The pulse of any other arm is followed by its engine (pulse.c). q[dof], w[dof]: the
+// and friction. The pulse of any other arm is followed by its engine. q[dof], w[dof]: the
 // state before the touch. Where no number can be told, it is `doubtful` and the prediction does not
 // hold. STATUS_NO_MEMORY, or what motion_step returns where a step fails.
 // A motor with inductance, whose current the state does not tell, is for predict_pulse.

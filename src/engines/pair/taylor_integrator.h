@@ -1,5 +1,4 @@
-// The step in hand of the two-link engine (taylor_engine.c), its states (taylor_states.c) and the
-// answers to the contact machine's questions about it (taylor_events.c).
+// The step in hand of the two-link engine (taylor_engine.c), and what it tells (taylor_output.c).
 #pragma once
 
 #include "src/contact/motion.h"
@@ -18,16 +17,12 @@ typedef struct taylor_integrator {
     bool own;                            // the lane's block has all of them
 } taylor_integrator;
 
-// --- states --------------------------------------------------------------------------------------
-
 // The engine's functions of these names (engine.h).
 status taylor_state_at(const arm *a, motion *m, double h, state_extent extent);
 void taylor_states_at(const arm *a, motion *m, const double *h, int count, double *const *states,
                       state_energy *energies);
 void taylor_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,
                          int count, value_and_slope *at);
-
-// --- events --------------------------------------------------------------------------------------
 
 value_and_slope taylor_event_function(const arm *a, const motion *m, event_function w, double h);
 double taylor_second_derivative(const arm *a, const motion *m, event_function w, double from,

@@ -107,8 +107,7 @@ KERNEL real least_of(const enclosure *c, real sign, real first)
     return lowest(&signed_one, first);
 }
 
-// --- roots
-// -----------------------------------------------------------------------------------------
+// --- roots --------------------------------------------------------------------------------------
 
 enum { MOST_ITERATIONS = 6 }; // of Newton's method
 

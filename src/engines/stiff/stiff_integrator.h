@@ -1,5 +1,5 @@
-// The step in hand of the stiff engine (stiff_engine.c): how it is taken (stiff_newton.c), what it
-// says of events (stiff_events.c), and what of it a state keeps.
+// The step in hand of the stiff engine (stiff_engine.c): how its stages are solved
+// (stiff_stages.c), what it tells (stiff_output.c), and what of it a state keeps.
 #pragma once
 
 #include "src/engines/stiff/stiff_function.h"
@@ -76,7 +76,7 @@ static inline size_t stiff_head_size(const motion *m)
     return (SLOT_COUNT + 4 * (size_t)m->dof + QUADRATURE_COUNT) * sizeof(double);
 }
 
-// --- stiff_newton.c ------------------------------------------------------------------------------
+// --- stiff_stages.c -----------------------------------------------------------------------------
 
 // The arm in its contact state, and the state at the step's start.
 void stiff_set_arm(stiff_integrator *s, const arm *a, const motion *m);
@@ -90,8 +90,6 @@ bool stiff_solve_stages(stiff_integrator *s, bool fresh, double offset, double r
 // Puts the stages into what is kept.
 void stiff_keep_stages(stiff_integrator *s);
 
-// --- stiff_error.c -------------------------------------------------------------------------------
-
 // Error of the step, as the embedded formula of order 7 shows it, filtered by the real system; a
 // momentum as STIFF_SCALE is.
 double stiff_error(stiff_integrator *s, bool twice);
@@ -99,18 +97,10 @@ double stiff_error(stiff_integrator *s, bool twice);
 // Momentum of velocities of the arm stretched out [kg^(1/2) m/s].
 double stiff_momentum(const stiff_integrator *s, const double *w);
 
-// --- stiff_events.c ------------------------------------------------------------------------------
+// --- stiff_output.c -----------------------------------------------------------------------------
 
 // The event functions of the step, which begins at m->state.
 void stiff_event_functions(stiff_integrator *s, const arm *a, const motion *m);
-
-// --- stiff_control.c -----------------------------------------------------------------------------
-
-// Takes a step from m->state, as long as its error allows or up to its first event. False if none
-// can be made.
-bool stiff_make_step(stiff_integrator *s, const arm *a, motion *m);
-
-// --- stiff_output.c ------------------------------------------------------------------------------
 
 // Angles, velocities and what has added up at `time` [s] after the step's start, evaluated.
 void stiff_state_within(const stiff_integrator *s, const arm *a, motion *m, double time,

@@ -4,8 +4,7 @@
 
 #include "src/engines/stiff/stiff_sweeps.h"
 
-// --- the tangent
-// ------------------------------------------------------------------------------------
+// --- the tangent --------------------------------------------------------------------------------
 
 // y of a right side without borders, in place.
 KERNEL void solve_bare(const stiff_step *s, complex_lanes *y)
@@ -235,8 +234,7 @@ static void solve(stiff_step *s, const complex_lanes *target)
     }
 }
 
-// --- an iteration
-// ----------------------------------------------------------------------------------
+// --- an iteration -------------------------------------------------------------------------------
 
 // Radau's embedded sums of the stages, x of velocities and v of accelerations.
 static void differences(const stiff_step *s, double *x, double *v)
