@@ -191,6 +191,22 @@ TEST(the_weight_of_a_link_shifts_what_is_open)
     }
 }
 
+// A force that stays the same is largest at once, whatever rounding says later.
+TEST(a_force_that_stays_is_largest_at_once)
+{
+    static const char *const ways[] = {"current_limit: 0.2}",
+                                       "current_limit: 100}\nwall: {kind: plane}",
+                                       "current_limit: 0.2}\nwall: {angle: 0.3, restitution: 0}"};
+    for (EACH(way, ways)) {
+        char text[200];
+        snprintf(text, sizeof text,
+                 "arm: {links: 1, tilt: 0.1, air_drag: 0.6}\nmotor: {voltage: 4, %s\n", *way);
+        SCOPED(run_finish) run_result r = run_of(text);
+        assert_true(r.summary.steady_force_N > 0.05);
+        assert_true(r.summary.time_to_peak_s == 0 && r.summary.first_pulse_time_to_peak_s == 0);
+    }
+}
+
 // Where the motor pulls, less than friction holds, the wall may press as hard as that.
 TEST(a_link_that_rests_may_be_pressed_or_not)
 {

@@ -177,13 +177,14 @@ void stiff_keep_stages(stiff_integrator *integrator)
         memcpy(a + (size_t)RADAU_LANES * (size_t)k, s->stage[k].a, sizeof s->stage[k].a);
     }
 
-    // what holds one link holds it to the last bit; with the hub stuck too, what joins the two
-    // presses with one force throughout
-    const bool both = s->dof == 2 && s->stuck && !wall_moves(s->wall);
-    if (s->contact == STIFF_RIGID && ((s->dof == 1 && !wall_moves(s->wall)) || both)) {
+    // what holds one link, or two whose hub is stuck, holds them to the last bit, and presses with
+    // one force throughout unless the current changes
+    const bool rigid = s->contact == STIFF_RIGID && !wall_moves(s->wall);
+    const bool one = rigid && s->dof == 1, both = rigid && s->dof == 2 && s->stuck;
+    if (one || both) {
         memset(a, 0, (size_t)s->dof * RADAU_LANES * sizeof *a);
     }
-    for (int i = 0; i < RADAU_LANES && both && s->contact == STIFF_RIGID; i++) {
+    for (int i = 0; i < RADAU_LANES && (both || (one && s->drive != STIFF_FLOWS)); i++) {
         stiff_force(integrator)[i] = s->force.at[RADAU_LANES - 1];
     }
     kept[STIFF_LENGTH] = s->length;
