@@ -316,6 +316,27 @@ TEST(a_prescribed_voltage_is_followed)
     predict_and_follow("arm.hub_joint=spring", "arm.links=5", &(voltage_profile){2, times, volts});
 }
 
+// What a pulse of a quarter of a millisecond gives back does not depend on the engine, whose steps
+// end at other instants of it.
+TEST(a_short_pulse_gives_back_the_same_by_any_engine)
+{
+    static const char *const more[] = {"arm.air_drag=0", "arm.air_drag=1e-11",
+                                       "arm.stiffening=1e-9"};
+    for (EACH_OF(double, rate, 1.3, 1.7, 2.1, 2.5)) {
+        double first = 0;
+        for (EACH(setting, more)) {
+            parameters p = parameters_with("arm.hub_joint=spring motor.voltage=3 %s", *setting);
+            arm a = arm_of(&p);
+            const double q[3] = {0.1, 0.1, 0.1}, w[3] = {*rate, *rate, 1.3 * *rate};
+            prediction out;
+            assert_int_equal(predict_pulse(&a, &p.method, q, w, NULL, true, &out), STATUS_OK);
+            assert_true(out.holds && out.restitution > 0.1);
+            first = first > 0 ? first : out.restitution;
+            check_relative(out.restitution, first, 2e-4);
+        }
+    }
+}
+
 TEST(an_elastic_impact_does_not_hold)
 {
     parameters p = parameters_with("wall.restitution=0.5");

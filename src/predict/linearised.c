@@ -40,8 +40,13 @@ enum { PIECES = 3 };
 #define SETTLED_FROM 0.8
 #define SETTLED      5e-4
 
-#define ENERGY_ROW   1e-4  // from one look at the energies to the next [s]
-#define COMMAND_DUE  1e-12 // share of its instant by which a command may be early
+// From one look at the energies to the next, at most and at least [s], and of the fastest vibration
+// where that is between them [rad].
+#define LONGEST_LOOK  1e-4
+#define SHORTEST_LOOK 3e-5
+#define LOOK_PHASE    0.1
+
+#define COMMAND_DUE   1e-12 // share of its instant by which a command may be early
 
 enum { MOST_STEPS = 60000 };
 
@@ -68,16 +73,46 @@ arm arm_touching_now(const arm *a, const double *q)
     return touched;
 }
 
-// What is seen of energies: the kinetic energy where the strain was largest [J].
+// What is seen of energies: the last three looks, and the kinetic energy where the strain was
+// largest [J].
 typedef struct seen_energies {
-    double most_strain, kinetic_there;
+    double time[3]; // [s]
+    state_energy at[3];
+    state_energy most;
 } seen_energies;
 
+// The parabola f + slope x + bend x^2 through values at x[0] < 0, at 0 and at x[1].
+static void parabola(const double x[2], double before, double f, double after, double *slope,
+                     double *bend)
+{
+    const double first = (before - f) / x[0], second = (after - f) / x[1];
+    *bend = (second - first) / (x[1] - x[0]);
+    *slope = first - *bend * x[0];
+}
+
+// The largest strain between two looks is the top of the parabola through three.
 static void see_energies(const arm *a, motion *m, seen_energies *seen)
 {
-    const state_energy now = motion_energy(a, m, m->state);
-    if (now.strain > seen->most_strain) {
-        *seen = (seen_energies){now.strain, now.kinetic};
+    state_energy *at = seen->at;
+    for (int i = 0; i < 2; i++) {
+        seen->time[i] = seen->time[i + 1];
+        at[i] = at[i + 1];
+    }
+    seen->time[2] = m->state[SLOT_TIME];
+    at[2] = motion_energy(a, m, m->state);
+    if (at[2].strain > seen->most.strain) {
+        seen->most = at[2];
+    }
+
+    const double x[] = {seen->time[0] - seen->time[1], seen->time[2] - seen->time[1]};
+    if (x[0] < 0 && x[1] > 0 && at[1].strain > at[0].strain && at[1].strain > at[2].strain) {
+        double slope, bend, slope2, bend2;
+        parabola(x, at[0].strain, at[1].strain, at[2].strain, &slope, &bend);
+        parabola(x, at[0].kinetic, at[1].kinetic, at[2].kinetic, &slope2, &bend2);
+        const double top = -slope / (2 * bend), strain = at[1].strain + slope / 2 * top;
+        if (strain > seen->most.strain) {
+            seen->most = (state_energy){at[1].kinetic + top * (slope2 + bend2 * top), strain};
+        }
     }
 }
 
@@ -120,7 +155,9 @@ static status follow(arm *a, motion *m, const voltage_profile *command, seen_ene
         double until = fmin(give_commands(a, m, command, &next), PULSE_HORIZON);
         if (seen != NULL) {
             see_energies(a, m, seen);
-            until = fmin(until, m->state[SLOT_TIME] + ENERGY_ROW);
+            const double look = LOOK_PHASE / motion_vibration(a, m, m->state);
+            until =
+                fmin(until, m->state[SLOT_TIME] + fmax(fmin(look, LONGEST_LOOK), SHORTEST_LOOK));
         }
         if (m->state[SLOT_TIME] <= settled) {
             before = m->record.pulse_peak;
@@ -175,7 +212,7 @@ status predict_pulse(const arm *source, const method_parameters *method, const d
     if (out->holds && energies && m->state[SLOT_CONTACT] == 0) {
         see_energies(&a, m, &seen);
         const double left = motion_energy(&a, m, m->state).kinetic;
-        out->restitution = seen.most_strain > 0 ? (left - seen.kinetic_there) / seen.most_strain
+        out->restitution = seen.most.strain > 0 ? (left - seen.most.kinetic) / seen.most.strain
                                                 : (double)NAN; // no joint stores anything
     }
     motion_destroy(m);

@@ -22,8 +22,8 @@ status predict_linearised(const arm *a, const method_parameters *method, const d
 
 // The same by its engine for any arm and motor, for a voltage that is prescribed from the touch on
 // (command; NULL or empty: the one in force stays); `energies` asks for e_eq of 4.1.1, too, and
-// looks at them every tenth of a millisecond. Followed to where the force vanishes, by the event
-// method; a touch that does not hold, or a pulse that cannot be followed to its peak, has no
+// looks at them every tenth of a millisecond at least. Followed to where the force vanishes, by the
+// event method; a touch that does not hold, or a pulse that cannot be followed to its peak, has no
 // numbers but the impulse.
 status predict_pulse(const arm *a, const method_parameters *method, const double *q,
                      const double *w, const voltage_profile *command, bool energies,
