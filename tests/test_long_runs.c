@@ -1,5 +1,6 @@
 // Long runs: computed in the background of the session, stopped, continued, resumed from another
 // run's rows, which are then kept once.
+#include "tests/shared_memory.h"
 #include "tests/trace_check.h"
 
 #include <time.h>

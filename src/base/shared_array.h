@@ -3,8 +3,8 @@
 // A plain one lies on the heap and moves as it grows. A shared one keeps its place: address space
 // is reserved for all it may ever hold, and memory is put behind it in chunks as it grows. So
 // another thread can read what has been published to it while the owner appends, and a second
-// array can have the same chunks for its beginning instead of a copy. Chunks are counted and go
-// when the last array that has them does; elements once appended must not be changed.
+// array can have the same chunks for its beginning instead of a copy. A chunk goes when the last
+// array that has it does; elements once appended must not be changed.
 #pragma once
 
 #include <stdbool.h>
@@ -12,16 +12,13 @@
 
 enum { ARRAY_CHUNK = 128 * 1024 }; // [bytes]
 
-typedef struct array_chunk array_chunk;
-
 typedef struct shared_array {
     void *base;      // of the elements
     size_t size;     // of one element [bytes]
     size_t count;    // elements in it, for whoever keeps no count of his own
     size_t capacity; // elements that there is memory for
     size_t reserved; // address space of a shared array [bytes]; 0: a plain one
-    array_chunk **chunks;
-    size_t chunk_count, chunk_capacity;
+    size_t mapped;   // of it that has memory, whole chunks [bytes]
 } shared_array;
 
 // An empty plain array of elements of `size` bytes.
@@ -39,6 +36,3 @@ bool shared_array_grow(shared_array *a, size_t count);
 bool shared_array_share(shared_array *a, const shared_array *from, size_t count);
 
 void shared_array_finish(shared_array *a); // one of zeroes is allowed
-
-// Memory behind all shared arrays of the program, chunks that several have counted once [bytes].
-size_t shared_array_memory(void);
