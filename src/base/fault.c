@@ -18,48 +18,24 @@ const char *status_text(status code)
     return "unknown status";
 }
 
-// Fills f (may be NULL) with all that it has to say.
-static void fill(fault *f, status code, const char *path, int line, int column, const char *format,
-                 va_list args)
+status fault_fill(fault *f, status code, const char *path, int line, int column, const char *format,
+                  ...)
 {
+    assert(line >= 0 && (line > 0) == (column > 0));
     if (f != NULL) {
+        va_list args;
+        va_start(args, format);
         f->code = code;
         f->path = path;
         f->line = line;
         f->column = column;
         decimal_vprint(f->text, sizeof f->text, format, args);
+        va_end(args);
     }
-}
-
-status fault_set(fault *f, status code, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    fill(f, code, "", 0, 0, format, args);
-    va_end(args);
     return code;
 }
 
 status fault_no_memory(fault *f)
 {
     return fault_set(f, STATUS_NO_MEMORY, "%s", status_text(STATUS_NO_MEMORY));
-}
-
-status fault_set_at(fault *f, status code, const char *path, const char *format, ...)
-{
-    va_list args;
-    va_start(args, format);
-    fill(f, code, path, 0, 0, format, args);
-    va_end(args);
-    return code;
-}
-
-status fault_set_place(fault *f, status code, int line, int column, const char *format, ...)
-{
-    assert(line > 0 && column > 0);
-    va_list args;
-    va_start(args, format);
-    fill(f, code, "", line, column, format, args);
-    va_end(args);
-    return code;
 }

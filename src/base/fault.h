@@ -38,18 +38,17 @@ typedef struct fault {
     int line, column; // where it stands in the file that was read, from 1; 0 if there is none
 } fault;
 
-// Fills f (may be NULL) with a code and a printf-formatted sentence, without a parameter or a
-// place. Returns code.
-status fault_set(fault *f, status code, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+// Fills f (may be NULL) with a code and a printf-formatted sentence, `path` (or "") and the place
+// of what is at fault (or 0, 0). Returns code.
+status fault_fill(fault *f, status code, const char *path, int line, int column, const char *format,
+                  ...) __attribute__((format(printf, 6, 7)));
 
-// The same for a parameter whose path lasts as long as the program.
-status fault_set_at(fault *f, status code, const char *path, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-
-// The same for a place in a file, line and column from 1.
-status fault_set_place(fault *f, status code, int line, int column, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
+// The same without a parameter or a place; for a parameter whose path lasts as long as the program;
+// for a place in a file, line and column from 1.
+#define fault_set(f, code, ...)          fault_fill(f, code, "", 0, 0, __VA_ARGS__)
+#define fault_set_at(f, code, path, ...) fault_fill(f, code, path, 0, 0, __VA_ARGS__)
+#define fault_set_place(f, code, line, column, ...)                                                \
+    fault_fill(f, code, "", line, column, __VA_ARGS__)
 
 // Fills f (may be NULL) with STATUS_NO_MEMORY and its general sentence. Returns it.
 status fault_no_memory(fault *f);
