@@ -5,7 +5,7 @@
 #include "src/rig/controller_values.h"
 #include "src/rig/laws/observer_design.h"
 #include "src/rig/estimation/reduced_arm.h"
-#include "src/rig/estimation/riccati.h"
+#include "src/rig/estimation/estimator.h"
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 

@@ -4,10 +4,13 @@
 #include <math.h>
 #include <string.h>
 
-enum { N = ESTIMATOR_STATES, EXTENDED = N + 1 };
+#include "src/base/dense.h"
 
-static void multiply(int size, double out[EXTENDED][EXTENDED], double x[EXTENDED][EXTENDED],
-                     double y[EXTENDED][EXTENDED], double factor)
+enum { N = ESTIMATOR_STATES, EXTENDED = N + 1, DOUBLINGS = 60 };
+
+static void multiply_extended(int size, double out[EXTENDED][EXTENDED],
+                              double x[EXTENDED][EXTENDED], double y[EXTENDED][EXTENDED],
+                              double factor)
 {
     double product[EXTENDED][EXTENDED] = {{0}};
     for (int i = 0; i < size; i++) {
@@ -42,13 +45,13 @@ void sampled_model_init(sampled_model *m, int n, double rate[N][N], const double
         sum[i][i] = power[i][i] = 1;
     }
     for (int term = 1; term <= TERMS; term++) {
-        multiply(n + 1, power, power, x, ldexp(h, -HALVINGS) / term);
+        multiply_extended(n + 1, power, power, x, ldexp(h, -HALVINGS) / term);
         for (int i = 0; i < EXTENDED * EXTENDED; i++) {
             (&sum[0][0])[i] += (&power[0][0])[i];
         }
     }
     for (int i = 0; i < HALVINGS; i++) {
-        multiply(n + 1, sum, sum, sum, 1);
+        multiply_extended(n + 1, sum, sum, sum, 1);
     }
 
     // the state's part, and the constant input's column
@@ -74,31 +77,38 @@ void sampled_model_step(const sampled_model *m, double *z, double u)
     memcpy(z, next, (size_t)m->n * sizeof z[0]);
 }
 
+// A matrix of states, of which the first rows and columns are in use.
+typedef double matrix[N][N];
+
+// out += a b, `rows` x `inner` times `inner` x `columns`, of matrices of states; the factors may be
+// transposed.
+static inline void add_product(int rows, int inner, int columns, double *out, const double *a,
+                               bool transpose_a, const double *b, bool transpose_b)
+{
+    for (int i = 0; i < rows; i++) {
+        for (int j = 0; j < columns; j++) {
+            for (int k = 0; k < inner; k++) {
+                out[i * N + j] += (transpose_a ? a[k * N + i] : a[i * N + k]) *
+                                  (transpose_b ? b[j * N + k] : b[k * N + j]);
+            }
+        }
+    }
+}
+
 void estimator_predict(estimator *e, const sampled_model *m, double u, const double *noise)
 {
     const int n = m->n;
-    double ap[N][N];
+    matrix ap = {{0}};
     sampled_model_step(m, e->z, u);
 
-    // A P on the way to A P A'
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            ap[i][j] = 0;
-            for (int k = 0; k < n; k++) {
-                ap[i][j] += m->a[i][k] * e->p[k][j];
-            }
-        }
-    }
-
     // P = A P A' + noise
+    add_product(n, n, n, ap[0], m->a[0], false, e->p[0], false);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             e->p[i][j] = i == j ? noise[i] : 0;
-            for (int k = 0; k < n; k++) {
-                e->p[i][j] += ap[i][k] * m->a[j][k];
-            }
         }
     }
+    add_product(n, n, n, e->p[0], ap[0], false, m->a[0], true);
 }
 
 void estimator_correct(estimator *e, int n, const double *row, double offset, double reading,
@@ -128,28 +138,141 @@ void estimator_correct(estimator *e, int n, const double *row, double offset, do
 void estimator_transform(estimator *e, int from, int to,
                          double t[ESTIMATOR_STATES][ESTIMATOR_STATES])
 {
-    assert(from <= ESTIMATOR_STATES && to <= ESTIMATOR_STATES);
+    assert(from <= N && to <= N);
     const estimator before = *e;
-    double product[ESTIMATOR_STATES][ESTIMATOR_STATES];
+    matrix product = {{0}};
     memset(e, 0, sizeof *e);
-
-    // t z and t p
     for (int i = 0; i < to; i++) {
         for (int j = 0; j < from; j++) {
             e->z[i] += t[i][j] * before.z[j];
-            product[i][j] = 0;
-            for (int k = 0; k < from; k++) {
-                product[i][j] += t[i][k] * before.p[k][j];
-            }
+        }
+    }
+    add_product(to, from, from, product[0], t[0], false, before.p[0], false);
+    add_product(to, from, to, e->p[0], product[0], false, t[0], true);
+}
+
+// --- the gain of a regulator --------------------------------------------------------------------
+
+// The product of two square matrices; `out` may be one of them.
+static void multiply(int n, matrix out, matrix a, bool transpose_a, matrix b, bool transpose_b)
+{
+    matrix product = {{0}};
+    add_product(n, n, n, product[0], a[0], transpose_a, b[0], transpose_b);
+    for (int i = 0; i < n; i++) {
+        memcpy(out[i], product[i], (size_t)n * sizeof(double));
+    }
+}
+
+// x = (I + g h)^-1 b. False if that is singular.
+static bool solve(int n, matrix x, matrix g, matrix h, matrix b)
+{
+    matrix product;
+    double left[N * N], right[N * N];
+    multiply(n, product, g, false, h, false);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            left[i * n + j] = product[i][j] + (i == j);
+            right[i * n + j] = b[i][j];
         }
     }
 
-    // times t'
-    for (int i = 0; i < to; i++) {
-        for (int j = 0; j < to; j++) {
-            for (int k = 0; k < from; k++) {
-                e->p[i][j] += product[i][k] * t[j][k];
+    if (!dense_solve_columns(n, n, left, right)) {
+        return false;
+    }
+    for (int i = 0; i < n; i++) {
+        memcpy(x[i], right + i * n, (size_t)n * sizeof(double));
+    }
+    return true;
+}
+
+// The solution x of x = a'x (I + g x)^-1 a + q by doubling.
+static bool riccati(int n, matrix a, matrix g, matrix q, matrix x)
+{
+    memcpy(x, q, sizeof(matrix));
+    for (int k = 0; k < DOUBLINGS; k++) {
+        matrix fa, fg, step;
+        if (!solve(n, fa, g, x, a) || !solve(n, fg, g, x, g)) {
+            return false;
+        }
+
+        // x + a'x f a, g + a f g a', a f a with f = (I + g x)^-1
+        multiply(n, step, x, false, fa, false);
+        multiply(n, step, a, true, step, false);
+        multiply(n, fg, a, false, fg, false);
+        multiply(n, fg, fg, false, a, true);
+        multiply(n, a, a, false, fa, false);
+        double change = 0, size = 0;
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++) {
+                x[i][j] += step[i][j];
+                g[i][j] += fg[i][j];
+                change = fmax(change, fabs(step[i][j]));
+                size = fmax(size, fabs(x[i][j]));
             }
         }
+        if (!isfinite(size)) {
+            return false;
+        }
+        if (change <= 1e-14 * size) {
+            return true;
+        }
     }
+    return false;
+}
+
+void quadratic_cost_add(quadratic_cost *c, int n, const double *row, double direct, double weight)
+{
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            c->state[i][j] += weight * row[i] * row[j];
+        }
+        c->cross[i] += weight * row[i] * direct;
+    }
+    c->effort += weight * direct * direct;
+}
+
+bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gain)
+{
+    assert(m->n > 0 && m->n <= N && c->growth > 0);
+    const int n = m->n;
+    if (!(c->effort > 0)) {
+        return false;
+    }
+
+    // the cross term goes with u = v - s'z / r
+    matrix a = {{0}}, g = {{0}}, q = {{0}}, x = {{0}};
+    double b[N];
+    for (int i = 0; i < n; i++) {
+        b[i] = c->growth * m->b[i];
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            a[i][j] = c->growth * m->a[i][j] - b[i] * c->cross[j] / c->effort;
+            g[i][j] = b[i] * b[j] / c->effort;
+            q[i][j] = c->state[i][j] - c->cross[i] * c->cross[j] / c->effort;
+        }
+    }
+    if (!riccati(n, a, g, q, x)) {
+        return false;
+    }
+
+    // (r + b'x b)^-1 (b'x A + s')
+    double bx[N], weight = c->effort;
+    for (int j = 0; j < n; j++) {
+        bx[j] = 0;
+        for (int i = 0; i < n; i++) {
+            bx[j] += b[i] * x[i][j];
+        }
+        weight += bx[j] * b[j];
+    }
+    bool finite = true;
+    for (int j = 0; j < n; j++) {
+        gain[j] = c->cross[j];
+        for (int i = 0; i < n; i++) {
+            gain[j] += bx[i] * c->growth * m->a[i][j];
+        }
+        gain[j] /= weight;
+        finite = finite && isfinite(gain[j]);
+    }
+    return finite;
 }

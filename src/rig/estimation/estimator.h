@@ -1,5 +1,5 @@
-// A linear model sampled at a fixed period, and a Kalman filter on it: small, fixed sizes, nothing
-// allocated. For controllers.
+// A linear model sampled at a fixed period, a Kalman filter on it, and the gain of a linear
+// quadratic regulator: small, fixed sizes, nothing allocated. For controllers.
 #pragma once
 
 #include <stdbool.h>
@@ -36,3 +36,22 @@ void estimator_correct(estimator *e, int n, const double *row, double offset, do
 // covariance t p t'; t: [to][from].
 void estimator_transform(estimator *e, int from, int to,
                          double t[ESTIMATOR_STATES][ESTIMATOR_STATES]);
+
+// --- the gain of a regulator, any weights --------------------------------------------------------
+
+// The sum over samples k of (z'Q z + 2 z's u + r u^2) growth^2k.
+typedef struct quadratic_cost {
+    double state[ESTIMATOR_STATES][ESTIMATOR_STATES]; // Q
+    double cross[ESTIMATOR_STATES];                   // s
+    double effort;                                    // r > 0
+    double growth; // 1 is the plain optimum; above it errors die faster than growth^-k
+} quadratic_cost;
+
+// Adds weight (row z + direct u)^2 to a cost of n states.
+void quadratic_cost_add(quadratic_cost *c, int n, const double *row, double direct, double weight);
+
+// Gain of the feedback u = -gain z that makes the cost least on a sampled model: the stabilising
+// solution of the discrete Riccati equation by the structured doubling algorithm (Chu, Fan, Lin and
+// Wang, International Journal of Control 77, 2004), which squares the closed loop's decay in each
+// of its steps. False if it does not converge: there is no stabilising solution.
+bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gain);

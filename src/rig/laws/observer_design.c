@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "src/base/plain_math.h"
-#include "src/rig/estimation/riccati.h"
+#include "src/rig/estimation/estimator.h"
 
 #define PI 3.14159265358979323846
 

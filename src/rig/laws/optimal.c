@@ -18,7 +18,6 @@
 #include <string.h>
 
 #include "src/rig/estimation/estimator.h"
-#include "src/rig/estimation/riccati.h"
 #include "src/rig/laws/laws.h"
 #include "src/base/plain_math.h"
 
