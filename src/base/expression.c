@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
+#include "src/base/words.h"
 
 enum { MOST_DEPTH = 100, KEY_TEXT = 128 };
 
@@ -95,9 +96,7 @@ static void read_word(reader *r)
     }
     const int found = r->find(r->context, name, &near);
     if (found < 0) {
-        refuse(r, start, "there is no quantity '%s'%s%s%s", name,
-               near != NULL ? ", did you mean '" : "", near != NULL ? near : "",
-               near != NULL ? "'?" : "");
+        refuse(r, start, "there is no quantity '%s'%s%s%s", name, DID_YOU_MEAN(near, ""));
         return;
     }
     add_step(r, (expression_step){.what = EXPRESSION_NAME, .name = found});

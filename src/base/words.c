@@ -1,7 +1,6 @@
 #include "src/base/words.h"
 
 #include <assert.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,6 +73,30 @@ void nearest_try(nearest_word *n, const char *candidate)
         n->distance = distance;
         n->best = candidate;
     }
+}
+
+static const char *name_at(const void *table, size_t size, int index)
+{
+    const void *row = (const char *)table + (size_t)index * size;
+    return *(const char *const *)row;
+}
+
+int name_find(const void *table, size_t size, int count, const char *name)
+{
+    int i = 0;
+    while (i < count && strcmp(name_at(table, size, i), name) != 0) {
+        i++;
+    }
+    return i < count ? i : -1;
+}
+
+const char *name_nearest(const void *table, size_t size, int count, const char *name)
+{
+    nearest_word near = nearest_begin(name);
+    for (int i = 0; i < count; i++) {
+        nearest_try(&near, name_at(table, size, i));
+    }
+    return near.best;
 }
 
 bool is_unprintable(uint32_t character)

@@ -3,6 +3,7 @@
 
 #include <stdarg.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -23,6 +24,18 @@ nearest_word nearest_begin(const char *word);
 // Looks at one candidate; the first of several equally near ones is kept. The part after the last
 // '/' or '.' counts for the whole ("fig-3-4" finds "thesis/fig-3-4").
 void nearest_try(nearest_word *n, const char *candidate);
+
+// The three arguments of a "%s%s%s" behind a name that is not known: ", did you mean 'NEAR'?", or
+// what else to say where `near` is NULL.
+#define DID_YOU_MEAN(near, otherwise)                                                              \
+    (near) != NULL ? ", did you mean '" : (otherwise), (near) != NULL ? (near) : "",               \
+        (near) != NULL ? "'?" : ""
+
+// Tables of `count` rows of `size` bytes, each of which begins with its name, a const char *. The
+// index of a name, -1 if there is none such; and the name that is nearest to a misspelt one, NULL
+// if none is near.
+int name_find(const void *table, size_t size, int count, const char *name);
+const char *name_nearest(const void *table, size_t size, int count, const char *name);
 
 // Whether a character (Unicode) may not leave the program in a text: a control character (C0 and
 // C1, line ends too), one that turns the direction of what follows it, or a line or paragraph

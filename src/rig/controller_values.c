@@ -61,20 +61,9 @@ static double scenario_value(const controller_parameter *own, const parameters *
 
 // --- control.settings -----------------------------------------------------------------------
 
-// Index of the controller's parameter of that name, -1 if it has none.
-static int find_named(const controller *law, const char *name)
+int controller_find_parameter(const controller *law, const char *name)
 {
-    for (int i = 0; i < law->parameter_count; i++) {
-        if (strcmp(law->parameters[i].name, name) == 0) {
-            return i;
-        }
-    }
-    return -1;
-}
-
-bool controller_has_parameter(const controller *law, const char *name)
-{
-    return find_named(law, name) >= 0;
+    return name_find(law->parameters, sizeof *law->parameters, law->parameter_count, name);
 }
 
 const char *controller_takes_anything(void *memory, const controller_setup *setup)
@@ -83,23 +72,15 @@ const char *controller_takes_anything(void *memory, const controller_setup *setu
     return NULL;
 }
 
-static status refuse_name(const controller *law, const char *name, fault *f)
-{
-    nearest_word near = nearest_begin(name);
-    for (int i = 0; i < law->parameter_count; i++) {
-        nearest_try(&near, law->parameters[i].name);
-    }
-    return fault_set(f, STATUS_BAD_SCENARIO,
-                     "control.settings: the controller '%s' has no parameter '%s'%s%s%s", law->name,
-                     name, near.best ? ", did you mean '" : "", near.best ? near.best : "",
-                     near.best ? "'?" : "");
-}
-
 static status read_setting(const controller *law, const setting *s, double *values, fault *f)
 {
-    int index = find_named(law, s->name);
+    int index = controller_find_parameter(law, s->name);
     if (index < 0) {
-        return refuse_name(law, s->name, f);
+        const char *near =
+            name_nearest(law->parameters, sizeof *law->parameters, law->parameter_count, s->name);
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "control.settings: the controller '%s' has no parameter '%s'%s%s%s",
+                         law->name, s->name, DID_YOU_MEAN(near, ""));
     }
 
     controller_parameter wanted = controller_parameter_at(law, index);

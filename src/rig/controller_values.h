@@ -20,5 +20,5 @@ status controller_values(const controller *law, const parameters *p, double *val
 // A controller's `start` or `tune` that takes whatever it is told.
 const char *controller_takes_anything(void *memory, const controller_setup *setup);
 
-// Whether the controller has a parameter of that name.
-bool controller_has_parameter(const controller *law, const char *name);
+// Index of the controller's parameter of that name, -1 if it has none.
+int controller_find_parameter(const controller *law, const char *name);

@@ -85,12 +85,7 @@ int parameter_at(size_t offset)
 
 int parameter_find(const char *path)
 {
-    for (int i = 0; i < parameter_count; i++) {
-        if (strcmp(parameter_table[i].path, path) == 0) {
-            return i;
-        }
-    }
-    return -1;
+    return name_find(parameter_table, sizeof *parameter_table, parameter_count, path);
 }
 
 int parameter_index(const char *path)
@@ -106,8 +101,7 @@ int parameter_look_up(const char *path, fault *f)
     if (index < 0) {
         const char *near = parameter_suggest(path);
         fault_set(f, STATUS_BAD_ARGUMENT, "unknown parameter '%.60s'%s%s%s", path,
-                  near ? ", did you mean '" : ", expected one that 'show' lists", near ? near : "",
-                  near ? "'?" : "");
+                  DID_YOU_MEAN(near, ", expected one that 'show' lists"));
     }
     return index;
 }
@@ -116,14 +110,12 @@ const char *parameter_suggest(const char *path)
 {
     // the right name, perhaps in a wrong group or in none
     const char *dot = strrchr(path, '.'), *name = dot != NULL ? dot + 1 : path;
-    nearest_word nearest = nearest_begin(path);
     for (int i = 0; i < parameter_count; i++) {
         if (strcmp(strchr(parameter_table[i].path, '.') + 1, name) == 0) {
             return parameter_table[i].path;
         }
-        nearest_try(&nearest, parameter_table[i].path);
     }
-    return nearest.best;
+    return name_nearest(parameter_table, sizeof *parameter_table, parameter_count, path);
 }
 
 const control_law_info control_law_table[LAW_COUNT] = {

@@ -17,18 +17,16 @@ const int signal_count = SIGNALS_AT_MOST;
 
 int signal_find(const char *name)
 {
-    const int found = signal_find_any(name);
-    return found < signal_count ? found : -1;
+    return name_find(table, sizeof *table, signal_count, name);
 }
 
 int signal_find_any(const char *name)
 {
-    for (int i = 0; i < SIGNALS_AT_MOST + DERIVED_SIGNALS; i++) {
-        if (table[i].name != NULL && strcmp(table[i].name, name) == 0) {
-            return i;
-        }
+    int i = signal_find(name);
+    for (int d = SIGNALS_AT_MOST; i < 0 && d < SIGNALS_AT_MOST + DERIVED_SIGNALS; d++) {
+        i = table[d].name != NULL && strcmp(table[d].name, name) == 0 ? d : i;
     }
-    return -1;
+    return i;
 }
 
 const char *signal_body_name(signal_body body)
@@ -67,13 +65,8 @@ static struct {
 static int find_recorded(void *context, const char *name, const char **near)
 {
     (void)context;
-    const int found = signal_find(name);
-    nearest_word nearest = nearest_begin(name);
-    for (int i = 0; i < signal_count; i++) {
-        nearest_try(&nearest, table[i].name);
-    }
-    *near = nearest.best;
-    return found;
+    *near = name_nearest(table, sizeof *table, signal_count, name);
+    return signal_find(name);
 }
 
 // The unit of an expression: terms have the same, a factor without a unit keeps it; else "".

@@ -13,12 +13,7 @@ const int summary_count = (int)(sizeof summary_table / sizeof summary_table[0]);
 
 int summary_find(const char *key)
 {
-    for (int i = 0; i < summary_count; i++) {
-        if (strcmp(summary_table[i].key, key) == 0) {
-            return i;
-        }
-    }
-    return -1;
+    return name_find(summary_table, sizeof *summary_table, summary_count, key);
 }
 
 int summary_index(const char *key)
@@ -30,11 +25,7 @@ int summary_index(const char *key)
 
 const char *summary_suggest(const char *key)
 {
-    nearest_word nearest = nearest_begin(key);
-    for (int i = 0; i < summary_count; i++) {
-        nearest_try(&nearest, summary_table[i].key);
-    }
-    return nearest.best;
+    return name_nearest(summary_table, sizeof *summary_table, summary_count, key);
 }
 
 static size_t offset_of(int index)

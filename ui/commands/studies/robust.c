@@ -186,7 +186,7 @@ static bool others_have_parameter(const robustness *r, const char *name)
     bool known = false;
     for (int i = own == LAW_NONE ? 0 : -1; i < laws && !known; i++) {
         const controller *law = controller_of(i < 0 ? own : r->laws[i]);
-        known = law == NULL || controller_has_parameter(law, name);
+        known = law == NULL || controller_find_parameter(law, name) >= 0;
     }
     return known;
 }
@@ -205,7 +205,8 @@ static void fit_settings(const robustness *r, int law, control_parameters *contr
     const char *rest = control->settings;
     setting s;
     while (settings_next(&rest, &s)) {
-        bool stays = controller_has_parameter(known, s.name) || !others_have_parameter(r, s.name);
+        bool stays =
+            controller_find_parameter(known, s.name) >= 0 || !others_have_parameter(r, s.name);
         char *list = stays ? kept : left;
         size_t used = strlen(list);
         snprintf(list + used, sizeof kept - used, "%s%.*s", used > 0 ? " " : "", (int)s.length,
