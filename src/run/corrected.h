@@ -173,17 +173,6 @@ status corrected_follow_flight(corrected_run *c, const sample_point *to)
 // its force. STATUS_NOT_FINITE as above, STATUS_NO_MEMORY.
 status corrected_record_forces(corrected_run *c) __attribute__((warn_unused_result));
 
-// --- of the whole of a step in free flight ----------------------------------------------------
-
-// Both are of the step that motion_step has just made.
-
-// Whether the gap was a separation, above SEPARATION_GAP, at any instant of the step.
-bool flight_separated(const arm *a, motion *m);
-
-// How fast the tip came towards the wall at most in the step [m/s]: at its ends or, where it was
-// faster and then slower, in between. Negative if it only went away; 0 without a wall.
-double flight_closing_speed(const arm *a, motion *m);
-
 // --- what it comes to -------------------------------------------------------------------------
 
 // Sums up what is known of the run, also of one that failed or has not come to its end (`failed`

@@ -8,27 +8,20 @@
 #include "src/base/shipped.h"
 #include "src/tables/settings.h"
 
+// Only integers and reals are numbers, alone or in lists.
 static json_t *parameter_value(const parameters *p, int index)
 {
+    const parameter_info *info = &parameter_table[index];
     char text[PARAMETER_TEXT_SIZE];
     double numbers[PARAMETER_LIST_MOST];
-
-    // only integers and reals are numbers, alone or in lists
-    switch (parameter_table[index].type) {
-    case PARAMETER_CHOICE:
-    case PARAMETER_TEXT:
-        parameter_format(p, index, text, sizeof text);
-        return json_text(text);
-    case PARAMETER_LIST:
-        parameter_format(p, index, text, sizeof text);
-        return json_numbers(numbers, parameter_list_numbers(text, numbers));
-    case PARAMETER_BOOLEAN:
-        return json_boolean(parameter_get(p, index) != 0);
-    case PARAMETER_INTEGER:
-    case PARAMETER_REAL:
-        break;
+    if (info->type != PARAMETER_CHOICE && !parameter_is_text(info)) {
+        const double value = parameter_get(p, index);
+        return info->type == PARAMETER_BOOLEAN ? json_boolean(value != 0) : json_number(value);
     }
-    return json_number(parameter_get(p, index));
+    parameter_format(p, index, text, sizeof text);
+    return info->type == PARAMETER_LIST
+               ? json_numbers(numbers, parameter_list_numbers(text, numbers))
+               : json_text(text);
 }
 
 json_t *export_parameters(const parameters *p)
@@ -94,9 +87,6 @@ json_t *export_run(const scenario *s, const run_result *result)
 {
     const summary *m = &result->summary;
     json_t *object = json_object();
-    if (object == NULL) {
-        return NULL;
-    }
 
     // which run, and how it went
     json_members(object, "scenario:t version:t status:t message:t method_used:t", s->name,

@@ -122,11 +122,3 @@ void recording_follow_flight(recording *r, double closing_speed);
 
 // Fills in what the summary says of the rig; the hub is at the given angle at the end [rad].
 void recording_finish_rig_summary(recording *r, double hub_angle);
-
-// The largest mean of the contact force over a sliding window, impulses of impacts included.
-
-// The largest mean [N] of the force over any window of the given length [s] that begins at `from`
-// [s] or later and ends within the run; an impulse on a window's edge counts. Each step is the
-// parabola through its ends that has its mean, so the extremes are found to rounding. NaN if no
-// such window fits into the run.
-double force_largest_mean(const run_result *result, double from, double window);

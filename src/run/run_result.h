@@ -1,16 +1,15 @@
-// The result of a run: summary, rows and history; and the options of a run.
+// The result of a run: summary, rows and history; the options of a run, and its forces.
 #pragma once
 
 #include <stdatomic.h>
 #include <stdbool.h>
 
 #include "src/tables/summary.h"
-#include "src/run/force_history.h"
 #include "src/run/trace.h"
 
 // What a run that can be resumed (src/run/resume.h) keeps besides its rows.
 typedef struct run_history {
-    shared_array forces;      // over every step (src/run/force_history.h)
+    shared_array forces;      // over every step, a force_step each
     shared_array checkpoints; // of the run, every few hundred rows (src/run/resume.h)
 } run_history;
 
@@ -66,3 +65,48 @@ typedef struct run_options {
 
 // Frees what the result holds; one of zeroes is allowed.
 void run_finish(run_result *result);
+
+// --- the contact force of a whole run, a shared array of force_step ---------------------------
+
+#define SETTLED_BAND 0.05 // a force has settled within this share of its final value
+
+// The force over one step: at its ends, and its mean.
+typedef struct force_step {
+    double start, end;        // [s]
+    double first, last, mean; // [N]
+} force_step;
+
+// The force within a step as a parabola of its share s of the step: first + slope s + curve s^2.
+typedef struct step_parabola {
+    double first, slope, curve; // [N]
+} step_parabola;
+
+// The parabola through the ends of a step that has its mean.
+static inline step_parabola step_parabola_of(const force_step *step)
+{
+    double curve = 3 * (step->first + step->last) - 6 * step->mean;
+    return (step_parabola){step->first, step->last - step->first - curve, curve};
+}
+
+// The steps, oldest first; good until the next one is added to a plain array.
+static inline const force_step *force_steps(const shared_array *h)
+{
+    return h->base;
+}
+
+// Appends a step. STATUS_NO_MEMORY.
+status force_history_add(shared_array *h, force_step step) __attribute__((warn_unused_result));
+
+// Appends `count` steps that the caller fills in at once. NULL without memory.
+force_step *force_history_extend(shared_array *h, size_t count);
+
+// The instant [s] after which the force stays for good within SETTLED_BAND (a share) of `final`
+// [N], each step taken as the parabola through its ends that has its mean; NaN if the run ends
+// outside, or has no step.
+double force_settled_since(const shared_array *h, double final);
+
+// The largest mean [N] of the force over any window of the given length [s] that begins at `from`
+// [s] or later and ends within the run; an impulse on a window's edge counts. Each step is the
+// parabola through its ends that has its mean, so the extremes are found to rounding. NaN if no
+// such window fits into the run.
+double force_largest_mean(const run_result *result, double from, double window);
