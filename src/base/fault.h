@@ -66,10 +66,17 @@ status fault_no_memory(fault *f);
 // The same with STATUS_NO_MEMORY where there is not what memory was asked for.
 #define TRY_MEMORY(given, f) TRY((given) ? STATUS_OK : fault_no_memory(f))
 
-// Ends it with a fault, FAIL_IF(count > MOST, fault_set(f, ...)), where something is wrong.
+// Ends it with what a call comes to where something is wrong.
 #define FAIL_IF(wrong, fault)                                                                      \
     do {                                                                                           \
         if (wrong) {                                                                               \
             return fault;                                                                          \
         }                                                                                          \
     } while (0)
+
+// The same with what fault_set, fault_set_at and fault_set_place make of the rest.
+#define FAULT_IF(wrong, f, code, ...) FAIL_IF(wrong, fault_set(f, code, __VA_ARGS__))
+#define FAULT_AT_IF(wrong, f, code, path, ...)                                                     \
+    FAIL_IF(wrong, fault_set_at(f, code, path, __VA_ARGS__))
+#define FAULT_PLACE_IF(wrong, f, code, line, column, ...)                                          \
+    FAIL_IF(wrong, fault_set_place(f, code, line, column, __VA_ARGS__))

@@ -85,12 +85,12 @@ static status read_setting(const controller *law, const setting *s, double *valu
 
     controller_parameter wanted = controller_parameter_at(law, index);
     double value = 0;
-    FAIL_IF(!setting_number(s, &value) || !(value >= wanted.minimum && value <= wanted.maximum),
-            fault_set(f, STATUS_BAD_SCENARIO,
-                      "control.settings: '%.*s' is wrong, expected %s=NUMBER from %g to %g%s%s",
-                      (int)s->length, s->word, wanted.name, wanted.minimum, wanted.maximum,
-                      wanted.unit != NULL && wanted.unit[0] ? " " : "",
-                      wanted.unit != NULL ? wanted.unit : ""));
+    FAULT_IF(!setting_number(s, &value) || !(value >= wanted.minimum && value <= wanted.maximum), f,
+             STATUS_BAD_SCENARIO,
+             "control.settings: '%.*s' is wrong, expected %s=NUMBER from %g to %g%s%s",
+             (int)s->length, s->word, wanted.name, wanted.minimum, wanted.maximum,
+             wanted.unit != NULL && wanted.unit[0] ? " " : "",
+             wanted.unit != NULL ? wanted.unit : "");
     values[index] = value;
     return STATUS_OK;
 }
@@ -103,11 +103,10 @@ status controller_values(const controller *law, const parameters *p, double *val
     for (int i = 0; i < law->parameter_count; i++) {
         const char *name = law->parameters[i].name;
         const int index = scenario_parameter(name);
-        FAIL_IF(has_only_a_name(&law->parameters[i]) && index < 0,
-                fault_set(f, STATUS_BAD_SCENARIO,
-                          "the controller '%s' says of its parameter '%.60s' nothing but the "
-                          "name, and there is no control.%.60s",
-                          law->name, name, name));
+        FAULT_IF(has_only_a_name(&law->parameters[i]) && index < 0, f, STATUS_BAD_SCENARIO,
+                 "the controller '%s' says of its parameter '%.60s' nothing but the "
+                 "name, and there is no control.%.60s",
+                 law->name, name, name);
         values[i] = scenario_value(&law->parameters[i], p, index);
     }
 

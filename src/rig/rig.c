@@ -21,8 +21,8 @@ static status start_controller(rig *r, const parameters *p, const given_law *giv
     size_t count = (size_t)(r->law->parameter_count > 0 ? r->law->parameter_count : 1);
     r->memory = calloc(r->law->memory_size > 0 ? r->law->memory_size : 1, 1);
     r->values = calloc(count, sizeof *r->values);
-    FAIL_IF(r->memory == NULL || r->values == NULL,
-            fault_set(f, STATUS_NO_MEMORY, "no memory for the controller '%s'", r->law->name));
+    FAULT_IF(r->memory == NULL || r->values == NULL, f, STATUS_NO_MEMORY,
+             "no memory for the controller '%s'", r->law->name);
 
     // one that is withheld has no use for settings
     TRY(r->withheld ? STATUS_OK : controller_values(r->law, p, r->values, f));
@@ -128,7 +128,7 @@ status rig_create(rig **created, const parameters *p, const rig_options *o, faul
     assert(given != NULL || p->control.law != LAW_NONE);
     rig *r = calloc(1, sizeof *r);
     *created = NULL;
-    FAIL_IF(r == NULL, fault_set(f, STATUS_NO_MEMORY, "no memory for the rig"));
+    FAULT_IF(r == NULL, f, STATUS_NO_MEMORY, "no memory for the rig");
 
     // the loop before its first sample, at t = 0
     r->told = *p;
@@ -253,14 +253,11 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     if (failed == STATUS_STOPPED) {
         return failed;
     }
-    FAIL_IF(failed != STATUS_OK,
-            fault_set_at(f, failed, "control.command", "at t = %.9g s %s", time, why));
-    FAIL_IF(!isfinite(out->command),
-            fault_set(f, STATUS_NOT_FINITE,
-                      "at t = %.9g s the controller '%s' gave the command %g V, expected a finite "
-                      "number; its sensors read %.6g rad, %.6g rad/s and %.6g N",
-                      time, r->law->name, out->command, input.encoder, input.tachometer,
-                      input.force));
+    FAULT_AT_IF(failed != STATUS_OK, f, failed, "control.command", "at t = %.9g s %s", time, why);
+    FAULT_IF(!isfinite(out->command), f, STATUS_NOT_FINITE,
+             "at t = %.9g s the controller '%s' gave the command %g V, expected a finite "
+             "number; its sensors read %.6g rad, %.6g rad/s and %.6g N",
+             time, r->law->name, out->command, input.encoder, input.tachometer, input.force);
 
     // what the D/A makes of it goes out after the delay
     r->pending[r->pending_count] = converter_value(&r->dac, out->command);

@@ -43,11 +43,10 @@ status rig_find_mode(const controller *law, const char *lock, int *mode, fault *
     if (lock[0] == '\0' || strcmp(lock, "none") == 0) {
         return STATUS_OK;
     }
-    FAIL_IF(!law->lockable || law->modes == NULL,
-            fault_set_at(f, STATUS_BAD_SCENARIO, "control.lock",
-                         "control.lock = '%.60s', but the law '%s' cannot be held in a mode, "
-                         "expected none",
-                         lock, law->name));
+    FAULT_AT_IF(!law->lockable || law->modes == NULL, f, STATUS_BAD_SCENARIO, "control.lock",
+                "control.lock = '%.60s', but the law '%s' cannot be held in a mode, "
+                "expected none",
+                lock, law->name);
 
     // the mode of that name
     for (int i = 0; law->modes[i] != NULL; i++) {
@@ -189,9 +188,8 @@ static status tell_controller(rig *r, const parameters *p, double time, fault *f
     }
 
     const char *refusal = r->law->tune(r->memory, &setup);
-    FAIL_IF(refusal != NULL,
-            fault_set(f, STATUS_BAD_SCENARIO, "at t = %.9g s the controller '%s' refuses: %.600s",
-                      time, r->law->name, refusal));
+    FAULT_IF(refusal != NULL, f, STATUS_BAD_SCENARIO,
+             "at t = %.9g s the controller '%s' refuses: %.600s", time, r->law->name, refusal);
     return STATUS_OK;
 }
 

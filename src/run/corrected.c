@@ -59,11 +59,11 @@ static status begin(corrected_run *c, fault *f)
 
     r->state.earlier_peak = -1;
     motion_start(&c->arm, m, p->initial.angle, p->initial.velocity);
-    FAIL_IF(m->wall_moves && m->state[SLOT_GAP] < -DEEPEST,
-            fault_set_at(f, STATUS_BAD_SCENARIO, "wall.motion",
-                         "at t = 0 the wall has moved %.4g m past the arm, which must start in "
-                         "front of it (initial.angle)",
-                         -m->state[SLOT_GAP]));
+    FAULT_AT_IF(m->wall_moves && m->state[SLOT_GAP] < -DEEPEST, f, STATUS_BAD_SCENARIO,
+                "wall.motion",
+                "at t = 0 the wall has moved %.4g m past the arm, which must start in "
+                "front of it (initial.angle)",
+                -m->state[SLOT_GAP]);
     TRY_MEMORY(corrected_begin_in_contact(c) == STATUS_OK, f);
     return STATUS_OK;
 }
@@ -387,8 +387,8 @@ status corrected_open(corrected_run *c, recording *r, motion *spare, fault *f)
     c->zeno = zeno_monitor_begin();
     corrected_bind_arm(c);
     c->motion = motion_renew(spare, &c->arm, &p->method);
-    FAIL_IF(c->motion == NULL,
-            fault_set(f, STATUS_NO_MEMORY, "no memory for an arm of %d links", p->arm.links));
+    FAULT_IF(c->motion == NULL, f, STATUS_NO_MEMORY, "no memory for an arm of %d links",
+             p->arm.links);
 
     // where a file says how the wall moves
     if (p->wall.motion == MOTION_FILE && p->wall.kind != WALL_NONE) {

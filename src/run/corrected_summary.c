@@ -27,10 +27,9 @@ static const char *advice(const motion *m)
 status corrected_explain(const corrected_run *c, status s, fault *f)
 {
     const motion *m = c->motion;
-    FAIL_IF(s == STATUS_UNSTABLE,
-            fault_set(f, s, "at t = %.9g s: %s (residual %.3g J); the method was %s%s",
-                      m->state[SLOT_TIME], status_text(s),
-                      motion_energy_residual(&c->arm, m, m->state), m->engine->name, advice(m)));
+    FAULT_IF(s == STATUS_UNSTABLE, f, s, "at t = %.9g s: %s (residual %.3g J); the method was %s%s",
+             m->state[SLOT_TIME], status_text(s), motion_energy_residual(&c->arm, m, m->state),
+             m->engine->name, advice(m));
     return fault_set(f, s, "at t = %.9g s: %s", corrected_now(c), status_text(s));
 }
 

@@ -188,8 +188,8 @@ static status act(run_loop *l, const action *todo, fault *f)
     if (l->failed != STATUS_OK) {
         return stay_failed(l, f);
     }
-    FAIL_IF(todo->kind == ACTION_PUSH && l->driver.is_printed,
-            fault_set(f, STATUS_BAD_ARGUMENT, "the printed model takes no pushes"));
+    FAULT_IF(todo->kind == ACTION_PUSH && l->driver.is_printed, f, STATUS_BAD_ARGUMENT,
+             "the printed model takes no pushes");
     if (todo->kind == ACTION_SET && !rig_can_change(&l->recording.now, todo->parameter)) {
         const char *path = parameter_table[todo->parameter].path;
         return fault_set_at(f, STATUS_BAD_ARGUMENT, path,
@@ -423,17 +423,13 @@ static void keep_at_most(size_t *count, size_t most)
 status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
 {
     saved_head head;
-    FAIL_IF(size != loop_saved_size(l),
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "a state of this loop has %zu bytes, but %zu were given", loop_saved_size(l),
-                      size));
+    FAULT_IF(size != loop_saved_size(l), f, STATUS_BAD_ARGUMENT,
+             "a state of this loop has %zu bytes, but %zu were given", loop_saved_size(l), size);
     memcpy(&head, bytes, sizeof head);
-    FAIL_IF(head.fingerprint != l->fingerprint || head.size != size,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "the state is of another scenario, another controller or another version"));
-    FAIL_IF(head.check != check_of(bytes, size),
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "the state is damaged, expected the bytes as they were saved"));
+    FAULT_IF(head.fingerprint != l->fingerprint || head.size != size, f, STATUS_BAD_ARGUMENT,
+             "the state is of another scenario, another controller or another version");
+    FAULT_IF(head.check != check_of(bytes, size), f, STATUS_BAD_ARGUMENT,
+             "the state is damaged, expected the bytes as they were saved");
 
     // what was recorded, as far as this loop has it
     recording *r = &l->recording;

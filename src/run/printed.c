@@ -174,8 +174,8 @@ static status record_row(printed_run *p, fault *f)
     TRY(failed);
     TRY(force_history_add(&r->result->history.forces, step));
     TRY(add_row(p));
-    FAIL_IF(recording_asked_to_stop(r), fault_set(f, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
-                                                  status_text(STATUS_STOPPED)));
+    FAULT_IF(recording_asked_to_stop(r), f, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
+             status_text(STATUS_STOPPED));
     return STATUS_OK;
 }
 
@@ -301,11 +301,9 @@ void printed_sum_up(printed_run *p, status failed)
 static status refuse_pushes(const scenario *s, fault *f)
 {
     for (int i = 0; i < s->action_count; i++) {
-        FAIL_IF(
-            s->actions[i].kind == ACTION_PUSH,
-            fault_set(f, STATUS_BAD_SCENARIO,
-                      "the script pushes the arm at %g s, but the printed model knows no pushes",
-                      s->actions[i].time));
+        FAULT_IF(s->actions[i].kind == ACTION_PUSH, f, STATUS_BAD_SCENARIO,
+                 "the script pushes the arm at %g s, but the printed model knows no pushes",
+                 s->actions[i].time);
     }
     return STATUS_OK;
 }

@@ -256,10 +256,9 @@ status measured_rows(trace *t, const csv_table *table, const char *column, int s
     for (int i = 0; i < SIGNALS_AT_MOST; i++) {
         free(columns[i]);
     }
-    FAIL_IF(code == STATUS_OK && numbers == 0,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "%.200s:1: expected a heading with time[s] and at least one recorded "
-                      "signal, such as force[N], and a number in a row below it",
-                      table->file));
+    FAULT_IF(code == STATUS_OK && numbers == 0, f, STATUS_BAD_ARGUMENT,
+             "%.200s:1: expected a heading with time[s] and at least one recorded "
+             "signal, such as force[N], and a number in a row below it",
+             table->file);
     return code == STATUS_NO_MEMORY ? fault_no_memory(f) : code;
 }

@@ -114,8 +114,8 @@ status scenario_check_timing(const scenario *s, fault *f)
         // those of one instant go together
         fault wrong;
         const bool last = i + 1 == s->action_count || s->actions[i + 1].time > time;
-        FAIL_IF(last && parameters_check_timing(&now, &wrong) != STATUS_OK,
-                fault_set_at(f, wrong.code, wrong.path, "from %g s on %s", time, wrong.text));
+        FAULT_AT_IF(last && parameters_check_timing(&now, &wrong) != STATUS_OK, f, wrong.code,
+                    wrong.path, "from %g s on %s", time, wrong.text);
     }
     return STATUS_OK;
 }

@@ -114,9 +114,8 @@ static status assign(parameters *p, const char *assignment, fault *f)
     char path[128], room[PARAMETER_TEXT_SIZE];
     const char *value;
     size_t length = strcspn(assignment, "=");
-    FAIL_IF(assignment[length] == '\0' || length == 0 || length >= sizeof path,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "not an assignment, expected PATH=VALUE such as arm.k2=49.2"));
+    FAULT_IF(assignment[length] == '\0' || length == 0 || length >= sizeof path, f,
+             STATUS_BAD_ARGUMENT, "not an assignment, expected PATH=VALUE such as arm.k2=49.2");
 
     snprintf(path, sizeof path, "%.*s", (int)length, assignment);
     value = assignment + length + 1;
@@ -140,10 +139,10 @@ static status resolve_changed(const scenario *s, parameters *p, fault *f)
         }
     }
     for (int i = 0; i < s->action_count; i++) {
-        FAIL_IF(s->actions[i].kind == ACTION_PUSH && p->arm.model == ARM_PRINTED,
-                fault_set(f, STATUS_BAD_SCENARIO,
-                          "the printed model takes no pushes, but the script has one at %g s",
-                          s->actions[i].time));
+        FAULT_IF(s->actions[i].kind == ACTION_PUSH && p->arm.model == ARM_PRINTED, f,
+                 STATUS_BAD_SCENARIO,
+                 "the printed model takes no pushes, but the script has one at %g s",
+                 s->actions[i].time);
     }
     return STATUS_OK;
 }

@@ -81,8 +81,8 @@ status session_change(session *s, int parameter, const char *text, fault *f)
         .kind = SESSION_INPUT_START, .time = effect_time(s), .parameter = parameter};
     remember_cursor(s, &in);
     const parameter_info *info = &parameter_table[parameter];
-    FAIL_IF(strlen(text) >= sizeof in.text,
-            fault_set(f, STATUS_BAD_ARGUMENT, "the value of %s is too long", info->path));
+    FAULT_IF(strlen(text) >= sizeof in.text, f, STATUS_BAD_ARGUMENT, "the value of %s is too long",
+             info->path);
     snprintf(in.text, sizeof in.text, "%s", text);
 
     // a copy of the parameters checks the value
@@ -192,10 +192,9 @@ status session_pull(session *s, double impulse, unsigned gesture, fault *f)
                         .before = (double)NAN};
     remember_cursor(s, &in);
 
-    FAIL_IF(!isfinite(impulse),
-            fault_set(f, STATUS_BAD_ARGUMENT, "a push is a finite impulse in N s"));
-    FAIL_IF(s->effective.parameters.arm.model == ARM_PRINTED,
-            fault_set(f, STATUS_BAD_ARGUMENT, "the printed model knows no pushes"));
+    FAULT_IF(!isfinite(impulse), f, STATUS_BAD_ARGUMENT, "a push is a finite impulse in N s");
+    FAULT_IF(s->effective.parameters.arm.model == ARM_PRINTED, f, STATUS_BAD_ARGUMENT,
+             "the printed model knows no pushes");
     return add_input(s, &in, f);
 }
 
@@ -218,7 +217,7 @@ static status move_inputs(session *s, int step, fault *f)
 
 status session_undo(session *s, fault *f)
 {
-    FAIL_IF(s->input_count == 0, fault_set(f, STATUS_BAD_ARGUMENT, "nothing to undo"));
+    FAULT_IF(s->input_count == 0, f, STATUS_BAD_ARGUMENT, "nothing to undo");
     TRY(move_inputs(s, -1, f));
     restore_cursor(s, &s->inputs[s->input_count]);
     return STATUS_OK;
@@ -226,7 +225,7 @@ status session_undo(session *s, fault *f)
 
 status session_redo(session *s, fault *f)
 {
-    FAIL_IF(s->input_count == s->input_total, fault_set(f, STATUS_BAD_ARGUMENT, "nothing to redo"));
+    FAULT_IF(s->input_count == s->input_total, f, STATUS_BAD_ARGUMENT, "nothing to redo");
     TRY(move_inputs(s, 1, f));
 
     // to where it takes effect
@@ -241,13 +240,12 @@ status session_change_input(session *s, int index, const char *text, fault *f)
 {
     assert(index >= 0 && index < s->input_count);
     const session_input *old = &s->inputs[index];
-    FAIL_IF(old->kind == SESSION_INPUT_PUSH,
-            fault_set(f, STATUS_BAD_ARGUMENT, "a push has no other value: drop it and push again"));
+    FAULT_IF(old->kind == SESSION_INPUT_PUSH, f, STATUS_BAD_ARGUMENT,
+             "a push has no other value: drop it and push again");
 
     // a copy with the new text, which a scratch copy of the parameters checks
     session_input in = *old;
-    FAIL_IF(strlen(text) >= sizeof in.text,
-            fault_set(f, STATUS_BAD_ARGUMENT, "the value is too long"));
+    FAULT_IF(strlen(text) >= sizeof in.text, f, STATUS_BAD_ARGUMENT, "the value is too long");
     remember_cursor(s, &in);
     snprintf(in.text, sizeof in.text, "%s", text);
     parameters scratch = session_parameters_at(s, in.time);

@@ -119,12 +119,10 @@ static status check_memory(const parameters *p, fault *f)
     const double rows = expected_rows(p);
     const double bytes =
         rows * (double)(sizeof(sample) + 2 * sizeof(double) * (size_t)(p->arm.links + 1));
-    FAIL_IF(bytes > MEMORY_BUDGET,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "%g s in steps of %g s would keep %.0f MiB of rows, the lab keeps at most "
-                      "%.0f: shorten run.duration or lengthen method.step",
-                      p->run.duration, p->method.step, bytes / (1024 * 1024),
-                      MEMORY_BUDGET / (1024 * 1024)));
+    FAULT_IF(bytes > MEMORY_BUDGET, f, STATUS_BAD_ARGUMENT,
+             "%g s in steps of %g s would keep %.0f MiB of rows, the lab keeps at most "
+             "%.0f: shorten run.duration or lengthen method.step",
+             p->run.duration, p->method.step, bytes / (1024 * 1024), MEMORY_BUDGET / (1024 * 1024));
     return STATUS_OK;
 }
 
@@ -300,8 +298,8 @@ bool session_stop(session *s)
 
 status session_go_on(session *s, fault *f)
 {
-    FAIL_IF(s->computing != NULL || s->run.summary.status != STATUS_STOPPED,
-            fault_set(f, STATUS_BAD_ARGUMENT, "the run was not stopped"));
+    FAULT_IF(s->computing != NULL || s->run.summary.status != STATUS_STOPPED, f,
+             STATUS_BAD_ARGUMENT, "the run was not stopped");
 
     // a cursor that has been further than the rows there are stays remembered
     double seen = s->seen;

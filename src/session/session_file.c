@@ -301,8 +301,8 @@ status session_file_read(session_file *file, const char *path, fault *f)
 {
     *file = (session_file){.baseline = -1};
     FILE *stream = fopen(path, "r");
-    FAIL_IF(stream == NULL,
-            fault_set(f, STATUS_CANNOT_READ, "%s cannot be opened: %s", path, strerror(errno)));
+    FAULT_IF(stream == NULL, f, STATUS_CANNOT_READ, "%s cannot be opened: %s", path,
+             strerror(errno));
     fault own = {0};
     session_reader r = {.file = file, .path = path, .fault = &own};
     const status code = read_lines(&r, stream);

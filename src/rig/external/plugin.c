@@ -16,9 +16,8 @@ static const controller *exported_controller(void *library)
 status plugin_open(plugin *p, const char *file, fault *f)
 {
     *p = (plugin){.library = dlopen(file, RTLD_NOW | RTLD_LOCAL)};
-    FAIL_IF(p->library == NULL,
-            fault_set(f, STATUS_CANNOT_READ, "control.plugin = %s cannot be loaded: %.600s", file,
-                      dlerror()));
+    FAULT_IF(p->library == NULL, f, STATUS_CANNOT_READ,
+             "control.plugin = %s cannot be loaded: %.600s", file, dlerror());
 
     // nothing behind `interface` can be read before the version is known
     status s = STATUS_OK;
