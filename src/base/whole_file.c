@@ -24,9 +24,9 @@ enum { MOST_LINKS = 40 }; // followed one after the other, as the kernel does
 // A path of NULL is the standard output.
 static status cannot_write(fault *f, const char *path, int reason)
 {
-    const char *quote = path != NULL ? "'" : "";
-    return fault_set(f, STATUS_CANNOT_WRITE, "%s%s%s cannot be written: %s", quote,
-                     path != NULL ? path : "the standard output", quote, strerror(reason));
+    FAULT_IF(path == NULL, f, STATUS_CANNOT_WRITE, "the standard output cannot be written: %s",
+             strerror(reason));
+    return fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", path, strerror(reason));
 }
 
 // --- temporaries that exist just now ----------------------------------------------------------
@@ -403,9 +403,8 @@ status whole_file_close(whole_file *w, status written, fault *f)
     int reason = 0;
     if (w->path != NULL) {
         reason = close_stream(w, wanted);
-    } else if (wanted) {
-        reason = stream_failure(stdout);
-        reason = reason == EPIPE ? 0 : reason;
+    } else if (wanted && (reason = stream_failure(stdout)) == EPIPE) {
+        reason = 0; // its reader had what it wanted
     }
 
     // what was lost before it came here is missing in it
@@ -414,28 +413,20 @@ status whole_file_close(whole_file *w, status written, fault *f)
     }
 
     // the file takes the place of the old one if it is whole, or goes
-    bool kept = wanted && reason == 0;
-    if (kept && w->temporary != NULL && rename(w->temporary, w->path) != 0) {
+    if (w->temporary != NULL && wanted && reason == 0 && rename(w->temporary, w->path) != 0) {
         reason = errno;
-        kept = false;
     }
-    if (!kept && w->temporary != NULL) {
+    if (w->temporary != NULL && (!wanted || reason != 0)) {
         unlink(w->temporary);
     }
 
     // with it goes the lock, without which another run would take the temporary for one left behind
-    if (w->path != NULL && close(w->descriptor) != 0 && kept && w->temporary == NULL) {
+    if (w->path != NULL && close(w->descriptor) != 0 && reason == 0 && w->temporary == NULL) {
         reason = errno;
-        kept = false;
     }
-    const status result = kept || !wanted ? written : cannot_write(f, w->path, reason);
+    const status result = wanted && reason != 0 ? cannot_write(f, w->path, reason) : written;
     forget(w);
     return result;
-}
-
-status whole_file_commit(whole_file *w, fault *f)
-{
-    return whole_file_close(w, STATUS_OK, f);
 }
 
 void whole_file_abandon(whole_file *w)

@@ -41,7 +41,7 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
 // anything failed, or was lost for want of memory (text_stream.h), the target is as it was before
 // and f says why. A reader of the standard output that went away (a closed pipe) had what it wanted
 // and is no failure. Closes w in either case.
-status whole_file_commit(whole_file *w, fault *f) __attribute__((warn_unused_result));
+#define whole_file_commit(w, f) whole_file_close(w, STATUS_OK, f)
 
 // Gives up: the target stays as it was. Closes w.
 void whole_file_abandon(whole_file *w);
