@@ -1,34 +1,53 @@
 #include "src/run/driver.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "src/base/instant.h"
 #include "src/engines/motion_create.h"
 
-status driver_open(run_driver *d, recording *r, fault *f)
+status driver_open(run_driver *d, const scenario *s, const run_options *options, run_result *result,
+                   fault *f)
 {
-    d->is_printed = r->scenario->parameters.arm.model == ARM_PRINTED;
-    d->duration = r->scenario->parameters.run.duration;
-    return d->is_printed ? printed_open(&d->printed, r, f)
-                         : corrected_open(&d->corrected, r, NULL, f);
+    recording *r = &d->recording;
+    const status code = recording_begin(r, s, options, result, f);
+    d->is_printed = s->parameters.arm.model == ARM_PRINTED;
+    d->duration = s->parameters.run.duration;
+    d->opened = code == STATUS_OK;
+    return code != STATUS_OK ? code
+           : d->is_printed   ? printed_open(&d->printed, r, f)
+                             : corrected_open(&d->corrected, r, NULL, f);
 }
 
-void driver_close(run_driver *d, status failed)
+void driver_close(run_driver *d, status failed, const fault *f)
 {
-    if (!d->is_printed) {
+    if (d->opened && !d->is_printed) {
         motion_destroy(corrected_finish(&d->corrected, failed));
-    } else if (d->printed.begun) {
+    } else if (d->opened && d->printed.begun) {
         printed_sum_up(&d->printed, failed);
     }
+    recording_end(&d->recording, failed, f);
 }
 
-void driver_sum_up(run_driver *d, status failed)
+summary driver_summary(run_driver *d, status failed, const fault *f)
 {
+    // summed up as if it ended here, and gone on with as it was
+    recording *r = &d->recording;
+    summary *now = &r->result->summary;
+    const summary kept = *now;
+    const recording_state state = r->state;
+    const recorded_command command = r->command;
     if (d->is_printed) {
         printed_sum_up(&d->printed, failed);
     } else {
         corrected_sum_up(&d->corrected, failed);
     }
+    recording_tell_fault(now, failed, f);
+    const summary all = *now;
+    *now = kept;
+    r->state = state;
+    r->command = command;
+    return all;
 }
 
 // --- continuing ---------------------------------------------------------------------------------
@@ -94,29 +113,132 @@ const double *driver_state(const run_driver *d, int *angle_count)
     return state_angles(m, corrected_present(&d->corrected));
 }
 
-size_t driver_saved_size(const run_driver *d)
+// --- the state as bytes -----------------------------------------------------------------------
+
+// What has been recorded; the model, the rig's memory and its values follow.
+typedef struct saved_run {
+    size_t rows, events, force_steps;
+    recording_state recording;
+    recorded_command command;
+    summary summary;
+    parameters now;
+    rig rig;
+} saved_run;
+
+static size_t model_size(const run_driver *d)
 {
     return d->is_printed ? sizeof d->printed : corrected_saved_size(&d->corrected);
 }
 
+static size_t values_size(const rig *r)
+{
+    return (size_t)r->law->parameter_count * sizeof *r->values;
+}
+
+size_t driver_saved_size(const run_driver *d)
+{
+    const rig *r = d->recording.rig;
+    return sizeof(saved_run) + model_size(d) +
+           (r != NULL ? r->law->memory_size + values_size(r) : 0);
+}
+
+// Gives a rig the addresses of another.
+static void keep_places(rig *r, const rig *own)
+{
+    r->law = own->law;
+    r->plugin = own->plugin;
+    r->process = own->process;
+    r->memory = own->memory;
+    r->values = own->values;
+}
+
 void driver_save(const run_driver *d, void *bytes)
 {
-    if (!d->is_printed) {
-        corrected_save(&d->corrected, bytes);
-        return;
+    const recording *r = &d->recording;
+    saved_run head;
+    memset(&head, 0, sizeof head);
+    head.rows = r->result->trace.row_count;
+    head.events = r->result->trace.event_count;
+    head.force_steps = r->result->history.forces.count;
+    head.recording = r->state;
+    head.command = r->command;
+    head.summary = r->result->summary;
+    head.summary.path = NULL;
+    head.now = r->now;
+
+    // where things lie is their run's own, and no part of a state
+    char *at = (char *)bytes + sizeof head;
+    if (r->rig != NULL) {
+        head.rig = *r->rig;
+        keep_places(&head.rig, &(rig){.law = NULL});
     }
-    printed_run saved = d->printed;
-    saved.recording = NULL;
-    memcpy(bytes, &saved, sizeof saved);
+    memcpy(bytes, &head, sizeof head);
+    if (d->is_printed) {
+        printed_run saved = d->printed;
+        saved.recording = NULL;
+        memcpy(at, &saved, sizeof saved);
+    } else {
+        corrected_save(&d->corrected, at);
+    }
+    at += model_size(d);
+    if (r->rig != NULL) {
+        memcpy(at, r->rig->memory, r->rig->law->memory_size);
+        if (r->options->law != NULL) { // whose memory begins with its program's address
+            memset(at, 0, sizeof r->options->law->context);
+        }
+        memcpy(at + r->rig->law->memory_size, r->rig->values, values_size(r->rig));
+    }
+}
+
+// Puts the rig back; where its law, memory and values lie stays, and the address of the program
+// that gave its law.
+static void restore_rig(const recording *r, const rig *saved, const char *at)
+{
+    const rig own = *r->rig;
+    *r->rig = *saved;
+    keep_places(r->rig, &own);
+    memcpy(own.memory, at, own.law->memory_size);
+    memcpy(own.values, at + own.law->memory_size, values_size(&own));
+    if (r->options->law != NULL) {
+        memcpy(own.memory, &r->options->law->context, sizeof r->options->law->context);
+    }
+}
+
+static void keep_at_most(size_t *count, size_t most)
+{
+    *count = *count < most ? *count : most;
 }
 
 void driver_restore(run_driver *d, const void *bytes)
 {
-    if (!d->is_printed) {
-        corrected_restore(&d->corrected, bytes);
-        return;
+    // what was recorded, as far as this run has it
+    recording *r = &d->recording;
+    run_result *result = r->result;
+    saved_run head;
+    memcpy(&head, bytes, sizeof head);
+    keep_at_most(&result->trace.row_count, head.rows);
+    keep_at_most(&result->trace.event_count, head.events);
+    keep_at_most(&result->history.forces.count, head.force_steps);
+    r->state = head.recording;
+    r->command = head.command;
+    result->summary = head.summary;
+    result->summary.path = "";
+    if (head.recording.landing.time == 0) {
+        free(result->before_impact); // of a contact that is yet to come
+        result->before_impact = NULL;
+        result->before_impact_size = 0;
     }
-    recording *own = d->printed.recording;
-    memcpy(&d->printed, bytes, sizeof d->printed);
-    d->printed.recording = own;
+    r->now = head.now;
+
+    // the rig first: the run's arm has its voltage
+    const char *at = (const char *)bytes + sizeof head;
+    if (r->rig != NULL) {
+        restore_rig(r, &head.rig, at + model_size(d));
+    }
+    if (d->is_printed) {
+        memcpy(&d->printed, at, sizeof d->printed);
+        d->printed.recording = r;
+    } else {
+        corrected_restore(&d->corrected, at);
+    }
 }

@@ -17,9 +17,7 @@ struct run_loop {
     given_law law;
     process_transcript *transcript; // NULL unless control.law is a process
     run_result result;
-    recording recording;
     run_driver driver;
-    bool opened;  // the run is to be closed
     double volts; // commanded [V]
     bool ended;
     status failed; // what stopped it
@@ -71,7 +69,7 @@ static uint64_t fingerprint_of(const run_loop *l)
         hash = hash_text(hash_text(hash, text), a->text);
     }
 
-    const rig *r = l->recording.rig;
+    const rig *r = l->driver.recording.rig;
     const bool foreign = r != NULL && r->law != &commanded_law &&
                          (l->law.law != NULL || controller_of(s->parameters.control.law) == NULL);
     if (foreign) {
@@ -100,11 +98,7 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
                                .transcript = l->transcript};
 
     // the run at its start
-    status code = recording_begin(&l->recording, &l->scenario, &l->options, &l->result, f);
-    if (code == STATUS_OK) {
-        l->opened = true;
-        code = driver_open(&l->driver, &l->recording, f);
-    }
+    const status code = driver_open(&l->driver, &l->scenario, &l->options, &l->result, f);
     if (code != STATUS_OK) {
         loop_destroy(l);
         return code;
@@ -117,10 +111,7 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
 void loop_destroy(run_loop *l)
 {
     if (l != NULL) {
-        if (l->opened) {
-            driver_close(&l->driver, STATUS_STOPPED);
-        }
-        recording_end(&l->recording, STATUS_STOPPED, &l->fault, (time_used){0});
+        driver_close(&l->driver, STATUS_STOPPED, &l->fault);
         process_transcript_destroy(l->transcript);
         run_finish(&l->result);
         scenario_finish(&l->scenario);
@@ -163,8 +154,8 @@ status loop_until(run_loop *l, double time, fault *f)
 
 status loop_step(run_loop *l, fault *f)
 {
-    const rig *on = l->recording.rig;
-    const double interval = l->recording.now.method.step;
+    const rig *on = l->driver.recording.rig;
+    const double interval = l->driver.recording.now.method.step;
 
     // the next multiple of the step, or what the rig does now and then its next sample
     double next = (floor(loop_time(l) / interval + GRID_TOLERANCE) + 1) * interval;
@@ -190,19 +181,19 @@ static status act(run_loop *l, const action *todo, fault *f)
     }
     FAULT_IF(todo->kind == ACTION_PUSH && l->driver.is_printed, f, STATUS_BAD_ARGUMENT,
              "the printed model takes no pushes");
-    if (todo->kind == ACTION_SET && !rig_can_change(&l->recording.now, todo->parameter)) {
+    if (todo->kind == ACTION_SET && !rig_can_change(&l->driver.recording.now, todo->parameter)) {
         const char *path = parameter_table[todo->parameter].path;
         return fault_set_at(f, STATUS_BAD_ARGUMENT, path,
                             "%s holds from the start and cannot change during this run", path);
     }
 
     // tried on a copy, with what the rig will say
-    parameters tried = l->recording.now;
+    parameters tried = l->driver.recording.now;
     if (todo->kind == ACTION_SET) {
         TRY(parameter_may_change(&tried, todo->parameter, f));
     }
     TRY(action_apply(todo, &tried, f));
-    const rig *on = l->recording.rig;
+    const rig *on = l->driver.recording.rig;
     if (on != NULL) {
         int mode;
         TRY(rig_find_mode(on->law, tried.control.lock, &mode, f));
@@ -232,7 +223,7 @@ status loop_set_text(run_loop *l, int parameter, const char *text, fault *f)
     assert(parameter >= 0 && parameter < parameter_count);
 
     // read into a copy, so that a bad text changes nothing
-    parameters read = l->recording.now;
+    parameters read = l->driver.recording.now;
     TRY(parameter_set_text(&read, parameter, text, f));
 
     // then it is an action like any other
@@ -251,7 +242,7 @@ status loop_push(run_loop *l, double impulse, fault *f)
 
 bool loop_sense(run_loop *l, sensor_reading *reading)
 {
-    rig *on = l->recording.rig;
+    rig *on = l->driver.recording.rig;
     if (on == NULL) {
         return false;
     }
@@ -276,18 +267,7 @@ const double *loop_state(const run_loop *l, int *angle_count)
 summary loop_summary(run_loop *l)
 {
     const status code = l->failed == STATUS_OK && !l->ended ? STATUS_STOPPED : l->failed;
-
-    // summed up as if it ended here, and gone on with as it was
-    const summary kept = l->result.summary;
-    const recording_state state = l->recording.state;
-    const recorded_command command = l->recording.command;
-    driver_sum_up(&l->driver, code);
-    recording_tell_fault(&l->result.summary, code, &l->fault);
-    const summary all = l->result.summary;
-    l->result.summary = kept;
-    l->recording.state = state;
-    l->recording.command = command;
-    return all;
+    return driver_summary(&l->driver, code, &l->fault);
 }
 
 const run_result *loop_result(const run_loop *l)
@@ -302,31 +282,18 @@ const scenario *loop_scenario(const run_loop *l)
 
 // --- the state as bytes ------------------------------------------------------------------------
 
-// The head of a saved state; the run, the rig's memory and its values follow.
+// The head of a saved state; the run follows.
 typedef struct saved_head {
     uint64_t check; // of all that follows it
     uint64_t fingerprint;
     size_t size;
     bool ended;
     double volts;
-    size_t rows, events, force_steps;
-    recording_state recording;
-    recorded_command command;
-    summary summary;
-    parameters now;
-    rig rig;
 } saved_head;
-
-static size_t values_size(const rig *r)
-{
-    return (size_t)r->law->parameter_count * sizeof *r->values;
-}
 
 size_t loop_saved_size(const run_loop *l)
 {
-    const rig *r = l->recording.rig;
-    return sizeof(saved_head) + driver_saved_size(&l->driver) +
-           (r != NULL ? r->law->memory_size + values_size(r) : 0);
+    return sizeof(saved_head) + driver_saved_size(&l->driver);
 }
 
 // A number that other bytes behind the head's `check` would not give, but for one in 2^64: eight
@@ -343,81 +310,18 @@ static uint64_t check_of(const char *bytes, size_t size)
     return check;
 }
 
-// Gives a rig the addresses of another.
-static void keep_places(rig *r, const rig *own)
-{
-    r->law = own->law;
-    r->plugin = own->plugin;
-    r->process = own->process;
-    r->memory = own->memory;
-    r->values = own->values;
-}
-
 void loop_save(const run_loop *l, void *bytes)
 {
-    const recording *r = &l->recording;
     saved_head head;
     memset(&head, 0, sizeof head);
     head.fingerprint = l->fingerprint;
     head.size = loop_saved_size(l);
     head.ended = l->ended;
     head.volts = l->volts;
-
-    // what was recorded
-    head.rows = l->result.trace.row_count;
-    head.events = l->result.trace.event_count;
-    head.force_steps = l->result.history.forces.count;
-    head.recording = r->state;
-    head.command = r->command;
-    head.summary = l->result.summary;
-    head.summary.path = NULL;
-    head.now = r->now;
-
-    // the rig and the run; where things lie is their loop's own, and no part of a state
-    char *at = bytes;
-    if (r->rig != NULL) {
-        head.rig = *r->rig;
-        keep_places(&head.rig, &(rig){.law = NULL});
-    }
-    memcpy(at, &head, sizeof head);
-    at += sizeof head;
-    driver_save(&l->driver, at);
-    at += driver_saved_size(&l->driver);
-    if (r->rig != NULL) {
-        memcpy(at, r->rig->memory, r->rig->law->memory_size);
-        if (l->law.law != NULL) { // which begins with its program's address
-            memset(at, 0, sizeof l->law.context);
-        }
-        memcpy(at + r->rig->law->memory_size, r->rig->values, values_size(r->rig));
-    }
+    memcpy(bytes, &head, sizeof head);
+    driver_save(&l->driver, (char *)bytes + sizeof head);
     head.check = check_of(bytes, head.size);
     memcpy(bytes, &head.check, sizeof head.check);
-}
-
-// Puts the rig back; where its law, memory and values lie stays. The memory of a law that a program
-// gave begins with that program's address.
-static void restore_rig(run_loop *l, const rig *saved, const char *at)
-{
-    rig *r = l->recording.rig;
-    const rig own = *r;
-
-    // all but where things lie
-    *r = *saved;
-    keep_places(r, &own);
-
-    // the contents, which were saved one after the other
-    memcpy(r->memory, at, r->law->memory_size);
-    memcpy(r->values, at + r->law->memory_size, values_size(r));
-
-    // the program's address is the present one
-    if (l->law.law != NULL) {
-        memcpy(r->memory, &l->law.context, sizeof l->law.context);
-    }
-}
-
-static void keep_at_most(size_t *count, size_t most)
-{
-    *count = *count < most ? *count : most;
 }
 
 status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
@@ -431,32 +335,10 @@ status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
     FAULT_IF(head.check != check_of(bytes, size), f, STATUS_BAD_ARGUMENT,
              "the state is damaged, expected the bytes as they were saved");
 
-    // what was recorded, as far as this loop has it
-    recording *r = &l->recording;
-    run_result *result = &l->result;
-    keep_at_most(&result->trace.row_count, head.rows);
-    keep_at_most(&result->trace.event_count, head.events);
-    keep_at_most(&result->history.forces.count, head.force_steps);
-    r->state = head.recording;
-    r->command = head.command;
-    result->summary = head.summary;
-    result->summary.path = "";
-    if (head.recording.landing.time == 0) {
-        free(result->before_impact); // of a contact that is yet to come
-        result->before_impact = NULL;
-        result->before_impact_size = 0;
-    }
-    r->now = head.now;
     l->volts = head.volts;
     l->ended = head.ended;
     l->failed = STATUS_OK;
     l->fault = (fault){.text = "", .path = ""};
-
-    // the rig first: the run's arm has its voltage
-    const char *at = (const char *)bytes + sizeof head;
-    if (r->rig != NULL) {
-        restore_rig(l, &head.rig, at + driver_saved_size(&l->driver));
-    }
-    driver_restore(&l->driver, at);
+    driver_restore(&l->driver, (const char *)bytes + sizeof head);
     return STATUS_OK;
 }

@@ -8,17 +8,6 @@
 #include "src/base/clock.h"
 #include "src/base/extremes.h"
 
-time_used time_now(void)
-{
-    return (time_used){clock_seconds(CLOCK_THREAD_CPUTIME_ID), clock_seconds(CLOCK_MONOTONIC)};
-}
-
-time_used time_since(time_used start)
-{
-    time_used now = time_now();
-    return (time_used){now.cpu - start.cpu, now.wall - start.wall};
-}
-
 // Sets up the rig, if the scenario has a control law; until its first command the motor rests.
 static status start_rig(recording *r, fault *f)
 {
@@ -47,7 +36,12 @@ static status start_rig(recording *r, fault *f)
 status recording_begin(recording *r, const scenario *s, const run_options *options,
                        run_result *result, fault *f)
 {
-    *r = (recording){.scenario = s, .result = result, .options = options, .now = s->parameters};
+    *r = (recording){.scenario = s,
+                     .result = result,
+                     .options = options,
+                     .now = s->parameters,
+                     .begun_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
+                     .begun_at = clock_seconds(CLOCK_MONOTONIC)};
     *f = (fault){.text = "", .path = ""};
     if (!options->resume) {
         memset(result, 0, sizeof *result);
@@ -71,13 +65,13 @@ void recording_tell_fault(summary *s, status code, const fault *f)
     }
 }
 
-void recording_end(recording *r, status code, const fault *f, time_used used)
+void recording_end(recording *r, status code, const fault *f)
 {
     run_result *result = r->result;
     rig_destroy(r->rig);
     recording_tell_fault(&result->summary, code, f);
-    result->summary.cpu_time_s = used.cpu;
-    result->summary.wall_time_s = used.wall;
+    result->summary.cpu_time_s = clock_seconds(CLOCK_THREAD_CPUTIME_ID) - r->begun_cpu;
+    result->summary.wall_time_s = clock_seconds(CLOCK_MONOTONIC) - r->begun_at;
     if (result->history.forces.reserved == 0 && !r->options->keep_forces) {
         shared_array_finish(&result->history.forces); // needed until here only
     }

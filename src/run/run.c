@@ -33,18 +33,12 @@ status run_scenario(const scenario *s, bool keep_trace, run_result *result)
 
 status run_scenario_with(const scenario *s, const run_options *options, run_result *result)
 {
-    const time_used start = time_now();
-    recording r;
+    run_driver d;
     fault f;
-    status code = recording_begin(&r, s, options, result, &f);
-    if (code == STATUS_OK) {
-        run_driver d;
-        bool ended = false;
-        code = driver_open(&d, &r, &f);
-        code = code == STATUS_OK ? driver_advance(&d, HUGE_VAL, &ended, &f) : code;
-        driver_close(&d, code);
-    }
-    recording_end(&r, code, &f, time_since(start));
+    bool ended = false;
+    status code = driver_open(&d, s, options, result, &f);
+    code = code == STATUS_OK ? driver_advance(&d, HUGE_VAL, &ended, &f) : code;
+    driver_close(&d, code, &f);
     return code;
 }
 

@@ -1,10 +1,10 @@
-
 #include <assert.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/clock.h"
 #include "src/run/corrected.h"
 #include "src/run/recording.h"
 #include "src/engines/motion_create.h"
@@ -48,7 +48,7 @@ static void end_run(side_run *one, status failed)
     one->motion = over != NULL ? over : one->motion;
     one->forces = *forces;
     memset(forces, 0, sizeof *forces);
-    recording_end(&one->recording, failed, &one->fault, (time_used){0});
+    recording_end(&one->recording, failed, &one->fault);
 }
 
 // Begins a run, in the storage of the one before.
@@ -224,7 +224,7 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
 {
     assert(count >= 0);
     const run_options options = {.abandon = abandon};
-    const time_used start = time_now();
+    const double cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID), at = clock_seconds(CLOCK_MONOTONIC);
     side_by_side *group = taylor_width() > 1 ? open_storage(storage) : NULL;
     if (group == NULL) {
         for (int i = 0; i < count; i++) {
@@ -247,9 +247,10 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
     }
 
     // nobody can say whose time it was
-    const time_used all = time_since(start);
+    const double cpu_share = (clock_seconds(CLOCK_THREAD_CPUTIME_ID) - cpu) / count;
+    const double share = (clock_seconds(CLOCK_MONOTONIC) - at) / count;
     for (int i = 0; i < count; i++) {
-        results[i].summary.cpu_time_s = all.cpu / count;
-        results[i].summary.wall_time_s = all.wall / count;
+        results[i].summary.cpu_time_s = cpu_share;
+        results[i].summary.wall_time_s = share;
     }
 }
