@@ -266,3 +266,27 @@ TEST(a_cut_leaves_the_face_on_its_way)
         check_relative(y.wall_loss, x.wall_loss, 1e-12);
     }
 }
+
+// A loop that plays back takes the state of another one, which is gone by then, and goes on as that
+// one would have.
+TEST_IN_FOLDER(a_playback_goes_on_in_another_loop)
+{
+    put_file("played.csv", "t,u\n0,1\n0.01,2\n0.03,0.5\n0.06,1.5\n");
+    const char *const *settings =
+        SETTINGS(BRIEF, "control.law=playback", "control.playback_file=played.csv",
+                 "control.playback_column=u");
+    run_loop *first = begun(settings, NULL);
+    SCOPED(loop_destroy_kept) run_loop *second = begun(settings, NULL);
+    DONE(loop_until(first, 0.02, &f));
+    const size_t size = loop_saved_size(first);
+    SCOPED(free_kept) void *kept = malloc(size);
+    loop_save(first, kept);
+    DONE(loop_until(first, 0.1, &f));
+    const sample expected = loop_row(first);
+    loop_destroy(first);
+
+    DONE(loop_restore(second, kept, size, &f));
+    DONE(loop_until(second, 0.1, &f));
+    const sample row = loop_row(second);
+    assert_memory_equal(&row, &expected, sizeof row);
+}

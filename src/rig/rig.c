@@ -15,7 +15,7 @@
 // --- starting -------------------------------------------------------------------------------
 
 // Memory, values and the controller's own start, once it is known which controller it is.
-static status start_controller(rig *r, const parameters *p, const given_law *given, fault *f)
+static status start_controller(rig *r, const parameters *p, fault *f)
 {
     // at least one of each, as nothing allocated would look like no memory
     size_t count = (size_t)(r->law->parameter_count > 0 ? r->law->parameter_count : 1);
@@ -26,9 +26,9 @@ static status start_controller(rig *r, const parameters *p, const given_law *giv
 
     // one that is withheld has no use for settings
     TRY(r->withheld ? STATUS_OK : controller_values(r->law, p, r->values, f));
-    if (given != NULL) {
-        assert(r->law->memory_size >= sizeof given->context);
-        memcpy(r->memory, &given->context, sizeof given->context);
+    if (r->given.law != NULL) {
+        assert(r->law->memory_size >= sizeof r->given.context);
+        memcpy(r->memory, &r->given.context, sizeof r->given.context);
     }
 
     controller_setup setup = rig_nominal_setup(r, p);
@@ -98,7 +98,8 @@ static status open_law(rig *r, const parameters *p, const rig_options *o, fault 
     const control_parameters *c = &p->control;
     r->law = controller_of(c->law);
     if (c->law == LAW_PLAYBACK) {
-        return playback_create(&r->recorded, c, f);
+        r->given = (given_law){r->law, &r->played};
+        return playback_open(&r->played, c, f);
     }
     if (r->law != NULL) {
         return STATUS_OK;
@@ -116,6 +117,7 @@ static status open_law(rig *r, const parameters *p, const rig_options *o, fault 
     }
     r->process = process_create(c, o->transcript, o->ends);
     r->law = &process_law;
+    r->given = (given_law){r->law, r->process};
     return r->process != NULL ? STATUS_OK : fault_no_memory(f);
 }
 
@@ -145,21 +147,12 @@ status rig_create(rig **created, const parameters *p, const rig_options *o, faul
     random_seed(&r->clock, ~(uint64_t)p->control.seed);
 
     // the controller, which may refuse the lock, its settings or the arm
-    status s = STATUS_OK;
-    given_law asked;
-    if (given != NULL) {
-        r->law = given->law;
-    } else {
-        s = open_law(r, p, o, f);
-        asked = (given_law){r->law, r->process};
-        if (r->recorded != NULL) {
-            asked.context = r->recorded;
-        }
-        given = asked.context != NULL ? &asked : NULL;
-    }
+    r->given = given != NULL ? *given : (given_law){.law = NULL};
+    r->law = r->given.law;
+    status s = given != NULL ? STATUS_OK : open_law(r, p, o, f);
     r->lock = -1;
     s = s == STATUS_OK && !r->withheld ? rig_lock(r, p->control.lock, f) : s;
-    s = s == STATUS_OK ? start_controller(r, p, given, f) : s;
+    s = s == STATUS_OK ? start_controller(r, p, f) : s;
     if (s == STATUS_OK && p->control.force_amplitude > 0 && r->law->tune == NULL) {
         s = fault_set(f, STATUS_BAD_SCENARIO,
                       "control.force_amplitude: the controller '%s' takes its force at the start "
@@ -182,7 +175,7 @@ void rig_destroy(rig *r)
         free(r->values);
         plugin_close(&r->plugin);
         process_destroy(r->process);
-        playback_destroy(r->recorded);
+        playback_close(&r->played);
         free(r);
     }
 }

@@ -28,12 +28,13 @@ typedef struct rig_options {
 
 typedef struct rig {
     const controller *law;
-    bool withheld;              // the law may not be loaded or started: the first sample fails
-    plugin plugin;              // the law comes from, else empty
-    process *process;           // that the law asks, else NULL
-    recorded_command *recorded; // that the law plays, else NULL
-    void *memory;               // the controller's
-    double *values;             // of the controller's parameters
+    given_law given;       // with the context that the law's memory begins with, if it has one
+    bool withheld;         // the law may not be loaded or started: the first sample fails
+    plugin plugin;         // the law comes from, else empty
+    process *process;      // that the law asks, else NULL
+    played_command played; // that the law plays, else empty
+    void *memory;          // the controller's
+    double *values;        // of the controller's parameters
     sensors sensors;
     double period, delay, jitter; // [s]
     double voltage_limit;         // [V]

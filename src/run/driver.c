@@ -146,8 +146,10 @@ size_t driver_saved_size(const run_driver *d)
 static void keep_places(rig *r, const rig *own)
 {
     r->law = own->law;
+    r->given = own->given;
     r->plugin = own->plugin;
     r->process = own->process;
+    r->played = own->played;
     r->memory = own->memory;
     r->values = own->values;
 }
@@ -183,24 +185,23 @@ void driver_save(const run_driver *d, void *bytes)
     at += model_size(d);
     if (r->rig != NULL) {
         memcpy(at, r->rig->memory, r->rig->law->memory_size);
-        if (r->options->law != NULL) { // whose memory begins with its program's address
-            memset(at, 0, sizeof r->options->law->context);
+        if (r->rig->given.law != NULL) {
+            memset(at, 0, sizeof r->rig->given.context);
         }
         memcpy(at + r->rig->law->memory_size, r->rig->values, values_size(r->rig));
     }
 }
 
-// Puts the rig back; where its law, memory and values lie stays, and the address of the program
-// that gave its law.
-static void restore_rig(const recording *r, const rig *saved, const char *at)
+// Puts a rig back; where its law, memory, values and context lie stays.
+static void restore_rig(rig *r, const rig *saved, const char *at)
 {
-    const rig own = *r->rig;
-    *r->rig = *saved;
-    keep_places(r->rig, &own);
-    memcpy(own.memory, at, own.law->memory_size);
-    memcpy(own.values, at + own.law->memory_size, values_size(&own));
-    if (r->options->law != NULL) {
-        memcpy(own.memory, &r->options->law->context, sizeof r->options->law->context);
+    const rig own = *r;
+    *r = *saved;
+    keep_places(r, &own);
+    memcpy(r->memory, at, r->law->memory_size);
+    memcpy(r->values, at + r->law->memory_size, values_size(r));
+    if (r->given.law != NULL) {
+        memcpy(r->memory, &r->given.context, sizeof r->given.context);
     }
 }
 
@@ -233,7 +234,7 @@ void driver_restore(run_driver *d, const void *bytes)
     // the rig first: the run's arm has its voltage
     const char *at = (const char *)bytes + sizeof head;
     if (r->rig != NULL) {
-        restore_rig(r, &head.rig, at + model_size(d));
+        restore_rig(r->rig, &head.rig, at + model_size(d));
     }
     if (d->is_printed) {
         memcpy(&d->printed, at, sizeof d->printed);

@@ -65,12 +65,18 @@ void plugin_close(plugin *p);
 // the first, after the last row that of the last. Like any command it is sampled at control.rate,
 // goes through the D/A converter and takes effect after the delay.
 
-typedef struct recorded_command recorded_command;
+typedef struct played_command {
+    double *times;   // of the rows [s]; NULL if nothing is recorded
+    double *command; // [V]
+    size_t rows;
+    double shift; // by which it comes later than recorded [s]
+    bool linear;
+} played_command;
 
-// The controller that plays it; it is given with a playback as its context.
+// The controller that plays it; it is given with a recorded command as its context.
 extern const controller playback_law;
 
 // Reads the file, whose times [s] are the column `t` or `time`. STATUS_BAD_SCENARIO, with a
-// sentence that says where in the file, or STATUS_NO_MEMORY; *created is then NULL.
-status playback_create(recorded_command **created, const control_parameters *control, fault *f);
-void playback_destroy(recorded_command *p); // p may be NULL
+// sentence that says where in the file, or STATUS_NO_MEMORY; there is nothing to be closed then.
+status playback_open(played_command *p, const control_parameters *control, fault *f);
+void playback_close(played_command *p); // one of zeroes is allowed
