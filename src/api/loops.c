@@ -163,7 +163,9 @@ int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run, impactlab_erro
     // a copy, so that the loop can go on or end
     impactlab_run *made = api_new_run(loop_scenario(loop->loop), error);
     FAIL_IF(made == NULL, IMPACTLAB_NO_MEMORY);
-    if (trace_copy(&made->result.trace, &loop_result(loop->loop)->trace) != STATUS_OK) {
+    const trace *rows = &loop_result(loop->loop)->trace;
+    trace_init(&made->result.trace, rows->angle_count);
+    if (trace_share(&made->result.trace, rows, rows->row_count, rows->event_count) != STATUS_OK) {
         impactlab_run_destroy(made);
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the rows of a run");
     }

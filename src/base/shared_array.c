@@ -107,8 +107,9 @@ bool shared_array_grow(shared_array *a, size_t count)
 bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
 {
     assert(a->size == from->size && a->mapped == 0);
-    assert(a->reserved > 0 && count <= from->capacity);
-    size_t bytes = count * a->size, shared = from->reserved > 0 ? bytes / ARRAY_CHUNK : 0;
+    assert(count <= from->capacity);
+    size_t bytes = count * a->size;
+    const size_t shared = from->reserved > 0 && a->reserved > 0 ? bytes / ARRAY_CHUNK : 0;
 
     // chunks that are full will not change any more
     for (size_t i = 0; i < shared; i++) {

@@ -31,8 +31,8 @@ bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t mos
 // Makes room for `count` elements; false without memory, then the array is as before.
 bool shared_array_grow(shared_array *a, size_t count);
 
-// Lets a shared array, still empty, begin with the first `count` elements of another: all chunks
-// that these fill are shared, the rest is copied. False without memory.
+// Lets an array, still empty, begin with the first `count` elements of another: of two shared ones
+// all chunks that these fill are shared, the rest is copied. False without memory.
 bool shared_array_share(shared_array *a, const shared_array *from, size_t count);
 
 void shared_array_finish(shared_array *a); // one of zeroes is allowed

@@ -79,25 +79,9 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events)
         const size_t count = i == TRACE_EVENTS ? events : rows;
         FAIL_IF(!shared_array_share(&t->arrays[i], &from->arrays[i], count), STATUS_NO_MEMORY);
     }
+    find_places(t);
     t->row_count = rows;
     t->event_count = events;
-    return STATUS_OK;
-}
-
-status trace_copy(trace *t, const trace *from)
-{
-    const void *there[] = {from->rows, from->velocities, from->angles, from->events};
-    trace_init(t, from->angle_count);
-    for (int i = 0; i < TRACE_ARRAYS; i++) {
-        const size_t count = i == TRACE_EVENTS ? from->event_count : from->row_count;
-        FAIL_IF(!shared_array_grow(&t->arrays[i], count + 1), give_up(t));
-        if (count > 0 && there[i] != NULL) {
-            memcpy(t->arrays[i].base, there[i], count * t->arrays[i].size);
-        }
-    }
-    find_places(t);
-    t->row_count = from->row_count;
-    t->event_count = from->event_count;
     return STATUS_OK;
 }
 

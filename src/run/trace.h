@@ -60,11 +60,8 @@ void trace_init(trace *t, int angle_count);
 status trace_reserve(trace *t, int angle_count, size_t least, size_t most);
 void trace_finish(trace *t);
 
-// A copy of one's own in plain arrays; STATUS_NO_MEMORY, and then it is empty.
-status trace_copy(trace *t, const trace *from);
-
-// Lets a reserved trace, still empty, begin with the first rows and events of another one, without
-// a copy. STATUS_NO_MEMORY if there is no room.
+// Lets a trace, still empty, begin with the first rows and events of another one: without a copy
+// where both are reserved. STATUS_NO_MEMORY if there is no room.
 status trace_share(trace *t, const trace *from, size_t rows, size_t events);
 
 // Makes room for so many rows in advance. False without memory, then the trace is as it was.
