@@ -12,20 +12,13 @@ struct background_run {
     run_monitor monitor;
     run_result result; // the thread's until it is over; the places of its rows never change
     pthread_t thread;
-    bool threaded;
-    pthread_mutex_t lock;
-    pthread_cond_t ended;
-    bool over; // under the lock
+    bool runs; // the thread has yet to be joined
 };
 
 static void *compute(void *argument)
 {
     background_run *c = argument;
     run_scenario_with(&c->scenario, &c->options, &c->result);
-    pthread_mutex_lock(&c->lock);
-    c->over = true;
-    pthread_cond_signal(&c->ended);
-    pthread_mutex_unlock(&c->lock);
     return NULL;
 }
 
@@ -49,21 +42,13 @@ background_run *background_run_start(const scenario *s, const background_options
         c->result = *begun;
     }
 
-    // waiting is by a clock that nobody sets
-    pthread_condattr_t clock;
-    pthread_condattr_init(&clock);
-    pthread_condattr_setclock(&clock, CLOCK_MONOTONIC);
-    pthread_mutex_init(&c->lock, NULL);
-    pthread_cond_init(&c->ended, &clock);
-    pthread_condattr_destroy(&clock);
-
     // a new thread inherits the mask of the one that starts it: signals are for that one, which
     // waits for input; without a thread it is computed here
     sigset_t before;
     worker_signals_block(&before);
-    c->threaded = !how->at_once && pthread_create(&c->thread, NULL, compute, c) == 0;
+    c->runs = !how->at_once && pthread_create(&c->thread, NULL, compute, c) == 0;
     pthread_sigmask(SIG_SETMASK, &before, NULL);
-    if (!c->threaded) {
+    if (!c->runs) {
         compute(c);
     }
     return c;
@@ -71,17 +56,9 @@ background_run *background_run_start(const scenario *s, const background_options
 
 bool background_run_wait(background_run *c, double seconds)
 {
-    assert(seconds >= 0);
-
-    struct timespec until = clock_after(seconds);
-    pthread_mutex_lock(&c->lock);
-    int late = 0;
-    while (!c->over && late == 0) {
-        late = pthread_cond_timedwait(&c->ended, &c->lock, &until);
-    }
-    bool over = c->over;
-    pthread_mutex_unlock(&c->lock);
-    return over;
+    const struct timespec until = clock_after(seconds);
+    c->runs = c->runs && pthread_clockjoin_np(c->thread, NULL, CLOCK_MONOTONIC, &until) != 0;
+    return !c->runs;
 }
 
 size_t background_run_look(background_run *c, run_result *view)
@@ -109,12 +86,10 @@ void background_run_stop(background_run *c)
 
 run_result background_run_finish(background_run *c)
 {
-    if (c->threaded) {
+    if (c->runs) {
         pthread_join(c->thread, NULL);
     }
-    run_result result = c->result;
-    pthread_mutex_destroy(&c->lock);
-    pthread_cond_destroy(&c->ended);
+    const run_result result = c->result;
     free(c);
     return result;
 }
