@@ -115,7 +115,7 @@ static status open_law(rig *r, const parameters *p, const rig_options *o, fault 
         r->law = r->plugin.law;
         return s;
     }
-    r->process = process_create(c, o->transcript, o->ends);
+    r->process = process_create(c, o->transcript, o->stop);
     r->law = &process_law;
     r->given = (given_law){r->law, r->process};
     return r->process != NULL ? STATUS_OK : fault_no_memory(f);

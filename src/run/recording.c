@@ -26,7 +26,7 @@ static status start_rig(recording *r, fault *f)
     const rig_options given = {
         .law = o->law,
         .transcript = o->transcript,
-        .ends = {o->monitor != NULL ? &o->monitor->stop : NULL, o->abandon},
+        .stop = r->stop,
     };
     TRY(rig_create(&r->rig, p, &given, f));
     TRY(scenario_check_timing(r->scenario, f));
@@ -36,12 +36,14 @@ static status start_rig(recording *r, fault *f)
 status recording_begin(recording *r, const scenario *s, const run_options *options,
                        run_result *result, fault *f)
 {
+    assert(options->monitor == NULL || options->abandon == NULL);
     *r = (recording){.scenario = s,
                      .result = result,
                      .options = options,
                      .now = s->parameters,
                      .begun_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
-                     .begun_at = clock_seconds(CLOCK_MONOTONIC)};
+                     .begun_at = clock_seconds(CLOCK_MONOTONIC),
+                     .stop = options->monitor != NULL ? &options->monitor->stop : options->abandon};
     *f = (fault){.text = "", .path = ""};
     if (!options->resume) {
         memset(result, 0, sizeof *result);
@@ -52,7 +54,8 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
     }
 
     // not even set up: an arm of a thousand links takes seconds for that
-    return recording_is_abandoned(r) ? STATUS_STOPPED : start_rig(r, f);
+    const bool abandoned = options->abandon != NULL && recording_asked_to_stop(r);
+    return abandoned ? STATUS_STOPPED : start_rig(r, f);
 }
 
 void recording_tell_fault(summary *s, status code, const fault *f)

@@ -45,6 +45,7 @@ typedef struct recording {
     rig *rig;                   // NULL for the bare arm
     recorded_command command;   // of the rig
     double begun_cpu, begun_at; // by the thread's clock and the machine's [s]
+    const atomic_bool *stop;    // becomes true where the run is to end; NULL: it does not
 } recording;
 
 // Most rows that a run of which `expected` are expected reserves address space for.
@@ -54,17 +55,10 @@ size_t recording_most_rows(size_t expected);
 status recording_open_trace(recording *r, int angle_count, fault *f)
     __attribute__((warn_unused_result));
 
-// Whether the run is to end at once.
-static inline bool recording_is_abandoned(const recording *r)
-{
-    const atomic_bool *abandon = r->options->abandon;
-    return abandon != NULL && atomic_load_explicit(abandon, memory_order_relaxed);
-}
-
-// Whether that, or whoever watches it wants it to stop.
+// Whether the run was asked to end.
 static inline bool recording_asked_to_stop(const recording *r)
 {
-    return run_monitor_stops(r->options->monitor) || recording_is_abandoned(r);
+    return r->stop != NULL && atomic_load_explicit(r->stop, memory_order_relaxed);
 }
 
 // Publishes how far the run is to observers: all rows and events counted there are complete.

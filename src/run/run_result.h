@@ -53,7 +53,7 @@ void run_monitor_count(run_monitor *monitor);
 typedef struct run_options {
     bool keep_trace;            // false keeps no rows (events and summary only)
     run_monitor *monitor;       // NULL: nobody looks on
-    const atomic_bool *abandon; // becomes true where the run is to end at once; NULL: it is not
+    const atomic_bool *abandon; // without a monitor: becomes true where the run is to end at once
     size_t rows_expected; // if not 0, rows and events stay where they are and can be shared, and
                           // the result has a history; needs keep_trace
     const struct given_law *law; // that a program gives in the place of control.law; NULL: none

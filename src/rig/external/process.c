@@ -28,7 +28,7 @@ enum {
 struct process {
     supervised_program program;
     process_transcript *transcript; // of the questions, NULL for none; somebody else's
-    process_ends run;               // when it is to end
+    const atomic_bool *stop;        // becomes true where the run is to end; NULL: it does not
     const transcript_node *at;      // the place that the running program has come to
     long asked;                     // questions it has been asked
     int started;                    // how many times it was started
@@ -53,12 +53,12 @@ typedef struct process_memory {
 } process_memory;
 
 process *process_create(const control_parameters *control, process_transcript *transcript,
-                        process_ends ends)
+                        const atomic_bool *stop)
 {
     process *p = calloc(1, sizeof *p);
     if (p != NULL) {
         p->transcript = transcript;
-        p->run = ends;
+        p->stop = stop;
         p->begun = *control;
     }
     return p;
@@ -144,10 +144,7 @@ static bool fail_without_memory(process *p)
 // Whether the run was asked to end: the program, too, is ended then.
 static bool run_ends(process *p)
 {
-    const process_ends *e = &p->run;
-    const bool ends =
-        (e->stop != NULL && atomic_load_explicit(e->stop, memory_order_relaxed)) ||
-        (e->abandon != NULL && atomic_load_explicit(e->abandon, memory_order_relaxed));
+    const bool ends = p->stop != NULL && atomic_load_explicit(p->stop, memory_order_relaxed);
     if (ends) {
         supervised_program_end(&p->program);
         p->failure[0] = '\0';

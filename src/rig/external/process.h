@@ -19,18 +19,13 @@
 
 typedef struct process process;
 
-// Flags by which the run of a process is asked to end: set from outside; each may be NULL.
-typedef struct process_ends {
-    const atomic_bool *stop, *abandon;
-} process_ends;
-
 // The controller that asks the program; it is given with a process as its context.
 extern const controller process_law;
 
-// A process that is yet to be started, with a transcript of somebody else's or NULL. NULL without
-// memory.
+// A process that is yet to be started, with a transcript of somebody else's or NULL. `stop` becomes
+// true, from outside, where its run is asked to end; it may be NULL. NULL without memory.
 process *process_create(const control_parameters *control, process_transcript *transcript,
-                        process_ends ends);
+                        const atomic_bool *stop);
 
 // Ends the program and everything it started that stays in its process group; p may be NULL.
 void process_destroy(process *p);
