@@ -136,8 +136,8 @@ TEST(where_none_can_be_started_nothing_stays_open)
     struct rlimit was, few;
     getrlimit(RLIMIT_NOFILE, &was);
     few = was;
-    for (int spare = 0; spare < 7; spare++) {
-        // two are wanted for input, output and death pipe each, one for the errors
+    for (int spare = 0; spare < 5; spare++) {
+        // two are wanted for input and output each, one for the errors
         supervised_program p;
         few.rlim_cur = (rlim_t)(before + spare);
         setrlimit(RLIMIT_NOFILE, &few);

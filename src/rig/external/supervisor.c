@@ -12,8 +12,7 @@
 #include <unistd.h>
 
 enum {
-    ENDS = 4,          // of the streams, in the order of supervised_program
-    DEATH_PIPE = 3,    // the supervisor's end of it
+    ENDS = 3,          // of the streams, in the order of supervised_program
     KILLED = 255,      // the supervisor's exit status where the program had to be killed
     LAST_WORDS_MS = 50 // for an ended program to become one that can be waited for
 };
@@ -58,17 +57,16 @@ static _Noreturn void supervise(const int theirs[ENDS], const char *command)
     prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
     const pid_t program = fork();
     if (program == 0) {
-        close(DEATH_PIPE);
         run_program(command);
     }
     setpgid(program, program); // whichever of the two comes first
 
-    // the program's streams are not the supervisor's, or their ends would never be seen
-    for (int fd = 0; fd < DEATH_PIPE; fd++) {
-        close(fd);
+    // what the program writes is not the supervisor's, or its end would never be seen; of the input
+    // it waits for the lab's end
+    close(STDOUT_FILENO);
+    close(STDERR_FILENO);
+    while (poll(&(struct pollfd){.fd = STDIN_FILENO, .events = POLLRDHUP}, 1, -1) < 0) {
     }
-    char nothing;
-    (void)!read(DEATH_PIPE, &nothing, 1);
     if (program < 0) {
         _exit(KILLED);
     }
@@ -101,25 +99,25 @@ static void close_ends(const int ends[ENDS])
 int supervised_program_start(supervised_program *program, const char *command)
 {
     // a socket is written to without a signal; errors go to a file in memory, which never blocks
-    int input[2] = {-1, -1}, output[2] = {-1, -1}, death[2] = {-1, -1}, errors = -1;
+    int input[2] = {-1, -1}, output[2] = {-1, -1}, errors = -1;
     const bool made = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, input) == 0 &&
-                      pipe2(output, O_CLOEXEC) == 0 && pipe2(death, O_CLOEXEC) == 0 &&
+                      pipe2(output, O_CLOEXEC) == 0 &&
                       (errors = memfd_create("errors", MFD_CLOEXEC)) >= 0;
 
     // the supervisor gets one end of each
     const pid_t supervisor = made ? fork() : -1;
     const int reason = supervisor < 0 ? errno : 0;
     if (supervisor == 0) {
-        supervise((const int[]){input[1], output[1], errors, death[0]}, command);
+        supervise((const int[]){input[1], output[1], errors}, command);
     }
-    close_ends((const int[]){input[1], output[1], death[0], -1});
+    close_ends((const int[]){input[1], output[1], -1});
     *program = (supervised_program){.supervisor = 0};
     if (reason != 0) {
-        close_ends((const int[]){input[0], output[0], errors, death[1]});
+        close_ends((const int[]){input[0], output[0], errors});
         return reason;
     }
     fcntl(output[0], F_SETFL, O_NONBLOCK);
-    *program = (supervised_program){supervisor, input[0], output[0], errors, death[1]};
+    *program = (supervised_program){supervisor, input[0], output[0], errors};
     return 0;
 }
 
@@ -128,8 +126,7 @@ int supervised_program_end(supervised_program *program)
     if (program->supervisor == 0) {
         return -1;
     }
-    close_ends(
-        (const int[]){program->input, program->output, program->errors, program->death_pipe});
+    close_ends((const int[]){program->input, program->output, program->errors});
 
     int status = 0;
     pid_t ended;
