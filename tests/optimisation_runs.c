@@ -48,12 +48,14 @@ static void print_prediction(const parameters *p, const run_result *result)
 {
     arm a;
     prediction out = {0};
-    if (result->before_impact == NULL) {
+    const sample *row = row_before_landing(result);
+    if (row == NULL) {
         return;
     }
     arm_init(&a, p);
-    status code = predict_linearised(&a, &p->method, result->before_impact,
-                                     result->before_impact + a.dof, &out);
+    const size_t at = (size_t)(row - result->trace.rows) * (size_t)a.dof;
+    status code = predict_linearised(&a, &p->method, result->trace.angles + at,
+                                     result->trace.velocities + at, &out);
     printf("predicted %d %a %a %a\n", (int)code, out.force, out.delay, out.impulse);
 }
 

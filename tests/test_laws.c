@@ -214,8 +214,9 @@ static double peak_of_touch(const char *angle, double *tip_speed)
     snprintf(setting, sizeof setting, "wall.angle=%s", angle);
     SCOPED(scenario_finish) scenario s = shipped_with("compare/vibration-phase", setting);
     SCOPED(run_finish) run_result r = run_done(&s, false);
-    assert_non_null(r.before_impact);
-    *tip_speed = 0.5 * (r.before_impact[2] + r.before_impact[3]);
+    const double *velocity = r.landing.before.velocity;
+    assert_true(r.landing.time > 0);
+    *tip_speed = 0.5 * (velocity[1] + velocity[2]);
     double peak = r.summary.peak_force_N;
     return peak;
 }

@@ -84,11 +84,7 @@ static void assert_as_from_the_start(const session *s)
     }
     assert_string_equal(s->run.summary.message, whole.summary.message);
     assert_int_equal(s->run.summary.status, whole.summary.status);
-    assert_true((s->run.before_impact == NULL) == (whole.before_impact == NULL));
-    if (whole.before_impact != NULL) {
-        assert_int_equal(s->run.before_impact_size, whole.before_impact_size);
-        assert_memory_equal(s->run.before_impact, whole.before_impact, whole.before_impact_size);
-    }
+    assert_memory_equal(&s->run.landing, &whole.landing, sizeof whole.landing);
 }
 
 TEST(a_resumed_run_is_the_run_from_the_start)

@@ -80,13 +80,11 @@ status diagram_lacks(diagram *d, const char *what, fault *f)
 status diagram_take_impact(diagram *d, double *speed, fault *f)
 {
     const trace *t = &d->run->result.trace;
-    const double *touch = d->run->result.before_impact;
     for (size_t i = 0; i < t->event_count; i++) {
         if (t->events[i].kind == EVENT_IMPACT) {
             *speed = t->events[i].speed;
             d->impulse = t->events[i].impulse;
-            d->before =
-                (three_body_state){{touch[0], touch[0], touch[1]}, {touch[2], touch[2], touch[3]}};
+            d->before = d->run->result.landing.before;
             return STATUS_OK;
         }
     }

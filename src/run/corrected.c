@@ -58,6 +58,7 @@ static status begin(corrected_run *c, fault *f)
     TRY(recording_open_trace(r, c->arm.dof, f));
 
     r->state.earlier_peak = -1;
+    r->state.landing.before.angle[0] = (double)NAN;
     motion_start(&c->arm, m, p->initial.angle, p->initial.velocity);
     FAULT_AT_IF(m->wall_moves && m->state[SLOT_GAP] < -DEEPEST, f, STATUS_BAD_SCENARIO,
                 "wall.motion",

@@ -1,8 +1,6 @@
 #include "src/run/corrected.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "src/run/recording.h"
 #include "src/engines/motion_create.h"
@@ -81,7 +79,8 @@ static void open_landing(corrected_run *c, double impulse)
     recording_state *r = &c->recording->state;
     motion *m = c->motion;
     r->landing_open = true;
-    r->landing = (landing){m->state[SLOT_TIME], impulse, (double)NAN, (double)NAN};
+    r->landing =
+        (landing){m->state[SLOT_TIME], impulse, (double)NAN, (double)NAN, r->landing.before};
     r->earlier_peak =
         isnan(c->recording->result->summary.first_contact_s) ? -1 : m->record.pulse_peak;
     r->earlier_peak_time = m->record.pulse_peak_time;
@@ -258,27 +257,18 @@ static void add_impulse_to_sensors(corrected_run *c, const motion_report *report
     }
 }
 
-// Keeps angles and velocities as they are before the landing.
-static status keep_state_before_impact(run_result *result, const motion *m)
-{
-    size_t size = 2 * (size_t)m->dof * sizeof(double); // velocities stand behind the angles
-    result->before_impact = malloc(size);
-    FAIL_IF(result->before_impact == NULL, STATUS_NO_MEMORY);
-    memcpy(result->before_impact, state_angles(m, m->state), size);
-    result->before_impact_size = size;
-    return STATUS_OK;
-}
-
 status corrected_pass_event(corrected_run *c, motion_report *report)
 {
     motion *m = c->motion;
-    run_result *result = c->recording->result;
+    landing *first = &c->recording->state.landing;
 
     // before it
     TRY(corrected_record_row(c, m->state, 0));
     const bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
-    if (closes && lands(m) && result->before_impact == NULL) {
-        TRY(keep_state_before_impact(result, m));
+    if (closes && lands(m) && first->time == 0) {
+        const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
+        const int link = c->arm.first, last = c->arm.dof - 1;
+        first->before = (three_body_state){{q[0], q[link], q[last]}, {w[0], w[link], w[last]}};
     }
 
     // and after it

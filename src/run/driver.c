@@ -1,6 +1,5 @@
 #include "src/run/driver.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/base/instant.h"
@@ -224,11 +223,6 @@ void driver_restore(run_driver *d, const void *bytes)
     r->command = head.command;
     result->summary = head.summary;
     result->summary.path = "";
-    if (head.recording.landing.time == 0) {
-        free(result->before_impact); // of a contact that is yet to come
-        result->before_impact = NULL;
-        result->before_impact_size = 0;
-    }
     r->now = head.now;
 
     // the rig first: the run's arm has its voltage

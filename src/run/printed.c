@@ -282,8 +282,11 @@ void printed_sum_up(printed_run *p, status failed)
     if (!isnan(s->first_contact_s)) {
         refine_sampled_peak(&p->first, &s->first_pulse_peak_N, &s->first_pulse_time_to_peak_s);
         refine_sampled_peak(&p->peak, &s->peak_force_N, &s->time_to_peak_s);
-        r->result->landing = (landing){s->first_contact_s, s->contact_impulse_Ns,
-                                       s->first_pulse_peak_N, s->first_pulse_time_to_peak_s};
+        r->result->landing = (landing){s->first_contact_s,
+                                       s->contact_impulse_Ns,
+                                       s->first_pulse_peak_N,
+                                       s->first_pulse_time_to_peak_s,
+                                       {.angle = {(double)NAN}}};
     }
 
     // what only a whole run has

@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "src/base/instant.h"
@@ -80,7 +79,6 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
                          .rows = t->row_count,
                          .events = t->event_count,
                          .force_steps = h->forces.count,
-                         .impacted = r->result->before_impact != NULL,
                          .recording = r->state,
                          .summary = r->result->summary};
     motion_save(m, kept->motion);
@@ -174,16 +172,8 @@ static bool share(const run_result *from, const checkpoint *part, size_t checkpo
                  shared_array_share(&own->checkpoints, &old->checkpoints, checkpoints);
     }
 
-    // what was known before the landing, if it is behind
-    if (shared && part->impacted) {
-        result->before_impact = malloc(from->before_impact_size);
-        shared = result->before_impact != NULL;
-    }
     if (!shared) {
         run_finish(result);
-    } else if (part->impacted) {
-        memcpy(result->before_impact, from->before_impact, from->before_impact_size);
-        result->before_impact_size = from->before_impact_size;
     }
     return shared;
 }
@@ -216,9 +206,9 @@ status run_share(const run_result *from, size_t rows_expected, run_result *resul
     const checkpoint whole = {.rows = from->trace.row_count,
                               .events = from->trace.event_count,
                               .force_steps = from->history.forces.count,
-                              .impacted = from->before_impact != NULL,
                               .summary = from->summary};
-    return share(from, &whole, from->history.checkpoints.count, rows_expected, result)
-               ? STATUS_OK
-               : STATUS_NO_MEMORY;
+    const size_t checkpoints = from->history.checkpoints.count;
+    FAIL_IF(!share(from, &whole, checkpoints, rows_expected, result), STATUS_NO_MEMORY);
+    result->landing = from->landing;
+    return STATUS_OK;
 }

@@ -13,7 +13,6 @@
 typedef struct checkpoint {
     double time;                      // [s]
     size_t rows, events, force_steps; // recorded until then
-    bool impacted;                    // run_result.before_impact is known
     recording_state recording;
     summary summary;
     // of the motion

@@ -14,8 +14,6 @@ void run_finish(run_result *result)
     trace_finish(&result->trace);
     shared_array_finish(&result->history.forces);
     shared_array_finish(&result->history.checkpoints);
-    free(result->before_impact);
-    result->before_impact = NULL;
 }
 
 void run_monitor_count(run_monitor *monitor)
@@ -113,12 +111,12 @@ const sample *predict_first_contact(const scenario *s, const run_result *result,
     // under a control law the voltage in force is the law's
     parameters now = scenario_parameters_at(s, row->time);
     now.motor.voltage = row->voltage;
-    const double *all = result->before_impact;
-    int half = (int)(result->before_impact_size / sizeof *all / 2);
+    const bool known = now.arm.model == ARM_CORRECTED;
+    const size_t at = (size_t)(row - result->trace.rows) * (size_t)result->trace.angle_count;
     prediction_question question = {.parameters = &now,
                                     .bodies = row_bodies(row),
-                                    .angles = all,
-                                    .velocities = all != NULL ? all + half : NULL,
+                                    .angles = known ? result->trace.angles + at : NULL,
+                                    .velocities = known ? result->trace.velocities + at : NULL,
                                     .command = then != NULL ? *then : (voltage_profile){0},
                                     .whole_pulse = true,
                                     .current = row_current(&now.motor, row)};

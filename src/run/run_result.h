@@ -4,6 +4,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
+#include "src/predict/predict.h"
 #include "src/tables/summary.h"
 #include "src/run/trace.h"
 
@@ -16,20 +17,20 @@ typedef struct run_history {
 // The first contact that ends a free flight, and its pulse: it is the run's first contact, but of
 // an arm that starts on the wall.
 typedef struct landing {
-    double time;         // [s]; 0: there was none
-    double impulse;      // of its impact [N s]
-    double peak;         // of its pulse [N], NaN if there was none
-    double time_to_peak; // after it [s]
+    double time;             // [s]; 0: there was none
+    double impulse;          // of its impact [N s]
+    double peak;             // of its pulse [N], NaN if there was none
+    double time_to_peak;     // after it [s]
+    three_body_state before; // hub, first and last link at the instant before it; its first angle
+                             // is NaN where they are not known: of the printed model, or where a
+                             // change brought the contact
 } landing;
 
 typedef struct run_result {
     summary summary;
     trace trace; // rows at every step and on both sides of every event; empty if not asked for
     landing landing;
-    double *before_impact;     // corrected model: angles[dof], then velocities[dof], at the instant
-                               // before the landing [rad], [rad/s]; NULL if there was none
-    size_t before_impact_size; // [bytes]
-    run_history history;       // empty unless asked for
+    run_history history; // empty unless asked for
 } run_result;
 
 // What another thread may know about a run, and tell it. All zero at the start.

@@ -163,7 +163,7 @@ static bool outside_is_same(session *s, const parameters *p, char stamp[SHA256_T
 // within the session's patience is left to its thread. On failure the present run stays.
 static status start_run(session *s, const scenario *effective, fault *f)
 {
-    run_result run = {.before_impact = NULL};
+    run_result run = {.landing = {.time = 0}};
     size_t rows = (size_t)expected_rows(&effective->parameters) + 1;
     const parameters *p = &effective->parameters;
     char stamp[SHA256_TEXT], digest[SHA256_TEXT];
@@ -198,7 +198,6 @@ static status start_run(session *s, const scenario *effective, fault *f)
         run = background_run_finish(c);
         c = NULL;
     } else {
-        run.before_impact = NULL; // the background run's
         summary_init(&run.summary);
         run.history = (run_history){0};
     }

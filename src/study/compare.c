@@ -38,21 +38,19 @@ static void find_best(const scenario *s, const run_result *result, double *peak,
 {
     const summary *m = &result->summary;
     const parameters *p = &s->parameters;
-    const double *touch = result->before_impact, command = m->force_command_N;
+    const landing *touch = &result->landing;
+    const double command = m->force_command_N;
     pressed_arm_model model;
     pressed_state after;
     *peak = *settling = (double)NAN;
 
     // it is known for a plastic impact of two links without a script
-    if (touch == NULL || s->action_count > 0 || p->wall.restitution > 0 ||
-        !pressed_arm_model_of(p, &model)) {
+    if (!(touch->time > 0) || isnan(touch->before.angle[0]) || s->action_count > 0 ||
+        p->wall.restitution > 0 || !pressed_arm_model_of(p, &model)) {
         return;
     }
 
-    // two bodies: hub and first link are one
-    three_body_state before = {.angle = {touch[0], touch[0], touch[1]},
-                               .velocity = {touch[2], touch[2], touch[3]}};
-    if (pressed_after_impact(p, &before, &after)) {
+    if (pressed_after_impact(p, &touch->before, &after)) {
         *peak = best_peak(&model, after);
         if (!isnan(command)) {
             double allowed = fmax(m->peak_force_N, (1 + SETTLED_BAND) * command);
