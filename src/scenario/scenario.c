@@ -167,46 +167,28 @@ status scenario_with(const scenario *base, const parameter_change *changes, size
     return scenario_take_parameters(changed, &p, f);
 }
 
-status scenario_override(scenario *s, const char *assignment, fault *f)
+// Applies all at once: each is read once, and they are resolved together. All or nothing.
+static status override_together(scenario *s, char *const *assignments, int count, fault *f)
 {
-    fault inner;
     parameters p = s->parameters;
-    status result = assign(&p, assignment, &inner);
-    if (result == STATUS_OK) {
-        result = resolve_changed(s, &p, &inner);
+    for (int i = 0; i < count; i++) {
+        TRY(assign(&p, assignments[i], f));
     }
-
-    // all or nothing; the sentence begins with what was asked for
-    if (result != STATUS_OK) {
-        fault_set_at(f, result, inner.path, "--set %.200s: %.700s", assignment, inner.text);
-        if (f != NULL) {
-            make_printable(f->text, 0);
-        }
-        return result;
-    }
+    TRY(count > 0 ? resolve_changed(s, &p, f) : STATUS_OK);
     s->parameters = p;
     return STATUS_OK;
 }
 
-// Applies all at once: each is read once, and they are resolved together.
-static bool override_together(scenario *s, char *const *assignments, int count)
+status scenario_override(scenario *s, const char *assignment, fault *f)
 {
-    fault ignored;
-    parameters p = s->parameters;
-
-    // one by one into a copy
-    for (int i = 0; i < count; i++) {
-        if (assign(&p, assignments[i], &ignored) != STATUS_OK) {
-            return false;
-        }
+    fault inner;
+    char *const one = (char *)assignment;
+    const status result = override_together(s, &one, 1, &inner);
+    if (result != STATUS_OK && f != NULL) {
+        fault_set_at(f, result, inner.path, "--set %.200s: %.700s", assignment, inner.text);
+        make_printable(f->text, 0);
     }
-
-    // then together, as some depend on others
-    if (count > 0 && resolve_changed(s, &p, &ignored) != STATUS_OK) {
-        return false;
-    }
-    s->parameters = p;
-    return true;
+    return result;
 }
 
 // Applies one after the other. Returns how many failed, each told to report (may be NULL).
@@ -255,7 +237,7 @@ status scenario_override_all(scenario *s, char *const *assignments, int count, f
         }
         return STATUS_BAD_ARGUMENT;
     }
-    if (override_together(s, assignments, count)) {
+    if (override_together(s, assignments, count, NULL) == STATUS_OK) {
         return STATUS_OK;
     }
 
