@@ -105,7 +105,7 @@ const double *driver_state(const run_driver *d, int *angle_count)
 {
     if (d->is_printed) {
         *angle_count = 3;
-        return d->printed.state;
+        return d->printed.motion.row.angle; // velocities stand behind them
     }
     const motion *m = d->corrected.motion;
     *angle_count = m->dof;

@@ -3,8 +3,6 @@
 #include <assert.h>
 #include <math.h>
 
-#include <string.h>
-
 #include "src/run/recording.h"
 
 // --- what a step is recorded as ---------------------------------------------------------------
@@ -167,8 +165,6 @@ static status record_row(printed_run *p, fault *f)
     p->last = step;
     p->begun = true;
     p->ready = false;
-    memcpy(p->state, row->angle, sizeof row->angle);
-    memcpy(p->state + 3, row->velocity, sizeof row->velocity);
 
     // and is kept
     TRY(failed);

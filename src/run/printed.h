@@ -16,7 +16,6 @@ typedef struct printed_run {
     recording *recording;
     printed_motion motion; // with the command in force
     sensed_motion sensed;  // what the sensors were fixed to at the last row
-    double state[6];       // of the last row: angles [rad], then velocities [rad/s]
     bool begun;            // there is a row
     bool ready;            // script and rig have acted at the last row
     force_step last;       // the force over the step to the last row

@@ -159,11 +159,9 @@ static bool run_ends(process *p)
 static bool take_in(process *p)
 {
     ssize_t count = read(p->program.output, p->line + p->length, MOST_LINE - p->length);
-    if (count < 0 && (errno == EAGAIN || errno == EINTR)) {
-        return true;
-    }
     if (count < 0) {
-        return FAIL(p, "gave an answer that cannot be read: %s", strerror(errno));
+        return errno == EAGAIN || errno == EINTR ||
+               FAIL(p, "gave an answer that cannot be read: %s", strerror(errno));
     }
 
     // at its end it can say no more
