@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "src/base/fault.h"
+
 static void swap_rows(int length, double *matrix, int i, int j)
 {
     for (int k = 0; k < length; k++) {
@@ -26,9 +28,7 @@ static inline bool solve(int n, int columns, double *matrix, double *right)
             }
         }
         double divisor = matrix[pivot * n + column];
-        if (divisor == 0 || !isfinite(divisor)) {
-            return false;
-        }
+        FAIL_IF(divisor == 0 || !isfinite(divisor), false);
         if (pivot != column) {
             swap_rows(n, matrix, pivot, column);
             swap_rows(columns, right, pivot, column);
@@ -291,9 +291,7 @@ bool symmetric_eigen(int n, double *matrix, double *values, double *scratch)
             if (m == l) {
                 break;
             }
-            if (shifts == MOST_SHIFTS) {
-                return false;
-            }
+            FAIL_IF(shifts == MOST_SHIFTS, false);
             ql_sweep(n, l, m, values, e, matrix);
         }
     }
@@ -315,9 +313,7 @@ bool symmetric_factor(int n, double *matrix)
             }
 
             // a pivot that is not positive: the matrix is not positive definite
-            if (i == j && !(sum > 0)) {
-                return false;
-            }
+            FAIL_IF(i == j && !(sum > 0), false);
             row[j] = i == j ? sqrt(sum) : sum / other[j];
         }
     }
@@ -351,9 +347,7 @@ bool symmetric_eigen_pair(int n, double *matrix, double *mass, double *values, d
 {
     assert(n > 0);
     const size_t side = (size_t)n;
-    if (!symmetric_factor(n, mass)) {
-        return false;
-    }
+    FAIL_IF(!symmetric_factor(n, mass), false);
 
     // L^-1 A L^-T with mass = L L': symmetric, so that rows may stand for columns
     for (int pass = 0; pass < 2; pass++) {
@@ -373,9 +367,7 @@ bool symmetric_eigen_pair(int n, double *matrix, double *mass, double *values, d
             matrix[i * side + j] = matrix[j * side + i];
         }
     }
-    if (!symmetric_eigen(n, matrix, values, scratch)) {
-        return false;
-    }
+    FAIL_IF(!symmetric_eigen(n, matrix, values, scratch), false);
 
     // back to the coordinates of both matrices
     for (size_t k = 0; k < side; k++) {

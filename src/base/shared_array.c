@@ -6,6 +6,8 @@
 #include <string.h>
 #include <sys/mman.h>
 
+#include "src/base/fault.h"
+
 enum { LEAST_ELEMENTS = 64 };
 
 // --- chunks -----------------------------------------------------------------------------------
@@ -26,17 +28,13 @@ static bool map_chunk(void *at)
 static bool append_chunk(shared_array *a, const shared_array *from)
 {
     char *at = (char *)a->base + a->mapped, *there = from != NULL ? (char *)from->base : NULL;
-    if (a->mapped + ARRAY_CHUNK > a->reserved) {
-        return false;
-    }
+    FAIL_IF(a->mapped + ARRAY_CHUNK > a->reserved, false);
 
     // memory of the size 0 that becomes larger is mapped a second time; valgrind knows no such call
     // and gets a copy
     const bool shares = from != NULL && mremap(there + a->mapped, 0, ARRAY_CHUNK,
                                                MREMAP_MAYMOVE | MREMAP_FIXED, at) != MAP_FAILED;
-    if (!shares && ((from != NULL && errno != EINVAL) || !map_chunk(at))) {
-        return false;
-    }
+    FAIL_IF(!shares && ((from != NULL && errno != EINVAL) || !map_chunk(at)), false);
     if (!shares && from != NULL) {
         memcpy(at, there + a->mapped, ARRAY_CHUNK);
     }
@@ -82,9 +80,7 @@ static bool grow_plain(shared_array *a, size_t count)
     size_t capacity = a->capacity ? 2 * a->capacity : LEAST_ELEMENTS;
     capacity = capacity < count ? count : capacity;
     void *base = realloc(a->base, capacity * a->size + 1);
-    if (base == NULL) {
-        return false;
-    }
+    FAIL_IF(base == NULL, false);
     a->base = base;
     a->capacity = capacity;
     return true;
@@ -97,9 +93,7 @@ bool shared_array_grow(shared_array *a, size_t count)
         return count <= a->capacity || grow_plain(a, count);
     }
     while (count > a->capacity) {
-        if (!append_chunk(a, NULL)) {
-            return false;
-        }
+        FAIL_IF(!append_chunk(a, NULL), false);
     }
     return true;
 }
@@ -113,16 +107,12 @@ bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
 
     // chunks that are full will not change any more
     for (size_t i = 0; i < shared; i++) {
-        if (!append_chunk(a, from)) {
-            return false;
-        }
+        FAIL_IF(!append_chunk(a, from), false);
     }
 
     // the elements behind them
     size_t done = shared * ARRAY_CHUNK;
-    if (!shared_array_grow(a, count)) {
-        return false;
-    }
+    FAIL_IF(!shared_array_grow(a, count), false);
     if (bytes > done) {
         memcpy((char *)a->base + done, (const char *)from->base + done, bytes - done);
     }

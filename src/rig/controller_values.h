@@ -17,6 +17,14 @@ controller_parameter controller_parameter_at(const controller *law, int index);
 // or a value out of its range.
 status controller_values(const controller *law, const parameters *p, double *values, fault *f);
 
+// A controller with one mode; whatever else it has as .tune = ....
+#define ONE_MODE_CONTROLLER(title, mode, memory, samples, ...)                                     \
+    {                                                                                              \
+        .interface = CONTROLLER_INTERFACE, .name = title,                                          \
+        .modes = (const char *const[]){mode, NULL}, .memory_size = memory, .sample = samples,      \
+        __VA_ARGS__                                                                                \
+    }
+
 // A controller's `start` or `tune` that takes whatever it is told.
 const char *controller_takes_anything(void *memory, const controller_setup *setup);
 

@@ -73,11 +73,8 @@ static void give_no_command(void *memory, const controller_input *in, controller
 }
 
 // Stands where a controller from outside would.
-static const controller withheld_law = {.interface = CONTROLLER_INTERFACE,
-                                        .name = "withheld",
-                                        .modes = (const char *const[]){"withheld", NULL},
-                                        .sample = give_no_command,
-                                        .tune = controller_takes_anything};
+static const controller withheld_law = ONE_MODE_CONTROLLER(
+    "withheld", "withheld", 0, give_no_command, .tune = controller_takes_anything);
 
 static status explain_withheld(const rig *r, fault *f)
 {
@@ -237,15 +234,11 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     input.predicted_force = r->predicted_force;
     controller_output *out = &r->output;
     *out = no_answer();
-    if (r->withheld) {
-        return explain_withheld(r, f);
-    }
+    FAIL_IF(r->withheld, explain_withheld(r, f));
     r->law->sample(r->memory, &input, out);
     const char *why = "";
     status failed = r->process != NULL ? process_failure(r->process, &why) : STATUS_OK;
-    if (failed == STATUS_STOPPED) {
-        return failed;
-    }
+    FAIL_IF(failed == STATUS_STOPPED, failed);
     FAULT_AT_IF(failed != STATUS_OK, f, failed, "control.command", "at t = %.9g s %s", time, why);
     FAULT_IF(!isfinite(out->command), f, STATUS_NOT_FINITE,
              "at t = %.9g s the controller '%s' gave the command %g V, expected a finite "

@@ -27,9 +27,7 @@ background_run *background_run_start(const scenario *s, const background_options
 {
     assert(how->rows_expected > 0);
     background_run *c = calloc(1, sizeof *c);
-    if (c == NULL) {
-        return NULL;
-    }
+    FAIL_IF(c == NULL, NULL);
 
     // the scenario and the rows that it begins with
     c->scenario = *s;

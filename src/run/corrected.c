@@ -210,9 +210,7 @@ static bool sensed_within(const corrected_run *c, double time, sensed_motion *at
     *at = (sensed_motion){.force = 0};
     if (fitted->film || fitted->accelerometer) {
         double *state = motion_between(&c->arm, m, time, STATE_WHOLE);
-        if (state == NULL) {
-            return false;
-        }
+        FAIL_IF(state == NULL, false);
         *at = corrected_sensed_motion(c, state);
     }
 

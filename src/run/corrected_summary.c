@@ -57,9 +57,7 @@ status corrected_explain_standstill(const corrected_run *c, motion_event last, f
 status corrected_explain_step(const corrected_run *c, status s, fault *f)
 {
     const motion *m = c->motion;
-    if (s == STATUS_FOLDED) {
-        return explain_fold(c, f);
-    }
+    FAIL_IF(s == STATUS_FOLDED, explain_fold(c, f));
     if (s == STATUS_NO_PROGRESS) {
         return corrected_explain_standstill(c, MOTION_REACHED, f);
     }

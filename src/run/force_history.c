@@ -14,9 +14,7 @@ static inline double step_bulge(const force_step *step)
 
 force_step *force_history_extend(shared_array *h, size_t count)
 {
-    if (h->count + count > h->capacity && !shared_array_grow(h, h->count + count)) {
-        return NULL;
-    }
+    FAIL_IF(h->count + count > h->capacity && !shared_array_grow(h, h->count + count), NULL);
     force_step *added = (force_step *)h->base + h->count;
     h->count += count;
     return added;

@@ -7,6 +7,7 @@
 
 #include "src/base/instant.h"
 #include "src/base/shipped.h"
+#include "src/rig/controller_values.h"
 #include "src/run/driver.h"
 
 #define GRID_TOLERANCE 1e-9 // of a step: a row of the grid so near is the present one
@@ -35,11 +36,8 @@ static void put_out(void *memory, const controller_input *input, controller_outp
     output->command = **volts;
 }
 
-static const controller commanded_law = {.interface = CONTROLLER_INTERFACE,
-                                         .name = "the program",
-                                         .modes = (const char *const[]){"command", NULL},
-                                         .memory_size = sizeof(const double *),
-                                         .sample = put_out};
+static const controller commanded_law =
+    ONE_MODE_CONTROLLER("the program", "command", sizeof(const double *), put_out, .tune = NULL);
 
 // --- beginning and end ------------------------------------------------------------------------
 

@@ -69,9 +69,7 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
         return true;
     }
 
-    if (!shared_array_grow(&h->checkpoints, h->checkpoints.count + 1)) {
-        return false;
-    }
+    FAIL_IF(!shared_array_grow(&h->checkpoints, h->checkpoints.count + 1), false);
 
     // all that the steps to come depend on
     checkpoint *kept = checkpoint_at(h, h->checkpoints.count++);

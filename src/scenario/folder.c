@@ -98,17 +98,13 @@ status scenario_read(scenario *s, const char *path, const char *name, fault_hand
                      void *context)
 {
     char what[256];
-    if (is_folder(path)) {
-        return report_file(s, path, "it is a folder", report, context);
-    }
+    FAIL_IF(is_folder(path), report_file(s, path, "it is a folder", report, context));
 
     // one byte more than is allowed, so that the parser sees what is too long
     size_t length;
     const char *failed;
     char *text = whole_file_read(path, (size_t)TREE_MAX_BYTES + 1, &length, &failed);
-    if (text == NULL && errno == ENOMEM) {
-        return report_no_memory(report, context);
-    }
+    FAIL_IF(text == NULL && errno == ENOMEM, report_no_memory(report, context));
     if (text == NULL) {
         snprintf(what, sizeof what, "cannot be %s (%s)", failed, strerror(errno));
         return report_file(s, path, what, report, context);
@@ -123,14 +119,10 @@ status scenario_read(scenario *s, const char *path, const char *name, fault_hand
 static bool add_name(name_list *list, const char *name, size_t length)
 {
     char **grown = realloc(list->names, (size_t)(list->count + 1) * sizeof *grown);
-    if (grown == NULL) {
-        return false;
-    }
+    FAIL_IF(grown == NULL, false);
     list->names = grown;
     grown[list->count] = strndup(name, length);
-    if (grown[list->count] == NULL) {
-        return false;
-    }
+    FAIL_IF(grown[list->count] == NULL, false);
     list->count++;
     return true;
 }

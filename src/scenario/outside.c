@@ -53,9 +53,7 @@ static bool add_content(sha256 *h, const char *path)
     char bytes[16384], digest[SHA256_TEXT];
     sha256 content;
     FILE *file = fopen(path, "rb");
-    if (file == NULL) {
-        return false;
-    }
+    FAIL_IF(file == NULL, false);
     sha256_init(&content);
     for (size_t count; (count = fread(bytes, 1, sizeof bytes, file)) > 0;) {
         sha256_add(&content, bytes, count);
@@ -74,9 +72,7 @@ static bool add_content(sha256 *h, const char *path)
 static bool add_file(sha256 *h, const char *path, reading how)
 {
     struct stat what;
-    if (stat(path, &what) != 0) {
-        return false;
-    }
+    FAIL_IF(stat(path, &what) != 0, false);
     if (!S_ISREG(what.st_mode)) {
         errno = ENOENT;
         return false;
@@ -126,16 +122,12 @@ static bool add_command(sha256 *h, const char *command, reading how)
         const char *value = strchr(word, '='), *names[] = {word, value != NULL ? value + 1 : ""};
         for (int i = 0; i < 2; i++) {
             const bool taken = add_file(h, names[i], how);
-            if (!taken && !is_no_file()) {
-                return false;
-            }
+            FAIL_IF(!taken && !is_no_file(), false);
             sha256_add_text(h, taken ? "a file" : "no file");
         }
 
         // options may be anything but programs
-        if (strpbrk(word, "/=") == NULL && word[0] != '-' && !add_program(h, word, how)) {
-            return false;
-        }
+        FAIL_IF(strpbrk(word, "/=") == NULL && word[0] != '-' && !add_program(h, word, how), false);
     }
     return true;
 }

@@ -227,9 +227,7 @@ static const char *list_text(reader *r, const tree_node *node, int index,
         fault f;
         parameters scratch = r->s->parameters;
         const char *text = reader_value_text(r, child, path);
-        if (text == NULL) {
-            return NULL;
-        }
+        FAIL_IF(text == NULL, NULL);
         if (parameter_set_text(&scratch, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
             return NULL;

@@ -22,9 +22,7 @@ static char *read_text(reader *r, const tree_node *node, const char *what)
 
     // folded lines are one
     char *text = strndup(node->text, length);
-    if (!reader_have_memory(r, text)) {
-        return NULL;
-    }
+    FAIL_IF(!reader_have_memory(r, text), NULL);
     for (char *c = text; *c != '\0'; c++) {
         *c = *c == '\n' || *c == '\t' ? ' ' : *c;
     }

@@ -88,9 +88,7 @@ static void parse_push(reader *r, const tree_node *node, bool timed, double time
 static bool parse_time(reader *r, const tree_node *node, double *time)
 {
     const double duration = r->s->parameters.run.duration;
-    if (!reader_quantity(r, node, "at", "s", time)) {
-        return false;
-    }
+    FAIL_IF(!reader_quantity(r, node, "at", "s", time), false);
     FAIL_IF(*time < 0 || (r->duration_known && *time > duration),
             report_node(r, node, "at = %g s is outside the run, expected 0 to %g s (run.duration)",
                         *time, duration));

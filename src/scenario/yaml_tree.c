@@ -71,9 +71,7 @@ static bool refuse_syntax(const builder *b)
 
     // no fault of the file's; then what is no text, and a tab, which the parser's words do not
     // explain
-    if (p->error == YAML_MEMORY_ERROR) {
-        return refuse_for_memory(b);
-    }
+    FAIL_IF(p->error == YAML_MEMORY_ERROR, refuse_for_memory(b));
     if (p->error == YAML_READER_ERROR) {
         char sentence[256];
         snprintf(sentence, sizeof sentence, "not text in UTF-8: %s, expected a YAML file", problem);

@@ -101,9 +101,7 @@ int signal_derive(int place, const char *text, fault *f)
         }
     }
     name[length] = '\0';
-    if (expression_read(&e, text, find_recorded, NULL, f) != STATUS_OK) {
-        return -1;
-    }
+    FAIL_IF(expression_read(&e, text, find_recorded, NULL, f) != STATUS_OK, -1);
 
     derived[place].expression = e;
     snprintf(derived[place].name, DERIVED_NAME, "%s", name);

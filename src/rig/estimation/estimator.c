@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "src/base/dense.h"
+#include "src/base/fault.h"
 
 enum { N = ESTIMATOR_STATES, EXTENDED = N + 1, DOUBLINGS = 60 };
 
@@ -176,9 +177,7 @@ static bool solve(int n, matrix x, matrix g, matrix h, matrix b)
         }
     }
 
-    if (!dense_solve_columns(n, n, left, right)) {
-        return false;
-    }
+    FAIL_IF(!dense_solve_columns(n, n, left, right), false);
     for (int i = 0; i < n; i++) {
         memcpy(x[i], right + i * n, (size_t)n * sizeof(double));
     }
@@ -191,9 +190,7 @@ static bool riccati(int n, matrix a, matrix g, matrix q, matrix x)
     memcpy(x, q, sizeof(matrix));
     for (int k = 0; k < DOUBLINGS; k++) {
         matrix fa, fg, step;
-        if (!solve(n, fa, g, x, a) || !solve(n, fg, g, x, g)) {
-            return false;
-        }
+        FAIL_IF(!solve(n, fa, g, x, a) || !solve(n, fg, g, x, g), false);
 
         // x + a'x f a, g + a f g a', a f a with f = (I + g x)^-1
         multiply(n, step, x, false, fa, false);
@@ -210,9 +207,7 @@ static bool riccati(int n, matrix a, matrix g, matrix q, matrix x)
                 size = fmax(size, fabs(x[i][j]));
             }
         }
-        if (!isfinite(size)) {
-            return false;
-        }
+        FAIL_IF(!isfinite(size), false);
         if (change <= 1e-14 * size) {
             return true;
         }
@@ -235,9 +230,7 @@ bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gai
 {
     assert(m->n > 0 && m->n <= N && c->growth > 0);
     const int n = m->n;
-    if (!(c->effort > 0)) {
-        return false;
-    }
+    FAIL_IF(!(c->effort > 0), false);
 
     // the cross term goes with u = v - s'z / r
     matrix a = {{0}}, g = {{0}}, q = {{0}}, x = {{0}};
@@ -252,9 +245,7 @@ bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gai
             q[i][j] = c->state[i][j] - c->cross[i] * c->cross[j] / c->effort;
         }
     }
-    if (!riccati(n, a, g, q, x)) {
-        return false;
-    }
+    FAIL_IF(!riccati(n, a, g, q, x), false);
 
     // (r + b'x b)^-1 (b'x A + s')
     double bx[N], weight = c->effort;

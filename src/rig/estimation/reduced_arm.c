@@ -94,9 +94,8 @@ static status contact_modes(const arm *a, double wall_stiffness, const chain_mod
         work->copy[i] = work->mass[i];
     }
     *count = n;
-    if (!symmetric_eigen_pair(n, work->contact, work->copy, work->frequencies, work->scratch)) {
-        return STATUS_SINGULAR;
-    }
+    FAIL_IF(!symmetric_eigen_pair(n, work->contact, work->copy, work->frequencies, work->scratch),
+            STATUS_SINGULAR);
     for (int i = 0; i < n; i++) {
         work->frequencies[i] = sqrt(fmax(work->frequencies[i], 0));
     }

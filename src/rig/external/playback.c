@@ -51,9 +51,5 @@ static void sample(void *memory, const controller_input *in, controller_output *
         csv_table_at(p->times, p->command, p->rows, then + instant_tolerance(then), p->linear);
 }
 
-const controller playback_law = {.interface = CONTROLLER_INTERFACE,
-                                 .name = "playback",
-                                 .modes = (const char *const[]){"playback", NULL},
-                                 .memory_size = sizeof(played_command *),
-                                 .sample = sample,
-                                 .tune = controller_takes_anything};
+const controller playback_law = ONE_MODE_CONTROLLER(
+    "playback", "playback", sizeof(played_command *), sample, .tune = controller_takes_anything);

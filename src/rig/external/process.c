@@ -15,6 +15,7 @@
 #include "src/base/clock.h"
 #include "src/base/numbers.h"
 #include "src/base/words.h"
+#include "src/rig/controller_values.h"
 #include "src/rig/external/supervisor.h"
 
 enum {
@@ -165,16 +166,13 @@ static bool take_in(process *p)
     }
 
     // at its end it can say no more
-    if (count == 0) {
-        return FAIL(p, "ended without an answer");
-    }
+    FAIL_IF(count == 0, FAIL(p, "ended without an answer"));
 
     // a full buffer without a whole line will never hold one
     p->length += (size_t)count;
     p->line[p->length] = '\0';
-    if (p->length == MOST_LINE && memchr(p->line, '\n', p->length) == NULL) {
-        return FAIL(p, "answered %d bytes without the end of a line", (int)MOST_LINE);
-    }
+    FAIL_IF(p->length == MOST_LINE && memchr(p->line, '\n', p->length) == NULL,
+            FAIL(p, "answered %d bytes without the end of a line", (int)MOST_LINE));
     return true;
 }
 
@@ -196,12 +194,9 @@ static bool exchange(process *p, const char *text)
         // an end may be ready, but after the deadline
         const double left = 1e3 * (deadline - clock_seconds(CLOCK_MONOTONIC));
         const int ready = poll(ends, 2, (int)ceil(fmin(fmax(left, 0), LOOK_UP)));
-        if (clock_seconds(CLOCK_MONOTONIC) >= deadline) {
-            return FAIL(p, "gave no answer within control.answer_time = %g s", p->answer_time);
-        }
-        if (run_ends(p)) {
-            return false;
-        }
+        FAIL_IF(clock_seconds(CLOCK_MONOTONIC) >= deadline,
+                FAIL(p, "gave no answer within control.answer_time = %g s", p->answer_time));
+        FAIL_IF(run_ends(p), false);
         forget_old_errors(p);
         if (ready > 0 && ends[1].revents != 0) {
             ssize_t count =
@@ -210,9 +205,7 @@ static bool exchange(process *p, const char *text)
             const bool deaf = count < 0 && errno != EAGAIN && errno != EINTR;
             sent = deaf ? length : sent + (count > 0 ? (size_t)count : 0);
         }
-        if (ready > 0 && ends[0].revents != 0 && !take_in(p)) {
-            return false;
-        }
+        FAIL_IF(ready > 0 && ends[0].revents != 0 && !take_in(p), false);
     }
     return true;
 }
@@ -272,9 +265,8 @@ static bool catch_up(process *p, const process_memory *m, double time)
         !(unrecorded && p->started != m->started)) {
         return true;
     }
-    if (unrecorded) {
-        return FAIL(p, "would have to go on from the past, which is not recorded any more");
-    }
+    FAIL_IF(unrecorded,
+            FAIL(p, "would have to go on from the past, which is not recorded any more"));
 
     // the way back to where the program is, or to the beginning
     transcript_node *node = m->at;
@@ -356,14 +348,6 @@ static void sample(void *memory, const controller_input *in, controller_output *
 
 static const controller_parameter told[] = {{.name = "force"}};
 
-const controller process_law = {
-    .interface = CONTROLLER_INTERFACE,
-    .name = "process",
-    .modes = (const char *const[]){"process", NULL},
-    .parameters = told,
-    .parameter_count = sizeof told / sizeof told[0],
-    .memory_size = sizeof(process_memory),
-    .start = start,
-    .sample = sample,
-    .tune = take_setup,
-};
+const controller process_law =
+    ONE_MODE_CONTROLLER("process", "process", sizeof(process_memory), sample, .parameters = told,
+                        .parameter_count = 1, .start = start, .tune = take_setup);

@@ -114,9 +114,7 @@ status process_read_answer(const char *line, size_t length, controller_output *o
     json_t *object = json_loadb(line, length, 0, &ignored);
 
     // jansson says of a line that it had no memory for what it says of a wrong one
-    if (object == NULL && errno == ENOMEM) {
-        return STATUS_NO_MEMORY;
-    }
+    FAIL_IF(object == NULL && errno == ENOMEM, STATUS_NO_MEMORY);
 
     // what is there must be a number
     bool whole = json_is_object(object);

@@ -24,18 +24,9 @@ static const controller_parameter table[PARAMETERS] = {
     [KP] = {.name = "kp"},
     [KV] = {.name = "kv"},
     [THRESHOLD] = {.name = "contact_threshold"},
-    [DAMPING] = {.name = "damping",
-                 .unit = "N s/rad",
-                 .initial = 3,
-                 .minimum = 0.01,
-                 .maximum = 1000,
-                 .description = "force's error over the speed that it moves the hub with"},
-    [MASS_TIME] = {.name = "mass_time",
-                   .unit = "s",
-                   .initial = 0.02,
-                   .minimum = 0,
-                   .maximum = 10,
-                   .description = "in which the hub takes up that speed"},
+    [DAMPING] = {"damping", "N s/rad", 3, 0.01, 1000,
+                 "force's error over the speed that it moves the hub with"},
+    [MASS_TIME] = {"mass_time", "s", 0.02, 0, 10, "in which the hub takes up that speed"},
 };
 
 typedef struct admittance_memory {

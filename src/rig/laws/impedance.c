@@ -25,12 +25,8 @@ static const controller_parameter table[PARAMETERS] = {
     [FORCE_WANTED] = {.name = "force"},
     [APPROACH_VOLTAGE] = {.name = "approach_voltage"},
     [THRESHOLD] = {.name = "contact_threshold"},
-    [STIFFNESS] = {.name = "stiffness",
-                   .unit = "N m/rad",
-                   .initial = 10,
-                   .minimum = 0.1,
-                   .maximum = 1000,
-                   .description = "of the spring between the hub and the point that leads it"},
+    [STIFFNESS] = {"stiffness", "N m/rad", 10, 0.1, 1000,
+                   "of the spring between the hub and the point that leads it"},
 };
 
 typedef struct impedance_memory {
