@@ -22,11 +22,10 @@ static status read_text(const char *path, char **text, fault *f)
     size_t length;
     const char *failed;
     *text = whole_file_read(path, SIZE_MAX / 4, &length, &failed);
-    if (*text == NULL) {
-        return errno == ENOMEM ? fault_no_memory(f)
+    FAIL_IF(*text == NULL, errno == ENOMEM
+                               ? fault_no_memory(f)
                                : fault_set(f, STATUS_CANNOT_READ, "'%.300s' cannot be %s: %s", path,
-                                           failed, strerror(errno));
-    }
+                                           failed, strerror(errno)));
     return strlen(*text) == length
                ? STATUS_OK
                : fault_set(f, STATUS_BAD_ARGUMENT,

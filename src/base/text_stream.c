@@ -4,6 +4,8 @@
 #include <string.h>
 #include <sys/types.h>
 
+#include "src/base/fault.h"
+
 // Makes room for some bytes more and the 0 behind them.
 static bool make_room(text_stream *t, size_t count)
 {
@@ -24,9 +26,7 @@ static bool make_room(text_stream *t, size_t count)
 static ssize_t take(void *cookie, const char *bytes, size_t count)
 {
     text_stream *t = cookie;
-    if (!make_room(t, count)) {
-        return 0;
-    }
+    FAIL_IF(!make_room(t, count), 0);
     memcpy(t->text + t->length, bytes, count);
     t->length += count;
     return (ssize_t)count;

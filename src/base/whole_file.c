@@ -106,9 +106,7 @@ static bool may_follow(const char *link)
 // 0 or the reason why nobody knows.
 static int follow_links(const char *path, char target[PATH_MAX])
 {
-    if (strlen(path) >= PATH_MAX) {
-        return ENAMETOOLONG;
-    }
+    FAIL_IF(strlen(path) >= PATH_MAX, ENAMETOOLONG);
     strcpy(target, path);
 
     // link by link; a relative one counts from its own folder
@@ -118,13 +116,9 @@ static int follow_links(const char *path, char target[PATH_MAX])
         if (length < 0) {
             return 0;
         }
-        if (!may_follow(target)) {
-            return EACCES;
-        }
+        FAIL_IF(!may_follow(target), EACCES);
         const size_t folder = link[0] == '/' ? 0 : folder_length(target);
-        if (folder + (size_t)length >= PATH_MAX) {
-            return ENAMETOOLONG;
-        }
+        FAIL_IF(folder + (size_t)length >= PATH_MAX, ENAMETOOLONG);
         memcpy(target + folder, link, (size_t)length);
         target[folder + (size_t)length] = '\0';
     }
@@ -138,19 +132,14 @@ static int find_target(const char *path, char target[PATH_MAX], mode_t *mode)
     struct stat about = {.st_mode = 0};
     char folder[PATH_MAX];
     const int reason = path[0] == '\0' ? ENOENT : follow_links(path, target);
-    if (reason != 0) {
-        return reason;
-    }
+    FAIL_IF(reason != 0, reason);
 
     // what stands there already
     const bool there = stat(target, &about) == 0;
-    if (!there && errno != ENOENT) {
-        return errno;
-    }
+    FAIL_IF(!there && errno != ENOENT, errno);
     *mode = there ? about.st_mode : 0;
-    if (there && (S_ISDIR(*mode) || access(target, W_OK) != 0)) {
-        return S_ISDIR(*mode) ? EISDIR : errno;
-    }
+    FAIL_IF(there && (S_ISDIR(*mode) || access(target, W_OK) != 0),
+            S_ISDIR(*mode) ? EISDIR : errno);
 
     // what stands beside it, as a temporary will
     const bool beside = !there || S_ISREG(*mode);
@@ -173,10 +162,9 @@ bool whole_file_same_place(const char *path, const char *other)
         return strcmp(path, other) == 0;
     }
     for (int i = 0; i < 2; i++) {
-        if (follow_links(i == 0 ? path : other, places[i]) != 0 ||
-            stat(folder_of(places[i], folder), &around[i]) != 0) {
-            return false;
-        }
+        FAIL_IF(follow_links(i == 0 ? path : other, places[i]) != 0 ||
+                    stat(folder_of(places[i], folder), &around[i]) != 0,
+                false);
     }
     return around[0].st_dev == around[1].st_dev && around[0].st_ino == around[1].st_ino &&
            strcmp(places[0] + folder_length(places[0]), places[1] + folder_length(places[1])) == 0;
@@ -297,9 +285,7 @@ static int create_temporary(whole_file *w, mode_t mode)
 
         // creating it tells whether the name is free
         replace_unfinished(NULL, w->temporary);
-        if (atomic_load(&ending)) {
-            return ECANCELED;
-        }
+        FAIL_IF(atomic_load(&ending), ECANCELED);
         w->descriptor = open(w->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         reason = w->descriptor < 0 ? errno : 0;
         if (reason == 0 && !lock_temporary(w->descriptor)) {
@@ -330,9 +316,7 @@ static int open_target(whole_file *w, mode_t mode)
         w->descriptor = open(w->path, O_WRONLY | O_CLOEXEC);
         reason = w->descriptor < 0 ? errno : 0;
     }
-    if (reason != 0) {
-        return reason;
-    }
+    FAIL_IF(reason != 0, reason);
 
     w->stream = fopencookie(w, "w", (cookie_io_functions_t){.write = write_bytes});
     if (w->stream == NULL) {

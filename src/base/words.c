@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/fault.h"
 #include "src/base/text_stream.h"
 #include "src/base/numbers.h"
 
@@ -121,9 +122,7 @@ static int whole_character(const unsigned char *c, uint32_t *number)
                                     : 0;
     *number = length <= 1 ? *c : *c & (0x7fu >> length);
     for (int i = 1; i < length; i++) {
-        if ((c[i] & 0xc0) != 0x80) {
-            return 0;
-        }
+        FAIL_IF((c[i] & 0xc0) != 0x80, 0);
         *number = *number << 6 | (c[i] & 0x3fu);
     }
 

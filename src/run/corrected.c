@@ -260,12 +260,9 @@ static status make_step(corrected_run *c, double until, fault *f)
         s = STATUS_STOPPED;
     }
     recording_publish(r, m->state[SLOT_TIME]);
-    if (s == STATUS_OK && c->stretch.at_once > MOST_EVENTS_AT_ONCE) {
-        return corrected_explain_standstill(c, report.event, f);
-    }
-    if (s != STATUS_OK) {
-        return corrected_explain(c, s, f);
-    }
+    FAIL_IF(s == STATUS_OK && c->stretch.at_once > MOST_EVENTS_AT_ONCE,
+            corrected_explain_standstill(c, report.event, f));
+    FAIL_IF(s != STATUS_OK, corrected_explain(c, s, f));
     return zeno_monitor_count(&c->zeno, &c->arm, m, r->scenario->parameters.run.duration, step, f);
 }
 

@@ -58,9 +58,7 @@ status corrected_explain_step(const corrected_run *c, status s, fault *f)
 {
     const motion *m = c->motion;
     FAIL_IF(s == STATUS_FOLDED, explain_fold(c, f));
-    if (s == STATUS_NO_PROGRESS) {
-        return corrected_explain_standstill(c, MOTION_REACHED, f);
-    }
+    FAIL_IF(s == STATUS_NO_PROGRESS, corrected_explain_standstill(c, MOTION_REACHED, f));
     return fault_set(f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
                      m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);
 }

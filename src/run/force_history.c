@@ -213,9 +213,7 @@ double force_largest_mean(const run_result *result, double from, double window)
     assert(isfinite(from) && window > 0);
     const shared_array *h = &result->history.forces;
     double end = h->count > 0 ? force_steps(h)[h->count - 1].end : -HUGE_VAL;
-    if (!(from + window <= end)) {
-        return (double)NAN;
-    }
+    FAIL_IF(!(from + window <= end), (double)NAN);
 
     window_end front = {0}, back = {0};
     double largest = -HUGE_VAL;

@@ -174,9 +174,7 @@ void loop_command(run_loop *l, double volts)
 // Carries out an input; one that is refused changes nothing.
 static status act(run_loop *l, const action *todo, fault *f)
 {
-    if (l->failed != STATUS_OK) {
-        return stay_failed(l, f);
-    }
+    FAIL_IF(l->failed != STATUS_OK, stay_failed(l, f));
     FAULT_IF(todo->kind == ACTION_PUSH && l->driver.is_printed, f, STATUS_BAD_ARGUMENT,
              "the printed model takes no pushes");
     if (todo->kind == ACTION_SET && !rig_can_change(&l->driver.recording.now, todo->parameter)) {

@@ -181,9 +181,7 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
 {
     memset(result, 0, sizeof *result);
     const run_history *h = &from->history;
-    if (h->checkpoints.count == 0) {
-        return false;
-    }
+    FAIL_IF(h->checkpoints.count == 0, false);
 
     // the last checkpoint before the runs differ
     double until = same_until(old, s) - MARGIN * s->parameters.method.step;
@@ -191,9 +189,7 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
     while (count < h->checkpoints.count && checkpoint_at(h, count)->time < until) {
         count++;
     }
-    if (count == 0) {
-        return false;
-    }
+    FAIL_IF(count == 0, false);
 
     return share(from, checkpoint_at(h, count - 1), count, rows_expected, result);
 }

@@ -104,9 +104,7 @@ const sample *predict_first_contact(const scenario *s, const run_result *result,
                                     prediction_answer answers[PREDICTOR_COUNT])
 {
     const sample *row = row_before_landing(result);
-    if (row == NULL) {
-        return NULL;
-    }
+    FAIL_IF(row == NULL, NULL);
 
     // under a control law the voltage in force is the law's
     parameters now = scenario_parameters_at(s, row->time);

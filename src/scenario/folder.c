@@ -358,9 +358,7 @@ static bool may_be_listed(const char *name)
     const size_t skipped = sizeof no_scenarios - 1;
     int depth = 0;
     for (const char *part = name; part != NULL; depth++) {
-        if (*part == '/' || *part == '.' || *part == '\0') {
-            return false;
-        }
+        FAIL_IF(*part == '/' || *part == '.' || *part == '\0', false);
         part = strchr(part, '/');
         part = part != NULL ? part + 1 : NULL;
     }

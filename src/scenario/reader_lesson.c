@@ -96,9 +96,7 @@ static void read_number(reader *r, const tree_node *map, const char *key, bool n
 static int read_count(reader *r, const tree_node *node, const char *key, int most, const char *what)
 {
     double number;
-    if (!reader_quantity(r, node, key, "", &number)) {
-        return 0;
-    }
+    FAIL_IF(!reader_quantity(r, node, key, "", &number), 0);
     if (number != floor(number) || number < 1 || number > most) {
         report_node(r, node, "%s = %g, expected %s, from 1 to %d", key, number, what, most);
         return 0;

@@ -170,9 +170,8 @@ bool parameter_usual_range(int parameter, double value, double *range_low, doubl
 {
     assert(parameter >= 0 && parameter < parameter_count);
     const parameter_info *info = &parameter_table[parameter];
-    if ((info->type != PARAMETER_REAL && info->type != PARAMETER_INTEGER) || !isfinite(value)) {
-        return false;
-    }
+    FAIL_IF((info->type != PARAMETER_REAL && info->type != PARAMETER_INTEGER) || !isfinite(value),
+            false);
     parameters defaults;
     parameters_defaults(&defaults, ARM_CORRECTED);
     double usual = fabs(parameter_get(&defaults, parameter));

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "src/base/fault.h"
 #include "src/base/plain_math.h"
 
 enum { N = ESTIMATOR_STATES };
@@ -108,9 +109,7 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup, do
 {
     memset(o, 0, sizeof *o);
     const char *refusal = reduced_arm_init(&o->arm, setup, tip_mass, wall_stiffness);
-    if (refusal != NULL) {
-        return refusal;
-    }
+    FAIL_IF(refusal != NULL, refusal);
 
     // what the states obey, in each piece of a period
     o->torque_per_volt = setup->torque_per_volt;

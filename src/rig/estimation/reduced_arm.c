@@ -116,15 +116,12 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
         take_modes(&r->free, a, work->mass, highest, free_count, work->frequencies, work->free);
         code = contact_modes(a, wall_stiffness, work, &contact_count);
     }
-    if (code != STATUS_OK) {
-        return code == STATUS_NO_MEMORY ? reduced_arm_no_memory
-                                        : "the modes of the arm it believes in cannot be computed";
-    }
+    FAIL_IF(code != STATUS_OK, code == STATUS_NO_MEMORY
+                                   ? reduced_arm_no_memory
+                                   : "the modes of the arm it believes in cannot be computed");
     take_modes(&r->contact, a, work->mass, highest, contact_count, work->frequencies,
                work->contact);
-    if (r->contact.count == 0 || r->free.count < 2) {
-        return "the arm it believes in does not bend";
-    }
+    FAIL_IF(r->contact.count == 0 || r->free.count < 2, "the arm it believes in does not bend");
 
     // the projection of a touch
     r->inertia = 0;
@@ -156,9 +153,7 @@ const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, doub
     // one block for the matrices and shapes of the whole chain
     size_t square = (size_t)a.dof * (size_t)a.dof;
     double *block = calloc(5 * square + 3 * (size_t)a.dof, sizeof *block);
-    if (block == NULL) {
-        return reduced_arm_no_memory;
-    }
+    FAIL_IF(block == NULL, reduced_arm_no_memory);
     chain_modes work = {.mass = block,
                         .stiffness = block + square,
                         .free = block + 2 * square,

@@ -171,12 +171,9 @@ static const char *start(void *memory, const controller_setup *setup)
     const double *p = setup->parameters, l = setup->link_length, ml2 = setup->link_mass * l * l;
     const double m11 = setup->hub_inertia + setup->link_inertia + 1.25 * ml2, m12 = 0.5 * ml2;
     const double m22 = setup->link_inertia + 0.25 * ml2;
-    if (!(setup->torque_per_volt > 0)) {
-        return "it needs a motor that turns the hub";
-    }
-    if (!(m12 > m22)) {
-        return "the tip's motion has no bounded inverse with a link inertia of m l^2/4 or more";
-    }
+    FAIL_IF(!(setup->torque_per_volt > 0), "it needs a motor that turns the hub");
+    FAIL_IF(!(m12 > m22),
+            "the tip's motion has no bounded inverse with a link inertia of m l^2/4 or more");
 
     // the linear arm, (a) and the sum of both links' equations
     m->rig = setup_kept(setup);

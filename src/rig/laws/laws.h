@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "src/base/fault.h"
 #include "src/base/plain_math.h"
 #include "src/rig/controller.h"
 #include "src/tables/control_laws.h"

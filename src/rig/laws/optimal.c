@@ -132,9 +132,8 @@ static const char *state_feedback_start(void *memory, const controller_setup *se
     m->spring_force = 2 * setup->k2 / l;
     m->mass_force = (quarter - setup->link_inertia) / l;
     m->divergence = m->mass_force > 0 ? sqrt(m->spring_force / m->mass_force) : HUGE_VAL;
-    if (!(setup->torque_per_volt > 0) || !(m->inertia > 0)) {
-        return "it needs a motor that turns the hub and an arm with inertia";
-    }
+    FAIL_IF(!(setup->torque_per_volt > 0) || !(m->inertia > 0),
+            "it needs a motor that turns the hub and an arm with inertia");
 
     model_flight(m);
     model_contact(m, setup->period, &m->contact);
@@ -151,9 +150,8 @@ static const char *state_feedback_start(void *memory, const controller_setup *se
                         per_torque * setup->hub_damping};
     quadratic_cost cost = {.effort = EFFORT, .growth = plain_exp(URGENCY * setup->period)};
     quadratic_cost_add(&cost, 2, output, -per_torque * setup->torque_per_volt, 1);
-    if (!quadratic_gain(&plant, &cost, m->gain)) {
-        return "the Riccati equation of its gains has no stabilising solution";
-    }
+    FAIL_IF(!quadratic_gain(&plant, &cost, m->gain),
+            "the Riccati equation of its gains has no stabilising solution");
     return NULL;
 }
 
