@@ -164,18 +164,12 @@ status expression_read(expression *e, const char *text, expression_find *find, v
 // An operation on two values.
 static double combine(int what, double a, double b)
 {
-    switch (what) {
-    case EXPRESSION_ADD:
-        return a + b;
-    case EXPRESSION_SUBTRACT:
-        return a - b;
-    case EXPRESSION_MULTIPLY:
-        return a * b;
-    case EXPRESSION_DIVIDE:
-        return a / b;
-    default:
-        return isnan(a) || isnan(b) ? (double)NAN : fmax(a, b);
-    }
+    return what == EXPRESSION_ADD        ? a + b
+           : what == EXPRESSION_SUBTRACT ? a - b
+           : what == EXPRESSION_MULTIPLY ? a * b
+           : what == EXPRESSION_DIVIDE   ? a / b
+           : isnan(a) || isnan(b)        ? (double)NAN
+                                         : fmax(a, b);
 }
 
 double expression_evaluate(const expression *e, expression_value *value, const void *context)

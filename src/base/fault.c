@@ -2,20 +2,17 @@
 
 #include <assert.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdio.h>
 
 #include "src/base/numbers.h"
 
+#define STATUS_TEXT(name, text) text,
+static const char *const texts[] = {STATUS_LIST(STATUS_TEXT)};
+
 const char *status_text(status code)
 {
-    switch (code) {
-#define STATUS_CASE(name, text)                                                                    \
-    case STATUS_##name:                                                                            \
-        return text;
-        STATUS_LIST(STATUS_CASE)
-#undef STATUS_CASE
-    }
-    return "unknown status";
+    return (size_t)code < sizeof texts / sizeof texts[0] ? texts[code] : "unknown status";
 }
 
 status fault_fill(fault *f, status code, const char *path, int line, int column, const char *format,

@@ -21,23 +21,16 @@ static const parameter_info *row_of(int index)
 static void store(parameters *p, const parameter_info *info, double value)
 {
     void *at = (char *)p + info->offset;
-    switch (info->type) {
-    case PARAMETER_REAL:
+    if (info->type == PARAMETER_REAL) {
         *(double *)at = value;
-        break;
-    case PARAMETER_BOOLEAN:
+    } else if (info->type == PARAMETER_BOOLEAN) {
         *(bool *)at = value != 0;
-        break;
-    case PARAMETER_INTEGER:
-    case PARAMETER_CHOICE:
+    } else if (!parameter_is_text(info)) {
         *(int *)at = (int)value;
-        break;
-    case PARAMETER_TEXT:
-    case PARAMETER_LIST:
+    } else {
+        const char *text = info->choices != NULL ? info->choices : "";
         memset(at, 0, PARAMETER_TEXT_SIZE);
-        if (info->choices != NULL) {
-            memcpy(at, info->choices, strnlen(info->choices, PARAMETER_TEXT_SIZE - 1));
-        }
+        memcpy(at, text, strnlen(text, PARAMETER_TEXT_SIZE - 1));
     }
 }
 
@@ -45,17 +38,10 @@ double parameter_get(const parameters *p, int index)
 {
     const parameter_info *info = row_of(index);
     const void *at = (const char *)p + info->offset;
-    switch (info->type) {
-    case PARAMETER_REAL:
-        return *(const double *)at;
-    case PARAMETER_BOOLEAN:
-        return *(const bool *)at;
-    case PARAMETER_INTEGER:
-    case PARAMETER_CHOICE:
-        return *(const int *)at;
-    default:
-        return 0;
-    }
+    return info->type == PARAMETER_REAL      ? *(const double *)at
+           : info->type == PARAMETER_BOOLEAN ? *(const bool *)at
+           : parameter_is_text(info)         ? 0
+                                             : *(const int *)at;
 }
 
 void parameters_restore_defaults(parameters *p)
@@ -285,26 +271,19 @@ void parameter_format(const parameters *p, int index, char *text, size_t size)
     char number[NUMBER_TEXT];
 
     // as a scenario file would have it
-    switch (info->type) {
-    case PARAMETER_TEXT:
-    case PARAMETER_LIST:
+    if (parameter_is_text(info)) {
         snprintf(text, size, "%s", (const char *)p + info->offset);
-        break;
-    case PARAMETER_BOOLEAN:
+    } else if (info->type == PARAMETER_BOOLEAN) {
         snprintf(text, size, "%s", value != 0 ? "true" : "false");
-        break;
-    case PARAMETER_CHOICE:
+    } else if (info->type == PARAMETER_CHOICE) {
         for (int i = 0; i < (int)value; i++) {
             choice = strchr(choice, '|') + 1;
         }
         snprintf(text, size, "%.*s", (int)strcspn(choice, "|"), choice);
-        break;
-    case PARAMETER_INTEGER:
+    } else if (info->type == PARAMETER_INTEGER) {
         snprintf(text, size, "%d", (int)value);
-        break;
-    case PARAMETER_REAL:
+    } else {
         number_format_short(number, value);
         snprintf(text, size, "%s", number);
-        break;
     }
 }
