@@ -52,24 +52,11 @@ static int read_texts(reader *r, const tree_node *list, const char *what, char *
     return count;
 }
 
-// The value of a key in a map, NULL without one.
-static const tree_node *value_of(reader *r, const tree_node *map, const char *wanted)
-{
-    for (const tree_node *child = map->first; child != NULL; child = child->next) {
-        const char *key = reader_key(r, map, child);
-        if (key != NULL && strcmp(key, wanted) == 0) {
-            return child;
-        }
-    }
-    return NULL;
-}
-
-// Reports the keys of a map other than those of `known`, which stand between blanks. What is no key
-// at all is reported where the others are looked for.
+// Reports the keys of a map other than those of `known`, which stand between blanks.
 static void refuse_other_keys(reader *r, const tree_node *map, const char *known)
 {
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
-        const char *key = node_is_scalar(child->key) ? child->key->text : NULL;
+        const char *key = reader_key(r, map, child);
         char word[64];
         snprintf(word, sizeof word, " %.60s ", key != NULL ? key : "");
         if (key != NULL && (strchr(key, ' ') != NULL || strstr(known, word) == NULL)) {
@@ -82,7 +69,7 @@ static void refuse_other_keys(reader *r, const tree_node *map, const char *known
 static void read_number(reader *r, const tree_node *map, const char *key, bool needed, double least,
                         double *value)
 {
-    const tree_node *node = value_of(r, map, key);
+    const tree_node *node = tree_child(map, key);
     if (node != NULL) {
         if (reader_quantity(r, node, key, "", value) && *value < least) {
             report_node(r, node, "%s = %g, expected at least %g", key, *value, least);
@@ -107,7 +94,7 @@ static int read_count(reader *r, const tree_node *node, const char *key, int mos
 // A quantity of the summary that a map names.
 static void read_quantity(reader *r, const tree_node *map, const char *key, int *index)
 {
-    const tree_node *node = value_of(r, map, key);
+    const tree_node *node = tree_child(map, key);
     const bool named = node != NULL && node_is_scalar(node);
     *index = named ? summary_find(node->text) : -1;
     if (*index < 0) {
@@ -121,7 +108,7 @@ static void read_quantity(reader *r, const tree_node *map, const char *key, int 
 
 static void read_choice(reader *r, const tree_node *map, lesson_step *step)
 {
-    const tree_node *of = value_of(r, map, "of"), *right = value_of(r, map, "right");
+    const tree_node *of = tree_child(map, "of"), *right = tree_child(map, "right");
 
     // without answers there is nothing to choose
     const bool answers = of != NULL && (of->kind != TREE_LIST || of->first != NULL);
@@ -258,7 +245,7 @@ static void read_step(reader *r, const tree_node *map, lesson_step *step)
     }
 
     // what can be left out is empty
-    if (value_of(r, map, "say") == NULL) {
+    if (tree_child(map, "say") == NULL) {
         report_node(r, map, "a step has no 'say', expected text");
     }
     step->then = step->then != NULL ? step->then : strdup("");
@@ -292,8 +279,8 @@ void reader_lesson(reader *r, const tree_node *map)
         return;
     }
     refuse_other_keys(r, map, " steps parameters ");
-    const tree_node *steps = value_of(r, map, "steps");
-    const tree_node *parameters_that_matter = value_of(r, map, "parameters");
+    const tree_node *steps = tree_child(map, "steps");
+    const tree_node *parameters_that_matter = tree_child(map, "parameters");
     if (steps == NULL || steps->kind != TREE_LIST || steps->first == NULL) {
         report_node(r, map, "the lesson has no steps, expected a list under 'steps'");
         return;

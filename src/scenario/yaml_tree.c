@@ -233,6 +233,16 @@ tree_node *tree_parse(const char *text, size_t length, fault *f)
     return root;
 }
 
+tree_node *tree_child(const tree_node *map, const char *key)
+{
+    tree_node *child = map->first;
+    while (child != NULL &&
+           (child->key->kind != TREE_SCALAR || strcmp(child->key->text, key) != 0)) {
+        child = child->next;
+    }
+    return child;
+}
+
 void tree_free(tree_node *node)
 {
     while (node != NULL) {

@@ -32,5 +32,8 @@ typedef struct tree_node {
 // fault that has its place: STATUS_BAD_SCENARIO, or STATUS_NO_MEMORY.
 tree_node *tree_parse(const char *text, size_t length, fault *f);
 
+// The value of a key in a map, the first if it is there twice; NULL without one.
+tree_node *tree_child(const tree_node *map, const char *key);
+
 // Frees a node with all below it; NULL is fine.
 void tree_free(tree_node *node);
