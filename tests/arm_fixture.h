@@ -1,22 +1,29 @@
 // Arms for tests: parameters given as "path=value" strings.
 #pragma once
 
-#include "src/arm/arm.h"
+#include "src/arm/modes.h"
+#include "src/contact/contact_machine.h"
 #include "src/engines/motion_create.h"
 #include "src/run/run.h"
 #include "tests/check.h"
 
-// Resolved parameters of the corrected arm with the given settings; the list ends with NULL.
-static inline parameters fixture_parameters(const char *const *settings)
+// Parameters of the corrected arm with the given settings; the list ends with NULL.
+static inline parameters unresolved_parameters(const char *const *settings)
 {
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
     for (int i = 0; settings != NULL && settings[i] != NULL; i++) {
-        char path[64];
         const char *equals = strchr(settings[i], '=');
-        snprintf(path, sizeof path, "%.*s", (int)(equals - settings[i]), settings[i]);
+        const char *path = formatted("%.*s", (int)(equals - settings[i]), settings[i]);
         DONE(parameter_set_text(&p, parameter_find(path), equals + 1, &f));
     }
+    return p;
+}
+
+// The same resolved.
+static inline parameters fixture_parameters(const char *const *settings)
+{
+    parameters p = unresolved_parameters(settings);
     DONE(parameters_resolve(&p, &f));
     return p;
 }
@@ -66,7 +73,7 @@ static inline run_result run_arm(parameters p, bool rows)
 
 // A run of these settings, with its rows; RUN(r, "arm.links=1", ...): until its block is left.
 #define RUN_OF(...) run_arm(fixture_parameters(SETTINGS(__VA_ARGS__)), true)
-#define RUN(r, ...) SCOPED(run_finish) run_result r = RUN_OF(__VA_ARGS__)
+#define RUN(r, ...) KEPT_RUN(r) = RUN_OF(__VA_ARGS__)
 
 static inline arm arm_of(const parameters *p)
 {
@@ -76,6 +83,50 @@ static inline arm arm_of(const parameters *p)
 }
 
 GIVEN_BACK(motion, motion_destroy)
+
+// An arm `a` of parameters and its motion `m`, by an engine (NULL: the arm's own), started at an
+// angle and a velocity: until their block is left.
+#define STARTED(a, m, p, by, angle, velocity)                                                      \
+    arm a = arm_of(p);                                                                             \
+    KEPT_MOTION(m) = motion_create_by(&a, &(p)->method, by);                                       \
+    assert_non_null(m);                                                                            \
+    motion_start(&a, m, angle, velocity)
+
+// A step of at most `step` [s] towards `until` [s], and the event that ends it.
+static inline motion_report step_on(const arm *a, motion *m, double until, double step)
+{
+    motion_report r;
+    assert_int_equal(motion_step(a, m, until, step, &r), STATUS_OK);
+    motion_apply(a, m, &r);
+    return r;
+}
+
+// Steps until `until` [s] or the first event, which is not applied.
+static inline status motion_advance(const arm *a, motion *m, double until, double step,
+                                    motion_report *report)
+{
+    status s = STATUS_OK;
+    *report = (motion_report){.event = MOTION_REACHED};
+    while (s == STATUS_OK && report->event == MOTION_REACHED && m->state[SLOT_TIME] < until) {
+        s = motion_step(a, m, until, step, report);
+    }
+    return s;
+}
+
+// An arm's modes, of up to this many bodies.
+enum { MODES_MOST = 129 };
+typedef struct arm_modes {
+    int count;
+    double w[MODES_MOST], shapes[MODES_MOST * MODES_MOST]; // frequencies [rad/s], a shape a row
+} arm_modes;
+
+static inline arm_modes modes_of(const arm *a, hub_end hub, tip_end tip)
+{
+    arm_modes m;
+    assert_in_range(a->dof, 1, MODES_MOST);
+    assert_int_equal(modes_compute(a, hub, tip, &m.count, m.w, m.shapes), STATUS_OK);
+    return m;
+}
 
 // x' K y of equal joints, by the bends: no digit of a slow mode is lost in differences.
 static inline double bend_product(const arm *a, const double *x, const double *y)

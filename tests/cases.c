@@ -35,6 +35,19 @@ int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down)
                                    tear_down) != 0;
 }
 
+char *formatted(const char *format, ...)
+{
+    enum { KEPT = 64, LONGEST = 8192 };
+    static char texts[KEPT][LONGEST];
+    static int next;
+    char *text = texts[next++ % KEPT];
+    va_list values;
+    va_start(values, format);
+    assert_in_range(vsnprintf(text, LONGEST, format, values), 0, LONGEST - 1);
+    va_end(values);
+    return text;
+}
+
 char test_folder[32];
 
 int enter_folder(void **state)

@@ -56,7 +56,7 @@ chain_outcome chain_outcome_of(const chain_start *start)
     const parameters *p = start->parameters;
     arm a;
     arm_init(&a, p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p->method, start->by);
+    KEPT_MOTION(m) = motion_create_by(&a, &p->method, start->by);
     assert_non_null(m);
     motion_start(&a, m, start->angle, start->velocity);
     chain_outcome o = {.first_contact = (double)NAN};

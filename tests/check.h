@@ -1,5 +1,5 @@
-// What every test program takes: cmocka, and the standard library and files of POSIX with it; cases
-// that list themselves, and comparisons of doubles that print both values.
+// What every test program takes: cmocka, and the standard library and files of POSIX with it;
+// random numbers, cases that list themselves, and comparisons of doubles that print both values.
 #pragma once
 
 #include <errno.h>
@@ -19,6 +19,7 @@
 
 #include <cmocka.h>
 
+#include "../src/base/random.h"
 #include "../src/base/scoped.h"
 
 // Fails unless |a - b| <= tolerance; NaN never passes.
@@ -91,11 +92,32 @@ int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down);
         fail_if(strstr(f.text, (says)) == NULL, "'%s' does not say '%s'", f.text, (says));         \
     } while (0)
 
+// The usual ones: KEPT_RUN(r) = run_done(&s, true);
+#define KEPT_TEXT(name)     SCOPED(free_kept) char *name
+#define KEPT_RUN(name)      SCOPED(run_finish) run_result name
+#define KEPT_SCENARIO(name) SCOPED(scenario_finish) scenario name
+#define KEPT_SESSION(name)  SCOPED(session_finish) session name
+#define KEPT_SWEEP(name)    SCOPED(sweep_finish) sweep name
+#define KEPT_STORE(name)    SCOPED(sweep_store_close_kept) sweep_store *name
+#define KEPT_MOTION(name)   SCOPED(motion_destroy_kept) motion *name
+#define KEPT_LOOP(name)     SCOPED(loop_destroy_kept) run_loop *name
+
 // A table's entries in turn: for (EACH(c, cases)) { ... c->name ... }
 #define EACH(entry, table)                                                                         \
     const __typeof__((table)[0]) *entry = (table);                                                 \
     entry < (table) + sizeof(table) / sizeof((table)[0]);                                          \
     entry++
+
+// Rows and events of a trace in turn: for (EACH_ROW(row, &r.trace)) { ... row->force ... }
+#define EACH_ROW(row, t)                                                                           \
+    const sample *row = (t)->rows;                                                                 \
+    row < (t)->rows + (t)->row_count;                                                              \
+    row++
+#define EACH_EVENT(e, t)                                                                           \
+    const event *e = (t)->events;                                                                  \
+    e < (t)->events + (t)->event_count;                                                            \
+    e++
+#define LAST_ROW(t) (&(t)->rows[(t)->row_count - 1])
 
 // Texts in turn: for (EACH_TEXT(c, "one", "two")) { ... *c ... }
 #define EACH_TEXT(entry, ...)                                                                      \
@@ -121,6 +143,9 @@ int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down);
         assert_int_equal(fclose(stream), 0);                                                       \
     } while (0)
 
+// A text with numbers in it, which the next 63 leave as it is.
+char *formatted(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
 // A case that works in an empty folder of its own, `test_folder`, which goes afterwards with all
 // that is in it. Where all cases share one: ALL_BETWEEN(enter_folder, leave_folder).
 #define TEST_IN_FOLDER(name) TEST_BETWEEN(name, enter_folder, leave_folder)
@@ -131,3 +156,10 @@ int leave_folder(void **state);
 
 // Writes a file whose content is this text.
 void put_file(const char *path, const char *text);
+
+static inline random_generator seeded(uint64_t seed)
+{
+    random_generator g;
+    random_seed(&g, seed);
+    return g;
+}

@@ -62,7 +62,7 @@ static inline char *picture(explorer *ex, int width, int height, glyph_set set)
 
 static inline void assert_shows_at(explorer *ex, int width, int height, const char *wanted)
 {
-    SCOPED(free_kept) char *text = picture(ex, width, height, GLYPHS_BRAILLE);
+    KEPT_TEXT(text) = picture(ex, width, height, GLYPHS_BRAILLE);
     const bool hidden = wanted[0] == '!' && wanted[1] != '\0';
     fail_if((strstr(text, wanted + hidden) == NULL) != hidden, "'%s' is %son the screen:\n%s",
             wanted + hidden, hidden ? "" : "not ", text);

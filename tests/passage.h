@@ -2,7 +2,6 @@
 // well the energy ledger closes.
 #pragma once
 
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 
 // What became of a motion.
@@ -44,12 +43,8 @@ static inline passage move_on(const arm *a, motion *m, double until, int most_st
 static inline passage passage_by(const parameters *p, const engine *by, double angle,
                                  double velocity, double until, int most_steps)
 {
-    arm a = arm_of(p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p->method, by);
-    assert_non_null(m);
-    motion_start(&a, m, angle, velocity);
-    passage result = move_on(&a, m, until, most_steps);
-    return result;
+    STARTED(a, m, p, by, angle, velocity);
+    return move_on(&a, m, until, most_steps);
 }
 
 static inline passage passage_of(const parameters *p, double angle, double velocity, double until,

@@ -125,8 +125,7 @@ static inline figure_rect record_page(const artwork *a, figure_report *report)
 static inline figure_rect record(const figure *fig, figure_report *report)
 {
     SCOPED(artwork_finish) artwork a = artwork_of_figure(fig);
-    figure_rect ink = record_page(&a, report);
-    return ink;
+    return record_page(&a, report);
 }
 
 // The whole page as pixels, `scale` to a point.
@@ -145,8 +144,7 @@ static inline cairo_surface_t *page_pixels(const artwork *a, double scale, figur
 static inline cairo_surface_t *paint_pixels(const figure *fig, double scale, figure_report *report)
 {
     SCOPED(artwork_finish) artwork a = artwork_of_figure(fig);
-    cairo_surface_t *surface = page_pixels(&a, scale, report);
-    return surface;
+    return page_pixels(&a, scale, report);
 }
 
 static inline bool has_text(const figure_report *r, const char *wanted)
@@ -269,7 +267,7 @@ static __attribute__((noinline, unused)) char *read_file(const char *path, size_
 static inline void expect_same_bytes(const char *a, const char *b)
 {
     size_t a_length, b_length;
-    SCOPED(free_kept) char *a_bytes = read_file(a, &a_length), *b_bytes = read_file(b, &b_length);
+    KEPT_TEXT(a_bytes) = read_file(a, &a_length), *b_bytes = read_file(b, &b_length);
     assert_true(a_length > 50);
     assert_int_equal(a_length, b_length);
     assert_memory_equal(a_bytes, b_bytes, a_length);

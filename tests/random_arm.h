@@ -2,7 +2,6 @@
 // kept as text so that an arm that was found wrong can be made again by hand.
 #pragma once
 
-#include "src/base/random.h"
 #include "tests/arm_fixture.h"
 
 enum { MOST_SETTINGS = 24, LONGEST_SETTING = 2400 };

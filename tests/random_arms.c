@@ -210,8 +210,7 @@ static bool goes_with(const bool *has, feature f, int links, int joints)
 
 static void make_arm(random_arm *r, int number, const options *o)
 {
-    random_generator g;
-    random_seed(&g, (uint64_t)number * 7919 + 17);
+    random_generator g = seeded((uint64_t)number * 7919 + 17);
     r->count = 0;
     const int drawn =
         o->least + (int)((o->most - o->least + 1) * random_uniform(&g) * random_uniform(&g));
@@ -263,9 +262,8 @@ static bool resolve_arm(random_arm *r)
     fault f;
     parameters_defaults(&r->parameters, ARM_CORRECTED);
     for (int i = 0; i < r->count; i++) {
-        char path[64];
         const char *equals = strchr(r->settings[i], '=');
-        snprintf(path, sizeof path, "%.*s", (int)(equals - r->settings[i]), r->settings[i]);
+        const char *path = formatted("%.*s", (int)(equals - r->settings[i]), r->settings[i]);
         if (parameter_set_text(&r->parameters, parameter_find(path), equals + 1, &f) != STATUS_OK) {
             return false;
         }
@@ -312,13 +310,12 @@ static chain_outcome by_reference(const random_arm *r, const options *o, double 
         return implicit_outcome_of(&start, 1e-8 / finer);
     }
     if (strcmp(o->by, "fine") == 0) {
-        char value[40];
         const int tolerance = parameter_find("method.tolerance");
-        snprintf(value, sizeof value, "%.17g", parameter_get(&p, tolerance) / 100 / finer);
         parameters with = p;
         fault f;
         parameter_set_text(&with, parameter_find("method.engine"), o->engine, &f);
-        return by_setting(r, &with, "method.tolerance", value);
+        return by_setting(r, &with, "method.tolerance",
+                          formatted("%.17g", parameter_get(&p, tolerance) / 100 / finer));
     }
     return by_setting(r, &p, "method.engine", o->by);
 }

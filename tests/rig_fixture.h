@@ -25,18 +25,20 @@ static inline run_result rig_run(const char *const *settings, bool keep_trace)
 // Runs them and keeps the summary only.
 static inline summary rig_summary(const char *const *settings)
 {
-    SCOPED(run_finish) run_result result = rig_run(settings, false);
+    KEPT_RUN(result) = rig_run(settings, false);
     return result.summary;
 }
 
-// The same of settings as given() takes them.
+// The same of settings as given() takes them; the run is kept with its rows until its block is
+// left.
+#define RIG_RUN(r, ...)          KEPT_RUN(r) = rig_run(given(__VA_ARGS__), true)
 #define rig_parameters_with(...) rig_parameters(given(__VA_ARGS__))
 #define rig_summary_with(...)    rig_summary(given(__VA_ARGS__))
 
 // The run under these settings cannot be made, and the sentence says why.
 static inline void check_refused(const char *const *settings, const char *sentence)
 {
-    SCOPED(run_finish) run_result r;
+    KEPT_RUN(r);
     scenario s = {.parameters = rig_parameters(settings)};
     assert_int_not_equal(run_scenario(&s, false, &r), STATUS_OK);
     fail_if(strstr(r.summary.message, sentence) == NULL, "'%s' does not say '%s'",

@@ -24,12 +24,11 @@ static inline status parse(scenario *s, const char *text, sentences *all)
 {
     // a text of so many bytes, behind which there is none: a sanitizer sees who looks there
     const size_t size = strlen(text);
-    SCOPED(free_kept) char *bytes = malloc(size + (size == 0));
+    KEPT_TEXT(bytes) = malloc(size + (size == 0));
     assert_non_null(bytes);
     memcpy(bytes, text, size);
     *all = (sentences){0};
-    const status code = scenario_parse(s, bytes, size, "f.yaml", NULL, keep_sentence, all);
-    return code;
+    return scenario_parse(s, bytes, size, "f.yaml", NULL, keep_sentence, all);
 }
 
 // The text is read without a fault.
@@ -46,9 +45,8 @@ static inline void check_fault(const char *text, int line, int column, const cha
 {
     scenario s;
     sentences all;
-    char place[64];
     assert_int_equal(parse(&s, text, &all), STATUS_BAD_SCENARIO);
-    snprintf(place, sizeof place, "f.yaml:%d:%d: ", line, column);
+    const char *place = formatted("f.yaml:%d:%d: ", line, column);
     bool there = strncmp(all.text, place, strlen(place)) == 0;
     fail_if(all.count != 1 || !there || strstr(all.text, what) == NULL,
             "%d faults, expected one at %d:%d about '%s':\n%s", all.count, line, column, what,
@@ -64,10 +62,8 @@ static inline void check_faults(const char *text, int count, const char *const *
     assert_int_equal(result, STATUS_BAD_SCENARIO);
     fail_if(all.count != count, "%d faults, expected %d:\n%s", all.count, count, all.text);
     for (int i = 0; i < count; i++) {
-        char line[512];
-        snprintf(line, sizeof line, "\n%s", beginnings[i]);
         bool first = strncmp(all.text, beginnings[i], strlen(beginnings[i])) == 0;
-        fail_if(!first && strstr(all.text, line) == NULL, "no '%s' in:\n%s", beginnings[i],
-                all.text);
+        fail_if(!first && strstr(all.text, formatted("\n%s", beginnings[i])) == NULL,
+                "no '%s' in:\n%s", beginnings[i], all.text);
     }
 }

@@ -13,7 +13,7 @@ static inline void open_session(session *s, const char *name)
 
 // The same for as long as its block.
 #define OPEN_SESSION(s, name)                                                                      \
-    SCOPED(session_finish) session s;                                                              \
+    KEPT_SESSION(s);                                                                               \
     open_session(&s, name)
 
 static inline void assert_same_trace(const trace *a, const trace *b)
@@ -29,8 +29,8 @@ static inline void assert_same_trace(const trace *a, const trace *b)
 static inline char *save_and_compare(const session *s)
 {
     WRITTEN(text, scenario_write(stream, &s->effective));
-    SCOPED(scenario_finish) scenario saved = read_again(&s->effective);
-    SCOPED(run_finish) run_result again;
+    KEPT_SCENARIO(saved) = read_again(&s->effective);
+    KEPT_RUN(again);
     run_scenario(&saved, true, &again);
     assert_same_trace(&s->run.trace, &again.trace);
     return text;
@@ -40,9 +40,9 @@ static inline char *save_and_compare(const session *s)
 static inline bool seek_next_event(session *s)
 {
     const trace *t = &s->run.trace;
-    for (size_t i = 0; i < t->event_count; i++) {
-        if (t->events[i].time > s->now) {
-            session_seek(s, t->events[i].time);
+    for (EACH_EVENT(e, t)) {
+        if (e->time > s->now) {
+            session_seek(s, e->time);
             return true;
         }
     }

@@ -63,7 +63,7 @@ sweep_progress must_run(const sweep *s, sweep_store *store, int jobs)
 
 char *uninterrupted(const sweep *s, int jobs)
 {
-    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(NULL, s);
+    KEPT_STORE(store) = must_open(NULL, s);
     sweep_progress progress = must_run(s, store, jobs);
     assert_int_equal(progress.done, s->run_count);
     assert_int_equal(progress.done_now, s->run_count);

@@ -229,10 +229,8 @@ TEST(test_ranges_of_long_runs_are_exact)
     carry_out(&ex, "trace last_velocity last_angle");
     static const double parts[][2] = {{0.2, 0.7}, {0.3, 0.9}, {10, 90}, {0.29, 0.2935}};
     for (EACH(c, parts)) {
-        char line[64];
         double low = (double)INFINITY, high = (double)-INFINITY;
-        snprintf(line, sizeof line, "zoom %g %g", (*c)[0], (*c)[1]);
-        carry_out(&ex, line);
+        carry_out(&ex, formatted("zoom %g %g", (*c)[0], (*c)[1]));
         state_update(&ex.state);
         for (size_t r = trace_row_at(t, ex.state.window.from);
              r <= trace_row_at(t, ex.state.window.to) + 1; r++) {

@@ -165,8 +165,8 @@ TEST(labels_stand_where_they_belong)
                  {"corrected/plane-wall", 0, 0, 0},   {"corrected/fast-impact", 0, 0, 0},
                  {"thesis/fig-3-4", 0, 0, 0}};
     for (EACH(c, cases)) {
-        SCOPED(scenario_finish) scenario s = shipped(c->name);
-        SCOPED(run_finish) run_result result;
+        KEPT_SCENARIO(s) = shipped(c->name);
+        KEPT_RUN(result);
         DONE(run_scenario(&s, true, &result));
         const trace_run run = {&s, &result, NULL};
         int arrows = 0;
@@ -247,9 +247,7 @@ TEST(values_are_decimal)
         ticks_between(&t, -0.31 * scale, 0.94 * scale, 6);
         assert_true(t.count >= 3);
         for (int i = 0; i < t.count; i++) {
-            char text[64];
-            snprintf(text, sizeof text, "%.10g", t.value[i]);
-            check_close(t.value[i], strtod(text, NULL), 0);
+            check_close(t.value[i], strtod(formatted("%.10g", t.value[i]), NULL), 0);
             assert_false(signbit(t.value[i]) && t.value[i] == 0);
         }
     }

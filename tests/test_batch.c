@@ -1,5 +1,4 @@
 // Many runs at once give what single runs give.
-#include "src/base/random.h"
 #include "src/engines/pair/taylor_lanes.h"
 #include "src/study/batch.h"
 #include "tests/arm_fixture.h"
@@ -44,7 +43,7 @@ TEST(batches_equal_single_runs_to_the_last_bit)
         run_all(make, NULL, RUNS, jobs, runs);
         for (size_t i = 0; i < RUNS; i++) {
             scenario s = {0};
-            SCOPED(run_finish) run_result single;
+            KEPT_RUN(single);
             make(NULL, i, &s, NULL);
             run_scenario(&s, false, &single);
             check_same(&runs[i], &single.summary);
@@ -81,10 +80,9 @@ typedef struct random_base {
 static status make_random(void *context, size_t i, scenario *made, fault *f)
 {
     const random_base *from = context;
+    random_generator g = seeded(from->first + i + 1);
     (void)f;
-    random_generator g;
     double u[8];
-    random_seed(&g, from->first + i + 1);
     for (int k = 0; k < 8; k++) {
         u[k] = random_uniform(&g);
     }

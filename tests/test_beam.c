@@ -1,13 +1,10 @@
 // The chain with the beam's own root against the Euler-Bernoulli beam: order two in 1/N.
-#include "src/arm/modes.h"
 #include "tests/arm_fixture.h"
-#include "tests/motion_advance.h"
 
 static arm beam_of(int links, parameters *p)
 {
     *p = parameters_with("arm.links=%d arm.hub_joint=beam", links);
-    arm a = arm_of(p);
-    return a;
+    return arm_of(p);
 }
 
 // Deflection of the tip under a unit force across the straight arm, its hub held: every joint
@@ -73,16 +70,12 @@ TEST(joints_bent_by_the_moment_balance_the_load)
 static double frequency_ratio(int links, tip_end tip, int mode, double beta_length)
 {
     parameters p;
-    arm a = beam_of(links, &p);
-    int count;
-    SCOPED(free_kept) double *frequencies = calloc((size_t)a.dof, sizeof *frequencies);
-    SCOPED(free_kept) double *shapes = calloc((size_t)(a.dof * a.dof), sizeof *shapes);
-    assert_int_equal(modes_compute(&a, HUB_LOCKED, tip, &count, frequencies, shapes), STATUS_OK);
-    assert_true(mode < count);
+    const arm a = beam_of(links, &p);
+    const arm_modes m = modes_of(&a, HUB_LOCKED, tip);
+    assert_true(mode < m.count);
     double density = p.arm.mass / p.arm.length;
     double beam = beta_length * beta_length * sqrt(p.arm.EI / (density * pow(p.arm.length, 4)));
-    double ratio = frequencies[mode] / beam;
-    return ratio;
+    return m.w[mode] / beam;
 }
 
 TEST(frequencies_converge_at_second_order)
@@ -110,12 +103,9 @@ TEST(first_mode_has_the_damping_asked_for)
     const double wanted = 0.02;
     parameters p = parameters_with("arm.links=8 arm.hub_joint=beam arm.damping_ratio=0.02");
     arm a = arm_of(&p);
-    int count;
-    double frequencies[9], shapes[81];
-    assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes),
-                     STATUS_OK);
-    check_relative(a.joint_damping / a.joint_stiffness, 2 * wanted / frequencies[0], 1e-6);
-    check_relative(a.hub_joint_damping / a.hub_stiffness, 2 * wanted / frequencies[0], 1e-6);
+    const double seconds = 2 * wanted / modes_of(&a, HUB_LOCKED, TIP_FREE).w[0];
+    check_relative(a.joint_damping / a.joint_stiffness, seconds, 1e-6);
+    check_relative(a.hub_joint_damping / a.hub_stiffness, seconds, 1e-6);
 }
 
 // So it is with links and joints that differ, with a mass at the tip, and without a root that
@@ -136,11 +126,7 @@ TEST(any_arm_has_the_damping_asked_for)
         parameters p = fixture_parameters(*c);
         p.arm.damping_ratio = 0.02;
         arm a = arm_of(&p);
-        int count;
-        double frequencies[9], shapes[81];
-        assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes),
-                         STATUS_OK);
-        const double seconds = 2 * 0.02 / frequencies[0];
+        const double seconds = 2 * 0.02 / modes_of(&a, HUB_LOCKED, TIP_FREE).w[0];
         check_relative(a.joint_damping / a.joint_stiffness, seconds, 1e-5);
         check_close(a.hub_joint_damping, a.hub_stiffness * seconds,
                     1e-5 * a.hub_stiffness * seconds);
@@ -167,12 +153,9 @@ TEST(the_highest_frequency_bounds_the_modes)
     for (EACH(c, arms)) {
         parameters p = parameters_with("%s %s", (*c)[0], (*c)[1]);
         arm a = arm_of(&p);
-        int count;
-        double frequencies[9], shapes[81];
-        assert_int_equal(modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes),
-                         STATUS_OK);
-        check_below(frequencies[count - 1], a.highest_frequency);
-        check_below(a.highest_frequency, 1.1 * frequencies[count - 1]);
+        const arm_modes m = modes_of(&a, HUB_FREE, TIP_FREE);
+        check_below(m.w[m.count - 1], a.highest_frequency);
+        check_below(a.highest_frequency, 1.1 * m.w[m.count - 1]);
     }
 }
 
@@ -230,12 +213,10 @@ TEST(damping_by_mode_is_followed)
 {
     const parameters p = parameters_with("arm.links=2 arm.modal_ratios=0.9");
     arm a = arm_of(&p);
-    int count;
-    double held, free[2], shapes[4];
-    assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, &held, shapes), STATUS_OK);
-    assert_int_equal(count, 1);
-    assert_int_equal(modes_compute(&a, HUB_FREE, TIP_FREE, &count, free, shapes), STATUS_OK);
-    check_relative(a.fastest_decay, 1.05 * 2 * 0.9 * free[1] * free[1] / held, 1e-5);
+    const arm_modes held = modes_of(&a, HUB_LOCKED, TIP_FREE);
+    const double free = modes_of(&a, HUB_FREE, TIP_FREE).w[1];
+    assert_int_equal(held.count, 1);
+    check_relative(a.fastest_decay, 1.05 * 2 * 0.9 * free * free / held.w[0], 1e-5);
 }
 
 // Set up where a longer, stiffer arm was, an arm has nothing of that.
@@ -281,12 +262,9 @@ TEST(a_mass_at_the_tip_lowers_the_frequencies)
         parameters p = parameters_with(
             "arm.links=%d arm.hub_joint=beam arm.tip_mass=0.1 arm.damping_ratio=0.02", 8 << i);
         arm a = arm_of(&p);
-        int count;
-        double frequencies[17], shapes[17 * 17];
-        assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes),
-                         STATUS_OK);
-        error[i] = frequencies[0] / (root * root * sqrt(p.arm.EI / p.arm.mass)) - 1;
-        check_relative(a.joint_damping / a.joint_stiffness, 2 * 0.02 / frequencies[0], 1e-6);
+        const double w = modes_of(&a, HUB_LOCKED, TIP_FREE).w[0];
+        error[i] = w / (root * root * sqrt(p.arm.EI / p.arm.mass)) - 1;
+        check_relative(a.joint_damping / a.joint_stiffness, 2 * 0.02 / w, 1e-6);
     }
     check_close(log2(error[0] / error[1]), 2, 0.1);
 }
@@ -295,17 +273,15 @@ TEST(a_mass_at_the_tip_lowers_the_frequencies)
 // first mode, and the last link is straight a quarter of a period later.
 static double swing(const arm *a, const method_parameters *method, double expected)
 {
-    enum { QUARTER = 500, MOST = 32 };
-    int count;
-    double frequencies[MOST], shapes[MOST * MOST], before = 1, crossing = 0;
+    enum { QUARTER = 500 };
+    const arm_modes modes = modes_of(a, HUB_LOCKED, TIP_FREE);
+    double before = 1, crossing = 0;
     const double h = M_PI / 2 / expected / QUARTER;
     motion_report report;
-    assert_true(a->dof <= MOST);
-    modes_compute(a, HUB_LOCKED, TIP_FREE, &count, frequencies, shapes);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(a, method);
+    KEPT_MOTION(m) = motion_create(a, method);
     motion_start(a, m, 0, 0);
     for (int i = 0; i < a->dof; i++) {
-        state_angles(m, m->state)[i] = 1e-4 * shapes[i];
+        state_angles(m, m->state)[i] = 1e-4 * modes.shapes[i];
     }
     motion_evaluate(a, m, m->state);
     memcpy(state_algorithmic(m, m->state), state_accelerations(m, m->state),
@@ -315,7 +291,8 @@ static double swing(const arm *a, const method_parameters *method, double expect
     for (int i = 1; i < 2 * QUARTER && crossing == 0; i++) {
         assert_int_equal(motion_advance(a, m, i * h, fmin(method->step, h), &report), STATUS_OK);
         assert_true(m->state[SLOT_FRICTION] == HUB_STICK);
-        const double now = state_angles(m, m->state)[a->dof - 1] / (1e-4 * shapes[a->dof - 1]);
+        const double now =
+            state_angles(m, m->state)[a->dof - 1] / (1e-4 * modes.shapes[a->dof - 1]);
         crossing = now <= 0 ? (i - now / (now - before)) * h : 0;
         before = now;
     }
@@ -331,15 +308,12 @@ TEST(every_engine_carries_the_mass_of_a_stiff_chain)
     for (int i = 0; i < 6; i++) {
         const int links = i < 3 ? 8 : 16;
         const bool implicit = i % 3 >= 1;
-        char n[32];
-        snprintf(n, sizeof n, "arm.links=%d", links);
         parameters p = parameters_with(
-            "%s %s arm.hub_joint=beam arm.k2=2e4 motor.stiction=1000 motor.voltage=0 "
+            "arm.links=%d %s arm.hub_joint=beam arm.k2=2e4 motor.stiction=1000 motor.voltage=0 "
             "wall.kind=none %s",
-            n, methods[i % 3], implicit ? "method.step=1e-5" : "method.step=1e-3");
-        arm a = arm_of(&p);
+            links, methods[i % 3], implicit ? "method.step=1e-5" : "method.step=1e-3");
         p.arm.tip_mass = 0.1;
-        arm_init(&a, &p);
+        arm a = arm_of(&p);
         const double beam = first * sqrt(p.arm.EI / p.arm.mass);
         const double found = swing(&a, &p.method, beam);
         print_message("%d links, %s: %.6f of the beam's frequency\n", links, methods[i % 3],

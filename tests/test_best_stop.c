@@ -1,5 +1,4 @@
 // The best possible result after an impact: closed forms, and controllers tried at random.
-#include "src/base/random.h"
 #include "src/predict/best_stop.h"
 #include "tests/arm_fixture.h"
 
@@ -205,12 +204,9 @@ TEST(no_controller_tried_is_better)
     } cases[] = {{1.37, 0.5, 1, 10},  {1.37, 0.5, 1.6, 10}, {1.37, 1, 1.05, 10}, {1.37, 2, 2.1, 10},
                  {1.37, 3, 3.15, 10}, {1.37, 4, 4.2, 10},   {3, 1, 3, 10},       {3, 2, 2.6, 6},
                  {1.37, 1.5, 1.6, 4}, {0.8, 2, 2.1, 5},     {4, 1, 3.5, 5},      {3, 1.9, 2.2, 8}};
-    random_generator g;
-    random_seed(&g, 7);
+    random_generator g = seeded(7);
     for (EACH(c, cases)) {
-        char limit[48];
-        snprintf(limit, sizeof limit, "motor.voltage_limit=%g", c->limit);
-        pressed_arm_model m = model_of(SETTINGS(limit));
+        pressed_arm_model m = model_of(SETTINGS(formatted("motor.voltage_limit=%g", c->limit)));
         pressed_state start = {0.002, c->velocity};
         double best = best_settling(&m, start, c->force, 0.05, c->peak);
         double least = best_peak(&m, start);

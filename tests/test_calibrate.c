@@ -58,10 +58,9 @@ TEST(wrong_tables_are_refused)
     for (EACH(c, cases)) {
         k2_table t;
         scenario s = {.parameters = rig_parameters(NULL)};
-        char setting[64];
         REFUSED(STATUS_BAD_SCENARIO, c->sentence, k2_table_read(&t, c->text, &f));
-        snprintf(setting, sizeof setting, "control.k2_table=%s", c->text);
-        REFUSED(STATUS_BAD_SCENARIO, c->sentence, scenario_override(&s, setting, &f));
+        REFUSED(STATUS_BAD_SCENARIO, c->sentence,
+                scenario_override(&s, formatted("control.k2_table=%s", c->text), &f));
     }
 }
 
@@ -73,11 +72,10 @@ TEST(the_commanded_force_chooses_the_entry)
     const double wanted[] = {0.25 * 0.5 / (2 * 2), 0.5 / (2 * 3), 2 * 0.5 / (2 * 4)};
     for (int i = 0; i < 3; i++) {
         for (int doubted = 0; doubted < 2; doubted++) {
-            SCOPED(run_finish)
-            run_result r = rig_run(SETTINGS("control.law=hybrid", table, forces[i],
-                                            doubted ? "belief.k2_factor=2" : "belief.k2_factor=1"),
-                                   true);
-            double angle = r.trace.rows[r.trace.row_count - 1].desired_angle;
+            KEPT_RUN(r) = rig_run(SETTINGS("control.law=hybrid", table, forces[i],
+                                           doubted ? "belief.k2_factor=2" : "belief.k2_factor=1"),
+                                  true);
+            double angle = LAST_ROW(&r.trace)->desired_angle;
             check_close(angle, wanted[i] / (doubted ? 2 : 1), 1e-12);
         }
     }
@@ -118,11 +116,10 @@ TEST(stiction_does_not_spoil_the_ratio)
     double force[3], k2[3];
     const char *const starts[] = {"initial.angle=0", "initial.angle=-0.1", "initial.angle=-0.3"};
     for (int i = 0; i < 3; i++) {
-        SCOPED(run_finish)
-        run_result r = rig_run(SETTINGS("control.law=open-loop", "sensor.ideal=true", starts[i],
-                                        "control.approach_voltage=2.25", "run.duration=6"),
-                               true);
-        const sample *last = &r.trace.rows[r.trace.row_count - 1];
+        KEPT_RUN(r) = rig_run(SETTINGS("control.law=open-loop", "sensor.ideal=true", starts[i],
+                                       "control.approach_voltage=2.25", "run.duration=6"),
+                              true);
+        const sample *last = LAST_ROW(&r.trace);
         force[i] = last->force_reading;
         k2[i] = last->force_reading * 0.5 / (2 * last->encoder);
     }
@@ -147,10 +144,9 @@ static void many_links_press_as_commanded_with_their_table(void **state)
         table_setting(&c, table, sizeof table);
         for (int k = 0; k < 4; k++) {
             for (int force = k == 0 ? 1 : 2; force <= (k == 0 ? 3 : 2); force++) {
-                char command[32];
-                snprintf(command, sizeof command, "control.force=%d", force);
-                summary with = rig_summary(
-                    SETTINGS("arm.links=12", *each, laws[k], table, command, "run.duration=5"));
+                summary with =
+                    rig_summary(SETTINGS("arm.links=12", *each, laws[k], table,
+                                         formatted("control.force=%d", force), "run.duration=5"));
                 check_close(with.steady_force_N, force, 0.03 * force);
             }
         }

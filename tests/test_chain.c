@@ -31,16 +31,13 @@ static arm make_arm(int links, const char *hub, const char *wall)
         beam.length[k] = 1.0 / links;
         beam.stiffness[k] = k > 0 ? 4.92 * links / 2 : 90;
     }
-    arm a = arm_of(&p);
-    return a;
+    return arm_of(&p);
 }
 
 // Links and joints that all differ, in air; every second arm has a beam's root.
 static arm make_uneven_arm(int links, const char *wall, bool rooted)
 {
-    char n[32], kind[64], lengths[160] = "arm.link_lengths=", springs[160] = "arm.joint_stiffness=";
-    snprintf(n, sizeof n, "arm.links=%d", links);
-    snprintf(kind, sizeof kind, "wall.kind=%s", wall);
+    char lengths[160] = "arm.link_lengths=", springs[160] = "arm.joint_stiffness=";
     beam = (dense_beam){.drag = 0.3};
     for (int k = 0; k < links; k++) {
         beam.length[k] = 0.1 + 0.01 * ((k * 7) % 5);
@@ -53,10 +50,10 @@ static arm make_uneven_arm(int links, const char *wall, bool rooted)
                      beam.stiffness[k]);
         }
     }
-    parameters p = parameters_with("%s %s %s %s arm.air_drag=0.3 %s", n, kind, lengths, springs,
-                                   rooted ? "arm.hub_joint=beam" : "run.duration=1");
-    arm a = arm_of(&p);
-    return a;
+    parameters p =
+        parameters_with("arm.links=%d wall.kind=%s %s %s arm.air_drag=0.3 %s", links, wall, lengths,
+                        springs, rooted ? "arm.hub_joint=beam" : "run.duration=1");
+    return arm_of(&p);
 }
 
 // Equal joints that stiffen with their bend.
@@ -68,8 +65,7 @@ static arm make_stiffening_arm(int links, const char *wall)
         beam.length[k] = 1.0 / links;
         beam.stiffness[k] = 4.92 * links / 2;
     }
-    arm a = arm_of(&p);
-    return a;
+    return arm_of(&p);
 }
 
 // A bent, moving arm; different for each seed.
@@ -95,20 +91,25 @@ static void numeric_jacobian(const arm *a, double *q, const double *w, double *j
     }
 }
 
-// M_ij = A_ij cos(q_i - q_j) of the Lagrangian, by direct summation over the links' centres.
-static double mass(const arm *a, const double *q, int i, int j)
+// A_ij, by direct summation over the links' centres.
+static double coupling(const arm *a, int i, int j)
 {
-    double sum = i == j && i >= a->first ? dense_inertia(i - a->first) : 0;
-    if (i == 0 && j == 0) {
-        sum += a->hub_inertia;
-    }
+    double sum = 0;
     for (int body = a->first; body < a->dof && i >= a->first && j >= a->first; body++) {
         double li = beam.length[i - a->first], lj = beam.length[j - a->first];
         double ri = body > i ? li : body == i ? li / 2 : 0;
         double rj = body > j ? lj : body == j ? lj / 2 : 0;
-        sum += dense_mass(body - a->first) * ri * rj * cos(q[i] - q[j]);
+        sum += dense_mass(body - a->first) * ri * rj;
     }
     return sum;
+}
+
+// M_ij = A_ij cos(q_i - q_j) of the Lagrangian.
+static double mass(const arm *a, const double *q, int i, int j)
+{
+    double sum = i == j && i >= a->first ? dense_inertia(i - a->first) : 0;
+    sum += i == 0 && j == 0 ? a->hub_inertia : 0;
+    return sum + coupling(a, i, j) * cos(q[i] - q[j]);
 }
 
 // dM_ij/dq_i type terms: sum_j A_ij sin(q_i - q_j) w_j^2.
@@ -116,12 +117,7 @@ static double coriolis(const arm *a, const double *q, const double *w, int i)
 {
     double sum = 0;
     for (int j = a->first; j < a->dof; j++) {
-        for (int body = a->first; body < a->dof && i >= a->first; body++) {
-            double li = beam.length[i - a->first], lj = beam.length[j - a->first];
-            double ri = body > i ? li : body == i ? li / 2 : 0;
-            double rj = body > j ? lj : body == j ? lj / 2 : 0;
-            sum += dense_mass(body - a->first) * ri * rj * sin(q[i] - q[j]) * w[j] * w[j];
-        }
+        sum += coupling(a, i, j) * sin(q[i] - q[j]) * w[j] * w[j];
     }
     return sum;
 }

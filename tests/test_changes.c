@@ -35,9 +35,9 @@ TEST(test_typing_replaces_the_value)
 static double event_after(const explorer *ex, event_kind kind, double time)
 {
     const trace *t = &ex->state.session.run.trace;
-    for (size_t i = 0; i < t->event_count; i++) {
-        if (t->events[i].kind == kind && t->events[i].time >= time) {
-            return t->events[i].time;
+    for (EACH_EVENT(e, t)) {
+        if (e->kind == kind && e->time >= time) {
+            return e->time;
         }
     }
     fail_msg("no such event");
@@ -128,7 +128,6 @@ TEST(test_inert_is_what_has_no_effect)
 
 TEST(test_predictors_take_the_voltage_in_force)
 {
-    char wanted[64];
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":set motor.voltage 0<Enter>i");
     const session *s = &ex.state.session;
@@ -141,9 +140,8 @@ TEST(test_predictors_take_the_voltage_in_force)
     const prediction_question question = {.parameters = &p, .bodies = bodies};
     const prediction_answer answer = predict_with(PREDICTOR_IMPACT_DYNAMICS, &question);
     assert_true(answer.prediction.holds);
-    snprintf(wanted, sizeof wanted, "impact dynamics %.3f N in %.0f ms", answer.prediction.force,
-             1e3 * answer.prediction.delay);
-    assert_shows(&ex, wanted);
+    assert_shows(&ex, formatted("impact dynamics %.3f N in %.0f ms", answer.prediction.force,
+                                1e3 * answer.prediction.delay));
 }
 
 TEST(test_predictors_say_that_they_know_two_links)
@@ -166,7 +164,7 @@ TEST(test_values_that_have_no_room_are_cut_visibly)
     SCOPED(explorer_finish) explorer ex;
     open_explorer(&ex, "corrected/known-springs");
     press_shows(&ex, "/link_lengths<Enter>", "0.3, 0.25, 0.25, 0.2");
-    SCOPED(free_kept) char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    KEPT_TEXT(text) = picture(&ex, 80, 24, GLYPHS_BRAILLE);
     assert_non_null(strstr(text, "link_lengths  0.3, 0.25, 0.."));
     free(text);
     explorer_finish(&ex);
@@ -246,11 +244,9 @@ TEST(test_nudges_are_one_change_and_reversible)
 
 TEST_IN_FOLDER(test_saving_never_replaces_a_file_unasked)
 {
-    char whole[256];
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":save run.csv<Enter>");
-    snprintf(whole, sizeof whole, "saved %s/run.csv", test_folder);
-    assert_shows(&ex, whole);
+    assert_shows(&ex, formatted("saved %s/run.csv", test_folder));
     assert_false(explorer_carry_out(&ex, "save run.csv"));
     assert_non_null(strstr(ex.state.message.text, "is there already"));
     assert_true(explorer_carry_out(&ex, "save! run.csv"));

@@ -25,9 +25,8 @@ static sweep_axis varied_axis(const char *name)
 static compare_row row_of(scenario *s, const char *name, const char *law)
 {
     *s = (scenario){.name = (char *)name, .parameters = rig_parameters_with("%s", law)};
-    SCOPED(run_finish) run_result r = run_done(s, false);
-    compare_row row = compare_row_of(s, &r);
-    return row;
+    KEPT_RUN(r) = run_done(s, false);
+    return compare_row_of(s, &r);
 }
 
 // What is written about a table.
@@ -70,12 +69,11 @@ TEST(rows_reach_every_form)
     assert_non_null(strchr(third, '*'));
     assert_non_null(strstr(of.csv, "\n\"a \"\"b\"\"\",hybrid,ok,"));
     assert_non_null(strstr(of.csv, ",,,\n")); // no error, command and energy without a rig
-    char peak[80];
-    snprintf(peak, sizeof peak, "\"peak_force_N\":%.17g,", rows[0].values[0]);
     const char *run = strstr(of.json, "\"runs\":[{"), *next = strstr(run, "},{");
     assert_non_null(strstr(next, "\"steady_error_N\":null"));
     assert_null(strstr(next + 1, "},{"));
-    const char *own = strstr(run, peak), *same = strstr(run, "\"differs\":[]");
+    const char *own = strstr(run, formatted("\"peak_force_N\":%.17g,", rows[0].values[0])),
+               *same = strstr(run, "\"differs\":[]");
     assert_true(own != NULL && own < next && same != NULL && same < next);
     assert_non_null(strstr(of.json, "\"against\":\"a \\\"b\\\"\""));
     assert_non_null(strstr(of.json, "\"tolerance\":0.05"));
@@ -134,7 +132,7 @@ TEST(nothing_beats_the_best)
         for (int k = 1; k <= 8; k++) {
             scenario s = {.name = (char *)"it",
                           .parameters = rig_parameters_with("%s control.force=%g", *c, 0.5 * k)};
-            SCOPED(run_finish) run_result r = run_done(&s, false);
+            KEPT_RUN(r) = run_done(&s, false);
             compare_row row = compare_row_of(&s, &r);
             check_below(row.values[1], row.values[0]);
             check_below(row.values[4], row.values[3]);
@@ -144,7 +142,7 @@ TEST(nothing_beats_the_best)
     scenario s;
     for (EACH_TEXT(each, "arm.links=3", "arm.hub_joint=spring", "wall.restitution=0.5",
                    "arm.model=printed", "arm.damping_ratio=0.01")) {
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         s = (scenario){.name = (char *)"it",
                        .parameters = rig_parameters_with("control.law=hybrid %s", *each)};
         run_scenario(&s, false, &r);
@@ -162,7 +160,7 @@ TEST(a_gentle_run_is_held_against_its_band)
         scenario s = {.name = (char *)"it",
                       .parameters = rig_parameters_with("control.law=hybrid control.force=%g",
                                                         command[i / 2])};
-        SCOPED(run_finish) run_result r = run_done(&s, false);
+        KEPT_RUN(r) = run_done(&s, false);
         r.summary.peak_force_N = pressed[i % 2];
         const compare_row row = compare_row_of(&s, &r);
         const double allowed = fmax(1.05 * command[i / 2], pressed[i % 2]);
@@ -253,7 +251,7 @@ TEST(a_row_has_the_numbers_of_its_run)
                       .parameters = rig_parameters(cases[scripted ? 0 : i]),
                       .actions = scripted ? script : NULL,
                       .action_count = scripted};
-        SCOPED(run_finish) run_result r = run_done(&s, false);
+        KEPT_RUN(r) = run_done(&s, false);
         const summary *m = &r.summary;
         const compare_row row = compare_row_of(&s, &r);
         const bool rig = i != 1 && i != 5;

@@ -33,7 +33,7 @@ TEST(test_text_is_wrapped_at_blanks)
 
 static void check_small(explorer *ex, int width, int height, const char *wanted)
 {
-    SCOPED(free_kept) char *text = picture(ex, width, height, GLYPHS_BRAILLE);
+    KEPT_TEXT(text) = picture(ex, width, height, GLYPHS_BRAILLE);
     fail_if(strncmp(text, wanted, strlen(wanted)) != 0, "%d x %d shows\n%s", width, height, text);
 }
 
@@ -50,7 +50,7 @@ TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
     // no word is ever cut at the edge
     for (int width = 1; width < 60; width++) {
         for (int height = 1; height < 12; height++) {
-            SCOPED(free_kept) char *text = picture(&ex, width, height, GLYPHS_ASCII);
+            KEPT_TEXT(text) = picture(&ex, width, height, GLYPHS_ASCII);
             char *rest = text;
             for (char *word; (word = strtok_r(rest, " \n", &rest)) != NULL;) {
                 bool known = strspn(word, "0123456789x.:") == strlen(word);
@@ -67,7 +67,7 @@ TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
 
 static void assert_has(explorer *ex, int width, int height, const char *wanted)
 {
-    SCOPED(free_kept) char *text = picture(ex, width, height, GLYPHS_BRAILLE);
+    KEPT_TEXT(text) = picture(ex, width, height, GLYPHS_BRAILLE);
     fail_if(strstr(text, wanted) == NULL, "'%s' is not on a screen of %d x %d:\n%s", wanted, width,
             height, text);
 }
@@ -134,11 +134,11 @@ TEST(test_poles_follow_the_values_at_the_cursor)
     press(&ex, ":poles<Enter>");
     assert_has(&ex, 40, 12, "poles (Esc closes)");
     assert_has(&ex, 80, 40, "pressing on the wall, hub held by friction");
-    SCOPED(free_kept) char *before = picture(&ex, 80, 40, GLYPHS_ASCII);
+    KEPT_TEXT(before) = picture(&ex, 80, 40, GLYPHS_ASCII);
     press(&ex, "<Esc>:seek 0<Enter>:set wall.kind none<Enter>:poles<Enter>");
     assert_has(&ex, 80, 40, "there is no wall to press on");
     press(&ex, "<Esc>u:poles<Enter>");
-    SCOPED(free_kept) char *again = picture(&ex, 80, 40, GLYPHS_ASCII);
+    KEPT_TEXT(again) = picture(&ex, 80, 40, GLYPHS_ASCII);
     fail_if(strstr(again, "there is no wall") != NULL, "taken back, and still shown:\n%s", again);
     fail_if(strstr(before, "damping") == NULL, "no numbers:\n%s", before);
     press(&ex, "<Esc>:model<Enter>:poles<Enter>");

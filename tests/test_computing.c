@@ -65,7 +65,7 @@ TEST(a_sweep_is_computed_into_rows_of_any_kind)
     r.store.present = r.present;
 
     // all runs, and then none
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     sweep_progress progress;
     DONE(sweep_init(&s, &base, &request, &f));
     for (int i = 0; i < 2; i++) {

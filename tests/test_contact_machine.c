@@ -1,7 +1,6 @@
 // Transitions of the contact machine on one rod, taken one by one: what each event does to the
 // state, and what the state is found to be afterwards. Whole runs are in test_motion.c.
 #include "tests/arm_fixture.h"
-#include "tests/motion_advance.h"
 #include "tests/explicit_stepper.h"
 
 // A rod on its hub with its motion.
@@ -32,6 +31,14 @@ static void drop_rod(moving_rod *r)
     SCOPED(drop_rod) moving_rod r = start_rod_by(given(__VA_ARGS__), by)
 #define START_ROD(r, ...) START_ROD_BY(r, NULL, __VA_ARGS__)
 
+// A step, and its event, which is not applied.
+static motion_report step_of(moving_rod *r, double until)
+{
+    motion_report report;
+    assert_int_equal(motion_step(&r->arm, r->motion, until, 1e-3, &report), STATUS_OK);
+    return report;
+}
+
 static double speed_of(const moving_rod *r)
 {
     return state_velocities(r->motion, r->motion->state)[0];
@@ -47,10 +54,7 @@ static motion_report next_event(moving_rod *r, double until)
 {
     motion_report report = {.event = MOTION_REACHED};
     while (r->motion->state[SLOT_TIME] < until && report.event == MOTION_REACHED) {
-        assert_int_equal(motion_step(&r->arm, r->motion, until, 1e-3, &report), STATUS_OK);
-    }
-    if (report.event != MOTION_REACHED) {
-        motion_apply(&r->arm, r->motion, &report);
+        report = step_on(&r->arm, r->motion, until, 1e-3);
     }
     return report;
 }
@@ -85,8 +89,7 @@ TEST(an_arm_that_starts_on_a_face_strikes_it)
     assert_false(touches(&r));
     check_relative(m->record.start_energy, inertia * speed * speed / 2, 1e-12);
 
-    motion_report report;
-    assert_int_equal(motion_step(&r.arm, m, 0.01, 1e-3, &report), STATUS_OK);
+    motion_report report = step_of(&r, 0.01);
     assert_int_equal(report.event, MOTION_IMPACT);
     check_below(m->state[SLOT_TIME], 1e-12);
     motion_apply(&r.arm, m, &report);
@@ -203,9 +206,8 @@ TEST(a_located_peak_leaves_the_step_as_it_was)
     for (int i = 0; i < 2; i++) {
         motion *m = both[i]->motion;
         while (m->state[SLOT_TIME] < 0.4) {
-            motion_report report;
             const double start = m->state[SLOT_TIME];
-            assert_int_equal(motion_step(&both[i]->arm, m, 0.4, 1e-3, &report), STATUS_OK);
+            motion_report report = step_of(both[i], 0.4);
             check_close(m->state[SLOT_TIME], start + m->step.last, 1e-14);
             motion_apply(&both[i]->arm, m, &report);
         }
@@ -285,9 +287,8 @@ TEST(a_hub_without_stiction_never_sticks)
 TEST(a_wall_that_gives_takes_the_rod_at_its_speed)
 {
     START_ROD(r, "arm.links=1 wall.contact=kelvin-voigt wall.stiffness=1e4 wall.damping=20");
-    motion_report report = {.event = MOTION_REACHED};
-    while (report.event == MOTION_REACHED) {
-        assert_int_equal(motion_step(&r.arm, r.motion, 1, 1e-3, &report), STATUS_OK);
+    motion_report report;
+    while ((report = step_of(&r, 1)).event == MOTION_REACHED) {
     }
     assert_int_equal(report.event, MOTION_TOUCH);
     const double speed = speed_of(&r);
@@ -347,8 +348,7 @@ TEST(a_motion_can_be_started_again)
         motion_start(&r.arm, r.motion, 0, 0);
         next_event(&r, 1);
         assert_true(touches(&r));
-        motion_report report;
-        assert_int_equal(motion_step(&r.arm, r.motion, 1, 1e-3, &report), STATUS_OK);
+        step_of(&r, 1);
         if (i == 0) {
             memcpy(first, r.motion->state, size * sizeof *first);
         }
@@ -468,9 +468,7 @@ TEST(the_peak_of_a_rising_force_is_at_its_end)
         double last = m->state[SLOT_FORCE];
         int rising = 0;
         for (int k = 1; k < 200 && m->state[SLOT_CONTACT] != 0; k++) {
-            motion_report report;
-            assert_int_equal(motion_step(&r.arm, m, touched + k * 2e-4, 2e-4, &report), STATUS_OK);
-            motion_apply(&r.arm, m, &report);
+            step_on(&r.arm, m, touched + k * 2e-4, 2e-4);
             assert_true(m->record.pulse_peak >= m->state[SLOT_FORCE] * (1 - 1e-12));
             assert_true(m->record.pulse_peak_time <= m->state[SLOT_TIME] + 1e-15);
             assert_true(m->record.pulse_peak_time >= touched);

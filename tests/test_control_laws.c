@@ -28,8 +28,7 @@ TEST(parameters_of_the_scenario_are_described_there_alone)
     for (int law = LAW_NONE + 1; law < LAW_PLUGIN; law++) {
         const controller *c = controller_of(law);
         for (int i = 0; i < c->parameter_count; i++) {
-            char path[80];
-            snprintf(path, sizeof path, "control.%s", c->parameters[i].name);
+            const char *path = formatted("control.%s", c->parameters[i].name);
             assert_int_equal(controller_find_parameter(c, c->parameters[i].name), i);
             assert_int_equal(controller_find_parameter(c, path), -1);
             int index = parameter_find(path);
@@ -162,8 +161,8 @@ TEST(settings_are_told_as_numbers_or_texts)
     strcpy(p.control.settings, "gain=2.5 way=fast mixed=3x bare");
     const controller_setup setup = {.period = 0.005};
     const controller_input in = {.time = 0.25, .piezo_force = (double)NAN};
-    SCOPED(free_kept) char *first = process_question(&setup, &p.control, &in);
-    SCOPED(free_kept) char *later = process_question(NULL, &p.control, &in);
+    KEPT_TEXT(first) = process_question(&setup, &p.control, &in);
+    KEPT_TEXT(later) = process_question(NULL, &p.control, &in);
     assert_true(first != NULL && later != NULL);
     assert_non_null(strstr(first, "\"gain\":2.5,\"way\":\"fast\",\"mixed\":\"3x\",\"bare\":\"\""));
     assert_non_null(strstr(first, "\"protocol\":"));
@@ -207,7 +206,7 @@ TEST(answers_are_numbers)
 TEST(manual_says_of_every_law_when_to_take_it)
 {
     FILE *file = fopen(manual, "rb");
-    SCOPED(free_kept) char *text = calloc(1, 1 << 20);
+    KEPT_TEXT(text) = calloc(1, 1 << 20);
     assert_non_null(file);
     assert_non_null(text);
     text[fread(text, 1, (1 << 20) - 1, file)] = '\0';
@@ -217,8 +216,7 @@ TEST(manual_says_of_every_law_when_to_take_it)
     assert_non_null(end);
     *end = '\0';
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
-        char word[64];
-        snprintf(word, sizeof word, "`%s`", control_law_table[law].word);
+        const char *word = formatted("`%s`", control_law_table[law].word);
         fail_if(strstr(text, word) == NULL, "the first table of %s has no %s", manual, word);
     }
 }

@@ -9,12 +9,10 @@ GIVEN_BACK(run_loop, loop_destroy)
 // The arm under a program in the shell, asked a hundred times a second.
 static scenario under(const char *program)
 {
-    char command[PARAMETER_TEXT_SIZE];
-    snprintf(command, sizeof command, "control.command=%s", program);
-    return (scenario){
-        .name = (char *)"program",
-        .parameters = rig_parameters(SETTINGS("control.law=process", command, "control.rate=100",
-                                              "run.duration=0.2", "initial.angle=-0.01"))};
+    return (scenario){.name = (char *)"program",
+                      .parameters = rig_parameters(
+                          SETTINGS("control.law=process", formatted("control.command=%s", program),
+                                   "control.rate=100", "run.duration=0.2", "initial.angle=-0.01"))};
 }
 
 #define ANSWERS "while read -r l; do echo '{\"command\": 1}'; done"
@@ -29,7 +27,7 @@ TEST(odd_programs_are_understood)
     double peak[3];
     for (int i = 0; i < 3; i++) {
         scenario s = under(programs[i]);
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s: %s", programs[i], r.summary.message);
         peak[i] = r.summary.peak_force_N;
         assert_true(i == 0 || peak[i] == peak[0]);
@@ -48,7 +46,7 @@ TEST(programs_without_an_answer_are_said)
     };
     for (EACH(c, cases)) {
         scenario s = under(c->program);
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         assert_int_equal(run_scenario(&s, false, &r), STATUS_CONTROLLER_FAILED);
         fail_if(strstr(r.summary.message, c->sentence) == NULL, "'%s' does not say '%s'",
                 r.summary.message, c->sentence);
@@ -76,7 +74,7 @@ TEST(a_program_is_led_back_and_on)
 {
     const scenario s = under(ANSWERS);
     const loop_options options = {.keep_trace = false};
-    SCOPED(loop_destroy_kept) run_loop *l;
+    KEPT_LOOP(l);
     DONE(loop_create(&l, &s, &options, &f));
     const size_t size = loop_saved_size(l);
     (void)gone_to(l, 0.055);
@@ -101,7 +99,7 @@ TEST(a_program_that_answers_otherwise_is_said)
 {
     const scenario s = under("n=$$; while read -r l; do echo \"{\\\"command\\\": 1.$n}\"; done");
     const loop_options options = {.keep_trace = false};
-    SCOPED(loop_destroy_kept) run_loop *l;
+    KEPT_LOOP(l);
     DONE(loop_create(&l, &s, &options, &f));
     (void)gone_to(l, 0.055);
     SCOPED(free_kept) void *early = kept(l);

@@ -253,7 +253,7 @@ TEST(a_study_runs_each_method_at_each_step_once)
             DONE(parameter_set_text(&s.parameters, PARAMETER_INDEX(method.name), study_methods[m],
                                     &f));
             s.parameters.method.step = point->step;
-            SCOPED(run_finish) run_result result = run_done(&s, false);
+            KEPT_RUN(result) = run_done(&s, false);
             for (int k = 0; k < STUDY_QUANTITIES; k++) {
                 const double value = summary_value(&result.summary, summary_index(study_keys[k]));
                 const double error = fabs(value - both.study.reference[k]);

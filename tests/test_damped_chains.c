@@ -38,19 +38,13 @@ typedef struct bounces {
     double peak_time;
 } bounces;
 
-static bounces bounces_of(const parameters *p, const engine *by, double gap, double velocity,
-                          double until)
+static bounces bounces_of(const parameters *p, double gap, double velocity, double until)
 {
-    arm a = arm_of(p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p->method, by);
-    assert_non_null(m);
-    motion_start(&a, m, p->wall.angle - gap, velocity);
+    STARTED(a, m, p, &stiff_engine, p->wall.angle - gap, velocity);
     bounces all = {0};
     for (int steps = 0; m->state[SLOT_TIME] < until; steps++) {
-        motion_report r;
         assert_in_range(steps, 0, 100000);
-        assert_int_equal(motion_step(&a, m, until, 1e-3, &r), STATUS_OK);
-        motion_apply(&a, m, &r);
+        const motion_report r = step_on(&a, m, until, 1e-3);
         if (r.event == MOTION_IMPACT) {
             all.first = all.impacts == 0 ? m->state[SLOT_TIME] : all.first;
             all.impacts++;
@@ -71,7 +65,7 @@ TEST(low_bounces_are_those_of_power_series)
                         "arm.hub_inertia=0.02198 motor.voltage=2.55 motor.stiction=0 "
                         "wall.kind=plane wall.angle=0.1 wall.restitution=0.2228783812");
     for (int i = 1; i <= 4; i++) {
-        const bounces stiff = bounces_of(&p, &stiff_engine, 1e-4, 0.65, 1.6e-4 * i * i);
+        const bounces stiff = bounces_of(&p, 1e-4, 0.65, 1.6e-4 * i * i);
         assert_int_equal(stiff.impacts, 7);
         check_relative(stiff.slowest, 4.79033149495e-5, 1e-6);
         check_relative(stiff.peak, 14126.0309154, 1e-6);
@@ -98,8 +92,7 @@ TEST(flights_lower_than_any_rounding_are_those_of_power_series)
         parameters p = fixture_parameters(arms[i]);
         p.wall.angle = 0.1;
         p.method.rest_speed = 1e-7;
-        const double velocity = 3.6, gap = 1e-4 * velocity, until = 1.1e-4;
-        const bounces stiff = bounces_of(&p, &stiff_engine, gap, velocity, until);
+        const bounces stiff = bounces_of(&p, 1e-4 * 3.6, 3.6, 1.1e-4);
         assert_int_equal(stiff.impacts, found[i].impacts);
         check_relative(stiff.slowest, found[i].slowest, 1e-4);
         check_relative(stiff.peak, found[i].peak, 1e-6);
@@ -119,8 +112,7 @@ TEST(a_slow_arm_meets_its_wall_in_time)
                                    1.96957387e-3, 2.36983598e-3, 2.78682441e-3, 3.22850009e-3,
                                    3.70475134e-3, 4.22916186e-3};
     for (int i = 1; i <= 10; i++) {
-        const double gap = 5e-11 * i, velocity = 1.25e-7;
-        const bounces stiff = bounces_of(&p, &stiff_engine, gap, velocity, 5e-3);
+        const bounces stiff = bounces_of(&p, 5e-11 * i, 1.25e-7, 5e-3);
         assert_true(stiff.impacts > 0);
         check_close(stiff.first, first[i - 1], 1e-6);
     }
@@ -135,25 +127,19 @@ static void hub_events(double share, double instant[3])
     p.wall.angle *= share;
     p.motor.voltage *= share;
     p.motor.stiction *= share;
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
-    assert_non_null(m);
-    motion_start(&a, m, 0, 0);
+    STARTED(a, m, &p, &stiff_engine, 0, 0);
 
     // from the turn at 0.382 s on
     const motion_event expected[3] = {MOTION_STICK, MOTION_SLIP, MOTION_STICK};
     int count = 0, steps = 0;
     while (m->state[SLOT_TIME] < 0.7) {
-        motion_report r;
-        assert_int_equal(motion_step(&a, m, 0.7, 1e-3, &r), STATUS_OK);
+        const motion_event met = step_on(&a, m, 0.7, 1e-3).event;
         assert_true(++steps < 5000);
-        const bool of_hub = r.event == MOTION_STICK || r.event == MOTION_SLIP;
-        if (of_hub && m->state[SLOT_TIME] > 0.45) {
+        if ((met == MOTION_STICK || met == MOTION_SLIP) && m->state[SLOT_TIME] > 0.45) {
             assert_in_range(count, 0, 2);
-            assert_int_equal(r.event, expected[count]);
+            assert_int_equal(met, expected[count]);
             instant[count++] = m->state[SLOT_TIME];
         }
-        motion_apply(&a, m, &r);
     }
     assert_int_equal(count, 3);
 }

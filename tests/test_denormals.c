@@ -1,7 +1,6 @@
 // An arm that dies away comes to rest: velocities, bends and accelerations become exactly zero
 // instead of fading through denormal numbers, on which processors compute slowly.
 #include "tests/arm_fixture.h"
-#include "tests/motion_advance.h"
 
 #define LEAST 1.5e-154 // what is nonzero is larger, so that its square is a normal number
 
@@ -38,8 +37,7 @@ TEST(an_arm_that_coasts_comes_to_rest)
 {
     for (EACH_TEXT(c, "arm.links=1", "arm.links=2")) {
         arm a;
-        SCOPED(motion_destroy_kept)
-        motion *m = fading_motion(&a, *c, "method.name=event", "motor.stiction=0");
+        KEPT_MOTION(m) = fading_motion(&a, *c, "method.name=event", "motor.stiction=0");
         motion_start(&a, m, 0, 1);
         go(&a, m, 100);
         assert_true(fabs(state_velocities(m, m->state)[0]) > 1e-70);
@@ -59,8 +57,7 @@ TEST(an_arm_that_coasts_comes_to_rest)
 TEST(a_beam_that_vibrated_is_exactly_straight)
 {
     arm a;
-    SCOPED(motion_destroy_kept)
-    motion *m = fading_motion(&a, "arm.links=2", "method.name=event", "motor.stiction=1");
+    KEPT_MOTION(m) = fading_motion(&a, "arm.links=2", "method.name=event", "motor.stiction=1");
     motion_start(&a, m, 0, 0);
     state_angles(m, m->state)[1] = 1e-3;
     motion_rebind(&a, &a, m);
@@ -79,9 +76,8 @@ TEST(the_implicit_methods_keep_nothing_that_faded)
     static const char *const frictions[] = {"motor.stiction=0", "motor.stiction=0.01"};
     for (int k = 0; k < 4; k++) {
         arm a;
-        SCOPED(motion_destroy_kept)
-        motion *m = fading_motion(&a, k % 2 ? "arm.links=8" : "arm.links=2", methods[k / 2],
-                                  frictions[k % 2]);
+        KEPT_MOTION(m) = fading_motion(&a, k % 2 ? "arm.links=8" : "arm.links=2", methods[k / 2],
+                                       frictions[k % 2]);
         motion_start(&a, m, 0, 1);
         go(&a, m, 250);
         for (int i = 0; i < m->dof; i++) {

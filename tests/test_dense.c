@@ -1,15 +1,13 @@
 // Dense systems of linear equations against their residuals.
 #include "src/base/dense.h"
 
-#include "src/base/random.h"
 #include "tests/check.h"
 
 enum { LARGEST = 12, COLUMNS = 3 };
 
 TEST(what_is_solved_gives_the_right_sides_again)
 {
-    random_generator g;
-    random_seed(&g, 5);
+    random_generator g = seeded(5);
     for (int n = 1; n <= LARGEST; n++) {
         double matrix[LARGEST * LARGEST], lost[LARGEST * LARGEST];
         double right[LARGEST * COLUMNS], x[LARGEST * COLUMNS], alone[LARGEST];

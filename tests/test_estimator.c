@@ -1,6 +1,5 @@
 // The Kalman filter that controllers use.
 #include "src/rig/estimation/estimator.h"
-#include "src/base/random.h"
 #include "tests/rig_fixture.h"
 
 TEST(estimator_finds_a_constant)
@@ -71,8 +70,7 @@ TEST(a_sampled_oscillator_has_its_closed_form)
 TEST(any_model_follows_its_matrices)
 {
     enum { ALL = ESTIMATOR_STATES };
-    random_generator g;
-    random_seed(&g, 4);
+    random_generator g = seeded(4);
     for (int n = 1; n <= ALL; n++) {
         const double nothing = (double)NAN;
         double rate[ALL][ALL], input[ALL], row[ALL], noise[ALL];
@@ -164,8 +162,7 @@ TEST(any_model_follows_its_matrices)
 TEST(another_view_is_that_of_its_matrix)
 {
     enum { ALL = ESTIMATOR_STATES };
-    random_generator g;
-    random_seed(&g, 6);
+    random_generator g = seeded(6);
     for (int from = 1; from <= ALL; from++) {
         for (int to = 1; to <= ALL; to++) {
             double t[ALL][ALL];

@@ -35,7 +35,7 @@ TEST(test_every_glyph_has_a_twin_in_ascii)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     for (EACH_TEXT(one, "<End>bp", "?", "<Esc>c", "<Esc>o", "<Esc><Tab>m")) {
         press(&ex, *one);
-        SCOPED(free_kept) char *text = picture(&ex, 150, 50, GLYPHS_ASCII);
+        KEPT_TEXT(text) = picture(&ex, 150, 50, GLYPHS_ASCII);
         for (const char *c = text; *c; c++) {
             assert_true((*c >= ' ' && *c < 127) || *c == '\n');
         }
@@ -67,11 +67,9 @@ TEST(test_a_lower_voltage_is_compared_with_the_run_before)
     check_below(ex.state.session.run.summary.peak_force_N,
                 ex.state.session.other.summary.peak_force_N);
     press_shows(&ex, "c", "two runs (Esc closes)");
-    char line[128];
-    snprintf(line, sizeof line, "%-30s %11.4g %11.4g", "first pulse peak [N]",
-             ex.state.session.run.summary.first_pulse_peak_N,
-             ex.state.session.other.summary.first_pulse_peak_N);
-    assert_shows(&ex, line);
+    assert_shows(&ex, formatted("%-30s %11.4g %11.4g", "first pulse peak [N]",
+                                ex.state.session.run.summary.first_pulse_peak_N,
+                                ex.state.session.other.summary.first_pulse_peak_N));
     press(&ex, "<Esc>u");
     check_close(ex.state.session.run.summary.peak_force_N,
                 ex.state.session.other.summary.peak_force_N, 0);
@@ -265,8 +263,7 @@ TEST(test_random_keys_do_no_harm)
                                KEY_CODE_DELETE,
                                0x3b8,
                                0};
-    random_generator r;
-    random_seed(&r, 6);
+    random_generator r = seeded(6);
     OPEN_EXPLORER(ex, "corrected/first-impact");
     for (int i = 0; i < 4000; i++) {
         bool saving = ex.state.prompt.open && (strncmp(ex.state.prompt.text, "s", 1) == 0 &&

@@ -35,12 +35,11 @@ static run_result stopped_result(void)
 
 TEST(object_holds_every_key)
 {
-    SCOPED(scenario_finish)
-    scenario s = parse("title: T\narm: {links: 3}\nwall: {kind: plane}\n"
-                       "expect:\n  impacts: {value: 1, tolerance: 0}\n  peak_force_N: null\n"
-                       "  first_contact_s: {value: 0.3, tolerance: 0.01}\n"
-                       "script:\n  - {at: 0.1 s, set: {motor.voltage: 2 V}}\n");
-    SCOPED(run_finish) run_result result = stopped_result();
+    KEPT_SCENARIO(s) = parse("title: T\narm: {links: 3}\nwall: {kind: plane}\n"
+                             "expect:\n  impacts: {value: 1, tolerance: 0}\n  peak_force_N: null\n"
+                             "  first_contact_s: {value: 0.3, tolerance: 0.01}\n"
+                             "script:\n  - {at: 0.1 s, set: {motor.voltage: 2 V}}\n");
+    KEPT_RUN(result) = stopped_result();
     json_t *object = export_run(&s, &result);
     assert_string_equal(json_string_value(json_object_get(object, "scenario")), "t.yaml");
     assert_string_equal(json_string_value(json_object_get(object, "status")), "failed");
@@ -85,10 +84,9 @@ TEST(object_holds_every_key)
 // alone.
 TEST(changes_are_told_as_they_were_written)
 {
-    SCOPED(scenario_finish)
-    scenario s = parse("title: T\ncontrol: {law: hybrid}\n"
-                       "script:\n  - {at: 0.1 s, set: {control.lock: force}}\n");
-    SCOPED(run_finish) run_result result = stopped_result();
+    KEPT_SCENARIO(s) = parse("title: T\ncontrol: {law: hybrid}\n"
+                             "script:\n  - {at: 0.1 s, set: {control.lock: force}}\n");
+    KEPT_RUN(result) = stopped_result();
     trace_add_event(&result.trace, (event){0.3, EVENT_CHANGE, 0, 0, 0, 7});
     trace_add_event(&result.trace, (event){0.4, EVENT_CHANGE, 0, 0, 0, -1});
     json_t *object = export_run(&s, &result), *events = json_object_get(object, "events");
@@ -112,12 +110,11 @@ static void keep_sentences(void *context, const char *sentence)
 TEST(missed_expectations_say_what_is_and_what_was_expected)
 {
     char said[1024] = "";
-    SCOPED(scenario_finish)
-    scenario s = parse("title: T\nexpect:\n"
-                       "  impacts: null\n"
-                       "  peak_force_N: {value: 2, tolerance: 0.5}\n"
-                       "  first_contact_s: {value: 0.25, tolerance: 0.01}\n");
-    SCOPED(run_finish) run_result result = stopped_result();
+    KEPT_SCENARIO(s) = parse("title: T\nexpect:\n"
+                             "  impacts: null\n"
+                             "  peak_force_N: {value: 2, tolerance: 0.5}\n"
+                             "  first_contact_s: {value: 0.25, tolerance: 0.01}\n");
+    KEPT_RUN(result) = stopped_result();
     assert_int_equal(run_check_expectations(&s, &result, keep_sentences, said), 2);
     assert_string_equal(said,
                         "t.yaml:3:3: impacts is 1, expected null\n"
@@ -162,7 +159,7 @@ static int count_of(const char *text, char wanted)
 TEST(csv_has_one_header_and_a_column_for_each_value)
 {
     for (int links = 2; links <= 3; links++) {
-        SCOPED(free_kept) char *text = csv_of(links, (double)NAN);
+        KEPT_TEXT(text) = csv_of(links, (double)NAN);
         int columns = (links > 2 ? 3 : 0);
         for (int i = 0; i < signal_count; i++) {
             columns += !signal_table[i].optional; // the run has no such sensor
@@ -180,7 +177,7 @@ TEST(csv_has_one_header_and_a_column_for_each_value)
 
 TEST(csv_has_columns_of_fitted_sensors_only)
 {
-    SCOPED(free_kept) char *without = csv_of(2, (double)NAN), *with = csv_of(2, -0.125);
+    KEPT_TEXT(without) = csv_of(2, (double)NAN), *with = csv_of(2, -0.125);
     assert_null(strstr(without, "film[rad]"));
     assert_non_null(strstr(with, ",film[rad],"));
     assert_non_null(strstr(with, ",-0.125,"));

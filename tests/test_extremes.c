@@ -2,36 +2,26 @@
 // finite number passes for a result.
 #include <signal.h>
 
-#include "src/run/run.h"
 #include "src/study/store/sweep_store.h"
-#include "tests/check.h"
+#include "tests/arm_fixture.h"
+#include "tests/scenario_fixture.h"
 
-static void print_sentence(void *context, const char *sentence)
+// A run of the scenario with this text, which comes to its end.
+static run_result run_of(const char *text)
 {
-    (void)context;
-    print_error("%s\n", sentence);
-}
-
-static void read_scenario(scenario *s, const char *text)
-{
-    assert_int_equal(
-        scenario_parse(s, text, strlen(text), "extreme.yaml", "extreme", print_sentence, NULL),
-        STATUS_OK);
+    KEPT_SCENARIO(s) = good(text);
+    return run_done(&s, false);
 }
 
 // Runs an arm of so many links that is pushed, and says how it ended.
 static status ends_of_push(int links, double impulse)
 {
-    char text[256];
-    SCOPED(run_finish) run_result result;
-    SCOPED(scenario_finish) scenario s;
-    snprintf(text, sizeof text,
-             "title: Pushed\narm: {links: %d}\nwall: {kind: none}\nscript:\n"
-             "  - {at: 0.1 s, push: %g N s}\n",
-             links, impulse);
-    read_scenario(&s, text);
-
-    status code = run_scenario(&s, false, &result);
+    KEPT_RUN(result);
+    KEPT_SCENARIO(s) =
+        good(formatted("title: Pushed\narm: {links: %d}\nwall: {kind: none}\nscript:\n"
+                       "  - {at: 0.1 s, push: %g N s}\n",
+                       links, impulse));
+    const status code = run_scenario(&s, false, &result);
     assert_int_equal(code == STATUS_OK, result.summary.message[0] == '\0');
     return code;
 }
@@ -50,15 +40,12 @@ TEST(a_push_of_any_size_ends_a_run_or_lets_it_go_on)
 TEST(a_run_that_is_asked_to_end_does)
 {
     for (EACH_TEXT(c, "printed", "corrected")) {
-        char text[128];
-        SCOPED(scenario_finish) scenario s;
-        SCOPED(run_finish) run_result whole;
-        SCOPED(run_finish) run_result ended;
+        KEPT_SCENARIO(s) =
+            good(formatted("title: Ended\narm: {model: %s}\nrun: {duration: 0.5 s}\n", *c));
+        KEPT_RUN(whole) = run_done(&s, true);
+        KEPT_RUN(ended);
         run_monitor monitor = {.stop = true};
         const run_options options = {.keep_trace = true, .monitor = &monitor};
-        snprintf(text, sizeof text, "title: Ended\narm: {model: %s}\nrun: {duration: 0.5 s}\n", *c);
-        read_scenario(&s, text);
-        assert_int_equal(run_scenario(&s, true, &whole), STATUS_OK);
         assert_int_equal(run_scenario_with(&s, &options, &ended), STATUS_STOPPED);
         assert_true(ended.trace.row_count >= 1);
         assert_true(ended.trace.row_count < whole.trace.row_count / 2);
@@ -82,16 +69,10 @@ TEST(the_peak_of_a_damped_chain_is_at_its_impact)
 {
     double before = 0;
     for (EACH_OF(int, c, 16, 24, 28, 32, 40)) {
-        char text[200];
-        SCOPED(run_finish) run_result result;
-        SCOPED(scenario_finish) scenario s;
-        snprintf(text, sizeof text,
-                 "title: Damped\nmotor: {voltage: 5 V}\nwall: {kind: plane}\n"
-                 "arm: {links: %d, damping_ratio: 1}\nrun: {duration: 0.2 s}\n",
-                 *c);
-        read_scenario(&s, text);
-        assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
-
+        KEPT_RUN(result) =
+            run_of(formatted("title: Damped\nmotor: {voltage: 5 V}\nwall: {kind: plane}\n"
+                             "arm: {links: %d, damping_ratio: 1}\nrun: {duration: 0.2 s}\n",
+                             *c));
         const double coefficient = result.summary.peak_force_N / pow(*c, 3);
         check_close(result.summary.time_to_peak_s, 0, 1e-9);
         check_relative(coefficient, before > 0 ? before : coefficient, 0.03);
@@ -103,15 +84,10 @@ TEST(the_peak_of_a_damped_chain_is_at_its_impact)
 TEST(a_touch_behind_the_link_is_told)
 {
     for (int way = -1; way <= 1; way += 2) {
-        char text[160];
-        SCOPED(run_finish) run_result result;
-        SCOPED(scenario_finish) scenario s;
-        snprintf(text, sizeof text,
-                 "title: Round\nmotor: {voltage: %d V}\nwall: {angle: 2.9 rad}\n"
-                 "run: {duration: 3 s}\n",
-                 way);
-        read_scenario(&s, text);
-        assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
+        KEPT_RUN(result) =
+            run_of(formatted("title: Round\nmotor: {voltage: %d V}\nwall: {angle: 2.9 rad}\n"
+                             "run: {duration: 3 s}\n",
+                             way));
         assert_true(result.summary.impacts > 0);
         assert_int_equal(result.summary.message[0] != '\0', way < 0);
     }
@@ -130,17 +106,16 @@ static void give_up(void *context, const sweep_progress *p)
 
 TEST(runs_without_an_end_are_abandoned_and_not_stored)
 {
-    static const char text[] = "title: Nearly for ever\ninitial: {velocity: 0.01 rad/s}\n"
-                               "wall: {angle: 3 rad}\narm: {links: 24}\nrun: {duration: 90000 s}\n";
+    const char *text = "title: Nearly for ever\ninitial: {velocity: 0.01 rad/s}\n"
+                       "wall: {angle: 3 rad}\narm: {links: 24}\nrun: {duration: 90000 s}\n";
     char *vary[] = {"motor.voltage=0.001:0.002:3"};
     const sweep_request request = {.vary = vary, .vary_count = 1};
     const sweep_options options = {
         .jobs = 2, .stop = &stop, .abandon = &abandoned, .report = give_up};
-    SCOPED(scenario_finish) scenario base;
-    SCOPED(sweep_finish) sweep s;
-    SCOPED(sweep_store_close_kept) sweep_store *store;
+    KEPT_SCENARIO(base) = good(text);
+    KEPT_SWEEP(s);
+    KEPT_STORE(store);
     sweep_progress progress;
-    read_scenario(&base, text);
     DONE(sweep_init(&s, &base, &request, &f));
     DONE(sweep_store_open(&store, NULL, &s, &f));
 
@@ -155,10 +130,9 @@ TEST(runs_abandoned_before_they_begin_are_not_set_up)
     const atomic_bool already = true;
     for (EACH_TEXT(c, "title: Corrected\n", "title: Printed\narm: {model: printed}\n",
                    "title: Under a law\ncontrol: {law: hybrid}\n")) {
-        SCOPED(scenario_finish) scenario s;
-        SCOPED(run_finish) run_result result;
+        KEPT_SCENARIO(s) = good(*c);
+        KEPT_RUN(result);
         side_by_side *storage = NULL;
-        read_scenario(&s, *c);
         run_together(&s, 1, &already, &result, &storage);
         assert_int_equal(result.summary.status, STATUS_STOPPED);
         assert_true(isnan(result.summary.steps) || result.summary.steps == 0);

@@ -86,15 +86,13 @@ static char *csv_of(const char *id)
     fault f = {0};
     size_t length;
     const thesis_figure *which = thesis_figure_find(id);
-    char name[64];
     fail_if(draw_plain(id, "csv", "svg", &f) != STATUS_OK, "%s: %s", id, f.text);
-    snprintf(name, sizeof name, "csv/%s.csv", which->file);
-    return read_file(name, &length);
+    return read_file(formatted("csv/%s.csv", which->file), &length);
 }
 
 TEST(recorded_signals_stand_beside_their_picture)
 {
-    SCOPED(free_kept) char *csv = csv_of("3.4");
+    KEPT_TEXT(csv) = csv_of("3.4");
     assert_non_null(strstr(csv, ",force,"));
     assert_non_null(strstr(csv, ",force corrected,"));
     assert_non_null(strstr(csv, "mark,contact,"));
@@ -108,10 +106,9 @@ TEST(recorded_signals_stand_beside_their_picture)
 static status overlaid(const char *csv, const char *id, fault *f)
 {
     put_file("measured.csv", csv);
-    SCOPED(free_kept) char *path = strdup("measured.csv");
+    KEPT_TEXT(path) = strdup("measured.csv");
     const figure_options o = {.overlay = path};
-    status code = figure_draw(id, &o, "overlaid", "svg", NULL, f);
-    return code;
+    return figure_draw(id, &o, "overlaid", "svg", NULL, f);
 }
 
 TEST(reference_data_lie_over_signals)
@@ -142,8 +139,7 @@ TEST(reference_data_lie_over_signals)
 static double map_error(const char *csv, const char *step, double beta, double gamma)
 {
     double nearest = HUGE_VAL, error = (double)NAN;
-    char start[64];
-    snprintf(start, sizeof start, "h = %s\u2009ms,map,", step);
+    const char *start = formatted("h = %s\u2009ms,map,", step);
     for (const char *line = strstr(csv, start); line != NULL; line = strstr(line + 1, start)) {
         double b = number_in_csv(line, start, 2), g = number_in_csv(line, start, 3);
         double distance = hypot(b - beta, g - gamma);
@@ -158,7 +154,7 @@ static double map_error(const char *csv, const char *step, double beta, double g
 
 TEST(the_map_tells_good_pairs_from_bad)
 {
-    SCOPED(free_kept) char *csv = csv_of("beta-gamma");
+    KEPT_TEXT(csv) = csv_of("beta-gamma");
     // the thesis's pair at its step, and the same at a fifth of the step
     double at_1_ms = map_error(csv, "1", 0.4, 0.5);
     check_below(at_1_ms, 0.1);
@@ -173,7 +169,7 @@ TEST(the_map_tells_good_pairs_from_bad)
 
 TEST(table_cells_are_right)
 {
-    SCOPED(free_kept) char *csv = csv_of("T4.1");
+    KEPT_TEXT(csv) = csv_of("T4.1");
     const char *group = "Peak force by the energy principle (N),thesis";
     check_close(number_in_csv(csv, group, 2), 23.93, 0);
     check_close(number_in_csv(csv, group, 5), 82.92, 0);
@@ -203,11 +199,9 @@ TEST(a_second_run_writes_the_same_bytes)
     }
     for (int i = 0; i < 5; i++) {
         for (EACH_TEXT(c, "png", "pdf", "svg", "csv")) {
-            char first[64], second[64];
             const char *file = thesis_figure_find(ids[i])->file;
-            snprintf(first, sizeof first, "once/%s.%s", file, *c);
-            snprintf(second, sizeof second, "twice/%s.%s", file, *c);
-            expect_same_bytes(first, second);
+            expect_same_bytes(formatted("once/%s.%s", file, *c),
+                              formatted("twice/%s.%s", file, *c));
         }
     }
 }
@@ -251,8 +245,7 @@ TEST(the_report_stands_alone)
     assert_null(strstr(html, "href=\"http"));
     assert_null(strstr(html, "@import"));
     for (int i = 0; i < thesis_figure_count(); i++) {
-        char again[64];
-        snprintf(again, sizeof again, "<code>impactlab figures %s</code>", thesis_figure_at(i)->id);
+        const char *again = formatted("<code>impactlab figures %s</code>", thesis_figure_at(i)->id);
         fail_if(strstr(html, again) == NULL, "%s is not in the report", thesis_figure_at(i)->id);
     }
     assert_non_null(strstr(html, "82.92"));
@@ -262,7 +255,7 @@ TEST(the_report_stands_alone)
     assert_non_null(first);
     assert_non_null(strstr(html, " id=\"i1-"));
     free(html);
-    SCOPED(free_kept) char *pdf = read_file("report/report.pdf", &length);
+    KEPT_TEXT(pdf) = read_file("report/report.pdf", &length);
     assert_non_null(memmem(pdf, length, "%PDF-", 5));
     assert_null(memmem(pdf, length, "/Type3", 6));
     assert_non_null(memmem(pdf, length, "/Outlines", 9));
@@ -301,9 +294,7 @@ static double number_behind(const char *csv, const char *start)
 // The number in the second column of the line that begins with a quantity.
 static double value_in(const char *csv, const char *quantity)
 {
-    char start[80];
-    snprintf(start, sizeof start, "\n%s,", quantity);
-    return number_behind(csv, start);
+    return number_behind(csv, formatted("\n%s,", quantity));
 }
 
 TEST(captions_name_the_constants_of_the_printed_model)
@@ -344,7 +335,7 @@ TEST(chapters_2_and_3_have_one_time_axis)
 
 TEST(the_printed_peak_is_a_point)
 {
-    SCOPED(free_kept) char *csv = csv_of("3.4");
+    KEPT_TEXT(csv) = csv_of("3.4");
     const char *row = strstr(csv, ",Table 4.3,");
     assert_non_null(row);
     assert_non_null(strstr(row, ",1.84"));
@@ -355,7 +346,7 @@ TEST(the_printed_peak_is_a_point)
 // (4.3) and (4.4) that the drawing does not use; and the wall stops the point of collision.
 TEST(the_cut_body_is_in_balance)
 {
-    SCOPED(free_kept) char *csv = csv_of("4.2");
+    KEPT_TEXT(csv) = csv_of("4.2");
     double half = 0.25, torque = value_in(csv, "hinge torque impulse Y");
     check_relative(torque, -half * value_in(csv, "hinge impulse X"), 1e-9);
     check_relative(value_in(csv, "jump of the point of collision's velocity"),
@@ -365,19 +356,17 @@ TEST(the_cut_body_is_in_balance)
 // Both states of 3.1 lie on the constraint (3.9).
 TEST(the_last_link_goes_through_the_contact_point)
 {
-    SCOPED(free_kept) char *csv = csv_of("3.1");
+    KEPT_TEXT(csv) = csv_of("3.1");
     check_close(value_in(csv, "constraint (3.9)"), 0, 1e-9);
     check_relative(value_in(csv, "b") / value_in(csv, "a"), tan(0.1), 1e-12);
 }
 
 TEST(the_algorithm_has_the_thesis_numbers)
 {
-    SCOPED(free_kept) char *csv = csv_of("T3.2");
+    KEPT_TEXT(csv) = csv_of("T3.2");
     const char *at = csv;
     for (EACH_TEXT(c, "1", "2", "2.1", "2.2", "3", "3.1", "3.2", "4")) {
-        char start[8];
-        snprintf(start, sizeof start, "\n%s,", *c);
-        at = strstr(at, start);
+        at = strstr(at, formatted("\n%s,", *c));
         assert_non_null(at);
         at++;
     }
@@ -387,7 +376,7 @@ TEST(the_algorithm_has_the_thesis_numbers)
 // their difference.
 TEST(printed_values_have_residuals)
 {
-    SCOPED(free_kept) char *csv = csv_of("forces");
+    KEPT_TEXT(csv) = csv_of("forces");
     double printed = number_behind(csv, "force k2 x 100[N],max_force_energy printed,1,");
     double computed = number_behind(csv, "force k2 x 100[N],max_force_energy,1,");
     check_close(printed, 23.93, 0);
@@ -407,7 +396,7 @@ TEST(the_printed_arm_needs_its_second_run)
     static const char *const starts[] = {"\"two runs, h = 1\u2009ms\",map,",
                                          "\"one run, 1\u2009ms\",map,",
                                          "\"one run, 0.2\u2009ms\",map,"};
-    SCOPED(free_kept) char *csv = csv_of("beta-gamma-printed");
+    KEPT_TEXT(csv) = csv_of("beta-gamma-printed");
     double least[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, thesis = HUGE_VAL;
     int cells = 0;
     for (int panel = 0; panel < 3; panel++) {

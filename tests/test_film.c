@@ -103,10 +103,9 @@ TEST(test_frames)
 static void expect_same_frames(const char *one, const char *two, int count)
 {
     for (int i = 1; i <= count; i++) {
-        char command[600], first[256];
-        snprintf(first, sizeof first, "%s/%s/frame-%05d.png", test_folder, one, i);
-        snprintf(command, sizeof command, "cmp %s %s/%s/frame-%05d.png", first, test_folder, two,
-                 i);
+        char command[600];
+        snprintf(command, sizeof command, "cmp %s %s/%s/frame-%05d.png",
+                 formatted("%s/%s/frame-%05d.png", test_folder, one, i), test_folder, two, i);
         assert_int_equal(system(command), 0);
     }
 }

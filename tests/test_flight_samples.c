@@ -1,7 +1,6 @@
 // Samples of the rig that are taken in flight while a step goes on: a loop from one to the next is
 // the run to the last bit, and what they read is what is read where every one of them ends a step,
 // with a piezo film, which these laws do not read, and in a loop that a program stops anywhere.
-#include "src/base/random.h"
 #include "src/run/loop.h"
 #include "src/study/batch.h"
 #include "tests/rig_fixture.h"
@@ -72,8 +71,8 @@ static double signal_of(const sample *row, size_t offset)
 static double largest_of(const trace *t, size_t offset)
 {
     double most = 1e-3;
-    for (size_t i = 0; i < t->row_count; i++) {
-        most = fmax(most, fabs(signal_of(&t->rows[i], offset)));
+    for (EACH_ROW(row, t)) {
+        most = fmax(most, fabs(signal_of(row, offset)));
     }
     return most;
 }
@@ -212,8 +211,7 @@ static void check_same_run(const run_result *whole, const run_result *loop, cons
 static void check_loops(uint64_t seed, looping how)
 {
     static char name[] = "loop", none[] = "";
-    random_generator g;
-    random_seed(&g, seed);
+    random_generator g = seeded(seed);
     for (int i = 0; i < RUNS; i++) {
         const drawn_settings drawn = draw(&g);
         const scenario s = {.name = name,
@@ -221,10 +219,10 @@ static void check_loops(uint64_t seed, looping how)
                             .title = none,
                             .description = none,
                             .parameters = drawn_parameters(&drawn)};
-        SCOPED(run_finish) run_result whole = run_done(&s, true);
+        KEPT_RUN(whole) = run_done(&s, true);
 
         const loop_options options = {.keep_trace = true};
-        SCOPED(loop_destroy_kept) run_loop *l;
+        KEPT_LOOP(l);
         DONE(loop_create(&l, &s, &options, &f));
         SCOPED(free_kept) void *bytes = malloc(loop_saved_size(l));
         assert_non_null(bytes);
@@ -254,9 +252,8 @@ TEST(samples_on_the_way_are_those_at_ends_of_steps)
 // Number i of the random arms under random laws, the same for every caller.
 static status make(void *context, size_t i, scenario *made, fault *f)
 {
-    random_generator g;
+    random_generator g = seeded(100 + i);
     (void)context, (void)f;
-    random_seed(&g, 100 + i);
     const drawn_settings drawn = draw(&g);
     made->parameters = drawn_parameters(&drawn);
     return STATUS_OK;
@@ -271,7 +268,7 @@ TEST(runs_side_by_side_are_single_runs)
     for (size_t i = 0; i < RUNS; i++) {
         scenario s = {0};
         make(NULL, i, &s, NULL);
-        SCOPED(run_finish) run_result single = run_done(&s, false);
+        KEPT_RUN(single) = run_done(&s, false);
         check_same_summary(&together[i], &single.summary);
     }
 }

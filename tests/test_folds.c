@@ -28,7 +28,7 @@ TEST(test_an_arm_folded_over_the_hub_ends_the_run)
                  "arm.k2=0.27"),
     };
     for (EACH(c, arms)) {
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         run_with(*c, true, &r);
         const trace *t = &r.trace;
         assert_int_equal(r.summary.status, STATUS_FOLDED);
@@ -37,7 +37,7 @@ TEST(test_an_arm_folded_over_the_hub_ends_the_run)
 
         // the last rows: ever more force on ever less lever
         assert_true(t->row_count > 10);
-        const sample *last = &t->rows[t->row_count - 1];
+        const sample *last = LAST_ROW(t);
         const double bend = fabs(remainder(last->last_angle - last->first_angle, 2 * M_PI));
         assert_true(bend > 2);
         assert_true(isfinite(r.summary.peak_force_N) && r.summary.peak_force_N < 1e6);
@@ -51,7 +51,7 @@ TEST(test_the_force_near_a_fold_is_that_of_another_engine)
     static const char *const further[] = {"", "arm.tip_mass=1e-15 method.step=1e-4"};
     double peak[2];
     for (int i = 0; i < 2; i++) {
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         run_with(given("wall.kind=plane arm.mass=0.659275 arm.length=0.888161 arm.k2=0.075065 "
                        "arm.hub_inertia=0.000270442 wall.angle=0.190554 motor.voltage=4.96717 "
                        "run.duration=0.4 motor.back_emf=1 %s",
@@ -67,7 +67,7 @@ TEST(test_the_force_near_a_fold_is_that_of_another_engine)
 TEST(test_no_step_leads_through_a_fold)
 {
     for (EACH_TEXT(c, "motor.voltage=8.6", "motor.voltage=8.8", "motor.voltage=9.8")) {
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         run_with(SETTINGS("wall.kind=plane", "wall.angle=0.0018", "wall.restitution=0.08",
                           "arm.mass=1.5", "arm.length=0.3", "arm.hub_inertia=0.00036",
                           "arm.k2=0.27", "arm.tip_mass=1e-15", "run.duration=0.3", *c),
@@ -80,8 +80,8 @@ TEST(test_no_step_leads_through_a_fold)
 // as brief as is no reason to leave the series of two links.
 TEST(test_a_braked_pair_stays_with_its_series)
 {
-    SCOPED(run_finish) run_result r;
-    SCOPED(run_finish) run_result usual;
+    KEPT_RUN(r);
+    KEPT_RUN(usual);
     run_with(given("wall.kind=point arm.hub_joint=beam motor.voltage=-7.4496752248724825 "
                    "motor.torque_constant=10.322410847758455 motor.back_emf=17.837703213025179 "
                    "motor.resistance=3.5671540043350509 motor.viscous_friction=0.17745084082087847 "

@@ -1,5 +1,4 @@
 // When a force has settled, and the largest mean over a window, on forces known in closed form.
-#include "src/base/random.h"
 #include "src/run/recording.h"
 #include "src/contact/contact_machine.h"
 #include "tests/rig_fixture.h"
@@ -134,8 +133,7 @@ TEST(a_history_keeps_all_of_its_steps)
 // the crossing is that of the line, for any unit of the force.
 TEST(lines_are_crossed_where_they_are)
 {
-    random_generator g;
-    random_seed(&g, 5);
+    random_generator g = seeded(5);
     for (int i = 0; i < 2000; i++) {
         const double final = pow(10, 12 * random_uniform(&g) - 6);
         const double edge = final - SETTLED_BAND * final, share = random_uniform(&g);
@@ -156,8 +154,7 @@ TEST(lines_are_crossed_where_they_are)
 TEST(from_the_instant_found_the_force_stays)
 {
     enum { STEPS = 30, LOOKS = 200 };
-    random_generator g;
-    random_seed(&g, 6);
+    random_generator g = seeded(6);
     int within = 0, between = 0;
     for (int round = 0; round < 300; round++) {
         SCOPED(shared_array_finish) shared_array h;
@@ -259,17 +256,11 @@ TEST(an_impulse_counts_as_long_as_the_window_holds_it)
 // Impulse of the force over a run, as the motion itself integrates it [N s].
 static double pressed(const parameters *p)
 {
-    motion_report report;
-    arm a = arm_of(p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p->method);
-    assert_non_null(m);
-    motion_start(&a, m, p->initial.angle, p->initial.velocity);
+    STARTED(a, m, p, NULL, p->initial.angle, p->initial.velocity);
     while (m->state[SLOT_TIME] < p->run.duration) {
-        assert_int_equal(motion_step(&a, m, p->run.duration, p->method.step, &report), STATUS_OK);
-        motion_apply(&a, m, &report);
+        step_on(&a, m, p->run.duration, p->method.step);
     }
-    const double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE];
-    return integral;
+    return state_quadratures(m, m->state)[QUADRATURE_FORCE];
 }
 
 // The modes of a damped chain decay within nanoseconds of an impact, in which they press with
@@ -286,7 +277,7 @@ TEST(the_force_kept_has_the_impulse_of_decays)
         const parameters p = rig_parameters(settings);
         const scenario one = {.parameters = p};
         const run_options kept = {.keep_trace = true, .rows_expected = 100};
-        SCOPED(run_finish) run_result run;
+        KEPT_RUN(run);
         assert_int_equal(run_scenario_with(&one, &kept, &run), STATUS_OK);
         const shared_array *h = &run.history.forces;
         double sum = 0;

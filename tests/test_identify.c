@@ -70,7 +70,7 @@ static void record(recording_made *r, const double *values, int seed, int links)
     parameters p = s.parameters;
     DONE(parameter_set_number(&p, PARAMETER_INDEX(arm.links), links, &f));
     DONE(scenario_take_parameters(&s, &p, &f));
-    SCOPED(run_finish) run_result run = run_done(&s, true);
+    KEPT_RUN(run) = run_done(&s, true);
     snprintf(r->file, sizeof r->file, "/tmp/test_identify.XXXXXX");
     FILE *file = fdopen(mkstemp(r->file), "w");
     assert_non_null(file);
@@ -115,7 +115,7 @@ static void read_exactly(const recording_made *r, const double *values, double a
     s.parameters.sensor.encoder_counts = s.parameters.sensor.adc_bits = 0;
     s.parameters.sensor.tachometer_noise = s.parameters.sensor.fsr_noise = 0;
     const loop_options options = {.commanded = true};
-    SCOPED(loop_destroy_kept) run_loop *loop;
+    KEPT_LOOP(loop);
     DONE(loop_create(&loop, &s, &options, &f));
     for (int k = 0; k < SAMPLES - 1; k++) {
         sensor_reading now;

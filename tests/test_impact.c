@@ -7,8 +7,7 @@ enum { LARGEST = 16 };
 static arm make_arm(const char *const *settings)
 {
     parameters p = fixture_parameters(settings);
-    arm a = arm_of(&p);
-    return a;
+    return arm_of(&p);
 }
 
 // Near the wall, bent and closing in; different for each seed.

@@ -131,12 +131,10 @@ TEST(test_curves_of_a_pane_differ_with_few_colours)
         ex.state.looks.shown_depth = DEPTH_16;
         press(&ex, ":panes 12345678<Enter>");
         if (theme == COLOURS_LIGHT) {
-            char line[128];
             int pair[2] = {0};
             find_alike(theme, pair);
-            snprintf(line, sizeof line, "trace %s %s", signal_table[pair[0]].name,
-                     signal_table[pair[1]].name);
-            assert_true(explorer_carry_out(&ex, line));
+            assert_true(explorer_carry_out(&ex, formatted("trace %s %s", signal_table[pair[0]].name,
+                                                          signal_table[pair[1]].name)));
         }
         assert_true(screen_resize(&s, 120, 80));
         explorer_draw(&ex, &s);

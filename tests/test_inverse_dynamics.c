@@ -142,7 +142,7 @@ static travelled travel(const char *const *settings)
                                  .link_inertia = p.arm.link_inertia,
                                  .k2 = p.arm.k2 * p.belief.k2_factor};
     double departs = departure(&believed), arrives = departs + TRAVEL_TIME;
-    SCOPED(run_finish) run_result r = rig_run(all, true);
+    KEPT_RUN(r) = rig_run(all, true);
     travelled result = {0};
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (size_t i = 0; i < r.trace.row_count; i++) {
@@ -204,9 +204,9 @@ TEST(wrong_stiffness_costs)
 
 static const event *first_impact(const run_result *r)
 {
-    for (size_t i = 0; i < r->trace.event_count; i++) {
-        if (r->trace.events[i].kind == EVENT_IMPACT) {
-            return &r->trace.events[i];
+    for (EACH_EVENT(e, &r->trace)) {
+        if (e->kind == EVENT_IMPACT) {
+            return e;
         }
     }
     fail_msg("no impact");
@@ -217,10 +217,8 @@ TEST(tip_meets_the_wall_as_fast_as_planned)
 {
     for (EACH_OF(double, c, 0.1, 0.2, 0.4, 0.8)) {
         for (int seed = 1; seed <= 5; seed++) {
-            char speed[48];
-            snprintf(speed, sizeof speed, "control.arrival_speed=%g", *c);
-            SCOPED(run_finish)
-            run_result r = rig_run(
+            const char *speed = formatted("control.arrival_speed=%g", *c);
+            KEPT_RUN(r) = rig_run(
                 given("control.law=inverse-dynamics %s control.seed=%d", speed, seed), false);
             check_relative(first_impact(&r)->speed, *c, 0.03);
             check_close(first_impact(&r)->time, 0.583, 0.006);
@@ -233,14 +231,12 @@ TEST(tip_meets_the_wall_as_fast_as_planned)
 TEST(force_follows_its_plan)
 {
     for (EACH_TEXT(c, "control.arrival_speed=0", "control.arrival_speed=0.3")) {
-        SCOPED(run_finish)
-        run_result r =
+        KEPT_RUN(r) =
             rig_run(given("control.law=inverse-dynamics sensor.ideal=true motor.stiction=0 "
                           "control.rate=5000 control.transition_time=0.1 %s",
                           *c),
                     true);
-        for (size_t k = 0; k < r.trace.row_count; k++) {
-            const sample *row = &r.trace.rows[k];
+        for (EACH_ROW(row, &r.trace)) {
             // a touch without speed comes when the force is above what the tip is off its plan
             check_close(row->force, row->calculated_force, row->time < 0.62 ? 0.15 : 0.01);
         }
@@ -267,12 +263,10 @@ TEST(press_ends_near_its_force)
 
 TEST(early_touch_moves_the_plan_on)
 {
-    SCOPED(run_finish)
-    run_result r = rig_run(given("control.law=inverse-dynamics belief.wall_error=0.02"), true);
+    KEPT_RUN(r) = rig_run(given("control.law=inverse-dynamics belief.wall_error=0.02"), true);
     double touch = first_impact(&r)->time;
     check_below(touch, 0.5);
-    for (size_t i = 0; i < r.trace.row_count; i++) {
-        const sample *row = &r.trace.rows[i];
+    for (EACH_ROW(row, &r.trace)) {
         if (row->time < touch || row->time > touch + 0.0101) {
             check_close(row->controller_mode, row->time < touch ? 0 : 1, 0);
         }

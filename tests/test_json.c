@@ -17,7 +17,7 @@ TEST(json_is_what_jansson_reads)
     const char *source = "{\"b\": [1, 0.1, null, true], \"a\": {\"quote\\\" \\u00e9\\n\": \"\"}, "
                          "\"empty\": {}, \"none\": [], \"list\": [{\"x\": -1e-300}, []]}";
     json_t *value = json_loads(source, 0, NULL);
-    SCOPED(free_kept) char *text = written(json_deep_copy(value));
+    KEPT_TEXT(text) = written(json_deep_copy(value));
     json_t *again = json_loads(text, 0, NULL);
     assert_non_null(again);
     assert_true(json_equal(value, again));
@@ -29,9 +29,8 @@ TEST(json_is_what_jansson_reads)
 
 TEST(text_without_utf8_is_made_readable)
 {
-    SCOPED(free_kept)
-    char *text = written(json_text("a\xff\x80\x7f"
-                                   "b"));
+    KEPT_TEXT(text) = written(json_text("a\xff\x80\x7f"
+                                        "b"));
     assert_string_equal(text, "\"a??\x7f"
                               "b\"\n");
     free(text);
@@ -42,7 +41,7 @@ TEST(text_without_utf8_is_made_readable)
 TEST(numbers_that_are_missing_are_null)
 {
     const double values[] = {1.5, (double)NAN, (double)INFINITY, 0.1};
-    SCOPED(free_kept) char *text = written(json_numbers(values, 4));
+    KEPT_TEXT(text) = written(json_numbers(values, 4));
     assert_string_equal(text, "[1.5, null, null, 0.1]\n");
     free(text);
     text = written(json_numbers(NULL, 0));
@@ -51,15 +50,14 @@ TEST(numbers_that_are_missing_are_null)
 
 TEST(objects_have_a_line_a_member)
 {
-    SCOPED(free_kept)
-    char *text = written(json_loads("{\"a\": 1, \"b\": {}, \"c\": [{\"d\": 2}]}", 0, NULL));
+    KEPT_TEXT(text) = written(json_loads("{\"a\": 1, \"b\": {}, \"c\": [{\"d\": 2}]}", 0, NULL));
     assert_string_equal(text, "{\n  \"a\": 1,\n  \"b\": {},\n  \"c\": [\n    {\n      \"d\": 2\n"
                               "    }\n  ]\n}\n");
 }
 
 TEST(lists_within_lists_have_lines_of_their_own)
 {
-    SCOPED(free_kept) char *text = written(json_loads("[[1, 2], [], {}]", 0, NULL));
+    KEPT_TEXT(text) = written(json_loads("[[1, 2], [], {}]", 0, NULL));
     assert_string_equal(text, "[\n  [1, 2],\n  [],\n  {}\n]\n");
 }
 

@@ -129,7 +129,7 @@ TEST(test_sentences_are_whole_and_numbers_short)
         OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, cases[i / SIZES].keys);
         assert_shows_at(&ex, size[0], size[1], cases[i / SIZES].says);
-        SCOPED(free_kept) char *text = picture(&ex, size[0], size[1], GLYPHS_BRAILLE);
+        KEPT_TEXT(text) = picture(&ex, size[0], size[1], GLYPHS_BRAILLE);
         assert_null(strstr(text, cases[i / SIZES].never));
     }
 
@@ -280,9 +280,7 @@ TEST(test_help_is_where_one_stands)
         {"goal", ":solve"},  {"below", ":solve"},
     };
     for (EACH(c, words)) {
-        char keys[64];
-        snprintf(keys, sizeof keys, "<C-p>%s", (*c)[0]);
-        press(&ex, keys);
+        press(&ex, formatted("<C-p>%s", (*c)[0]));
         assert_shows(&ex, (*c)[1]);
         press(&ex, "<Esc>");
     }

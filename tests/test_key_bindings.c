@@ -51,9 +51,8 @@ TEST(test_wrong_keys_are_told)
     assert_int_equal(ex.state.keys.count, 0);
     // a full table
     for (int i = 0; i < USER_KEYS; i++) {
-        char line[32];
-        snprintf(line, sizeof line, "key %c%c play", i < 32 ? 0xc3 : 0xc4, 0xa0 + i % 32);
-        assert_true(explorer_carry_out(&ex, line));
+        assert_true(explorer_carry_out(
+            &ex, formatted("key %c%c play", i < 32 ? 0xc3 : 0xc4, 0xa0 + i % 32)));
     }
     assert_false(explorer_carry_out(&ex, "key x play"));
     assert_true(explorer_carry_out(&ex, "unkey \u00e4"));
@@ -72,9 +71,8 @@ TEST(test_the_help_shows_the_keys_that_are)
         int count = help_write(&ex.state.keys, width, lines, 600);
         assert_true(count < 600);
         for (int i = 0; i < explorer_command_count; i++) {
-            char call[32];
             bool found = false;
-            snprintf(call, sizeof call, ":%s", explorer_command_table[i].name);
+            const char *call = formatted(":%s", explorer_command_table[i].name);
             for (int k = 0; k < count && !found; k++) {
                 found = strstr(lines[k].text, call) != NULL;
             }
@@ -131,7 +129,6 @@ TEST_IN_FOLDER(test_settings_keep_looks_axes_and_keys)
 
 TEST_IN_FOLDER(test_faults_in_settings_are_told_with_their_place)
 {
-    char wanted[128];
     SCOPED(explorer_finish) explorer ex;
     make_settings("# mine\n"
                   "key x step 5\n"
@@ -146,9 +143,9 @@ TEST_IN_FOLDER(test_faults_in_settings_are_told_with_their_place)
     assert_int_equal(ex.state.looks.theme, COLOURS_LIGHT);
     assert_string_equal(key_line(&ex.state.keys, 'x'), "step 5");
     assert_true(ex.state.message.warning);
-    snprintf(wanted, sizeof wanted, "%s/impactlab/lab:3:7 is ignored: there is no command 'stepp'",
-             test_folder);
-    assert_non_null(strstr(ex.state.message.text, wanted));
+    assert_non_null(strstr(
+        ex.state.message.text,
+        formatted("%s/impactlab/lab:3:7 is ignored: there is no command 'stepp'", test_folder)));
     assert_non_null(strstr(ex.state.message.text, "(and 2 more)"));
     assert_false(explorer_carry_out(&ex, "remember"));
     assert_non_null(strstr(ex.state.message.text, "left alone"));

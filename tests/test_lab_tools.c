@@ -183,14 +183,12 @@ static void write_recording(explorer *ex, const char *path)
 TEST(the_arm_that_was_measured_is_found)
 {
     FILE_FOR_A_WHILE(path, "/tmp/test_lab_tools_data.csv");
-    char keys[LINE_TEXT];
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":set arm.k2 5.5<Enter>");
     write_recording(&ex, path);
     press(&ex, "u");
     press_warns(&ex, ":identify k2<Enter>", ":data");
-    snprintf(keys, sizeof keys, ":data %s<Enter>:residual force_reading, encoder<Enter>", path);
-    press(&ex, keys);
+    press(&ex, formatted(":data %s<Enter>:residual force_reading, encoder<Enter>", path));
 
     // what was measured less what this run reads, at the rows of the table
     for (size_t i = 0; i < SIZES; i++) {
@@ -218,14 +216,12 @@ TEST(the_arm_that_was_measured_is_found)
 TEST(data_without_a_command_say_what_is_missing_and_what_for)
 {
     FILE_FOR_A_WHILE(path, "/tmp/test_lab_tools_no_command.csv");
-    char keys[LINE_TEXT];
     OPEN_EXPLORER(ex, "compare/hybrid");
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fputs("time[s],encoder[rad]\n0,0\n0.1,0.01\n0.2,0.02\n", file);
     assert_int_equal(fclose(file), 0);
-    snprintf(keys, sizeof keys, ":data %s<Enter>", path);
-    press(&ex, keys);
+    press(&ex, formatted(":data %s<Enter>", path));
     press_warns(&ex, ":identify k2<Enter>", "no column 'command', the voltage [V] with which");
     assert_non_null(strstr(ex.state.message.text, "record it, or rename its heading"));
 }
@@ -382,9 +378,9 @@ TEST_IN_FOLDER(the_walk_through_does_what_it_says)
 
         // what was saved gives the run again
         free(save_and_compare(&ex.state.session));
-        SCOPED(scenario_finish) scenario saved;
+        KEPT_SCENARIO(saved);
         assert_int_equal(scenario_open(&saved, "mine.yaml", NULL, NULL), STATUS_OK);
-        SCOPED(run_finish) run_result again;
+        KEPT_RUN(again);
         run_scenario(&saved, true, &again);
         assert_same_trace(&ex.state.session.run.trace, &again.trace);
     }

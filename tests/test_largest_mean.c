@@ -1,7 +1,6 @@
 // The largest mean of the force over a sliding window, against analytic results and plain sums.
 #include "src/run/recording.h"
 
-#include "src/base/random.h"
 #include "tests/rig_fixture.h"
 
 static run_result empty_run(void)
@@ -144,8 +143,7 @@ static double integral_to(const run_result *r, double time)
 TEST(no_window_of_random_forces_has_more)
 {
     enum { ROUNDS = 60, FINE = 3000 };
-    random_generator g;
-    random_seed(&g, 11);
+    random_generator g = seeded(11);
     for (int round = 0; round < ROUNDS; round++) {
         run_result r = empty_run();
         double time = 0, last = 1;

@@ -3,7 +3,7 @@
 
 static void assert_pictured(explorer *ex, int width, int height, glyph_set set, const char *wanted)
 {
-    SCOPED(free_kept) char *text = picture(ex, width, height, set);
+    KEPT_TEXT(text) = picture(ex, width, height, set);
     fail_if(strstr(text, wanted) == NULL, "'%s' is not on the screen of %d x %d:\n%s", wanted,
             width, height, text);
 }
@@ -15,9 +15,8 @@ TEST(test_the_panel_is_whole_on_every_screen)
     for (EACH_TEXT(c, "hybrid", "recovering", "force-pd", "force-integral", "discontinuous",
                    "optimal", "predictive", "speed-limit", "open-loop", "bang-bang",
                    "reverse-torque")) {
-        char line[64], mode[MODE_NAME_SIZE], wanted[64];
-        snprintf(line, sizeof line, "law %s", *c);
-        assert_true(explorer_carry_out(&ex, line));
+        char mode[MODE_NAME_SIZE], wanted[64];
+        assert_true(explorer_carry_out(&ex, formatted("law %s", *c)));
         session_seek(&ex.state.session, 0.9);
         law_mode_name(state_law_modes(&ex.state),
                       session_sample(&ex.state.session)->controller_mode, mode, sizeof mode);
@@ -86,7 +85,7 @@ TEST(test_a_lock_is_saved_and_run_again_byte_for_byte)
     OPEN_EXPLORER(ex, "compare/recovering");
     press(&ex, ":seek 0.4<Enter>:lock approach<Enter>:seek 0.6<Enter>LLb:seek 0.8<Enter>F");
     assert_false(ex.state.message.warning);
-    SCOPED(free_kept) char *text = save_and_compare(&ex.state.session);
+    KEPT_TEXT(text) = save_and_compare(&ex.state.session);
     assert_non_null(strstr(text, "set: {control.lock: \"approach\"}"));
 }
 

@@ -84,7 +84,7 @@ TEST(a_transition_leads_where_it_is_told)
                    {"control.transition_time", "0.35", 0.05, 1},
                    {"control.transition_time", "0.06", 0.1, 1}};
     for (EACH(c, changes)) {
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         assert_int_equal(run_with_change(settings, c->path, c->text, touch + c->after, &r),
                          STATUS_OK);
         check_relative(r.summary.steady_force_N, c->force, 0.1);
@@ -94,11 +94,10 @@ TEST(a_transition_leads_where_it_is_told)
 // A rate that a script sets at the start is the rig's from its first sample on.
 TEST(a_rate_set_at_the_start_is_that_of_the_rig)
 {
-    SCOPED(run_finish) run_result r;
+    KEPT_RUN(r);
     const char *const *const settings = given("control.law=hybrid control.rate=200");
     assert_int_equal(run_with_change(settings, "control.rate", "100", 0, &r), STATUS_OK);
-    SCOPED(run_finish)
-    run_result from_the_start = rig_run(given("control.law=hybrid control.rate=100"), false);
+    KEPT_RUN(from_the_start) = rig_run(given("control.law=hybrid control.rate=100"), false);
     check_relative(r.summary.peak_force_N, from_the_start.summary.peak_force_N, 1e-9);
     check_relative(r.summary.first_contact_s, from_the_start.summary.first_contact_s, 1e-9);
 }
@@ -106,7 +105,7 @@ TEST(a_rate_set_at_the_start_is_that_of_the_rig)
 // A law that refuses a change says when.
 TEST(a_refused_change_says_its_time)
 {
-    SCOPED(run_finish) run_result r;
+    KEPT_RUN(r);
     assert_int_equal(run_with_change(given("control.law=observer control.force=1"), "control.rate",
                                      "250", 0.3, &r),
                      STATUS_BAD_SCENARIO);
@@ -117,7 +116,7 @@ TEST(a_refused_change_says_its_time)
 // A limit that changes during the run is passed to the forecast, too.
 TEST(a_limit_may_change)
 {
-    SCOPED(run_finish) run_result r;
+    KEPT_RUN(r);
     const char *const *const settings =
         given("control.law=speed-limit control.force_limit=4 control.approach_voltage=5 "
               "control.speed_limit=100 control.force=0.3 initial.angle=-0.4");

@@ -40,8 +40,7 @@ TEST(hybrid_force_follows_its_coefficients)
 // The impact mode starts where the hub is and ends at the angle that (5.23) gives.
 TEST(quintic_joins_contact_and_rest)
 {
-    SCOPED(run_finish)
-    run_result r = rig_run(given("control.law=hybrid sensor.ideal=true"), true);
+    KEPT_RUN(r) = rig_run(given("control.law=hybrid sensor.ideal=true"), true);
     const trace *t = &r.trace;
     size_t first = 0, last = 0;
     for (size_t i = 0; i < t->row_count; i++) {
@@ -58,7 +57,7 @@ TEST(quintic_joins_contact_and_rest)
     check_close(end->desired_velocity, 0, 1e-2);
     check_close(t->rows[last + 1].controller_mode, 2, 0);
     // (5.14) with the model's own acceleration is the true force to the motion's nonlinearity
-    check_close(t->rows[t->row_count - 1].calculated_force, r.summary.steady_force_N, 0.05);
+    check_close(LAST_ROW(t)->calculated_force, r.summary.steady_force_N, 0.05);
 }
 
 TEST(gains_have_both_readings)
@@ -180,8 +179,7 @@ TEST(predictive_law_keeps_its_limit)
 {
     for (EACH_OF(double, c, 0.7, 1, 1.5, 2)) {
         for (int k = 0; k < 8; k++) {
-            char limit[48];
-            snprintf(limit, sizeof limit, "control.force_limit=%g", *c);
+            const char *limit = formatted("control.force_limit=%g", *c);
             summary fast =
                 rig_summary_with("control.law=predictive %s control.seed=%d initial.angle=%g "
                                  "control.force=0.5 control.approach_voltage=5",
@@ -210,15 +208,12 @@ TEST(bang_bang_hits_harder_than_the_plain_approach)
 // Speed of the tip at the first touch and the peak that follows, wall at `angle` [rad].
 static double peak_of_touch(const char *angle, double *tip_speed)
 {
-    char setting[64];
-    snprintf(setting, sizeof setting, "wall.angle=%s", angle);
-    SCOPED(scenario_finish) scenario s = shipped_with("compare/vibration-phase", setting);
-    SCOPED(run_finish) run_result r = run_done(&s, false);
+    KEPT_SCENARIO(s) = shipped_with("compare/vibration-phase", formatted("wall.angle=%s", angle));
+    KEPT_RUN(r) = run_done(&s, false);
     const double *velocity = r.landing.before.velocity;
     assert_true(r.landing.time > 0);
     *tip_speed = 0.5 * (velocity[1] + velocity[2]);
-    double peak = r.summary.peak_force_N;
-    return peak;
+    return r.summary.peak_force_N;
 }
 
 TEST(same_tip_speed_at_another_phase_gives_another_peak)
@@ -255,14 +250,13 @@ TEST(every_law_ends_near_its_force)
 
 TEST(recovering_law_returns_to_position_control)
 {
-    SCOPED(run_finish)
-    run_result r = rig_run(
+    KEPT_RUN(r) = rig_run(
         given("control.law=recovering control.approach_voltage=7 control.force=0.5 run.duration=2"),
         true);
     bool recovered = false, pressed_after = false;
-    for (size_t i = 0; i < r.trace.row_count; i++) {
-        recovered |= r.trace.rows[i].controller_mode == 3;
-        pressed_after |= recovered && r.trace.rows[i].controller_mode == 2;
+    for (EACH_ROW(row, &r.trace)) {
+        recovered |= row->controller_mode == 3;
+        pressed_after |= recovered && row->controller_mode == 2;
     }
     assert_true(recovered);
     assert_true(pressed_after);

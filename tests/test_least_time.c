@@ -2,7 +2,6 @@
 // leave less take longer.
 
 #include "src/arm/modes.h"
-#include "src/base/random.h"
 #include "src/base/dense.h"
 #include "src/predict/least_time.h"
 #include "tests/arm_fixture.h"
@@ -65,8 +64,7 @@ TEST(no_torque_does_better)
     least_time t = least_time_of(&p, 1, 0.05, 2);
     const int n = (int)lround(t.touch / LEAST_TIME_STEP);
     const double side = t.largest ? 1 : -1;
-    random_generator r;
-    random_seed(&r, 4);
+    random_generator r = seeded(4);
     for (int trial = 0; trial < 300; trial++) {
         double torque[4000], tip, press, sign = 1;
         for (int k = 0; k < n; k++) {

@@ -32,7 +32,7 @@ TEST(test_a_copy_keeps_its_lesson)
 {
     for (EACH_TEXT(c, "lessons/impulse-and-force", "lessons/two-predictors", "lessons/step-size",
                    "lessons/beta-and-gamma", "lessons/hybrid-law", "lessons/what-a-sensor-sees")) {
-        SCOPED(scenario_finish) scenario s = shipped(*c);
+        KEPT_SCENARIO(s) = shipped(*c);
         scenario copy = read_again(&s);
         SCOPED(explorer_finish) explorer ex;
         assert_int_equal(copy.lesson.step_count, s.lesson.step_count);
@@ -79,7 +79,7 @@ TEST(test_every_step_fits_a_small_screen)
     const lesson *l = &ex.state.session.base.lesson;
     for (int i = 0; i < l->step_count; i++) {
         ex.state.lesson = (lesson_progress){.on = true, .step = i};
-        SCOPED(free_kept) char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+        KEPT_TEXT(text) = picture(&ex, 80, 24, GLYPHS_BRAILLE);
         assert_non_null(strstr(text, "lesson, step"));
         assert_non_null(strstr(text, "energy"));
         free(text);
@@ -129,9 +129,7 @@ TEST(test_what_a_step_names_is_on_the_screen)
         {"what-a-sensor-sees", 5, false, "fsr_rise_time"},
     };
     for (EACH(c, named)) {
-        char name[64];
-        snprintf(name, sizeof name, "lessons/%s", c->lesson);
-        OPEN_EXPLORER(ex, name);
+        OPEN_EXPLORER(ex, formatted("lessons/%s", c->lesson));
         const lesson *l = &ex.state.session.base.lesson;
         for (int i = 0; i < c->step - !c->done; i++) {
             for (int k = 0; k < l->steps[i].command_count; k++) {
@@ -152,9 +150,7 @@ TEST(test_the_list_of_lessons_opens_the_first)
     press(&ex, ":lesson<Enter>");
     char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE), *at = text;
     for (int i = 1; i <= 6; i++) {
-        char title[16];
-        snprintf(title, sizeof title, "Lesson %d", i);
-        at = strstr(at, title);
+        at = strstr(at, formatted("Lesson %d", i));
         assert_non_null(at);
     }
     free(text);

@@ -9,7 +9,7 @@ enum { MOST = 200 };
 
 static linear_arm linearised(const char *name, const char *changes, linear_place place)
 {
-    SCOPED(scenario_finish) scenario s = shipped_with(name, changes);
+    KEPT_SCENARIO(s) = shipped_with(name, changes);
     linear_arm l;
     DONE(linear_arm_init(&l, &s.parameters, place, &f));
     return l;
@@ -68,10 +68,9 @@ TEST(zeros_to_the_hub_are_frequencies_of_the_held_arm)
     static const char *const joints[] = {"rigid", "spring arm.k1=90", "beam"};
     for (int i = 0; i < 6; i++) {
         const linear_place place = i % 2 == 0 ? LINEAR_FREE : LINEAR_CONTACT;
-        char changes[128];
-        snprintf(changes, sizeof changes, "arm.links=6 motor.voltage=0 arm.hub_joint=%s",
-                 joints[i / 2]);
-        SCOPED(scenario_finish) scenario s = shipped_with(ROUND, changes);
+        const char *changes =
+            formatted("arm.links=6 motor.voltage=0 arm.hub_joint=%s", joints[i / 2]);
+        KEPT_SCENARIO(s) = shipped_with(ROUND, changes);
         linear_arm with = linearised(ROUND, changes, place);
         double complex zeros[MOST];
         double frequencies[MOST], shapes[MOST];
@@ -153,7 +152,7 @@ TEST(what_has_no_linear_form_is_refused)
         {"wall.motion=sine", "moves", LINEAR_CONTACT},
     };
     for (EACH(c, cases)) {
-        SCOPED(scenario_finish) scenario s = shipped_with(ROUND, c->changes);
+        KEPT_SCENARIO(s) = shipped_with(ROUND, c->changes);
         linear_arm l;
         REFUSED(STATUS_BAD_ARGUMENT, c->says, linear_arm_init(&l, &s.parameters, c->place, &f));
     }
@@ -175,7 +174,7 @@ TEST(mat_files_are_read_element_by_element)
 {
     const double values[6] = {1, 2, 3, 4, 5, 6};
     const double complex roots[2] = {complex_of(1, 2), complex_of(3, -4)};
-    SCOPED(free_kept) char *bytes = NULL;
+    KEPT_TEXT(bytes) = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&bytes, &size);
     mat_file_begin(stream);

@@ -32,7 +32,7 @@ TEST(limits_are_those_found_otherwise)
         {"compare/force-pd", "control.rate=200", "control.force_gain", 1, 8, 4.12},
     };
     for (EACH(c, cases)) {
-        SCOPED(scenario_finish) scenario s = shipped_with(c->name, c->changes);
+        KEPT_SCENARIO(s) = shipped_with(c->name, c->changes);
         char range[64], *vary[] = {range};
         SCOPED(linear_survey_finish) linear_survey found;
         snprintf(range, sizeof range, "%s=%g:%g:2", c->path, c->from, c->to);
@@ -52,7 +52,7 @@ TEST(margins_are_met_by_the_poles)
         {"compare/hybrid", IDEAL "control.rate=300 control.delay=0.002"},
     };
     for (EACH(c, cases)) {
-        SCOPED(scenario_finish) scenario s = shipped_with((*c)[0], (*c)[1]);
+        KEPT_SCENARIO(s) = shipped_with((*c)[0], (*c)[1]);
         linear_arm l;
         linear_system loop = loop_of(&s, &l);
         linear_response r;
@@ -74,10 +74,9 @@ TEST(margins_are_met_by_the_poles)
 
         // and so does the delay
         if (m.delay_s + s.parameters.control.delay < 4 * period) {
-            char delay[256];
-            snprintf(delay, sizeof delay, "%s control.delay=%.12g", (*c)[1],
-                     s.parameters.control.delay + m.delay_s);
-            SCOPED(scenario_finish) scenario late = shipped_with((*c)[0], delay);
+            const char *delay = formatted("%s control.delay=%.12g", (*c)[1],
+                                          s.parameters.control.delay + m.delay_s);
+            KEPT_SCENARIO(late) = shipped_with((*c)[0], delay);
             double growth;
             DONE(linear_stability(&late, LINEAR_CONTACT, false, &growth, &f));
             check_close(growth * period, 0, 2e-2);
@@ -102,7 +101,7 @@ TEST(measured_loops_are_the_exact_ones)
         {"compare/force-pd", loaded}, {"compare/force-pd", IDEAL},
     };
     for (int i = 0; i < 5; i++) {
-        SCOPED(scenario_finish) scenario s = shipped_with(cases[i][0], cases[i][1]);
+        KEPT_SCENARIO(s) = shipped_with(cases[i][0], cases[i][1]);
         parameters *p = &s.parameters;
         p->code_allowed = i >= 3;
         if (i == 4) {
@@ -112,7 +111,7 @@ TEST(measured_loops_are_the_exact_ones)
 
         // one that does not hold the force is asked for that which it comes to
         for (int k = 0; k < 6 && i >= 3; k++) {
-            SCOPED(run_finish) run_result result;
+            KEPT_RUN(result);
             assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
             p->control.force = result.summary.steady_force_N;
         }
@@ -169,7 +168,7 @@ static const char *start_scaled(void *memory, const controller_setup *setup)
 // How often the arm loses contact with the loop gain so many times larger.
 static double losses_with(double factor)
 {
-    SCOPED(scenario_finish) scenario s = shipped_with("compare/observer", IDEAL "run.duration=6");
+    KEPT_SCENARIO(s) = shipped_with("compare/observer", IDEAL "run.duration=6");
     scaled scale = {.factor = factor, .rest = (double)NAN};
     run_loop *l;
     DONE(rig_create(&scale.inner, &s.parameters, NULL, &f));
@@ -213,7 +212,7 @@ TEST(measured_margins_are_those_of_runs)
         char changes[256];
         snprintf(changes, sizeof changes,
                  IDEAL "run.duration=6 control.delay=%.6g belief.delay_error=-%.6g", delay, delay);
-        SCOPED(run_finish) run_result result;
+        KEPT_RUN(result);
         s = shipped_with("compare/observer", changes);
         assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
         assert_true(isfinite(result.summary.settling_time_s) == !more); // or it never does
@@ -225,8 +224,7 @@ TEST(measured_margins_are_those_of_runs)
 // it back after (p C)^2/(2 f C): a micrometre is a separation.
 TEST(the_least_push_lifts_the_arm_by_a_micrometre)
 {
-    SCOPED(scenario_finish)
-    scenario s = shipped_with("corrected/first-impact", "motor.stiction=0 run.duration=4");
+    KEPT_SCENARIO(s) = shipped_with("corrected/first-impact", "motor.stiction=0 run.duration=4");
     linear_arm l;
     double push;
     DONE(linear_arm_init(&l, &s.parameters, LINEAR_CONTACT, &f));

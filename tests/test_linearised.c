@@ -1,7 +1,6 @@
 // The project's own predictor against the corrected simulation, on the cases of Tables 4.1-4.3.
 #include "src/predict/linearised.h"
 #include "tests/arm_fixture.h"
-#include "tests/motion_advance.h"
 
 static const double stiffness[] = {492, 49.2, 4.92};
 static const double voltage[] = {1, 2, 5, 10};
@@ -39,7 +38,7 @@ static comparison compare(double k2, double volts, const char *wall, const char 
 
     arm a;
     arm_init(&a, &s.parameters);
-    SCOPED(motion_destroy_kept) motion *m = before_impact(&a, &s.parameters.method);
+    KEPT_MOTION(m) = before_impact(&a, &s.parameters.method);
     assert_int_equal(predict_linearised(&a, &s.parameters.method, state_angles(m, m->state),
                                         state_velocities(m, m->state), &c.predicted),
                      STATUS_OK);
@@ -147,10 +146,9 @@ TEST(a_damped_hub_is_predicted_too)
     static const double volts[] = {2, 5, 10};
     int held = 0;
     for (int i = 0; i < 60; i++) {
-        char more[48];
-        snprintf(more, sizeof more, "motor.viscous_friction=%g", friction[i % 10]);
         comparison c =
-            compare(4.92, volts[i / 10 % 3], i < 30 ? "wall.kind=point" : "wall.kind=plane", more);
+            compare(4.92, volts[i / 10 % 3], i < 30 ? "wall.kind=point" : "wall.kind=plane",
+                    formatted("motor.viscous_friction=%g", friction[i % 10]));
         if (c.predicted.holds) {
             check_relative(c.predicted.force, c.simulated.first_pulse_peak_N, 0.01);
             held++;
@@ -165,7 +163,7 @@ TEST(in_flight_it_approaches_the_prediction_at_the_wall)
     comparison at_wall = compare(4.92, 1, "wall.kind=point", "arm.links=2");
     parameters p = fixture_parameters(NULL);
     arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
+    KEPT_MOTION(m) = motion_create(&a, &p.method);
     motion_report report;
     prediction early, late;
     motion_start(&a, m, 0, 0);
@@ -287,7 +285,7 @@ static void predict_and_follow(const char *joint, const char *links, const volta
 {
     parameters p = parameters_with("%s %s arm.k1=90 motor.voltage=1", joint, links);
     arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = before_impact(&a, &p.method);
+    KEPT_MOTION(m) = before_impact(&a, &p.method);
     prediction out;
     assert_int_equal(predict_pulse(&a, &p.method, state_angles(m, m->state),
                                    state_velocities(m, m->state), command, true, &out),
@@ -354,7 +352,7 @@ TEST(a_force_that_vanishes_ends_the_pulse)
 {
     parameters p = parameters_with("motor.voltage=1");
     arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = before_impact(&a, &p.method);
+    KEPT_MOTION(m) = before_impact(&a, &p.method);
     const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     prediction plain;
     assert_int_equal(predict_pulse(&a, &p.method, q, w, NULL, true, &plain), STATUS_OK);

@@ -6,7 +6,7 @@
 
 static links_study studied(const char *name, char *const *changes, int count)
 {
-    SCOPED(scenario_finish) scenario s = shipped(name);
+    KEPT_SCENARIO(s) = shipped(name);
     links_study study;
     assert_int_equal(scenario_override_all(&s, changes, count, NULL, NULL), STATUS_OK);
     DONE(links_study_compute(&s, NULL, &study, &f));
@@ -81,12 +81,10 @@ TEST(a_blow_is_what_rows_and_events_come_to)
         char *changes[] = {(char *)bounces[kind]};
         const links_study study = studied("corrected/plane-wall-fast", changes, 1);
         for (int i = 0; i < 3; i++) {
-            char changed[80];
-            snprintf(changed, sizeof changed, "arm.links=%d method.step=1e-5 %s", links_numbers[i],
-                     bounces[kind]);
-            SCOPED(scenario_finish)
-            scenario s = shipped_with("corrected/plane-wall-fast", changed);
-            SCOPED(run_finish) run_result r;
+            KEPT_SCENARIO(s) = shipped_with(
+                "corrected/plane-wall-fast",
+                formatted("arm.links=%d method.step=1e-5 %s", links_numbers[i], bounces[kind]));
+            KEPT_RUN(r);
             assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
             const double touch = r.summary.first_contact_s, end = touch + 0.02;
 
@@ -194,12 +192,11 @@ TEST(uneven_arms_have_no_beam)
 
 TEST(what_has_no_contact_is_refused)
 {
-    SCOPED(scenario_finish)
-    scenario s = shipped_with("corrected/damped-beam", "motor.voltage=0");
+    KEPT_SCENARIO(s) = shipped_with("corrected/damped-beam", "motor.voltage=0");
     links_study study;
     REFUSED(STATUS_BAD_SCENARIO, "no contact", links_study_compute(&s, NULL, &study, &f));
     assert_int_equal(study.count, 0);
-    SCOPED(scenario_finish) scenario two = shipped("thesis/fig-3-4");
+    KEPT_SCENARIO(two) = shipped("thesis/fig-3-4");
     REFUSED(STATUS_BAD_SCENARIO, "printed", links_study_compute(&two, NULL, &study, &f));
 
     run_monitor monitor = {0};

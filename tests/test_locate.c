@@ -1,6 +1,5 @@
 // Where an engine steps, the instants of events are found by stepping again from the step's start:
 // they are those that an engine finds which needs no steps, and few steps lead there.
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 
@@ -29,7 +28,7 @@ static int events_of(const char *const *settings, const engine *by, double step,
 {
     parameters p = fixture_parameters(settings);
     arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, by);
+    KEPT_MOTION(m) = motion_create_by(&a, &p.method, by);
     assert_non_null(m);
 
     // its engine, counted
@@ -108,15 +107,11 @@ TEST(a_touch_between_the_ends_of_a_step_is_found)
     for (int i = 0; i < 3; i++) {
         // it turns back after 2 ms, when `reach` of its way leads to the wall
         parameters p = parameters_with("arm.links=1 motor.voltage=-2 motor.stiction=0");
-        arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &explicit_engine);
-        motion_start(&a, m, 0, 0);
+        STARTED(a, m, &p, &explicit_engine, 0, 0);
         const double turn = 2e-3, pull = -state_accelerations(m, m->state)[0];
         const double way = pull * turn * turn / 2, touch = turn * (1 - sqrt(1 - reach[i]));
         motion_start(&a, m, wall - reach[i] * way, pull * turn);
-        motion_report report;
-        assert_int_equal(motion_step(&a, m, 0.1, 2 * turn, &report), STATUS_OK);
-        assert_int_equal(report.event, MOTION_IMPACT);
+        assert_int_equal(step_on(&a, m, 0.1, 2 * turn).event, MOTION_IMPACT);
         check_relative(m->state[SLOT_TIME], touch, 0.01); // but for the friction
         check_close(m->state[SLOT_GAP], 0, 1e-15);
     }

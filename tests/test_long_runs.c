@@ -5,16 +5,13 @@
 
 #include <time.h>
 
-#include "src/base/random.h"
 #include "tests/session_fixture.h"
 
 static void open_lasting(session *s, const char *name, const char *duration, double patience)
 {
     scenario base;
-    char assignment[64];
-    snprintf(assignment, sizeof assignment, "run.duration=%s", duration);
     assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
-    DONE(scenario_override(&base, assignment, &f));
+    DONE(scenario_override(&base, formatted("run.duration=%s", duration), &f));
     DONE(session_open(s, &base, patience, &f));
 }
 
@@ -28,9 +25,7 @@ static void change(session *s, const char *path, const char *value)
 static int open_while_computing(session *s, size_t rows)
 {
     for (int duration = 4;; duration *= 2) {
-        char text[32];
-        snprintf(text, sizeof text, "%d", duration);
-        open_lasting(s, "corrected/twenty-links", text, 0);
+        open_lasting(s, "corrected/twenty-links", formatted("%d", duration), 0);
         while (s->computing != NULL && s->run.trace.row_count < rows) {
             session_follow(s);
         }
@@ -65,7 +60,7 @@ static int wait_for_run(session *s)
 // The session's run is that of its scenario from the start, to the last bit.
 static void assert_as_from_the_start(const session *s)
 {
-    SCOPED(run_finish) run_result whole;
+    KEPT_RUN(whole);
     run_scenario(&s->effective, true, &whole);
     const trace *a = &s->run.trace, *b = &whole.trace;
     assert_null(s->computing);
@@ -89,12 +84,11 @@ static void assert_as_from_the_start(const session *s)
 
 TEST(a_resumed_run_is_the_run_from_the_start)
 {
-    random_generator random;
-    random_seed(&random, 7);
+    random_generator random = seeded(7);
     for (EACH_TEXT(c, "corrected/first-impact", "corrected/newmark", "corrected/restitution",
                    "corrected/spring-hub", "corrected/stuck-hub", "corrected/five-links",
                    "corrected/pull-away", "compare/hybrid", "thesis/fig-3-4")) {
-        SCOPED(session_finish) session s;
+        KEPT_SESSION(s);
         fault f = {0};
         open_lasting(&s, *c, "3", HUGE_VAL);
         for (int k = 0; k < 8; k++) {
@@ -119,7 +113,7 @@ TEST(a_resumed_run_is_the_run_from_the_start)
 
 TEST(test_a_long_run_is_looked_at_while_it_is_computed)
 {
-    SCOPED(session_finish) session s;
+    KEPT_SESSION(s);
     open_while_computing(&s, 0);
     assert_true(wait_for_run(&s) > 0);
     assert_as_from_the_start(&s);
@@ -127,7 +121,7 @@ TEST(test_a_long_run_is_looked_at_while_it_is_computed)
 
 TEST(test_a_change_supersedes_a_run_being_computed)
 {
-    SCOPED(session_finish) session s;
+    KEPT_SESSION(s);
     fault f = {0};
     open_lasting(&s, "corrected/twenty-links", "4", 0);
     session_seek(&s, 1e-3);
@@ -146,7 +140,7 @@ TEST(test_a_change_supersedes_a_run_being_computed)
 
 TEST(test_a_run_is_stopped_and_gone_on_with)
 {
-    SCOPED(session_finish) session s;
+    KEPT_SESSION(s);
     int duration = open_while_computing(&s, 1000);
     REFUSED(STATUS_BAD_ARGUMENT, "", session_go_on(&s, &f));
     while (!session_stop(&s)) {
@@ -167,7 +161,7 @@ TEST(test_a_run_is_stopped_and_gone_on_with)
 
 TEST(test_the_cursor_waits_for_rows_to_come)
 {
-    SCOPED(session_finish) session s;
+    KEPT_SESSION(s);
     open_lasting(&s, "corrected/twenty-links", "4", 0);
     wait_for_run(&s);
     session_seek(&s, 3.5);
@@ -189,7 +183,7 @@ TEST(test_the_cursor_waits_for_rows_to_come)
 TEST(test_runs_end_with_their_session)
 {
     for (int i = 0; i < 10; i++) {
-        SCOPED(session_finish) session s;
+        KEPT_SESSION(s);
         open_lasting(&s, "corrected/twenty-links", "30", 1e-3 * i);
     }
     assert_int_equal(shared_array_memory(), 0);

@@ -24,7 +24,7 @@ TEST(the_end_stays)
     const char *const *const cases[] = {SETTINGS(BRIEF), SETTINGS(BRIEF, "control.law=hybrid"),
                                         SETTINGS("arm.model=printed", "run.duration=0.1")};
     for (EACH(c, cases)) {
-        SCOPED(loop_destroy_kept) run_loop *l = begun(*c, NULL);
+        KEPT_LOOP(l) = begun(*c, NULL);
         assert_int_equal(loop_summary(l).status, STATUS_STOPPED);
         DONE(loop_until(l, 1, &f));
         assert_true(loop_ended(l));
@@ -53,7 +53,7 @@ static const controller gives_up = {
 TEST(what_stopped_it_is_said_again)
 {
     const given_law law = {&gives_up, NULL};
-    SCOPED(loop_destroy_kept) run_loop *l = begun(SETTINGS(BRIEF), &law);
+    KEPT_LOOP(l) = begun(SETTINGS(BRIEF), &law);
     fault f = {.text = ""}, again = {.text = ""};
     status code = STATUS_OK;
     while (code == STATUS_OK && loop_time(l) < 0.09) {
@@ -74,8 +74,7 @@ TEST(what_stopped_it_is_said_again)
 
 TEST(no_more_commands_are_under_way_than_have_room)
 {
-    SCOPED(loop_destroy_kept)
-    run_loop *l = begun(SETTINGS(BRIEF, "control.law=force-pd", "control.rate=2000"), NULL);
+    KEPT_LOOP(l) = begun(SETTINGS(BRIEF, "control.law=force-pd", "control.rate=2000"), NULL);
     fault f = {.text = ""};
     assert_int_equal(loop_until(l, 0.02, &f), STATUS_OK);
     assert_int_equal(loop_set_number(l, PARAMETER_INDEX(control.delay), 0.042, &f),
@@ -86,8 +85,8 @@ TEST(no_more_commands_are_under_way_than_have_room)
 
 TEST(a_refused_input_changes_nothing)
 {
-    SCOPED(loop_destroy_kept) run_loop *l = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
-    SCOPED(loop_destroy_kept) run_loop *same = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
+    KEPT_LOOP(l) = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
+    KEPT_LOOP(same) = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
     fault f = {.text = ""};
     assert_int_equal(loop_until(l, 0.02, &f), STATUS_OK);
     assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.k2), -1, &f), STATUS_BAD_SCENARIO);
@@ -109,8 +108,8 @@ TEST(a_state_belongs_to_its_loop)
     const given_law law = {&gives_up, NULL};
     const given_law *const laws[] = {NULL, &law};
     for (int i = 0; i < 2; i++) {
-        SCOPED(loop_destroy_kept) run_loop *l = begun(SETTINGS(BRIEF), laws[i]);
-        SCOPED(loop_destroy_kept) run_loop *other = begun(SETTINGS(BRIEF, "arm.k2=7"), laws[i]);
+        KEPT_LOOP(l) = begun(SETTINGS(BRIEF), laws[i]);
+        KEPT_LOOP(other) = begun(SETTINGS(BRIEF, "arm.k2=7"), laws[i]);
         DONE(loop_until(l, 0.02, &f));
         const size_t size = loop_saved_size(l);
         SCOPED(free_kept) void *kept = malloc(size);
@@ -160,10 +159,9 @@ TEST(a_state_holds_no_addresses)
 // where it does without going back.
 TEST(a_state_has_the_face_on_its_way)
 {
-    SCOPED(loop_destroy_kept)
-    run_loop *l = begun(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=100",
-                                 "wall.damping=500", "run.duration=2"),
-                        NULL);
+    KEPT_LOOP(l) = begun(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=100",
+                                  "wall.damping=500", "run.duration=2"),
+                         NULL);
     DONE(loop_until(l, 0.8, &f));
     DONE(loop_set_number(l, PARAMETER_INDEX(motor.voltage), -0.5, &f));
     DONE(loop_until(l, 1.2, &f));
@@ -193,7 +191,7 @@ TEST(changes_are_followed_wherever_steps_end)
 {
     const char *const *const settings =
         SETTINGS("initial.angle=0.09", "initial.velocity=0.5", "run.duration=0.1");
-    SCOPED(loop_destroy_kept) run_loop *l = begun(settings, NULL), *cut = begun(settings, NULL);
+    KEPT_LOOP(l) = begun(settings, NULL), *cut = begun(settings, NULL);
     for (int i = 0; i < 100; i++) {
         const double volts = 1 + 0.5 * (i % 7 - 3), next = 1e-3 * (i + 1);
         DONE(loop_set_number(l, PARAMETER_INDEX(motor.voltage), volts, &f));
@@ -222,8 +220,7 @@ TEST(a_cut_elsewhere_is_rounding)
         SETTINGS("wall.kind=plane", "run.duration=1"),
         SETTINGS("wall.angle=0", "initial.angle=-0.1", "control.law=hybrid", "sensor.ideal=true")};
     for (EACH(c, cases)) {
-        SCOPED(loop_destroy_kept)
-        run_loop *whole = begun(*c, NULL), *cut = begun(*c, NULL);
+        KEPT_LOOP(whole) = begun(*c, NULL), *cut = begun(*c, NULL);
         DONE(loop_until(whole, 10, &f));
         for (int k = 0; !loop_ended(cut); k++) {
             DONE(loop_until(cut, loop_time(cut) + 0.0014 + 0.0007 * sin(k), &f));
@@ -250,8 +247,7 @@ TEST(a_cut_leaves_the_face_on_its_way)
                  "wall.contact=hunt-crossley", "wall.stiffness=1e4", "wall.damping=1e5",
                  "run.duration=0.3")};
     for (int i = 0; i < 2; i++) {
-        SCOPED(loop_destroy_kept)
-        run_loop *whole = begun(walls[i], NULL), *cut = begun(walls[i], NULL);
+        KEPT_LOOP(whole) = begun(walls[i], NULL), *cut = begun(walls[i], NULL);
         double left = 0;
         DONE(loop_until(whole, 1, &f));
         for (int k = 0; !loop_ended(cut); k++) {

@@ -10,7 +10,7 @@ static void check_case(int links, const char *hub, const char *wall, double volt
         .parameters = parameters_with(
             "method.name=generalized-alpha arm.links=%d %s %s motor.voltage=%.17g run.duration=1",
             links, hub, wall, volts)};
-    SCOPED(run_finish) run_result r;
+    KEPT_RUN(r);
     fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%d links, %s, %s, %g V: %s", links, hub,
             wall, volts, r.summary.message);
     // motor torque within the friction's band, over the length of 1 m
@@ -57,7 +57,7 @@ TEST(the_event_method_stays_exact)
         const char *const *c = *one;
         scenario s = {.parameters = parameters_with("%s %s %s %s %s run.duration=0.32", c[0], c[1],
                                                     c[2], c[3], c[4])};
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s, %s, %s, %s: %s", c[0], c[1], c[2],
                 c[3], r.summary.message);
         assert_string_equal(summary_status(&r.summary), "ok");
@@ -77,7 +77,7 @@ static double momentum_of_50_ms(int links)
             links)};
 
     // the run is shorter than the window of the steady force, which is then the mean of all of it
-    SCOPED(run_finish) run_result r = run_done(&s, false);
+    KEPT_RUN(r) = run_done(&s, false);
     assert_string_equal(summary_status(&r.summary), "ok");
     check_close(r.summary.impacts, 1, 0);
     double momentum =
@@ -113,7 +113,7 @@ TEST(strides_follow_the_fastest_link)
                 "arm.links=3 arm.hub_joint=beam wall.kind=plane wall.angle=0.1 motor.voltage=1 "
                 "motor.viscous_friction=0 motor.amplifier_gain=1000 run.duration=1 %s",
                 steps[i])};
-        SCOPED(run_finish) run_result r = run_done(&s, false);
+        KEPT_RUN(r) = run_done(&s, false);
         assert_string_equal(summary_status(&r.summary), "ok");
         first = i == 0 ? r.summary : first;
         check_relative(r.summary.motor_work_J, first.motor_work_J, 1e-5);

@@ -1,24 +1,20 @@
 // Damping of the beam by mode and by air: how each mode decays, and what the ledger says of it.
-#include "src/arm/modes.h"
 #include "tests/arm_fixture.h"
-#include "tests/motion_advance.h"
 
 enum { MOST = 9 }; // bodies
 
 // The modes of an arm with its hub held.
 typedef struct held_modes {
     arm arm;
-    int count;
-    double mass[MOST * MOST], frequencies[MOST], shapes[MOST * MOST];
+    double mass[MOST * MOST];
+    arm_modes modes;
 } held_modes;
 
-static held_modes modes_of(const parameters *p)
+static held_modes held_modes_of(const parameters *p)
 {
-    held_modes m = {0};
+    held_modes m = {.arm = arm_of(p)};
     double stiffness[MOST * MOST] = {0};
-    arm_init(&m.arm, p);
-    assert_int_equal(modes_compute(&m.arm, HUB_LOCKED, TIP_FREE, &m.count, m.frequencies, m.shapes),
-                     STATUS_OK);
+    m.modes = modes_of(&m.arm, HUB_LOCKED, TIP_FREE);
     modes_matrices(&m.arm, m.mass, stiffness);
     return m;
 }
@@ -57,8 +53,8 @@ TEST(structural_damping_is_of_the_first_mode)
         given("arm.damping_ratio=0.03 arm.links=1 arm.hub_joint=spring arm.tip_mass=0.2")};
     for (EACH(c, arms)) {
         parameters p = fixture_parameters(*c);
-        held_modes m = modes_of(&p);
-        const double per_stiffness = 2 * 0.03 / m.frequencies[0];
+        held_modes m = held_modes_of(&p);
+        const double per_stiffness = 2 * 0.03 / m.modes.w[0];
         const bool root = p.arm.hub_joint == HUB_BEAM || p.arm.links == 1;
         for (int k = root ? 0 : 1; k < p.arm.links; k++) {
             check_relative(arm_link_of(&m.arm, k).damping,
@@ -67,8 +63,8 @@ TEST(structural_damping_is_of_the_first_mode)
     }
 
     parameters rod = parameters_with("arm.damping_ratio=0.03 arm.links=1");
-    held_modes none = modes_of(&rod);
-    assert_int_equal(none.count, 0);
+    held_modes none = held_modes_of(&rod);
+    assert_int_equal(none.modes.count, 0);
     check_close(none.arm.joint_damping, 0, 0);
 }
 
@@ -90,10 +86,10 @@ static double product(const held_modes *m, const double *x, const double *y)
 // whose two factors three instants give.
 static void decay_of_mode(const parameters *p, int mode, double *rate, double *frequency)
 {
-    held_modes m = modes_of(p);
-    const double small = 1e-5, step = 0.4 / m.frequencies[mode];
-    const double *shape = m.shapes + mode * m.arm.dof;
-    SCOPED(motion_destroy_kept) motion *run = motion_create(&m.arm, &p->method);
+    held_modes m = held_modes_of(p);
+    const double small = 1e-5, step = 0.4 / m.modes.w[mode];
+    const double *shape = m.modes.shapes + mode * m.arm.dof;
+    KEPT_MOTION(run) = motion_create(&m.arm, &p->method);
     assert_non_null(run);
     motion_start(&m.arm, run, 0, 0);
     for (int i = 1; i < m.arm.dof; i++) {
@@ -124,14 +120,14 @@ static void decay_of_mode(const parameters *p, int mode, double *rate, double *f
     // the ledger
     const double put_in = run->record.start_energy;
     check_below(fabs(motion_energy_residual(&m.arm, run, run->state)), 1e-9 * put_in);
-    check_below(0.05 * put_in * *rate * 20 / m.frequencies[mode],
+    check_below(0.05 * put_in * *rate * 20 / m.modes.w[mode],
                 state_quadratures(run, run->state)[QUADRATURE_DAMPING]);
 }
 
 static void check_decay(const parameters *p, int mode, double ratio)
 {
-    held_modes m = modes_of(p);
-    double rate, frequency, w = m.frequencies[mode];
+    held_modes m = held_modes_of(p);
+    double rate, frequency, w = m.modes.w[mode];
     decay_of_mode(p, mode, &rate, &frequency);
     check_close(rate, ratio * w, 1e-5 * ratio * w + 1e-9 * w);
     check_relative(frequency, w * sqrt(1 - ratio * ratio), 1e-7);
@@ -168,8 +164,8 @@ TEST(air_takes_from_all_modes_alike)
     for (int mode = 0; mode < 3; mode++) {
         parameters p = parameters_with(
             "arm.links=4 wall.kind=none arm.air_drag=0.5 motor.stiction=1000 motor.voltage=0");
-        held_modes m = modes_of(&p);
-        check_decay(&p, mode, rate / m.frequencies[mode]);
+        held_modes m = held_modes_of(&p);
+        check_decay(&p, mode, rate / m.modes.w[mode]);
     }
 }
 
@@ -179,16 +175,16 @@ TEST(ratios_in_proportion_are_structural_damping)
     for (int hub = 0; hub < 2; hub++) {
         parameters p =
             parameters_with("%s arm.links=5 arm.damping_ratio=0.03 wall.kind=plane", hubs[hub]);
-        held_modes m = modes_of(&p);
+        held_modes m = held_modes_of(&p);
         char list[160] = "arm.modal_ratios=";
-        for (int i = 0; i < m.count; i++) {
+        for (int i = 0; i < m.modes.count; i++) {
             const size_t used = strlen(list);
             snprintf(list + used, sizeof list - used, "%s%.15g", i > 0 ? "," : "",
-                     0.03 * m.frequencies[i] / m.frequencies[0]);
+                     0.03 * m.modes.w[i] / m.modes.w[0]);
         }
         parameters q = parameters_with("%s arm.links=5 %s wall.kind=plane", hubs[hub], list);
         arm b = arm_of(&q);
-        assert_int_equal(b.damped_modes, m.count);
+        assert_int_equal(b.damped_modes, m.modes.count);
 
         // the same accelerations and losses
         double angle[MOST], velocity[MOST], one[MOST], other[MOST];
@@ -214,7 +210,7 @@ TEST(ratios_in_proportion_are_structural_damping)
 TEST(an_arm_that_turns_as_a_whole_is_not_damped)
 {
     parameters p = parameters_with("arm.links=5 arm.hub_joint=beam arm.modal_ratios=0.1,0.2");
-    held_modes m = modes_of(&p);
+    held_modes m = held_modes_of(&p);
     double angle[MOST] = {0}, velocity[MOST], alpha[MOST];
     chain_link work[MOST];
     chain_reaction r;

@@ -1,24 +1,16 @@
 // Modes of the chain against the Euler-Bernoulli beam it approximates.
-#include "src/arm/modes.h"
 #include "tests/arm_fixture.h"
 
 // beta L of mode i of the chain: w = (beta L)^2 sqrt(EI / (rho A L^4)). N links with joints of
 // stiffness k2 N/2 at distances L/N stand for EI = k2 L / 2.
 static double beta_length(int links, tip_end tip, int mode)
 {
-    char n[32];
-    snprintf(n, sizeof n, "arm.links=%d", links);
-    parameters p = fixture_parameters(SETTINGS(n));
-    arm a = arm_of(&p);
-    int count;
-    SCOPED(free_kept) double *frequencies = calloc((size_t)links, sizeof *frequencies);
-    SCOPED(free_kept) double *shapes = calloc((size_t)(links * links), sizeof *shapes);
-    assert_int_equal(modes_compute(&a, HUB_LOCKED, tip, &count, frequencies, shapes), STATUS_OK);
-    assert_true(mode < count);
+    parameters p = fixture_parameters(SETTINGS(formatted("arm.links=%d", links)));
+    const arm a = arm_of(&p);
+    const arm_modes m = modes_of(&a, HUB_LOCKED, tip);
+    assert_true(mode < m.count);
     double stiffness = p.arm.k2 * p.arm.length / 2, density = p.arm.mass / p.arm.length;
-    double result =
-        sqrt(frequencies[mode] / sqrt(stiffness / density) * p.arm.length * p.arm.length);
-    return result;
+    return sqrt(m.w[mode] / sqrt(stiffness / density) * p.arm.length * p.arm.length);
 }
 
 // The root is held by a whole rigid link, so the clamp sits half a link too far out: first order in
@@ -50,30 +42,27 @@ TEST(two_links_with_locked_hub_have_the_closed_form)
 {
     parameters p = fixture_parameters(NULL);
     arm a = arm_of(&p);
-    int count;
-    double w[2], shapes[4], m = 0.20054, l = 0.5;
-    assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, w, shapes), STATUS_OK);
-    assert_int_equal(count, 1);
-    check_relative(w[0], sqrt(4.92 / (m * l * l / 3)), 1e-12); // rod on its own joint
-    check_close(shapes[0], 0, 0);
-    check_close(shapes[1], 1, 0);
+    const double mass = 0.20054, l = 0.5;
+    const arm_modes m = modes_of(&a, HUB_LOCKED, TIP_FREE);
+    assert_int_equal(m.count, 1);
+    check_relative(m.w[0], sqrt(4.92 / (mass * l * l / 3)), 1e-12); // rod on its own joint
+    check_close(m.shapes[0], 0, 0);
+    check_close(m.shapes[1], 1, 0);
 }
 
 TEST(free_hub_has_one_mode_of_rigid_turning)
 {
     parameters p = fixture_parameters(SETTINGS("arm.links=4", "arm.hub_joint=spring"));
     arm a = arm_of(&p);
-    int count;
-    double w[5], shapes[25];
-    assert_int_equal(modes_compute(&a, HUB_FREE, TIP_FREE, &count, w, shapes), STATUS_OK);
-    assert_int_equal(count, 5);
-    check_close(w[0], 0, 1e-2);
+    const arm_modes m = modes_of(&a, HUB_FREE, TIP_FREE);
+    assert_int_equal(m.count, 5);
+    check_close(m.w[0], 0, 1e-2);
     for (int i = 0; i < 5; i++) {
-        check_close(shapes[i], 1, 1e-6);
+        check_close(m.shapes[i], 1, 1e-6);
     }
     // the stepper's estimate of the highest frequency is not below the true one
-    assert_true(a.highest_frequency >= w[4]);
-    check_relative(a.highest_frequency, w[4], 0.2);
+    assert_true(a.highest_frequency >= m.w[4]);
+    check_relative(a.highest_frequency, m.w[4], 0.2);
 }
 
 static const char *const *const any_arms[] = {
@@ -126,18 +115,18 @@ TEST(every_mode_balances_but_for_what_holds_the_arm)
         parameters p = fixture_parameters(any_arms[i / 4]);
         arm a = arm_of(&p);
         const int n = a.dof;
-        double mass[81] = {0}, stiffness[81] = {0}, w[9], shapes[81];
-        int count;
+        double mass[81] = {0}, stiffness[81] = {0};
         modes_matrices(&a, mass, stiffness);
-        assert_int_equal(modes_compute(&a, hub, tip, &count, w, shapes), STATUS_OK);
-        assert_int_equal(count, n - (hub == HUB_LOCKED) - (tip == TIP_PINNED));
-        for (int mode = 0; mode < count; mode++) {
-            const double *x = shapes + mode * n;
+        const arm_modes m = modes_of(&a, hub, tip);
+        assert_int_equal(m.count, n - (hub == HUB_LOCKED) - (tip == TIP_PINNED));
+        for (int mode = 0; mode < m.count; mode++) {
+            const double *x = m.shapes + mode * n;
             double left[9], largest = 0, deflection = 0, scale = 0;
             for (int j = 0; j < n; j++) {
                 left[j] = 0;
                 for (int k = 0; k < n; k++) {
-                    left[j] += (stiffness[j * n + k] - w[mode] * w[mode] * mass[j * n + k]) * x[k];
+                    left[j] +=
+                        (stiffness[j * n + k] - m.w[mode] * m.w[mode] * mass[j * n + k]) * x[k];
                 }
                 scale = fmax(scale, stiffness[j * n + j]);
                 largest = fmax(largest, x[j]);
@@ -145,7 +134,7 @@ TEST(every_mode_balances_but_for_what_holds_the_arm)
                 deflection += j >= a.first ? arm_link_of(&a, j - a.first).length * x[j] : 0;
             }
             check_close(largest, 1, 0);
-            assert_true(mode == 0 || w[mode] >= w[mode - 1]);
+            assert_true(mode == 0 || m.w[mode] >= m.w[mode - 1]);
             check_close(hub == HUB_LOCKED ? x[0] : 0, 0, 0);
             check_close(tip == TIP_PINNED ? deflection : 0, 0, 1e-12);
             const double force =

@@ -1,15 +1,22 @@
 // The machine of free flight, impact, contact, release, stick and slip, on motions with closed
 // forms and by what must hold at every row.
 
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/told_events.h"
 
+// A run of these settings under a script.
+static run_result run_acted(action *todo, int count, const char *const *settings)
+{
+    const scenario s = {
+        .parameters = fixture_parameters(settings), .actions = todo, .action_count = count};
+    return run_done(&s, true);
+}
+
 static const event *find_event(const run_result *r, event_kind kind, int number)
 {
-    for (size_t i = 0; i < r->trace.event_count; i++) {
-        if (r->trace.events[i].kind == kind && number-- == 0) {
-            return &r->trace.events[i];
+    for (EACH_EVENT(e, &r->trace)) {
+        if (e->kind == kind && number-- == 0) {
+            return e;
         }
     }
     fail_msg("event %s did not occur", event_name(kind));
@@ -77,7 +84,7 @@ TEST(a_coasting_rod_sticks_when_friction_says)
     // I w' = -D w - c: w = 0 at t = ln(1 + D w0 / c) I / D
     double t = log(1 + r.damping * 0.5 / 0.045) / r.rate;
     check_close(find_event(&result, EVENT_STICK, 0)->time, t, 1e-11);
-    const sample *last = &result.trace.rows[result.trace.row_count - 1];
+    const sample *last = LAST_ROW(&result.trace);
     check_close(last->sticking, 1, 0);
     check_close(last->hub_velocity, 0, 0);
 }
@@ -113,7 +120,7 @@ TEST(an_arm_inside_a_rigid_wall_is_never_ok)
         scenario s = {.parameters = fixture_parameters(
                           SETTINGS(methods[i % 3], kinds[i / 3 % 2], "wall.angle=2.9",
                                    i < 6 ? "arm.links=1" : "arm.links=2"))};
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         s.parameters.initial.angle = -0.4;
         if (run_scenario(&s, true, &r) == STATUS_OK) {
             assert_true(r.summary.max_penetration_m > 0.1);
@@ -129,11 +136,8 @@ TEST(a_hub_held_beyond_stiction_is_noted)
 {
     for (EACH_TEXT(c, "method.engine=pair", "method.engine=stiff")) {
         const parameters p = fixture_parameters(SETTINGS("motor.stiction=1e3", *c));
-        arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
+        STARTED(a, m, &p, NULL, 0, 0);
         motion_report r;
-        assert_non_null(m);
-        motion_start(&a, m, 0, 0);
         assert_int_equal(motion_step(&a, m, 1e-3, 1e-3, &r), STATUS_OK);
         assert_true(m->state[SLOT_FRICTION] == HUB_STICK && m->record.overheld == 0);
         a.motor.stiction = 0.5 * fabs(a.motor.torque);
@@ -169,11 +173,10 @@ TEST(a_start_on_the_wall_is_the_same_at_any_angle)
         const char *kind = i % 2 == 0 ? "wall.kind=point" : "wall.kind=plane";
         double peak = 0;
         for (int k = 0; k < 5; k++) {
-            char wall[40], start[40];
-            snprintf(wall, sizeof wall, "wall.angle=%.17g", angles[k]);
-            snprintf(start, sizeof start, "initial.angle=%.17g", angles[k]);
-            RUN(r, kind, walls[i / 2 % 3], arms[i / 6 % 3], motors[i / 18], wall, start,
-                "motor.voltage=1.2", "run.duration=0.1");
+            RUN(r, kind, walls[i / 2 % 3], arms[i / 6 % 3], motors[i / 18],
+                formatted("wall.angle=%.17g", angles[k]),
+                formatted("initial.angle=%.17g", angles[k]), "motor.voltage=1.2",
+                "run.duration=0.1");
             peak = k == 0 ? r.summary.peak_force_N : peak;
             check_relative(r.summary.peak_force_N, peak, 1e-5);
             assert_false(r.summary.inaccurate);
@@ -183,8 +186,7 @@ TEST(a_start_on_the_wall_is_the_same_at_any_angle)
 
 static void check_complementarity(const run_result *r)
 {
-    for (size_t i = 0; i < r->trace.row_count; i++) {
-        const sample *row = &r->trace.rows[i];
+    for (EACH_ROW(row, &r->trace)) {
         assert_true(row->gap >= -1e-11);
         assert_true(row->force >= -1e-8);
         assert_true(fabs(row->gap * row->force) < 1e-10);
@@ -198,8 +200,8 @@ static void check_complementarity(const run_result *r)
 static void check_ledger(const run_result *r)
 {
     check_below(r->summary.energy_residual_J, 1e-6 * fabs(r->summary.motor_work_J));
-    for (size_t i = 0; i < r->trace.event_count; i++) {
-        assert_true(r->trace.events[i].loss >= 0);
+    for (EACH_EVENT(e, &r->trace)) {
+        assert_true(e->loss >= 0);
     }
     for (size_t i = 1; i < r->trace.row_count; i++) {
         assert_true(r->trace.rows[i].time >= r->trace.rows[i - 1].time);
@@ -227,7 +229,7 @@ TEST(gap_and_force_stay_complementary_and_energy_is_accounted_for)
 TEST(the_steady_force_is_the_springs)
 {
     RUN(r, "run.duration=2");
-    const sample *last = &r.trace.rows[r.trace.row_count - 1];
+    const sample *last = LAST_ROW(&r.trace);
     double d = last->last_angle - last->first_angle;
     double lever =
         cos(0.1) * cos(last->last_angle) + sin(0.1) * sin(last->last_angle) - 0.5 * cos(d);
@@ -249,16 +251,11 @@ TEST(the_located_peak_does_not_depend_on_the_step)
 
 TEST(without_a_trace_the_summary_is_the_same)
 {
-    scenario s = {.parameters = fixture_parameters(NULL)};
-    SCOPED(run_finish) run_result with;
-    SCOPED(run_finish) run_result without;
-    run_scenario(&s, true, &with);
-    run_scenario(&s, false, &without);
+    KEPT_RUN(with) = run_arm(fixture_parameters(NULL), true);
+    KEPT_RUN(without) = run_arm(fixture_parameters(NULL), false);
     assert_int_equal(without.trace.row_count, 0);
     for (int i = 0; i < summary_count; i++) {
-        double x = 0, y = 0;
-        x = summary_value(&with.summary, i);
-        y = summary_value(&without.summary, i);
+        const double x = summary_value(&with.summary, i), y = summary_value(&without.summary, i);
         assert_true(summary_table[i].timing || x == y || (isnan(x) && isnan(y)));
     }
 }
@@ -271,13 +268,10 @@ TEST(script_acts_at_its_time_and_is_booked)
         {.time = 1.2, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k2), .value = 10},
         {.time = 1.4, .kind = ACTION_PUSH, .value = -0.2}, // away from the wall
     };
-    scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=2")),
-                  .actions = todo,
-                  .action_count = 4};
-    SCOPED(run_finish) run_result r = run_done(&s, true);
+    KEPT_RUN(r) = run_acted(todo, 4, SETTINGS("run.duration=2"));
     check_close(find_event(&r, EVENT_PUSH, 0)->time, 0.70005, 1e-12);
     check_close(find_event(&r, EVENT_CHANGE, 0)->time, 1.0, 1e-12);
-    const sample *last = &r.trace.rows[r.trace.row_count - 1];
+    const sample *last = LAST_ROW(&r.trace);
     check_close(last->voltage, 2, 0);
     assert_true(last->external_work != 0);
     check_below(r.summary.energy_residual_J, 1e-9);
@@ -285,8 +279,8 @@ TEST(script_acts_at_its_time_and_is_booked)
     check_close(find_event(&r, EVENT_IMPACT, 2)->time, 0.70005, 1e-12);
     // pulled off, the arm leaves and comes back
     bool apart = false;
-    for (size_t i = 0; i < r.trace.row_count; i++) {
-        apart |= r.trace.rows[i].time > 1.4 && r.trace.rows[i].gap > 1e-3;
+    for (EACH_ROW(row, &r.trace)) {
+        apart |= row->time > 1.4 && row->gap > 1e-3;
     }
     assert_true(apart);
     check_complementarity(&r);
@@ -318,12 +312,10 @@ TEST(events_tell_what_is_in_contact_and_what_sticks)
                          {.time = 2.4, .kind = ACTION_PUSH, .value = -0.02},
                          {.time = 2.6, .kind = ACTION_SET, .parameter = stiction, .value = 0}};
         const char *const *wall = walls[i / 4 % 5];
-        scenario s = {.parameters = fixture_parameters(
-                          SETTINGS(arms[i % 4], wall[0], wall[1], wall[2], "run.duration=3",
-                                   "arm.k1=300", i < 20 ? "wall.kind=point" : "wall.kind=plane")),
-                      .actions = todo,
-                      .action_count = sizeof todo / sizeof *todo};
-        SCOPED(run_finish) run_result r = run_done(&s, true);
+        KEPT_RUN(r) =
+            run_acted(todo, sizeof todo / sizeof *todo,
+                      SETTINGS(arms[i % 4], wall[0], wall[1], wall[2], "run.duration=3",
+                               "arm.k1=300", i < 20 ? "wall.kind=point" : "wall.kind=plane"));
         check_events_tell_the_state(&r);
     }
 }
@@ -335,11 +327,7 @@ TEST(a_hub_that_stops_may_release_the_arm)
                    .kind = ACTION_SET,
                    .parameter = PARAMETER_INDEX(motor.voltage),
                    .value = 0.3};
-    scenario s = {.parameters =
-                      fixture_parameters(SETTINGS("motor.voltage=2", "motor.stiction=0.35")),
-                  .actions = &todo,
-                  .action_count = 1};
-    SCOPED(run_finish) run_result r = run_done(&s, true);
+    KEPT_RUN(r) = run_acted(&todo, 1, SETTINGS("motor.voltage=2", "motor.stiction=0.35"));
     int lifted = 0;
     for (size_t i = 0; i + 1 < r.trace.event_count; i++) {
         const event *e = &r.trace.events[i];
@@ -363,11 +351,8 @@ TEST(a_contact_ended_from_outside_is_released)
     };
     for (EACH(c, cases)) {
         action todo = c->todo;
-        scenario s = {.parameters = fixture_parameters(SETTINGS("arm.links=1", c->restitution)),
-                      .actions = &todo,
-                      .action_count = 1};
-        s.parameters.run.duration = 1.2;
-        SCOPED(run_finish) run_result r = run_done(&s, true);
+        KEPT_RUN(r) =
+            run_acted(&todo, 1, SETTINGS("arm.links=1", c->restitution, "run.duration=1.2"));
         check_close(find_event(&r, EVENT_RELEASE, 0)->time, 1, 0);
         check_events_tell_the_state(&r);
     }
@@ -386,8 +371,8 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
     for (EACH(c, cases)) {
         RUN(r, c->links, c->wall, "wall.angle=0");
         double largest = 0;
-        for (size_t k = 0; k < r.trace.row_count; k++) {
-            largest = fmax(largest, r.trace.rows[k].force);
+        for (EACH_ROW(row, &r.trace)) {
+            largest = fmax(largest, row->force);
         }
         check_close(r.summary.first_contact_s, 0, 0);
         check_close(r.summary.contact_impulse_Ns, 0, 0);
@@ -420,12 +405,11 @@ TEST(an_arm_that_moves_into_the_wall_is_in_contact)
 {
     for (EACH_TEXT(c, "wall.contact=kelvin-voigt", "wall.contact=hunt-crossley")) {
         RUN(at, *c, "wall.angle=0", "initial.velocity=1");
-        run_result before = RUN_OF(*c, "wall.angle=0", "initial.velocity=1", "initial.angle=-1e-9");
+        RUN(before, *c, "wall.angle=0", "initial.velocity=1", "initial.angle=-1e-9");
         check_close(at.summary.first_contact_s, 0, 0);
         check_relative(at.summary.first_pulse_peak_N, before.summary.first_pulse_peak_N, 1e-5);
         check_relative(at.summary.peak_force_N, before.summary.peak_force_N, 1e-5);
         check_close(find_event(&at, EVENT_CONTACT, 0)->time, 0, 0);
-        run_finish(&before);
     }
 }
 
@@ -439,7 +423,7 @@ TEST(an_arm_on_the_wall_does_not_strike_it)
                           "arm.links=3", arms[i & 1], walls[i >> 1 & 1], "run.duration=1e-3"))};
         s.parameters.wall.kind = i & 4 ? WALL_PLANE : WALL_POINT;
         s.parameters.wall.angle = s.parameters.initial.angle = 0.01 * (i / 2 - 100);
-        SCOPED(run_finish) run_result r = run_done(&s, false);
+        KEPT_RUN(r) = run_done(&s, false);
         check_close(r.summary.first_contact_s, 0, 0);
         check_close(r.summary.impacts, 0, 0);
     }
@@ -454,19 +438,12 @@ TEST(a_push_of_nothing_changes_nothing)
         for (int k = 0; k < PUSHES; k++) {
             todo[k] = (action){.time = 0.1 + 0.093 * k, .kind = ACTION_PUSH};
         }
-        scenario s = {.parameters = fixture_parameters(
-                          SETTINGS(*c, "arm.damping_ratio=0.05", "run.duration=2")),
-                      .actions = todo};
-        run_result r[2];
-        for (int k = 0; k < 2; k++) {
-            s.action_count = k * PUSHES;
-            assert_int_equal(run_scenario(&s, false, &r[k]), STATUS_OK);
-        }
-        check_close(r[1].summary.impacts, r[0].summary.impacts, 0);
-        check_close(r[1].summary.separations, r[0].summary.separations, 0);
-        check_relative(r[1].summary.steady_force_N, r[0].summary.steady_force_N, 1e-7);
-        run_finish(&r[0]);
-        run_finish(&r[1]);
+        const char *const *settings = SETTINGS(*c, "arm.damping_ratio=0.05", "run.duration=2");
+        KEPT_RUN(pushed) = run_acted(todo, PUSHES, settings);
+        KEPT_RUN(free) = run_acted(NULL, 0, settings);
+        check_close(pushed.summary.impacts, free.summary.impacts, 0);
+        check_close(pushed.summary.separations, free.summary.separations, 0);
+        check_relative(pushed.summary.steady_force_N, free.summary.steady_force_N, 1e-7);
     }
 }
 
@@ -475,7 +452,7 @@ TEST(a_step_that_cannot_be_taken_stops_with_time_and_reason)
     scenario s = {.parameters = fixture_parameters(SETTINGS(
                       "method.name=newmark", "method.step=0.5", "motor.voltage=10", "arm.k2=1e5"))};
     s.parameters.motor.stiction = (double)NAN; // a bad number that slipped in
-    SCOPED(run_finish) run_result r;
+    KEPT_RUN(r);
     assert_int_equal(run_scenario(&s, true, &r), STATUS_NOT_FINITE);
     assert_non_null(strstr(r.summary.message, "t = "));
     assert_true(r.trace.row_count >= 1);
@@ -486,7 +463,7 @@ TEST(a_run_that_makes_energy_from_nothing_is_stopped)
 {
     scenario s = {.parameters = fixture_parameters(SETTINGS(
                       "method.name=newmark", "method.gamma=0.3", "arm.links=8", "run.duration=3"))};
-    SCOPED(run_finish) run_result r;
+    KEPT_RUN(r);
     assert_int_equal(run_scenario(&s, true, &r), STATUS_UNSTABLE);
     assert_non_null(strstr(r.summary.message, "method.step"));
 }
@@ -501,9 +478,7 @@ TEST(a_ledger_that_does_not_close_makes_a_run_inaccurate)
                  {"method.step=1e-3", "method.residual_bound=1e-9", true},
                  {"method.step=2e-2", "method.gamma=0.6", true}};
     for (EACH(c, cases)) {
-        scenario s = {.parameters =
-                          fixture_parameters(SETTINGS("method.name=newmark", c->step, c->bound))};
-        SCOPED(run_finish) run_result r = run_done(&s, false);
+        RUN(r, "method.name=newmark", c->step, c->bound);
         assert_int_equal(r.summary.inaccurate, c->inaccurate);
         assert_int_equal(r.summary.message[0] != '\0', c->inaccurate);
         assert_string_equal(summary_status(&r.summary), c->inaccurate ? "inaccurate" : "ok");
@@ -534,13 +509,12 @@ TEST(a_motion_too_small_to_follow_is_inaccurate)
                  {"1e-8", "0.045", "0.1", "arm.links=2", false},
                  {"0.1", "0", "0", "arm.links=1", false}};
     for (EACH(c, cases)) {
-        char voltage[32], stiction[32], angle[32];
-        snprintf(voltage, sizeof voltage, "motor.voltage=%s", c->voltage);
-        snprintf(stiction, sizeof stiction, "motor.stiction=%s", c->stiction);
-        snprintf(angle, sizeof angle, "wall.angle=%s", c->angle);
-        RUN(r, voltage, stiction, angle, c->links, "wall.kind=plane");
-        fail_if(r.summary.inaccurate != c->inaccurate, "%s, %s, %s: %s %s", voltage, angle,
-                c->links, summary_status(&r.summary), r.summary.message);
+        KEPT_RUN(r) = run_arm(
+            parameters_with("motor.voltage=%s motor.stiction=%s wall.angle=%s %s wall.kind=plane",
+                            c->voltage, c->stiction, c->angle, c->links),
+            true);
+        fail_if(r.summary.inaccurate != c->inaccurate, "%s V, %s rad, %s: %s %s", c->voltage,
+                c->angle, c->links, summary_status(&r.summary), r.summary.message);
     }
 }
 
@@ -549,12 +523,10 @@ TEST(fast_rotation_is_resolved_whatever_the_step)
 {
     double contact[2], peak[2];
     for (int i = 0; i < 2; i++) {
-        run_result r =
-            RUN_OF("arm.links=3", "motor.viscous_friction=0", "motor.amplifier_gain=1000",
-                   i == 0 ? "method.step=1e-3" : "method.step=1e-4", "run.duration=0.12");
+        RUN(r, "arm.links=3", "motor.viscous_friction=0", "motor.amplifier_gain=1000",
+            i == 0 ? "method.step=1e-3" : "method.step=1e-4", "run.duration=0.12");
         contact[i] = r.summary.first_contact_s;
         peak[i] = r.summary.first_pulse_peak_N;
-        run_finish(&r);
     }
     check_close(contact[0], contact[1], 1e-10);
     check_close(peak[0], peak[1], 1e-7 * peak[1]);
@@ -568,8 +540,8 @@ TEST(elastic_chattering_is_bounded_and_said)
     check_ledger(&r);
     check_below(r.summary.impacts, 2000);
     size_t chatters = 0;
-    for (size_t i = 0; i < r.trace.event_count; i++) {
-        chatters += r.trace.events[i].kind == EVENT_CHATTER;
+    for (EACH_EVENT(e, &r.trace)) {
+        chatters += e->kind == EVENT_CHATTER;
     }
     assert_true(chatters > 0);
     assert_non_null(strstr(r.summary.message, "chatter"));
@@ -579,5 +551,5 @@ TEST(structural_damping_does_not_upset_the_event_method)
 {
     RUN(r, "arm.links=20", "arm.damping_ratio=0.01", "run.duration=0.4");
     check_ledger(&r);
-    assert_true(r.trace.rows[r.trace.row_count - 1].damping_loss > 0);
+    assert_true(LAST_ROW(&r.trace)->damping_loss > 0);
 }

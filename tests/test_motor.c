@@ -1,6 +1,5 @@
 // The drive's constants from its nameplate, the limit of its command, and its energy.
 #include "tests/arm_fixture.h"
-#include "tests/motion_advance.h"
 
 static motor_parameters drive(void)
 {
@@ -110,7 +109,7 @@ TEST(free_motion_is_that_of_the_drive)
                                        "motor.viscous_friction=0 motor.voltage=2 %s",
                                        current ? "motor.drive=current" : "motor.drive=voltage");
         arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
+        KEPT_MOTION(m) = motion_create(&a, &p.method);
         motion_report report;
         const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
         const double torque = 2 * 6.02 * p.motor.torque_constant / p.motor.resistance, t = 0.4;
@@ -155,7 +154,7 @@ TEST(current_of_a_held_motor_rises_as_in_a_coil)
         arm a = arm_of(&p);
         for (int i = 1; i <= 4; i++) {
             const double t = 0.002 * i, full = 6.02 / 33.6;
-            SCOPED(motion_destroy_kept) motion *m = motion_until(&a, &p, t);
+            KEPT_MOTION(m) = motion_until(&a, &p, t);
             check_relative(current_of(m), full * (1 - exp(-33.6 / 0.1 * t)), 1e-9);
             check_close(state_velocities(m, m->state)[0], 0, 0);
         }
@@ -174,7 +173,7 @@ TEST(a_free_link_and_its_coil_are_two_exponentials)
     const double half = r / inductance / 2,
                  root = sqrt(half * half - kt * kb / inertia / inductance);
     const double fast = -half - root, slow = -half + root, idle = 2 * 6.02 / kb;
-    SCOPED(motion_destroy_kept) motion *m = motion_until(&a, &p, t);
+    KEPT_MOTION(m) = motion_until(&a, &p, t);
     check_relative(state_velocities(m, m->state)[0],
                    idle * (1 + (fast * exp(slow * t) - slow * exp(fast * t)) / (slow - fast)),
                    1e-9);
@@ -198,7 +197,7 @@ TEST(a_limited_current_accelerates_evenly_at_first)
     const double times[2] = {0.7 * until, 2.5 * until};
     const double speeds[2] = {0.7 * knee, idle + (knee - idle) * exp(-rate * 1.5 * until)};
     for (int i = 0; i < 2; i++) {
-        SCOPED(motion_destroy_kept) motion *m = motion_until(&a, &p, times[i]);
+        KEPT_MOTION(m) = motion_until(&a, &p, times[i]);
         check_relative(state_velocities(m, m->state)[0], speeds[i], 1e-9);
     }
 
@@ -207,9 +206,8 @@ TEST(a_limited_current_accelerates_evenly_at_first)
         "wall.kind=none motor.stiction=1000 motor.inductance=0.1 motor.current_limit=0.1");
     arm_init(&a, &p);
     const double reached = -0.1 / 33.6 * log(1 - 0.1 * 33.6 / 6.02);
-    SCOPED(motion_destroy_kept)
-    motion *before = motion_until(&a, &p, 0.9 * reached),
-           *after = motion_until(&a, &p, 1.2 * reached);
+    KEPT_MOTION(before) = motion_until(&a, &p, 0.9 * reached),
+    *after = motion_until(&a, &p, 1.2 * reached);
     check_relative(current_of(before), 6.02 / 33.6 * (1 - exp(-336 * 0.9 * reached)), 1e-9);
     check_close(current_of(after), 0.1, 0);
 }
@@ -223,8 +221,7 @@ TEST(a_small_inductance_is_none_in_the_limit)
     for (int i = 0; i < 3; i++) {
         parameters p = parameters_with("%s", coils[i]);
         arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept)
-        motion *m = motion_until(&a, &p, 0.5); // through impact and pulse
+        KEPT_MOTION(m) = motion_until(&a, &p, 0.5); // through impact and pulse
         momentum[i] = state_quadratures(m, m->state)[QUADRATURE_FORCE];
     }
     check_close(log2((momentum[1] - momentum[0]) / (momentum[2] - momentum[0])), 1, 0.1);

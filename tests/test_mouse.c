@@ -154,8 +154,7 @@ TEST(test_the_wheel_scrolls_pages_and_panels)
 
 TEST(test_random_pointing_does_no_harm)
 {
-    random_generator r;
-    random_seed(&r, 11);
+    random_generator r = seeded(11);
     OPEN_EXPLORER(ex, "compare/hybrid");
     static const char *const pages[] = {"",           "?",       "<Esc>o", "<Esc>c",
                                         "<Esc><Tab>", "<Esc>:x", "<Esc>w"};

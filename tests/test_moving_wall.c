@@ -19,15 +19,12 @@ GIVEN_BACK(run_loop, loop_destroy)
 static double angle_at(const char *const *settings, double time, double *force)
 {
     const parameters p = fixture_parameters(settings);
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
+    STARTED(a, m, &p, NULL, p.initial.angle, 0);
     assert_ptr_equal(m->engine, &stiff_engine);
-    motion_start(&a, m, p.initial.angle, 0);
     const passage done = move_on(&a, m, time, 100000);
     check_below(done.open, 1e-10);
-    const double angle = state_angles(m, m->state)[0];
     *force = m->state[SLOT_FORCE];
-    return angle;
+    return state_angles(m, m->state)[0];
 }
 
 // On a spring and damper the link is an oscillator that the wall drives:
@@ -44,15 +41,13 @@ TEST(a_driven_spring_has_its_amplitude_and_phase)
         const double d = lre * lre + lim * lim;
         const double re = -length * u * (k * lre + w * c * lim) / d;
         const double im = -length * u * (w * c * lre - k * lim) / d;
-        char f[64];
-        snprintf(f, sizeof f, "wall.motion_frequency=%s", *one);
         for (int phase = 0; phase < 4; phase++) {
             const double t = 2 + phase * period / 4;
             double q[2], force;
             for (int side = 0; side < 2; side++) {
                 q[side] = angle_at(
                     SETTINGS(PRESSED_LINK, "wall.contact=kelvin-voigt", "wall.stiffness=2000",
-                             "wall.damping=20", f,
+                             "wall.damping=20", formatted("wall.motion_frequency=%s", *one),
                              side ? "wall.motion_amplitude=-1e-5" : "wall.motion_amplitude=1e-5"),
                     t, &force);
             }
@@ -74,11 +69,10 @@ TEST(a_rigid_wall_leads_the_tip)
         const double t = 0.11 * i, s = u0 * sin(w * (t + 0.125)), v = u0 * w * cos(w * (t + 0.125));
         const double accelerates = -w * w * s;
         double force;
-        char start[64];
-        snprintf(start, sizeof start, "initial.angle=%.17g", -asin(u0 / length));
-        const double q = angle_at(
-            SETTINGS(PRESSED_LINK, "wall.motion_frequency=2", "wall.motion_time=-0.125", start), t,
-            &force);
+        const double q =
+            angle_at(SETTINGS(PRESSED_LINK, "wall.motion_frequency=2", "wall.motion_time=-0.125",
+                              formatted("initial.angle=%.17g", -asin(u0 / length))),
+                     t, &force);
         check_close(q, -asin(s / length), 1e-9);
 
         // q' = -v/(L cos q), q" = -(a + L sin q q'^2 ... )/(L cos q), of s = -L sin q
@@ -94,14 +88,10 @@ TEST(a_rigid_wall_leads_the_tip)
 TEST(a_wall_at_constant_speed_is_one_at_rest_seen_from_it)
 {
     for (EACH_OF(double, c, 0, 0.5, 1)) {
-        char e[64];
-        snprintf(e, sizeof e, "wall.restitution=%g", *c);
-        const parameters p =
-            fixture_parameters(SETTINGS(PRESSED_LINK, "arm.tilt=0", "initial.angle=-0.01", e,
-                                        "wall.motion_amplitude=10", "wall.motion_frequency=0.001"));
-        arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-        motion_start(&a, m, -0.01, 0);
+        const parameters p = fixture_parameters(SETTINGS(
+            PRESSED_LINK, "arm.tilt=0", "initial.angle=-0.01", formatted("wall.restitution=%g", *c),
+            "wall.motion_amplitude=10", "wall.motion_frequency=0.001"));
+        STARTED(a, m, &p, NULL, -0.01, 0);
         const double w = 2 * M_PI * 1e-3, place = a.link_length * sin(0.01);
         const double meets = asin(place / 10) / w, speed = 10 * w * cos(w * meets);
         const passage done = move_on(&a, m, meets + 1e-3, 1000);
@@ -263,17 +253,12 @@ TEST(the_ledger_closes_on_a_shaken_face)
         {"wall.motion=step", "wall.stiffness=1e6", "wall.damping=300"}};
     for (size_t i = 0; i < 8; i++) {
         const char *const *set = sets[i / 2];
-        const scenario s = {.parameters = fixture_parameters(SETTINGS(
-                                "wall.kind=plane", "wall.contact=kelvin-voigt", "wall.mass=0.05",
-                                "wall.motion_frequency=9", "wall.motion_time=0.2", set[0], set[1],
-                                set[2], i % 2 ? "arm.links=4" : "arm.links=2", "arm.tilt=-0.2",
-                                "wall.motion_amplitude=2e-3", "wall.restitution=0.3"))};
-        run_result r;
-        assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
-        const summary *m = &r.summary;
-        assert_true(m->status == STATUS_OK && m->impacts > 0);
-        check_below(m->energy_residual_J, 1e-10 * fabs(m->motor_work_J));
-        run_finish(&r);
+        RUN(r, "wall.kind=plane", "wall.contact=kelvin-voigt", "wall.mass=0.05",
+            "wall.motion_frequency=9", "wall.motion_time=0.2", set[0], set[1], set[2],
+            i % 2 ? "arm.links=4" : "arm.links=2", "arm.tilt=-0.2", "wall.motion_amplitude=2e-3",
+            "wall.restitution=0.3");
+        assert_true(r.summary.impacts > 0);
+        check_below(r.summary.energy_residual_J, 1e-10 * fabs(r.summary.motor_work_J));
     }
 }
 
@@ -293,11 +278,8 @@ TEST(the_ledger_closes_on_every_wall_that_moves)
          "arm.links=2", "motor.voltage=2"}};
     for (EACH(set, sets)) {
         const char *const *more = *set;
-        const scenario s = {.parameters = fixture_parameters(SETTINGS(
-                                "wall.motion_amplitude=5e-3", "wall.motion_frequency=15", more[0],
-                                more[1], more[2], more[3], more[4], "run.duration=0.6"))};
-        SCOPED(run_finish) run_result r;
-        assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+        RUN(r, "wall.motion_amplitude=5e-3", "wall.motion_frequency=15", more[0], more[1], more[2],
+            more[3], more[4], "run.duration=0.6");
         double worst = 0, done = 0;
         for (size_t k = 1; k < r.trace.row_count; k++) {
             const sample *was = &r.trace.rows[k - 1], *is = &r.trace.rows[k];
@@ -312,15 +294,12 @@ TEST(the_ledger_closes_on_every_wall_that_moves)
 
 static run_result run_of(const char *wall, double from, double time, double to, status expected)
 {
-    char text[300];
-    const char *script = "script:\n  - {at: %.17g, set: {wall.angle: %g}}\n";
-    int at =
-        snprintf(text, sizeof text, "wall: {%s, angle: %.17g}\nrun: {duration: 0.6}\n", wall, from);
-    snprintf(text + at, sizeof text - (size_t)at, script, time, to);
-    scenario s = good(text);
+    const char *text = formatted("wall: {%s, angle: %.17g}\nrun: {duration: 0.6}\n"
+                                 "script:\n  - {at: %.17g, set: {wall.angle: %g}}\n",
+                                 wall, from, time, to);
+    KEPT_SCENARIO(s) = good(text);
     run_result r;
     run_scenario(&s, true, &r);
-    scenario_finish(&s);
     fail_if(r.summary.status != expected, "%s: %s", text, r.summary.message);
     return r;
 }
@@ -333,8 +312,8 @@ static const char *const walls[] = {
 TEST(a_wall_moved_in_flight_is_where_it_was_put)
 {
     for (EACH(c, walls)) {
-        SCOPED(run_finish) run_result moved = run_of(*c, 0.1, 0.05, 0.07, STATUS_OK);
-        SCOPED(run_finish) run_result there = run_of(*c, 0.07, 0, 0.07, STATUS_OK);
+        KEPT_RUN(moved) = run_of(*c, 0.1, 0.05, 0.07, STATUS_OK);
+        KEPT_RUN(there) = run_of(*c, 0.07, 0, 0.07, STATUS_OK);
         check_close(moved.summary.first_contact_s, there.summary.first_contact_s, 1e-11);
         check_relative(moved.summary.motor_work_J, there.summary.motor_work_J, 1e-8);
         check_relative(moved.summary.peak_force_N, there.summary.peak_force_N, 1e-6);
@@ -346,7 +325,7 @@ TEST(a_wall_moved_in_flight_is_where_it_was_put)
 TEST(a_wall_moved_in_contact_lets_go_or_is_refused)
 {
     for (EACH(c, walls)) {
-        SCOPED(run_finish) run_result r = run_of(*c, 0.1, 0, 0.1, STATUS_OK);
+        KEPT_RUN(r) = run_of(*c, 0.1, 0, 0.1, STATUS_OK);
         const trace *t = &r.trace;
         double pressed = 0;
         for (size_t k = 0; k < t->row_count && pressed == 0; k++) {
@@ -377,7 +356,7 @@ TEST(a_refused_wall_changes_nothing)
     double end[2];
     for (int asked = 0; asked < 2; asked++) {
         scenario s = {.parameters = fixture_parameters(SETTINGS("run.duration=0.5"))};
-        SCOPED(loop_destroy_kept) run_loop *l;
+        KEPT_LOOP(l);
         DONE(loop_create(&l, &s, &(loop_options){0}, &f));
         DONE(loop_until(l, 0.3, &f));
         if (asked) {
@@ -396,15 +375,14 @@ TEST(the_observer_holds_its_force_on_a_moving_wall)
     static const char *const on[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt",
                                      "wall.contact=hunt-crossley"};
     for (size_t i = 0; i < 3; i++) {
-        SCOPED(run_finish)
-        run_result r = rig_run(SETTINGS("control.law=observer", "control.force=1",
-                                        "control.approach_voltage=1", "run.duration=3",
-                                        "wall.motion=sine", on[i]),
-                               true);
-        for (size_t k = 0; k < r.trace.row_count; k++) {
+        KEPT_RUN(r) = rig_run(SETTINGS("control.law=observer", "control.force=1",
+                                       "control.approach_voltage=1", "run.duration=3",
+                                       "wall.motion=sine", on[i]),
+                              true);
+        for (EACH_ROW(row, &r.trace)) {
             // a wall that takes no energy up is bounced on for longer
-            if (r.trace.rows[k].time > (i < 2 ? 1 : 1.3)) {
-                check_close(r.trace.rows[k].force, 1, 0.1);
+            if (row->time > (i < 2 ? 1 : 1.3)) {
+                check_close(row->force, 1, 0.1);
             }
         }
     }
@@ -472,13 +450,9 @@ TEST(a_table_of_a_sine_is_the_sine)
     for (size_t i = 0; i < 4; i++) {
         summary sums[2];
         for (int file = 0; file < 2; file++) {
-            const scenario s = {
-                .parameters = fixture_parameters(SETTINGS(
-                    "arm.links=3", kinds[i][0], kinds[i][1], "run.duration=0.8",
-                    "wall.motion_frequency=2", file ? "wall.motion=file" : "wall.motion=sine",
-                    "wall.motion_file=wall-path.csv", "arm.damping_ratio=0.01"))};
-            SCOPED(run_finish) run_result r;
-            assert_int_equal(run_scenario(&s, false, &r), STATUS_OK);
+            RUN(r, "arm.links=3", kinds[i][0], kinds[i][1], "run.duration=0.8",
+                "wall.motion_frequency=2", file ? "wall.motion=file" : "wall.motion=sine",
+                "wall.motion_file=wall-path.csv", "arm.damping_ratio=0.01");
             sums[file] = r.summary;
         }
         check_close(sums[1].first_contact_s, sums[0].first_contact_s, 1e-7);
@@ -502,11 +476,9 @@ TEST(a_table_with_faults_is_told_with_its_place)
         {"time[s],place[m]\n0,0\n1,nan\n", "wall-path.csv:3"},
     };
     for (EACH(c, wrong)) {
-        FILE *file = fopen(path_csv, "w");
-        fputs(c->text, file);
-        fclose(file);
         fault f = {0};
         wall_path *path;
+        put_file(path_csv, c->text);
         assert_int_equal(wall_path_create(&path, path_csv, &f), STATUS_BAD_SCENARIO);
         assert_null(path);
         assert_string_equal(f.path, "wall.motion_file");
@@ -523,17 +495,15 @@ TEST(a_resumed_run_has_its_wall)
                       SETTINGS("arm.links=3", "wall.motion=file", "wall.motion_time=0.3",
                                "wall.motion_file=wall-path.csv", "run.duration=2.5"))};
     s.name = strdup("walls");
-    SCOPED(session_finish) session changed;
+    KEPT_SESSION(changed);
     DONE(session_open(&changed, &s, (double)INFINITY, &f));
     session_seek(&changed, 1.6);
     DONE(session_change(&changed, PARAMETER_INDEX(motor.voltage), "2", &f));
-    run_result whole;
-    assert_int_equal(run_scenario(&changed.effective, true, &whole), STATUS_OK);
+    KEPT_RUN(whole) = run_done(&changed.effective, true);
     assert_int_equal(whole.trace.row_count, changed.run.trace.row_count);
     for (size_t i = 0; i < whole.trace.row_count; i++) {
         assert_true(whole.trace.rows[i].gap == changed.run.trace.rows[i].gap);
         assert_true(whole.trace.rows[i].force == changed.run.trace.rows[i].force);
     }
-    run_finish(&whole);
     unlink(path_csv);
 }

@@ -3,7 +3,6 @@
 // so on, see meson.build).
 
 #include "src/predict/linearised.h"
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 
 static long allocations;
@@ -32,9 +31,7 @@ static passage go_through(const char *const *settings)
     parameters p = fixture_parameters(settings);
     passage seen = {0};
     motion_report report;
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-    motion_start(&a, m, p.initial.angle, p.initial.velocity);
+    STARTED(a, m, &p, NULL, p.initial.angle, p.initial.velocity);
     long before = allocations;
     bool pushed = false;
     while (m->state[SLOT_TIME] < p.run.duration) {

@@ -56,7 +56,7 @@ static status show(const scenario *s, run_result *result, FILE *out)
 static status run(scenario *s, FILE *out)
 {
     // with rows that can be shared, as a session keeps them
-    SCOPED(run_finish) run_result result;
+    KEPT_RUN(result);
     run_options options = {.keep_trace = true, .rows_expected = 1000};
     status code = run_scenario_with(s, &options, &result);
     code = code == STATUS_OK ? show(s, &result, out) : code;
@@ -150,7 +150,7 @@ static status change_on_the_way(scenario *s, FILE *out)
 
 static status step_as_a_loop(scenario *s, FILE *out)
 {
-    SCOPED(loop_destroy_kept) run_loop *loop = NULL;
+    KEPT_LOOP(loop) = NULL;
     fault f = {0};
     const loop_options options = {.keep_trace = true};
     status code = loop_create(&loop, s, &options, &f);
@@ -218,7 +218,7 @@ static status sweep_over(scenario *s, FILE *out)
 
 static status put_side_by_side(scenario *s, FILE *out)
 {
-    SCOPED(run_finish) run_result result;
+    KEPT_RUN(result);
     status code = run_scenario(s, false, &result);
     if (code == STATUS_OK) {
         compare_row row = compare_row_of(s, &result);

@@ -46,10 +46,9 @@ static status list_all(const char *ignored, FILE *out)
 
 static status place_of(const char *name, FILE *out)
 {
-    SCOPED(free_kept) char *path = scenario_folder_file(name);
+    KEPT_TEXT(path) = scenario_folder_file(name);
     fprintf(out, "%s\n", path != NULL ? path : "");
-    const status code = path != NULL ? STATUS_OK : STATUS_NO_MEMORY;
-    return code;
+    return path != NULL ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 // --- studies ------------------------------------------------------------------------------------
@@ -133,7 +132,7 @@ static status sweep_in_parts(scenario *s, FILE *out)
     status code = sweep_init(&w, s, &request, &f);
     const bool begun = code == STATUS_OK;
     for (int i = 0; i < 2 && code == STATUS_OK; i++) {
-        SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
+        KEPT_STORE(store) = NULL;
         sweep_progress progress;
         const sweep_options options = {.share = {i + 1, 2}, .jobs = 1};
         code = sweep_store_open(&store, files[i], &w, &f);
@@ -168,15 +167,15 @@ static status sweep_in_parts(scenario *s, FILE *out)
 // The force and the hub of every row.
 static status show_rows(const run_result *result, FILE *out)
 {
-    for (size_t i = 0; i < result->trace.row_count; i++) {
-        fprintf(out, "%a %a\n", result->trace.rows[i].force, result->trace.rows[i].hub_angle);
+    for (EACH_ROW(row, &result->trace)) {
+        fprintf(out, "%a %a\n", row->force, row->hub_angle);
     }
     return result->summary.status;
 }
 
 static status run(scenario *s, FILE *out)
 {
-    SCOPED(run_finish) run_result result;
+    KEPT_RUN(result);
     const status code = run_scenario(s, true, &result);
     show_rows(&result, out);
     return code;
@@ -187,13 +186,10 @@ static status run(scenario *s, FILE *out)
 TEST(a_name_means_the_same_scenario)
 {
     put_file("own.yaml", "title: Own\n");
-    SCOPED(free_kept)
-    char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
-    char path[64];
+    KEPT_TEXT(before) = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
-    snprintf(path, sizeof path, "%s/own", test_folder);
     try_all(look_up, "own");
-    try_all(look_up, path);
+    try_all(look_up, formatted("%s/own", test_folder));
     try_all(look_up, "owm");
     try_all(look_up, test_folder);
     try_all(list_all, "");

@@ -1,7 +1,6 @@
 // Numbers as text: short, exact, and read only in the usual notations.
 #include "src/base/numbers.h"
 
-#include "src/base/random.h"
 #include "tests/check.h"
 
 TEST(numbers_are_short_and_read_back)
@@ -95,8 +94,7 @@ static double some_number(random_generator *g, int i)
 // as many digits it is the nearest.
 TEST(digits_are_as_few_as_read_back)
 {
-    random_generator g;
-    random_seed(&g, 20261122);
+    random_generator g = seeded(20261122);
     for (int i = 0; i < 200000; i++) {
         const double value = some_number(&g, i);
         if (!isfinite(value) || value == 0) {
@@ -162,8 +160,7 @@ TEST(decimals)
 // Numbers of so many digits times a power of ten, written out by hand.
 TEST(digits_and_points_stand_where_they_belong)
 {
-    random_generator g;
-    random_seed(&g, 12);
+    random_generator g = seeded(12);
     for (int trial = 0; trial < 40000; trial++) {
         char digits[24], source[64], expected[64], text[NUMBER_TEXT];
         const int count = 1 + (int)random_below(&g, 15), place = (int)random_below(&g, 44) - 22;

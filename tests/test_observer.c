@@ -331,7 +331,7 @@ TEST(a_hub_on_a_spring_does_not_swing)
 static observer_arms arms_after(const char *const *settings)
 {
     scenario s = {.parameters = rig_parameters(settings)};
-    SCOPED(run_finish) run_result r = run_done(&s, true);
+    KEPT_RUN(r) = run_done(&s, true);
     controller_setup setup = setup_of(&s.parameters);
     observer_task task = {.force = 1, .stopping_force = 1, .approach_voltage = 1};
     observer_arms arms;
@@ -411,7 +411,7 @@ TEST(a_wall_that_gives_is_found)
                           given("control.law=observer wall.contact=hunt-crossley "
                                 "wall.stiffness=%g wall.angle=0 initial.angle=-0.1 run.duration=2",
                                 stiffness[i]))};
-        SCOPED(run_finish) run_result r = run_done(&s, false);
+        KEPT_RUN(r) = run_done(&s, false);
         check_below(r.summary.settling_time_s, 0.3);
         check_below(r.summary.smoothed_over_command_N, 0.15);
     }
@@ -467,7 +467,7 @@ TEST(it_finds_the_wall_again)
         const char *const settings[] = {"control.law=observer", "run.duration=2", NULL};
         action push = {.time = 1, .kind = ACTION_PUSH, .parameter = -1, .value = sign * 0.05};
         scenario s = {.parameters = rig_parameters(settings), .actions = &push, .action_count = 1};
-        SCOPED(run_finish) run_result r = run_done(&s, false);
+        KEPT_RUN(r) = run_done(&s, false);
         check_close(r.summary.steady_error_N, 0, 0.05);
         // a blow against the wall does not reach the hub, and is not answered
         check_below(r.summary.force_over_command_N, sign > 0 ? 0.1 : 0.3);
@@ -485,8 +485,7 @@ TEST(the_tip_comes_back_no_faster_than_it_came)
     run_result r = run_done(&s, true);
 
     double there = 0, back = 0;
-    for (size_t i = 0; i < r.trace.row_count; i++) {
-        const sample *row = &r.trace.rows[i];
+    for (EACH_ROW(row, &r.trace)) {
         double *largest = row->time <= r.summary.first_contact_s ? &there : &back;
         if (row->contact == 0) {
             *largest = fmax(*largest, -row->gap_velocity);
@@ -521,16 +520,14 @@ TEST(it_settles_on_walls_that_give)
 // rate or at once (0).
 static run_result force_after_change(double from, double to, double rate)
 {
-    char force[32];
-    snprintf(force, sizeof force, "control.force=%g", from);
+    const char *force = formatted("control.force=%g", from);
     action change = {
         .time = 1, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(control.force), .value = to};
     scenario s = {.parameters = rig_parameters_with(
                       "control.law=observer %s control.force_rate=%g run.duration=2", force, rate),
                   .actions = &change,
                   .action_count = 1};
-    run_result r = run_done(&s, true);
-    return r;
+    return run_done(&s, true);
 }
 
 // A step of the set-point settles in 0.15 s with at most a tenth of it over; a ramp is followed
@@ -540,9 +537,8 @@ TEST(it_follows_a_setpoint_in_contact)
     static const double steps[][2] = {{1, 1.5}, {1.5, 1}, {0.5, 1}, {1, 0.5}, {2.5, 3}};
     for (EACH(c, steps)) {
         const double to = (*c)[1], step = to - (*c)[0];
-        SCOPED(run_finish) run_result r = force_after_change((*c)[0], to, 0);
-        for (size_t k = 0; k < r.trace.row_count; k++) {
-            const sample *row = &r.trace.rows[k];
+        KEPT_RUN(r) = force_after_change((*c)[0], to, 0);
+        for (EACH_ROW(row, &r.trace)) {
             if (row->time > 1) {
                 check_below((row->force - to) * copysign(1, step), 0.1 * fabs(step));
             }
@@ -552,9 +548,8 @@ TEST(it_follows_a_setpoint_in_contact)
         }
     }
 
-    SCOPED(run_finish) run_result r = force_after_change(1, 3, 5);
-    for (size_t k = 0; k < r.trace.row_count; k++) {
-        const sample *row = &r.trace.rows[k];
+    KEPT_RUN(r) = force_after_change(1, 3, 5);
+    for (EACH_ROW(row, &r.trace)) {
         if (row->time > 1.07 && row->time < 1.4) {
             check_close(row->force, 1 + 5 * (row->time - 1), 0.05 * row->force);
         }
@@ -579,7 +574,7 @@ TEST(the_same_readings_give_the_same_commands)
                                         "run.duration=0.8", NULL};
         scenario s = {.parameters = rig_parameters(settings)};
         s.parameters.control.law = law;
-        SCOPED(run_finish) run_result r = run_done(&s, true);
+        KEPT_RUN(r) = run_done(&s, true);
 
         // the law alone, with its beliefs
         const controller *c = controller_of(law);

@@ -1,23 +1,15 @@
 // One link on a wall under a motor with friction: what holds the link, what its force is, and what
 // can only be said of it within bounds.
 
-#include "src/base/random.h"
-#include "src/run/run.h"
 #include "src/contact/zeno_monitor.h"
-#include "src/engines/motion_create.h"
+#include "tests/arm_fixture.h"
 #include "tests/scenario_fixture.h"
-
-GIVEN_BACK(motion, motion_destroy)
 
 // A run of the scenario with this text, which does not fail.
 static run_result run_of(const char *text)
 {
-    scenario s = good(text);
-    run_result r;
-    run_scenario(&s, true, &r);
-    scenario_finish(&s);
-    fail_if(r.summary.status != STATUS_OK, "%s\n%s", text, r.summary.message);
-    return r;
+    KEPT_SCENARIO(s) = good(text);
+    return run_done(&s, true);
 }
 
 // The number of the first event of a kind at or after an instant [s]; fails if there is none.
@@ -60,12 +52,10 @@ TEST(a_link_stuck_within_a_wall_slips_when_its_current_lets_it)
     const double stiction = 0.045, resistance = 33.6;
     for (EACH(c, cases)) {
         const double inductance = c->inductance;
-        char text[400];
-        snprintf(text, sizeof text,
-                 "arm: {links: 1}\nmotor: {voltage: 3, inductance: %g%s}\nwall: {angle: 0.1, %s}\n"
-                 "script:\n  - at: 2.4 s\n    set: {motor.voltage: 0}\nrun: {duration: 2.42}\n",
-                 inductance, c->limit, c->wall);
-        SCOPED(run_finish) run_result r = run_of(text);
+        KEPT_RUN(r) = run_of(formatted(
+            "arm: {links: 1}\nmotor: {voltage: 3, inductance: %g%s}\nwall: {angle: 0.1, %s}\n"
+            "script:\n  - at: 2.4 s\n    set: {motor.voltage: 0}\nrun: {duration: 2.42}\n",
+            inductance, c->limit, c->wall));
         const trace *t = &r.trace;
         const size_t change = event_after(&r, EVENT_CHANGE, 0);
         assert_int_equal(t->events[change - 1].kind, EVENT_STICK);
@@ -84,14 +74,9 @@ TEST(a_link_stuck_within_a_wall_slips_when_its_current_lets_it)
 // Where the hub sticks and slips without end, the hub is named, whatever it is in contact with.
 TEST(what_stands_still_names_the_event_that_repeats)
 {
-    SCOPED(scenario_finish)
-    scenario s = good("arm: {links: 1}\nwall: {contact: kelvin-voigt}\n"
-                      "initial: {angle: 0.1}\n");
-    arm a;
-    arm_init(&a, &s.parameters);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &s.parameters.method);
-    assert_non_null(m);
-    motion_start(&a, m, 0.1, 0);
+    KEPT_SCENARIO(s) = good("arm: {links: 1}\nwall: {contact: kelvin-voigt}\n"
+                            "initial: {angle: 0.1}\n");
+    STARTED(a, m, &s.parameters, NULL, 0.1, 0);
     assert_true(m->state[SLOT_CONTACT] != 0);
     static const struct {
         motion_event last;
@@ -115,9 +100,8 @@ static const double kst = 0.045; // [N m]
 // Torque of the motor at rest under a command [N m].
 static double torque_of(double volts)
 {
-    SCOPED(scenario_finish) scenario s = good("arm: {links: 1}\n");
-    const double per_volt = motor_torque_per_volt(&s.parameters.motor);
-    return per_volt * volts;
+    KEPT_SCENARIO(s) = good("arm: {links: 1}\n");
+    return motor_torque_per_volt(&s.parameters.motor) * volts;
 }
 
 static void check_bounds(double low, double high, double least, double most)
@@ -149,10 +133,9 @@ TEST(wall_and_friction_leave_open_what_the_force_is)
     };
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
         for (EACH_OF(double, c, 1, 0.2, 9)) {
-            char text[300];
-            snprintf(text, sizeof text, "%s%srun: {duration: 4}\n" SETS,
-                     strncmp(ways[i], "arm", 3) == 0 ? "" : "arm: {links: 1}\n", ways[i], 0.0, *c);
-            SCOPED(run_finish) run_result r = run_of(text);
+            KEPT_RUN(r) = run_of(formatted(
+                "%s%srun: {duration: 4}\n" SETS,
+                strncmp(ways[i], "arm", 3) == 0 ? "" : "arm: {links: 1}\n", ways[i], 0.0, *c));
             const summary *s = &r.summary;
             const double length = i == 6 ? 0.5 : 1;
             const double least = (torque_of(*c) - kst) / length;
@@ -211,19 +194,15 @@ TEST(a_force_that_stays_is_largest_at_once)
 TEST(a_link_that_rests_may_be_pressed_or_not)
 {
     for (EACH_OF(double, c, 0.05, 0, -0.05)) {
-        char text[200];
-        snprintf(text, sizeof text,
-                 "arm: {links: 1}\nmotor: {voltage: %g}\ninitial: {angle: 0.1}\n", *c);
-        run_result at_start = run_of(text);
+        KEPT_RUN(at_start) =
+            run_of(formatted("arm: {links: 1}\nmotor: {voltage: %g}\ninitial: {angle: 0.1}\n", *c));
         const double least = torque_of(*c) - kst, most = torque_of(*c) + kst;
         const summary *s = &at_start.summary;
         check_bounds(s->steady_force_low_N, s->steady_force_high_N, least, most);
         check_bounds(s->peak_force_low_N, s->peak_force_high_N, least, most);
-        run_finish(&at_start);
 
         // the same after an impact and less and less of a command
-        snprintf(text, sizeof text, "arm: {links: 1}\n" SETS, 0.5, *c);
-        SCOPED(run_finish) run_result later = run_of(text);
+        KEPT_RUN(later) = run_of(formatted("arm: {links: 1}\n" SETS, 0.5, *c));
         s = &later.summary;
         check_bounds(s->steady_force_low_N, s->steady_force_high_N, least, most);
         check_bounds(s->peak_force_low_N, s->peak_force_high_N, torque_of(1) - kst,
@@ -234,9 +213,8 @@ TEST(a_link_that_rests_may_be_pressed_or_not)
 // The mean of bounds that change in the window: at once, with a current, where one reaches zero.
 TEST(steady_bounds_are_means)
 {
-    SCOPED(run_finish)
-    run_result r = run_of("arm: {links: 1}\nscript:\n  - at: 0.95 s\n"
-                          "    set: {motor.voltage: 0.05}\n");
+    KEPT_RUN(r) = run_of("arm: {links: 1}\nscript:\n  - at: 0.95 s\n"
+                         "    set: {motor.voltage: 0.05}\n");
     const double before = torque_of(1), after = torque_of(0.05);
     check_bounds(r.summary.steady_force_low_N, r.summary.steady_force_high_N, (before - kst) / 2,
                  (before + after) / 2 + kst);
@@ -252,9 +230,8 @@ TEST(steady_bounds_are_means)
     run_finish(&r);
 
     // the same without rows
-    scenario s = good("arm: {links: 1}\n");
-    run_scenario(&s, false, &r);
-    scenario_finish(&s);
+    KEPT_SCENARIO(s) = good("arm: {links: 1}\n");
+    r = run_done(&s, false);
     check_bounds(r.summary.steady_force_low_N, r.summary.steady_force_high_N, before - kst,
                  before + kst);
 }
@@ -262,9 +239,8 @@ TEST(steady_bounds_are_means)
 // Once it has left, the first pulse's bounds stay, and no force is open any more.
 TEST(a_link_that_was_pushed_off_has_no_open_force)
 {
-    SCOPED(run_finish)
-    run_result r = run_of("arm: {links: 1}\nscript:\n  - at: 0.5 s\n"
-                          "    set: {motor.voltage: -3}\n");
+    KEPT_RUN(r) = run_of("arm: {links: 1}\nscript:\n  - at: 0.5 s\n"
+                         "    set: {motor.voltage: -3}\n");
     check_bounds(r.summary.first_pulse_peak_low_N, r.summary.first_pulse_peak_high_N,
                  torque_of(1) - kst, torque_of(1) + kst);
     check_bounds(r.summary.peak_force_low_N, r.summary.peak_force_high_N, torque_of(1) - kst,
@@ -288,12 +264,10 @@ TEST(what_else_holds_still_has_one_force)
         "arm: {links: 1}\nwall: {contact: hunt-crossley, damping: 1e8}\n",
     };
     for (int i = 0; i < 9; i++) {
-        char text[200];
-        snprintf(text, sizeof text, "%srun: {duration: 4}\n", texts[i]);
-        SCOPED(run_finish) run_result r = run_of(text);
+        KEPT_RUN(r) = run_of(formatted("%srun: {duration: 4}\n", texts[i]));
         check_determined(&r.summary);
         const bool tells = strstr(r.summary.message, "where it came to rest") != NULL;
-        const sample *last = &r.trace.rows[r.trace.row_count - 1];
+        const sample *last = LAST_ROW(&r.trace);
         assert_int_equal(tells, i >= 5 && last->sticking != 0);
         if (tells) { // with the bounds of the rest, in which it is
             assert_true(last->force >= torque_of(1) - kst && last->force <= torque_of(1) + kst);
@@ -310,20 +284,17 @@ static double between(random_generator *g, double low, double high)
 // A link that the wall stops rests, to the last bit: friction holds it.
 TEST(a_link_that_is_stopped_sticks_whatever_rounding_says)
 {
-    random_generator g;
-    random_seed(&g, 5);
+    random_generator g = seeded(5);
     for (int i = 0; i < 100; i++) {
-        char text[300];
-        snprintf(text, sizeof text,
-                 "arm: {links: 1, mass: %.17g, length: %.17g}\nmotor: {voltage: %.17g}\n"
-                 "wall: {kind: %s, angle: %.17g}\nrun: {duration: 6}\n",
-                 between(&g, 0.1, 1), between(&g, 0.3, 2), between(&g, 0.5, 9),
-                 i % 2 ? "plane" : "point", between(&g, 0.05, 2.5));
-        SCOPED(run_finish) run_result r = run_of(text);
+        KEPT_RUN(r) = run_of(
+            formatted("arm: {links: 1, mass: %.17g, length: %.17g}\nmotor: {voltage: %.17g}\n"
+                      "wall: {kind: %s, angle: %.17g}\nrun: {duration: 6}\n",
+                      between(&g, 0.1, 1), between(&g, 0.3, 2), between(&g, 0.5, 9),
+                      i % 2 ? "plane" : "point", between(&g, 0.05, 2.5)));
         const trace *t = &r.trace;
         assert_int_equal(t->event_count, 3);
         assert_int_equal(t->events[2].kind, EVENT_STICK);
-        assert_true(t->rows[t->row_count - 1].sticking != 0);
+        assert_true(LAST_ROW(t)->sticking != 0);
     }
 }
 
@@ -331,12 +302,10 @@ TEST(a_link_that_is_stopped_sticks_whatever_rounding_says)
 TEST(a_link_stops_in_long_steps)
 {
     for (EACH_TEXT(c, "newmark", "generalized-alpha")) {
-        char text[200];
-        snprintf(text, sizeof text,
-                 "arm: {links: 1}\nmotor: {viscous_friction: 150, voltage: 9}\n"
-                 "wall: {angle: 0.02}\nmethod: {name: %s, step: 0.01}\nrun: {duration: 2}\n",
-                 *c);
-        SCOPED(run_finish) run_result r = run_of(text);
+        KEPT_RUN(r) = run_of(
+            formatted("arm: {links: 1}\nmotor: {viscous_friction: 150, voltage: 9}\n"
+                      "wall: {angle: 0.02}\nmethod: {name: %s, step: 0.01}\nrun: {duration: 2}\n",
+                      *c));
         check_relative(r.summary.steady_force_N, torque_of(9), 1e-12);
         check_close(row_at(&r, 2)->hub_velocity, 0, 0);
     }

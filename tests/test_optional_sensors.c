@@ -67,8 +67,8 @@ TEST(choice_of_the_piezo_fits_it)
 
 TEST(fitting_them_changes_no_other_signal)
 {
-    SCOPED(run_finish) run_result without = rig_run(SETTINGS("control.law=optimal"), true);
-    SCOPED(run_finish) run_result with = rig_run(SETTINGS("control.law=optimal", ALL_FITTED), true);
+    KEPT_RUN(without) = rig_run(SETTINGS("control.law=optimal"), true);
+    KEPT_RUN(with) = rig_run(SETTINGS("control.law=optimal", ALL_FITTED), true);
     assert_int_equal(without.trace.row_count, with.trace.row_count);
     size_t readings = 0; // three sensors, one each in every row
     for (size_t row = 0; row < with.trace.row_count; row++) {
@@ -384,10 +384,9 @@ TEST(sensors_feel_a_push_in_contact)
     scenario s = {.parameters = rig_parameters(SETTINGS("control.law=force-pd", QUIET)),
                   .actions = &push,
                   .action_count = 1};
-    SCOPED(run_finish) run_result run = run_done(&s, true);
+    KEPT_RUN(run) = run_done(&s, true);
     double fsr = 0, piezo_force = 0, acceleration = 0;
-    for (size_t i = 0; i < run.trace.row_count; i++) {
-        const sample *row = &run.trace.rows[i];
+    for (EACH_ROW(row, &run.trace)) {
         if (row->time > 0.9) {
             fsr = fmax(fsr, row->force_reading);
             piezo_force = fmax(piezo_force, row->piezo_force);
@@ -403,15 +402,14 @@ TEST(sensors_feel_a_push_in_contact)
 // and an impulse like any other.
 TEST(sensors_feel_an_unresolved_rebound)
 {
-    SCOPED(run_finish)
-    run_result run = rig_run(SETTINGS(QUIET, "control.law=open-loop", "control.rate=5000",
-                                      "method.name=newmark", "arm.links=12", "wall.kind=plane",
-                                      "wall.restitution=0.8", "run.duration=0.305"),
-                             true);
+    KEPT_RUN(run) = rig_run(SETTINGS(QUIET, "control.law=open-loop", "control.rate=5000",
+                                     "method.name=newmark", "arm.links=12", "wall.kind=plane",
+                                     "wall.restitution=0.8", "run.duration=0.305"),
+                            true);
     double fsr = 0, largest_impulse = 0;
-    for (size_t i = 0; i < run.trace.row_count; i++) {
-        largest_impulse = fmax(largest_impulse, run.trace.rows[i].impulse);
-        fsr = fmax(fsr, run.trace.rows[i].force_reading);
+    for (EACH_ROW(row, &run.trace)) {
+        largest_impulse = fmax(largest_impulse, row->impulse);
+        fsr = fmax(fsr, row->force_reading);
     }
     check_below(0.003, largest_impulse);
     // 0.003 N s over a time constant of 0.68 ms; the next sample comes within 0.2 ms
@@ -469,8 +467,7 @@ TEST(ideal_force_sensors_are_alike)
 
 TEST(printed_arm_feeds_the_sensors_too)
 {
-    SCOPED(run_finish)
-    run_result run = rig_run(
+    KEPT_RUN(run) = rig_run(
         SETTINGS("control.law=open-loop", "arm.model=printed", "sensor.ideal=true", ALL_FITTED),
         true);
     double largest = 0;

@@ -14,16 +14,12 @@ static char *plugin_files[2];
 // A law that answers every sample with so many volts.
 static void write_law(const char *path, const char *volts)
 {
-    char text[128];
-    snprintf(text, sizeof text, "while read -r line; do echo '{\"command\": %s}'; done\n", volts);
-    put_file(path, text);
+    put_file(path, formatted("while read -r line; do echo '{\"command\": %s}'; done\n", volts));
 }
 
 static void copy_file(const char *from, const char *to)
 {
-    char command[512];
-    snprintf(command, sizeof command, "cp '%s' '%s'", from, to);
-    assert_int_equal(system(command), 0);
+    assert_int_equal(system(formatted("cp '%s' '%s'", from, to)), 0);
 }
 
 static void write_program(int which)
@@ -129,11 +125,9 @@ static bool depends_on(const char *command, const char *path)
 
 SWEEP_TEST(files_that_a_command_names_are_its_content)
 {
-    char path[64];
     assert_int_equal(mkdir("bin", 0755), 0);
-    snprintf(path, sizeof path, "%s/bin:/bin:/usr/bin", test_folder);
     char *kept = strdup(getenv("PATH"));
-    setenv("PATH", path, 1);
+    setenv("PATH", formatted("%s/bin:/bin:/usr/bin", test_folder), 1);
     assert_true(depends_on("sh law.sh", "law.sh"));
     assert_true(depends_on("./law.sh", "law.sh"));
     assert_true(depends_on("sh law.sh --table=table.csv", "table.csv"));
@@ -233,7 +227,7 @@ static void check_refused(const char *path, const sweep *s, const char *name)
 
 static void must_compute(const sweep *s, const char *path, sweep_share share)
 {
-    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(path, s);
+    KEPT_STORE(store) = must_open(path, s);
     sweep_progress progress;
     const sweep_options options = {.jobs = 2, .share = share};
     DONE(sweep_run(s, store, &options, &progress, &f));
@@ -242,8 +236,8 @@ static void must_compute(const sweep *s, const char *path, sweep_share share)
 
 static void check_rows(const char *path, const sweep *s, const char *expected)
 {
-    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(path, s);
-    SCOPED(free_kept) char *rows = csv_of(store);
+    KEPT_STORE(store) = must_open(path, s);
+    KEPT_TEXT(rows) = csv_of(store);
     assert_string_equal(rows, expected);
 }
 
@@ -253,10 +247,10 @@ SWEEP_TEST(rows_of_what_is_gone_are_refused)
     for (int i = 0; i < CASES; i++) {
         base.parameters = parameters_of(&cases[i]);
         const char *name = parameter_table[parameter_at(cases[i].parameter)].path;
-        SCOPED(sweep_finish) sweep s;
+        KEPT_SWEEP(s);
         must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2,-0.3,-0.4", NULL);
         cases[i].write(0);
-        SCOPED(free_kept) char *rows = uninterrupted(&s, 1);
+        KEPT_TEXT(rows) = uninterrupted(&s, 1);
         must_compute(&s, "first", (sweep_share){1, 2});
         must_compute(&s, "whole", (sweep_share){0, 0});
 
@@ -267,7 +261,7 @@ SWEEP_TEST(rows_of_what_is_gone_are_refused)
 
         // another one
         cases[i].write(1);
-        SCOPED(free_kept) char *fresh = uninterrupted(&s, 1);
+        KEPT_TEXT(fresh) = uninterrupted(&s, 1);
         assert_string_not_equal(fresh, rows);
         check_refused("whole", &s, name);
         check_refused("first", &s, name);
@@ -295,7 +289,7 @@ SWEEP_TEST(a_varied_law_decides_what_is_read)
     base.parameters = parameters_of(&cases[1]);
     base.parameters.control.law = LAW_OPEN_LOOP;
     write_program(0);
-    SCOPED(sweep_finish) sweep some, none;
+    KEPT_SWEEP(some), none;
     must_sweep(&some, SWEEP_GRID, 0, "control.law=open-loop,process", NULL);
     must_sweep(&none, SWEEP_GRID, 0, "control.law=open-loop,hybrid", NULL);
     must_compute(&some, "some", (sweep_share){0, 0});
@@ -313,7 +307,7 @@ SWEEP_TEST(rows_of_what_cannot_be_told_stay_alone)
         .parameter = cases[1].parameter, .value = "exec sh law.sh; exit", .law = LAW_PROCESS};
     base.parameters = parameters_of(&shell);
     write_program(0);
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
     must_compute(&s, "first", (sweep_share){1, 2});
     must_compute(&s, "second", (sweep_share){2, 2});
@@ -329,7 +323,7 @@ SWEEP_TEST(what_changes_during_a_sweep_ends_it)
 {
     base.parameters = parameters_of(&cases[1]);
     write_program(0);
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2,-0.3,-0.4", NULL);
     must_compute(&s, "rows", (sweep_share){1, 4});
 
@@ -366,7 +360,7 @@ SWEEP_TEST(what_could_not_begin_is_no_row)
         base.parameters = parameters_of(&cases[i]);
         base.parameters.code_allowed = false;
         cases[i].write(0);
-        SCOPED(sweep_finish) sweep s;
+        KEPT_SWEEP(s);
         must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
         sweep_store *store = must_open("rows", &s);
         REFUSED(STATUS_NOT_ALLOWED, "--allow-code", sweep_run(&s, store, &options, &progress, &f));
@@ -379,7 +373,7 @@ SWEEP_TEST(what_could_not_begin_is_no_row)
 
     base.parameters = parameters_of(&cases[0]);
     put_file("law.so", "no library");
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
     sweep_store *store = must_open("rows", &s);
     REFUSED(STATUS_CANNOT_READ, "run 1: control.plugin = ./law.so cannot be loaded",
@@ -399,7 +393,7 @@ static void open_session(session *s)
 // Where the arm and its wall are at the end of the run.
 static double last_gap(const session *s)
 {
-    return s->run.trace.rows[s->run.trace.row_count - 1].gap;
+    return LAST_ROW(&s->run.trace)->gap;
 }
 
 // A run that is computed again has the program of now, not answers of the one before.
@@ -409,7 +403,7 @@ SWEEP_TEST(a_session_asks_the_program_of_now)
         base.parameters = parameters_of(&cases[i]);
         cases[i].write(0);
         session s;
-        SCOPED(session_finish) session fresh;
+        KEPT_SESSION(fresh);
         open_session(&s);
         const double before = last_gap(&s);
         cases[i].write(1);

@@ -38,9 +38,8 @@ TEST(test_a_phase_pane_ends_where_the_signals_end)
     assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].signals[1], SIGNAL_INDEX(gap));
     char *text = picture(&ex, 120, 40, GLYPHS_BRAILLE);
     const trace *t = &ex.state.session.run.trace;
-    char wanted[64];
-    snprintf(wanted, sizeof wanted, "gap %s",
-             draw_number(trace_statistics(t, SIGNAL_INDEX(gap), 0, HUGE_VAL).maximum).text);
+    const char *wanted = formatted(
+        "gap %s", draw_number(trace_statistics(t, SIGNAL_INDEX(gap), 0, HUGE_VAL).maximum).text);
     assert_non_null(strstr(text, wanted));
     assert_non_null(strstr(text, "force over gap"));
     free(text);
@@ -86,8 +85,8 @@ TEST(test_measured_data_touch_when_the_run_does)
     assert_non_null(stream);
     const trace *t = &ex.state.session.run.trace;
     fputs("time[ms],force[mN],encoder[rad]\n", stream);
-    for (size_t r = 0; r < t->row_count; r++) {
-        fprintf(stream, "%.17g,%.17g,\n", 1e3 * (t->rows[r].time + 0.125), 1e3 * t->rows[r].force);
+    for (EACH_ROW(row, t)) {
+        fprintf(stream, "%.17g,%.17g,\n", 1e3 * (row->time + 0.125), 1e3 * row->force);
     }
     fclose(stream);
     press_text(&ex, ":data %s<Enter>", path);

@@ -1,6 +1,5 @@
 // Combinations of parameters: contradictions, and values derived from given ones.
 #include "src/arm/chain.h"
-#include "src/base/random.h"
 #include "tests/given_parameters.h"
 
 // Of several that contradict one another the first that was given is to blame; defaults are not.
@@ -51,8 +50,7 @@ TEST(an_arm_starts_in_front_of_its_wall)
     static const char *const contacts[] = {"rigid", "kelvin-voigt", "hunt-crossley"};
     static const char *const methods[] = {"event", "newmark", "generalized-alpha"};
     static const char *const links[] = {"1", "2", "5"};
-    random_generator g;
-    random_seed(&g, 29);
+    random_generator g = seeded(29);
     for (int i = 0; i < 3000; i++) {
         const int contact = (int)random_below(&g, 3);
         parameters p = fresh(i % 10 == 0 ? ARM_PRINTED : ARM_CORRECTED);

@@ -87,9 +87,8 @@ TEST(what_follows_from_others_may_not_change)
 
 static void check_same_bytes(const char *const *settings, const char *const *listed)
 {
-    SCOPED(run_finish)
-    run_result one = run_arm(fixture_parameters(settings), true),
-               other = run_arm(fixture_parameters(listed), true);
+    KEPT_RUN(one) = run_arm(fixture_parameters(settings), true),
+    other = run_arm(fixture_parameters(listed), true);
     assert_int_equal(one.trace.row_count, other.trace.row_count);
     assert_memory_equal(one.trace.rows, other.trace.rows,
                         one.trace.row_count * sizeof *one.trace.rows);
@@ -109,11 +108,9 @@ TEST(equal_numbers_are_the_uniform_arm_to_the_last_bit)
 // Lists that differ from the uniform arm by nothing that counts.
 TEST(the_general_way_meets_the_uniform_one)
 {
-    SCOPED(run_finish)
-    run_result one =
+    KEPT_RUN(one) =
         run_arm(fixture_parameters(given("arm.links=4 arm.k2=5 run.duration=0.33")), true);
-    SCOPED(run_finish)
-    run_result other =
+    KEPT_RUN(other) =
         run_arm(fixture_parameters(given(
                     "arm.links=4 arm.joint_stiffness=10,10.000000000001,10 run.duration=0.33")),
                 true);
@@ -168,21 +165,17 @@ TEST(a_beam_cut_into_unequal_links_converges)
     double off[2];
     for (int i = 0; i < 2; i++) {
         const int n = 10 << i;
-        char links[32], lengths[PARAMETER_TEXT_SIZE] = "arm.link_lengths=";
-        snprintf(links, sizeof links, "arm.links=%d", n);
+        char lengths[PARAMETER_TEXT_SIZE] = "arm.link_lengths=";
         for (int k = 0; k < n; k++) { // coarse at the hub, fine at the tip
             const size_t used = strlen(lengths);
             snprintf(lengths + used, sizeof lengths - used, "%s%g", k > 0 ? "," : "",
                      k < n / 2 ? 1.2 / n : 0.8 / n);
         }
-        parameters p = parameters_with("%s %s arm.hub_joint=beam", links, lengths);
-        int count;
-        double w[21], shapes[21 * 21];
+        parameters p = parameters_with("arm.links=%d %s arm.hub_joint=beam", n, lengths);
         arm a = arm_of(&p);
         assert_true(a.uneven);
-        assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, w, shapes), STATUS_OK);
-        const double x = 1.875104068711961;
-        off[i] = w[0] / (x * x * sqrt(p.arm.EI / p.arm.mass)) - 1;
+        const double x = 1.875104068711961, w = modes_of(&a, HUB_LOCKED, TIP_FREE).w[0];
+        off[i] = w / (x * x * sqrt(p.arm.EI / p.arm.mass)) - 1;
     }
     print_message("first mode off by %.2e and %.2e, order %.3f\n", off[0], off[1],
                   log2(off[0] / off[1]));
@@ -208,8 +201,7 @@ TEST(predictors_take_lists_or_say_so)
         assert_int_equal(answer.outcome, PREDICTION_HOLDS);
 
         // against the run from there
-        SCOPED(run_finish)
-        run_result r =
+        KEPT_RUN(r) =
             run_arm(fixture_parameters(
                         given("arm.links=3 arm.joint_stiffness=8,5 arm.link_lengths=0.4,0.35,0.25 "
                               "initial.angle=0.1 initial.velocity=0.6 run.duration=0.3")),

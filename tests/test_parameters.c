@@ -126,13 +126,12 @@ TEST(the_own_unit_is_accepted)
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         parameters p = fresh(ARM_PRINTED), q = p;
-        char number[64], text[128];
+        char number[64];
         if (info->unit[0] == '\0' || isnan(parameter_get(&p, i)) || parameter_is_text(info)) {
             continue; // no unit, or a default that follows from others
         }
         parameter_format(&p, i, number, sizeof number);
-        snprintf(text, sizeof text, "  %s   %s ", number, info->unit);
-        give(&q, info->path, text);
+        give(&q, info->path, formatted("  %s   %s ", number, info->unit));
         check_close(parameter_get(&q, i), parameter_get(&p, i), 0);
     }
 }

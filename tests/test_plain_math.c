@@ -3,7 +3,6 @@
 
 #include <float.h>
 
-#include "src/base/random.h"
 #include "tests/check.h"
 
 enum { TRIALS = 20000 };
@@ -17,8 +16,7 @@ static double units_off(double found, long double exact)
 
 TEST(exponentials_are_right_to_two_units)
 {
-    random_generator g;
-    random_seed(&g, 1);
+    random_generator g = seeded(1);
     for (int i = 0; i < TRIALS; i++) {
         const double size = i % 2 == 0 ? 1 : 700, x = size * (2 * random_uniform(&g) - 1);
         assert_true(units_off(plain_exp(x), expl((long double)x)) < 2);
@@ -36,8 +34,7 @@ TEST(exponentials_are_right_to_two_units)
 
 TEST(logarithms_are_right_to_two_units)
 {
-    random_generator g;
-    random_seed(&g, 2);
+    random_generator g = seeded(2);
     for (int i = 0; i < TRIALS; i++) {
         const double u = random_uniform(&g);
         const double x = i % 2 == 0 ? 0.5 + u : ldexp(u + DBL_MIN, i % 2000 - 1000);
@@ -55,8 +52,7 @@ TEST(logarithms_are_right_to_two_units)
 
 TEST(powers_are_those_of_the_library)
 {
-    random_generator g;
-    random_seed(&g, 3);
+    random_generator g = seeded(3);
     for (int i = 0; i < TRIALS; i++) {
         const double x = 1e-6 + random_uniform(&g) * (i % 2 == 0 ? 1 : 1e4);
         const double y = 6 * random_uniform(&g) - 3, exact = pow(x, y);
@@ -68,8 +64,7 @@ TEST(powers_are_those_of_the_library)
 
 TEST(arctangents_are_right_to_two_units)
 {
-    random_generator g;
-    random_seed(&g, 5);
+    random_generator g = seeded(5);
     for (int i = 0; i < TRIALS; i++) {
         const double size = i % 2 == 0 ? 1 : ldexp(1, i % 400 - 200);
         const double x = 2 * random_uniform(&g) - 1, y = size * (2 * random_uniform(&g) - 1);

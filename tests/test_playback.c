@@ -8,7 +8,7 @@ static const char *const recorded_csv = "recorded.csv";
 // Runs settings and keeps the trace as the lab's own CSV.
 static summary record(const char *const *settings)
 {
-    SCOPED(run_finish) run_result r = rig_run(settings, true);
+    KEPT_RUN(r) = rig_run(settings, true);
     FILE *file = fopen(recorded_csv, "w");
     assert_non_null(file);
     export_csv(file, &r.trace, 2);
@@ -30,13 +30,11 @@ TEST(a_run_plays_back_its_own_csv)
         {"control.law=hybrid", "control.rate=333", "control.delay=0.0007", "voltage", "-0.0007"},
     };
     for (EACH(c, cases)) {
-        char column[64], shift[64];
-        snprintf(column, sizeof column, "control.playback_column=%s", c->column);
-        snprintf(shift, sizeof shift, "control.playback_shift=%s", c->shift);
         const summary was = record(given("%s %s %s", c->law, c->rate, c->delay));
         const summary is =
             rig_summary_with("control.law=playback control.playback_file=recorded.csv %s %s %s %s",
-                             column, shift, c->rate, c->delay);
+                             formatted("control.playback_column=%s", c->column),
+                             formatted("control.playback_shift=%s", c->shift), c->rate, c->delay);
         assert_true(was.peak_force_N > 0);
         check_close(is.first_contact_s, was.first_contact_s, 0);
         check_close(is.peak_force_N, was.peak_force_N, 0);
@@ -59,14 +57,11 @@ TEST(a_command_is_held_or_goes_straight)
     };
     put_file("u.csv", "\"t[ms]\",u[mV]\n100,1000\n200,2000\n300,3000\n");
     for (EACH(c, cases)) {
-        char hold[64], shift[64];
-        snprintf(hold, sizeof hold, "control.playback_hold=%s", c->hold);
-        snprintf(shift, sizeof shift, "control.playback_shift=%s", c->shift);
-        SCOPED(run_finish)
-        run_result r = rig_run(
+        KEPT_RUN(r) = rig_run(
             given("control.law=playback control.playback_file=u.csv control.playback_column=u %s "
                   "%s control.rate=1000 sensor.ideal=true run.duration=0.45 wall.kind=none",
-                  hold, shift),
+                  formatted("control.playback_hold=%s", c->hold),
+                  formatted("control.playback_shift=%s", c->shift)),
             true);
         const size_t row = trace_rows_until(&r.trace, c->time) - 1;
         check_close(r.trace.rows[row].voltage, c->volts, 1e-9);

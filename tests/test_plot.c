@@ -77,8 +77,7 @@ static cairo_surface_t *paint_impulse(double size, figure_report *r)
     synthetic_init(&s, run_panels, 1);
     s.plot->panels[0].impulses = &(figure_impulse){0.31, size};
     s.plot->panels[0].impulse_count = 1;
-    cairo_surface_t *image = paint_pixels(&s.plot->figure, FINE, r);
-    return image;
+    return paint_pixels(&s.plot->figure, FINE, r);
 }
 
 // An impulse has no place on the force axis: a huge one changes nothing there.
@@ -481,7 +480,7 @@ TEST(the_last_of_twenty_links_is_body_21)
 
 TEST(a_scenario_is_plotted)
 {
-    SCOPED(scenario_finish) scenario s = shipped("corrected/first-impact");
+    KEPT_SCENARIO(s) = shipped("corrected/first-impact");
     run_result result;
     assert_int_equal(run_scenario(&s, true, &result), STATUS_OK);
     DONE(plot_run(&s, &result, NULL, NULL, 0, "run.png", &f));

@@ -66,12 +66,12 @@ TEST(command_that_is_not_finite_stops_the_run)
 {
     char file[160];
     for (EACH_TEXT(c, "arm.model=corrected", "arm.model=printed")) {
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         plugin_setting(file, sizeof file, broken_file);
         scenario s = {.parameters = rig_parameters_with("control.law=plugin %s %s", file, *c)};
         assert_int_equal(run_scenario(&s, true, &r), STATUS_NOT_FINITE);
         assert_non_null(strstr(r.summary.message, "at t = 0.1 s the controller 'broken'"));
-        check_close(r.trace.rows[r.trace.row_count - 1].time, 0.1, 0.0011);
+        check_close(LAST_ROW(&r.trace)->time, 0.1, 0.0011);
     }
 }
 

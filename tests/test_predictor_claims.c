@@ -3,10 +3,8 @@
 // in most cases.
 //
 // test_predictor_claims [CASES [SEED]]
-#include "src/base/random.h"
 #include "src/predict/linearised.h"
 #include "tests/arm_fixture.h"
-#include "tests/motion_advance.h"
 
 static long cases = 100;
 static uint64_t seed = 20261122;
@@ -167,9 +165,8 @@ static void try_case(const parameters *p, tally *t)
 
 static tally try_many(long count, const family *of)
 {
-    random_generator g;
+    random_generator g = seeded(seed + (uint64_t)of->fewest);
     tally t = {0};
-    random_seed(&g, seed + (uint64_t)of->fewest);
     for (long i = 0; i < count; i++) {
         parameters p = random_arm(&g, of);
         try_case(&p, &t);

@@ -175,7 +175,7 @@ TEST(the_row_before_landing_is_asked_about)
     const double none[1] = {0};
     const sample on_the_wall = {.contact = 1}, struck = {.impulse = 0.1};
     for (int i = 0; i < 4; i++) {
-        SCOPED(run_finish) run_result given = {.landing = {.time = i / 2}};
+        KEPT_RUN(given) = {.landing = {.time = i / 2}};
         trace_init(&given.trace, 1);
         assert_null(row_before_landing(&given));
         assert_int_equal(
@@ -188,7 +188,7 @@ TEST(the_row_before_landing_is_asked_about)
     parameters_defaults(&s.parameters, ARM_PRINTED);
     assert_int_equal(parameters_resolve(&s.parameters, NULL), STATUS_OK);
     prediction_answer answers[PREDICTOR_COUNT];
-    SCOPED(run_finish) run_result r = run_done(&s, true);
+    KEPT_RUN(r) = run_done(&s, true);
     assert_true(isnan(r.landing.before.angle[0]));
     assert_non_null(predict_first_contact(&s, &r, NULL, answers));
     assert_int_equal(answers[PREDICTOR_LINEARISED].outcome, PREDICTION_CORRECTED_ONLY);
@@ -221,7 +221,7 @@ TEST(a_current_that_lags_is_followed)
                           parameters_with("%s %s %s %s run.duration=3", lags[i % 4],
                                           limits[i / 4 % 2], arms[i / 8 % 4], walls[i / 32])};
         prediction_answer answers[PREDICTOR_COUNT];
-        SCOPED(run_finish) run_result r = predicted_run(&s, answers);
+        KEPT_RUN(r) = predicted_run(&s, answers);
         const prediction_answer *own = &answers[PREDICTOR_LINEARISED];
         if (own->outcome == PREDICTION_HOLDS) {
             check_relative(own->prediction.force, r.landing.peak, 0.01);
@@ -270,7 +270,7 @@ TEST(an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns)
                                                     start[0], start[1], start[2],
                                                     i % 2 ? "arm.links=3" : "arm.links=2")};
         prediction_answer answers[PREDICTOR_COUNT];
-        SCOPED(run_finish) run_result r = predicted_run(&s, answers);
+        KEPT_RUN(r) = predicted_run(&s, answers);
         const sample *row = row_before_landing(&r);
         assert_true(row->contact == 0 && row->gap < 1e-9 && row->time > 0);
         check_close(row->time, r.landing.time, 1e-12);
@@ -287,8 +287,8 @@ TEST(an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns)
         assert_true(isnan(r.landing.peak) || r.summary.peak_force_N >= r.landing.peak);
         assert_true(!(r.summary.first_pulse_peak_N > r.summary.peak_force_N));
         double largest = 0;
-        for (size_t k = 0; k < r.trace.row_count; k++) {
-            largest = fmax(largest, r.trace.rows[k].force);
+        for (EACH_ROW(one, &r.trace)) {
+            largest = fmax(largest, one->force);
         }
         check_below(largest, r.summary.peak_force_N * (1 + 1e-12));
     }

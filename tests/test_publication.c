@@ -9,7 +9,7 @@
 static void expect_contents(const char *path, const char *contents)
 {
     size_t length;
-    SCOPED(free_kept) char *text = read_file(path, &length);
+    KEPT_TEXT(text) = read_file(path, &length);
     assert_string_equal(text, contents);
 }
 
@@ -88,7 +88,7 @@ TEST(files_know_the_command_and_tell_what_they_show)
     assert_non_null(strstr(svg, "<desc>A title &amp; more. 1 panel over Time in s"));
     free(svg);
     publish(&o, "m.png");
-    SCOPED(free_kept) char *png = read_file("m.png", &length);
+    KEPT_TEXT(png) = read_file("m.png", &length);
     assert_non_null(memmem(png, length, "impactlab run x --set arm.k2=3", 30));
 }
 
@@ -115,7 +115,7 @@ TEST(serif_pictures_have_serif_letters)
 static GString *unpack_pdf(const char *path)
 {
     size_t length;
-    SCOPED(free_kept) char *bytes = read_file(path, &length);
+    KEPT_TEXT(bytes) = read_file(path, &length);
     GString *all = g_string_new_len(bytes, (gssize)length);
     for (size_t at = 0; at + 7 < length; at++) {
         if (memcmp(bytes + at, "stream\n", 7) != 0) {
@@ -197,7 +197,7 @@ TEST(svg_ids_are_unique_and_all_references_resolve)
     size_t length;
     synthetic_init(&s, run_panels, RUN_PANELS);
     write_figure(&s.plot->figure, "ids.svg");
-    SCOPED(free_kept) char *svg = read_file("ids.svg", &length);
+    KEPT_TEXT(svg) = read_file("ids.svg", &length);
     assert_non_null(strstr(svg, "<metadata>"));
     assert_non_null(strstr(svg, "<title>Synthetic run &amp; &lt;more&gt;</title>"));
     GHashTable *ids = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
@@ -386,8 +386,8 @@ TEST(multiples_are_runs_at_their_values)
     artwork_finish(&drawn);
 
     // the same rows, for any other contents of the file
-    SCOPED(free_kept) char *many = read_file("many.csv", &length);
-    SCOPED(free_kept) char *one = read_file("one.csv", &length);
+    KEPT_TEXT(many) = read_file("many.csv", &length);
+    KEPT_TEXT(one) = read_file("one.csv", &length);
     const char *row = ",arm 2 V force,0.3,";
     const char *a = strstr(many, row), *b = strstr(one, row);
     assert_non_null(a);
@@ -407,8 +407,8 @@ TEST(a_recipe_shows_what_its_runs_give)
     artwork_finish(&drawn);
     g_free(path);
     DONE(figure_draw("3.4", &(figure_options){0}, "thesis", "svg", NULL, &f));
-    SCOPED(free_kept) char *recipe = read_file("recipe.csv", &length);
-    SCOPED(free_kept) char *thesis = read_file("thesis/fig-3-4.csv", &length);
+    KEPT_TEXT(recipe) = read_file("recipe.csv", &length);
+    KEPT_TEXT(thesis) = read_file("thesis/fig-3-4.csv", &length);
     const char *const rows[][2] = {{"printed force,0.4,", ",force,0.4,"},
                                    {"corrected force,0.4,", ",force corrected,0.4,"}};
     double values[2];

@@ -1,5 +1,4 @@
 // The way to the wall in the least time, and the rise of the force after a touch.
-#include "src/base/random.h"
 #include "src/predict/least_time.h"
 #include "src/rig/laws/observer_paths.h"
 #include "tests/rig_fixture.h"
@@ -29,8 +28,7 @@ static force_rise_task random_task(random_generator *r)
 
 TEST(the_way_is_one_that_its_force_makes)
 {
-    random_generator r;
-    random_seed(&r, 7);
+    random_generator r = seeded(7);
     for (int trial = 0; trial < 200; trial++) {
         force_rise_task t = random_task(&r);
         force_rise rise = force_rise_begin(&t);
@@ -75,8 +73,7 @@ TEST(no_other_force_costs_less)
                                   .least = 0.1,
                                   .most = HUGE_VAL};
     force_rise rise = force_rise_begin(&task);
-    random_generator r;
-    random_seed(&r, 3);
+    random_generator r = seeded(3);
 
     for (int trial = 0; trial < 50; trial++) {
         // a pulse and the one that undoes what it does to x: the integral of exp(-s t) f is kept

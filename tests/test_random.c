@@ -1,5 +1,4 @@
 
-#include "src/base/random.h"
 #include "tests/check.h"
 
 TEST(xoshiro_gives_its_published_sequence)
@@ -67,8 +66,7 @@ TEST(uniform_numbers_fill_the_unit_interval_evenly)
     enum { DRAWN = 100000, BINS = 20 };
     int bins[BINS] = {0};
     double sum = 0, squares = 0;
-    random_generator g;
-    random_seed(&g, 1);
+    random_generator g = seeded(1);
     for (int i = 0; i < DRAWN; i++) {
         double u = random_uniform(&g);
         assert_true(u >= 0 && u < 1);
@@ -87,8 +85,7 @@ TEST(uniform_numbers_fill_the_unit_interval_evenly)
 TEST(whole_numbers_are_equally_likely_up_to_the_bound)
 {
     int counts[6] = {0};
-    random_generator g;
-    random_seed(&g, 2);
+    random_generator g = seeded(2);
     for (int i = 0; i < 60000; i++) {
         uint64_t n = random_below(&g, 6);
         assert_true(n < 6);
@@ -112,8 +109,7 @@ TEST(a_permutation_has_every_number_once)
     enum { COUNT = 1000 };
     size_t order[COUNT];
     unsigned char seen[COUNT] = {0};
-    random_generator g;
-    random_seed(&g, 3);
+    random_generator g = seeded(3);
     random_permutation(&g, order, COUNT);
     int unmoved = 0;
     for (size_t i = 0; i < COUNT; i++) {
@@ -129,8 +125,7 @@ TEST(a_permutation_has_every_number_once)
 TEST(all_permutations_are_equally_likely)
 {
     int counts[3][3] = {{0}};
-    random_generator g;
-    random_seed(&g, 4);
+    random_generator g = seeded(4);
     for (int i = 0; i < 9000; i++) {
         size_t order[3];
         random_permutation(&g, order, 3);

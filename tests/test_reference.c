@@ -59,8 +59,7 @@ static reference_answer reference_of(const reference_case *c)
 // The library's answer to the same case by a method and its step.
 static summary library_of(const reference_case *c, const char *method, double step)
 {
-    char name[64];
-    snprintf(name, sizeof name, "%s", c->name);
+    char *name = (char *)c->name;
     const scenario s = {
         .name = name,
         .file = name,
@@ -75,7 +74,7 @@ static summary library_of(const reference_case *c, const char *method, double st
                             : "rigid",
             c->plane_wall ? "plane" : "point", c->restitution, c->voltage, c->duration, method,
             step)};
-    SCOPED(run_finish) run_result result;
+    KEPT_RUN(result);
     run_scenario(&s, false, &result);
     fail_if(result.summary.status != STATUS_OK, "%s: %s", c->name, result.summary.message);
     return result.summary;

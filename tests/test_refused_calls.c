@@ -161,8 +161,8 @@ TEST(answers_that_cannot_be_read)
     int failed = 0;
     bool reached = true;
     for (long k = 1; reached; k++) {
-        SCOPED(scenario_finish) scenario s;
-        SCOPED(run_finish) run_result result;
+        KEPT_SCENARIO(s);
+        KEPT_RUN(result);
         assert_int_equal(make_scenario(&s, "control.rate=100"), STATUS_OK);
         char command[] = "control.command=while read -r line; do echo '{\"command\": 1}'; done";
         char law[] = "control.law=process";

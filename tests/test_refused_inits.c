@@ -44,8 +44,7 @@ static status set(const char *text, FILE *out)
     (void)out;
     SCOPED(robust_set_finish) robust_set s = {0};
     fault f = {0};
-    const status code = robust_set_read(&s, put("a.set", text), &f);
-    return code;
+    return robust_set_read(&s, put("a.set", text), &f);
 }
 
 static status session_of_lines(const char *text, FILE *out)
@@ -53,8 +52,7 @@ static status session_of_lines(const char *text, FILE *out)
     (void)out;
     SCOPED(session_file_finish) session_file s = {0};
     fault f = {0};
-    const status code = session_file_read(&s, put("a.session", text), &f);
-    return code;
+    return session_file_read(&s, put("a.session", text), &f);
 }
 
 static void ignore(void *context, const char *sentence)
@@ -66,9 +64,8 @@ static void ignore(void *context, const char *sentence)
 static status parsed(const char *text, FILE *out)
 {
     (void)out;
-    SCOPED(scenario_finish) scenario s = {0};
-    const status code = scenario_parse(&s, text, strlen(text), "p.yaml", NULL, ignore, NULL);
-    return code;
+    KEPT_SCENARIO(s) = {0};
+    return scenario_parse(&s, text, strlen(text), "p.yaml", NULL, ignore, NULL);
 }
 
 // Axes of a sweep, blanks between them.
@@ -92,10 +89,10 @@ static status plan_of(const char *text, sweep_sampling how, bool tuned)
             .base = &s, .vary = vary, .vary_count = count, .minimise = "peak_force_N", .runs = 4};
         code = tune_init(&t, &asked, &f);
     } else {
-        SCOPED(sweep_finish) sweep w = {0};
-        SCOPED(sweep_finish) sweep again = {0};
+        KEPT_SWEEP(w) = {0};
+        KEPT_SWEEP(again) = {0};
         SCOPED(definition_finish) definition d = {0};
-        SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
+        KEPT_STORE(store) = NULL;
         const sweep_request request = {
             .vary = vary, .vary_count = count, .sampling = how, .runs = how == SWEEP_GRID ? 0 : 3};
         code = sweep_init(&w, &s, &request, &f);
@@ -156,9 +153,8 @@ static status looped(scenario *s, FILE *out)
 {
     (void)out;
     fault f = {0};
-    SCOPED(loop_destroy_kept) run_loop *l = NULL;
-    const status code = loop_create(&l, s, &(loop_options){.keep_trace = true}, &f);
-    return code;
+    KEPT_LOOP(l) = NULL;
+    return loop_create(&l, s, &(loop_options){.keep_trace = true}, &f);
 }
 
 static status linearised(scenario *s, FILE *out)

@@ -83,8 +83,7 @@ TEST(bounds_and_landing_are_resumed)
         scenario later = s;
         s.action_count = 1;
         later.action_count = 2;
-        SCOPED(run_finish)
-        run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
+        KEPT_RUN(old) = run_keeping_history(&s), whole = run_keeping_history(&later), result;
         assert_true(resumed(&old, &s, &later, &result));
         check_same_run(&result, &whole);
         assert_int_equal(isnan(result.summary.steady_force_low_N), i == 2);
@@ -107,18 +106,16 @@ TEST(a_face_on_its_way_back_is_resumed_where_it_was)
         scenario later = s;
         s.action_count = 1;
         later.action_count = 2;
-        SCOPED(run_finish)
-        run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
+        KEPT_RUN(old) = run_keeping_history(&s), whole = run_keeping_history(&later), result;
         assert_true(run_resume(&old, &s, &later, ROWS, &result));
-        const sample *last = &result.trace.rows[result.trace.row_count - 1];
+        const sample *last = LAST_ROW(&result.trace);
         assert_true(last->contact == 0 && last->face_depth > 1e-4);
         assert_true(last->gap > -last->face_depth);
         run_finish(&result);
         assert_true(resumed(&old, &s, &later, &result));
         check_same_run(&result, &whole);
         bool met = false;
-        for (size_t k = 0; k < result.trace.event_count; k++) {
-            const event *e = &result.trace.events[k];
+        for (EACH_EVENT(e, &result.trace)) {
             met |= e->kind == EVENT_CONTACT && e->time > 2.5;
         }
         assert_true(met);
@@ -139,8 +136,7 @@ TEST(an_arm_made_stiff_is_resumed_as_it_is)
         s.actions = later.actions = changes;
         s.action_count = 1;
         later.action_count = 2;
-        SCOPED(run_finish)
-        run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
+        KEPT_RUN(old) = run_keeping_history(&s), whole = run_keeping_history(&later), result;
         assert_true(whole.summary.steps < 1e5);
         assert_true(resumed(&old, &s, &later, &result));
         check_same_run(&result, &whole);
@@ -182,7 +178,7 @@ TEST(scripts_that_part_are_resumed_where_they_part)
     }
     for (int i = 0; i < SCRIPTS; i++) {
         for (int j = 0; j < SCRIPTS; j++) {
-            SCOPED(run_finish) run_result result;
+            KEPT_RUN(result);
             assert_true(resumed(&whole[i], &s[i], &s[j], &result));
             check_same_run(&result, &whole[j]);
             run_finish(&result);
@@ -202,7 +198,7 @@ TEST(scripts_that_part_are_resumed_where_they_part)
             }
             const double part = fmin(first[0], first[1]);
             assert_true(run_resume(&whole[i], &s[i], &s[j], ROWS, &result));
-            const double shared = result.trace.rows[result.trace.row_count - 1].time;
+            const double shared = LAST_ROW(&result.trace)->time;
             check_below(shared, part);
             check_below(part - 0.7, shared);
         }
@@ -216,8 +212,7 @@ TEST(a_longer_run_goes_on_from_a_shorter_one)
 {
     scenario s = {.parameters = parameters_with("run.duration=3")};
     scenario longer = {.parameters = parameters_with("run.duration=5")};
-    SCOPED(run_finish)
-    run_result old = run_keeping_history(&s), whole = run_keeping_history(&longer), result;
+    KEPT_RUN(old) = run_keeping_history(&s), whole = run_keeping_history(&longer), result;
     assert_true(resumed(&old, &s, &longer, &result));
     check_same_run(&result, &whole);
 }
@@ -226,7 +221,7 @@ TEST(another_arm_has_nothing_in_common)
 {
     scenario s = {.parameters = parameters_with("run.duration=3")};
     scenario other = {.parameters = parameters_with("run.duration=3 arm.k2=5")};
-    SCOPED(run_finish) run_result old = run_keeping_history(&s);
+    KEPT_RUN(old) = run_keeping_history(&s);
     run_result result;
     assert_false(run_resume(&old, &s, &other, ROWS, &result));
 }
@@ -256,7 +251,7 @@ TEST(a_shared_result_outlives_the_first)
 TEST(a_run_of_the_rig_is_shared_without_history)
 {
     scenario s = {.parameters = parameters_with("run.duration=1 control.law=open-loop")};
-    SCOPED(run_finish) run_result old = run_keeping_history(&s), shared;
+    KEPT_RUN(old) = run_keeping_history(&s), shared;
     assert_int_equal(run_share(&old, ROWS, &shared), STATUS_OK);
     check_same_run(&shared, &old);
     assert_int_equal(shared.history.forces.reserved, 0);

@@ -8,7 +8,7 @@ GIVEN_BACK(run_loop, loop_destroy)
 
 TEST(command_holds_between_samples)
 {
-    SCOPED(run_finish) run_result r = rig_run(given("control.law=hybrid"), true);
+    KEPT_RUN(r) = rig_run(given("control.law=hybrid"), true);
     const trace *t = &r.trace;
     int changes = 0;
     for (size_t i = 1; i < t->row_count; i++) {
@@ -24,8 +24,7 @@ TEST(command_holds_between_samples)
 
 TEST(delay_shifts_the_command)
 {
-    SCOPED(run_finish)
-    run_result r = rig_run(given("control.law=hybrid control.delay=0.002"), true);
+    KEPT_RUN(r) = rig_run(given("control.law=hybrid control.delay=0.002"), true);
     const trace *t = &r.trace;
     for (size_t i = 1; i < t->row_count; i++) {
         if (t->rows[i].voltage != t->rows[i - 1].voltage) {
@@ -40,14 +39,13 @@ TEST(delay_shifts_the_command)
 TEST(a_command_still_on_its_way_does_not_count)
 {
     for (EACH_TEXT(c, "run.duration=0.32", "run.duration=0.3102", "run.duration=0.305")) {
-        SCOPED(run_finish)
-        run_result r = rig_run(given("control.law=force-pd control.force_gain=5 "
-                                     "control.delay=0.003068 control.seed=423 %s",
-                                     *c),
-                               true);
+        KEPT_RUN(r) = rig_run(given("control.law=force-pd control.force_gain=5 "
+                                    "control.delay=0.003068 control.seed=423 %s",
+                                    *c),
+                              true);
         double largest = 0;
-        for (size_t k = 0; k < r.trace.row_count; k++) {
-            largest = fmax(largest, fabs(r.trace.rows[k].voltage));
+        for (EACH_ROW(row, &r.trace)) {
+            largest = fmax(largest, fabs(row->voltage));
         }
         check_close(r.summary.largest_command_V, largest, 0);
     }
@@ -167,7 +165,7 @@ TEST(energy_under_a_limit_that_changes)
                           "%s control.law=open-loop control.approach_voltage=5", models[i]),
                       .actions = &lower,
                       .action_count = 1};
-        SCOPED(run_finish) run_result r = run_done(&s, true);
+        KEPT_RUN(r) = run_done(&s, true);
 
         // the printed arm's row has the voltage of the step before it
         const motor_parameters *m = &s.parameters.motor;
@@ -191,7 +189,7 @@ TEST(errors_are_from_the_last_command)
     scenario s = {.parameters = rig_parameters_with("control.law=force-pd run.duration=3"),
                   .actions = &raise,
                   .action_count = 1};
-    SCOPED(run_finish) run_result r = run_done(&s, false);
+    KEPT_RUN(r) = run_done(&s, false);
     const summary *m = &r.summary;
     check_close(m->force_command_N, 2, 0);
     check_close(m->steady_error_N, 0, 0.05);
@@ -202,12 +200,9 @@ TEST(errors_are_from_the_last_command)
 
 TEST(same_seed_same_bytes)
 {
-    SCOPED(run_finish)
-    run_result a = rig_run(given("control.law=optimal control.jitter=0.0005"), true);
-    SCOPED(run_finish)
-    run_result b = rig_run(given("control.law=optimal control.jitter=0.0005"), true);
-    SCOPED(run_finish)
-    run_result c = rig_run(given("control.law=optimal control.jitter=0.0005 control.seed=2"), true);
+    KEPT_RUN(a) = rig_run(given("control.law=optimal control.jitter=0.0005"), true);
+    KEPT_RUN(b) = rig_run(given("control.law=optimal control.jitter=0.0005"), true);
+    KEPT_RUN(c) = rig_run(given("control.law=optimal control.jitter=0.0005 control.seed=2"), true);
     assert_int_equal(a.trace.row_count, b.trace.row_count);
     assert_memory_equal(a.trace.rows, b.trace.rows, a.trace.row_count * sizeof(sample));
     assert_true(a.summary.peak_force_N != c.summary.peak_force_N);
@@ -218,7 +213,7 @@ TEST(same_seed_same_bytes)
 TEST(many_links_want_their_own_stiffness)
 {
     run_result r = rig_run(given("control.law=open-loop arm.links=12 run.duration=4"), true);
-    const sample *last = &r.trace.rows[r.trace.row_count - 1];
+    const sample *last = LAST_ROW(&r.trace);
     double measured = last->force * 0.5 / (2 * last->first_angle);
     run_finish(&r);
     summary nominal = rig_summary_with("control.law=hybrid arm.links=12 run.duration=2.5");
@@ -248,7 +243,7 @@ TEST(a_command_that_alternates_passes_time)
     const loop_options options = {.commanded = true};
     for (size_t i = 0; i < sizeof arms / sizeof arms[0]; i++) {
         const scenario s = {.parameters = fixture_parameters(arms[i])};
-        SCOPED(loop_destroy_kept) run_loop *l;
+        KEPT_LOOP(l);
         fault f = {.text = ""};
         assert_int_equal(loop_create(&l, &s, &options, &f), STATUS_OK);
         for (long k = 0; !loop_ended(l); k++) {
@@ -264,10 +259,7 @@ TEST(a_command_that_alternates_passes_time)
 // [s]: its impulses, and its force in strides that grow by a twentieth of the time since.
 static double lagged_force(const parameters *p, double time_constant, double after)
 {
-    arm a = arm_of(p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p->method);
-    assert_non_null(m);
-    motion_start(&a, m, p->initial.angle, p->initial.velocity);
+    STARTED(a, m, p, NULL, p->initial.angle, p->initial.velocity);
 
     double felt = 0, touched = -1, last = 0, end = p->run.duration;
     while (m->state[SLOT_TIME] < end) {
@@ -307,7 +299,7 @@ TEST(sensors_feel_the_spike_of_a_damped_chain)
                   "sensor.piezo_range=0 sensor.piezo_noise=0 sensor.adc_bits=0 sensor.dac_bits=0",
                   i % 2 ? 1 : 0.3, i / 2 ? 32 : 8);
         const parameters p = rig_parameters(settings);
-        SCOPED(run_finish) run_result run = rig_run(settings, true);
+        KEPT_RUN(run) = rig_run(settings, true);
 
         // the first readings after the touch
         const double touch = run.summary.first_contact_s;
@@ -339,10 +331,9 @@ TEST(the_approach_speed_is_the_largest_of_the_flight)
         for (int k = 0; k < 7; k++) {
             settings[5 + k] = (*c)[k];
         }
-        SCOPED(run_finish) run_result r = rig_run(settings, true);
+        KEPT_RUN(r) = rig_run(settings, true);
         double fastest = 0;
-        for (size_t k = 0; k < r.trace.row_count; k++) {
-            const sample *row = &r.trace.rows[k];
+        for (EACH_ROW(row, &r.trace)) {
             const bool after = row->time > r.summary.first_contact_s; // never, without one
             fastest = after ? fastest : fmax(fastest, -row->gap_velocity);
         }

@@ -35,10 +35,8 @@ TEST(every_lockable_law_stays_in_every_mode_of_its_own)
         const controller *c = controller_of(law);
         lockable += c->lockable;
         for (int mode = 0; c->lockable && c->modes[mode] != NULL; mode++) {
-            SCOPED(run_finish)
-            run_result r = locked_run(given("control.law=%s", c->name), c->modes[mode]);
-            for (size_t i = 0; i < r.trace.row_count; i++) {
-                const sample *row = &r.trace.rows[i];
+            KEPT_RUN(r) = locked_run(given("control.law=%s", c->name), c->modes[mode]);
+            for (EACH_ROW(row, &r.trace)) {
                 fail_if(row->time > LOCK_TIME && row->time < RELEASE_TIME &&
                             row->controller_mode != mode,
                         "%s leaves %s for mode %g at %g s", c->name, c->modes[mode],
@@ -53,8 +51,7 @@ TEST(approach_means_the_approach_command)
 {
     for (EACH_TEXT(c, "hybrid", "recovering", "reverse-torque", "force-pd", "force-integral",
                    "discontinuous", "optimal")) {
-        SCOPED(run_finish)
-        run_result r =
+        KEPT_RUN(r) =
             locked_run(given("control.law=%s control.approach_voltage=0.8", *c), "approach");
         check_close(answer_at(&r, 0.6)->command, 0.8, 0);
         check_close(answer_at(&r, 0.89)->command, 0.8, 0);
@@ -67,8 +64,7 @@ TEST(approach_means_the_approach_command)
 TEST(force_means_the_force_law_at_once)
 {
     // in free flight, from the first sample on
-    SCOPED(run_finish)
-    run_result r = rig_run(given("control.law=hybrid control.lock=force sensor.ideal=true"), true);
+    KEPT_RUN(r) = rig_run(given("control.law=hybrid control.lock=force sensor.ideal=true"), true);
     const sample *first = &r.trace.rows[0];
     double final = 0.5 / (2 * 4.92), torque = 2 * 1 * 0.5 + 10.15 * (final - first->hub_angle);
     check_close(first->controller_mode, 2, 0);
@@ -80,8 +76,7 @@ TEST(force_means_the_force_law_at_once)
 
 TEST(impact_mode_is_planned_anew_and_waits_at_its_end)
 {
-    SCOPED(run_finish)
-    run_result r = locked_run(
+    KEPT_RUN(r) = locked_run(
         given("control.law=hybrid sensor.ideal=true control.transition_time=0.2"), "impact");
     const sample *before = answer_at(&r, LOCK_TIME - 0.005), *entry = answer_at(&r, LOCK_TIME);
     double final = 0.5 / (2 * 4.92);
@@ -105,8 +100,7 @@ TEST(release_goes_on_from_the_command_in_effect)
         {"predictive", "hold"},
     };
     for (EACH(c, cases)) {
-        SCOPED(run_finish)
-        run_result r = locked_run(given("control.law=%s sensor.ideal=true", (*c)[0]), (*c)[1]);
+        KEPT_RUN(r) = locked_run(given("control.law=%s sensor.ideal=true", (*c)[0]), (*c)[1]);
         double last = answer_at(&r, RELEASE_TIME - 0.005)->command;
         double next = answer_at(&r, RELEASE_TIME)->command;
         fail_if(fabs(next - last) > 0.1, "%s released from %s jumps from %g V to %g V", (*c)[0],
@@ -138,10 +132,9 @@ TEST(unknown_modes_are_refused)
         {"control.law=inverse-dynamics", "press", "cannot be held in a mode"},
     };
     for (EACH(c, cases)) {
-        char setting[128];
         scenario s = {.parameters = rig_parameters_with("%s", c->law)};
-        snprintf(setting, sizeof setting, "control.lock=%s", c->mode);
-        REFUSED(STATUS_BAD_SCENARIO, c->why, scenario_override(&s, setting, &f));
+        REFUSED(STATUS_BAD_SCENARIO, c->why,
+                scenario_override(&s, formatted("control.lock=%s", c->mode), &f));
         check_close(parameter_get(&s.parameters, PARAMETER_INDEX(control.lock)), 0, 0);
         DONE(scenario_override(&s, "control.lock=none", &f));
     }
@@ -186,8 +179,8 @@ TEST(lock_is_an_input_that_a_saved_scenario_repeats)
 {
     const int lock = PARAMETER_INDEX(control.lock);
     scenario s = shipped("compare/hybrid");
-    SCOPED(session_finish) session e;
-    SCOPED(run_finish) run_result free_run;
+    KEPT_SESSION(e);
+    KEPT_RUN(free_run);
     run_scenario(&s, true, &free_run);
     DONE(session_open(&e, &s, HUGE_VAL, &f));
     session_seek(&e, 0.4);
@@ -259,7 +252,7 @@ TEST(every_mode_is_gone_into_from_every_other)
                                                         c->name, models[law / LAW_PLUGIN]),
                       .actions = script,
                       .action_count = count};
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s: %s", c->name, r.summary.message);
         for (int i = 0; i < count; i++) {
             const double then = script[i].time + 0.006, is = answer_at(&r, then)->controller_mode;

@@ -155,8 +155,8 @@ TEST(what_is_no_set_is_refused)
 static char *judged(int law, char *const *lines, int count, size_t runs, int jobs,
                     robust_law *found)
 {
-    SCOPED(sweep_finish) sweep s;
-    SCOPED(sweep_store_close_kept) sweep_store *store;
+    KEPT_SWEEP(s);
+    KEPT_STORE(store);
     sweep_progress progress;
     scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
     base.parameters.control.law = law;
@@ -251,9 +251,7 @@ TEST(sets_have_limits)
     assert_int_equal(
         read_set(&set, "a=1\n\ncase one: push=1@1; push=1@1; push=1@1; push=1@1; push=1@1\n", &f),
         STATUS_BAD_ARGUMENT);
-    char place[64];
-    snprintf(place, sizeof place, "%s:3: no case", path);
-    assert_non_null(strstr(f.text, place));
+    assert_non_null(strstr(f.text, formatted("%s:3: no case", path)));
     assert_int_equal(f.line, 3);
     robust_set_finish(&set);
 }
@@ -263,8 +261,8 @@ TEST(threads_change_nothing)
     char *const lines[] = {"belief.k2_factor=0.75:1.25", "control.seed=1:1000"};
     SCOPED(robust_law_finish) robust_law one;
     SCOPED(robust_law_finish) robust_law two;
-    SCOPED(free_kept) char *alone = judged(LAW_HYBRID, lines, 2, 12, 1, &one);
-    SCOPED(free_kept) char *shared = judged(LAW_HYBRID, lines, 2, 12, 3, &two);
+    KEPT_TEXT(alone) = judged(LAW_HYBRID, lines, 2, 12, 1, &one);
+    KEPT_TEXT(shared) = judged(LAW_HYBRID, lines, 2, 12, 3, &two);
     assert_string_equal(alone, shared);
     assert_memory_equal(one.overshoots, two.overshoots, 12 * sizeof(double));
 }
@@ -432,7 +430,7 @@ TEST(a_limit_says_what_is_too_much)
                  {"arm.links=3", "smoothed"},
                  {"arm.links=2,3", "peak and smoothed"}};
     for (int i = 0; i < 3; i++) {
-        SCOPED(free_kept) char *text = judged(LAW_HYBRID, &kinds[i].line, 1, 2, 1, &found);
+        KEPT_TEXT(text) = judged(LAW_HYBRID, &kinds[i].line, 1, 2, 1, &found);
         assert_string_equal(found.overshoot_of, kinds[i].of);
         char expected[64];
         snprintf(expected, sizeof expected, "\"overshoot_of\": \"%s\"", kinds[i].of);

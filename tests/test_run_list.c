@@ -136,7 +136,7 @@ TEST(test_the_difference_is_that_of_the_runs)
     check_close(difference_first_beyond(d, voltage, 0.1), 0.1, 1e-9);
     assert_true(difference_first_beyond(d, angle, 0) > 0.1);
     const trace *t = &d->trace;
-    check_close(signal_value(&t->rows[t->row_count - 1], voltage), -0.5, 1e-15);
+    check_close(signal_value(LAST_ROW(t), voltage), -0.5, 1e-15);
     assert_shows(&ex, "minus baseline");
     press(&ex, "D");
     assert_int_equal(state_run_count(&ex.state), 2);
@@ -172,8 +172,7 @@ TEST(test_an_integral_has_its_own_unit)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "X:trace force gap_velocity hub_acceleration contact<Enter>");
     for (int narrow = 0; narrow < 2; narrow++) {
-        SCOPED(free_kept)
-        char *text = picture(&ex, narrow ? 100 : 140, 40, GLYPHS_BRAILLE);
+        KEPT_TEXT(text) = picture(&ex, narrow ? 100 : 140, 40, GLYPHS_BRAILLE);
         char *line = text;
         for (EACH_TEXT(c, " N s ", " m ", " rad/s ")) {
             line = strstr(line + 1, narrow ? "\u222b" : "integral");

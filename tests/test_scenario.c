@@ -7,23 +7,22 @@
 
 TEST(a_whole_scenario_is_read)
 {
-    SCOPED(scenario_finish)
-    scenario s = good("# a comment\n"
-                      "title: 'Contact force: 1 V'\n"
-                      "description: >\n"
-                      "  Two lines\n"
-                      "  become one.\n"
-                      "arm:\n"
-                      "  model: printed\n"
-                      "  k2: 49.2 N m/rad # ten times\n"
-                      "motor: {voltage: -2}\n"
-                      "script:\n"
-                      "  - at: 0.6 s\n"
-                      "    set: {motor.voltage: 3 V, arm.k2: 5}\n"
-                      "  - {at: 0.4, set: {motor.voltage: 2 V}}\n"
-                      "expect:\n"
-                      "  first_contact_s: {value: 0.312, tolerance: 0.002}\n"
-                      "  first_pulse_s: null\n");
+    KEPT_SCENARIO(s) = good("# a comment\n"
+                            "title: 'Contact force: 1 V'\n"
+                            "description: >\n"
+                            "  Two lines\n"
+                            "  become one.\n"
+                            "arm:\n"
+                            "  model: printed\n"
+                            "  k2: 49.2 N m/rad # ten times\n"
+                            "motor: {voltage: -2}\n"
+                            "script:\n"
+                            "  - at: 0.6 s\n"
+                            "    set: {motor.voltage: 3 V, arm.k2: 5}\n"
+                            "  - {at: 0.4, set: {motor.voltage: 2 V}}\n"
+                            "expect:\n"
+                            "  first_contact_s: {value: 0.312, tolerance: 0.002}\n"
+                            "  first_pulse_s: null\n");
     assert_string_equal(s.name, "f.yaml");
     assert_string_equal(s.title, "Contact force: 1 V");
     assert_string_equal(s.description, "Two lines become one.");
@@ -49,7 +48,7 @@ TEST(a_whole_scenario_is_read)
 
 TEST(what_is_left_out_has_a_default)
 {
-    SCOPED(scenario_finish) scenario s = good("{}");
+    KEPT_SCENARIO(s) = good("{}");
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
     DONE(parameters_resolve(&p, &f));
@@ -68,8 +67,7 @@ TEST(what_is_left_out_has_a_default)
 
 TEST(the_order_of_groups_does_not_matter)
 {
-    SCOPED(scenario_finish)
-    scenario s = good("script: [{at: 4 s, push: -0.02 N s}]\nrun: {duration: 5 s}\n");
+    KEPT_SCENARIO(s) = good("script: [{at: 4 s, push: -0.02 N s}]\nrun: {duration: 5 s}\n");
     assert_int_equal(s.actions[0].kind, ACTION_PUSH);
     check_close(s.actions[0].value, -0.02, 0);
 }
@@ -88,7 +86,7 @@ TEST(a_byte_order_mark_and_windows_lines_are_fine)
 
 TEST(times_at_both_ends_of_the_run_are_inside)
 {
-    SCOPED(scenario_finish) scenario s = good("script: [{at: 0, push: 1}, {at: 1 s, push: 2}]");
+    KEPT_SCENARIO(s) = good("script: [{at: 0, push: 1}, {at: 1 s, push: 2}]");
     assert_int_equal(s.action_count, 2);
 }
 
@@ -195,7 +193,7 @@ TEST(prose_is_text)
     check_fault("title: ' '\n", 1, 8, "title is empty, expected text");
     check_fault("title: t\ndescription: \" \\n \"\n", 2, 14, "expected text");
     check_fault("title: \"a \\x9b\"\n", 1, 8, "a control character");
-    SCOPED(scenario_finish) scenario s = good("title: '5 \u00b5s  '\n");
+    KEPT_SCENARIO(s) = good("title: '5 \u00b5s  '\n");
     assert_string_equal(s.title, "5 \u00b5s");
 }
 
@@ -252,9 +250,8 @@ TEST(faults_of_set)
 TEST(only_timed_parameters_are_set_by_a_script)
 {
     for (int i = 0; i < parameter_count; i++) {
-        char text[256];
-        snprintf(text, sizeof text, "script:\n  - at: 0.5\n    set: {%s: no}\n",
-                 parameter_table[i].path);
+        const char *text =
+            formatted("script:\n  - at: 0.5\n    set: {%s: no}\n", parameter_table[i].path);
         if (!parameter_table[i].timed) {
             check_fault(text, 3, 11, "cannot change during a run");
         } else {
@@ -335,7 +332,7 @@ TEST(lists_are_read_in_both_forms)
 // A value that the parameter does not accept changes nothing, for any origin of the action.
 TEST(an_action_that_cannot_be_changes_nothing)
 {
-    SCOPED(scenario_finish) scenario s = good("title: t\n");
+    KEPT_SCENARIO(s) = good("title: t\n");
     const parameters before = s.parameters;
     const action wrong = {.kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k2), .value = -1};
     REFUSED(STATUS_BAD_SCENARIO, "arm.k2", action_apply(&wrong, &s.parameters, &f));
@@ -356,7 +353,7 @@ TEST(a_list_has_a_limit)
             check_fault(text, 5, 5, "too long");
             continue;
         }
-        SCOPED(scenario_finish) scenario s = good(text);
+        KEPT_SCENARIO(s) = good(text);
         double numbers[PARAMETER_LIST_MOST];
         assert_int_equal(parameter_list_numbers(s.parameters.arm.joint_stiffness, numbers), 2);
         check_close(numbers[0], 6, 0);

@@ -27,8 +27,7 @@ static int make_folder(void **state)
 // Opens with the folder of this test as the scenario folder.
 static status open_here(scenario *s, const char *name, sentences *all)
 {
-    SCOPED(free_kept)
-    char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
+    KEPT_TEXT(before) = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     *all = (sentences){0};
     setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
     status result = scenario_open(s, name, keep_sentence, all);
@@ -38,7 +37,7 @@ static status open_here(scenario *s, const char *name, sentences *all)
 
 TEST_BETWEEN(scenarios_open_by_name_and_by_file, make_folder, leave_folder)
 {
-    SCOPED(scenario_finish) scenario s;
+    KEPT_SCENARIO(s);
     sentences all;
     char path[128];
     assert_int_equal(open_here(&s, "deep/alpha-9", &all), STATUS_OK);
@@ -99,11 +98,10 @@ TEST_BETWEEN(files_that_cannot_be_read, make_folder, leave_folder)
 // A link to a folder above would be listed for ever.
 TEST_BETWEEN(links_in_a_circle_end, make_folder, leave_folder)
 {
-    char circle[128], **names;
+    char **names;
     char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     int count, found = 0;
-    snprintf(circle, sizeof circle, "%s/deep/again", test_folder);
-    assert_int_equal(symlink("..", circle), 0);
+    assert_int_equal(symlink("..", formatted("%s/deep/again", test_folder)), 0);
     setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
     assert_int_equal(scenario_list(&names, &count, NULL), STATUS_OK);
     for (int i = 0; i < count; i++) {
@@ -120,8 +118,7 @@ TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, leave_folder)
 {
     char **names;
     int count;
-    SCOPED(free_kept)
-    char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
+    KEPT_TEXT(before) = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
     DONE(scenario_list(&names, &count, &f));
     const char *const own[] = {"beta", "deep/alpha-9", "deep/alpha-10"};
@@ -154,9 +151,8 @@ TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, leave_folder)
 TEST_BETWEEN(every_folder_is_looked_into, make_folder, leave_folder)
 {
     enum { FOLDERS = 100 };
-    SCOPED(free_kept)
-    char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
-    SCOPED(free_kept) char *all = NULL;
+    KEPT_TEXT(before) = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
+    KEPT_TEXT(all) = NULL;
     size_t length;
     FILE *list = open_memstream(&all, &length);
     for (int i = 1; i < FOLDERS; i++) {
@@ -190,7 +186,7 @@ TEST(every_shipped_scenario_reads_clean)
     int count, thesis = 0;
     DONE(scenario_list(&names, &count, &f));
     for (int i = 0; i < count; i++) {
-        SCOPED(scenario_finish) scenario s;
+        KEPT_SCENARIO(s);
         sentences all = {0};
         fail_if(scenario_open(&s, names[i], keep_sentence, &all) != STATUS_OK || all.count != 0,
                 "%s", all.text);
@@ -215,11 +211,10 @@ TEST(every_shipped_scenario_reads_clean)
 TEST(every_figure_and_table_of_the_thesis_has_its_scenario)
 {
     for (int i = 1; i <= 14; i++) {
-        SCOPED(scenario_finish) scenario s;
+        KEPT_SCENARIO(s);
         sentences all = {0};
-        char name[64];
-        snprintf(name, sizeof name, i <= 11 ? "thesis/fig-3-%d" : "thesis/table-4-%d",
-                 i <= 11 ? i : i - 11);
+        const char *name =
+            formatted(i <= 11 ? "thesis/fig-3-%d" : "thesis/table-4-%d", i <= 11 ? i : i - 11);
         assert_int_equal(scenario_open(&s, name, keep_sentence, &all), STATUS_OK);
         bool coarse = i >= 6 && i <= 8, fast = i >= 9 && i <= 11;
         check_close(s.parameters.method.step, coarse ? 0.01 : 0.001, 0);
@@ -236,7 +231,7 @@ TEST(every_figure_and_table_of_the_thesis_has_its_scenario)
 
 TEST(an_override_sets_and_resolves)
 {
-    SCOPED(scenario_finish) scenario s = good("arm: {k2: 5}\n");
+    KEPT_SCENARIO(s) = good("arm: {k2: 5}\n");
     DONE(scenario_override(&s, "arm.k2=49.2 N m/rad", &f));
     check_close(s.parameters.arm.k2, 49.2, 0);
     DONE(scenario_override(&s, "arm.model=printed", &f));
@@ -247,13 +242,12 @@ TEST(an_override_sets_and_resolves)
 // The assignment is refused with a sentence that says `what`, and nothing changes.
 static void check_override(const char *text, const char *assignment, const char *what)
 {
-    SCOPED(scenario_finish) scenario s = good(text);
+    KEPT_SCENARIO(s) = good(text);
     parameters before = s.parameters;
     fault f = {0};
-    char beginning[128];
     assert_int_not_equal(scenario_override(&s, assignment, &f), STATUS_OK);
     assert_int_not_equal(f.code, STATUS_OK);
-    snprintf(beginning, sizeof beginning, "--set %s: ", assignment);
+    const char *beginning = formatted("--set %s: ", assignment);
     fail_if(strncmp(f.text, beginning, strlen(beginning)) != 0 || strstr(f.text, what) == NULL,
             "'%s' does not begin with '%s' and say '%s'", f.text, beginning, what);
     assert_memory_equal(&s.parameters, &before, sizeof before);
@@ -279,7 +273,7 @@ TEST(a_wrong_override_changes_nothing)
                    "arm.hub_joint=beam", "arm.k1");
 
     // nor does a whole set of parameters that contradict one another
-    SCOPED(scenario_finish) scenario s = good("{}");
+    KEPT_SCENARIO(s) = good("{}");
     parameters wrong = s.parameters, before = s.parameters;
     DONE(parameter_set_text(&wrong, PARAMETER_INDEX(wall.angle), "-2", &f));
     REFUSED(STATUS_BAD_SCENARIO, "", scenario_take_parameters(&s, &wrong, &f));
@@ -288,7 +282,7 @@ TEST(a_wrong_override_changes_nothing)
 
 TEST(an_endless_override_is_refused)
 {
-    SCOPED(scenario_finish) scenario s = good("{}");
+    KEPT_SCENARIO(s) = good("{}");
     fault f;
     char text[5000];
     memset(text, 'a', sizeof text - 1);
@@ -305,7 +299,7 @@ TEST(an_endless_override_is_refused)
 static void check_written(const scenario *s)
 {
     SCOPED(free_kept) WRITTEN(text, scenario_write(stream, s));
-    SCOPED(scenario_finish) scenario back = good(text);
+    KEPT_SCENARIO(back) = good(text);
     assert_string_equal(back.title, s->title);
     assert_string_equal(back.description, s->description);
     assert_int_equal(back.action_count, s->action_count);
@@ -329,17 +323,17 @@ TEST(written_scenarios_read_back)
     int count;
     assert_int_equal(scenario_list(&names, &count, NULL), STATUS_OK);
     for (int i = 0; i < count; i++) {
-        SCOPED(scenario_finish) scenario s;
+        KEPT_SCENARIO(s);
         assert_int_equal(scenario_open(&s, names[i], NULL, NULL), STATUS_OK);
         check_written(&s);
         free(names[i]);
     }
     free(names);
-    SCOPED(scenario_finish)
-    scenario odd = good("title: '\"a\\b\" # no comment: {'\ndescription: \"one\\ntwo\\t'\"\n"
-                        "control: {plugin: \"a b: 'c'\"}\n"
-                        "script: [{at: 0.1 s, push: -0.02 N s}, {at: 0.2, set: {wall.restitution: "
-                        "0.5}}]\n");
+    KEPT_SCENARIO(odd) =
+        good("title: '\"a\\b\" # no comment: {'\ndescription: \"one\\ntwo\\t'\"\n"
+             "control: {plugin: \"a b: 'c'\"}\n"
+             "script: [{at: 0.1 s, push: -0.02 N s}, {at: 0.2, set: {wall.restitution: "
+             "0.5}}]\n");
     check_written(&odd);
 }
 
@@ -353,20 +347,20 @@ static char *file_of(const scenario *s)
 // What YAML takes for the end of a line within a text comes back as it was.
 TEST(other_line_ends_read_back)
 {
-    SCOPED(scenario_finish) scenario s = good("title: \"a \\L b\\P c\\\"f\"\n");
+    KEPT_SCENARIO(s) = good("title: \"a \\L b\\P c\\\"f\"\n");
     assert_string_equal(s.title, "a \xe2\x80\xa8 b\xe2\x80\xa9 c\"f");
-    SCOPED(free_kept) char *file = file_of(&s);
-    SCOPED(scenario_finish) scenario again = good(file);
+    KEPT_TEXT(file) = file_of(&s);
+    KEPT_SCENARIO(again) = good(file);
     assert_string_equal(again.title, s.title);
 }
 
 // What is no text in UTF-8, such as a name of a file, leaves a file that can be read.
 TEST(broken_texts_read_back)
 {
-    SCOPED(scenario_finish) scenario s = good("title: a\n");
+    KEPT_SCENARIO(s) = good("title: a\n");
     DONE(parameter_set_text(&s.parameters, parameter_find("control.plugin"), "a\xff.so", &f));
-    SCOPED(free_kept) char *file = file_of(&s);
-    SCOPED(scenario_finish) scenario again = good(file);
+    KEPT_TEXT(file) = file_of(&s);
+    KEPT_SCENARIO(again) = good(file);
     assert_string_equal(again.parameters.control.plugin, "a?.so");
 }
 
@@ -380,7 +374,7 @@ TEST(changed_scenarios_read_back)
             "tttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttt"
             "tttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttt"
             "tttttttttttttttttttttttttttttttt");
-        SCOPED(scenario_finish) scenario s = good(head);
+        KEPT_SCENARIO(s) = good(head);
         for (int i = 0; i < parameter_count; i++) {
             // what goes together is no matter here: each is tried by itself
             parameters p = s.parameters;
@@ -395,8 +389,8 @@ TEST(changed_scenarios_read_back)
             }
 
             // with no change, some, and all of them
-            SCOPED(free_kept) char *text = file_of(&s);
-            SCOPED(scenario_finish) scenario back = good(text);
+            KEPT_TEXT(text) = file_of(&s);
+            KEPT_SCENARIO(back) = good(text);
             assert_memory_equal(back.title, s.title, strlen(s.title));
             char changes[SCENARIO_CHANGES];
             const bool told = strlen(back.title) > strlen(s.title);
@@ -409,21 +403,21 @@ TEST(changed_scenarios_read_back)
 // A lesson with every check, with and without what may be left out, is read back as it was.
 TEST(written_lessons_read_back)
 {
-    SCOPED(scenario_finish)
-    scenario s = good("title: t\n"
-                      "lesson:\n"
-                      "  parameters: [arm.k2]\n"
-                      "  steps:\n"
-                      "  - {say: \"with a bell\\a, and\\ttab\", hint: h, do: [seek 0, answer 1]}\n"
-                      "  - {say: b, number: {quantity: peak_force_N, within: 0.5}, then: right}\n"
-                      "  - {say: c, choice: {of: [x, y], right: 2}}\n"
-                      "  - {say: d, cursor: {at: first_contact_s, offset: 0.1, within: 0.01}}\n"
-                      "  - {say: e, value: {arm.k2: 5}}\n"
-                      "  - {say: f, pinned: 3}\n"
-                      "  - {say: g, ratio: {quantity: peak_force_N, from: 0.5, to: 2}}\n");
-    SCOPED(free_kept) char *first = file_of(&s);
-    SCOPED(scenario_finish) scenario back = good(first);
-    SCOPED(free_kept) char *second = file_of(&back);
+    KEPT_SCENARIO(s) =
+        good("title: t\n"
+             "lesson:\n"
+             "  parameters: [arm.k2]\n"
+             "  steps:\n"
+             "  - {say: \"with a bell\\a, and\\ttab\", hint: h, do: [seek 0, answer 1]}\n"
+             "  - {say: b, number: {quantity: peak_force_N, within: 0.5}, then: right}\n"
+             "  - {say: c, choice: {of: [x, y], right: 2}}\n"
+             "  - {say: d, cursor: {at: first_contact_s, offset: 0.1, within: 0.01}}\n"
+             "  - {say: e, value: {arm.k2: 5}}\n"
+             "  - {say: f, pinned: 3}\n"
+             "  - {say: g, ratio: {quantity: peak_force_N, from: 0.5, to: 2}}\n");
+    KEPT_TEXT(first) = file_of(&s);
+    KEPT_SCENARIO(back) = good(first);
+    KEPT_TEXT(second) = file_of(&back);
     assert_string_equal(second, first);
     assert_int_equal(back.lesson.step_count, 7);
     for (int i = 0; i < 7; i++) {

@@ -24,8 +24,7 @@ static void check_step(const char *step, const char *what)
 {
     scenario s;
     sentences all;
-    char text[1024];
-    snprintf(text, sizeof text, "lesson: {steps: [%s]}\n", step);
+    const char *text = formatted("lesson: {steps: [%s]}\n", step);
     const status code = parse(&s, text, &all);
     fail_if(code != STATUS_BAD_SCENARIO || all.count != 1 || strstr(all.text, what) == NULL,
             "%s: %d faults, expected one about '%s':\n%s", text, all.count, what, all.text);

@@ -77,7 +77,7 @@ static char *nested(int depth)
 
 TEST(depth_and_size_have_limits)
 {
-    SCOPED(free_kept) char *text = nested(1000000);
+    KEPT_TEXT(text) = nested(1000000);
     check_fault(text, 1, 8 + TREE_MAX_DEPTH - 1, "nested too deeply");
     free(text);
     // one byte too long

@@ -67,8 +67,7 @@ TEST(test_joints)
     sample half = scene_joints(t, p, (t->rows[row].time + t->rows[row + 1].time) / 2, joints);
     check_close(half.last_angle, (t->rows[row].last_angle + t->rows[row + 1].last_angle) / 2, 1e-9);
     // beyond the ends the arm stays where it is
-    check_close(scene_joints(t, p, 1e9, joints).last_angle, t->rows[t->row_count - 1].last_angle,
-                1e-15);
+    check_close(scene_joints(t, p, 1e9, joints).last_angle, LAST_ROW(t)->last_angle, 1e-15);
 }
 
 TEST(test_instants)
@@ -226,12 +225,11 @@ static const struct {
 
 static void compare_golden(size_t index, scene_renderer renderer, const char *name)
 {
-    char path[512];
     SCOPED(forget) recorded r = record(goldens[index].scenario);
     const scene_options options = {
         .camera = {.kind = goldens[index].camera}, .renderer = renderer, .plain = true};
     PIXELS(drawn) = scene_picture_of(&r, options, goldens[index].times, goldens[index].count);
-    snprintf(path, sizeof path, "%s/%s", getenv("IMPACTLAB_GOLDENS"), goldens[index].file);
+    const char *path = formatted("%s/%s", getenv("IMPACTLAB_GOLDENS"), goldens[index].file);
     if (getenv("IMPACTLAB_WRITE_GOLDENS") != NULL && renderer == RENDER_CAIRO) {
         assert_int_equal(cairo_surface_write_to_png(drawn, path), CAIRO_STATUS_SUCCESS);
     }

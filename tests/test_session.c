@@ -1,7 +1,6 @@
 // The session of the terminal lab: cursor, changes, undo, branches, and files that reproduce a run.
 #include "tests/trace_check.h"
 
-#include "src/base/random.h"
 #include "tests/session_fixture.h"
 
 static void change(session *s, const char *path, const char *value)
@@ -105,8 +104,7 @@ static void assert_same_before(const trace *a, const trace *b, double time)
 
 TEST(test_what_is_before_a_change_stays_to_the_last_bit)
 {
-    random_generator random;
-    random_seed(&random, 6);
+    random_generator random = seeded(6);
     for (EACH_TEXT(c, "corrected/first-impact", "corrected/generalized-alpha", "corrected/newmark",
                    "corrected/five-links", "corrected/restitution", "corrected/stuck-hub",
                    "compare/hybrid", "thesis/fig-3-4", "corrected/spring-hub")) {

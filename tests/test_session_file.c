@@ -37,7 +37,7 @@ TEST(test_what_was_done_comes_back)
     open_explorer(&ex, "corrected/first-impact");
     press(&ex, keys);
     save(&ex);
-    SCOPED(free_kept) char *first = strdup(contents(path));
+    KEPT_TEXT(first) = strdup(contents(path));
     press(&ex, "q");
     assert_true(ex.state.quit);
 
@@ -182,10 +182,10 @@ TEST(test_broken_files_are_refused_with_their_line)
 
     // any beginning of a good one is told, or is whole; none crashes
     save(&ex);
-    SCOPED(free_kept) char *good = strdup(contents(path));
+    KEPT_TEXT(good) = strdup(contents(path));
     const size_t length = strlen(good);
     for (size_t cut = 0; cut < length; cut += 37) {
-        SCOPED(free_kept) char *part = strndup(good, cut);
+        KEPT_TEXT(part) = strndup(good, cut);
         put_file(path, part);
         session_file file;
         fault f = {0};

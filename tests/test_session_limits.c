@@ -27,7 +27,7 @@ static const char brief[] = "title: t\nwall: {angle: 0}\ninitial: {angle: -0.02}
 // Pushes of one gesture are undone and redone together, and a new gesture has a number of its own.
 TEST(a_gesture_is_one_step)
 {
-    SCOPED(session_finish) session s = opened(brief);
+    KEPT_SESSION(s) = opened(brief);
     assert_int_equal(session_new_gesture(&s), 1);
     static const struct {
         double time;
@@ -117,8 +117,7 @@ TEST(what_is_too_long_or_no_value_is_refused)
     assert_string_equal(s.inputs[0].text, "2");
     session_finish(&s);
 
-    SCOPED(session_finish)
-    session printed = opened("title: t\narm: {model: printed}\nrun: {duration: 0.1 s}\n");
+    KEPT_SESSION(printed) = opened("title: t\narm: {model: printed}\nrun: {duration: 0.1 s}\n");
     assert_int_equal(session_push(&printed, 0.01, &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "no pushes"));
 }
@@ -126,7 +125,7 @@ TEST(what_is_too_long_or_no_value_is_refused)
 // Small steps of one parameter are one input; what is refused on the way is none of them.
 TEST(adjusting_keeps_what_was_before)
 {
-    SCOPED(session_finish) session s = opened(brief);
+    KEPT_SESSION(s) = opened(brief);
     fault f = {0};
     const int voltage = PARAMETER_INDEX(motor.voltage);
     session_seek(&s, 0.1);
@@ -154,7 +153,7 @@ TEST(adjusting_keeps_what_was_before)
 // An input that another one needs stays, and so do all where the run of others cannot be.
 TEST(inputs_that_cannot_go_stay)
 {
-    SCOPED(session_finish) session s = opened(brief);
+    KEPT_SESSION(s) = opened(brief);
     DONE(session_change(&s, PARAMETER_INDEX(arm.links), "3", &f));
     DONE(session_change(&s, PARAMETER_INDEX(arm.joint_stiffness), "7,8", &f));
     const unsigned version = s.version;
@@ -173,7 +172,7 @@ TEST(inputs_that_cannot_go_stay)
 // A gesture that nothing comes before, and one whose number another one had that was undone.
 TEST(gestures_end_where_their_inputs_end)
 {
-    SCOPED(session_finish) session s = opened(brief);
+    KEPT_SESSION(s) = opened(brief);
     for (int i = 0; i < 3; i++) {
         session_seek(&s, 0.05 * (i + 1));
         DONE(session_pull(&s, 1e-4, 1, &f));
@@ -190,7 +189,7 @@ TEST(gestures_end_where_their_inputs_end)
 // An input that may not go leaves all of them as and where they were, whichever it is.
 TEST(a_refused_drop_keeps_the_order)
 {
-    SCOPED(session_finish) session s = opened(brief);
+    KEPT_SESSION(s) = opened(brief);
     session_input before[5];
     DONE(session_change(&s, PARAMETER_INDEX(arm.mass), "0.45", &f));
     DONE(session_change(&s, PARAMETER_INDEX(arm.links), "3", &f));
@@ -227,7 +226,7 @@ TEST(undoing_leads_to_the_instant_in_another_run)
                  {"method.step", "0.0005", 0.1},
                  {"method.step", "0.002", 0.1}};
     for (EACH(c, first)) {
-        SCOPED(session_finish) session s = opened(brief);
+        KEPT_SESSION(s) = opened(brief);
         DONE(session_change(&s, parameter_find(c->path), c->value, &f));
         session_seek(&s, c->at);
         DONE(session_push(&s, 1e-4, &f));
@@ -235,7 +234,7 @@ TEST(undoing_leads_to_the_instant_in_another_run)
         session_seek(&s, 0);
         DONE(session_undo(&s, &f));
         assert_int_equal(s.input_count, 0);
-        check_close(s.now, fmin(c->at, s.run.trace.rows[s.run.trace.row_count - 1].time), 1e-9);
+        check_close(s.now, fmin(c->at, LAST_ROW(&s.run.trace)->time), 1e-9);
         check_close(session_sample(&s)->time, s.now, 1e-3);
     }
 }
@@ -243,9 +242,8 @@ TEST(undoing_leads_to_the_instant_in_another_run)
 // An arm that starts on the wall meets it at once: what is done at the row before is done at 0.
 TEST(a_push_before_a_contact_at_once_is_at_the_start)
 {
-    SCOPED(session_finish)
-    session s = opened("title: t\nwall: {angle: 0}\nrun: {duration: 0.1 s}\n"
-                       "initial: {velocity: 0.5}\n");
+    KEPT_SESSION(s) = opened("title: t\nwall: {angle: 0}\nrun: {duration: 0.1 s}\n"
+                             "initial: {velocity: 0.5}\n");
     assert_true(s.run.summary.first_contact_s == 0);
     session_seek(&s, 0);
     while (session_step(&s, -1)) {
@@ -257,13 +255,11 @@ TEST(a_push_before_a_contact_at_once_is_at_the_start)
 // A session that takes the inputs of another one has its run to the last bit.
 TEST(taken_inputs_make_the_same_run)
 {
-    SCOPED(session_finish) session from = opened(brief), to = opened(brief);
+    KEPT_SESSION(from) = opened(brief), to = opened(brief);
     DONE(session_change(&from, PARAMETER_INDEX(arm.k2), "7", &f));
     for (int i = 1; i <= 3; i++) {
-        char volts[16];
         session_seek(&from, 0.05 * i);
-        snprintf(volts, sizeof volts, "%d", i);
-        DONE(session_change(&from, PARAMETER_INDEX(motor.voltage), volts, &f));
+        DONE(session_change(&from, PARAMETER_INDEX(motor.voltage), formatted("%d", i), &f));
         DONE(session_push(&from, 0.001 * i, &f));
         DONE(session_take_inputs(&to, from.inputs, from.input_count, &f));
         assert_int_equal(to.input_count, 1 + 2 * i);
@@ -287,7 +283,7 @@ TEST(taken_inputs_make_the_same_run)
 // not change the event.
 TEST(a_change_at_an_event_belongs_to_its_row)
 {
-    SCOPED(session_finish) session s = opened(brief);
+    KEPT_SESSION(s) = opened(brief);
     const double contact = s.run.summary.first_contact_s;
     assert_true(contact > 0);
     session_seek(&s, contact);
@@ -314,9 +310,9 @@ TEST(a_change_at_an_event_belongs_to_its_row)
 // moved.
 TEST(what_is_done_at_any_event_belongs_to_its_row)
 {
-    SCOPED(session_finish)
-    session s = opened("title: t\nwall: {angle: 0.3, restitution: 0.6}\nmotor: {stiction: 0.02}\n"
-                       "run: {duration: 0.6 s}\n");
+    KEPT_SESSION(s) =
+        opened("title: t\nwall: {angle: 0.3, restitution: 0.6}\nmotor: {stiction: 0.02}\n"
+               "run: {duration: 0.6 s}\n");
     int events = 0, changes = 0;
     const double change = 0.25;
     session_seek(&s, change);
@@ -354,7 +350,7 @@ TEST(what_is_done_at_any_event_belongs_to_its_row)
 // A long run is available as far as it is computed; when stopped it continues to the same rows.
 TEST(a_stopped_run_goes_on)
 {
-    SCOPED(session_finish) session s;
+    KEPT_SESSION(s);
     scenario base = read_text("title: t\nmotor: {voltage: 0.001 V}\nwall: {angle: 3 rad}\n"
                               "arm: {links: 24, damping_ratio: 0}\nrun: {duration: 300 s}\n");
     DONE(session_open(&s, &base, 0, &f));
@@ -391,9 +387,9 @@ TEST(a_stopped_run_goes_on)
 // Code that is allowed and cannot be loaded: the session is as it was, and not allowed.
 TEST(code_that_cannot_be_loaded_stays_withheld)
 {
-    SCOPED(session_finish)
-    session s = opened("title: t\ncontrol: {law: plugin, plugin: /nonexistent.so, force: 1 N}\n"
-                       "run: {duration: 0.1 s}\n");
+    KEPT_SESSION(s) =
+        opened("title: t\ncontrol: {law: plugin, plugin: /nonexistent.so, force: 1 N}\n"
+               "run: {duration: 0.1 s}\n");
     fault f = {0};
     const unsigned version = s.version;
     assert_int_not_equal(session_allow_code(&s, &f), STATUS_OK);

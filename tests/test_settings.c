@@ -18,8 +18,7 @@ static void keep_fault(void *context, const char *sentence)
 // A scenario with these lines under `control:` and behind; the caller finishes it.
 static status parse(scenario *s, const char *law, const char *lines, char fault_text[1024])
 {
-    char text[2048];
-    snprintf(text, sizeof text, observer_file, law, lines);
+    const char *text = formatted(observer_file, law, lines);
     fault_text[0] = '\0';
     return scenario_parse(s, text, strlen(text), "arm.yaml", NULL, keep_fault, fault_text);
 }
@@ -64,7 +63,7 @@ TEST(what_is_no_number_or_no_name_is_refused)
         {"control.settings.name_of_a_number_that_is_far_too_long_to_be_one=3", "names no setting"},
     };
     char said[1024];
-    SCOPED(scenario_finish) scenario s;
+    KEPT_SCENARIO(s);
     assert_int_equal(parse(&s, "observer", "", said), STATUS_OK);
     for (EACH(c, cases)) {
         fault f = {0};
@@ -74,10 +73,9 @@ TEST(what_is_no_number_or_no_name_is_refused)
 
     // beside the others there must be room
     for (int i = 0; i < 9; i++) {
-        char assignment[64];
         fault f = {0};
-        snprintf(assignment, sizeof assignment, "control.settings.setting%d=0.12345", i);
-        const status code = scenario_override(&s, assignment, &f);
+        const status code =
+            scenario_override(&s, formatted("control.settings.setting%d=0.12345", i), &f);
         assert_int_equal(code, i < 7 ? STATUS_OK : STATUS_BAD_SCENARIO);
         assert_true(i < 7 || strstr(f.text, "has no room") != NULL);
     }
@@ -123,9 +121,9 @@ TEST(a_script_sets_one_of_them)
 {
     char said[1024];
     scenario plain, again;
-    SCOPED(scenario_finish) scenario scripted;
-    SCOPED(run_finish) run_result before;
-    SCOPED(run_finish) run_result after;
+    KEPT_SCENARIO(scripted);
+    KEPT_RUN(before);
+    KEPT_RUN(after);
     const char *law = "impedance";
     assert_int_equal(parse(&plain, law, "  settings: {force: 0.5}\n", said), STATUS_OK);
     assert_int_equal(parse(&scripted, law,
@@ -145,7 +143,7 @@ TEST(a_script_sets_one_of_them)
     check_close(before.trace.rows[rows - 1].hub_angle, after.trace.rows[rows - 1].hub_angle, 0);
 
     // written and read
-    SCOPED(free_kept) char *text;
+    KEPT_TEXT(text);
     size_t size;
     FILE *stream = open_memstream(&text, &size);
     scenario_write(stream, &scripted);
@@ -165,7 +163,7 @@ TEST(a_session_undoes_each_by_itself)
 {
     char said[1024];
     scenario s;
-    SCOPED(session_finish) session lab;
+    KEPT_SESSION(lab);
     const int index = PARAMETER_INDEX(control.settings);
     assert_int_equal(parse(&s, "impedance", "", said), STATUS_OK);
     assert_int_equal(session_open(&lab, &s, 10, NULL), STATUS_OK);

@@ -2,7 +2,6 @@
 #include "tests/check.h"
 #include "tests/shared_memory.h"
 
-#include "src/base/random.h"
 #include "src/base/shared_array.h"
 
 enum { PER_CHUNK = ARRAY_CHUNK / sizeof(uint64_t), MANY = 5 * PER_CHUNK / 2 };
@@ -142,8 +141,7 @@ TEST(any_number_of_arrays_share_their_chunks)
     bool live[ARRAYS] = {false};
     const size_t before = shared_array_memory();
     size_t largest = 0, made = 0, ids[ARRAYS][MOST / 4 + 1] = {{0}}; // of chunks
-    random_generator g;
-    random_seed(&g, 5);
+    random_generator g = seeded(5);
     for (int step = 0; step < STEPS; step++) {
         const size_t i = random_below(&g, ARRAYS), j = random_below(&g, ARRAYS);
         shared_array *a = &arrays[i];

@@ -10,8 +10,8 @@ static void print_fault(void *context, const char *sentence)
 
 static void check_scenario(const char *name)
 {
-    SCOPED(scenario_finish) scenario s;
-    SCOPED(run_finish) run_result r;
+    KEPT_SCENARIO(s);
+    KEPT_RUN(r);
     fail_if(scenario_open(&s, name, print_fault, NULL) != STATUS_OK, "%s cannot be read", name);
     fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s: %s", name, r.summary.message);
     fail_if(run_check_expectations(&s, &r, print_fault, NULL) != 0,

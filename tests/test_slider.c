@@ -122,7 +122,7 @@ TEST(test_clicks_select_and_the_wheel_nudges)
 // The wide slider, ends and all.
 static void assert_slider(explorer *ex, int width, int height, glyph_set set, const char *track)
 {
-    SCOPED(free_kept) char *text = picture(ex, width, height, set);
+    KEPT_TEXT(text) = picture(ex, width, height, set);
     fail_if(!strstr(text, " -5 ") || !strstr(text, track) || !strstr(text, " 5 "),
             "no slider on the screen of %d x %d:\n%s", width, height, text);
 }

@@ -2,18 +2,18 @@
 // way to the rigid wall.
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
-#include "tests/motion_advance.h"
 
 #define SPEED 0.1 // of the single mass at the wall [m/s]
 
 static const double mass = 5.2e-3 + 0.40108 / 3; // of a rod about its hub, seen 1 m from it [kg]
 
 // A rod on a hub without drive and friction: near the wall a mass that moves straight.
-static parameters single_mass(const char *contact, const char *stiffness, const char *damping)
+static parameters single_mass(const char *contact, double stiffness, double damping)
 {
     return parameters_with("arm.links=1 motor.voltage=0 motor.back_emf=0 motor.viscous_friction=0 "
                            "motor.stiction=0 wall.kind=plane wall.angle=0 initial.angle=-0.001 "
-                           "initial.velocity=0.1 run.duration=0.05 %s %s %s",
+                           "initial.velocity=0.1 run.duration=0.05 wall.contact=%s "
+                           "wall.stiffness=%.17g wall.damping=%.17g",
                            contact, stiffness, damping);
 }
 
@@ -22,27 +22,39 @@ static double kinetic(double v)
     return 0.5 * mass * v * v;
 }
 
+// The rows never pull, and the ledger closes.
+static void check_rows(const run_result *r)
+{
+    double loss = 0;
+    for (EACH_ROW(row, &r->trace)) {
+        assert_true(row->force >= 0 && row->wall_energy >= 0);
+        assert_true(row->wall_loss >= loss - 1e-15);
+        loss = row->wall_loss;
+    }
+    check_below(r->summary.energy_residual_J, 1e-9);
+}
+
 // Rows of a wall with a face: the arm never pulls, is never behind the face, the ledger closes.
 static void check_face_rows(const run_result *r)
 {
-    for (size_t i = 0; i < r->trace.row_count; i++) {
-        const sample *row = &r->trace.rows[i];
-        assert_true(row->force >= 0);
+    check_rows(r);
+    for (EACH_ROW(row, &r->trace)) {
         assert_true(row->gap + row->face_depth > -1e-12);
-        assert_true(i == 0 || row->wall_loss >= row[-1].wall_loss - 1e-15);
     }
     check_below(r->summary.energy_residual_J, 1e-7 * kinetic(SPEED));
 }
 
-// The rows never pull, and the ledger closes.
-static void check_rows(const run_result *r)
+// The arm was released, each time a while after the time before, and before a contact that
+// followed.
+static void check_releases(const run_result *r)
 {
-    for (size_t i = 0; i < r->trace.row_count; i++) {
-        assert_true(r->trace.rows[i].force >= 0);
-        assert_true(r->trace.rows[i].wall_energy >= 0);
-        assert_true(i == 0 || r->trace.rows[i].wall_loss >= r->trace.rows[i - 1].wall_loss - 1e-15);
+    double released = -1;
+    for (EACH_EVENT(e, &r->trace)) {
+        const bool counts = e->kind == EVENT_RELEASE || e->kind == EVENT_CONTACT;
+        assert_true(!counts || e->time > released + 1e-6);
+        released = e->kind == EVENT_RELEASE ? e->time : released;
     }
-    check_below(r->summary.energy_residual_J, 1e-9);
+    assert_true(released > 0);
 }
 
 // m x'' + c x' + k x = 0 from x' = v on, until k x + c x' = 0.
@@ -50,10 +62,8 @@ TEST(a_mass_on_kelvin_voigt_has_the_closed_form)
 {
     const double k = 1e6, damping[] = {0, 20, 200};
     for (int i = 0; i < 3; i++) {
-        char c[40];
-        snprintf(c, sizeof c, "wall.damping=%g", damping[i]);
-        parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e6", c);
-        SCOPED(run_finish) run_result r = run_arm(p, true);
+        parameters p = single_mass("kelvin-voigt", 1e6, damping[i]);
+        KEPT_RUN(r) = run_arm(p, true);
         double w = sqrt(k / mass), zeta = damping[i] / (2 * sqrt(k * mass));
         double root = sqrt(1 - zeta * zeta), length = atan2(2 * zeta * root, 2 * zeta * zeta - 1);
         length = (zeta > 0 ? length : M_PI) / (w * root);
@@ -61,8 +71,7 @@ TEST(a_mass_on_kelvin_voigt_has_the_closed_form)
         double deepest = SPEED / w * exp(-zeta / root * acos(zeta));
         check_relative(r.summary.first_pulse_s, length, 1e-8);
         check_relative(r.summary.max_penetration_m, deepest, 1e-8);
-        check_relative(r.trace.rows[r.trace.row_count - 1].hub_velocity, -SPEED * restitution,
-                       1e-8);
+        check_relative(LAST_ROW(&r.trace)->hub_velocity, -SPEED * restitution, 1e-8);
         check_close(r.summary.wall_loss_J, kinetic(SPEED) * (1 - restitution * restitution),
                     1e-8 * kinetic(SPEED));
         check_close(r.summary.impacts, 0, 0);
@@ -77,11 +86,9 @@ TEST(a_face_with_a_mass_has_the_closed_form)
     const double k = 1e6, face = 0.05, both = mass + face, damping[] = {0, 20, 200};
     const double v = SPEED * mass / both; // common speed after the impact
     for (int i = 0; i < 3; i++) {
-        char c[40];
-        snprintf(c, sizeof c, "wall.damping=%g", damping[i]);
-        parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e6", c);
+        parameters p = single_mass("kelvin-voigt", k, damping[i]);
         p.wall.mass = face;
-        SCOPED(run_finish) run_result r = run_arm(p, true);
+        KEPT_RUN(r) = run_arm(p, true);
 
         // the impact, and the swing of the joined masses until x'' = 0
         double w = sqrt(k / both), zeta = damping[i] / (2 * sqrt(k * both));
@@ -89,11 +96,11 @@ TEST(a_face_with_a_mass_has_the_closed_form)
         length = (zeta > 0 ? length : M_PI) / (w * root);
         double back = v * exp(-zeta * w * length);
         check_relative(r.summary.contact_impulse_Ns, SPEED * mass * face / both, 1e-8);
-        check_relative(r.trace.rows[r.trace.row_count - 1].impact_loss,
-                       0.5 * SPEED * SPEED * mass * face / both, 1e-8);
+        check_relative(LAST_ROW(&r.trace)->impact_loss, 0.5 * SPEED * SPEED * mass * face / both,
+                       1e-8);
         check_relative(r.summary.first_pulse_s, length, 1e-8);
         check_relative(r.summary.max_penetration_m, v / w * exp(-zeta / root * acos(zeta)), 1e-8);
-        check_relative(r.trace.rows[r.trace.row_count - 1].hub_velocity, -back, 1e-8);
+        check_relative(LAST_ROW(&r.trace)->hub_velocity, -back, 1e-8);
         if (zeta == 0) {
             check_relative(r.summary.first_pulse_peak_N, v * w * mass, 1e-8);
         }
@@ -102,12 +109,12 @@ TEST(a_face_with_a_mass_has_the_closed_form)
         const double left = zeta > 0 ? 2 * zeta * back / w : 0; // x'' = 0: k x = -c x'
         const double start = r.summary.first_contact_s + r.summary.first_pulse_s;
         const double d = damping[i] / (2 * face), turn = sqrt(k / face - d * d);
-        for (size_t j = 0; j < r.trace.row_count; j++) {
-            const double t = r.trace.rows[j].time - start;
+        for (EACH_ROW(row, &r.trace)) {
+            const double t = row->time - start;
             if (t > 1e-9) {
                 double x =
                     exp(-d * t) * (left * cos(turn * t) + (d * left - back) * sin(turn * t) / turn);
-                check_close(r.trace.rows[j].face_depth, x, 1e-8 * v / w);
+                check_close(row->face_depth, x, 1e-8 * v / w);
             }
         }
         check_close(r.summary.impacts, 1, 0);
@@ -124,10 +131,10 @@ TEST(an_arm_is_deepest_or_apart_beside_its_face)
         "motor.voltage=-0.18352 wall.kind=plane wall.contact=kelvin-voigt "
         "wall.stiffness=16.826 wall.damping=0 wall.mass=0.9856 initial.angle=0.0988025 "
         "initial.velocity=0.489266 run.duration=0.08 method.step=1e-5");
-    SCOPED(run_finish) run_result r = run_arm(p, true);
+    KEPT_RUN(r) = run_arm(p, true);
     double deepest = 0, farthest = 0;
-    for (size_t i = 0; i < r.trace.row_count; i++) {
-        deepest = fmax(deepest, -r.trace.rows[i].gap);
+    for (EACH_ROW(row, &r.trace)) {
+        deepest = fmax(deepest, -row->gap);
     }
     check_relative(r.summary.max_penetration_m, deepest, 1e-5);
     assert_true(r.summary.max_penetration_m >= deepest);
@@ -141,8 +148,8 @@ TEST(an_arm_is_deepest_or_apart_beside_its_face)
         "wall.contact=kelvin-voigt wall.stiffness=97351 wall.damping=2.8066 wall.mass=0.8488 "
         "initial.angle=0.0969451 initial.velocity=0.380345 run.duration=0.08 method.step=1e-5");
     r = run_arm(p, true);
-    for (size_t i = 0; i < r.trace.row_count; i++) {
-        farthest = fmax(farthest, r.trace.rows[i].contact ? r.trace.rows[i].gap : 0);
+    for (EACH_ROW(row, &r.trace)) {
+        farthest = fmax(farthest, row->contact ? row->gap : 0);
     }
     assert_true(farthest > 2e-6);
     check_close(r.summary.separations, 1, 0);
@@ -158,15 +165,8 @@ TEST(an_arm_leaves_a_light_face_once)
         "motor.stiction=0.5 motor.current_limit=0.0082505 wall.kind=plane "
         "wall.contact=kelvin-voigt wall.stiffness=2.8373e6 wall.damping=0 wall.mass=3.886e-5 "
         "initial.angle=0.0483042 initial.velocity=2.96367 run.duration=0.1");
-    SCOPED(run_finish) run_result r = run_arm(p, true);
-    double released = -1;
-    for (size_t i = 0; i < r.trace.event_count; i++) {
-        if (r.trace.events[i].kind == EVENT_RELEASE) {
-            assert_true(r.trace.events[i].time > released + 1e-6);
-            released = r.trace.events[i].time;
-        }
-    }
-    assert_true(released > 0);
+    KEPT_RUN(r) = run_arm(p, true);
+    check_releases(&r);
     check_face_rows(&r);
 }
 
@@ -179,14 +179,8 @@ TEST(an_arm_leaves_a_returning_face_once)
     for (int i = 0; i < 2 * 46; i++) {
         p.wall.contact = i < 46 ? WALL_KELVIN_VOIGT : WALL_HUNT_CROSSLEY;
         p.wall.damping = pow(10, -10 + i % 46 / 3.0); // to a return in 0.3 s
-        SCOPED(run_finish) run_result r = run_arm(p, true);
-        double released = -1;
-        for (size_t e = 0; e < r.trace.event_count; e++) {
-            const event *now = &r.trace.events[e];
-            assert_true(now->kind != EVENT_CONTACT || now->time > released + 1e-6);
-            released = now->kind == EVENT_RELEASE ? now->time : released;
-        }
-        assert_true(released > 0);
+        KEPT_RUN(r) = run_arm(p, true);
+        check_releases(&r);
         check_face_rows(&r);
     }
 }
@@ -195,14 +189,11 @@ TEST(an_arm_leaves_a_returning_face_once)
 TEST(a_face_bounces_the_arm_like_two_masses)
 {
     const double face = 0.03, e = 0.6, both = mass + face;
-    parameters p =
-        single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e4", "wall.damping=10");
+    parameters p = single_mass("kelvin-voigt", 1e4, 10);
     p.wall.mass = face;
     p.wall.restitution = e;
     motion_report report;
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-    motion_start(&a, m, p.initial.angle, SPEED);
+    STARTED(a, m, &p, NULL, p.initial.angle, SPEED);
     assert_int_equal(motion_advance(&a, m, 1, p.method.step, &report), STATUS_OK);
     assert_int_equal(report.event, MOTION_IMPACT);
     motion_apply(&a, m, &report);
@@ -213,29 +204,30 @@ TEST(a_face_bounces_the_arm_like_two_masses)
     assert_false(report.holds);
 }
 
-// First pulse of two links at a face of the given mass; impulse counted in.
-static run_result face_run(const char *contact, const char *mass_text)
+// Two links at a face of the given mass.
+static summary face_run(const char *contact, double face, double damping)
 {
-    parameters p = parameters_with("%s %s wall.stiffness=75e3 motor.voltage=2 run.duration=0.25",
-                                   contact, mass_text);
-    return run_arm(p, false);
+    parameters p = parameters_with("wall.contact=%s wall.mass=%g wall.damping=%g "
+                                   "wall.stiffness=75e3 motor.voltage=2 run.duration=0.25",
+                                   contact, face, damping);
+    KEPT_RUN(r) = run_arm(p, false);
+    return r.summary;
 }
 
 // Without bound on either side the face is the wall without a mass, or the rigid one; what it is
 // off by goes with the mass, or with one over it.
 TEST(a_face_lies_between_the_two_walls)
 {
-    const char *const light[] = {"wall.mass=1e-5", "wall.mass=1e-6"};
-    const char *const heavy[] = {"wall.mass=1e3", "wall.mass=1e4"};
-    SCOPED(run_finish) run_result none = face_run("wall.contact=kelvin-voigt", "wall.mass=0");
-    SCOPED(run_finish) run_result rigid = face_run("wall.contact=rigid", "wall.mass=0");
+    const double damping = 20; // the default
+    const summary none = face_run("kelvin-voigt", 0, damping),
+                  rigid = face_run("rigid", 0, damping);
     double off[2], impulse[2];
     for (int i = 0; i < 2; i++) {
-        SCOPED(run_finish) run_result l = face_run("wall.contact=kelvin-voigt", light[i]);
-        SCOPED(run_finish) run_result h = face_run("wall.contact=kelvin-voigt", heavy[i]);
-        off[i] = fabs(l.summary.first_pulse_peak_N - none.summary.first_pulse_peak_N);
-        impulse[i] = fabs(h.summary.contact_impulse_Ns - rigid.summary.contact_impulse_Ns);
-        check_relative(l.summary.first_pulse_s, none.summary.first_pulse_s, 1e-4);
+        const summary light = face_run("kelvin-voigt", i == 0 ? 1e-5 : 1e-6, damping);
+        const summary heavy = face_run("kelvin-voigt", i == 0 ? 1e3 : 1e4, damping);
+        off[i] = fabs(light.first_pulse_peak_N - none.first_pulse_peak_N);
+        impulse[i] = fabs(heavy.contact_impulse_Ns - rigid.contact_impulse_Ns);
+        check_relative(light.first_pulse_s, none.first_pulse_s, 1e-4);
     }
     print_message("peak off by %.3g, %.3g N; impulse by %.3g, %.3g N s\n", off[0], off[1],
                   impulse[0], impulse[1]);
@@ -247,31 +239,21 @@ TEST(a_face_lies_between_the_two_walls)
 // 1e-12 s: no step has to follow that.
 TEST(a_light_face_on_a_strong_damper_is_no_face)
 {
-    const char *const light[] = {"wall.mass=1e-6", "wall.mass=1e-7", "wall.mass=1e-9"};
-    run_result each[4];
-    for (int i = 0; i < 4; i++) {
-        parameters p = parameters_with(
-            "wall.contact=kelvin-voigt %s motor.voltage=2 wall.damping=1e3 run.duration=0.25",
-            i < 3 ? light[i] : "wall.mass=0");
-        each[i] = run_arm(p, false);
-    }
+    const double light[] = {1e-6, 1e-7, 1e-9};
+    const summary none = face_run("kelvin-voigt", 0, 1e3);
+    summary each[3];
 
     // of order 1 in the mass, and the lightest in as many steps as none
-    const summary *none = &each[3].summary;
-    double off[2];
+    double off[3];
     for (int i = 0; i < 3; i++) {
-        const summary *s = &each[i].summary;
-        assert_int_equal(s->status, STATUS_OK);
-        check_relative(s->first_contact_s, none->first_contact_s, 1e-12);
-        off[i % 2] = i < 2 ? fabs(s->peak_force_N - none->peak_force_N) : off[0];
+        each[i] = face_run("kelvin-voigt", light[i], 1e3);
+        check_relative(each[i].first_contact_s, none.first_contact_s, 1e-12);
+        off[i] = fabs(each[i].peak_force_N - none.peak_force_N);
     }
     print_message("peak off by %.3g and %.3g N of %.6g N, in %.0f steps for %.0f\n", off[0], off[1],
-                  none->peak_force_N, each[2].summary.steps, none->steps);
+                  none.peak_force_N, each[2].steps, none.steps);
     check_close(log10(off[0] / off[1]), 1, 0.02);
-    assert_in_range(each[2].summary.steps, 1, 2 * none->steps);
-    for (int i = 0; i < 4; i++) {
-        run_finish(&each[i]);
-    }
+    assert_in_range(each[2].steps, 1, 2 * none.steps);
 }
 
 // Left alone a face swings as its equation says, whatever its damping: halves of a time make up the
@@ -363,11 +345,9 @@ TEST(a_mass_on_hunt_crossley_has_the_closed_form)
 {
     const double k = 1e8, damping[] = {0, 3e7, 1e9};
     for (int i = 0; i < 3; i++) {
-        char text[40];
         double c = damping[i];
-        snprintf(text, sizeof text, "wall.damping=%g", c);
-        parameters p = single_mass("wall.contact=hunt-crossley", "wall.stiffness=1e8", text);
-        SCOPED(run_finish) run_result r = run_arm(p, true);
+        parameters p = single_mass("hunt-crossley", 1e8, c);
+        KEPT_RUN(r) = run_arm(p, true);
         double deepest = pow(2.5 * spent(SPEED, k, c), 1 / 2.5), lo = 0, hi = SPEED;
         for (int bisection = 0; bisection < 200; bisection++) {
             double v = (lo + hi) / 2;
@@ -378,7 +358,7 @@ TEST(a_mass_on_hunt_crossley_has_the_closed_form)
             }
         }
         check_relative(r.summary.max_penetration_m, deepest, 1e-8);
-        check_relative(r.trace.rows[r.trace.row_count - 1].hub_velocity, -lo, 1e-8);
+        check_relative(LAST_ROW(&r.trace)->hub_velocity, -lo, 1e-8);
         check_close(r.summary.wall_loss_J, kinetic(SPEED) - kinetic(lo), 1e-8 * kinetic(SPEED));
         if (c == 0) {
             // Hertz: 2.9432751 deepest/v, the Beta function of the half pulse
@@ -393,10 +373,8 @@ TEST(a_mass_on_hunt_crossley_has_the_closed_form)
 // would see a parabola over half a pulse else.
 TEST(the_force_changes_as_fast_as_the_wall)
 {
-    parameters p = single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e6", "wall.damping=0");
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-    motion_start(&a, m, p.initial.angle, p.initial.velocity);
+    parameters p = single_mass("kelvin-voigt", 1e6, 0);
+    STARTED(a, m, &p, NULL, p.initial.angle, p.initial.velocity);
     check_close(motion_vibration(&a, m, m->state), a.highest_frequency, 0);
     motion_report r;
     assert_int_equal(motion_advance(&a, m, 0.05, 1e-3, &r), STATUS_OK);
@@ -408,15 +386,11 @@ TEST(the_force_changes_as_fast_as_the_wall)
 // Energy that a step of length h from the touch on Hertz's wall leaves over.
 static double step_error(double h)
 {
-    parameters p =
-        single_mass("wall.contact=hunt-crossley", "wall.stiffness=1e8", "wall.damping=0");
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &explicit_engine);
-    motion_start(&a, m, 0, SPEED); // right at the wall
+    parameters p = single_mass("hunt-crossley", 1e8, 0);
+    STARTED(a, m, &p, &explicit_engine, 0, SPEED); // right at the wall
     assert_true(m->state[SLOT_CONTACT] != 0);
     assert_int_equal(motion_try_step(&a, m, h, STATE_WHOLE), STATUS_OK);
-    double error = fabs(motion_energy_residual(&a, m, m->trial));
-    return error;
+    return fabs(motion_energy_residual(&a, m, m->trial));
 }
 
 // The explicit formula has order 8 elsewhere, order n + 1 in a step from the touch, where x^n is
@@ -440,9 +414,7 @@ static void bounce(const char *contact, double stiffness, double velocities[2])
                         "initial.velocity=0.5 motor.voltage=2 %s",
                         contact, stiffness, rigid ? "wall.restitution=1" : "arm.links=2");
     motion_report report;
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-    motion_start(&a, m, p.initial.angle, p.initial.velocity);
+    STARTED(a, m, &p, NULL, p.initial.angle, p.initial.velocity);
     do {
         assert_int_equal(motion_advance(&a, m, 1, p.method.step, &report), STATUS_OK);
         motion_apply(&a, m, &report);
@@ -482,7 +454,7 @@ TEST(a_stiff_wall_holds_like_a_rigid_one)
             parameters_with("%s %s wall.damping=5 arm.damping_ratio=0.3 motor.stiction=0 "
                             "motor.voltage=5 wall.kind=point run.duration=8",
                             walls[i][0], walls[i][1]);
-        SCOPED(run_finish) run_result r = run_arm(p, false);
+        KEPT_RUN(r) = run_arm(p, false);
         force[i] = r.summary.steady_force_N;
     }
     double order = log10(fabs((force[1] - force[0]) / (force[2] - force[0])));
@@ -500,7 +472,7 @@ TEST(a_wall_without_damping_takes_nothing)
     for (size_t i = 0; i < 6; i++) {
         const parameters p =
             parameters_with("%s %s wall.damping=0", walls[i / 3], stiffness[i % 3]);
-        SCOPED(run_finish) run_result r = run_arm(p, false);
+        KEPT_RUN(r) = run_arm(p, false);
         assert_false(isnan(r.summary.first_contact_s));
         check_close(r.summary.wall_loss_J, 0, 0);
     }
@@ -513,17 +485,16 @@ TEST(a_slow_face_lets_go_behind_the_wall)
     for (int i = 0; i < 2; i++) {
         // 1.7 times critical, and an arm that swings back faster than the face can
         parameters p =
-            i == 0
-                ? single_mass("wall.contact=kelvin-voigt", "wall.stiffness=1e5", "wall.damping=400")
-                : parameters_with("arm.links=4 arm.hub_joint=beam motor.voltage=8 "
-                                  "wall.kind=plane wall.contact=hunt-crossley "
-                                  "wall.stiffness=1e5 wall.damping=1e6 run.duration=0.2");
-        SCOPED(run_finish) run_result r = run_arm(p, true);
+            i == 0 ? single_mass("kelvin-voigt", 1e5, 400)
+                   : parameters_with("arm.links=4 arm.hub_joint=beam motor.voltage=8 "
+                                     "wall.kind=plane wall.contact=hunt-crossley "
+                                     "wall.stiffness=1e5 wall.damping=1e6 run.duration=0.2");
+        KEPT_RUN(r) = run_arm(p, true);
         const event *release = r.trace.events;
         while (release->kind != EVENT_RELEASE) {
             release++;
         }
-        const sample *left = r.trace.rows, *last = &r.trace.rows[r.trace.row_count - 1];
+        const sample *left = r.trace.rows, *last = LAST_ROW(&r.trace);
         while (left->time < release->time) {
             left++;
         }
@@ -540,7 +511,6 @@ TEST(a_slow_face_lets_go_behind_the_wall)
             check_close(row->wall_energy, held, 1e-13 * left->wall_energy);
             check_close(row->wall_loss + held, left->wall_loss + left->wall_energy, 1e-13);
         }
-        check_rows(&r);
         check_face_rows(&r);
 
         // all the wall held when its face was left behind is lost with it
@@ -591,7 +561,6 @@ TEST(a_face_without_mass_is_the_limit_of_light_ones)
         }
     }
     check_close(contact_time(&r[0], 1), 0.406383, 5e-7);
-    check_rows(&r[0]);
     check_face_rows(&r[0]);
     for (int i = 0; i < 3; i++) {
         run_finish(&r[i]);
@@ -610,7 +579,7 @@ TEST(a_mass_at_the_tip_strikes_a_rigid_wall)
         parameters p = parameters_with(
             "%s %s arm.links=3 arm.hub_joint=beam arm.tip_mass=0.05 run.duration=0.4",
             methods[i][0], methods[i][1]);
-        SCOPED(run_finish) run_result r = run_arm(p, false);
+        KEPT_RUN(r) = run_arm(p, false);
         impulse[i] = r.summary.contact_impulse_Ns;
         contact[i] = r.summary.first_contact_s;
         if (i == 0) {

@@ -39,13 +39,12 @@ static solution solved(const scenario *s, const sweep_axis *axis, const char *te
 static double quantity_at(const scenario *s, const char *path, double value, const char *key)
 {
     scenario changed = *s;
-    SCOPED(run_finish) run_result result;
+    KEPT_RUN(result);
     parameters p = s->parameters;
     assert_int_equal(parameter_set_number(&p, parameter_find(path), value, NULL), STATUS_OK);
     assert_int_equal(scenario_take_parameters(&changed, &p, NULL), STATUS_OK);
     assert_int_equal(run_scenario(&changed, false, &result), STATUS_OK);
-    const double quantity = summary_value(&result.summary, summary_find(key));
-    return quantity;
+    return summary_value(&result.summary, summary_find(key));
 }
 
 // One link at rest on the wall presses with the hub's torque, which is proportional to the voltage
@@ -54,13 +53,12 @@ TEST(statics_have_the_limit_of_statics)
 {
     char *changes[] = {"motor.stiction=0", "arm.links=1", "initial.angle=0", "wall.angle=0",
                        "run.duration=0.2"};
-    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", changes, 5);
+    KEPT_SCENARIO(s) = opened("corrected/first-impact", changes, 5);
     sweep_axis axis = axis_of("motor.voltage", 0.1, 4);
     const double at_one = quantity_at(&s, "motor.voltage", 1, "steady_force_N");
-    char text[64];
-    snprintf(text, sizeof text, "steady_force_N <= %.17g", 2 * at_one);
 
-    const solution found = solved(&s, &axis, text, 9, 1);
+    const solution found =
+        solved(&s, &axis, formatted("steady_force_N <= %.17g", 2 * at_one), 9, 1);
     assert_int_equal(found.count, 1);
     check_close(found.limits[0].value, 2, 1e-12);
     check_relative(found.limits[0].reached, 2 * at_one, 1e-12);
@@ -71,7 +69,7 @@ TEST(statics_have_the_limit_of_statics)
 // values nor that of threads has a say in where it is.
 TEST(limits_are_where_the_condition_ceases_to_hold)
 {
-    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("motor.voltage", 0.5, 5);
     const solution few = solved(&s, &axis, "peak_force_N<2", 5, 1),
                    many = solved(&s, &axis, "peak_force_N<2", 40, 3);
@@ -96,7 +94,7 @@ TEST(limits_are_where_the_condition_ceases_to_hold)
 // those that do not. Within 1e-9 V of a grazing impact rounding decides whether it is one.
 TEST(jumps_are_located_and_told)
 {
-    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("motor.voltage", 5, 0.5);
     const solution found = solved(&s, &axis, "impacts<3", 65, 1);
     assert_true(found.count >= 2);
@@ -113,7 +111,7 @@ TEST(jumps_are_located_and_told)
 
 TEST(whole_numbers_have_a_last_one)
 {
-    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("arm.links", 2, 20);
 
     // run one by one, and with most of them left out
@@ -131,7 +129,7 @@ TEST(whole_numbers_have_a_last_one)
 // Where the quantity is missing or the run fails, there is no limit of its value.
 TEST(what_is_not_there_has_no_limit)
 {
-    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
 
     // a voltage too small to reach the wall
     sweep_axis axis = axis_of("motor.voltage", 0, 1);
@@ -172,7 +170,7 @@ TEST(conditions_say_what_they_lack)
 
 TEST(parameters_that_are_no_numbers_have_no_range)
 {
-    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("method.name", 0, 1);
     REFUSED(STATUS_BAD_ARGUMENT, "", solve_usual_range(&axis, &s, &f));
     axis = axis_of("motor.voltage", 0, 0);
@@ -184,7 +182,7 @@ TEST(one_can_be_stopped)
 {
     solution found;
     run_monitor monitor = {0};
-    SCOPED(scenario_finish) scenario s = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
     sweep_axis axis = axis_of("motor.voltage", 0, 5);
     const solve_condition c = condition_of("peak_force_N<2");
     atomic_store(&monitor.stop, true);

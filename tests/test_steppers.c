@@ -1,7 +1,6 @@
 // Order, damping and stability of the engines, on motions with known solutions.
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
-#include "tests/motion_advance.h"
 
 // One link on a spring whose hub never lets go: a linear oscillator,
 // (I + m l^2/4) a + k1 theta = 0. k1 is chosen for the wanted frequency.
@@ -42,7 +41,7 @@ static double spectral_radius(double frequency_step, const char *method, const c
     const double h = 1, wanted = 1e-2;
     method_parameters mp;
     arm a = oscillator(frequency_step / h, method, more, &mp);
-    SCOPED(motion_destroy_kept) motion *m = motion_by(&a, &mp);
+    KEPT_MOTION(m) = motion_by(&a, &mp);
     motion_start(&a, m, 0, 0);
     state_angles(m, m->state)[1] = wanted;
     state_velocities(m, m->state)[1] = wanted * frequency_step / h / 3;
@@ -69,7 +68,7 @@ static double error_at(const char *method, const char *more, double h)
     method_parameters mp;
     double frequency = 40, until = 0.2, amplitude = 0.3;
     arm a = oscillator(frequency, method, more, &mp);
-    SCOPED(motion_destroy_kept) motion *m = motion_by(&a, &mp);
+    KEPT_MOTION(m) = motion_by(&a, &mp);
     motion_start(&a, m, 0, 0);
     state_angles(m, m->state)[1] = amplitude;
     motion_evaluate(&a, m, m->state);
@@ -77,8 +76,7 @@ static double error_at(const char *method, const char *more, double h)
     for (int i = 0; i < (int)(until / h + 0.5); i++) {
         step_once(&a, m, h);
     }
-    double error = fabs(state_angles(m, m->state)[1] - amplitude * cos(frequency * until));
-    return error;
+    return fabs(state_angles(m, m->state)[1] - amplitude * cos(frequency * until));
 }
 
 static double order_of(const char *method, const char *more, double h)
@@ -139,9 +137,7 @@ static double energy_drift(const char *links, const char *hub, double duration)
     parameters p = parameters_with("%s %s wall.kind=none motor.voltage=0 motor.stiction=0 "
                                    "motor.viscous_friction=0 motor.back_emf=0",
                                    links, hub);
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-    motion_start(&a, m, 0, 1);
+    STARTED(a, m, &p, NULL, 0, 1);
     for (int i = 0; i < a.dof; i++) {
         state_angles(m, m->state)[i] += 0.3 * sin(1.0 + 2 * i / (double)a.dof);
         state_velocities(m, m->state)[i] += cos(1.0 + i);
@@ -175,9 +171,7 @@ static double distance_to_event_method(const char *links, const char *wall, cons
     for (int side = 0; side < 2; side++) {
         parameters p = parameters_with("%s %s arm.damping_ratio=0.02 %s", links, wall,
                                        side ? "method.name=event" : method);
-        arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-        motion_start(&a, m, 0, 0);
+        STARTED(a, m, &p, NULL, 0, 0);
         motion_report report = {.event = MOTION_IMPACT};
         while (m->state[SLOT_TIME] < 0.33) { // through the impact, into contact
             assert_int_equal(motion_advance(&a, m, 0.33, side ? 1e-3 : h, &report), STATUS_OK);

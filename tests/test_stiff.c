@@ -1,7 +1,6 @@
 // The stiff engine gives the motion of the explicit formula, of every arm and wall, and the same
 // bits in vectors of any width, however a run is cut, and from a copy of its state.
 
-#include "src/contact/contact_machine.h"
 #include "src/engines/pair/taylor_lanes.h"
 #include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"
@@ -106,22 +105,28 @@ TEST(air_on_one_link_that_turns_far_closes_the_ledger)
     check_below(o.residual, 1e-9 * o.put_in);
 }
 
-// The motion after DURATION, made with stops at every `interval`; its state into `end`.
-static size_t motion_to_end(const parameters *p, double interval, bool forgetful, double *end)
+// How a motion is made: with stops at every interval [s], from a copy of its state alone at each
+// step, in vectors of at most a width (0: any).
+typedef struct way {
+    double interval;
+    bool forgetful;
+    int width;
+} way;
+
+// The motion after DURATION; its state into `end`.
+static size_t motion_to_end(const parameters *p, way how, double *end)
 {
     enum { MOST_COPY = 4096 };
-    arm a = arm_of(p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p->method, &stiff_engine);
-    assert_non_null(m);
-    motion_start(&a, m, START_ANGLE, 0.7);
+    taylor_limit_width(how.width);
+    STARTED(a, m, p, &stiff_engine, START_ANGLE, 0.7);
     int stops = 0;
     while (m->state[SLOT_TIME] < DURATION) {
         motion_report r;
-        const double stop = fmin(interval * (stops + 1), DURATION);
+        const double stop = fmin(how.interval * (stops + 1), DURATION);
         assert_int_equal(motion_step(&a, m, stop, 1e-3, &r), STATUS_OK);
         stops += !(m->state[SLOT_TIME] < stop);
         motion_apply(&a, m, &r);
-        if (forgetful) { // only the state is left
+        if (how.forgetful) { // only the state is left
             static double copy[MOST_COPY];
             assert_true(m->size <= (int)MOST_COPY);
             memcpy(copy, m->state, (size_t)m->size * sizeof *copy);
@@ -133,52 +138,41 @@ static size_t motion_to_end(const parameters *p, double interval, bool forgetful
     }
     const size_t size = (size_t)(SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT);
     memcpy(end, m->state, size * sizeof *end);
+    taylor_limit_width(0);
     return size;
 }
 
-static void check_same_bits(const double *a, const double *b, size_t size)
+// Of the arms from `first` on.
+static void check_same_bits(int first, way one, way other)
 {
-    for (size_t i = 0; i < size; i++) {
-        fail_if(memcmp(&a[i], &b[i], sizeof a[i]) != 0, "number %zu differs: %.17g and %.17g", i,
-                a[i], b[i]);
+    for (int i = first; i < ARMS; i++) {
+        const parameters p = parameters_of(i);
+        double a[256], b[256];
+        const size_t size = motion_to_end(&p, one, a);
+        motion_to_end(&p, other, b);
+        for (size_t k = 0; k < size; k++) {
+            fail_if(memcmp(&a[k], &b[k], sizeof a[k]) != 0,
+                    "arm %d: number %zu differs: %.17g and %.17g", i, k, a[k], b[k]);
+        }
     }
 }
 
 TEST(stops_change_no_bit)
 {
-    for (int i = 1; i < ARMS; i++) { // the first arm's force adds up at rest, from stop to stop
-        const parameters p = parameters_of(i);
-        double whole[256], cut[256];
-        const size_t size = motion_to_end(&p, HUGE_VAL, false, whole);
-        motion_to_end(&p, 1e-3, false, cut);
-        check_same_bits(cut, whole, size);
-        motion_to_end(&p, 0.77e-4, false, cut);
-        check_same_bits(cut, whole, size);
+    for (EACH_OF(double, c, 1e-3, 0.77e-4)) {
+        // the first arm's force adds up at rest, from stop to stop
+        check_same_bits(1, (way){.interval = HUGE_VAL}, (way){.interval = *c});
     }
 }
 
 TEST(a_copy_of_the_state_goes_on_with_the_same_bits)
 {
-    for (int i = 0; i < ARMS; i++) {
-        const parameters p = parameters_of(i);
-        double whole[256], copied[256];
-        const size_t size = motion_to_end(&p, 0.5e-3, false, whole);
-        motion_to_end(&p, 0.5e-3, true, copied);
-        check_same_bits(copied, whole, size);
-    }
+    check_same_bits(0, (way){.interval = 0.5e-3}, (way){.interval = 0.5e-3, .forgetful = true});
 }
 
 TEST(every_width_of_vectors_gives_the_same_bits)
 {
-    for (int i = 0; i < ARMS; i++) {
-        const parameters p = parameters_of(i);
-        double narrow[256], wide[256];
-        taylor_limit_width(1);
-        const size_t size = motion_to_end(&p, HUGE_VAL, false, narrow);
-        taylor_limit_width(0);
-        motion_to_end(&p, HUGE_VAL, false, wide);
-        check_same_bits(wide, narrow, size);
-    }
+    check_same_bits(0, (way){.interval = HUGE_VAL}, (way){.interval = HUGE_VAL, .width = 1});
 }
 
 // A light arm behind a spring swings off the wall as the fourth power of the time; one that moves
@@ -296,15 +290,10 @@ TEST(a_force_that_stays_has_its_peak_at_its_start)
         "arm.k2=17.381623622079722", "motor.inductance=0.011351328772705165"));
     const double end = 0.06;
     double held = 0;
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
-    assert_non_null(m);
-    motion_start(&a, m, 0.099711351379691532, 0.058592421014174362);
+    STARTED(a, m, &p, &stiff_engine, 0.099711351379691532, 0.058592421014174362);
     while (m->state[SLOT_TIME] < end) {
-        motion_report r;
-        assert_int_equal(motion_step(&a, m, end, p.method.step, &r), STATUS_OK);
-        motion_apply(&a, m, &r);
-        held = r.event == MOTION_STICK ? m->state[SLOT_TIME] : held;
+        const motion_event met = step_on(&a, m, end, p.method.step).event;
+        held = met == MOTION_STICK ? m->state[SLOT_TIME] : held;
     }
     assert_true(m->state[SLOT_CONTACT] != 0 && m->state[SLOT_FRICTION] == HUB_STICK);
     assert_true(held > 0 && held < 0.8 * end);
@@ -356,16 +345,11 @@ TEST(decays_of_any_rate_are_passed_over)
     };
     for (EACH(c, fast)) {
         const parameters p = fixture_parameters(*c);
-        arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
-        assert_non_null(m);
-        motion_start(&a, m, 0, 0);
+        STARTED(a, m, &p, &stiff_engine, 0, 0);
         int steps = 0;
         bool touched = false;
         for (; m->state[SLOT_TIME] < 0.36 && steps < 20000; steps++) {
-            motion_report r;
-            assert_int_equal(motion_step(&a, m, 0.36, 1e-3, &r), STATUS_OK);
-            motion_apply(&a, m, &r);
+            step_on(&a, m, 0.36, 1e-3);
             touched = touched || m->state[SLOT_CONTACT] != 0;
         }
         assert_true(steps < 20000);
@@ -388,10 +372,7 @@ TEST(a_force_of_rounding_hides_no_slip)
                  "motor.inductance=0.92955259258329925", "motor.current_limit=0.90031986558427557",
                  "wall.contact=kelvin-voigt", "wall.stiffness=7616.9205058752668",
                  "wall.damping=68.236035295918327", "arm.damping_ratio=0.026265943154315696"));
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-    assert_non_null(m);
-    motion_start(&a, m, p.initial.angle, 0);
+    STARTED(a, m, &p, NULL, p.initial.angle, 0);
     bool slid = false;
     for (int i = 0; i < 200 && m->state[SLOT_TIME] < 0.01; i++) {
         motion_report r;
@@ -405,15 +386,8 @@ TEST(a_force_of_rounding_hides_no_slip)
 
 static bool is_refused(const char *const *settings)
 {
-    parameters p;
+    parameters p = unresolved_parameters(settings);
     fault f = {.text = ""};
-    parameters_defaults(&p, ARM_CORRECTED);
-    for (int i = 0; settings[i] != NULL; i++) {
-        char path[64];
-        const char *equals = strchr(settings[i], '=');
-        snprintf(path, sizeof path, "%.*s", (int)(equals - settings[i]), settings[i]);
-        assert_int_equal(parameter_set_text(&p, parameter_find(path), equals + 1, &f), STATUS_OK);
-    }
     return parameters_resolve(&p, &f) == STATUS_BAD_SCENARIO && strstr(f.text, "method.engine");
 }
 

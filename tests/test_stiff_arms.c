@@ -35,13 +35,11 @@ TEST(each_arm_has_its_engine)
         {{"arm.links=3", "arm.stiffening=1"}, &stiff_engine},
         {{"arm.links=1"}, &stiff_engine},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        const parameters p = fixture_parameters(cases[i].settings);
-        arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-        assert_non_null(m);
-        fail_if(m->engine != cases[i].by, "case %zu goes by %s, not %s", i, m->engine->name,
-                cases[i].by->name);
+    for (EACH(c, cases)) {
+        const parameters p = fixture_parameters(c->settings);
+        STARTED(a, m, &p, NULL, 0, 0);
+        fail_if(m->engine != c->by, "case %td goes by %s, not %s", c - cases, m->engine->name,
+                c->by->name);
     }
 }
 
@@ -80,7 +78,7 @@ TEST(an_arm_made_stiff_changes_its_engine)
         p.arm.links = links;
         arm before, after;
         arm_init(&before, &p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create(&before, &p.method);
+        KEPT_MOTION(m) = motion_create(&before, &p.method);
         motion_start(&before, m, 0, 0);
         move_on(&before, m, 0.1, 100000);
         const engine *soft = m->engine;
@@ -93,7 +91,7 @@ TEST(an_arm_made_stiff_changes_its_engine)
         motion_follow_arm(&after, m);
         motion_rebind(&before, &after, m);
         assert_int_equal(m->engine != soft, links == 2);
-        SCOPED(motion_destroy_kept) motion *copy = motion_create(&after, &p.method);
+        KEPT_MOTION(copy) = motion_create(&after, &p.method);
         assert_ptr_equal(copy->engine, m->engine);
         memcpy(copy->state, m->state, (size_t)m->size * sizeof(double));
         copy->record.start_energy = m->record.start_energy;
@@ -120,7 +118,7 @@ TEST(a_stride_that_begins_does_not_unsettle_the_force)
             "arm.mass=0.230311454988 arm.hub_inertia=2.421274642e-4 arm.k2=3.677424150693 "
             "arm.damping_ratio=1 wall.kind=plane wall.angle=1.722191930126 "
             "motor.stiction=0.01 motor.voltage=-0.965138971621489 run.duration=2")};
-    SCOPED(run_finish) run_result r = run_done(&s, true);
+    KEPT_RUN(r) = run_done(&s, true);
     const double steady = r.summary.steady_force_N;
     size_t outside = 0;
     for (size_t i = 0; i < r.trace.row_count; i++) {
@@ -134,12 +132,11 @@ TEST(a_stride_that_begins_does_not_unsettle_the_force)
 // bounded effort.
 TEST(a_run_that_could_not_end_says_so)
 {
-    static const char *const dampers[] = {"wall.damping=1e12", "wall.damping=1e15"};
-    for (EACH(c, dampers)) {
+    for (EACH_TEXT(c, "wall.damping=1e12", "wall.damping=1e15")) {
         scenario s = {
             .parameters = parameters_with(
                 "wall.contact=kelvin-voigt %s initial.angle=0.099 initial.velocity=0.7", *c)};
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
         assert_int_equal(r.summary.status, STATUS_NO_PROGRESS);
         assert_true(r.summary.message[0] != '\0');
@@ -161,7 +158,7 @@ TEST(decays_do_not_shorten_strides)
     };
     for (EACH(c, arms)) {
         scenario s = {.parameters = fixture_parameters(*c)};
-        SCOPED(run_finish) run_result r = run_done(&s, false);
+        KEPT_RUN(r) = run_done(&s, false);
         assert_true(r.summary.steps < 2000);
         check_below(r.summary.energy_residual_J, 1e-7 * r.summary.motor_work_J);
     }
@@ -185,20 +182,14 @@ TEST(a_run_that_could_not_end_says_why)
         {{"motor.inductance=1"}, 0, 0, "fastest mode of the arm"},
         {{"arm.links=3", "wall.restitution=0.5"}, 0, 0, "arm.damping_ratio"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        parameters p = fixture_parameters(cases[i].settings);
-        arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-        assert_non_null(m);
-        motion_start(&a, m, cases[i].angle, cases[i].velocity);
+    for (EACH(c, cases)) {
+        parameters p = fixture_parameters(c->settings);
+        STARTED(a, m, &p, NULL, c->angle, c->velocity);
 
         // the first check only begins to count, and none has passed since
         zeno_monitor looked = zeno_monitor_begin();
-        fault f = {.text = ""};
-        assert_int_equal(zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f), STATUS_OK);
-        assert_int_equal(zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f), STATUS_NO_PROGRESS);
-        fail_if(strstr(f.text, cases[i].cause) == NULL, "case %zu, '%s': %s", i, cases[i].cause,
-                f.text);
+        DONE(zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f));
+        REFUSED(STATUS_NO_PROGRESS, c->cause, zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f));
     }
 }
 
@@ -217,22 +208,19 @@ TEST(a_run_that_stands_still_at_a_wall_says_so)
           "wall.restitution=1"},
          "smaller wall.stiffness"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        scenario s = {.parameters = fixture_parameters(cases[i].settings)};
+    for (EACH(c, cases)) {
+        scenario s = {.parameters = fixture_parameters(c->settings)};
         s.parameters.initial.angle = 0.099;
         s.parameters.initial.velocity = 0.7;
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
-        fail_if(strstr(r.summary.message, cases[i].cause) == NULL, "case %zu, '%s': %s", i,
-                cases[i].cause, r.summary.message);
+        fail_if(strstr(r.summary.message, c->cause) == NULL, "case %td, '%s': %s", c - cases,
+                c->cause, r.summary.message);
     }
 
     // strides half of which end in contact, and a look in flight
     parameters p = parameters_with("wall.contact=kelvin-voigt");
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-    assert_non_null(m);
-    motion_start(&a, m, 0, 0);
+    STARTED(a, m, &p, NULL, 0, 0);
     zeno_monitor looked = {.steps = ZENO_STEPS, .touching = ZENO_STEPS / 2};
     REFUSED(STATUS_NO_PROGRESS, "wall.damping", zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f));
 }
@@ -249,18 +237,13 @@ TEST(expensive_strides_are_given_up_sooner)
     };
     for (EACH(c, cases)) {
         const parameters p = fixture_parameters(c->settings);
-        arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-        assert_non_null(m);
-        motion_start(&a, m, 0.099, 0.7);
+        STARTED(a, m, &p, NULL, 0.099, 0.7);
         zeno_monitor kept = zeno_monitor_begin();
         fault f;
         status s = STATUS_OK;
         for (int strides = 0; s == STATUS_OK; strides++) {
-            motion_report r;
             assert_true(strides < c->most);
-            assert_int_equal(motion_step(&a, m, 1, 1e-3, &r), STATUS_OK);
-            motion_apply(&a, m, &r);
+            step_on(&a, m, 1, 1e-3);
             s = zeno_monitor_count(&kept, &a, m, 1, 1e-3, &f);
         }
         assert_int_equal(s, STATUS_NO_PROGRESS);
@@ -279,7 +262,7 @@ TEST(a_loop_makes_as_many_strides_as_are_asked_for)
     run_loop *l;
     DONE(loop_create(&l, &s, &options, &f));
     const size_t size = loop_saved_size(l);
-    SCOPED(free_kept) char *kept = malloc(2 * size);
+    KEPT_TEXT(kept) = malloc(2 * size);
     assert_non_null(kept);
     loop_save(l, kept);
     DONE(loop_until(l, 0.5, &f));
@@ -386,9 +369,7 @@ TEST(an_arm_without_damping_loses_nothing_to_it)
             joints ? "arm.damping_ratio=1e-3" : "arm.damping_ratio=0",
             hub ? "motor.viscous_friction=0.01" : "motor.viscous_friction=0",
             stands ? "wall.kind=point" : "wall.kind=none");
-        arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
-        motion_start(&a, m, 0.09, 0.3);
+        STARTED(a, m, &p, &stiff_engine, 0.09, 0.3);
         const passage all = move_on(&a, m, 0.1, 5000);
         assert_int_equal(all.impacts > 0, stands);
         check_below(all.open, 1e-8);

@@ -3,7 +3,6 @@
 // the formula itself tells a touch too coarsely (1e-12 m), numbers are those of power series of the
 // chain of order 32.
 
-#include "src/contact/contact_machine.h"
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 
@@ -20,21 +19,16 @@ static meetings meetings_by(const parameters *p, const engine *by, double angle,
                             double until)
 {
     const double step = by == &explicit_engine ? 1e-5 : p->method.step;
-    arm a = arm_of(p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p->method, by);
-    assert_non_null(m);
-    motion_start(&a, m, angle, velocity);
+    STARTED(a, m, p, by, angle, velocity);
 
     meetings all = {0};
     while (m->state[SLOT_TIME] < until) {
-        motion_report r;
-        assert_int_equal(motion_step(&a, m, until, step, &r), STATUS_OK);
-        if (r.event != MOTION_REACHED) {
+        const motion_event met = step_on(&a, m, until, step).event;
+        if (met != MOTION_REACHED) {
             assert_in_range(all.count, 0, MOST_MEETINGS - 1);
-            all.event[all.count] = r.event;
+            all.event[all.count] = met;
             all.time[all.count++] = m->state[SLOT_TIME];
         }
-        motion_apply(&a, m, &r);
     }
 
     all.peak = m->record.pulse_peak;
@@ -90,10 +84,8 @@ TEST(events_within_a_stride_are_the_formulas)
         p.arm.links = c->links; // with the springs of the default arm
         p.arm.hub_joint = HUB_SPRING;
         p.wall.kind = WALL_POINT;
-        arm a = arm_of(&p);
-        motion *m = motion_create(&a, &p.method);
+        STARTED(a, m, &p, NULL, 0, 0);
         assert_ptr_equal(m->engine, &stiff_engine);
-        motion_destroy(m);
 
         // by the stiff engine, and by the formula
         const double angle = c->angle, velocity = c->velocity, until = c->until;
@@ -182,10 +174,7 @@ TEST(bounces_lower_than_rounding_do_not_gain)
         "arm.links=14 arm.damping_ratio=0.477 arm.k2=23.7 arm.mass=0.865 arm.hub_inertia=0.0217 "
         "motor.voltage=4.95 wall.kind=plane wall.angle=1.043 wall.restitution=0.0189");
     for (int i = 0; i < 12; i++) {
-        arm a = arm_of(&p);
-        SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
-        assert_non_null(m);
-        motion_start(&a, m, p.wall.angle - 2e-3, 0.4 + 2e-3 * i);
+        STARTED(a, m, &p, NULL, p.wall.angle - 2e-3, 0.4 + 2e-3 * i);
 
         // from first contact to rest on the wall
         int impacts = 0;
@@ -221,17 +210,13 @@ TEST(a_step_that_ends_in_a_flight_is_no_bounce)
     assert_true(all.count > 10);
 
     // the same with a step that ends early in each flight
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create_by(&a, &p.method, &stiff_engine);
-    assert_non_null(m);
-    motion_start(&a, m, angle, velocity);
+    STARTED(a, m, &p, &stiff_engine, angle, velocity);
     for (int k = 0; k < all.count; k++) {
         const double from = m->state[SLOT_TIME], flight = all.time[k] - from;
         motion_report r = {.event = MOTION_REACHED};
         for (double end = from + 0.2 * flight; r.event == MOTION_REACHED; end = until) {
             assert_true(m->state[SLOT_TIME] < end);
-            assert_int_equal(motion_step(&a, m, end, until, &r), STATUS_OK);
-            motion_apply(&a, m, &r);
+            r = step_on(&a, m, end, until);
         }
         assert_int_equal(r.event, all.event[k]);
         check_close(m->state[SLOT_TIME], all.time[k], 1e-7);
@@ -255,10 +240,8 @@ TEST(a_graze_within_a_stride_is_found)
             "arm.links=4 arm.hub_joint=spring arm.hub_inertia=2.29663e-4 "
             "arm.damping_ratio=7.92665e-4 arm.k1=169468 motor.voltage=-1 motor.stiction=0 %s",
             i == 0 ? "wall.kind=point" : "wall.kind=plane");
-        arm a = arm_of(&p);
-        motion *m = motion_create(&a, &p.method);
+        STARTED(a, m, &p, NULL, 0, 0);
         assert_ptr_equal(m->engine, &stiff_engine);
-        motion_destroy(m);
 
         double touched = 0.005, missed = 0.5;
         assert_true(grazes(&p, NULL, touched) && !grazes(&p, NULL, missed));

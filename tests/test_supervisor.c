@@ -72,10 +72,8 @@ TEST(a_program_takes_every_signal)
     sigfillset(&held);
     sigprocmask(SIG_SETMASK, &held, &before);
     for (EACH_OF(int, c, SIGHUP, SIGPIPE, SIGUSR1, SIGTERM, 64)) {
-        char command[64];
         void (*was)(int) = signal(*c, SIG_IGN);
-        snprintf(command, sizeof command, "kill -%d $$; exit 1", *c);
-        const int status = ended(command);
+        const int status = ended(formatted("kill -%d $$; exit 1", *c));
         signal(*c, was);
         assert_int_equal(status, 128 + *c);
     }

@@ -9,16 +9,16 @@
 
 TEST(every_run_is_what_the_scenario_gives_alone)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=0.5:2:4", NULL);
-    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(NULL, &s);
+    KEPT_STORE(store) = must_open(NULL, &s);
     must_run(&s, store, 2);
     double peaks[4], contacts[4];
     DONE(sweep_store_quantity(store, "peak_force_N", peaks, NULL, &f));
     DONE(sweep_store_quantity(store, "first_contact_s", contacts, NULL, &f));
     for (int run = 0; run < 4; run++) {
         scenario alone = base;
-        SCOPED(run_finish) run_result result;
+        KEPT_RUN(result);
         alone.parameters.motor.voltage = 0.5 + 0.5 * run;
         assert_int_equal(run_scenario(&alone, false, &result), STATUS_OK);
         check_close(peaks[run], result.summary.peak_force_N, 0);
@@ -30,10 +30,10 @@ TEST(every_run_is_what_the_scenario_gives_alone)
 
 TEST(the_number_of_jobs_does_not_change_a_byte)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_LATIN, 60, "motor.voltage=0.5:5", "arm.links=1:4");
-    SCOPED(free_kept)
-    char *one = uninterrupted(&s, 1), *two = uninterrupted(&s, 2), *many = uninterrupted(&s, 7);
+    KEPT_TEXT(one) = uninterrupted(&s, 1), *two = uninterrupted(&s, 2),
+    *many = uninterrupted(&s, 7);
     assert_string_equal(one, two);
     assert_string_equal(one, many);
     static const char header[] =
@@ -48,24 +48,24 @@ TEST(the_number_of_jobs_does_not_change_a_byte)
 // one thread and on several, and where some of the runs are there already.
 TEST(the_number_of_lanes_does_not_change_a_byte)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_LATIN, 201, "motor.voltage=0.5:5", "wall.restitution=0:1");
     taylor_limit_width(1);
-    SCOPED(free_kept) char *alone = uninterrupted(&s, 1);
+    KEPT_TEXT(alone) = uninterrupted(&s, 1);
     taylor_limit_width(0);
     for (int jobs = 1; jobs <= 3; jobs++) {
-        SCOPED(free_kept) char *together = uninterrupted(&s, jobs);
+        KEPT_TEXT(together) = uninterrupted(&s, jobs);
         assert_string_equal(together, alone);
     }
 
     // every third run first, the rest around them
-    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(NULL, &s);
+    KEPT_STORE(store) = must_open(NULL, &s);
     sweep_progress progress;
     const sweep_options third = {.jobs = 2, .share = {.part = 2, .parts = 3}};
     DONE(sweep_run(&s, store, &third, &progress, &f));
     assert_int_equal(progress.done_now, 67);
     must_run(&s, store, 2);
-    SCOPED(free_kept) char *csv = csv_of(store);
+    KEPT_TEXT(csv) = csv_of(store);
     assert_string_equal(csv, alone);
 }
 
@@ -117,7 +117,7 @@ TEST(a_changed_script_is_another_sweep)
     with.action_count = 2;
     DONE(scenario_override(&settled, "control.settings=kp=2", &f));
     sweep s;
-    SCOPED(sweep_finish) sweep other;
+    KEPT_SWEEP(other);
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     other = s;
     s.base = &with;
@@ -158,8 +158,7 @@ TEST(lists_have_an_end)
     enum { VALUES = 400000 };
     fault f = {.text = ""};
     sweep s;
-    SCOPED(free_kept)
-    char *text = malloc(16 + 8 * VALUES);
+    KEPT_TEXT(text) = malloc(16 + 8 * VALUES);
     char *end = text + sprintf(text, "control.seed=0");
     for (int i = 1; i < VALUES; i++) {
         end += sprintf(end, ",%d", i);
@@ -173,8 +172,8 @@ TEST(values_drawn_together_stay_pairs)
 {
     fault f = {.text = ""};
     for (sweep_sampling how = SWEEP_RANDOM; how <= SWEEP_LATIN; how++) {
-        SCOPED(sweep_finish) sweep s;
-        SCOPED(sweep_finish) sweep again;
+        KEPT_SWEEP(s);
+        KEPT_SWEEP(again);
         must_sweep(&s, how, 60, "arm.k2=1,2,3", "with arm.mass=0.1,0.2,0.2");
         SCOPED(definition_finish) definition d = {0};
         assert_int_equal(definition_init(&d, &s, &f), STATUS_OK);
@@ -211,7 +210,7 @@ TEST(values_drawn_together_stay_pairs)
 // A name that begins with a colon is a file like any other.
 TEST(a_colon_begins_a_name)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     sweep_store_close(must_open(":memory:", &s));
     assert_int_equal(access("./:memory:", F_OK), 0);
@@ -243,7 +242,7 @@ TEST(rows_that_are_no_runs_are_refused)
 {
     for (EACH_TEXT(c, "UPDATE run SET run = 0 WHERE run = 1",
                    "UPDATE run SET run = 9 WHERE run = 1")) {
-        SCOPED(sweep_finish) sweep s;
+        KEPT_SWEEP(s);
         must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
         sweep_store *store = must_open("rows.sqlite", &s);
         must_run(&s, store, 1);
@@ -265,7 +264,7 @@ TEST(rows_that_are_no_runs_are_refused)
 
 TEST(what_is_no_sweep_is_left_alone)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     FILE *stream = fopen("text", "w");
     assert_non_null(stream);
@@ -287,7 +286,7 @@ TEST(what_is_no_sweep_is_left_alone)
 
 TEST(two_sweeps_do_not_write_to_one_file_at_once)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     sweep_store *store = must_open("busy.sqlite", &s);
     assert_refused("busy.sqlite", &s, STATUS_CANNOT_WRITE, "another sweep is writing");
@@ -298,9 +297,9 @@ TEST(two_sweeps_do_not_write_to_one_file_at_once)
 
 TEST(a_file_deleted_within_a_transaction_is_missed)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
-    SCOPED(sweep_store_close_kept) sweep_store *store = must_open("gone.sqlite", &s);
+    KEPT_STORE(store) = must_open("gone.sqlite", &s);
     const summary result = {.peak_force_N = 2};
     DONE(sweep_store_put(store, 0, &result, &f));
     DONE(sweep_store_commit(store, &f));
@@ -312,10 +311,10 @@ TEST(a_file_deleted_within_a_transaction_is_missed)
 
 TEST(a_failed_run_is_a_row_with_its_message)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     fault f = {0};
     must_sweep(&s, SWEEP_GRID, 0, "arm.hub_joint=rigid,spring", NULL);
-    SCOPED(sweep_store_close_kept) sweep_store *store = must_open(NULL, &s);
+    KEPT_STORE(store) = must_open(NULL, &s);
     summary good = {.peak_force_N = 2, .impacts = (double)NAN}, bad = {.peak_force_N = 1e9};
     bad.status = STATUS_UNSTABLE;
     strcpy(bad.message, "went off, \"far\"");
@@ -329,7 +328,7 @@ TEST(a_failed_run_is_a_row_with_its_message)
     check_close(values[0], 2, 0);
     assert_true(isnan(values[1]));
     assert_int_equal(failed, 1);
-    SCOPED(free_kept) char *csv = csv_of(store);
+    KEPT_TEXT(csv) = csv_of(store);
     assert_non_null(strstr(csv, "\n1,rigid,ok,,"));
     assert_non_null(strstr(csv, "\n2,spring,failed,\"went off, \"\"far\"\"\","));
     assert_null(strstr(csv, "nan"));

@@ -143,7 +143,7 @@ static char *rows_of(sweep_store *store, status *code, fault *f)
 // *kept: how many of the rows were committed, as far as it was told.
 static status complete(char **rows, size_t *kept, fault *f)
 {
-    SCOPED(sweep_store_close_kept) sweep_store *store;
+    KEPT_STORE(store);
     size_t added = 0;
     *rows = NULL;
     status code = sweep_store_open(&store, file, &swept, f);
@@ -182,7 +182,7 @@ static void remove_files(void)
 TEST(what_was_committed_stands_and_the_rest_is_said)
 {
     char *rows, *later;
-    SCOPED(free_kept) char *whole;
+    KEPT_TEXT(whole);
     size_t kept, then;
     fault f = {0};
     refused = 0;
@@ -257,11 +257,11 @@ static status read_all(const char *whole, fault *f)
     assert_int_equal(merged.runs, RUNS);
 
     // and to go on from
-    SCOPED(sweep_store_close_kept) sweep_store *store;
+    KEPT_STORE(store);
     double values[RUNS];
     code = sweep_store_open(&store, file, &swept, f);
     code = code == STATUS_OK ? sweep_store_quantity(store, "peak_force_N", values, NULL, f) : code;
-    SCOPED(free_kept) char *rows = code == STATUS_OK ? rows_of(store, &code, f) : NULL;
+    KEPT_TEXT(rows) = code == STATUS_OK ? rows_of(store, &code, f) : NULL;
     if (code == STATUS_OK) {
         check_close(values[RUNS - 1], RUNS, 0);
         assert_string_equal(rows, whole);

@@ -77,7 +77,7 @@ static long long number_from(const char *path, const char *sql)
 
 TEST(a_killed_sweep_goes_on_and_loses_and_doubles_nothing)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, MANY_RUNS, NULL);
     sweep_in_a_child_that_is_killed(&s, "killed.sqlite");
     long long kept = number_from("killed.sqlite", "SELECT count(*) FROM run");
@@ -86,7 +86,7 @@ TEST(a_killed_sweep_goes_on_and_loses_and_doubles_nothing)
     sweep_progress progress = must_run(&s, store, 2);
     assert_int_equal(progress.done, MANY);
     assert_int_equal(progress.done_now, MANY - kept);
-    SCOPED(free_kept) char *resumed = csv_of(store), *whole = uninterrupted(&s, 2);
+    KEPT_TEXT(resumed) = csv_of(store), *whole = uninterrupted(&s, 2);
     sweep_store_close(store);
     assert_string_equal(resumed, whole);
     assert_int_equal(number_from("killed.sqlite", "SELECT count(*) FROM run"), MANY);
@@ -105,7 +105,7 @@ static void stop_soon(void *context, const sweep_progress *p)
 
 TEST(a_stopped_sweep_keeps_what_it_has_and_goes_on)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     sweep_progress progress;
     sweep_options options = {.jobs = 2, .stop = &stop, .report = stop_soon};
     must_sweep(&s, SWEEP_GRID, 0, MANY_RUNS, NULL);

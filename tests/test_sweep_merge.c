@@ -12,7 +12,7 @@ static void sweep_voltages(sweep *s, const char *values)
 // Computes a share of a sweep into a file; returns all rows of the store as CSV, to be freed.
 static char *compute(const sweep *s, const char *path, sweep_share share)
 {
-    SCOPED(sweep_store_close_kept) sweep_store *store;
+    KEPT_STORE(store);
     sweep_progress progress;
     const sweep_options options = {.share = share, .jobs = 2};
     DONE(sweep_store_open(&store, path, s, &f) != STATUS_OK ||
@@ -26,20 +26,20 @@ static char *compute(const sweep *s, const char *path, sweep_share share)
 static void check_merge(const sweep *s, char **parts, int count)
 {
     sweep_merged merged;
-    SCOPED(free_kept) char *whole = compute(s, "whole", (sweep_share){0, 0});
+    KEPT_TEXT(whole) = compute(s, "whole", (sweep_share){0, 0});
     for (int i = 0; i < count; i++) {
         free(compute(s, parts[i], (sweep_share){atoi(parts[i]), count}));
     }
     DONE(sweep_merge(parts, count, "merged", &merged, &f));
     assert_int_equal(merged.runs, s->run_count);
     assert_int_equal(merged.total, s->run_count);
-    SCOPED(free_kept) char *rows = compute(s, "merged", (sweep_share){0, 0});
+    KEPT_TEXT(rows) = compute(s, "merged", (sweep_share){0, 0});
     assert_string_equal(rows, whole);
 
     // a sweep with a missing part continues where it ends
     DONE(sweep_merge(parts, count - 1, "some", &merged, &f));
     assert_in_range(merged.runs, 1, s->run_count - 1);
-    SCOPED(free_kept) char *rest = compute(s, "some", (sweep_share){0, 0});
+    KEPT_TEXT(rest) = compute(s, "some", (sweep_share){0, 0});
     assert_string_equal(rest, whole);
 }
 
@@ -57,14 +57,14 @@ SWEEP_TEST(parts_may_vary_the_model)
     assert_string_equal(parameter_table[0].path, "arm.model");
     parameters_defaults(&base.parameters, ARM_CORRECTED);
     DONE(parameters_resolve(&base.parameters, &f));
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, "arm.model=corrected,printed", NULL);
     check_merge(&s, (char *[]){"1", "2"}, 2);
 }
 
 SWEEP_TEST(parts_in_any_order_give_the_rows_of_one_sweep)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     sweep_voltages(&s, "motor.voltage=0.5:2:11");
     check_merge(&s, (char *[]){"3", "1", "2"}, 3);
     check_refused((char *[]){"1", "2", "1"}, 3, "run 1 of '1' is in another part too");
@@ -73,7 +73,7 @@ SWEEP_TEST(parts_in_any_order_give_the_rows_of_one_sweep)
 // Every parameter that is varied has its column.
 SWEEP_TEST(parts_may_vary_several_parameters)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     char *vary[] = {"motor.voltage=0.5,2", "arm.k2=4,6", "wall.kind=point,plane"};
     sweep_request request = {.vary = vary, .vary_count = 3};
     DONE(sweep_init(&s, &base, &request, &f));
@@ -103,7 +103,7 @@ SWEEP_TEST(the_plan_of_a_merge_is_that_of_the_sweep)
                                  .sampling = (sweep_sampling)i,
                                  .runs = draws ? 40 : 0,
                                  .seed = UINT64_MAX};
-        SCOPED(sweep_finish) sweep s;
+        KEPT_SWEEP(s);
         DONE(sweep_init(&s, &base, &request, &f));
         check_merge(&s, (char *[]){"1", "2"}, 2);
         assert_true(unlink("whole") == 0 && unlink("merged") == 0 && unlink("some") == 0);
@@ -123,7 +123,7 @@ static void tamper(const char *path, const char *sql)
 
 SWEEP_TEST(foreign_parts_are_refused)
 {
-    SCOPED(sweep_finish) sweep s, other;
+    KEPT_SWEEP(s), other;
     sweep_voltages(&s, "motor.voltage=1:2:3");
     sweep_voltages(&other, "motor.voltage=1:2:4");
     free(compute(&s, "own", (sweep_share){1, 3}));
@@ -210,7 +210,7 @@ SWEEP_TEST(what_others_changed_is_refused)
         {"DELETE FROM sweep WHERE key = 'runs'", "runs"},
         {"DELETE FROM run; DELETE FROM sweep; DROP TABLE run; DROP TABLE sweep", "is empty"},
     };
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     sweep_voltages(&s, "motor.voltage=1:2:3");
     for (EACH(c, changes)) {
         char *part[] = {"part"};
@@ -234,7 +234,7 @@ SWEEP_TEST(what_others_changed_is_refused)
 // A missing part, and one with overwritten pages.
 SWEEP_TEST(what_cannot_be_read_is_said)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     sweep_merged merged;
     char *part[] = {"part"};
     REFUSED(STATUS_CANNOT_READ, "No such file", sweep_merge(part, 1, "out", &merged, &f));
@@ -261,7 +261,6 @@ SWEEP_TEST(what_cannot_be_read_is_said)
 static void write_journal(const char *database, const char *named)
 {
     static const unsigned char mark[] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
-    char path[256];
     unsigned char head[512] = {0}, size[2];
     FILE *file = fopen(database, "rb");
     assert_non_null(file);
@@ -286,8 +285,7 @@ static void write_journal(const char *database, const char *named)
     }
     memcpy(head, mark, sizeof mark);
     memcpy(head + sizeof mark, bytes, 5 * sizeof bytes[0]);
-    snprintf(path, sizeof path, "%s-journal", database);
-    file = fopen(path, "wb");
+    file = fopen(formatted("%s-journal", database), "wb");
     assert_non_null(file);
     fwrite(head, sizeof head, 1, file);
     fwrite(bytes[5], 4, 1, file);
@@ -301,7 +299,7 @@ static void write_journal(const char *database, const char *named)
 SWEEP_TEST(a_journal_names_no_file_to_delete)
 {
     char notes[300];
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     sweep_voltages(&s, "motor.voltage=1:2:3");
     free(compute(&s, "part", (sweep_share){0, 0}));
     assert_non_null(getcwd(notes, 200));

@@ -15,7 +15,7 @@ static int close_all(void **state)
 static void must_draw(const char *a, const char *b, sweep_sampling sampling, size_t runs,
                       const char *path, double offset)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, sampling, runs, a, b);
     SCOPED(free_kept) double *values = malloc(s.run_count * sizeof *values);
     assert_non_null(values);
@@ -53,7 +53,7 @@ TEST(words_have_a_curve_each)
     static const char *const varied[2][2] = {{"method.name=event,newmark", "motor.voltage=1,2,4"},
                                              {"motor.voltage=1,2,4", "method.name=event,newmark"}};
     for (int k = 0; k < 2; k++) {
-        SCOPED(sweep_finish) sweep s;
+        KEPT_SWEEP(s);
         double values[6];
         must_sweep(&s, SWEEP_GRID, 0, varied[k][0], varied[k][1]);
         assert_int_equal(s.run_count, 6);
@@ -81,7 +81,7 @@ TEST(a_picture_shows_two_parameters_at_most)
 {
     char *vary[] = {"arm.k1=1,2", "arm.k2=1,2", "arm.mass=1,2"};
     sweep_request request = {.vary = vary, .vary_count = 3};
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     DONE(sweep_init(&s, &base, &request, &f));
     assert_int_equal(s.run_count, 8);
     REFUSED(STATUS_BAD_ARGUMENT, "3 are varied", sweep_plot_check(&s, "a.png", &f));

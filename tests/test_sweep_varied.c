@@ -4,7 +4,7 @@
 
 TEST(the_last_parameter_of_a_grid_changes_fastest)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", "method.name=event,newmark");
     static const double voltage[] = {1, 1, 1.5, 1.5, 2, 2};
     assert_int_equal(s.run_count, 6);
@@ -19,7 +19,7 @@ TEST(the_last_parameter_of_a_grid_changes_fastest)
 
 TEST(ranges_meet_their_ends_and_are_spaced_as_asked)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_GRID, 0, "arm.k2=0.1:0.7:7", NULL);
     check_close(sweep_value(&s, 0, 0), 0.1, 0);
     check_close(sweep_value(&s, 6, 0), 0.7, 0);
@@ -44,7 +44,7 @@ TEST(ranges_meet_their_ends_and_are_spaced_as_asked)
 TEST(a_number_of_a_list_is_varied_by_its_place)
 {
     static const char text[] = "title: Springs\narm: {links: 4, joint_stiffness: [12, 10, 8]}\n";
-    SCOPED(scenario_finish) scenario springs;
+    KEPT_SCENARIO(springs);
     sweep s;
     assert_int_equal(scenario_parse(&springs, text, strlen(text), "springs.yaml", "springs",
                                     print_sentence, NULL),
@@ -128,7 +128,7 @@ TEST(bad_requests_are_refused_with_a_sentence)
 TEST(a_latin_hypercube_meets_every_part_of_every_range_once)
 {
     enum { RUNS = 1000 };
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_LATIN, RUNS, "motor.voltage=2:1", "arm.k2=0.1:1000:log");
     unsigned char seen[2][RUNS] = {{0}};
     double together = 0;
@@ -148,7 +148,7 @@ TEST(a_latin_hypercube_meets_every_part_of_every_range_once)
 
 TEST(whole_numbers_and_words_are_drawn_evenly)
 {
-    SCOPED(sweep_finish) sweep s;
+    KEPT_SWEEP(s);
     must_sweep(&s, SWEEP_LATIN, 120, "arm.links=2:5", "method.name=event,newmark");
     int links[8] = {0}, methods[4] = {0};
     for (size_t run = 0; run < 120; run++) {
@@ -167,7 +167,7 @@ TEST(whole_numbers_and_words_are_drawn_evenly)
 TEST(the_seed_decides_what_is_drawn)
 {
     sweep a, c;
-    SCOPED(sweep_finish) sweep b;
+    KEPT_SWEEP(b);
     DONE(sweep_of(&a, SWEEP_RANDOM, 50, 5, &f, "arm.k2=1:3", NULL));
     DONE(sweep_of(&b, SWEEP_RANDOM, 50, 5, &f, "arm.k2=1:3:10", NULL));
     DONE(sweep_of(&c, SWEEP_RANDOM, 50, 6, &f, "arm.k2=1:3", NULL));

@@ -1,7 +1,6 @@
 // Eigenvalues and factors of symmetric matrices against what defines them.
 #include "src/base/dense.h"
 
-#include "src/base/random.h"
 #include "tests/check.h"
 
 enum { LARGEST = 24 };
@@ -9,8 +8,7 @@ enum { LARGEST = 24 };
 // A symmetric matrix of numbers from -1 to 1, plus `diagonal` on its diagonal.
 static void fill(int n, double diagonal, double *matrix)
 {
-    random_generator g;
-    random_seed(&g, (uint64_t)n);
+    random_generator g = seeded((uint64_t)n);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j <= i; j++) {
             matrix[i * n + j] = matrix[j * n + i] = 2 * random_uniform(&g) - 1;

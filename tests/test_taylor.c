@@ -1,9 +1,7 @@
 // The two-link arm by power series: that they solve the equations of chain.h all over the stride,
 // that the bounds hold, and that whole runs through events come out of it.
-#include "src/base/random.h"
 #include "src/engines/pair/taylor_integrator.h"
 #include "tests/arm_fixture.h"
-#include "tests/motion_advance.h"
 
 // An arm in some state of motion, in free flight or on the wall.
 typedef struct moving_arm {
@@ -81,8 +79,7 @@ static void check_place(moving_arm *moving, double h)
 
 TEST(the_series_solve_the_equations_all_over_the_stride)
 {
-    random_generator g;
-    random_seed(&g, 1);
+    random_generator g = seeded(1);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
         // strides that something cuts short take lower orders
@@ -101,12 +98,11 @@ TEST(the_series_solve_the_equations_all_over_the_stride)
 // Several instants side by side, in vectors of any width, are those that are taken one by one.
 TEST(instants_together_are_those_one_by_one)
 {
-    random_generator g;
-    random_seed(&g, 3);
+    random_generator g = seeded(3);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
         const arm *a = &moving.arm;
-        SCOPED(motion_destroy_kept) motion *m = moving.motion;
+        KEPT_MOTION(m) = moving.motion;
         taylor_limit_width(1 << i % 4);
         double h = m->engine->advance(a, m, 0.1, 1e-3), times[PLACES], *now = m->state;
         state_energy energies[PLACES];
@@ -139,11 +135,10 @@ TEST(instants_together_are_those_one_by_one)
 // A long stride and the short ones of lower order that make it up end in the same state.
 TEST(orders_agree_and_the_ledger_closes)
 {
-    random_generator g;
-    random_seed(&g, 2);
+    random_generator g = seeded(2);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
-        SCOPED(motion_destroy_kept) motion *m = moving.motion;
+        KEPT_MOTION(m) = moving.motion;
         double *q = state_angles(m, m->state);
         m->record.start_energy =
             chain_kinetic_energy(&moving.arm, q, state_velocities(m, m->state)) +
@@ -189,8 +184,7 @@ static motion_event step_cut(const moving_arm *moving, double until, double afte
 TEST(cut_strides_go_on)
 {
     enum { UNTIL = 1 };
-    random_generator g;
-    random_seed(&g, 7);
+    random_generator g = seeded(7);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
         moving_arm made[4]; // whole, cut, and two that take turns
         const random_generator before = g;
@@ -236,12 +230,11 @@ TEST(cut_strides_go_on)
 // kernel's bound.
 TEST(the_bounds_hold)
 {
-    random_generator g;
+    random_generator g = seeded(3);
     int looked_at = 0;
-    random_seed(&g, 3);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
-        SCOPED(motion_destroy_kept) motion *m = moving.motion;
+        KEPT_MOTION(m) = moving.motion;
         const engine *e = m->engine;
         // an arm that is held still has no series
         if (motion_held_still(m)) {
@@ -288,12 +281,11 @@ TEST(the_bounds_hold)
 TEST(known_roots_are_the_first)
 {
     enum { LOOKS = 100 };
-    random_generator g;
+    random_generator g = seeded(8);
     int known = 0;
-    random_seed(&g, 8);
     for (int i = 0; i < ARM_COUNT * STATES; i++) {
         moving_arm moving = some_motion(arms[i % ARM_COUNT], i / ARM_COUNT % 2, &g);
-        SCOPED(motion_destroy_kept) motion *m = moving.motion;
+        KEPT_MOTION(m) = moving.motion;
         if (motion_held_still(m)) {
             continue;
         }
@@ -326,8 +318,8 @@ TEST(peaks_are_the_largest_force_there_is)
     for (EACH_TEXT(c, "motor.voltage=0.5537109375", "motor.voltage=1", "motor.voltage=3.3")) {
         RUN(r, *c, "method.step=2e-6", "run.duration=0.7");
         double largest = 0;
-        for (size_t k = 0; k < r.trace.row_count; k++) {
-            largest = fmax(largest, r.trace.rows[k].force);
+        for (EACH_ROW(row, &r.trace)) {
+            largest = fmax(largest, row->force);
         }
         check_close(r.summary.peak_force_N, largest, 1e-9);
         check_below(largest, r.summary.peak_force_N * (1 + 1e-13));
@@ -359,8 +351,7 @@ TEST(events_that_nearly_coincide_are_told_apart)
 TEST(random_runs_neither_fail_nor_lose_energy)
 {
     enum { RUNS = 3000 };
-    random_generator g;
-    random_seed(&g, 4);
+    random_generator g = seeded(4);
     for (int i = 0; i < RUNS; i++) {
         double u[6];
         for (int k = 0; k < 6; k++) {
@@ -375,7 +366,7 @@ TEST(random_runs_neither_fail_nor_lose_energy)
         p->wall.restitution = u[4] < 0.4 ? 0 : u[4];
         p->wall.kind = i % 2 ? WALL_POINT : WALL_PLANE;
         p->arm.damping_ratio = u[5] < 0.5 ? 0 : 0.1 * (u[5] - 0.5);
-        SCOPED(run_finish) run_result r;
+        KEPT_RUN(r);
         fail_if(run_scenario(&s, false, &r) != STATUS_OK, "run %d: %s", i, r.summary.message);
         check_below(r.summary.energy_residual_J, 1e-11 * (1 + r.summary.motor_work_J));
     }
@@ -407,11 +398,9 @@ TEST(a_slow_start_into_the_wall_is_an_impact)
 {
     for (EACH_TEXT(c, "wall.kind=point", "wall.kind=plane")) {
         for (double speed = 1e-8; speed < 1e-3; speed *= 10) {
-            char velocity[64];
-            snprintf(velocity, sizeof velocity, "initial.velocity=%g", speed);
-            moving_arm moving = started(SETTINGS(*c, "arm.k2=20000", "motor.voltage=10",
-                                                 "motor.amplifier_gain=1000", "wall.angle=3",
-                                                 "initial.angle=3", velocity));
+            moving_arm moving = started(SETTINGS(
+                *c, "arm.k2=20000", "motor.voltage=10", "motor.amplifier_gain=1000", "wall.angle=3",
+                "initial.angle=3", formatted("initial.velocity=%g", speed)));
             assert_int_equal(next_event(&moving, 1e-3), MOTION_IMPACT);
             assert_true(moving.motion->state[SLOT_TIME] == 0);
             motion_destroy(moving.motion);
@@ -440,12 +429,10 @@ TEST(an_arm_in_fast_rotation_is_released_once)
 {
     int releases = 0;
     for (int i = 0; i < 60; i++) {
-        char voltage[64];
-        snprintf(voltage, sizeof voltage, "motor.voltage=%g", 8 + 0.1 * i);
-        moving_arm moving =
-            started(SETTINGS(voltage, "arm.length=2.4", "arm.mass=0.022", "arm.hub_inertia=0.0096",
-                             "motor.torque_constant=9", "motor.back_emf=0", "motor.resistance=8",
-                             "motor.stiction=0", "wall.angle=0.8", "initial.angle=-0.3"));
+        moving_arm moving = started(SETTINGS(
+            formatted("motor.voltage=%g", 8 + 0.1 * i), "arm.length=2.4", "arm.mass=0.022",
+            "arm.hub_inertia=0.0096", "motor.torque_constant=9", "motor.back_emf=0",
+            "motor.resistance=8", "motor.stiction=0", "wall.angle=0.8", "initial.angle=-0.3"));
         releases += count_releases(moving, 0.2);
     }
     assert_true(releases >= 60);

@@ -6,8 +6,7 @@ TEST(missing_font_is_reported)
 {
     pid_t child = fork();
     if (child == 0) {
-        char whole[64];
-        snprintf(whole, sizeof whole, "%s/fonts.conf", test_folder);
+        const char *whole = formatted("%s/fonts.conf", test_folder);
         put_file(whole, "<fontconfig><dir>/nowhere</dir></fontconfig>");
         setenv("FONTCONFIG_FILE", whole, 1);
         fault f = {0};

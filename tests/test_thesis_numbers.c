@@ -48,8 +48,7 @@ static void forget(computed *c)
 static double number(const char *name, const char *changes, const char *key)
 {
     SCOPED(forget) computed c = run_with(name, "%s", changes);
-    const double value = summary_value(&c.result.summary, summary_index(key));
-    return value;
+    return summary_value(&c.result.summary, summary_index(key));
 }
 
 // ---- chapters 1 to 4
@@ -120,8 +119,7 @@ static void run_cell(const char *table, const char *more, double voltage, double
     const trace *t = &c.result.trace;
     double touch = -1;
     *peak = 0;
-    for (size_t i = 0; i < t->row_count; i++) {
-        const sample *row = &t->rows[i];
+    for (EACH_ROW(row, t)) {
         touch = touch < 0 && row->contact > 0 ? row->time : touch;
         if (touch >= 0 && row->time - touch < 0.12 + 1e-9 && row->force > *peak) {
             *peak = row->force;
@@ -381,7 +379,7 @@ static bool read_pages(char *const *files, int count)
 {
     size_t size = 0, length = 0;
     FILE *all = open_memstream(&page, &length);
-    SCOPED(free_kept) char *text = NULL;
+    KEPT_TEXT(text) = NULL;
     bool complete = all != NULL;
 
     for (int i = 0; complete && i < count; i++) {

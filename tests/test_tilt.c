@@ -1,6 +1,5 @@
 // An arm in a tilted plane, whose weight acts along the angle -pi/2: pendulum, sag and frequencies
 // of beams.
-#include "src/arm/modes.h"
 #include "src/base/dense.h"
 #include "tests/passage.h"
 
@@ -11,8 +10,7 @@ enum { LINKS = 64 };
 static arm beam_of(const char *const *settings)
 {
     const parameters p = fixture_parameters(settings);
-    arm a = arm_of(&p);
-    return a;
+    return arm_of(&p);
 }
 
 // Deflection of the tip of a clamped beam under its weight w: w L^3/8EI; where the tip is held the
@@ -68,14 +66,12 @@ TEST(a_hanging_beam_has_its_frequencies)
     const arm a = beam_of(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1.5707963267949",
                                    "initial.angle=-1.5707963267949"));
     double expected[COUNT];
-    SCOPED(free_kept) double *w = calloc((LINKS + 1) * (LINKS + 2), sizeof *w);
-    int count;
-    assert_int_equal(modes_compute(&a, HUB_LOCKED, TIP_FREE, &count, w, w + LINKS + 1), STATUS_OK);
+    const arm_modes m = modes_of(&a, HUB_LOCKED, TIP_FREE);
     frequencies_of_a_hanging_beam(&a, expected, COUNT);
     for (int i = 0; i < COUNT; i++) {
-        printf("mode %d: %.9g rad/s, the beam's %.9g, off by %.2g\n", i, w[i], expected[i],
-               w[i] / expected[i] - 1);
-        check_relative(w[i], expected[i], 1e-3);
+        printf("mode %d: %.9g rad/s, the beam's %.9g, off by %.2g\n", i, m.w[i], expected[i],
+               m.w[i] / expected[i] - 1);
+        check_relative(m.w[i], expected[i], 1e-3);
     }
 
     // the weight counts: level, the first one is lower
@@ -83,7 +79,7 @@ TEST(a_hanging_beam_has_its_frequencies)
                     sqrt(a.joint_stiffness * a.link_length / a.link_mass * a.link_length /
                          pow(a.link_length * LINKS, 4)) *
                     1.05,
-                w[0]);
+                m.w[0]);
 }
 
 // One link without friction swings through the lowest point at the speed of its fall.
@@ -92,16 +88,13 @@ TEST(a_single_link_is_a_pendulum)
     const parameters p = fixture_parameters(SETTINGS(
         "arm.links=1", "wall.kind=none", "motor.voltage=0", "motor.stiction=0",
         "motor.viscous_friction=0", "motor.back_emf=0", "arm.tilt=-0.6", "initial.angle=0.3"));
-    arm a = arm_of(&p);
-    SCOPED(motion_destroy_kept) motion *m = motion_create(&a, &p.method);
+    STARTED(a, m, &p, NULL, 0.3, 0);
     assert_ptr_equal(m->engine, &stiff_engine);
-    motion_start(&a, m, 0.3, 0);
     const double inertia = a.hub_inertia + a.link_mass * a.link_length * a.link_length / 3;
     const double torque = a.link_mass * a.link_length / 2 * GRAVITY * sin(0.6);
     double fastest = 0;
     while (m->state[SLOT_TIME] < 6) {
-        motion_report report;
-        assert_int_equal(motion_step(&a, m, 6, 1e-3, &report), STATUS_OK);
+        step_on(&a, m, 6, 1e-3);
         const double q = state_angles(m, m->state)[0], w = state_velocities(m, m->state)[0];
         check_relative(w * w / 2 * inertia + 1, torque * (sin(q) - sin(0.3)) + 1, 1e-11);
         check_close(motion_energy_residual(&a, m, m->state), 0, 1e-11);

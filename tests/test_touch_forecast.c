@@ -28,7 +28,7 @@ TEST(readings_of_the_hub_say_what_the_state_says)
                                         "run.duration=0.6",  volts[i & 1],
                                         ways[i >> 1],        NULL};
         const parameters p = rig_parameters(settings);
-        SCOPED(run_finish) run_result r = rig_run(settings, true);
+        KEPT_RUN(r) = rig_run(settings, true);
         double worst = 0, largest = 0;
         int compared = 0, turns = 0;
 
@@ -56,16 +56,14 @@ TEST(readings_of_the_hub_say_what_the_state_says)
 // It is there only with a limit, and only without contact.
 TEST(there_is_none_in_contact_or_without_a_limit)
 {
-    SCOPED(run_finish)
-    run_result with = rig_run(SETTINGS("control.law=hybrid", "control.force_limit=1.5"), true);
-    SCOPED(run_finish) run_result without = rig_run(SETTINGS("control.law=hybrid"), true);
-    for (size_t k = 0; k < without.trace.row_count; k++) {
-        assert_true(isnan(without.trace.rows[k].predicted_force));
+    KEPT_RUN(with) = rig_run(SETTINGS("control.law=hybrid", "control.force_limit=1.5"), true);
+    KEPT_RUN(without) = rig_run(SETTINGS("control.law=hybrid"), true);
+    for (EACH_ROW(row, &without.trace)) {
+        assert_true(isnan(row->predicted_force));
     }
 
     // a sample after the touch the reading shows it
-    for (size_t k = 0; k < with.trace.row_count; k++) {
-        const sample *row = &with.trace.rows[k];
+    for (EACH_ROW(row, &with.trace)) {
         if (row->time > 0.006 && row->time < with.summary.first_contact_s) {
             assert_true(row->predicted_force >= 0);
         } else if (row->time > with.summary.first_contact_s + 0.05) {
@@ -114,16 +112,14 @@ TEST(the_speed_limit_law_keeps_to_a_force)
         const int limit = i & 1;
         double peak[2] = {0};
         for (int without = 0; without < 2; without++) {
-            SCOPED(run_finish)
-            run_result r = rig_run(
+            KEPT_RUN(r) = rig_run(
                 SETTINGS("control.law=speed-limit", "control.force=0.3", "control.speed_limit=100",
                          "control.approach_voltage=5", "run.duration=1.6", seeds[i / 6],
                          without ? "control.force_limit=0" : limits[limit], ways[i / 2 % 3]),
                 true);
             const double touch = r.summary.first_contact_s;
             assert_true(touch > 0);
-            for (size_t k = 0; k < r.trace.row_count; k++) {
-                const sample *row = &r.trace.rows[k];
+            for (EACH_ROW(row, &r.trace)) {
                 if (row->time >= touch && row->time < touch + 0.15) {
                     peak[without] = fmax(peak[without], row->force);
                 }

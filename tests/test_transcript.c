@@ -16,8 +16,7 @@ TEST(long_ways_are_found_again)
     assert_non_null(t);
     transcript_node *place = t->begin, *places[SAMPLES];
     for (int i = 0; i < SAMPLES; i++) {
-        char question[32];
-        snprintf(question, sizeof question, "sample %d", i);
+        const char *question = formatted("sample %d", i);
         assert_null(process_transcript_find(place, question));
         const controller_output answer = volts(i);
         place = places[i] = process_transcript_add(t, place, question, &answer);
@@ -27,8 +26,7 @@ TEST(long_ways_are_found_again)
     // forth and back again
     place = t->begin;
     for (int i = 0; i < SAMPLES; i++) {
-        char question[32];
-        snprintf(question, sizeof question, "sample %d", i);
+        const char *question = formatted("sample %d", i);
         assert_ptr_equal(process_transcript_find(place, question), places[i]);
         assert_ptr_equal(places[i]->before, place);
         place = places[i];
@@ -50,7 +48,7 @@ TEST(a_full_transcript_stays_as_it_is)
 {
     process_transcript *t = process_transcript_create();
     const size_t length = (size_t)8 << 20;
-    SCOPED(free_kept) char *question = malloc(length + 1);
+    KEPT_TEXT(question) = malloc(length + 1);
     assert_true(t != NULL && question != NULL);
     memset(question, 'x', length);
     question[length] = '\0';

@@ -90,7 +90,7 @@ TEST(faults_of_expressions_name_the_column)
 // Searches, and returns what was found; t is to be finished.
 static void search(tuning *t, const tune_request *asked, int jobs)
 {
-    SCOPED(sweep_store_close_kept) sweep_store *store;
+    KEPT_STORE(store);
     DONE(tune_init(t, asked, &f));
     DONE(sweep_store_open(&store, NULL, &t->plan, &f));
     const sweep_options options = {.jobs = jobs};
@@ -119,7 +119,7 @@ TEST(one_parameter_is_that_of_bisection)
         const double middle = (low + high) / 2;
         scenario s = base;
         s.parameters.motor.voltage = middle;
-        SCOPED(run_finish) run_result r = run_done(&s, false);
+        KEPT_RUN(r) = run_done(&s, false);
         *(r.summary.peak_force_N < 2 ? &low : &high) = middle;
     }
     assert_true(fabs(t.found[0] - high) <= 1e-3 * high);

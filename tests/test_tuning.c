@@ -193,7 +193,7 @@ TEST(test_setpoints_are_steps_ramps_and_waves)
     const sample *slow = &ramp.run.trace.rows[trace_row_at(&ramp.run.trace, 2.1)];
     check_below(slow->command, at->command);
     const trace *a = &step.run.trace, *b = &ramp.run.trace;
-    check_close(b->rows[b->row_count - 1].force, a->rows[a->row_count - 1].force, 0.05);
+    check_close(LAST_ROW(b)->force, LAST_ROW(a)->force, 0.05);
 
     change(&wave, "control.force_amplitude", "0.3");
     change(&wave, "control.force_frequency", "0.5");
@@ -214,10 +214,10 @@ static void extremes_of(const trace *t, double from, double to, double *low, dou
 {
     *low = HUGE_VAL;
     *high = -HUGE_VAL;
-    for (size_t i = 0; i < t->row_count; i++) {
-        if (t->rows[i].time > from && t->rows[i].time <= to) {
-            *low = fmin(*low, t->rows[i].force);
-            *high = fmax(*high, t->rows[i].force);
+    for (EACH_ROW(row, t)) {
+        if (row->time > from && row->time <= to) {
+            *low = fmin(*low, row->force);
+            *high = fmax(*high, row->force);
         }
     }
 }
@@ -230,12 +230,10 @@ TEST(test_every_law_follows_its_set_point)
     for (EACH_TEXT(c, "hybrid", "recovering", "speed-limit", "reverse-torque", "bang-bang",
                    "force-pd", "impedance", "admittance", "discontinuous", "optimal", "predictive",
                    "observer")) {
-        char name[64];
-        snprintf(name, sizeof name, "compare/%s", *c);
         session step, ramp, wave, wall;
         session *all[] = {&step, &ramp, &wave, &wall};
         for (int k = 0; k < 4; k++) {
-            open_session(all[k], name);
+            open_session(all[k], formatted("compare/%s", *c));
             change(all[k], "run.duration", k == 0 ? "4" : "6");
         }
         double low, high;

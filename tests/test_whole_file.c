@@ -31,12 +31,23 @@ static void assert_holds(const char *path, const char *expected)
     assert_string_equal(text, expected);
 }
 
+// A file that can be begun, with this in it.
+static void begin(whole_file *w, const char *path, const char *text)
+{
+    DONE(whole_file_open(w, path, &f));
+    fputs(text, w->stream);
+}
+
+static bool is_there(const char *path)
+{
+    return access(path, F_OK) == 0;
+}
+
 TEST_IN_FOLDER(appears_only_when_committed)
 {
-    whole_file w;
     put_file("old", "old");
-    DONE(whole_file_open(&w, "old", &f));
-    fputs("new", w.stream);
+    whole_file w;
+    begin(&w, "old", "new");
     fflush(w.stream);
     assert_holds("old", "old");
     DONE(whole_file_commit(&w, &f));
@@ -46,10 +57,9 @@ TEST_IN_FOLDER(appears_only_when_committed)
 
 TEST_IN_FOLDER(abandoning_leaves_the_target_and_nothing_else)
 {
-    whole_file w;
     put_file("old", "old");
-    DONE(whole_file_open(&w, "old", &f));
-    fputs("new", w.stream);
+    whole_file w;
+    begin(&w, "old", "new");
     whole_file_abandon(&w);
     assert_holds("old", "old");
     assert_int_equal(files(), 1);
@@ -132,13 +142,10 @@ static status write_to_output(const char *path, fault *f)
 
 TEST_IN_FOLDER(the_standard_output_is_written_or_said_to_be_full)
 {
-    fault f = {0};
-    assert_int_equal(write_to_output("output", &f), STATUS_OK);
+    DONE(write_to_output("output", &f));
     assert_holds("output", "new");
-    unlink("output");
-    assert_int_equal(write_to_output("/dev/full", &f), STATUS_CANNOT_WRITE);
-    assert_non_null(strstr(f.text, "standard output"));
-    assert_non_null(strstr(f.text, strerror(ENOSPC)));
+    REFUSED(STATUS_CANNOT_WRITE, "standard output", write_to_output("/dev/full", &f));
+    REFUSED(STATUS_CANNOT_WRITE, strerror(ENOSPC), write_to_output("/dev/full", &f));
 }
 
 TEST_IN_FOLDER(what_cannot_be_written_is_said_beforehand)
@@ -146,10 +153,8 @@ TEST_IN_FOLDER(what_cannot_be_written_is_said_beforehand)
     put_file("file", "");
     for (EACH_TEXT(c, "nowhere/file", ".", "", "nothing/")) {
         whole_file w;
-        fault f = {0};
-        assert_int_equal(whole_file_check(*c, &f), STATUS_CANNOT_WRITE);
-        assert_non_null(strstr(f.text, *c));
-        assert_int_equal(whole_file_open(&w, *c, &f), STATUS_CANNOT_WRITE);
+        REFUSED(STATUS_CANNOT_WRITE, *c, whole_file_check(*c, &f));
+        REFUSED(STATUS_CANNOT_WRITE, "", whole_file_open(&w, *c, &f));
     }
     assert_int_equal(whole_file_check("file/below", NULL), STATUS_CANNOT_WRITE);
     assert_int_equal(whole_file_check("new", NULL), STATUS_OK);
@@ -177,7 +182,6 @@ TEST_IN_FOLDER(a_reader_that_left_is_told_from_a_full_disk)
 TEST_IN_FOLDER(only_the_reader_of_the_standard_output_may_leave)
 {
     int ends[2];
-    whole_file w;
     fault f = {0};
     signal(SIGPIPE, SIG_IGN);
     assert_int_equal(pipe(ends), 0);
@@ -195,9 +199,9 @@ TEST_IN_FOLDER(only_the_reader_of_the_standard_output_may_leave)
     assert_int_equal(mkfifo("pipe", 0600), 0);
     const int reader = open("pipe", O_RDONLY | O_NONBLOCK);
     assert_true(reader >= 0);
-    assert_int_equal(whole_file_open(&w, "pipe", &f), STATUS_OK);
+    whole_file w;
+    begin(&w, "pipe", "text");
     close(reader);
-    fputs("text", w.stream);
     assert_int_equal(whole_file_commit(&w, &f), STATUS_CANNOT_WRITE);
 }
 
@@ -217,25 +221,23 @@ TEST_IN_FOLDER(a_failure_before_the_last_flush_is_one)
 // closed.
 TEST_IN_FOLDER(why_a_write_failed_is_known_at_the_end)
 {
-    struct rlimit before, small;
-    whole_file file;
+    struct rlimit before;
     fault f = {0};
     put_file("kept", "old");
     signal(SIGXFSZ, SIG_IGN);
     getrlimit(RLIMIT_FSIZE, &before);
-    small = (struct rlimit){.rlim_cur = 100000, .rlim_max = before.rlim_max};
+    const struct rlimit small = {.rlim_cur = 100000, .rlim_max = before.rlim_max};
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
 
     // one large write fails, small ones follow
-    char *block = calloc(1, 400000);
-    assert_non_null(block);
-    assert_int_equal(whole_file_open(&file, "kept", &f), STATUS_OK);
-    fwrite(block, 1, 400000, file.stream);
+    static const char block[400000];
+    whole_file file;
+    begin(&file, "kept", "");
+    fwrite(block, 1, sizeof block, file.stream);
     clearerr(file.stream);
     fputc('x', file.stream);
     assert_int_equal(whole_file_commit(&file, &f), STATUS_CANNOT_WRITE);
     setrlimit(RLIMIT_FSIZE, &before);
-    free(block);
     assert_non_null(strstr(f.text, strerror(EFBIG)));
     assert_holds("kept", "old");
 }
@@ -261,28 +263,25 @@ TEST_IN_FOLDER(what_killed_runs_left_goes)
               write(told[1], "x", 1) != 1 || pause() == 0);
     }
     assert_int_equal(read(told[0], &byte, 1), 1);
-    char living[64], *names[] = {"folder/.impactlab-notes.part", "folder/.impactlab-1-2.part.txt",
-                                 "folder/.impactlab-1-7.part", living};
-    snprintf(living, sizeof living, "folder/.impactlab-%ld-0.part", (long)other);
+    const char *living = formatted("folder/.impactlab-%ld-0.part", (long)other);
     whole_file mine;
-    assert_int_equal(whole_file_open(&mine, "folder/mine", NULL), STATUS_OK);
+    begin(&mine, "folder/mine", "");
     whole_file_abandon(&mine);
-    for (int i = 0; i < 4; i++) {
-        assert_int_equal(access(names[i], F_OK), 0);
-    }
-    assert_int_not_equal(access("folder/.impactlab-999999-0.part", F_OK), 0);
+    assert_true(is_there(living));
+    assert_false(is_there("folder/.impactlab-999999-0.part"));
 
     // killed: what it left goes with the next file in the folder
     kill(other, SIGKILL);
     waitpid(other, NULL, 0);
-    assert_int_equal(access(living, F_OK), 0);
-    assert_int_equal(whole_file_open(&mine, "elsewhere", NULL), STATUS_OK);
-    whole_file_abandon(&mine);
-    assert_int_equal(whole_file_open(&mine, "folder/mine", NULL), STATUS_OK);
-    whole_file_abandon(&mine);
-    assert_int_not_equal(access(living, F_OK), 0);
-    for (int i = 0; i < 3; i++) {
-        unlink(names[i]);
+    for (EACH_TEXT(c, "elsewhere", "folder/mine")) {
+        assert_true(is_there(living));
+        begin(&mine, *c, "");
+        whole_file_abandon(&mine);
+    }
+    assert_false(is_there(living));
+    for (EACH_TEXT(c, "folder/.impactlab-notes.part", "folder/.impactlab-1-2.part.txt",
+                   "folder/.impactlab-1-7.part")) {
+        assert_int_equal(unlink(*c), 0);
     }
     close(told[0]);
     close(told[1]);
@@ -304,8 +303,7 @@ int rename(const char *from, const char *to)
 TEST_IN_FOLDER(a_temporary_is_locked_until_it_has_its_name)
 {
     whole_file w;
-    DONE(whole_file_open(&w, "new", &f));
-    fputs("new", w.stream);
+    begin(&w, "new", "new");
     assert_int_equal(getrlimit(RLIMIT_NOFILE, &descriptors), 0);
     const struct rlimit none = {(rlim_t)w.descriptor + 1, descriptors.rlim_max};
     assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
@@ -319,28 +317,26 @@ TEST_IN_FOLDER(a_temporary_is_locked_until_it_has_its_name)
 // In a folder like /tmp a link of somebody else's leads nowhere, as the kernel has it.
 TEST_IN_FOLDER(a_strangers_link_is_not_followed)
 {
-    whole_file file;
-    fault f = {0};
     assert_int_equal(mkdir("shared", 0777), 0);
     assert_int_equal(chmod("shared", 01777), 0);
     assert_int_equal(symlink("../target", "shared/link"), 0);
-    assert_int_equal(whole_file_open(&file, "shared/link", &f), STATUS_OK);
+    whole_file file;
+    begin(&file, "shared/link", "");
     whole_file_abandon(&file);
 
     // only root can make a link somebody else's
     if (geteuid() == 0) {
         assert_int_equal(lchown("shared/link", 12345, 12345), 0);
-        assert_int_equal(whole_file_open(&file, "shared/link", &f), STATUS_CANNOT_WRITE);
-        assert_non_null(strstr(f.text, strerror(EACCES)));
-        assert_int_equal(whole_file_check("shared/link", &f), STATUS_CANNOT_WRITE);
+        REFUSED(STATUS_CANNOT_WRITE, strerror(EACCES), whole_file_open(&file, "shared/link", &f));
+        assert_int_equal(whole_file_check("shared/link", NULL), STATUS_CANNOT_WRITE);
         assert_int_equal(chmod("shared", 0755), 0);
-        assert_int_equal(whole_file_open(&file, "shared/link", &f), STATUS_OK);
+        begin(&file, "shared/link", "");
         whole_file_abandon(&file);
 
         // one that belongs to the owner of the folder is
         assert_int_equal(chown("shared", 12345, 12345), 0);
         assert_int_equal(chmod("shared", 01777), 0);
-        assert_int_equal(whole_file_check("shared/link", &f), STATUS_OK);
+        assert_int_equal(whole_file_check("shared/link", NULL), STATUS_OK);
     }
 }
 
@@ -350,14 +346,13 @@ TEST_IN_FOLDER(several_files_are_written_at_once)
     enum { FILES = 12 };
     const int before = files();
     whole_file all[FILES];
-    char name[FILES][16];
+    const char *name[FILES];
     for (int i = 0; i < FILES; i++) {
-        snprintf(name[i], sizeof name[i], "file-%d", i);
-        assert_int_equal(whole_file_open(&all[i], name[i], NULL), STATUS_OK);
-        fputs(name[i], all[i].stream);
+        name[i] = formatted("file-%d", i);
+        begin(&all[i], name[i], name[i]);
     }
     for (int i = 0; i < FILES; i++) {
-        assert_int_equal(whole_file_commit(&all[i], NULL), STATUS_OK);
+        DONE(whole_file_commit(&all[i], &f));
         assert_holds(name[i], name[i]);
         unlink(name[i]);
     }
@@ -367,11 +362,11 @@ TEST_IN_FOLDER(several_files_are_written_at_once)
 // Called by a signal handler: no unfinished file stays, and former files do.
 TEST_IN_FOLDER(a_signal_leaves_no_temporaries)
 {
-    whole_file one, two;
     const int before = files();
     put_file("one", "old");
-    assert_int_equal(whole_file_open(&one, "one", NULL), STATUS_OK);
-    assert_int_equal(whole_file_open(&two, "two", NULL), STATUS_OK);
+    whole_file one, two;
+    begin(&one, "one", "");
+    begin(&two, "two", "");
     assert_int_equal(files(), before + 3);
 
     // a process that writes one of them ends before it could make its file again
@@ -405,10 +400,9 @@ TEST_IN_FOLDER(a_signal_leaves_no_temporaries)
 // Something else took the place of the target meanwhile.
 TEST_IN_FOLDER(what_cannot_be_renamed_goes)
 {
-    whole_file w;
     const int before = files();
-    DONE(whole_file_open(&w, "place", &f));
-    fputs("new", w.stream);
+    whole_file w;
+    begin(&w, "place", "new");
     assert_int_equal(mkdir("place", 0700), 0);
     REFUSED(STATUS_CANNOT_WRITE, "'place' cannot be written", whole_file_commit(&w, &f));
     assert_int_equal(rmdir("place"), 0);
@@ -417,28 +411,25 @@ TEST_IN_FOLDER(what_cannot_be_renamed_goes)
 
 TEST_IN_FOLDER(devices_and_the_standard_output_can_be_abandoned)
 {
-    whole_file w;
     struct stat about;
-    assert_int_equal(whole_file_open(&w, "/dev/null", NULL), STATUS_OK);
-    whole_file_abandon(&w);
+    whole_file w;
+    for (EACH_TEXT(c, "/dev/null", "-")) {
+        begin(&w, *c, "");
+        whole_file_abandon(&w);
+    }
     assert_int_equal(stat("/dev/null", &about), 0);
     assert_true(S_ISCHR(about.st_mode));
-    assert_int_equal(whole_file_open(&w, "-", NULL), STATUS_OK);
-    whole_file_abandon(&w);
-    assert_int_equal(whole_file_open(&w, "-", NULL), STATUS_OK);
+    begin(&w, "-", "");
     assert_int_equal(whole_file_close(&w, STATUS_STOPPED, NULL), STATUS_STOPPED);
-    assert_int_equal(whole_file_open(&w, "closed", NULL), STATUS_OK);
-    fputs("whole", w.stream);
+    begin(&w, "closed", "whole");
     assert_int_equal(whole_file_close(&w, STATUS_OK, NULL), STATUS_OK);
     assert_holds("closed", "whole");
 }
 
 TEST_IN_FOLDER(a_link_may_be_absolute)
 {
-    char there[64];
-    snprintf(there, sizeof there, "%s/target", test_folder);
     assert_int_equal(mkdir("below", 0700), 0);
-    assert_int_equal(symlink(there, "below/link"), 0);
+    assert_int_equal(symlink(formatted("%s/target", test_folder), "below/link"), 0);
     write_new("below/link");
     assert_holds("target", "new");
 }
@@ -459,11 +450,11 @@ TEST_IN_FOLDER(what_only_looks_left_behind_stays)
     put_file(".impactlab-1-6.part", "left");
     whole_file_clean_folder("nowhere");
     whole_file_clean_folder(".");
-    assert_int_equal(access(".impactlab-1-6.part", F_OK), -1);
+    assert_false(is_there(".impactlab-1-6.part"));
     assert_int_equal(files(), before + 8);
-    assert_int_equal(rmdir(".impactlab-1-5.part"), 0);
-    unlink(".impactlab-1-4.part");
-    unlink(".impactlab-1-3.part");
+    for (EACH_TEXT(c, ".impactlab-1-5.part", ".impactlab-1-4.part", ".impactlab-1-3.part")) {
+        assert_int_equal(remove(*c), 0);
+    }
     for (EACH(one, others)) {
         unlink(*one);
     }
@@ -474,23 +465,18 @@ TEST_IN_FOLDER(a_folder_without_a_free_name_is_said)
 {
     enum { NAMES = 1000 };
     whole_file first, w;
-    fault f = {0};
-    char name[64];
-    assert_int_equal(whole_file_open(&first, "kept", &f), STATUS_OK);
+    begin(&first, "kept", "whole");
     for (int i = 0; i < NAMES; i++) {
-        snprintf(name, sizeof name, ".impactlab-%ld-%d.part", (long)getpid(), i);
+        const char *name = formatted(".impactlab-%ld-%d.part", (long)getpid(), i);
         assert_true(mkdir(name, 0700) == 0 || i == 0);
     }
-    assert_int_equal(whole_file_open(&w, "other", &f), STATUS_CANNOT_WRITE);
-    assert_non_null(strstr(f.text, strerror(EEXIST)));
+    REFUSED(STATUS_CANNOT_WRITE, strerror(EEXIST), whole_file_open(&w, "other", &f));
 
     // open files are still written
-    fputs("whole", first.stream);
-    assert_int_equal(whole_file_commit(&first, &f), STATUS_OK);
+    DONE(whole_file_commit(&first, &f));
     assert_holds("kept", "whole");
     for (int i = 1; i < NAMES; i++) {
-        snprintf(name, sizeof name, ".impactlab-%ld-%d.part", (long)getpid(), i);
-        assert_int_equal(rmdir(name), 0);
+        assert_int_equal(rmdir(formatted(".impactlab-%ld-%d.part", (long)getpid(), i)), 0);
     }
 }
 

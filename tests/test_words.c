@@ -67,8 +67,7 @@ TEST(of_equally_near_words_the_first_is_kept)
 
 static void check_printable(const char *text, const char *expected)
 {
-    char copy[64];
-    snprintf(copy, sizeof copy, "%s", text);
+    char *copy = formatted("%s", text);
     make_printable(copy, 0);
     assert_string_equal(copy, expected);
 }

@@ -30,6 +30,14 @@ GIVEN_BACK(impactlab_loop, impactlab_loop_destroy)
 // A call that must have been done.
 void check_done(int status);
 
+// What calls that must be done give: handles, to be destroyed, and numbers.
+impactlab_scenario *opened(const char *name);
+impactlab_run *run_of(const impactlab_scenario *scenario, int flags);
+impactlab_loop *loop_of(const impactlab_scenario *scenario, int flags);
+double number_of(const impactlab_scenario *scenario, const char *path);
+double quantity_of(const impactlab_run *run, const char *key);
+double signal_of(impactlab_loop *loop, const char *name);
+
 // Set-up and tear-down of a test: `h` is the handles of corrected/first-impact.
 extern handles *h;
 int make_handles(void **state);

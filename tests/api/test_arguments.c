@@ -215,15 +215,12 @@ TEST_OF_HANDLES(sets_are_taken_whole_or_not)
     const char *const wrong[] = {"motor.voltage=3", "arm.k2=soft"};
     const char *const holed[] = {"motor.voltage=3", NULL, "arm.k2=5"};
     const char *const together[] = {"arm.links=4", "wall.kind=plane", "motor.voltage=3 V"};
-    double value;
     check_refused(impactlab_scenario_set_all(h->scenario, wrong, 2, &told), "arm.k2");
     check_refused(impactlab_scenario_set_all(h->scenario, holed, 3, &told), "assignments[i]");
-    check_done(impactlab_scenario_number(h->scenario, "motor.voltage", &value, &told));
-    assert_true(value == 1);
+    assert_true(number_of(h->scenario, "motor.voltage") == 1);
     check_done(impactlab_scenario_set_all(h->scenario, together, 3, &told));
     check_done(impactlab_scenario_set_all(h->scenario, NULL, 0, &told));
-    check_done(impactlab_scenario_number(h->scenario, "motor.voltage", &value, &told));
-    assert_true(value == 3);
+    assert_true(number_of(h->scenario, "motor.voltage") == 3);
     assert_int_equal(impactlab_freedoms(h->scenario), 4);
 }
 
@@ -319,25 +316,21 @@ TEST_OF_HANDLES(batches_look_before_they_run)
 
 TEST_OF_HANDLES(states_of_others_are_refused)
 {
-    impactlab_loop *other;
     const size_t size = impactlab_loop_state_size(h->loop);
     SCOPED(free_kept) void *bytes = malloc(size);
     check_refused(impactlab_loop_save_state(h->loop, bytes, size - 1, &told), "room");
     check_done(impactlab_loop_save_state(h->loop, bytes, size, &told));
     check_done(impactlab_scenario_set(h->scenario, "motor.voltage", "2", &told));
-    check_done(impactlab_loop_create(&other, h->scenario, IMPACTLAB_COMMAND, &told));
+    own_loop *other = loop_of(h->scenario, IMPACTLAB_COMMAND);
     check_refused(impactlab_loop_restore_state(other, bytes, size, &told), "another scenario");
-    impactlab_loop_destroy(other);
 
     // one with a script that sets a number or a text, likewise
-    own_loop *scripted;
     check_done(impactlab_scenario_add_change(h->scenario, 0.1, "motor.voltage", "1", &told));
-    check_done(impactlab_loop_create(&other, h->scenario, IMPACTLAB_COMMAND, &told));
+    own_loop *changed = loop_of(h->scenario, IMPACTLAB_COMMAND);
     check_done(impactlab_scenario_add_push(h->scenario, 0.1, 1e-3, &told));
-    check_done(impactlab_loop_create(&scripted, h->scenario, IMPACTLAB_COMMAND, &told));
-    check_done(impactlab_loop_save_state(other, bytes, size, &told));
+    own_loop *scripted = loop_of(h->scenario, IMPACTLAB_COMMAND);
+    check_done(impactlab_loop_save_state(changed, bytes, size, &told));
     check_refused(impactlab_loop_restore_state(scripted, bytes, size, &told), "another scenario");
-    impactlab_loop_destroy(other);
 }
 
 // A caller who passes no fault gets the same status, on success and on failure.

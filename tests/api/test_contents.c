@@ -20,7 +20,7 @@ TEST_OF_HANDLES(tables_are_whole)
     size_t rows = 0, timed = 0;
     double value;
     for (const impactlab_parameter *p; (p = impactlab_parameter_at(rows)) != NULL; rows++) {
-        check_done(impactlab_scenario_number(h->scenario, p->path, &value, &told));
+        value = number_of(h->scenario, p->path);
         assert_true(p->description[0] != '\0' && p->minimum <= p->maximum);
         assert_int_equal(strcmp(p->type, "choice") == 0, p->choices[0] != '\0');
         timed += p->timed != 0;
@@ -39,7 +39,7 @@ TEST_OF_HANDLES(tables_are_whole)
     const size_t known = impactlab_run_quantities(h->run, all, COUNT(all));
     for (; impactlab_quantity_at(quantities) != NULL; quantities++) {
         const char *key = impactlab_quantity_at(quantities)->key;
-        check_done(impactlab_run_quantity(h->run, key, &value, &told));
+        value = quantity_of(h->run, key);
         assert_memory_equal(&value, &all[quantities], sizeof value);
     }
     assert_int_equal(quantities, known);
@@ -51,7 +51,6 @@ TEST_OF_HANDLES(names_copies_and_defaults)
     own_scenario *copy, *made;
     char **names;
     size_t count, found = 0;
-    double value;
     check_done(impactlab_scenario_names(&names, &count, &told));
     for (size_t i = 0; i < count; i++) {
         found += strcmp(names[i], "corrected/first-impact") == 0;
@@ -63,8 +62,7 @@ TEST_OF_HANDLES(names_copies_and_defaults)
     // a copy goes its own way, as does what is made of defaults
     check_done(impactlab_scenario_copy(&copy, h->scenario, &told));
     check_done(impactlab_scenario_set_number(copy, "motor.voltage", 7, &told));
-    check_done(impactlab_scenario_number(h->scenario, "motor.voltage", &value, &told));
-    assert_true(value == 1);
+    assert_true(number_of(h->scenario, "motor.voltage") == 1);
     assert_string_equal(impactlab_scenario_name(copy), "corrected/first-impact");
 
     // its title says where it differs
@@ -78,18 +76,16 @@ TEST_OF_HANDLES(names_copies_and_defaults)
 // What a run has only where it is asked for, or where it came to pass.
 TEST_OF_HANDLES(runs_have_what_was_asked_for)
 {
-    impactlab_run *bare, *free_run;
     impactlab_series series;
     impactlab_table angles, velocities;
     impactlab_prediction said[2];
     size_t count;
-    check_done(impactlab_run_create(&bare, h->scenario, 0, &told));
+    own_run *bare = run_of(h->scenario, 0);
     check_done(impactlab_run_signal(bare, "force", &series, &told));
     assert_int_equal(series.count, 0);
     check_refused(impactlab_run_predictions(bare, said, 2, &count, &told), "KEEP_ROWS");
     assert_string_equal(impactlab_run_status(bare), "ok");
     assert_string_equal(impactlab_run_message(bare), "");
-    impactlab_run_destroy(bare);
 
     // angles and velocities are stored next to each other, the hub's first
     check_done(impactlab_run_angles(h->run, &angles, &told));
@@ -104,9 +100,8 @@ TEST_OF_HANDLES(runs_have_what_was_asked_for)
     check_done(impactlab_run_predictions(h->run, said, 2, &count, &told));
     assert_int_equal(count, 2);
     check_done(impactlab_scenario_set(h->scenario, "wall.kind", "none", &told));
-    check_done(impactlab_run_create(&free_run, h->scenario, IMPACTLAB_KEEP_ROWS, &told));
+    own_run *free_run = run_of(h->scenario, IMPACTLAB_KEEP_ROWS);
     check_refused(impactlab_run_predictions(free_run, said, 2, &count, &told), "did not touch");
-    impactlab_run_destroy(free_run);
 }
 
 // The printed equations have no modes, and a run that fails has what it came to.
@@ -139,11 +134,10 @@ TEST_OF_HANDLES(what_there_is_not)
 TEST_OF_HANDLES(loops_stay_stopped)
 {
     impactlab_error first;
-    impactlab_loop *loop;
     impactlab_run *run;
     check_done(impactlab_scenario_set(h->scenario, "control.command", "true", &told));
     check_done(impactlab_scenario_set(h->scenario, "control.law", "process", &told));
-    check_done(impactlab_loop_create(&loop, h->scenario, 0, &told));
+    impactlab_loop *loop = loop_of(h->scenario, 0);
     assert_int_equal(impactlab_loop_step(loop, &first), IMPACTLAB_NOT_ALLOWED);
     check_refused(impactlab_loop_step_until(loop, 1, &told), first.sentence);
     check_refused(impactlab_loop_set_input(loop, "motor.voltage", 1, &told), first.sentence);

@@ -2,11 +2,8 @@
 
 #include <fcntl.h>
 #include <ftw.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include "src/scenario/scenario.h"
 
 static char folder[] = "/tmp/impactlab-fuzz-XXXXXX";
 
@@ -56,7 +53,37 @@ static void fail(void *context, const char *sentence)
     fuzz_fail(__FILE__, __LINE__, sentence);
 }
 
-void fuzz_scenario(struct scenario *s, const char *yaml)
+void fuzz_scenario(scenario *s, const char *yaml)
 {
     FUZZ_CHECK(scenario_parse(s, yaml, strlen(yaml), "f", "base", fail, NULL) == STATUS_OK);
+}
+
+char *fuzz_written(const scenario *s)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&text, &size);
+    FUZZ_CHECK(stream != NULL);
+    scenario_write(stream, s);
+    FUZZ_CHECK(fclose(stream) == 0);
+    return text;
+}
+
+void fuzz_count(void *count, const char *sentence)
+{
+    FUZZ_CHECK(sentence[0] != '\0');
+    ++*(int *)count;
+}
+
+void fuzz_count_placed(void *count, const char *sentence, const char *file)
+{
+    const size_t name = strlen(file);
+    int line = 0, column = 0, length = 0;
+    FUZZ_CHECK(strncmp(sentence, file, name) == 0);
+    sscanf(sentence + name, ":%d:%d: %n", &line, &column, &length);
+    FUZZ_CHECK(line >= 1 && column >= 1 && length > 0 && sentence[name + (size_t)length] != '\0');
+    for (const char *c = sentence; *c != '\0'; c++) {
+        FUZZ_CHECK((unsigned char)*c >= 0x20 && *c != 0x7f);
+    }
+    fuzz_count(count, sentence);
 }

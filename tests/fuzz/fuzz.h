@@ -3,12 +3,15 @@
 #pragma once
 
 #include <ctype.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/scenario/scenario.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -21,6 +24,13 @@ static inline void fuzz_fail(const char *file, int line, const char *promise)
     abort();
 }
 
+// What was not done is said in a sentence. Returns whether it was done.
+static inline bool fuzz_done(status code, const fault *f)
+{
+    FUZZ_CHECK(code == STATUS_OK || f->text[0] != '\0');
+    return code == STATUS_OK;
+}
+
 // The bytes as a text with its end, in memory of exactly that size; to be freed.
 static inline char *fuzz_text(const uint8_t *data, size_t size)
 {
@@ -31,6 +41,16 @@ static inline char *fuzz_text(const uint8_t *data, size_t size)
     }
     text[size] = '\0';
     return text;
+}
+
+// Cuts a text into its lines, of which it keeps the first so many; returns how many.
+static inline int fuzz_lines(char *text, char **lines, int most)
+{
+    int count = 0;
+    for (char *line; count < most && (line = strsep(&text, "\n")) != NULL;) {
+        lines[count++] = line;
+    }
+    return count;
 }
 
 // The bytes that are left; at their end there are zeros.
@@ -68,6 +88,12 @@ void fuzz_folder(void);
 // Writes the bytes into a file of the target's own, which the next call replaces. Returns its path.
 const char *fuzz_file(const uint8_t *data, size_t size);
 
-// A scenario of a text that is a good one.
-struct scenario;
-void fuzz_scenario(struct scenario *s, const char *yaml);
+// A scenario of a text that is a good one, what it writes (to be freed), and one that counts the
+// sentences about a bad one, each of which is one.
+void fuzz_scenario(scenario *s, const char *yaml);
+char *fuzz_written(const scenario *s);
+void fuzz_count(void *count, const char *sentence);
+
+// The same of sentences that begin with the file's name, line and column; none shows anything that
+// a terminal would obey.
+void fuzz_count_placed(void *count, const char *sentence, const char *file);

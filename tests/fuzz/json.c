@@ -2,9 +2,6 @@
 // bench. Each is taken whole, with the numbers that it says, or refused.
 #include "tests/fuzz/fuzz.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "src/rig/external/process_lines.h"
 #include "src/study/bench.h"
 

@@ -3,9 +3,6 @@
 // after a refusal is the next line.
 #include "tests/fuzz/fuzz.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "src/api/impactlab/impactlab.h"
 
 enum { MOST_CALLS = 40, MOST_STATE = 1 << 16 };
@@ -30,15 +27,15 @@ static size_t save(const hand *h, unsigned char *bytes)
 }
 
 // Whether the call was refused; it then says why, and the loop is as it was before.
-static bool refused(hand *h, int status, const impactlab_error *error)
+static bool refused(hand *h, int code, const impactlab_error *error)
 {
-    FUZZ_CHECK(status == error->status);
-    FUZZ_CHECK((status == IMPACTLAB_OK) == (error->sentence[0] == '\0'));
-    if (status == IMPACTLAB_BAD_ARGUMENT || status == IMPACTLAB_BAD_SCENARIO) {
+    FUZZ_CHECK(code == error->status);
+    FUZZ_CHECK((code == IMPACTLAB_OK) == (error->sentence[0] == '\0'));
+    if (code == IMPACTLAB_BAD_ARGUMENT || code == IMPACTLAB_BAD_SCENARIO) {
         const size_t size = save(h, h->now);
         FUZZ_CHECK(memcmp(h->now, h->before, size) == 0);
     }
-    return status != IMPACTLAB_OK;
+    return code != IMPACTLAB_OK;
 }
 
 // Puts the kept state back, whole or with one bit another.
@@ -51,8 +48,8 @@ static void restore(hand *h, long damaged)
     if (damaged >= 0) {
         h->kept[(size_t)damaged % h->kept_size] ^= (unsigned char)(1u << damaged % 8);
     }
-    const int status = impactlab_loop_restore_state(h->loop, h->kept, h->kept_size, &error);
-    FUZZ_CHECK(refused(h, status, &error) == (damaged >= 0));
+    const int code = impactlab_loop_restore_state(h->loop, h->kept, h->kept_size, &error);
+    FUZZ_CHECK(refused(h, code, &error) == (damaged >= 0));
     if (damaged >= 0) {
         h->kept[(size_t)damaged % h->kept_size] ^= (unsigned char)(1u << damaged % 8);
     } else {
@@ -128,16 +125,16 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static hand h;
     impactlab_error error;
-    impactlab_scenario *scenario;
+    impactlab_scenario *chosen;
     char *text = fuzz_text(data, size), *rest = text, *line = strsep(&rest, "\n");
 
     // the first line chooses the loop, which is short
     const char *name = scenarios[(size_t)line[0] % (sizeof scenarios / sizeof scenarios[0])];
     const int flags = line[0] != '\0' ? line[1] & (IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND) : 0;
-    FUZZ_CHECK(impactlab_scenario_open(&scenario, name, &error) == IMPACTLAB_OK);
-    FUZZ_CHECK(impactlab_scenario_set(scenario, "run.duration", "0.4 s", &error) == IMPACTLAB_OK);
-    FUZZ_CHECK(impactlab_loop_create(&h.loop, scenario, flags, &error) == IMPACTLAB_OK);
-    impactlab_scenario_destroy(scenario);
+    FUZZ_CHECK(impactlab_scenario_open(&chosen, name, &error) == IMPACTLAB_OK);
+    FUZZ_CHECK(impactlab_scenario_set(chosen, "run.duration", "0.4 s", &error) == IMPACTLAB_OK);
+    FUZZ_CHECK(impactlab_loop_create(&h.loop, chosen, flags, &error) == IMPACTLAB_OK);
+    impactlab_scenario_destroy(chosen);
     h.kept_size = 0;
 
     for (int i = 0; i < MOST_CALLS && (line = strsep(&rest, "\n")) != NULL; i++) {

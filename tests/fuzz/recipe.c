@@ -3,25 +3,14 @@
 // with its runs, and drawn.
 #include "tests/fuzz/fuzz.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "render/figures/figures.h"
 #include "render/figures/recipe_parts.h"
 
 enum { DRAWN_OF = 4 };
 
-// Every sentence begins with the file's name, line and column, and shows nothing that a terminal
-// would obey.
-static void check_sentence(void *context, const char *sentence)
+static void check_sentence(void *count, const char *sentence)
 {
-    int *count = context, line = 0, column = 0, length = 0;
-    sscanf(sentence, "recipe.yaml:%d:%d: %n", &line, &column, &length);
-    FUZZ_CHECK(line >= 1 && column >= 1 && length > 0 && sentence[length] != '\0');
-    for (const char *c = sentence; *c != '\0'; c++) {
-        FUZZ_CHECK((unsigned char)*c >= 0x20 && *c != 0x7f);
-    }
-    ++*count;
+    fuzz_count_placed(count, sentence, "recipe.yaml");
 }
 
 static void check_panel(const recipe *r, const recipe_panel *p)
@@ -56,12 +45,6 @@ static void check_recipe(const recipe *r)
     }
 }
 
-static void count_sentence(void *context, const char *sentence)
-{
-    FUZZ_CHECK(sentence[0] != '\0');
-    ++*(int *)context;
-}
-
 // Opens one that was read as the command does, and draws what comes out of it.
 static void draw(const uint8_t *data, size_t size)
 {
@@ -71,14 +54,14 @@ static void draw(const uint8_t *data, size_t size)
     const figure_options options = {.look = {.width = 0}};
     const char *path = fuzz_file(data, size);
     FUZZ_CHECK(recipe_is(path));
-    if (recipe_open(path, &options, count_sentence, &reported, &art, &f) != STATUS_OK) {
+    if (recipe_open(path, &options, fuzz_count, &reported, &art, &f) != STATUS_OK) {
         FUZZ_CHECK(reported > 0 || f.text[0] != '\0');
         return;
     }
 
     cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
     cairo_t *cr = cairo_create(surface);
-    FUZZ_CHECK(artwork_paint(&art, cr, NULL, &f) == STATUS_OK || f.text[0] != '\0');
+    fuzz_done(artwork_paint(&art, cr, NULL, &f), &f);
     cairo_destroy(cr);
     cairo_surface_destroy(surface);
     artwork_finish(&art);

@@ -2,24 +2,11 @@
 // and what it accepts must keep the promises of scenario.h.
 #include "tests/fuzz/fuzz.h"
 
-#include <ctype.h>
-#include <math.h>
-#include <string.h>
-
 #include "src/run/run.h"
-#include "src/scenario/scenario.h"
 
-// Every sentence begins with "f:line:column: " and holds nothing that a terminal would obey.
-static void check_sentence(void *context, const char *sentence)
+static void check_sentence(void *count, const char *sentence)
 {
-    int *count = context;
-    int line = 0, column = 0, length = 0;
-    sscanf(sentence, "f:%d:%d: %n", &line, &column, &length);
-    FUZZ_CHECK(line >= 1 && column >= 1 && length > 0 && sentence[length] != '\0');
-    for (const char *c = sentence; *c != '\0'; c++) {
-        FUZZ_CHECK(!iscntrl((unsigned char)*c) || (unsigned char)*c >= 0x80);
-    }
-    ++*count;
+    fuzz_count_placed(count, sentence, "f");
 }
 
 static void check_value(const parameters *p, int index)

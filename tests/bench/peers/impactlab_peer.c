@@ -21,56 +21,47 @@ typedef struct simulation {
 
 static const char *const method_names[] = {"event", "event", "generalized-alpha", "newmark"};
 
-static bool set(parameters *p, const char *path, const char *value)
-{
-    fault f;
-    if (parameter_set_text(p, parameter_find(path), value, &f) == STATUS_OK) {
-        return true;
-    }
-    fprintf(stderr, "peers: impactlab: %s\n", f.text);
-    return false;
-}
-
-static bool set_number(parameters *p, const char *path, double value)
-{
-    char text[32];
-    snprintf(text, sizeof text, "%.17g", value);
-    return set(p, path, text);
-}
-
 static void *create(const peer *self)
 {
-    simulation *s = calloc(1, sizeof *s);
-    if (s == NULL) {
-        return NULL;
-    }
-    fault f;
-    parameters *p = &s->scenario.parameters;
-    s->keep_rows = self->variant == BY_EVENT_WITH_ROWS;
-    parameters_defaults(p, ARM_CORRECTED);
     // everything the experiment states is set, so that a changed default cannot change it
-    bool good =
-        set(p, "arm.model", "corrected") && set(p, "arm.hub_joint", "rigid") &&
-        set_number(p, "arm.links", self->links) &&
-        set_number(p, "arm.length", EXPERIMENT_BEAM_LENGTH) &&
-        set_number(p, "arm.mass", EXPERIMENT_BEAM_MASS) &&
-        set_number(p, "arm.hub_inertia", EXPERIMENT_HUB_INERTIA) &&
-        set_number(p, "arm.k2", EXPERIMENT_SPRING) && set_number(p, "arm.damping_ratio", 0) &&
-        set_number(p, "motor.voltage", EXPERIMENT_VOLTAGE) &&
-        set_number(p, "motor.torque_constant", EXPERIMENT_TORQUE_CONSTANT) &&
-        set_number(p, "motor.stiction", EXPERIMENT_STICTION) &&
-        set(p, "wall.kind", self->links == 2 ? "plane" : "none") &&
-        set_number(p, "wall.angle", EXPERIMENT_WALL) && set_number(p, "wall.restitution", 0) &&
-        set(p, "method.name", method_names[self->variant]) &&
-        set_number(p, "method.step", EXPERIMENT_STEP) &&
-        set_number(p, "run.duration", EXPERIMENT_DURATION);
-    if (good && parameters_resolve(p, &f) != STATUS_OK) {
-        fprintf(stderr, "peers: impactlab: %s\n", f.text);
-        good = false;
+    const struct {
+        const char *path, *word; // a word, or a number
+        double number;
+    } settings[] = {{"arm.model", "corrected"},
+                    {"arm.hub_joint", "rigid"},
+                    {"arm.links", NULL, self->links},
+                    {"arm.length", NULL, EXPERIMENT_BEAM_LENGTH},
+                    {"arm.mass", NULL, EXPERIMENT_BEAM_MASS},
+                    {"arm.hub_inertia", NULL, EXPERIMENT_HUB_INERTIA},
+                    {"arm.k2", NULL, EXPERIMENT_SPRING},
+                    {"arm.damping_ratio", NULL, 0},
+                    {"motor.voltage", NULL, EXPERIMENT_VOLTAGE},
+                    {"motor.torque_constant", NULL, EXPERIMENT_TORQUE_CONSTANT},
+                    {"motor.stiction", NULL, EXPERIMENT_STICTION},
+                    {"wall.kind", self->links == 2 ? "plane" : "none"},
+                    {"wall.angle", NULL, EXPERIMENT_WALL},
+                    {"wall.restitution", NULL, 0},
+                    {"method.name", method_names[self->variant]},
+                    {"method.step", NULL, EXPERIMENT_STEP},
+                    {"run.duration", NULL, EXPERIMENT_DURATION}};
+    simulation *s = calloc(1, sizeof *s);
+    status code = s != NULL ? STATUS_OK : STATUS_NO_MEMORY;
+    fault f = {.text = "out of memory"};
+    if (s != NULL) {
+        s->keep_rows = self->variant == BY_EVENT_WITH_ROWS;
+        parameters_defaults(&s->scenario.parameters, ARM_CORRECTED);
     }
-    if (!good) {
+    for (size_t i = 0; i < sizeof settings / sizeof settings[0] && code == STATUS_OK; i++) {
+        const int at = parameter_find(settings[i].path);
+        code = settings[i].word != NULL
+                   ? parameter_set_text(&s->scenario.parameters, at, settings[i].word, &f)
+                   : parameter_set_number(&s->scenario.parameters, at, settings[i].number, &f);
+    }
+    code = code == STATUS_OK ? parameters_resolve(&s->scenario.parameters, &f) : code;
+    if (code != STATUS_OK) {
+        fprintf(stderr, "peers: impactlab: %s\n", f.text);
         free(s);
-        return NULL;
+        s = NULL;
     }
     return s;
 }
