@@ -1,4 +1,5 @@
 // Tuning: expressions, and that the search finds what is known otherwise.
+#include "src/study/linear/linear.h"
 #include "src/study/tune.h"
 
 #include "src/base/expression.h"
@@ -163,8 +164,12 @@ TEST(the_most_damped_pole_is_that_of_eigenvalues)
                          SETTINGS("control.law=hybrid", "control.lock=force", "control.kp=20",
                                   "control.rate=200", "control.force=0.001", "motor.stiction=0",
                                   "sensor.ideal=true", "run.duration=0.02"))};
-    const tune_request asked = {
-        .base = &base, .vary = vary, .vary_count = 1, .minimise = "growth_per_s", .runs = 60};
+    const tune_request asked = {.base = &base,
+                                .vary = vary,
+                                .vary_count = 1,
+                                .minimise = "growth_per_s",
+                                .runs = 60,
+                                .growth = linear_growth};
     SCOPED(tune_finish) tuning t;
     search(&t, &asked, 1);
     assert_true(fabs(t.found[0] - 2.162) <= 0.01 * 2.162);

@@ -12,7 +12,6 @@
 
 #include "src/base/expression.h"
 #include "src/base/words.h"
-#include "src/study/linear/linear.h"
 
 // --- judging --------------------------------------------------------------------------------
 
@@ -106,9 +105,9 @@ static status find_growth(const tune_request *asked, const scenario *s, double *
 {
     const bool wanted = strstr(asked->minimise, growth_key) != NULL ||
                         (asked->subject != NULL && strstr(asked->subject, growth_key) != NULL);
-    FAIL_IF(wanted && s->parameters.control.law == LAW_NONE,
+    FAIL_IF(wanted && (asked->growth == NULL || s->parameters.control.law == LAW_NONE),
             fault_set(f, STATUS_BAD_ARGUMENT, "'%s' needs a control law", growth_key));
-    return wanted ? linear_stability(s, LINEAR_CONTACT, false, growth, f) : STATUS_OK;
+    return wanted ? asked->growth(s, growth, f) : STATUS_OK;
 }
 
 status tune_evaluate(tuning *t, size_t evaluation, const double *values, const char *name,

@@ -23,6 +23,7 @@ typedef struct tune_request {
     const robust_set *over; // what is drawn, without cases; NULL: nothing
     size_t runs;            // at most, 1 ... TUNE_MOST_RUNS
     uint64_t seed;
+    status (*growth)(const scenario *s, double *growth, fault *f); // growth_per_s: linear_growth
 } tune_request;
 
 typedef struct tune_result {

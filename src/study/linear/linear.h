@@ -156,6 +156,9 @@ static inline bool linear_is_stable(bool by_runs, double number)
     return by_runs ? isfinite(number) : number < 0;
 }
 
+// How fast the slowest part of the linear form grows in contact [1/s]; NaN on failure.
+status linear_growth(const scenario *s, double *growth, fault *f);
+
 // The same over all combinations of varied values.
 enum { LINEAR_MOST_LIMITS = 32 };
 typedef struct linear_survey {

@@ -301,6 +301,11 @@ status linear_stability(const scenario *s, linear_place place, bool by_runs, dou
                : STATUS_OK;
 }
 
+status linear_growth(const scenario *s, double *growth, fault *f)
+{
+    return linear_stability(s, LINEAR_CONTACT, false, growth, f);
+}
+
 // Where stability changes between the i-th value of a single axis and the one before.
 static status find_limit(const linear_survey *y, size_t i, linear_place place, bool by_runs,
                          double *limit, fault *f)

@@ -7,6 +7,7 @@
 #include "render/plot/study_plot.h"
 #include "src/base/json.h"
 #include "src/study/store/sweep_store.h"
+#include "src/study/linear/linear.h"
 #include "src/study/tune.h"
 #include "ui/commands/pictures.h"
 #include "ui/commands/progress.h"
@@ -196,7 +197,8 @@ static int tune(const arguments *a, scenario *s)
                                 .subject = a->subject,
                                 .over = a->over != NULL ? &set : NULL,
                                 .runs = a->runs > 0 ? (size_t)a->runs : usual,
-                                .seed = a->seed};
+                                .seed = a->seed,
+                                .growth = linear_growth};
     TRY_FAULT(a->over != NULL ? robust_set_read(&set, a->over, &f) : STATUS_OK);
     TRY_FAULT(tune_init(&t.tuning, &asked, &f));
     return search(&t);
