@@ -30,6 +30,7 @@ int api_error(impactlab_error *error, const fault *f);
 int api_fail(impactlab_error *error, status code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 int api_done(impactlab_error *error);
+#define API_FAIL_IF(wrong, error, code, ...) FAIL_IF(wrong, api_fail(error, code, __VA_ARGS__))
 
 // A call without something that it cannot do without: `argument`, the i-th of these names. A handle
 // of a scenario is called that.

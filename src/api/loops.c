@@ -9,11 +9,10 @@ int impactlab_loop_create(impactlab_loop **loop, const impactlab_scenario *handl
                           impactlab_error *error)
 {
     API_MAKES(error, loop, handle);
-    FAIL_IF((flags & ~(IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND)) != 0,
-            api_fail(error, STATUS_BAD_ARGUMENT,
-                     "a loop knows no other flags than KEEP_ROWS and COMMAND"));
+    API_FAIL_IF((flags & ~(IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND)) != 0, error,
+                STATUS_BAD_ARGUMENT, "a loop knows no other flags than KEEP_ROWS and COMMAND");
     impactlab_loop *made = calloc(1, sizeof *made);
-    FAIL_IF(made == NULL, api_fail(error, STATUS_NO_MEMORY, "no memory for a loop"));
+    API_FAIL_IF(made == NULL, error, STATUS_NO_MEMORY, "no memory for a loop");
 
     fault f = {.text = "", .path = ""};
     const loop_options options = {.keep_trace = (flags & IMPACTLAB_KEEP_ROWS) != 0,
@@ -47,8 +46,8 @@ int impactlab_loop_step(impactlab_loop *loop, impactlab_error *error)
 int impactlab_loop_step_until(impactlab_loop *loop, double time, impactlab_error *error)
 {
     API_NEEDS(error, loop);
-    FAIL_IF(!isfinite(time),
-            api_fail(error, STATUS_BAD_ARGUMENT, "the instant is not finite, expected seconds"));
+    API_FAIL_IF(!isfinite(time), error, STATUS_BAD_ARGUMENT,
+                "the instant is not finite, expected seconds");
     API_TRY(error, loop_until(loop->loop, time, &f));
     return api_done(error);
 }
@@ -68,12 +67,11 @@ int impactlab_loop_ended(const impactlab_loop *loop)
 int impactlab_loop_command(impactlab_loop *loop, double volts, impactlab_error *error)
 {
     API_NEEDS(error, loop);
-    FAIL_IF(!loop->commanded,
-            api_fail(error, STATUS_BAD_ARGUMENT,
-                     "the loop was created without COMMAND: control.law commands the rig, or "
-                     "motor.voltage the bare arm"));
-    FAIL_IF(!isfinite(volts),
-            api_fail(error, STATUS_BAD_ARGUMENT, "the command is not finite, expected volts"));
+    API_FAIL_IF(!loop->commanded, error, STATUS_BAD_ARGUMENT,
+                "the loop was created without COMMAND: control.law commands the rig, or "
+                "motor.voltage the bare arm");
+    API_FAIL_IF(!isfinite(volts), error, STATUS_BAD_ARGUMENT,
+                "the command is not finite, expected volts");
     loop_command(loop->loop, volts);
     return api_done(error);
 }
@@ -106,8 +104,8 @@ int impactlab_loop_set_text(impactlab_loop *loop, const char *path, const char *
 int impactlab_loop_push(impactlab_loop *loop, double impulse, impactlab_error *error)
 {
     API_NEEDS(error, loop);
-    FAIL_IF(!isfinite(impulse),
-            api_fail(error, STATUS_BAD_ARGUMENT, "the impulse is not finite, expected N s"));
+    API_FAIL_IF(!isfinite(impulse), error, STATUS_BAD_ARGUMENT,
+                "the impulse is not finite, expected N s");
     API_TRY(error, loop_push(loop->loop, impulse, &f));
     return api_done(error);
 }
@@ -121,9 +119,8 @@ int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading
 
     // the bare arm has no rig around it
     sensor_reading read;
-    FAIL_IF(!loop_sense(loop->loop, &read),
-            api_fail(error, STATUS_BAD_ARGUMENT,
-                     "the bare arm has no sensors, expected a control.law or COMMAND"));
+    API_FAIL_IF(!loop_sense(loop->loop, &read), error, STATUS_BAD_ARGUMENT,
+                "the bare arm has no sensors, expected a control.law or COMMAND");
 
     // field by field, as the layout within may change and this one not
     *reading = (impactlab_reading){.time = loop_time(loop->loop),
@@ -187,10 +184,9 @@ int impactlab_loop_save_state(const impactlab_loop *loop, void *bytes, size_t si
                               impactlab_error *error)
 {
     API_NEEDS(error, loop, bytes);
-    FAIL_IF(size < loop_saved_size(loop->loop),
-            api_fail(error, STATUS_BAD_ARGUMENT,
-                     "a state of this loop has %zu bytes, but there is room for %zu",
-                     loop_saved_size(loop->loop), size));
+    API_FAIL_IF(size < loop_saved_size(loop->loop), error, STATUS_BAD_ARGUMENT,
+                "a state of this loop has %zu bytes, but there is room for %zu",
+                loop_saved_size(loop->loop), size);
     loop_save(loop->loop, bytes);
     return api_done(error);
 }

@@ -10,18 +10,17 @@
 // Whether the rig can call a controller that a program gives.
 static int check_law(const controller *law, impactlab_error *error)
 {
-    FAIL_IF(law->interface != CONTROLLER_INTERFACE,
-            api_fail(error, STATUS_BAD_ARGUMENT,
-                     "the controller was made for version %d of the interface, expected %d",
-                     law->interface, CONTROLLER_INTERFACE));
+    API_FAIL_IF(law->interface != CONTROLLER_INTERFACE, error, STATUS_BAD_ARGUMENT,
+                "the controller was made for version %d of the interface, expected %d",
+                law->interface, CONTROLLER_INTERFACE);
 
     // what the rig calls or relies on without asking again
-    FAIL_IF(law->name == NULL || law->modes == NULL || law->sample == NULL ||
-                law->memory_size < sizeof(void *) || law->parameter_count < 0 ||
-                (law->parameter_count > 0 && law->parameters == NULL),
-            api_fail(error, STATUS_BAD_ARGUMENT,
-                     "the controller is not whole, expected a name, modes ended by NULL, "
-                     "`sample`, and memory for at least a pointer"));
+    API_FAIL_IF(law->name == NULL || law->modes == NULL || law->sample == NULL ||
+                    law->memory_size < sizeof(void *) || law->parameter_count < 0 ||
+                    (law->parameter_count > 0 && law->parameters == NULL),
+                error, STATUS_BAD_ARGUMENT,
+                "the controller is not whole, expected a name, modes ended by NULL, `sample`, and "
+                "memory for at least a pointer");
     return IMPACTLAB_OK;
 }
 
@@ -46,8 +45,8 @@ int impactlab_run_create_with(impactlab_run **run, const impactlab_scenario *han
                               const struct controller *law, void *context, impactlab_error *error)
 {
     API_MAKES(error, run, handle);
-    FAIL_IF((flags & ~IMPACTLAB_KEEP_ROWS) != 0,
-            api_fail(error, STATUS_BAD_ARGUMENT, "a run knows no other flag than KEEP_ROWS"));
+    API_FAIL_IF((flags & ~IMPACTLAB_KEEP_ROWS) != 0, error, STATUS_BAD_ARGUMENT,
+                "a run knows no other flag than KEEP_ROWS");
     if (law != NULL && check_law(law, error) != IMPACTLAB_OK) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
@@ -192,11 +191,11 @@ int impactlab_run_predictions(const impactlab_run *run, impactlab_prediction *pr
     API_NEEDS(error, run, predictions, written);
     prediction_answer answers[PREDICTOR_COUNT];
     *written = 0;
-    FAIL_IF(run->result.trace.row_count == 0,
-            api_fail(error, STATUS_BAD_ARGUMENT, "the run kept no rows, expected KEEP_ROWS"));
-    FAIL_IF(predict_first_contact(&run->scenario, &run->result, NULL, answers) == NULL,
-            api_fail(error, STATUS_BAD_ARGUMENT,
-                     "the arm did not touch the wall after a free flight in this run"));
+    API_FAIL_IF(run->result.trace.row_count == 0, error, STATUS_BAD_ARGUMENT,
+                "the run kept no rows, expected KEEP_ROWS");
+    API_FAIL_IF(predict_first_contact(&run->scenario, &run->result, NULL, answers) == NULL, error,
+                STATUS_BAD_ARGUMENT,
+                "the arm did not touch the wall after a free flight in this run");
 
     for (size_t i = 0; i < count && i < PREDICTOR_COUNT; i++) {
         const prediction_answer *a = &answers[i];

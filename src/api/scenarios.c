@@ -164,9 +164,8 @@ int impactlab_scenario_text(const impactlab_scenario *handle, const char *path, 
         number_format_short(whole, value);
     }
     size_t length = strlen(whole) + 1;
-    FAIL_IF(length > size, api_fail(error, STATUS_BAD_ARGUMENT,
-                                    "the value of %s takes %zu bytes, but there is room for %zu",
-                                    path, length, size));
+    API_FAIL_IF(length > size, error, STATUS_BAD_ARGUMENT,
+                "the value of %s takes %zu bytes, but there is room for %zu", path, length, size);
     memcpy(text, whole, length);
     return api_done(error);
 }
@@ -202,8 +201,7 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
     }
     API_NEEDS(error, assignments);
     SCOPED(free_kept) char **given = calloc(count, sizeof *given);
-    FAIL_IF(given == NULL,
-            api_fail(error, STATUS_NO_MEMORY, "no memory for %zu assignments", count));
+    API_FAIL_IF(given == NULL, error, STATUS_NO_MEMORY, "no memory for %zu assignments", count);
     bool whole = true;
     for (size_t i = 0; i < count; i++) {
         given[i] = (char *)assignments[i];
@@ -263,10 +261,9 @@ static bool make_room(scenario *s)
 
 static int check_instant(const scenario *s, double time, impactlab_error *error)
 {
-    FAIL_IF(!(time >= 0 && time <= s->parameters.run.duration),
-            api_fail(error, STATUS_BAD_ARGUMENT,
-                     "the instant %g s is not within the run, expected 0 to %g s", time,
-                     s->parameters.run.duration));
+    API_FAIL_IF(!(time >= 0 && time <= s->parameters.run.duration), error, STATUS_BAD_ARGUMENT,
+                "the instant %g s is not within the run, expected 0 to %g s", time,
+                s->parameters.run.duration);
     return IMPACTLAB_OK;
 }
 
@@ -280,9 +277,8 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const
     if (index < 0 || check_instant(s, time, error) != IMPACTLAB_OK) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
-    FAIL_IF(!rig_can_change(&s->parameters, index),
-            api_fail(error, STATUS_BAD_ARGUMENT,
-                     "%s holds from the start and cannot change during a run", path));
+    API_FAIL_IF(!rig_can_change(&s->parameters, index), error, STATUS_BAD_ARGUMENT,
+                "%s holds from the start and cannot change during a run", path);
 
     // the value as the parameter takes it
     parameters p = scenario_parameters_at(s, time);
@@ -291,7 +287,7 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const
     action a = action_of(time, &p, index, text);
     a.added = true;
 
-    FAIL_IF(!make_room(s), api_fail(error, STATUS_NO_MEMORY, "no memory for the script"));
+    API_FAIL_IF(!make_room(s), error, STATUS_NO_MEMORY, "no memory for the script");
     scenario_insert_action(s, a);
     return retitle(handle, error);
 }
@@ -306,13 +302,13 @@ int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double 
     }
 
     // what the arm can be given
-    FAIL_IF(!isfinite(impulse),
-            api_fail(error, STATUS_BAD_ARGUMENT, "the impulse is not finite, expected N s"));
-    FAIL_IF(s->parameters.arm.model == ARM_PRINTED,
-            api_fail(error, STATUS_BAD_SCENARIO, "the printed model takes no pushes"));
+    API_FAIL_IF(!isfinite(impulse), error, STATUS_BAD_ARGUMENT,
+                "the impulse is not finite, expected N s");
+    API_FAIL_IF(s->parameters.arm.model == ARM_PRINTED, error, STATUS_BAD_SCENARIO,
+                "the printed model takes no pushes");
 
     // with room there is nothing left to fail
-    FAIL_IF(!make_room(s), api_fail(error, STATUS_NO_MEMORY, "no memory for the script"));
+    API_FAIL_IF(!make_room(s), error, STATUS_NO_MEMORY, "no memory for the script");
     scenario_insert_action(
         s, (action){.time = time, .kind = ACTION_PUSH, .value = impulse, .added = true});
     return retitle(handle, error);

@@ -50,7 +50,7 @@ static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker
 {
     const size_t turn = (size_t)jobs * RUNS_A_TURN;
     SCOPED(free_kept) summary *summaries = calloc(count < turn ? count : turn, sizeof *summaries);
-    FAIL_IF(summaries == NULL, api_fail(error, STATUS_NO_MEMORY, "no memory for the outcomes"));
+    API_FAIL_IF(summaries == NULL, error, STATUS_NO_MEMORY, "no memory for the outcomes");
 
     status code = STATUS_OK;
     for (v->first = 0; code == STATUS_OK && v->first < count; v->first += turn) {
@@ -83,7 +83,7 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
     // which parameters
     int code = IMPACTLAB_OK;
     SCOPED(free_kept) sweep_axis *axes = calloc(path_count + 1, sizeof *axes);
-    FAIL_IF(axes == NULL, api_fail(error, STATUS_NO_MEMORY, "no memory for a batch"));
+    API_FAIL_IF(axes == NULL, error, STATUS_NO_MEMORY, "no memory for a batch");
     for (size_t k = 0; k < path_count && code == IMPACTLAB_OK; k++) {
         code = paths[k] != NULL ? api_axis(paths[k], &axes[k], error)
                                 : api_missing(error, "paths[i]", 0);
@@ -121,19 +121,18 @@ int impactlab_modes(const impactlab_scenario *handle, int hub_locked, int tip_pi
     API_NEEDS(error, handle, frequencies, count);
     const size_t n = impactlab_freedoms(handle);
     *count = 0;
-    FAIL_IF(n == 0, api_fail(error, STATUS_BAD_SCENARIO,
-                             "the printed equations have no symmetric stiffness and so no natural "
-                             "frequencies, expected arm.model = corrected"));
+    API_FAIL_IF(n == 0, error, STATUS_BAD_SCENARIO,
+                "the printed equations have no symmetric stiffness and so no natural frequencies, "
+                "expected arm.model = corrected");
 
     arm a;
     arm_init(&a, &handle->scenario.parameters);
     SCOPED(free_kept) double *all = calloc(n + n * n, sizeof *all);
     int found = 0;
-    FAIL_IF(all == NULL,
-            api_fail(error, STATUS_NO_MEMORY, "no memory for the modes of %zu angles", n));
+    API_FAIL_IF(all == NULL, error, STATUS_NO_MEMORY, "no memory for the modes of %zu angles", n);
     const status code = modes_compute(&a, hub_locked ? HUB_LOCKED : HUB_FREE,
                                       tip_pinned ? TIP_PINNED : TIP_FREE, &found, all, all + n);
-    FAIL_IF(code != STATUS_OK, api_fail(error, code, "%s", status_text(code)));
+    API_FAIL_IF(code != STATUS_OK, error, code, "%s", status_text(code));
 
     // as many as there is room for
     const size_t copied = (size_t)found < most ? (size_t)found : most;

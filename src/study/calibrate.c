@@ -110,16 +110,14 @@ static status press(const scenario *s, double command, int number, run_monitor *
     // a run that presses with it, and what the sensors read at its end
     SCOPED(run_finish) run_result result;
     const status code = run_scenario_with(&under, &options, &result);
-    FAIL_IF(code != STATUS_OK,
-            fault_set_at(f, code, result.summary.path, "pressing with %g V failed: %.700s", command,
-                         result.summary.message));
+    FAULT_AT_IF(code != STATUS_OK, f, code, result.summary.path,
+                "pressing with %g V failed: %.700s", command, result.summary.message);
     measure(&under.parameters, &result.trace, command, point);
-    FAIL_IF(!(point->force > 0) || !(point->angle > 0),
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "under %g V the arm does not press: the force sensor reads %.4g N, the "
-                      "encoder %.4g rad beyond the wall; friction alone holds %.3g V",
-                      command, point->force, point->angle,
-                      s->parameters.motor.stiction / motor_torque_per_volt(&s->parameters.motor)));
+    FAULT_IF(!(point->force > 0) || !(point->angle > 0), f, STATUS_BAD_ARGUMENT,
+             "under %g V the arm does not press: the force sensor reads %.4g N, the encoder %.4g "
+             "rad beyond the wall; friction alone holds %.3g V",
+             command, point->force, point->angle,
+             s->parameters.motor.stiction / motor_torque_per_volt(&s->parameters.motor));
     return STATUS_OK;
 }
 
@@ -130,20 +128,17 @@ status calibrate(const scenario *s, const double *commands, int count, run_monit
     *c = (calibration){0};
 
     // a force at rest needs a wall
-    FAIL_IF(
-        s->parameters.wall.kind == WALL_NONE,
-        fault_set(f, STATUS_BAD_ARGUMENT, "there is nothing to press against, wall.kind is none"));
+    FAULT_IF(s->parameters.wall.kind == WALL_NONE, f, STATUS_BAD_ARGUMENT,
+             "there is nothing to press against, wall.kind is none");
 
-    FAIL_IF(s->parameters.wall.motion != MOTION_NONE,
-            fault_set_at(f, STATUS_BAD_ARGUMENT, "wall.motion",
-                         "force and angle come to rest on a wall at rest only: calibrate with "
-                         "wall.motion = none"));
+    FAULT_AT_IF(
+        s->parameters.wall.motion != MOTION_NONE, f, STATUS_BAD_ARGUMENT, "wall.motion",
+        "force and angle come to rest on a wall at rest only: calibrate with wall.motion = none");
 
     // K2 says how the wall's force alone bends the beam
-    FAIL_IF(s->parameters.arm.tilt != 0,
-            fault_set_at(f, STATUS_BAD_ARGUMENT, "arm.tilt",
-                         "the weight bends the beam, too, so that force and angle say nothing "
-                         "of its stiffness alone: calibrate in a level plane, arm.tilt = 0"));
+    FAULT_AT_IF(s->parameters.arm.tilt != 0, f, STATUS_BAD_ARGUMENT, "arm.tilt",
+                "the weight bends the beam, too, so that force and angle say nothing of its "
+                "stiffness alone: calibrate in a level plane, arm.tilt = 0");
 
     // up to the first fault; what was measured before is kept
     for (int i = 0; i < count; i++) {
@@ -175,11 +170,10 @@ status calibration_table(const calibration *c, k2_table *t, fault *f)
     // a table gives one stiffness for a force
     for (int i = 1; i < t->count; i++) {
         // to the digits that the table is written with
-        FAIL_IF(t->force[i] - t->force[i - 1] < 2e-3 * t->force[i],
-                fault_set(f, STATUS_BAD_ARGUMENT,
-                          "two commands press alike, with %.4g N, so there is no table by "
-                          "force; expected commands further apart",
-                          t->force[i]));
+        FAULT_IF(t->force[i] - t->force[i - 1] < 2e-3 * t->force[i], f, STATUS_BAD_ARGUMENT,
+                 "two commands press alike, with %.4g N, so there is no table by force; expected "
+                 "commands further apart",
+                 t->force[i]);
     }
     return STATUS_OK;
 }

@@ -131,9 +131,9 @@ status compare_choose(compare_table *t, const char *keys, fault *f)
             nearest_try(&near, compare_quantities[k].key);
             found = strcmp(word, compare_quantities[k].key) == 0 ? k : found;
         }
-        FAIL_IF(found < 0, fault_set(f, STATUS_BAD_ARGUMENT, "there is no column '%s'%s%s%s", word,
-                                     near.best ? ", did you mean '" : ", expected keys of --json",
-                                     near.best ? near.best : "", near.best ? "'?" : ""));
+        FAULT_IF(found < 0, f, STATUS_BAD_ARGUMENT, "there is no column '%s'%s%s%s", word,
+                 near.best ? ", did you mean '" : ", expected keys of --json",
+                 near.best ? near.best : "", near.best ? "'?" : "");
 
         t->hidden[found] = false;
         key += length;

@@ -101,14 +101,13 @@ status follow_study_compute(const scenario *s, run_monitor *monitor, follow_stud
 {
     *study = (follow_study){0};
     const parameters *p = &s->parameters;
-    FAIL_IF(p->control.law == LAW_NONE || p->wall.kind == WALL_NONE || !(p->control.force > 0),
-            fault_set(f, STATUS_BAD_SCENARIO,
-                      "%s has no %s: expected a control law that presses on a wall with "
-                      "control.force",
-                      s->name,
-                      p->control.law == LAW_NONE  ? "control law"
-                      : p->wall.kind == WALL_NONE ? "wall"
-                                                  : "commanded force"));
+    FAULT_IF(p->control.law == LAW_NONE || p->wall.kind == WALL_NONE || !(p->control.force > 0), f,
+             STATUS_BAD_SCENARIO,
+             "%s has no %s: expected a control law that presses on a wall with control.force",
+             s->name,
+             p->control.law == LAW_NONE  ? "control law"
+             : p->wall.kind == WALL_NONE ? "wall"
+                                         : "commanded force");
     find_bound(&s->parameters, study);
     for (int i = 0; i < FOLLOW_LAWS * FOLLOW_FREQUENCIES; i++) {
         const int k = i % FOLLOW_FREQUENCIES;

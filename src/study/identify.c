@@ -44,27 +44,25 @@ static double within_range(const fitted_parameter *fit, double value)
 
 status identify_add_path(identification *id, const char *text, fault *f)
 {
-    FAIL_IF(id->count == IDENTIFY_PATHS,
-            fault_set(f, STATUS_BAD_ARGUMENT, "more than %d parameters to fit", IDENTIFY_PATHS));
+    FAULT_IF(id->count == IDENTIFY_PATHS, f, STATUS_BAD_ARGUMENT, "more than %d parameters to fit",
+             IDENTIFY_PATHS);
     fitted_parameter *p = &id->fit[id->count++];
     *p = (fitted_parameter){.value = (double)NAN};
     sweep_axis *axis = &p->axis;
     const char *range = strchr(text, '=');
     TRY(sweep_axis_find(axis, text, f));
     const parameter_info *info = sweep_axis_parameter(axis);
-    FAIL_IF(info->type != PARAMETER_REAL && axis->element == 0,
-            fault_set_at(f, STATUS_BAD_ARGUMENT, info->path,
-                         "%s has no real value that could be fitted", axis->name));
+    FAULT_AT_IF(info->type != PARAMETER_REAL && axis->element == 0, f, STATUS_BAD_ARGUMENT,
+                info->path, "%s has no real value that could be fitted", axis->name);
     for (const fitted_parameter *other = id->fit; other < p; other++) {
-        FAIL_IF(strcmp(other->axis.name, axis->name) == 0,
-                fault_set_at(f, STATUS_BAD_ARGUMENT, info->path, "%s is fitted twice", axis->name));
+        FAULT_AT_IF(strcmp(other->axis.name, axis->name) == 0, f, STATUS_BAD_ARGUMENT, info->path,
+                    "%s is fitted twice", axis->name);
     }
 
     // the scenario's value and the range to search
     p->start = sweep_axis_get(axis, &id->base->parameters);
-    FAIL_IF(isnan(p->start) && axis->element > 0,
-            fault_set_at(f, STATUS_BAD_ARGUMENT, info->path, "%s: the scenario's list is shorter",
-                         axis->name));
+    FAULT_AT_IF(isnan(p->start) && axis->element > 0, f, STATUS_BAD_ARGUMENT, info->path,
+                "%s: the scenario's list is shorter", axis->name);
     p->low_most = info->minimum;
     p->high_most = info->maximum;
     if (range != NULL) {
@@ -193,8 +191,8 @@ static status collect_piece(void *context, size_t i, const void *result, fault *
     const batch_of_runs *b = context;
     (void)i;
     FAIL_IF(*(const status *)result == STATUS_NO_MEMORY, fault_no_memory(f));
-    FAIL_IF(run_monitor_stops(b->id->monitor),
-            fault_set(f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED)));
+    FAULT_IF(run_monitor_stops(b->id->monitor), f, STATUS_STOPPED, "%s",
+             status_text(STATUS_STOPPED));
     run_monitor_count(b->id->monitor);
     return STATUS_OK;
 }
@@ -406,9 +404,8 @@ status identify_fit(identification *id, fault *f)
     }
     id->starts = id->count == 0 || id->starts < 2 ? 2 : id->starts;
     const size_t m = id->residuals, n = (size_t)id->unknowns, starts = (size_t)id->starts;
-    FAIL_IF(m <= n + (size_t)id->count || m > 10000000,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "%zu readings can be compared for %zu unknowns, expected more", m, n));
+    FAULT_IF(m <= n + (size_t)id->count || m > 10000000, f, STATUS_BAD_ARGUMENT,
+             "%zu readings can be compared for %zu unknowns, expected more", m, n);
 
     free(id->residual);
     id->residual = calloc(m, sizeof *id->residual);

@@ -260,8 +260,8 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     if (done) {
         add_contacts(id, alone, id->direction, scatter);
     }
-    FAIL_IF(!done || !symmetric_eigen(p, id->direction, values, scratch),
-            fault_set(f, STATUS_SINGULAR, "the parameters' errors cannot be computed"));
+    FAULT_IF(!done || !symmetric_eigen(p, id->direction, values, scratch), f, STATUS_SINGULAR,
+             "the parameters' errors cannot be computed");
 
     // what the model does not explain makes errors larger, by as much
     double most;

@@ -38,11 +38,10 @@ static status read_column(const csv_table *t, const char *signal, const char *un
     if (!needed && missing) {
         return STATUS_OK;
     }
-    FAIL_IF(missing && strcmp(heading, "command") == 0,
-            fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
-                            "%.300s:1:1: there is no column 'command', the voltage [V] with "
-                            "which each trial run is driven: record it, or rename its heading",
-                            t->file));
+    FAULT_PLACE_IF(missing && strcmp(heading, "command") == 0, f, STATUS_BAD_ARGUMENT, 1, 1,
+                   "%.300s:1:1: there is no column 'command', the voltage [V] with which each "
+                   "trial run is driven: record it, or rename its heading",
+                   t->file);
     return strcmp(signal, "time") == 0 ? csv_table_times(t, heading, values, f)
                                        : csv_table_numbers(t, heading, unit, false, values, f);
 }
@@ -192,8 +191,8 @@ status identify_add_trace(identification *id, const char *file, char *const *col
                           fault *f)
 {
     assert(id->trace_count <= IDENTIFY_TRACES);
-    FAIL_IF(id->trace_count == IDENTIFY_TRACES,
-            fault_set(f, STATUS_BAD_ARGUMENT, "more than %d traces", IDENTIFY_TRACES));
+    FAULT_IF(id->trace_count == IDENTIFY_TRACES, f, STATUS_BAD_ARGUMENT, "more than %d traces",
+             IDENTIFY_TRACES);
     const parameters *p = &id->base->parameters;
     recorded_trace *t = &id->traces[id->trace_count++];
     SCOPED(csv_table_finish) csv_table table = {0};
@@ -210,14 +209,12 @@ status identify_add_trace(identification *id, const char *file, char *const *col
                         f));
         readings += t->reading[c] != NULL;
     }
-    FAIL_IF(readings == 0,
-            fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
-                            "%.300s:1: no reading to compare with, expected a column such as "
-                            "encoder[rad], tachometer[rad/s] or force_reading[N]",
-                            file));
-    FAIL_IF(!(t->time[t->rows - 1] > t->time[0]),
-            fault_set_place(f, STATUS_BAD_ARGUMENT, 2, 1,
-                            "%.300s:2: no time passes from the first row to the last", file));
+    FAULT_PLACE_IF(readings == 0, f, STATUS_BAD_ARGUMENT, 1, 1,
+                   "%.300s:1: no reading to compare with, expected a column such as encoder[rad], "
+                   "tachometer[rad/s] or force_reading[N]",
+                   file);
+    FAULT_PLACE_IF(!(t->time[t->rows - 1] > t->time[0]), f, STATUS_BAD_ARGUMENT, 2, 1,
+                   "%.300s:2: no time passes from the first row to the last", file);
     keep_samples(t, p->control.rate);
     guess_start(t, p);
     return weigh(t, p, f);

@@ -168,11 +168,11 @@ static status compute_column(const scenario *s, int i, run_monitor *monitor, lin
     SCOPED(run_finish) run_result result;
     const run_options options = {.monitor = monitor, .keep_forces = true};
     const status code = run_scenario_with(&changed, &options, &result);
-    FAIL_IF(code != STATUS_OK, fault_set_at(f, code, result.summary.path, "with %d links: %.700s",
-                                            links_numbers[i], result.summary.message));
-    FAIL_IF(isnan(result.summary.first_contact_s),
-            fault_set(f, STATUS_BAD_SCENARIO, "%s: with %d links there is no contact within %g s",
-                      s->name, links_numbers[i], s->parameters.run.duration));
+    FAULT_AT_IF(code != STATUS_OK, f, code, result.summary.path, "with %d links: %.700s",
+                links_numbers[i], result.summary.message);
+    FAULT_IF(isnan(result.summary.first_contact_s), f, STATUS_BAD_SCENARIO,
+             "%s: with %d links there is no contact within %g s", s->name, links_numbers[i],
+             s->parameters.run.duration);
     const blow b = blow_of(&result);
     *speed = b.speed;
     rows[IMPULSE].value[i] = b.impulse;
@@ -274,10 +274,8 @@ status links_study_compute(const scenario *s, run_monitor *monitor, links_study 
 {
     double speed = (double)NAN;
     *study = (links_study){0};
-    FAIL_IF(s->parameters.arm.model == ARM_PRINTED,
-            fault_set(f, STATUS_BAD_SCENARIO,
-                      "%s: the printed model has two links only, expected arm.model = corrected",
-                      s->name));
+    FAULT_IF(s->parameters.arm.model == ARM_PRINTED, f, STATUS_BAD_SCENARIO,
+             "%s: the printed model has two links only, expected arm.model = corrected", s->name);
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
         study->rows[k] = blank_rows[k];
         study->rows[k].order = study->rows[k].limit = study->rows[k].error = (double)NAN;

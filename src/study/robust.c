@@ -26,10 +26,10 @@ static status read_text(const char *path, char **text, fault *f)
     }
     return length <= MOST_SET_BYTES && strlen(*text) == length
                ? STATUS_OK
-               : fault_set(f, STATUS_BAD_ARGUMENT,
-                           "'%s' is no set, expected lines PATH=a:b or PATH=v1,v2 of at most %d "
-                           "bytes",
-                           path, MOST_SET_BYTES);
+               : fault_set(
+                     f, STATUS_BAD_ARGUMENT,
+                     "'%s' is no set, expected lines PATH=a:b or PATH=v1,v2 of at most %d bytes",
+                     path, MOST_SET_BYTES);
 }
 
 // The text without the blanks at both ends, which are cut off.
@@ -110,11 +110,11 @@ static status read_lines(robust_set *set, fault *f)
 
         robust_case *c = &set->cases[set->case_count++];
         *c = (robust_case){.file = set->file, .line = number};
-        FAIL_IF(!read_case(c, line + strlen(word), settings),
-                fault_set_place(f, STATUS_BAD_ARGUMENT, number, 1,
-                                "%s:%d: no case, expected 'case TITLE: PATH=VALUE; PATH=VALUE', "
-                                "or push=IMPULSE@TIME for a value",
-                                set->file, number));
+        FAULT_PLACE_IF(!read_case(c, line + strlen(word), settings), f, STATUS_BAD_ARGUMENT, number,
+                       1,
+                       "%s:%d: no case, expected 'case TITLE: PATH=VALUE; PATH=VALUE', or "
+                       "push=IMPULSE@TIME for a value",
+                       set->file, number);
         settings += c->setting_count;
     }
     return STATUS_OK;
@@ -178,10 +178,9 @@ static status apply_case(scenario *derived, const robust_case *c, fault *f)
     TRY(f->code);
     const double duration = derived->parameters.run.duration;
     for (int i = 0; i < c->push_count; i++) {
-        FAIL_IF(c->push_time[i] > duration,
-                fault_set(f, STATUS_BAD_ARGUMENT,
-                          "a push at %g s is outside the run, expected 0 to %g s (run.duration)",
-                          c->push_time[i], duration));
+        FAULT_IF(c->push_time[i] > duration, f, STATUS_BAD_ARGUMENT,
+                 "a push at %g s is outside the run, expected 0 to %g s (run.duration)",
+                 c->push_time[i], duration);
         scenario_insert_action(derived, (action){.time = c->push_time[i],
                                                  .kind = ACTION_PUSH,
                                                  .parameter = -1,

@@ -27,11 +27,9 @@ status solve_condition_read(const char *text, solve_condition *c, fault *f)
 {
     const char *sign = strpbrk(text, "<>"), *rest;
     char key[128];
-    FAIL_IF(sign == NULL,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%.100s' is no condition, expected KEY<VALUE or KEY>VALUE, such as "
-                      "'peak_force_N<2'",
-                      text));
+    FAULT_IF(sign == NULL, f, STATUS_BAD_ARGUMENT,
+             "'%.100s' is no condition, expected KEY<VALUE or KEY>VALUE, such as 'peak_force_N<2'",
+             text);
 
     // the quantity
     copy_trimmed(text, sign, key, sizeof key);
@@ -42,20 +40,17 @@ status solve_condition_read(const char *text, solve_condition *c, fault *f)
                          near ? ", did you mean '" : "; expected a key of run --json",
                          near ? near : "", near ? "'?" : "");
     }
-    FAIL_IF(summary_table[c->quantity].timing,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "%s depends on the machine, not on the scenario: no parameter has a limit "
-                      "for it",
-                      key));
+    FAULT_IF(summary_table[c->quantity].timing, f, STATUS_BAD_ARGUMENT,
+             "%s depends on the machine, not on the scenario: no parameter has a limit for it",
+             key);
 
     // and its bound
     c->equal = sign[1] == '=';
     char bound[128];
     copy_trimmed(sign + 1 + c->equal, text + strlen(text), bound, sizeof bound);
-    FAIL_IF(!decimal_read(bound, &c->bound, &rest) || *rest != '\0',
-            fault_set(f, STATUS_BAD_ARGUMENT, "'%.100s' is no bound of %s, expected a number%s%s",
-                      sign + 1 + c->equal, key, summary_table[c->quantity].unit[0] ? " in " : "",
-                      summary_table[c->quantity].unit));
+    FAULT_IF(!decimal_read(bound, &c->bound, &rest) || *rest != '\0', f, STATUS_BAD_ARGUMENT,
+             "'%.100s' is no bound of %s, expected a number%s%s", sign + 1 + c->equal, key,
+             summary_table[c->quantity].unit[0] ? " in " : "", summary_table[c->quantity].unit);
     return STATUS_OK;
 }
 
@@ -68,10 +63,10 @@ bool solve_condition_holds(const solve_condition *c, double value)
 status solve_usual_range(sweep_axis *axis, const scenario *s, fault *f)
 {
     double value = sweep_axis_get(axis, &s->parameters);
-    FAIL_IF(sweep_axis_parameter(axis) == &setting_info || axis->element > 0 ||
-                !parameter_usual_range(axis->parameter, value, &axis->low, &axis->high,
-                                       &axis->logarithmic),
-            fault_set(f, STATUS_BAD_ARGUMENT, "%s needs a range, %s=a:b", axis->name, axis->name));
+    FAULT_IF(sweep_axis_parameter(axis) == &setting_info || axis->element > 0 ||
+                 !parameter_usual_range(axis->parameter, value, &axis->low, &axis->high,
+                                        &axis->logarithmic),
+             f, STATUS_BAD_ARGUMENT, "%s needs a range, %s=a:b", axis->name, axis->name);
     axis->is_range = true;
     return STATUS_OK;
 }

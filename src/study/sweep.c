@@ -31,13 +31,11 @@ int sweep_sampling_find(const char *name)
 static status check_together(const sweep *s, const sweep_axis *axis, fault *f)
 {
     const sweep_axis *before = axis - 1;
-    FAIL_IF(s->sampling == SWEEP_GRID || axis == s->axes,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'with' goes with drawn values, behind those that they are drawn with"));
-    FAIL_IF(axis->is_range || before->is_range || axis->count != before->count,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "%s is drawn with %s, expected as many values: %zu, not %zu", axis->name,
-                      before->name, before->count, axis->count));
+    FAULT_IF(s->sampling == SWEEP_GRID || axis == s->axes, f, STATUS_BAD_ARGUMENT,
+             "'with' goes with drawn values, behind those that they are drawn with");
+    FAULT_IF(axis->is_range || before->is_range || axis->count != before->count, f,
+             STATUS_BAD_ARGUMENT, "%s is drawn with %s, expected as many values: %zu, not %zu",
+             axis->name, before->name, before->count, axis->count);
     return STATUS_OK;
 }
 
@@ -45,22 +43,20 @@ static status check_together(const sweep *s, const sweep_axis *axis, fault *f)
 static status read_axis(sweep *s, const char *given, fault *f)
 {
     static const char with[] = "with ";
-    FAIL_IF(
-        s->axis_count == SWEEP_MOST_AXES,
-        fault_set(f, STATUS_BAD_ARGUMENT, "at most %d parameters can be varied", SWEEP_MOST_AXES));
+    FAULT_IF(s->axis_count == SWEEP_MOST_AXES, f, STATUS_BAD_ARGUMENT,
+             "at most %d parameters can be varied", SWEEP_MOST_AXES);
     const bool together = strncmp(given, with, strlen(with)) == 0;
     given += together ? strlen(with) : 0;
 
     // the parameter before the equals sign, the values behind it
     sweep_axis *axis = &s->axes[s->axis_count];
     const char *values = strchr(given, '=');
-    FAIL_IF(values == NULL,
-            fault_set(f, STATUS_BAD_ARGUMENT, "expected PATH=a:b:n or PATH=v1,v2,v3"));
+    FAULT_IF(values == NULL, f, STATUS_BAD_ARGUMENT, "expected PATH=a:b:n or PATH=v1,v2,v3");
     s->axis_count++;
     TRY(sweep_axis_find(axis, given, f));
     for (const sweep_axis *other = s->axes; other < axis; other++) {
-        FAIL_IF(strcmp(other->name, axis->name) == 0,
-                fault_set(f, STATUS_BAD_ARGUMENT, "%s is varied twice", axis->name));
+        FAULT_IF(strcmp(other->name, axis->name) == 0, f, STATUS_BAD_ARGUMENT, "%s is varied twice",
+                 axis->name);
     }
     TRY(sweep_axis_parse(axis, values + 1, s->sampling != SWEEP_GRID, f));
     axis->together = together;
@@ -98,24 +94,22 @@ static status draw_latin(sweep *s, random_generator *g, fault *f)
 static status count_runs(sweep *s, size_t runs, fault *f)
 {
     const bool grid = s->sampling == SWEEP_GRID;
-    FAIL_IF(!grid && (runs < 1 || runs > SWEEP_MOST_RUNS),
-            fault_set(f, STATUS_BAD_ARGUMENT, "--sample %s needs --runs with a number from 1 to %d",
-                      sweep_sampling_name(s->sampling), SWEEP_MOST_RUNS));
+    FAULT_IF(!grid && (runs < 1 || runs > SWEEP_MOST_RUNS), f, STATUS_BAD_ARGUMENT,
+             "--sample %s needs --runs with a number from 1 to %d",
+             sweep_sampling_name(s->sampling), SWEEP_MOST_RUNS);
 
     // of a grid the product of its axes, whose factors are small enough to fit
     s->run_count = grid ? 1 : runs;
     for (int i = 0; i < s->axis_count && grid; i++) {
         s->run_count *= s->axes[i].count;
-        FAIL_IF(
-            s->run_count > SWEEP_MOST_RUNS,
-            fault_set(f, STATUS_BAD_ARGUMENT, "the grid has more than %d runs", SWEEP_MOST_RUNS));
+        FAULT_IF(s->run_count > SWEEP_MOST_RUNS, f, STATUS_BAD_ARGUMENT,
+                 "the grid has more than %d runs", SWEEP_MOST_RUNS);
     }
-    return !grid || runs == 0
-               ? STATUS_OK
-               : fault_set(f, STATUS_BAD_ARGUMENT,
-                           "--runs goes with --sample random or latin; a grid is as large as it "
-                           "is, here %zu",
-                           s->run_count);
+    return !grid || runs == 0 ? STATUS_OK
+                              : fault_set(f, STATUS_BAD_ARGUMENT,
+                                          "--runs goes with --sample random or latin; a grid is as "
+                                          "large as it is, here %zu",
+                                          s->run_count);
 }
 
 // The values of random sampling, all at once, so that they do not depend on the order of the runs.
@@ -208,9 +202,8 @@ status sweep_plan(sweep *s, const sweep_request *request, fault *f)
     s->sampling = request->sampling;
     s->seed = request->seed;
 
-    FAIL_IF(request->vary_count == 0,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "sweep needs at least one --vary PATH=a:b:n or --vary PATH=v1,v2,v3"));
+    FAULT_IF(request->vary_count == 0, f, STATUS_BAD_ARGUMENT,
+             "sweep needs at least one --vary PATH=a:b:n or --vary PATH=v1,v2,v3");
 
     // the axes
     for (int i = 0; i < request->vary_count && code == STATUS_OK; i++) {

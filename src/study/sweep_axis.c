@@ -40,19 +40,18 @@ status sweep_axis_find(sweep_axis *axis, const char *text, fault *f)
     // a list by one of its numbers, nothing else by any
     const parameter_type type = sweep_axis_parameter(axis)->type;
     const bool list = type == PARAMETER_LIST;
-    FAIL_IF(type == PARAMETER_TEXT || (list && name[length] == '\0'),
-            fault_set(f, STATUS_BAD_ARGUMENT, "%s is a %s, only numbers and words are varied%s%s%s",
-                      path, list ? "list" : "text", list ? "; its first number is " : "",
-                      list ? path : "", list ? "[1]" : ""));
+    FAULT_IF(type == PARAMETER_TEXT || (list && name[length] == '\0'), f, STATUS_BAD_ARGUMENT,
+             "%s is a %s, only numbers and words are varied%s%s%s", path, list ? "list" : "text",
+             list ? "; its first number is " : "", list ? path : "", list ? "[1]" : "");
     if (name[length] != '\0') {
         const char *rest;
         double k = 0;
         const bool read = decimal_read(name + length + 1, &k, &rest) && strcmp(rest, "]") == 0;
-        FAIL_IF(!list || !read || k != floor(k) || k < 1 || k > PARAMETER_LIST_MOST,
-                fault_set(f, STATUS_BAD_ARGUMENT,
-                          list ? "'%.60s' is no number of a list, expected %s[1] to %s[%d]"
-                               : "'%.60s': %s is no list",
-                          name, path, path, PARAMETER_LIST_MOST));
+        FAULT_IF(!list || !read || k != floor(k) || k < 1 || k > PARAMETER_LIST_MOST, f,
+                 STATUS_BAD_ARGUMENT,
+                 list ? "'%.60s' is no number of a list, expected %s[1] to %s[%d]"
+                      : "'%.60s': %s is no list",
+                 name, path, path, PARAMETER_LIST_MOST);
         axis->element = (int)k;
         snprintf(axis->name, sizeof axis->name, "%.40s[%d]", path, axis->element);
     } else {
@@ -76,9 +75,8 @@ status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fau
     double numbers[PARAMETER_LIST_MOST];
     parameter_format(p, axis->parameter, list, sizeof list);
     const int count = parameter_list_numbers(list, numbers);
-    FAIL_IF(axis->element > count,
-            fault_set_at(f, STATUS_BAD_ARGUMENT, sweep_axis_parameter(axis)->path,
-                         "%s: the scenario's list has %d numbers", axis->name, count));
+    FAULT_AT_IF(axis->element > count, f, STATUS_BAD_ARGUMENT, sweep_axis_parameter(axis)->path,
+                "%s: the scenario's list has %d numbers", axis->name, count);
     numbers[axis->element - 1] = value;
     for (int i = 0; i < count; i++) {
         char *end = changed + strlen(changed);
@@ -131,8 +129,8 @@ static status read_value(const sweep_axis *axis, const char *text, double *value
         return STATUS_OK;
     }
     parameter_format(&scratch, axis->parameter, list, sizeof list);
-    FAIL_IF(parameter_list_numbers(list, numbers) != 1,
-            fault_set(f, STATUS_BAD_ARGUMENT, "'%.60s' is no number", text));
+    FAULT_IF(parameter_list_numbers(list, numbers) != 1, f, STATUS_BAD_ARGUMENT,
+             "'%.60s' is no number", text);
     *value = numbers[0];
     return STATUS_OK;
 }
@@ -193,11 +191,11 @@ static status read_count(const char *text, size_t *count, fault *f)
 {
     const char *rest;
     double value;
-    FAIL_IF(!decimal_read(text, &value, &rest) || *rest != '\0' || value != floor(value) ||
-                value < 2 || value > SWEEP_MOST_RUNS,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%.40s' is no number of values, expected a whole number from 2 to %d", text,
-                      SWEEP_MOST_RUNS));
+    FAULT_IF(!decimal_read(text, &value, &rest) || *rest != '\0' || value != floor(value) ||
+                 value < 2 || value > SWEEP_MOST_RUNS,
+             f, STATUS_BAD_ARGUMENT,
+             "'%.40s' is no number of values, expected a whole number from 2 to %d", text,
+             SWEEP_MOST_RUNS);
     *count = (size_t)value;
     return STATUS_OK;
 }
@@ -228,21 +226,19 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
     // how many pieces there may be
     axis->logarithmic = count > 2 && count <= 4 && strcmp(pieces[count - 1], "log") == 0;
     count -= axis->logarithmic;
-    FAIL_IF(count > 3 || (count < 3 && !drawn),
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "expected %s (first, last, number of values), with :log for an even "
-                      "spacing of the logarithm",
-                      drawn ? "a:b or a:b:n" : "a:b:n"));
+    FAULT_IF(count > 3 || (count < 3 && !drawn), f, STATUS_BAD_ARGUMENT,
+             "expected %s (first, last, number of values), with :log for an even spacing of the "
+             "logarithm",
+             drawn ? "a:b or a:b:n" : "a:b:n");
 
     // the ends, and the number of values
     TRY(read_value(axis, pieces[0], &axis->low, f));
     TRY(read_value(axis, pieces[1], &axis->high, f));
     TRY(count == 3 ? read_count(pieces[2], &n, f) : STATUS_OK);
 
-    FAIL_IF(axis->low == axis->high,
-            fault_set(f, STATUS_BAD_ARGUMENT, "a range needs two different ends"));
-    FAIL_IF(axis->logarithmic && !(axis->low > 0 && axis->high > 0),
-            fault_set(f, STATUS_BAD_ARGUMENT, "a logarithmic range needs ends above zero"));
+    FAULT_IF(axis->low == axis->high, f, STATUS_BAD_ARGUMENT, "a range needs two different ends");
+    FAULT_IF(axis->logarithmic && !(axis->low > 0 && axis->high > 0), f, STATUS_BAD_ARGUMENT,
+             "a logarithmic range needs ends above zero");
 
     // its text in one way of writing, for comparing sweeps
     sweep_axis_format(axis, axis->low, low, sizeof low);
@@ -266,9 +262,8 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
     for (const char *c = text; *c != '\0'; c++) {
         most += *c == ',';
     }
-    FAIL_IF(most > MOST_VALUES,
-            fault_set(f, STATUS_BAD_ARGUMENT, "a list has at most %d values, here are %zu",
-                      MOST_VALUES, most));
+    FAULT_IF(most > MOST_VALUES, f, STATUS_BAD_ARGUMENT,
+             "a list has at most %d values, here are %zu", MOST_VALUES, most);
 
     // room for as many as there are commas, and the text as it would be written
     axis->values = malloc(most * sizeof *axis->values);
@@ -282,8 +277,7 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
 
         // in a grid each value once
         for (const double *other = axis->values; !drawn && other < here; other++) {
-            FAIL_IF(*other == *here,
-                    fault_set(f, STATUS_BAD_ARGUMENT, "'%.60s' stands there twice", piece));
+            FAULT_IF(*other == *here, f, STATUS_BAD_ARGUMENT, "'%.60s' stands there twice", piece);
         }
         sweep_axis_format(axis, *here, value, sizeof value);
         end += sprintf(end, "%s%s", axis->count > 0 ? "," : "", value);

@@ -227,12 +227,11 @@ status definition_plan(const definition *d, const char *path, sweep *plan, fault
         sweep_finish(plan);
         code = STATUS_BAD_ARGUMENT;
     }
-    return code == STATUS_OK          ? STATUS_OK
-           : code == STATUS_NO_MEMORY ? fault_no_memory(f)
-                                      : fault_set(f, code,
-                                                  "'%.200s' holds no sweep that this "
-                                                  "version can make: %.700s",
-                                                  path, why.text);
+    return code == STATUS_OK ? STATUS_OK
+           : code == STATUS_NO_MEMORY
+               ? fault_no_memory(f)
+               : fault_set(f, code, "'%.200s' holds no sweep that this version can make: %.700s",
+                           path, why.text);
 }
 
 // Adds one difference to the sentence; beyond the first few they are only counted.

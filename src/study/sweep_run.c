@@ -36,9 +36,9 @@ static status store_run(void *context, size_t i, const summary *s, fault *f)
     }
 
     // what says nothing about the scenario may be otherwise the next time
-    FAIL_IF(s->status == STATUS_NO_MEMORY || s->status == STATUS_NOT_ALLOWED ||
-                s->status == STATUS_CANNOT_READ,
-            fault_set(f, s->status, "run %zu: %s", run + 1, s->message));
+    FAULT_IF(s->status == STATUS_NO_MEMORY || s->status == STATUS_NOT_ALLOWED ||
+                 s->status == STATUS_CANNOT_READ,
+             f, s->status, "run %zu: %s", run + 1, s->message);
 
     // stored, and counted once it is
     TRY(e->store->put(e->store, run, s, f));

@@ -166,9 +166,8 @@ static status compute_table(const parameters *defaults, const thesis_table *sour
 
         fault why = {.text = ""};
         status result = compute_cell(&p, value, &why);
-        FAIL_IF(result != STATUS_OK,
-                fault_set_at(f, result, why.path, "Table %s, %s model, %g V: %.900s", source->name,
-                             model, voltages[v], why.text));
+        FAULT_AT_IF(result != STATUS_OK, f, result, why.path, "Table %s, %s model, %g V: %.900s",
+                    source->name, model, voltages[v], why.text);
         for (int i = 0; i < QUANTITIES; i++) {
             rows[i].computed[v] = value[i];
         }

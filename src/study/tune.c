@@ -66,9 +66,8 @@ static status read_subject(const char *text, judged *of, double *excess, fault *
     const char *sign = strpbrk(text, "<>");
     char left[512];
     double a = 0, b = 0;
-    FAIL_IF(sign == NULL || sign[1] != '=' || sign - text >= (long)sizeof left,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%.100s' is no condition, expected EXPR<=X or EXPR>=X", text));
+    FAULT_IF(sign == NULL || sign[1] != '=' || sign - text >= (long)sizeof left, f,
+             STATUS_BAD_ARGUMENT, "'%.100s' is no condition, expected EXPR<=X or EXPR>=X", text);
     snprintf(left, sizeof left, "%.*s", (int)(sign - text), text);
     TRY(evaluate(left, of, &a, f));
     TRY(evaluate(sign + 2, of, &b, f));
@@ -87,7 +86,7 @@ static status judge(const tune_request *asked, judged *of, tune_result *out, fau
         option = "subject";
         code = read_subject(asked->subject, of, &excess, &why);
     }
-    FAIL_IF(code != STATUS_OK, fault_set(f, code, "--%s %.900s", option, why.text));
+    FAULT_IF(code != STATUS_OK, f, code, "--%s %.900s", option, why.text);
     out->rank = !isfinite(out->value) || isnan(excess)
                     ? TUNE_REFUSED * 1e100 * (2 - (of->law != NULL ? of->law->settled : 0))
                 : excess > 0 ? TUNE_REFUSED * (1 + fmin(excess, 1e90))
@@ -105,8 +104,8 @@ static status find_growth(const tune_request *asked, const scenario *s, double *
 {
     const bool wanted = strstr(asked->minimise, growth_key) != NULL ||
                         (asked->subject != NULL && strstr(asked->subject, growth_key) != NULL);
-    FAIL_IF(wanted && (asked->growth == NULL || s->parameters.control.law == LAW_NONE),
-            fault_set(f, STATUS_BAD_ARGUMENT, "'%s' needs a control law", growth_key));
+    FAULT_IF(wanted && (asked->growth == NULL || s->parameters.control.law == LAW_NONE), f,
+             STATUS_BAD_ARGUMENT, "'%s' needs a control law", growth_key);
     return wanted ? asked->growth(s, growth, f) : STATUS_OK;
 }
 
@@ -130,16 +129,15 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
     }
     TRY_MEMORY(column != NULL, f);
     TRY(sweep_run(&t->plan, store, &only, &progress, f));
-    FAIL_IF(progress.done < progress.total,
-            fault_set(f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED)));
+    FAULT_IF(progress.done < progress.total, f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
 
     // a store that another search has filled
     for (int k = 0; k < asked->vary_count; k++) {
         TRY(store->quantity(store, t->plan.axes[k].name, column, NULL, f));
-        FAIL_IF(!isnan(column[evaluation]) && column[evaluation] != values[k],
-                fault_set(f, STATUS_BAD_ARGUMENT,
-                          "the database is of another search: run %zu has %s = %g, not %g",
-                          evaluation + 1, t->plan.axes[k].name, column[evaluation], values[k]));
+        FAULT_IF(!isnan(column[evaluation]) && column[evaluation] != values[k], f,
+                 STATUS_BAD_ARGUMENT,
+                 "the database is of another search: run %zu has %s = %g, not %g", evaluation + 1,
+                 t->plan.axes[k].name, column[evaluation], values[k]);
     }
 
     // what came out
@@ -170,14 +168,11 @@ static status check(const tune_request *asked, fault *f)
     return fault_set(f, STATUS_BAD_ARGUMENT,
                      "this program was built without NLopt, whose minimisers tune needs");
 #endif
-    FAIL_IF(over != NULL && over->case_count > 0,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%.200s' has cases, expected lines PATH=a:b or PATH=v1,v2 only",
-                      over->file));
-    FAIL_IF(over != NULL && asked->base->parameters.control.law == LAW_NONE,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "%s has no control law, and runs over a set are judged by one",
-                      asked->base->name));
+    FAULT_IF(over != NULL && over->case_count > 0, f, STATUS_BAD_ARGUMENT,
+             "'%.200s' has cases, expected lines PATH=a:b or PATH=v1,v2 only", over->file);
+    FAULT_IF(over != NULL && asked->base->parameters.control.law == LAW_NONE, f,
+             STATUS_BAD_ARGUMENT, "%s has no control law, and runs over a set are judged by one",
+             asked->base->name);
     TRY(judge(asked, &of, &unused, f));
     return find_growth(asked, asked->base, &of.growth, f);
 }
@@ -195,9 +190,8 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
                              .sampling = SWEEP_LATIN,
                              .runs = t->each * t->most,
                              .seed = seed};
-    FAIL_IF(
-        varied > SWEEP_MOST_AXES || drawn > SWEEP_MOST_AXES,
-        fault_set(f, STATUS_BAD_ARGUMENT, "at most %d parameters can be varied", SWEEP_MOST_AXES));
+    FAULT_IF(varied > SWEEP_MOST_AXES || drawn > SWEEP_MOST_AXES, f, STATUS_BAD_ARGUMENT,
+             "at most %d parameters can be varied", SWEEP_MOST_AXES);
     memcpy(lines, asked->vary, (size_t)varied * sizeof *lines);
     if (drawn > 0) {
         const sweep_request set = {
@@ -209,9 +203,8 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
 
     TRY(sweep_plan(&t->plan, &request, f));
     for (int i = 0; i < varied; i++) {
-        FAIL_IF(!t->plan.axes[i].is_range,
-                fault_set(f, STATUS_BAD_ARGUMENT, "--vary %.200s: expected a range, %s=a:b",
-                          asked->vary[i], t->plan.axes[i].name));
+        FAULT_IF(!t->plan.axes[i].is_range, f, STATUS_BAD_ARGUMENT,
+                 "--vary %.200s: expected a range, %s=a:b", asked->vary[i], t->plan.axes[i].name);
     }
     for (size_t i = 0; i < request.runs * (size_t)(varied + drawn); i++) {
         const size_t run = i / (size_t)(varied + drawn);

@@ -44,9 +44,9 @@ static void finish_filmed(filmed *m)
 // Opens the scenarios, then the first one again with each --beside. Returns the exit status.
 static int open_all(filmed *m, const arguments *a)
 {
-    FAIL_IF(a->operand_count + a->besides.count > FILM_RUNS,
-            complain("%d runs in one film, expected at most %d",
-                     a->operand_count + a->besides.count, FILM_RUNS));
+    COMPLAIN_IF(a->operand_count + a->besides.count > FILM_RUNS,
+                "%d runs in one film, expected at most %d", a->operand_count + a->besides.count,
+                FILM_RUNS);
 
     for (int i = 0; i < a->operand_count + a->besides.count; i++) {
         bool beside = i >= a->operand_count;
@@ -126,9 +126,8 @@ static int film_runs(const arguments *a, const filmed *m)
 
 static int animate(const arguments *a)
 {
-    FAIL_IF(a->output == NULL,
-            complain("animate needs a place for the film: -o FILE.mp4, FILE.webm, FILE.gif, "
-                     "FILE.webp, or a folder for PNG frames"));
+    COMPLAIN_IF(a->output == NULL, "animate needs a place for the film: -o FILE.mp4, FILE.webm, "
+                                   "FILE.gif, FILE.webp, or a folder for PNG frames");
 
     // errors of the request are reported before anything is simulated
     TRY_EXIT(check_view(a));

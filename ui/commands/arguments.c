@@ -137,10 +137,10 @@ static int read_whole(const option_row *o, const char *text, uint64_t *value)
     char *end;
     errno = 0;
     unsigned long long number = strtoull(text, &end, 10);
-    FAIL_IF(!isdigit((unsigned char)text[0]) || *end != '\0' || errno != 0 || number < low ||
-                number > high,
-            complain("--%s %s: expected a whole number from %llu to %llu", o->name, text,
-                     (unsigned long long)low, (unsigned long long)high));
+    COMPLAIN_IF(!isdigit((unsigned char)text[0]) || *end != '\0' || errno != 0 || number < low ||
+                    number > high,
+                "--%s %s: expected a whole number from %llu to %llu", o->name, text,
+                (unsigned long long)low, (unsigned long long)high);
     *value = number;
     return EXIT_DONE;
 }
@@ -152,9 +152,9 @@ static int read_size(const option_row *o, const char *text, grid_size *size)
     if (*rest == 'x') {
         height = strtol(rest + 1, &rest, 10);
     }
-    FAIL_IF(*rest != '\0' || width < 1 || width > o->high || height < 1 || height > o->high,
-            complain("--%s %s: expected width x height in %s, like 120x40, at most %g", o->name,
-                     text, o->unit, o->high));
+    COMPLAIN_IF(*rest != '\0' || width < 1 || width > o->high || height < 1 || height > o->high,
+                "--%s %s: expected width x height in %s, like 120x40, at most %g", o->name, text,
+                o->unit, o->high);
     *size = (grid_size){(int)width, (int)height};
     return EXIT_DONE;
 }
@@ -185,8 +185,8 @@ static int check_quantity(const option_row *o, const char *key)
     if (summary_find(key) >= 0) {
         return EXIT_DONE;
     }
-    FAIL_IF(near != NULL,
-            complain("--%s %s: there is no such quantity, did you mean %s?", o->name, key, near));
+    COMPLAIN_IF(near != NULL, "--%s %s: there is no such quantity, did you mean %s?", o->name, key,
+                near);
     return complain("--%s %s: there is no such quantity (impactlab run --json lists them)", o->name,
                     key);
 }
@@ -249,15 +249,14 @@ static int complain_option(const command *self, int found, const char *text)
     char shown[96];
     const option_row *o;
 
-    FAIL_IF(found == ':',
-            complain("option %s needs a value (see impactlab %s --help)", text, self->name));
+    COMPLAIN_IF(found == ':', "option %s needs a value (see impactlab %s --help)", text,
+                self->name);
 
     // one that is right elsewhere
     snprintf(shown, sizeof shown, "%.*s", (int)strcspn(text, "="), text);
     const command *owner = owner_of_option(shown + strspn(shown, "-"));
-    FAIL_IF(owner != NULL,
-            complain("%s has no option %s, that is one of %s (see impactlab %s --help)", self->name,
-                     shown, owner->name, self->name));
+    COMPLAIN_IF(owner != NULL, "%s has no option %s, that is one of %s (see impactlab %s --help)",
+                self->name, shown, owner->name, self->name);
 
     // the nearest option is offered
     nearest_word near = nearest_begin(shown + strspn(shown, "-"));
@@ -265,8 +264,8 @@ static int complain_option(const command *self, int found, const char *text)
         nearest_try(&near, o->name);
     }
 
-    FAIL_IF(near.best != NULL && near.distance > 0,
-            complain("%s has no option %s, did you mean --%s?", self->name, shown, near.best));
+    COMPLAIN_IF(near.best != NULL && near.distance > 0, "%s has no option %s, did you mean --%s?",
+                self->name, shown, near.best);
     return complain("%s has no option %s (see impactlab %s --help)", self->name, shown, self->name);
 }
 
@@ -367,9 +366,9 @@ static int check_places(const arguments *a)
         const char *path = option_written(a, o);
         for (int j = 0; path != NULL && j < i; j++) {
             const char *before = option_written(a, command_option(a->command, j));
-            FAIL_IF(before != NULL && whole_file_same_place(path, before),
-                    complain("two results cannot both be written to %s",
-                             strcmp(path, "-") == 0 ? "the standard output" : path));
+            COMPLAIN_IF(before != NULL && whole_file_same_place(path, before),
+                        "two results cannot both be written to %s",
+                        strcmp(path, "-") == 0 ? "the standard output" : path);
         }
     }
     return EXIT_DONE;
@@ -378,11 +377,11 @@ static int check_places(const arguments *a)
 static int check_operands(const arguments *a)
 {
     const command *self = a->command;
-    FAIL_IF(a->operand_count < self->least, complain("%s needs %s (see impactlab %s --help)",
-                                                     self->name, self->operands, self->name));
-    FAIL_IF(a->operand_count > self->most,
-            complain("%s does not know what to do with '%s' (see impactlab %s --help)", self->name,
-                     a->operands[self->most], self->name));
+    COMPLAIN_IF(a->operand_count < self->least, "%s needs %s (see impactlab %s --help)", self->name,
+                self->operands, self->name);
+    COMPLAIN_IF(a->operand_count > self->most,
+                "%s does not know what to do with '%s' (see impactlab %s --help)", self->name,
+                a->operands[self->most], self->name);
     return check_places(a);
 }
 

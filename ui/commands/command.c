@@ -68,8 +68,7 @@ int complain_command(const char *name)
     for (int i = 0; i < command_count; i++) {
         nearest_try(&near, command_table[i]->name);
     }
-    FAIL_IF(near.best != NULL,
-            complain("there is no command '%s', did you mean '%s'?", name, near.best));
+    COMPLAIN_IF(near.best != NULL, "there is no command '%s', did you mean '%s'?", name, near.best);
 
     // nothing is near: all there are
     char known[256] = "";
@@ -208,9 +207,9 @@ static int check_keeps_scenario(const scenario *s, const arguments *a)
 {
     const option_row *o;
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
-        FAIL_IF(is_same_file(option_written(a, o), s->file),
-                complain("'%s' is the scenario itself, expected another file for the results",
-                         option_text(a, o)));
+        COMPLAIN_IF(is_same_file(option_written(a, o), s->file),
+                    "'%s' is the scenario itself, expected another file for the results",
+                    option_text(a, o));
     }
     return EXIT_DONE;
 }

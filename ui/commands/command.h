@@ -234,6 +234,9 @@ int complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 // The same for a fault. Returns the exit status that belongs to its code.
 int complain_fault(const fault *f);
 
+// Ends the calling function with a complaint where something is wrong.
+#define COMPLAIN_IF(wrong, ...) FAIL_IF(wrong, complain(__VA_ARGS__))
+
 // Ends the calling function with the exit status that a call came to, unless that is EXIT_DONE.
 #define TRY_EXIT(call)                                                                             \
     do {                                                                                           \

@@ -33,9 +33,9 @@ static int check_ids(const arguments *a)
         for (int k = 0; (known = thesis_figure_at(k)) != NULL; k++) {
             nearest_try(&near, known->id);
         }
-        return complain("there is no figure '%s', did you mean '%s'? (impactlab figures --help "
-                        "lists all)",
-                        a->operands[i], near.best ? near.best : thesis_figure_at(0)->id);
+        return complain(
+            "there is no figure '%s', did you mean '%s'? (impactlab figures --help lists all)",
+            a->operands[i], near.best ? near.best : thesis_figure_at(0)->id);
     }
     return EXIT_DONE;
 }
@@ -206,9 +206,9 @@ static int plot(const arguments *a)
 
     // what can be refused before the recipe is read
     TRY_EXIT(read_picture_options(a, &o));
-    FAIL_IF(o.overlay != NULL || o.signals != NULL,
-            complain("a recipe says itself which signals and data it shows, --%s is for runs",
-                     o.overlay != NULL ? "overlay" : "signals"));
+    COMPLAIN_IF(o.overlay != NULL || o.signals != NULL,
+                "a recipe says itself which signals and data it shows, --%s is for runs",
+                o.overlay != NULL ? "overlay" : "signals");
 
     // the recipe's name with .png, in the present folder, unless there is another
     const char *slash = strrchr(a->operands[0], '/');

@@ -272,8 +272,7 @@ static int write_pages(const char *folder)
         char path[4096];
         const int length = snprintf(path, sizeof path, "%s/impactlab%s%s.1", folder,
                                     c != NULL ? "-" : "", c != NULL ? c->name : "");
-        FAIL_IF(length >= (int)sizeof path,
-                complain("--man-pages %s: the name is too long", folder));
+        COMPLAIN_IF(length >= (int)sizeof path, "--man-pages %s: the name is too long", folder);
         result = worse(result, write_file(path, write_page, NULL, c));
     }
     return result;

@@ -29,16 +29,16 @@ static int run_script(explorer *ex, const char *path)
 {
     char line[LINE_TEXT];
     FILE *stream = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
-    FAIL_IF(stream == NULL, complain("%s cannot be read: %s", path, strerror(errno)));
+    COMPLAIN_IF(stream == NULL, "%s cannot be read: %s", path, strerror(errno));
 
     // line by line until one fails or quits
     int code = EXIT_DONE;
     for (int number = 1; code == EXIT_DONE && !ex->state.quit && fgets(line, sizeof line, stream);
          number++) {
         if (strchr(line, '\n') == NULL && !feof(stream)) {
-            code = complain("%s:%d: no command, expected a text of less than %d bytes and the end "
-                            "of the line",
-                            path, number, LINE_TEXT);
+            code = complain(
+                "%s:%d: no command, expected a text of less than %d bytes and the end of the line",
+                path, number, LINE_TEXT);
             break;
         }
         line[strcspn(line, "\r\n")] = '\0';

@@ -16,8 +16,8 @@
 static int read_theme(const arguments *a, figure_theme *theme)
 {
     const char *word = a->theme != NULL ? a->theme : a->mono ? "mono" : a->dark ? "dark" : "light";
-    FAIL_IF(a->mono + a->dark + (a->theme != NULL) > 1,
-            complain("--theme, --mono and --dark cannot go together"));
+    COMPLAIN_IF(a->mono + a->dark + (a->theme != NULL) > 1,
+                "--theme, --mono and --dark cannot go together");
     *theme = strcmp(word, "mono") == 0   ? THEME_MONO
              : strcmp(word, "dark") == 0 ? THEME_DARK
                                          : THEME_COLOUR;
@@ -56,8 +56,8 @@ int read_picture_options(const arguments *a, figure_options *o)
                           .command = a->command_line};
 
     TRY_EXIT(read_theme(a, &o->look.theme));
-    FAIL_IF(ranged && !(a->from < a->to),
-            complain("--from and --to go together, the first below the second"));
+    COMPLAIN_IF(ranged && !(a->from < a->to),
+                "--from and --to go together, the first below the second");
     if (ranged) {
         o->from = a->from;
         o->to = a->to;
@@ -66,8 +66,8 @@ int read_picture_options(const arguments *a, figure_options *o)
 
     // the text of a picture that has none of its own
     g_autofree char *text = a->bare && a->plot != NULL ? artwork_beside(a->plot, ".txt") : NULL;
-    FAIL_IF(text != NULL && is_asked_for(a, text),
-            complain("two results cannot both be written to %s", text));
+    COMPLAIN_IF(text != NULL && is_asked_for(a, text), "two results cannot both be written to %s",
+                text);
     return EXIT_DONE;
 }
 
@@ -144,10 +144,10 @@ scene_options read_view(const arguments *a)
 int check_view(const arguments *a)
 {
     camera_view unused;
-    FAIL_IF(a->camera != NULL && !camera_read(a->camera, &unused),
-            complain("there is no camera '%s', expected three-quarter, top, side, tip, or two "
-                     "angles such as -60,40 (elevation 1 to 90 degrees)",
-                     a->camera));
+    COMPLAIN_IF(a->camera != NULL && !camera_read(a->camera, &unused),
+                "there is no camera '%s', expected three-quarter, top, side, tip, or two angles "
+                "such as -60,40 (elevation 1 to 90 degrees)",
+                a->camera);
     return EXIT_DONE;
 }
 
@@ -156,9 +156,8 @@ int check_scene(const arguments *a)
     TRY_EXIT(check_view(a));
 
     // there is a picture for each instant, and a limit to them
-    FAIL_IF(a->instants.count > SCENE_INSTANTS,
-            complain("--at was given %d times, expected at most %d", a->instants.count,
-                     SCENE_INSTANTS));
+    COMPLAIN_IF(a->instants.count > SCENE_INSTANTS, "--at was given %d times, expected at most %d",
+                a->instants.count, SCENE_INSTANTS);
 
     // before the run, which may take long
     TRY_FAULT(a->scene != NULL ? scene_check_path(a->scene, &f) : STATUS_OK);

@@ -117,8 +117,8 @@ static int run_lesson(const arguments *a)
 {
     listing l;
     bool found = false;
-    FAIL_IF(a->json != NULL && a->operand_count > 0,
-            complain("--json lists the lessons, expected no name beside it"));
+    COMPLAIN_IF(a->json != NULL && a->operand_count > 0,
+                "--json lists the lessons, expected no name beside it");
     int code = EXIT_DONE;
     TRY_EXIT(open_listing(&l, a));
 

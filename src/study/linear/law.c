@@ -54,8 +54,8 @@ static status answer(const linear_arm *arm, const parameters *p, int reading, do
 {
     SCOPED(rig_destroy_kept) rig *r = NULL;
     TRY(rig_create(&r, p, NULL, f));
-    FAIL_IF(r->withheld, fault_set(f, STATUS_NOT_ALLOWED,
-                                   "the loop of a program or plug-in needs --allow-code"));
+    FAULT_IF(r->withheld, f, STATUS_NOT_ALLOWED,
+             "the loop of a program or plug-in needs --allow-code");
     const double settling = (p->control.transition_time + SETTLING) * p->control.rate;
     const int before = (int)fmin(settling, MOST_SETTLING);
     for (int k = 0; k < before + ANSWERS; k++) {
@@ -153,12 +153,12 @@ static status learn(linear_law *law, const linear_arm *arm, const parameters *p,
     while (code == STATUS_OK && order <= MOST_ORDER && !fit_recurrence(law, order)) {
         order++;
     }
-    FAIL_IF(code == STATUS_UNSTABLE || order > MOST_ORDER ||
-                (code == STATUS_OK && arm->force > 0 && silent),
-            fault_set(f, STATUS_UNSTABLE,
-                      "the law '%s' has no linear form where the arm rests: its answers to "
-                      "small readings do not scale or settle, or there are none",
-                      control_law_table[p->control.law].word));
+    FAULT_IF(code == STATUS_UNSTABLE || order > MOST_ORDER ||
+                 (code == STATUS_OK && arm->force > 0 && silent),
+             f, STATUS_UNSTABLE,
+             "the law '%s' has no linear form where the arm rests: its answers to small readings "
+             "do not scale or settle, or there are none",
+             control_law_table[p->control.law].word);
     return code;
 }
 

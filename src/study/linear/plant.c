@@ -139,10 +139,10 @@ static status find_rest(workshop *w, fault *f)
         }
     }
     missing(w, residual);
-    return change < 1e-9 ? STATUS_OK
-                         : fault_set(f, STATUS_BAD_ARGUMENT,
-                                     "the arm has no place of rest on the wall under this force "
-                                     "or command");
+    return change < 1e-9
+               ? STATUS_OK
+               : fault_set(f, STATUS_BAD_ARGUMENT,
+                           "the arm has no place of rest on the wall under this force or command");
 }
 
 // --- linearised -------------------------------------------------------------------------------
@@ -305,7 +305,7 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
     const bool touches = place != LINEAR_FREE, held = touches && p->control.law != LAW_NONE;
     const bool weighs = !held && p->arm.tilt != 0; // which may press or lift, and is seen at rest
     const char *why = refusal(p, place, held ? p->control.force : weighs ? 1 : p->motor.voltage);
-    FAIL_IF(why != NULL, fault_set(f, STATUS_BAD_ARGUMENT, "%s", why));
+    FAULT_IF(why != NULL, f, STATUS_BAD_ARGUMENT, "%s", why);
     SCOPED(free_kept) workshop *w = calloc(1, sizeof *w);
     TRY_MEMORY(w != NULL, f);
 

@@ -64,9 +64,9 @@ static int compare(const void *one, const void *other)
 // Of matrix[n * n], in the order of poles.
 static status eigenvalues(int n, const double *matrix, double complex *values, fault *f)
 {
-    FAIL_IF(!load(), fault_set(f, STATUS_SINGULAR,
-                               "poles and zeros need LAPACK, liblapack.so.3, which is not on this "
-                               "machine (Debian: apt install liblapack3)"));
+    FAULT_IF(!load(), f, STATUS_SINGULAR,
+             "poles and zeros need LAPACK, liblapack.so.3, which is not on this machine (Debian: "
+             "apt install liblapack3)");
     const size_t square = (size_t)n * (size_t)n;
     const int size = 8 * n, one = 1;
     SCOPED(free_kept) double *work = calloc(square + (size_t)(size + 2 * n) + 1, sizeof *work);

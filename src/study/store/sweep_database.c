@@ -17,17 +17,14 @@ status database_fault(const sweep_database *store, fault *f)
     const char *path = store->path ? store->path : "the results in memory";
 
     FAIL_IF(code == SQLITE_NOMEM, fault_no_memory(f));
-    FAIL_IF(code == SQLITE_NOTADB,
-            fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is no SQLite database", path));
-    FAIL_IF(code == SQLITE_CORRUPT,
-            fault_set(f, STATUS_CANNOT_READ, "'%s' is damaged: %s", path, why));
+    FAULT_IF(code == SQLITE_NOTADB, f, STATUS_BAD_ARGUMENT, "'%s' is no SQLite database", path);
+    FAULT_IF(code == SQLITE_CORRUPT, f, STATUS_CANNOT_READ, "'%s' is damaged: %s", path, why);
 
     // what is asked of it is always the same, so that tables of others are at fault
-    FAIL_IF(code == SQLITE_ERROR || code == SQLITE_TOOBIG,
-            fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is not laid out as this program does it: %s",
-                      path, why));
-    FAIL_IF(code != SQLITE_READONLY && sqlite3_db_readonly(store->database, "main") == 1,
-            fault_set(f, STATUS_CANNOT_READ, "'%s' cannot be read: %s", path, why));
+    FAULT_IF(code == SQLITE_ERROR || code == SQLITE_TOOBIG, f, STATUS_BAD_ARGUMENT,
+             "'%s' is not laid out as this program does it: %s", path, why);
+    FAULT_IF(code != SQLITE_READONLY && sqlite3_db_readonly(store->database, "main") == 1, f,
+             STATUS_CANNOT_READ, "'%s' cannot be read: %s", path, why);
     FAIL_IF(sqlite3_extended_errcode(store->database) == SQLITE_READONLY_DBMOVED,
             database_moved_fault(store, f));
     return fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", path, why);
@@ -180,12 +177,12 @@ static status check_row(const sweep_database *store, sqlite3_stmt *row, unsigned
 {
     const sweep *s = store->sweep;
     const long long run = sqlite3_column_int64(row, 0);
-    FAIL_IF(sqlite3_column_type(row, 0) != SQLITE_INTEGER || run < 1 ||
-                (unsigned long long)run > s->run_count,
-            fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu", store->path,
-                      run, s->run_count));
-    FAIL_IF(seen[run - 1]++,
-            fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld twice", store->path, run));
+    FAULT_IF(sqlite3_column_type(row, 0) != SQLITE_INTEGER || run < 1 ||
+                 (unsigned long long)run > s->run_count,
+             f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu", store->path, run,
+             s->run_count);
+    FAULT_IF(seen[run - 1]++, f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld twice", store->path,
+             run);
 
     // what was put in, as planned
     int column = RUN_FIRST_VALUE;
@@ -204,11 +201,9 @@ static status check_row(const sweep_database *store, sqlite3_stmt *row, unsigned
     const char *ended = text_at(row, column);
     const bool failed = ended != NULL && strcmp(ended, "failed") == 0;
     for (int i = 0; i < RUN_OUTCOME_COLUMNS + summary_count; i++, column++) {
-        FAIL_IF(!is_outcome(i, failed, row, column),
-                fault_set(f, STATUS_BAD_ARGUMENT,
-                          "'%s' has values of another kind in run %lld than this program "
-                          "writes, under %s",
-                          store->path, run, sqlite3_column_name(row, column)));
+        FAULT_IF(!is_outcome(i, failed, row, column), f, STATUS_BAD_ARGUMENT,
+                 "'%s' has values of another kind in run %lld than this program writes, under %s",
+                 store->path, run, sqlite3_column_name(row, column));
     }
     return STATUS_OK;
 }
@@ -266,12 +261,11 @@ static status check_journal(const sweep_database *store, fault *f)
                             fread(end, sizeof end, 1, journal) == 1 &&
                             memcmp(end, mark, sizeof mark) == 0;
     fclose(journal);
-    return names_file
-               ? fault_set(f, STATUS_BAD_ARGUMENT,
-                           "'%s' is no journal of this program: it names another file, which "
-                           "would be deleted; remove the journal, or do without '%s'",
-                           name, store->path)
-               : STATUS_OK;
+    return names_file ? fault_set(f, STATUS_BAD_ARGUMENT,
+                                  "'%s' is no journal of this program: it names another file, "
+                                  "which would be deleted; remove the journal, or do without '%s'",
+                                  name, store->path)
+                      : STATUS_OK;
 }
 
 status database_open(sweep_database *store, int flags, fault *f)

@@ -165,9 +165,9 @@ static status take_row(const sweep_database *store, sqlite3_stmt *row, int key_c
             columns[k] = more;
         }
         columns[k][at] = sqlite3_column_double(row, k);
-        FAIL_IF(!isfinite(columns[k][at]),
-                fault_set(f, STATUS_CANNOT_READ, "'%s' has an infinite %s, expected numbers",
-                          store->path, sqlite3_column_name(row, k)));
+        FAULT_IF(!isfinite(columns[k][at]), f, STATUS_CANNOT_READ,
+                 "'%s' has an infinite %s, expected numbers", store->path,
+                 sqlite3_column_name(row, k));
     }
     return STATUS_OK;
 }

@@ -53,15 +53,14 @@ static status read_line(definition *d, const char *path, sqlite3_stmt *row, faul
     const char *key = (const char *)sqlite3_column_text(row, 0);
     const char *value = (const char *)sqlite3_column_text(row, 1);
     FAIL_IF(sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM, fault_no_memory(f));
-    FAIL_IF(key == NULL || value == NULL || strlen(key) >= DEFINITION_KEY ||
-                strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
-                strlen(value) != (size_t)sqlite3_column_bytes(row, 1),
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%s' has a line without text in what defines its sweep", path));
-    FAIL_IF(json_object_size(d->lines) == DEFINITION_LINES || definition_value(d, key) != NULL,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%s' has more lines in what defines its sweep than this program writes",
-                      path));
+    FAULT_IF(key == NULL || value == NULL || strlen(key) >= DEFINITION_KEY ||
+                 strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
+                 strlen(value) != (size_t)sqlite3_column_bytes(row, 1),
+             f, STATUS_BAD_ARGUMENT, "'%s' has a line without text in what defines its sweep",
+             path);
+    FAULT_IF(json_object_size(d->lines) == DEFINITION_LINES || definition_value(d, key) != NULL, f,
+             STATUS_BAD_ARGUMENT,
+             "'%s' has more lines in what defines its sweep than this program writes", path);
     definition_add(d, key, "%s", value);
     return d->code == STATUS_OK ? STATUS_OK : fault_no_memory(f);
 }
@@ -163,12 +162,11 @@ static status check_outside(sweep_database *store, fault *f)
 static status lock_file(sweep_database *store, fault *f)
 {
     store->lock = open(store->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    FAIL_IF(store->lock < 0, fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s",
-                                       store->path, strerror(errno)));
+    FAULT_IF(store->lock < 0, f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", store->path,
+             strerror(errno));
 
-    FAIL_IF(flock(store->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK,
-            fault_set(f, STATUS_CANNOT_WRITE, "another sweep is writing to '%s' just now",
-                      store->path));
+    FAULT_IF(flock(store->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK, f,
+             STATUS_CANNOT_WRITE, "another sweep is writing to '%s' just now", store->path);
     return STATUS_OK;
 }
 

@@ -24,8 +24,8 @@ static int complain_only(const char *name)
     for (int i = 0; i < BENCHMARKS; i++) {
         nearest_try(&near, bench_table[i].name);
     }
-    FAIL_IF(near.best != NULL,
-            complain("there is no benchmark '%s', did you mean '%s'?", name, near.best));
+    COMPLAIN_IF(near.best != NULL, "there is no benchmark '%s', did you mean '%s'?", name,
+                near.best);
     return complain("there is no benchmark '%s' (see impactlab bench --help)", name);
 }
 

@@ -25,17 +25,18 @@ static int choose_commands(const arguments *a, const scenario *s, double *comman
         given = a->varies.items[0];
     }
 
-    FAIL_IF(a->varies.count > 1 || strncmp(given, VOLTAGE_PATH "=", strlen(VOLTAGE_PATH "=")) != 0,
-            complain("calibrate varies " VOLTAGE_PATH " and nothing else, once"));
+    COMPLAIN_IF(a->varies.count > 1 ||
+                    strncmp(given, VOLTAGE_PATH "=", strlen(VOLTAGE_PATH "=")) != 0,
+                "calibrate varies " VOLTAGE_PATH " and nothing else, once");
 
     SCOPED(sweep_finish) sweep series;
     const sweep_request request = {.vary = &given, .vary_count = 1};
     TRY_FAULT(sweep_init(&series, s, &request, &f));
 
     // the values, as many as a table holds
-    FAIL_IF(series.run_count > K2_TABLE_MOST,
-            complain("--vary %s: %zu commands are too many, expected at most %d", given,
-                     series.run_count, K2_TABLE_MOST));
+    COMPLAIN_IF(series.run_count > K2_TABLE_MOST,
+                "--vary %s: %zu commands are too many, expected at most %d", given,
+                series.run_count, K2_TABLE_MOST);
     *count = (int)series.run_count;
     for (int i = 0; i < *count; i++) {
         commands[i] = sweep_value(&series, (size_t)i, 0);
@@ -87,10 +88,9 @@ static status make_table(calibrated *done, const scenario *s, fault *f)
     k2_table by_force;
     done->with_table = *s;
     TRY(calibration_table(&done->points, &by_force, f));
-    FAIL_IF(!k2_table_write(&by_force, done->table, sizeof done->table),
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "%d commands make a table of more than %d characters, expected fewer",
-                      done->points.count, PARAMETER_TEXT_SIZE - 1));
+    FAULT_IF(!k2_table_write(&by_force, done->table, sizeof done->table), f, STATUS_BAD_ARGUMENT,
+             "%d commands make a table of more than %d characters, expected fewer",
+             done->points.count, PARAMETER_TEXT_SIZE - 1);
     return parameter_set_text(&done->with_table.parameters, PARAMETER_INDEX(control.k2_table),
                               done->table, f);
 }

@@ -56,8 +56,8 @@ static int open_sweep(comparison *c, const arguments *a, const scenario *s)
 
     // too many rows are refused before anything runs
     const size_t rows = c->varied.run_count * (size_t)c->operands;
-    FAIL_IF(rows > MOST_ROWS,
-            complain("%zu rows are too many for a table, expected at most %d", rows, MOST_ROWS));
+    COMPLAIN_IF(rows > MOST_ROWS, "%zu rows are too many for a table, expected at most %d", rows,
+                MOST_ROWS);
     c->combinations = (int)c->varied.run_count;
     return EXIT_DONE;
 }
@@ -181,10 +181,9 @@ static int plot_runs(const arguments *a, const scenario *s, const void *found)
     const comparison *c = found;
     trace_run shown[TRACE_RUNS];
     char *names[TRACE_RUNS], title[64 + SCENARIO_CHANGES];
-    FAIL_IF(c->varied.axis_count > 0,
-            complain("--plot shows the scenarios themselves, not --vary's combinations"));
-    FAIL_IF(!c->drawn,
-            complain("--plot shows at most %d runs, %d were given", TRACE_RUNS, c->opened));
+    COMPLAIN_IF(c->varied.axis_count > 0,
+                "--plot shows the scenarios themselves, not --vary's combinations");
+    COMPLAIN_IF(!c->drawn, "--plot shows at most %d runs, %d were given", TRACE_RUNS, c->opened);
 
     // one that failed shows what it has
     const bool named = name_runs(c, names, title, sizeof title);
@@ -209,8 +208,8 @@ static int compare(const arguments *a)
                                       .kept = "the table is that of these"};
     SCOPED(finish) comparison c = {.table.tolerance = a->tolerance / 100};
     fault f = {0};
-    FAIL_IF(a->columns != NULL && compare_choose(&c.table, a->columns, &f) != STATUS_OK,
-            complain("--columns %s: %s", a->columns, f.text));
+    COMPLAIN_IF(a->columns != NULL && compare_choose(&c.table, a->columns, &f) != STATUS_OK,
+                "--columns %s: %s", a->columns, f.text);
 
     TRY_EXIT(open_all(&c, a));
     c.table.rows = c.rows;

@@ -50,12 +50,11 @@ static status read_links(const char *text, outcome *o, fault *f)
     while (text != NULL && *text != '\0') {
         double value;
         const char *rest;
-        FAIL_IF(o->link_count == MOST_LINKS || !decimal_read(text, &value, &rest) ||
-                    (*rest != ',' && *rest != '\0') || value != floor(value) || value < 1 ||
-                    value > 64,
-                fault_set(f, STATUS_BAD_ARGUMENT,
-                          "--links takes up to %d numbers of links from 1 to 64, such as 2,4,8",
-                          MOST_LINKS));
+        FAULT_IF(o->link_count == MOST_LINKS || !decimal_read(text, &value, &rest) ||
+                     (*rest != ',' && *rest != '\0') || value != floor(value) || value < 1 ||
+                     value > 64,
+                 f, STATUS_BAD_ARGUMENT,
+                 "--links takes up to %d numbers of links from 1 to 64, such as 2,4,8", MOST_LINKS);
         o->links[o->link_count++] = (int)value;
         text = *rest == ',' ? rest + 1 : rest;
     }
@@ -183,9 +182,9 @@ static int identify_and_report(const arguments *a, scenario *s)
                                       .cases = write_cases};
     fault f = {0};
     outcome o = {0};
-    FAIL_IF(a->data.count == 0 || a->fits.count == 0,
-            complain("identify needs a recorded trace, --data FILE.csv, and what is to be "
-                     "found, --fit PATH"));
+    COMPLAIN_IF(
+        a->data.count == 0 || a->fits.count == 0,
+        "identify needs a recorded trace, --data FILE.csv, and what is to be found, --fit PATH");
     status code = read_links(a->links, &o, &f);
     code = code == STATUS_OK ? set_up(a, s, &o.fit, &f) : code;
     if (code == STATUS_OK) {

@@ -58,12 +58,10 @@ static status analyse_loop(analysis *x, fault *f)
 {
     const parameters *p = &x->scenario->parameters;
     const bool contact = x->place == LINEAR_CONTACT;
-    FAIL_IF(p->control.law == LAW_NONE,
-            fault_set_at(f, STATUS_BAD_ARGUMENT, "control.law",
-                         "--law needs a control law, such as --set control.law=hybrid"));
-    FAIL_IF(
-        x->measured && !contact,
-        fault_set(f, STATUS_BAD_ARGUMENT, "--inject measures the arm in contact, not %s", x->word));
+    FAULT_AT_IF(p->control.law == LAW_NONE, f, STATUS_BAD_ARGUMENT, "control.law",
+                "--law needs a control law, such as --set control.law=hybrid");
+    FAULT_IF(x->measured && !contact, f, STATUS_BAD_ARGUMENT,
+             "--inject measures the arm in contact, not %s", x->word);
     status code = x->measured ? STATUS_UNSTABLE : linear_loop(&x->loop, &x->arm, p, f);
     x->measured = x->stable = code == STATUS_UNSTABLE && contact;
     if (x->measured) {
@@ -386,9 +384,8 @@ static int look_around(const arguments *a, analysis *x)
     static const command_results r = {survey_json, print_survey, plot_survey, write_survey};
     const sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
     fault f = {0};
-    FAIL_IF(
-        a->plot != NULL && a->varies.count > 2,
-        complain("--plot shows one or two varied parameters, but %d are varied", a->varies.count));
+    COMPLAIN_IF(a->plot != NULL && a->varies.count > 2,
+                "--plot shows one or two varied parameters, but %d are varied", a->varies.count);
     const status code = linear_survey_make(&x->survey, x->scenario, &request, x->place, &f);
     const int result =
         code == STATUS_OK ? write_results(a, &r, x->scenario, x, true) : complain_fault(&f);
@@ -416,15 +413,15 @@ static int linear(const arguments *a, scenario *s)
     x.place = strcmp(x.word, "free") == 0      ? LINEAR_FREE
               : strcmp(x.word, "contact") == 0 ? LINEAR_CONTACT
                                                : LINEAR_STUCK;
-    FAIL_IF(a->varies.count > 0 && (a->mat != NULL || a->nyquist != NULL || a->injects),
-            complain("--mat, --nyquist and --inject are of one loop, not of --vary"));
-    FAIL_IF(a->varies.count > 0 && s->parameters.control.law == LAW_NONE,
-            complain("--vary needs a control law, such as --set control.law=hybrid"));
-    FAIL_IF((a->nyquist != NULL || a->injects) && !a->looped,
-            complain("--nyquist and --inject are of the loop of --law"));
-    FAIL_IF(a->plot != NULL && a->nyquist != NULL && (a->latex != NULL || share_numbers(a)),
-            complain("--plot and --nyquist are two pictures: expected names that differ in more "
-                     "than their ending, and --latex for one of them"));
+    COMPLAIN_IF(a->varies.count > 0 && (a->mat != NULL || a->nyquist != NULL || a->injects),
+                "--mat, --nyquist and --inject are of one loop, not of --vary");
+    COMPLAIN_IF(a->varies.count > 0 && s->parameters.control.law == LAW_NONE,
+                "--vary needs a control law, such as --set control.law=hybrid");
+    COMPLAIN_IF((a->nyquist != NULL || a->injects) && !a->looped,
+                "--nyquist and --inject are of the loop of --law");
+    COMPLAIN_IF(a->plot != NULL && a->nyquist != NULL && (a->latex != NULL || share_numbers(a)),
+                "--plot and --nyquist are two pictures: expected names that differ in more than "
+                "their ending, and --latex for one of them");
     if (a->varies.count > 0) {
         return look_around(a, &x);
     }

@@ -52,11 +52,9 @@ static int read_against(robustness *r)
         return EXIT_DONE;
     }
     int law = find_law(word, strlen(word));
-    FAIL_IF(law == LAW_NONE,
-            complain("--against %s: no control law, expected one of control.law", word));
-    FAIL_IF(
-        r->set.case_count == 0,
-        complain("--against %s: the set has no cases, expected lines case TITLE: ... in it", word));
+    COMPLAIN_IF(law == LAW_NONE, "--against %s: no control law, expected one of control.law", word);
+    COMPLAIN_IF(r->set.case_count == 0,
+                "--against %s: the set has no cases, expected lines case TITLE: ... in it", word);
 
     for (int i = 0; i < r->count; i++) {
         r->against = r->laws[i] == law ? i : r->against;
@@ -80,18 +78,18 @@ static int read_laws(robustness *r)
     while (rest != NULL) {
         size_t length = strcspn(rest, ",");
         int law = find_law(rest, length);
-        FAIL_IF(law == LAW_NONE || r->count == LAW_COUNT,
-                complain("--laws %s: '%.*s' is no control law, expected those of control.law",
-                         r->arguments->laws, (int)length, rest));
+        COMPLAIN_IF(law == LAW_NONE || r->count == LAW_COUNT,
+                    "--laws %s: '%.*s' is no control law, expected those of control.law",
+                    r->arguments->laws, (int)length, rest);
         r->laws[r->count++] = law;
         rest = rest[length] == ',' ? rest + length + 1 : NULL;
     }
 
     // what cannot be run, or not be shown
-    FAIL_IF(r->laws[0] == LAW_NONE,
-            complain("%s has no control law, expected one or --laws", r->scenario->name));
-    FAIL_IF(r->arguments->plot != NULL && r->count > ROBUST_MOST_CURVES,
-            complain("--plot shows at most %d laws", ROBUST_MOST_CURVES));
+    COMPLAIN_IF(r->laws[0] == LAW_NONE, "%s has no control law, expected one or --laws",
+                r->scenario->name);
+    COMPLAIN_IF(r->arguments->plot != NULL && r->count > ROBUST_MOST_CURVES,
+                "--plot shows at most %d laws", ROBUST_MOST_CURVES);
     return EXIT_DONE;
 }
 
@@ -114,8 +112,8 @@ static int read_set(robustness *r)
     SCOPED(free_kept) char *path = a->over == NULL ? scenario_folder_file(default_set) : NULL;
     const char *read = a->over != NULL ? a->over : path;
     TRY_FAULT(read != NULL ? robust_set_read(&r->set, read, &f) : fault_no_memory(&f));
-    FAIL_IF(r->set.case_count > 0 && a->plot != NULL,
-            complain("--plot shows laws, not the cases of %s", a->over));
+    COMPLAIN_IF(r->set.case_count > 0 && a->plot != NULL, "--plot shows laws, not the cases of %s",
+                a->over);
 
     // what is drawn is the same in all cases
     bool cases = r->set.case_count > 0;

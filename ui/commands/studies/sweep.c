@@ -143,17 +143,17 @@ static int read_share(const arguments *a, sweep_share *share)
     }
 
     // which part of how many
-    FAIL_IF(sscanf(a->part, "%6d/%6d%c", &share->part, &share->parts, &rest) != 2 ||
-                share->part < 1 || share->parts < share->part,
-            complain("--part '%.40s' is no part, expected K/N with K from 1 to N", a->part));
+    COMPLAIN_IF(sscanf(a->part, "%6d/%6d%c", &share->part, &share->parts, &rest) != 2 ||
+                    share->part < 1 || share->parts < share->part,
+                "--part '%.40s' is no part, expected K/N with K from 1 to N", a->part);
 
     // a part alone can only be kept
-    FAIL_IF(a->db == NULL,
-            complain("--part %s keeps its runs in a database, expected --db FILE.sqlite", a->part));
-    FAIL_IF(a->csv != NULL || a->json != NULL || a->plot != NULL,
-            complain("--part %s is not the whole sweep: --csv, --json and --plot come after "
-                     "impactlab merge",
-                     a->part));
+    COMPLAIN_IF(a->db == NULL, "--part %s keeps its runs in a database, expected --db FILE.sqlite",
+                a->part);
+    COMPLAIN_IF(
+        a->csv != NULL || a->json != NULL || a->plot != NULL,
+        "--part %s is not the whole sweep: --csv, --json and --plot come after impactlab merge",
+        a->part);
     return EXIT_DONE;
 }
 
@@ -244,7 +244,7 @@ const command sweep_command = {
 static int merge(const arguments *a)
 {
     sweep_merged merged;
-    FAIL_IF(a->output == NULL, complain("merge: expected -o FILE, the database to write"));
+    COMPLAIN_IF(a->output == NULL, "merge: expected -o FILE, the database to write");
     TRY_FAULT(sweep_merge(a->operands, a->operand_count, a->output, &merged, &f));
 
     // a sweep with missing runs is a valid file: the same sweep continues in it

@@ -187,8 +187,8 @@ static int tune(const arguments *a, scenario *s)
 {
     SCOPED(robust_set_finish) robust_set set = {0};
     SCOPED(finish) tuner t = {.arguments = a, .scenario = s};
-    FAIL_IF(a->varies.count == 0 || a->minimise == NULL,
-            complain("tune: expected --vary PATH=a:b and --minimise EXPR"));
+    COMPLAIN_IF(a->varies.count == 0 || a->minimise == NULL,
+                "tune: expected --vary PATH=a:b and --minimise EXPR");
     const size_t usual = a->over != NULL ? TUNE_RUNS : TUNE_RUNS_ALONE;
     const tune_request asked = {.base = s,
                                 .vary = a->varies.items,
