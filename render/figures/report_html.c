@@ -106,9 +106,9 @@ static json_t *series_json(const figure_panel *panel)
             // in bytes, for the script that compares it with the strokes of the drawing
             const colour c = palette_series(THEME_COLOUR, s->colour, i);
             const double ink[] = {round(255 * c.red), round(255 * c.green), round(255 * c.blue)};
-            json_add(all, json_members(json_object(), "ink:o dashed:b label:o",
-                                       json_numbers(ink, 3), s->secondary || s->style != LINE_SOLID,
-                                       plain_json(s->label != NULL ? s->label : s->name)));
+            json_add(all, json_of("ink:o dashed:b label:o", json_numbers(ink, 3),
+                                  s->secondary || s->style != LINE_SOLID,
+                                  plain_json(s->label != NULL ? s->label : s->name)));
         }
     }
     return all;
@@ -124,8 +124,7 @@ static void add_panels(GString *html, const figure *fig, const figure_report *se
         const figure_range *range = &seen->ranges[i];
         const double place[] = {box->x, box->y, box->width, box->height};
         const double x[] = {range->x_low, range->x_high}, y[] = {range->y_low, range->y_high};
-        json_add(all,
-                 json_members(json_object(), "box:o x:o y:o xlog:b ylog:b xname:o unit:o series:o",
+        json_add(all, json_of("box:o x:o y:o xlog:b ylog:b xname:o unit:o series:o",
                               json_numbers(place, 4), json_numbers(x, 2), json_numbers(y, 2),
                               range->x_logarithmic, range->y_logarithmic, plain_json(fig->x.name),
                               plain_json(fig->panels[i].y.unit), series_json(&fig->panels[i])));

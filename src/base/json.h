@@ -23,10 +23,11 @@ void json_add(json_t *array, json_t *value);
 
 // Puts members into an object and returns it: each word "KEY:T" of `members` takes an argument, n a
 // double (json_number), i an int, b a bool, t a text (json_text), o a json_t *, which is taken
-// over.
+// over. json_of makes the object, too:
 //
-//     json_members(json_object(), "path:t value:n", axis->name, limit->value)
+//     json_of("path:t value:n", axis->name, limit->value)
 json_t *json_members(json_t *object, const char *members, ...);
+#define json_of(...) json_members(json_object(), __VA_ARGS__)
 
 // Writes a JSON value with two spaces of indentation, keys in the order in which they were set and
 // numbers as number_format gives them. Errors stay in the stream (ferror); NULL, for which there

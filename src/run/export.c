@@ -53,10 +53,10 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
         const expectation *e = &s->expectations[i];
         double value = summary_value(&result->summary, e->quantity);
 
-        json_t *object = json_members(
-            json_object(), "quantity:t expected:n tolerance:n value:n met:b",
-            summary_table[e->quantity].key, e->is_null ? (double)NAN : e->value,
-            e->is_null ? (double)NAN : e->tolerance, value, expectation_is_met(e, value));
+        json_t *object =
+            json_of("quantity:t expected:n tolerance:n value:n met:b",
+                    summary_table[e->quantity].key, e->is_null ? (double)NAN : e->value,
+                    e->is_null ? (double)NAN : e->tolerance, value, expectation_is_met(e, value));
 
         json_add(array, object);
     }
@@ -66,7 +66,7 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
 // An event with what its kind has.
 static json_t *event_object(const scenario *s, const event *e)
 {
-    json_t *object = json_members(json_object(), "t_s:n kind:t", e->time, event_name(e->kind));
+    json_t *object = json_of("t_s:n kind:t", e->time, event_name(e->kind));
     if (e->kind == EVENT_IMPACT || e->kind == EVENT_PUSH) {
         json_put(object, "impulse_Ns", json_number(e->impulse));
     }

@@ -98,13 +98,12 @@ json_t *bench_export(const bench_result results[BENCHMARKS])
         const bench_result *r = &results[i];
         if (r->median > 0) {
             // with extremes, as one number says little about a machine
-            json_add(array, json_members(json_object(),
-                                         "name:t unit:t median:n min:n max:n wall_per_cpu:n",
-                                         bench_table[i].name, bench_table[i].unit, r->median,
-                                         r->min, r->max, r->wall));
+            json_add(array, json_of("name:t unit:t median:n min:n max:n wall_per_cpu:n",
+                                    bench_table[i].name, bench_table[i].unit, r->median, r->min,
+                                    r->max, r->wall));
         }
     }
-    return json_members(json_object(), "bench:o", array);
+    return json_of("bench:o", array);
 }
 
 status bench_read(const char *path, double medians[BENCHMARKS], fault *f)

@@ -202,8 +202,7 @@ static result_table told(const calibration *c)
 json_t *calibration_json(const calibration *c, const char *name, const char *table)
 {
     const result_table points = told(c);
-    return json_members(json_object(), "scenario:t k2_table:t points:o", name, table,
-                        result_json(&points));
+    return json_of("scenario:t k2_table:t points:o", name, table, result_json(&points));
 }
 
 void calibration_csv(FILE *stream, const calibration *c)

@@ -253,7 +253,7 @@ static json_t *row_object(const compare_table *t, int i)
     json_t *differs = json_array();
 
     // which run
-    json_t *object = json_members(json_object(), "scenario:t law:t", row->scenario, row->law);
+    json_t *object = json_of("scenario:t law:t", row->scenario, row->law);
     if (t->varied_count > 0) {
         json_put(object, "varied", varied_object(t, i));
     }

@@ -57,10 +57,9 @@ json_t *identify_traces_json(const identification *id)
                      t->contact_error, 100 * t->peak_error);
         for (int c = 0; c < CHANNELS; c++) {
             if (t->reading[c] != NULL) {
-                json_add(channels,
-                         json_members(json_object(), "signal:t rms_over_deviation:n whiteness:n",
-                                      signal_table[identify_signals[c]].name, t->rms[c],
-                                      t->whiteness[c]));
+                json_add(channels, json_of("signal:t rms_over_deviation:n whiteness:n",
+                                           signal_table[identify_signals[c]].name, t->rms[c],
+                                           t->whiteness[c]));
             }
         }
         json_put(line, "residuals", channels);
@@ -76,11 +75,10 @@ json_t *identify_json(const identification *id)
     for (int i = 0; i < p; i++) {
         const fitted_parameter *of = &id->fit[i];
         double row[IDENTIFY_PATHS];
-        json_add(fit, json_members(json_object(),
-                                   "path:t value:n standard_error:n low:n high:n determined:b "
-                                   "at_end_of_range:b",
-                                   of->axis.name, of->value, of->standard_error, of->low, of->high,
-                                   of->determined, identify_at_end(of)));
+        json_add(fit, json_of("path:t value:n standard_error:n low:n high:n determined:b "
+                              "at_end_of_range:b",
+                              of->axis.name, of->value, of->standard_error, of->low, of->high,
+                              of->determined, identify_at_end(of)));
         for (int j = 0; j < p; j++) {
             const double size = sqrt(id->covariance[i * p + i]) * sqrt(id->covariance[j * p + j]);
             row[j] = of->determined && id->fit[j].determined ? id->covariance[i * p + j] / size
@@ -92,12 +90,10 @@ json_t *identify_json(const identification *id)
         char text[1024];
         json_add(words, json_text(identify_words(id, k, text, sizeof text)));
     }
-    return json_members(json_object(),
-                        "scenario:t fit:o correlation:o singular_values:o undetermined:o "
-                        "chi_square:n residuals:i aic:n white:b traces:o",
-                        id->base->name, fit, rows, json_numbers(id->singular, p), words,
-                        id->chi_square, (int)id->residuals - p, id->aic, id->white,
-                        identify_traces_json(id));
+    return json_of("scenario:t fit:o correlation:o singular_values:o undetermined:o "
+                   "chi_square:n residuals:i aic:n white:b traces:o",
+                   id->base->name, fit, rows, json_numbers(id->singular, p), words, id->chi_square,
+                   (int)id->residuals - p, id->aic, id->white, identify_traces_json(id));
 }
 
 // An arm of the covariance, whose eigenvectors and -values these are: along each a normal number.

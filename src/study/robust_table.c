@@ -195,7 +195,7 @@ void robust_csv(FILE *stream, const robust_table *t)
 json_t *robust_json(const robust_table *t)
 {
     const result_table all = told(t);
-    json_t *whole = json_members(json_object(), "scenario:t", t->scenario);
+    json_t *whole = json_of("scenario:t", t->scenario);
     if (t->against != NULL) {
         json_members(whole, "against:t", t->against);
     }

@@ -156,10 +156,8 @@ static int figures(const arguments *a)
         for (size_t i = 0; i < count; i++) {
             const thesis_figure *which = list.figures[i].figure;
             if (list.figures[i].fault.code == STATUS_OK) {
-                json_add(array,
-                         json_members(json_object(), "id:t folder:t file:t formats:t caption:t",
-                                      which->id, list.folder, which->file, list.formats,
-                                      which->caption));
+                json_add(array, json_of("id:t folder:t file:t formats:t caption:t", which->id,
+                                        list.folder, which->file, list.formats, which->caption));
             }
         }
         code = write_json(a->json, array);

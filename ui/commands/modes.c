@@ -46,10 +46,10 @@ static json_t *modes_object(const scenario *s, const void *found)
             json_add(shapes, json_numbers(sets[i].shapes + mode * a->dof, a->dof));
             json_add(frequencies, json_number(1 / TWO_PI * sets[i].frequencies[mode]));
         }
-        json_add(array, json_members(json_object(), "hub:t tip:t frequency_Hz:o shapes:o",
-                                     holds[i].hub_name, holds[i].tip_name, frequencies, shapes));
+        json_add(array, json_of("hub:t tip:t frequency_Hz:o shapes:o", holds[i].hub_name,
+                                holds[i].tip_name, frequencies, shapes));
     }
-    return json_members(json_object(), "scenario:t modes:o", s->name, array);
+    return json_of("scenario:t modes:o", s->name, array);
 }
 
 static void print_set(const arm *a, const mode_set *set, const char *hub, const char *tip)

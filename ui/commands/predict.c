@@ -59,20 +59,18 @@ static json_t *predict_object(const scenario *s, const void *found)
         const prediction_answer *answer = &p->answers[i];
         const prediction *said = &answer->prediction;
         const bool known = prediction_known(answer);
-        json_add(array,
-                 json_members(json_object(),
-                              "method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
-                              "equivalent_restitution:n inductance_changes_peak_N:n",
-                              answer->name, known ? answer->note : prediction_reason(answer),
-                              known ? json_boolean(said->holds) : json_null(), said->force,
-                              said->delay, said->impulse, said->restitution, said->inductance));
+        json_add(array, json_of("method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
+                                "equivalent_restitution:n inductance_changes_peak_N:n",
+                                answer->name, known ? answer->note : prediction_reason(answer),
+                                known ? json_boolean(said->holds) : json_null(), said->force,
+                                said->delay, said->impulse, said->restitution, said->inductance));
     }
 
     // the same pulse in the run
-    json_t *simulation = json_members(json_object(), "peak_N:n time_to_peak_s:n impulse_Ns:n",
-                                      came->peak, came->time_to_peak, came->impulse);
-    return json_members(json_object(), "scenario:t t_s:n predictions:o simulation:o", s->name,
-                        p->row->time, array, simulation);
+    json_t *simulation = json_of("peak_N:n time_to_peak_s:n impulse_Ns:n", came->peak,
+                                 came->time_to_peak, came->impulse);
+    return json_of("scenario:t t_s:n predictions:o simulation:o", s->name, p->row->time, array,
+                   simulation);
 }
 
 static void print_line(const char *label, double force, double delay, double impulse)

@@ -92,8 +92,8 @@ static int list(const arguments *a)
         const int read = read_listed(name, &here);
         result = worse(result, read);
         if (read == EXIT_DONE && l.all != NULL) {
-            json_add(l.all, json_members(json_object(), "name:t title:o", name,
-                                         here.faulty ? json_null() : json_text(here.title)));
+            json_add(l.all, json_of("name:t title:o", name,
+                                    here.faulty ? json_null() : json_text(here.title)));
         } else if (read == EXIT_DONE && here.faulty) {
             say("%-*s  (has faults, see impactlab check %s)\n", width, name, name);
         } else if (read == EXIT_DONE) {
@@ -139,8 +139,7 @@ static int run_lesson(const arguments *a)
             opened.operand_count = 1;
             code = command_find("lab")->run(&opened);
         } else if (here.is_lesson && l.all != NULL) {
-            json_add(l.all, json_members(json_object(), "name:t scenario:t title:t", leaf, name,
-                                         here.title));
+            json_add(l.all, json_of("name:t scenario:t title:t", leaf, name, here.title));
         } else if (here.is_lesson) {
             say("%-20s %s\n", leaf, here.title);
         }
@@ -234,9 +233,9 @@ static json_t *show_object(const scenario *s)
     }
 
     // what describes it, and all values whether given or not
-    return json_members(json_object(), "scenario:t title:t description:t parameters:o given:o",
-                        s->name, scenario_titled(s, title), s->description,
-                        export_parameters(&s->parameters), given);
+    return json_of("scenario:t title:t description:t parameters:o given:o", s->name,
+                   scenario_titled(s, title), s->description, export_parameters(&s->parameters),
+                   given);
 }
 
 static int print_scenario(const arguments *a, scenario *s)
@@ -335,7 +334,7 @@ static int check_one(const char *file, const arguments *a, checking *c)
         result = tell_unopened(&c->told, code, file);
     }
 
-    json_add(c->files, json_members(json_object(), "file:t faults:o", file, c->faults));
+    json_add(c->files, json_of("file:t faults:o", file, c->faults));
     return result;
 }
 

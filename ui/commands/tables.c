@@ -12,14 +12,14 @@ static json_t *tables_object(const scenario *s, const void *found)
     json_t *rows = json_array();
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i];
-        json_t *line = json_members(json_object(), "table:t k2_factor:n model:t quantity:t",
-                                    row->table, row->k2_factor, row->model, row->quantity);
+        json_t *line = json_of("table:t k2_factor:n model:t quantity:t", row->table, row->k2_factor,
+                               row->model, row->quantity);
         json_add(rows, json_members(line, "voltage_V:o printed:o computed:o",
                                     json_numbers(t->voltage, TABLE_VOLTAGES),
                                     json_numbers(row->printed, TABLE_VOLTAGES),
                                     json_numbers(row->computed, TABLE_VOLTAGES)));
     }
-    return json_members(json_object(), "tables:o", rows);
+    return json_of("tables:o", rows);
 }
 
 static const struct {

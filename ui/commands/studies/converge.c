@@ -21,11 +21,11 @@ static json_t *panel_object(const scenario *s, const void *found)
     json_t *rows = json_array();
     for (int k = 0; k < panel->row_count; k++) {
         const convergence_row *row = &panel->rows[k];
-        json_add(rows, json_members(json_object(), "quantity:t values:o order:n", row->key,
-                                    json_numbers(row->value, PANEL_STEPS), row->order));
+        json_add(rows, json_of("quantity:t values:o order:n", row->key,
+                               json_numbers(row->value, PANEL_STEPS), row->order));
     }
-    return json_members(json_object(), "scenario:t step_s:o convergence:o", s->name,
-                        json_numbers(panel->step, PANEL_STEPS), rows);
+    return json_of("scenario:t step_s:o convergence:o", s->name,
+                   json_numbers(panel->step, PANEL_STEPS), rows);
 }
 
 static void print_panel(const scenario *s, const void *found)

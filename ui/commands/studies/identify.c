@@ -86,8 +86,7 @@ static json_t *answer(const scenario *s, const void *found)
     const outcome *o = found;
     json_t *object = identify_json(&o->fit), *links = json_array();
     for (int i = 0; i < o->link_count; i++) {
-        json_add(links, json_members(json_object(), "links:i aic:n white:b", o->links[i], o->aic[i],
-                                     o->white[i]));
+        json_add(links, json_of("links:i aic:n white:b", o->links[i], o->aic[i], o->white[i]));
     }
     return json_members(object, "links:o validation:o", links,
                         identify_traces_json(&o->validation));

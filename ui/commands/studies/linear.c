@@ -139,28 +139,25 @@ static json_t *as_json(const scenario *base, const void *found)
             json_add(roots[set != POLES], root);
         }
     }
-    json_t *object = json_members(json_object(),
-                                  "scenario:t at:t force_N:n command_V:n hub_angle_rad:n "
-                                  "contact_margin_Ns:n poles:o zeros:o",
-                                  base->name, x->word, x->arm.force, x->arm.voltage,
-                                  x->arm.hub_angle, x->least_push, roots[0], roots[1]);
+    json_t *object = json_of("scenario:t at:t force_N:n command_V:n hub_angle_rad:n "
+                             "contact_margin_Ns:n poles:o zeros:o",
+                             base->name, x->word, x->arm.force, x->arm.voltage, x->arm.hub_angle,
+                             x->least_push, roots[0], roots[1]);
 
     // the loop
     const linear_response *r = &x->response;
     if (r->count > 0) {
         const linear_margins *m = &x->margins;
         json_t *loop = json_array();
-        json_t *margins = !x->stable ? json_null()
-                                     : json_members(json_object(),
-                                                    "gain_db:n gain_down_db:n phase_deg:n "
-                                                    "delay_s:n disk:n",
-                                                    m->gain_db, m->gain_down_db, m->phase_deg,
-                                                    m->delay_s, m->disk);
+        json_t *margins =
+            !x->stable ? json_null()
+                       : json_of("gain_db:n gain_down_db:n phase_deg:n "
+                                 "delay_s:n disk:n",
+                                 m->gain_db, m->gain_down_db, m->phase_deg, m->delay_s, m->disk);
         for (int i = 0; i < r->count; i++) {
-            json_add(loop, json_members(json_object(), "frequency_Hz:n gain_db:n phase_deg:n",
-                                        r->frequency[i] / TWO_PI,
-                                        20 * plain_log(cabs(r->gain[i])) / plain_log(10),
-                                        carg(r->gain[i]) * 360 / TWO_PI));
+            json_add(loop, json_of("frequency_Hz:n gain_db:n phase_deg:n", r->frequency[i] / TWO_PI,
+                                   20 * plain_log(cabs(r->gain[i])) / plain_log(10),
+                                   carg(r->gain[i]) * 360 / TWO_PI));
         }
         json_members(object, "stable:b measured:b margins:o loop:o", x->stable, x->measured,
                      margins, loop);
@@ -306,17 +303,15 @@ static json_t *survey_json(const scenario *base, const void *found)
         for (int axis = 0; axis < s->axis_count; axis++) {
             json_put(values, s->axes[axis].name, json_number(sweep_value(s, i, axis)));
         }
-        json_add(points,
-                 json_members(json_object(), "values:o growth_per_s:n stable:b settling_time_s:n",
-                              values, y->numbers[0][i], linear_is_stable(false, y->numbers[0][i]),
-                              y->numbers[1][i]));
+        json_add(points, json_of("values:o growth_per_s:n stable:b settling_time_s:n", values,
+                                 y->numbers[0][i], linear_is_stable(false, y->numbers[0][i]),
+                                 y->numbers[1][i]));
     }
     for (int i = 0; i < y->limit_count; i++) {
-        json_add(limits, json_members(json_object(), "path:t value:n of:t", s->axes[0].name,
-                                      y->limits[i].value, y->limits[i].by_runs ? "runs" : "poles"));
+        json_add(limits, json_of("path:t value:n of:t", s->axes[0].name, y->limits[i].value,
+                                 y->limits[i].by_runs ? "runs" : "poles"));
     }
-    return json_members(json_object(), "scenario:t at:t varied:o limits:o", base->name, x->word,
-                        points, limits);
+    return json_of("scenario:t at:t varied:o limits:o", base->name, x->word, points, limits);
 }
 
 static void write_survey(FILE *stream, const scenario *base, const void *found)

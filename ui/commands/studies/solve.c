@@ -19,12 +19,12 @@ static json_t *answer(const scenario *s, const void *asked)
     json_t *limits = json_array();
     for (int i = 0; i < found->count; i++) {
         const solve_limit *limit = &found->limits[i];
-        json_add(limits, json_members(
-                             json_object(), "path:t value:n quantity:t reached:n holds:t jumps:b",
-                             q->axis.name, limit->value, summary_table[q->condition.quantity].key,
-                             limit->reached, limit->holds_below ? "below" : "above", limit->jumps));
+        json_add(limits,
+                 json_of("path:t value:n quantity:t reached:n holds:t jumps:b", q->axis.name,
+                         limit->value, summary_table[q->condition.quantity].key, limit->reached,
+                         limit->holds_below ? "below" : "above", limit->jumps));
     }
-    return json_members(json_object(), "scenario:t solve:o", s->name, limits);
+    return json_of("scenario:t solve:o", s->name, limits);
 }
 
 // How many values of the range say nothing, and why.

@@ -34,8 +34,7 @@ static json_t *methods_object(const scenario *s, const void *found)
     json_t *points = json_array();
 
     // what errors are measured against
-    json_t *reference =
-        json_members(json_object(), "method:t step_s:n", "event", study->reference_step);
+    json_t *reference = json_of("method:t step_s:n", "event", study->reference_step);
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
         json_put(reference, study_keys[k], json_number(study->reference[k]));
     }
@@ -47,13 +46,11 @@ static json_t *methods_object(const scenario *s, const void *found)
             for (int k = 0; k < STUDY_QUANTITIES; k++) {
                 json_put(errors, study_keys[k], json_number(p->error[k]));
             }
-            json_add(points,
-                     json_members(json_object(), "method:t step_s:n computing_time_s:n errors:o",
-                                  study_methods[m], p->step, p->cost, errors));
+            json_add(points, json_of("method:t step_s:n computing_time_s:n errors:o",
+                                     study_methods[m], p->step, p->cost, errors));
         }
     }
-    return json_members(json_object(), "scenario:t reference:o methods:o", s->name, reference,
-                        points);
+    return json_of("scenario:t reference:o methods:o", s->name, reference, points);
 }
 
 static void print_methods(const scenario *s, const void *found)
@@ -167,7 +164,7 @@ static json_t *links_object(const scenario *s, const void *found)
     const links_study *study = found;
     json_t *rows = json_array(), *quantities = json_array();
     for (int i = 0; i < study->count; i++) {
-        json_t *line = json_members(json_object(), "links:i", links_numbers[i]);
+        json_t *line = json_of("links:i", links_numbers[i]);
         for (int k = 0; k < LINKS_QUANTITIES; k++) {
             json_put(line, study->rows[k].key, json_number(study->rows[k].value[i]));
         }
@@ -177,13 +174,11 @@ static json_t *links_object(const scenario *s, const void *found)
     // what they tend to
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
         const links_row *row = &study->rows[k];
-        json_add(quantities,
-                 json_members(json_object(),
-                              "quantity:t order:n limit:n error:n beam:n enough_links:o", row->key,
-                              row->order, row->limit, row->error, row->beam,
-                              row->enough > 0 ? json_integer(row->enough) : json_null()));
+        json_add(quantities, json_of("quantity:t order:n limit:n error:n beam:n enough_links:o",
+                                     row->key, row->order, row->limit, row->error, row->beam,
+                                     row->enough > 0 ? json_integer(row->enough) : json_null()));
     }
-    return json_members(json_object(), "scenario:t links:o limits:o", s->name, rows, quantities);
+    return json_of("scenario:t links:o limits:o", s->name, rows, quantities);
 }
 
 static void print_links(const scenario *s, const void *found)
@@ -288,10 +283,8 @@ static json_t *points_array(const follow_point *points)
     json_t *array = json_array();
     for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
         const follow_point *p = &points[i];
-        json_add(array,
-                 json_members(json_object(),
-                              "frequency_Hz:n gain:n phase_deg:n error:n wall_N_per_m:n",
-                              follow_frequencies[i], p->gain, p->phase, p->error, p->shaken));
+        json_add(array, json_of("frequency_Hz:n gain:n phase_deg:n error:n wall_N_per_m:n",
+                                follow_frequencies[i], p->gain, p->phase, p->error, p->shaken));
     }
     return array;
 }
@@ -303,8 +296,8 @@ static json_t *follow_object(const scenario *s, const void *found)
     for (int k = 0; k < FOLLOW_LAWS; k++) {
         json_put(laws, follow_laws[k], points_array(study->points[k]));
     }
-    return json_members(json_object(), "scenario:t follow:o bound:o later_s:n zero_per_s:n",
-                        s->name, laws, points_array(study->bound), study->later, study->zero);
+    return json_of("scenario:t follow:o bound:o later_s:n zero_per_s:n", s->name, laws,
+                   points_array(study->bound), study->later, study->zero);
 }
 
 // A number of every point, over the frequencies.

@@ -252,11 +252,10 @@ static int merge(const arguments *a)
         say("%s: %zu of %zu runs from %d part%s\n", a->output, merged.runs, merged.total,
             a->operand_count, a->operand_count == 1 ? "" : "s");
     }
-    return a->json != NULL
-               ? write_json(a->json, json_members(json_object(), "file:t runs:o runs_of_sweep:o",
-                                                  a->output, json_integer((json_int_t)merged.runs),
-                                                  json_integer((json_int_t)merged.total)))
-               : EXIT_DONE;
+    return a->json != NULL ? write_json(a->json, json_of("file:t runs:o runs_of_sweep:o", a->output,
+                                                         json_integer((json_int_t)merged.runs),
+                                                         json_integer((json_int_t)merged.total)))
+                           : EXIT_DONE;
 }
 
 static const option_row merge_rows[] = {

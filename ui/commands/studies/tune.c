@@ -92,10 +92,9 @@ static json_t *answer(const scenario *s, const void *found_by)
            *numbers = json_array();
     for (int i = 0; i < found->asked.vary_count; i++) {
         const tune_result *changed = &t->rows[CHANGED + 2 * i];
-        json_add(numbers,
-                 json_members(json_object(), "path:t given:n value:n tenth_lower:n tenth_higher:n",
-                              found->plan.axes[i].name, given_value(t, i), found->found[i],
-                              changed[0].value, changed[1].value));
+        json_add(numbers, json_of("path:t given:n value:n tenth_lower:n tenth_higher:n",
+                                  found->plan.axes[i].name, given_value(t, i), found->found[i],
+                                  changed[0].value, changed[1].value));
     }
     return json_members(object,
                         "scenario:t minimise:t evaluations:i runs_each:i least:n unseen_given:n "
