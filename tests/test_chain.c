@@ -81,11 +81,11 @@ static void some_state(const arm *a, int seed, double *q, double *w)
 static void numeric_jacobian(const arm *a, double *q, const double *w, double *jacobian)
 {
     for (int i = 0; i < a->dof; i++) {
-        double e = 1e-6, angle = q[i], plus, minus;
+        const double e = 1e-6, angle = q[i];
         q[i] = angle + e;
-        chain_penetration(a, q, w, &plus, NULL);
+        const double plus = chain_penetration(a, q, w).depth;
         q[i] = angle - e;
-        chain_penetration(a, q, w, &minus, NULL);
+        const double minus = chain_penetration(a, q, w).depth;
         q[i] = angle;
         jacobian[i] = (plus - minus) / (2 * e);
     }
@@ -189,7 +189,7 @@ static double numeric_second_rate(const arm *a, const double *q, const double *w
             qs[i] = q[i] + t * w[i] + t * t / 2 * alpha[i];
             ws[i] = w[i] + t * alpha[i];
         }
-        chain_penetration(a, qs, ws, NULL, &rate[side]);
+        rate[side] = chain_penetration(a, qs, ws).rate;
     }
     return (rate[1] - rate[0]) / (2 * h);
 }
@@ -266,14 +266,13 @@ TEST(rates_follow_from_the_penetration)
     for (int links = 1; links <= 5; links++) {
         for (int wall = 0; wall < 2; wall++) {
             arm a = make_arm(links, "rigid", wall ? "plane" : "point");
-            double q[LARGEST], w[LARGEST], jacobian[LARGEST], rate, sum = 0;
+            double q[LARGEST], w[LARGEST], jacobian[LARGEST], sum = 0;
             some_state(&a, links, q, w);
             numeric_jacobian(&a, q, w, jacobian);
             for (int i = 0; i < a.dof; i++) {
                 sum += jacobian[i] * w[i];
             }
-            chain_penetration(&a, q, w, NULL, &rate);
-            check_close(rate, sum, 1e-8);
+            check_close(chain_penetration(&a, q, w).rate, sum, 1e-8);
         }
     }
 }
@@ -281,14 +280,13 @@ TEST(rates_follow_from_the_penetration)
 TEST(penetration_of_two_links_is_equation_3_9)
 {
     arm a = make_arm(2, "spring", "point");
-    double q[3], w[3], g, l = 0.5, x = cos(0.1), y = sin(0.1);
+    double q[3], w[3], l = 0.5, x = cos(0.1), y = sin(0.1);
     some_state(&a, 4, q, w);
-    chain_penetration(&a, q, w, &g, NULL);
-    check_close(g, x * sin(q[2]) - y * cos(q[2]) - l * sin(q[2] - q[1]), 1e-15);
+    check_close(chain_penetration(&a, q, w).depth,
+                x * sin(q[2]) - y * cos(q[2]) - l * sin(q[2] - q[1]), 1e-15);
     // straight arm pointing at the contact point
     q[0] = q[1] = q[2] = 0.1;
-    chain_penetration(&a, q, w, &g, NULL);
-    check_close(g, 0, 1e-16);
+    check_close(chain_penetration(&a, q, w).depth, 0, 1e-16);
 }
 
 TEST(one_link_on_a_rigid_hub_is_held_by_the_wall)
@@ -414,11 +412,9 @@ TEST(an_arm_is_folded_where_a_flat_wall_moves_no_link)
 
     // without a wall there is no penetration
     arm alone = make_arm(2, "rigid", "none");
-    double gap = 1, rate = 1;
     const double q[2] = {3, 3}, w[2] = {1, 1};
-    chain_penetration(&alone, q, w, &gap, NULL);
-    chain_penetration(&alone, q, w, NULL, &rate);
-    assert_true(gap == -HUGE_VAL && rate == 0);
+    const penetration none = chain_penetration(&alone, q, w);
+    assert_true(none.depth == -HUGE_VAL && none.rate == 0);
 
     // a rod across the wall stands away from it
     arm rod = make_arm(1, "rigid", "plane");

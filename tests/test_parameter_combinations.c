@@ -21,7 +21,7 @@ static void check_start(parameters p, double angle, double wall)
 {
     fault f = {0};
     arm a;
-    double q[5], rest[5] = {0}, behind;
+    double q[5], rest[5] = {0};
     p.initial.angle = angle;
     p.wall.angle = wall;
     p.set[parameter_find("initial.angle")] = p.set[parameter_find("wall.angle")] = true;
@@ -32,8 +32,7 @@ static void check_start(parameters p, double angle, double wall)
     for (int k = 0; k < a.dof; k++) {
         q[k] = angle;
     }
-    chain_penetration(&a, q, rest, &behind, NULL);
-
+    const double behind = chain_penetration(&a, q, rest).depth;
     const bool far = angle > wall + 1e-14; // where the wall is in front only after a turn
     fail_if(fabs(behind) > 1e-14 && (code == STATUS_OK) != (behind < 0 && !far),
             "start at %.17g, wall at %.17g, %.3g m behind: %s", angle, wall, behind, f.text);

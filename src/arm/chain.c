@@ -53,25 +53,19 @@ double chain_penetration_rate(const arm *a, const double *q, const double *v)
     return wall_penetration_rate(&at.wall, at.vx, at.vy, at.lever, v[a->dof - 1]);
 }
 
-void chain_penetration(const arm *a, const double *q, const double *w, double *g, double *rate)
+penetration chain_penetration(const arm *a, const double *q, const double *w)
 {
-    double depth = -HUGE_VAL, comes = 0;
     if (pair_suits(a)) {
         const pair_contact at = pair_contact_at(a, q);
-        depth = -at.gap;
-        comes = at.j1 * w[0] + at.j2 * w[1];
-    } else if (wall_stands(&a->wall)) {
-        const tip_contact at = contact_of(a, q, w);
-        depth = at.wall.penetration;
-        comes = wall_penetration_rate(&at.wall, at.vx, at.vy, at.lever, w[a->dof - 1]) +
-                wall_comes(&a->wall, at.wall.ex, at.wall.ey);
+        return (penetration){-at.gap, at.j1 * w[0] + at.j2 * w[1]};
     }
-    if (g != NULL) {
-        *g = depth;
+    if (!wall_stands(&a->wall)) {
+        return (penetration){-HUGE_VAL, 0};
     }
-    if (rate != NULL) {
-        *rate = comes;
-    }
+    const tip_contact at = contact_of(a, q, w);
+    return (penetration){at.wall.penetration,
+                         wall_penetration_rate(&at.wall, at.vx, at.vy, at.lever, w[a->dof - 1]) +
+                             wall_comes(&a->wall, at.wall.ex, at.wall.ey)};
 }
 
 bool chain_is_folded(const arm *a, const double *q)

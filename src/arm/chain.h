@@ -37,8 +37,12 @@ void chain_accelerations(const arm *a, chain_link *work, const double *q, const 
 #define CHAIN_FOLDED 1e-3
 bool chain_is_folded(const arm *a, const double *q);
 
-// Penetration g [m], its rate [m/s], seen from a wall that moves (either may be NULL).
-void chain_penetration(const arm *a, const double *q, const double *w, double *g, double *rate);
+// The penetration, seen from a wall that moves.
+typedef struct penetration {
+    double depth; // g [m]
+    double rate;  // [m/s]
+} penetration;
+penetration chain_penetration(const arm *a, const double *q, const double *w);
 
 // Response to a unit contact force: response[dof] = -M^-1 J^T, and compliance J M^-1 J^T > 0
 // [1/kg]. hub_locked keeps the hub where it is.

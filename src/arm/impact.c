@@ -8,7 +8,7 @@ impact_result impact_velocity_increments(const arm *a, chain_link *work, const d
     double compliance;
     chain_contact_response(a, work, q, false, increment, &compliance);
     compliance += wall_has_face(&a->wall) ? 1 / a->wall.face_mass : 0;
-    chain_penetration(a, q, w, NULL, &result.speed);
+    result.speed = chain_penetration(a, q, w).rate;
     const double comes = result.speed - chain_penetration_rate(a, q, w);
     result.speed -= face;
     result.impulse = (1 + restitution) * result.speed / compliance;

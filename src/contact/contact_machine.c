@@ -78,9 +78,9 @@ static void leave_face(const arm *a, motion *m)
 // law changed; else it leaves it.
 static bool face_follows(const arm *a, motion *m)
 {
-    double depth, rate;
-    chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state), &depth, &rate);
-    const bool follows = wall_force(&a->wall, depth, rate) >= 0;
+    const penetration at =
+        chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state));
+    const bool follows = wall_force(&a->wall, at.depth, at.rate) >= 0;
     if (!follows) {
         leave_face(a, m);
     }
@@ -113,9 +113,7 @@ static void impact(const arm *a, motion *m, motion_report *report)
     const double face = m->state[SLOT_FACE_VELOCITY];
 
     // the wall's coefficient of restitution
-    double e, comes;
-    chain_penetration(a, q, w, NULL, &comes);
-    e = wall_restitution(&a->wall, comes - face);
+    double e = wall_restitution(&a->wall, chain_penetration(a, q, w).rate - face);
     if (chatters(a, m)) {
         m->state[SLOT_SHORT_FLIGHTS] = 0;
         report->chatter = e > 0;
@@ -242,12 +240,11 @@ void motion_start_at(const arm *a, motion *m, const double *angles, const double
     m->record.largest_penetration = m->record.overheld = 0;
     motion_reset_peak(m);
 
-    double g, rate;
-    chain_penetration(a, q, w, &g, &rate);
     // an arm on a rigid wall or a face, at rest, that moves into it counts as free until the impact
     // that follows immediately; a gap of rounding is none
-    const bool closed = g >= -START_ROUNDING * a->links * a->link_length;
-    const bool touching = closed && (m->wall_gives ? rate >= 0 : rate == 0);
+    const penetration at = chain_penetration(a, q, w);
+    const bool closed = at.depth >= -START_ROUNDING * a->links * a->link_length;
+    const bool touching = closed && (m->wall_gives ? at.rate >= 0 : at.rate == 0);
     contact_resolve(a, m, touching, MOTION_REACHED);
     m->record.start_energy += motion_wall_energy(a, m, m->state); // of a depth by rounding
 }
@@ -282,9 +279,7 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
     if (m->wall_gives) {
         contact_resolve(a, m, contact && face_follows(a, m), MOTION_REACHED);
     } else {
-        double speed;
-        chain_penetration(a, q, w, NULL, &speed);
-        speed -= m->state[SLOT_FACE_VELOCITY];
+        const double speed = chain_penetration(a, q, w).rate - m->state[SLOT_FACE_VELOCITY];
         if (contact && speed > TOUCH_SPEED) {
             report->event = MOTION_IMPACT;
             impact(a, m, report);
@@ -331,10 +326,9 @@ void motion_retorque(const arm *a, motion *m, double before)
 
 double motion_gap_with(const arm *a, motion *m)
 {
-    double depth;
-    chain_penetration(motion_arm_at(a, m, m->state[SLOT_TIME]), state_angles(m, m->state),
-                      state_velocities(m, m->state), &depth, NULL);
-    return m->state[SLOT_FACE] - depth;
+    a = motion_arm_at(a, m, m->state[SLOT_TIME]);
+    return m->state[SLOT_FACE] -
+           chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state)).depth;
 }
 
 void motion_rebind(const arm *before, const arm *after, motion *m)

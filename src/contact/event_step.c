@@ -76,28 +76,22 @@ static void come_to_rest(motion *m)
     }
 }
 
+// The event of a fall of that function.
 static motion_event event_of(const motion *m, event_function w)
 {
-    // the wall: contact begins with an impact only at a speed, and only if it does not give
-    switch (w) {
-    case EVENT_OF_GAP:
-        if (m->wall_gives) {
-            return m->state[SLOT_CONTACT] != 0 ? MOTION_RELEASE : MOTION_TOUCH;
-        }
-        return m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
-    case EVENT_OF_FORCE:
-        return MOTION_RELEASE;
-
-    // the hub
-    case EVENT_OF_HUB:
-        return MOTION_STICK;
-    case EVENT_OF_STICTION:
-        return MOTION_SLIP;
-    case EVENT_OF_CURRENT:
-    case EVENT_FUNCTION_COUNT:
-        break;
+    static const motion_event events[EVENT_FUNCTION_COUNT] = {[EVENT_OF_FORCE] = MOTION_RELEASE,
+                                                              [EVENT_OF_HUB] = MOTION_STICK,
+                                                              [EVENT_OF_STICTION] = MOTION_SLIP,
+                                                              [EVENT_OF_CURRENT] = MOTION_REACHED};
+    if (w != EVENT_OF_GAP) {
+        return events[w];
     }
-    return MOTION_REACHED;
+
+    // contact begins with an impact only at a speed, and only if the wall does not give
+    if (m->wall_gives) {
+        return m->state[SLOT_CONTACT] != 0 ? MOTION_RELEASE : MOTION_TOUCH;
+    }
+    return m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
 }
 
 // Tries a step of that length, shorter if need be; *end and m->trial end at the first event, if

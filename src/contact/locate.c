@@ -19,20 +19,10 @@ static bool within_wall(const motion *m, const double *state)
 // Positive on the admissible side.
 static double event_value(const arm *a, const motion *m, const double *state, event_function w)
 {
-    switch (w) {
-    case EVENT_OF_GAP:
-        return within_wall(m, state) ? -state[SLOT_GAP] : state[SLOT_GAP];
-    case EVENT_OF_FORCE:
-        return state[SLOT_FORCE];
-    case EVENT_OF_HUB:
-        return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
-    case EVENT_OF_STICTION:
-        return a->motor.stiction - fabs(state[SLOT_FRICTION_TORQUE]);
-    case EVENT_OF_CURRENT:
-    case EVENT_FUNCTION_COUNT:
-        break;
-    }
-    return 1;
+    return w == EVENT_OF_GAP     ? within_wall(m, state) ? -state[SLOT_GAP] : state[SLOT_GAP]
+               : w == EVENT_OF_FORCE ? state[SLOT_FORCE]
+           : w == EVENT_OF_HUB   ? state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof]
+                                 : a->motor.stiction - fabs(state[SLOT_FRICTION_TORQUE]);
 }
 
 double event_tolerance(event_function w)

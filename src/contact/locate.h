@@ -15,21 +15,11 @@ static inline bool event_function_active(const arm *a, const motion *m, event_fu
     bool held = m->dof == 1 && contact && motion_wall_is_rigid(m);
 
     // an event function is of use only where its event could end the present state
-    switch (w) {
-    case EVENT_OF_GAP:
-        return (!contact || m->wall_gives) && wall_stands(&a->wall);
-    case EVENT_OF_FORCE:
-        return contact;
-    case EVENT_OF_HUB:
-        return !stuck && !held && a->motor.stiction > 0;
-    case EVENT_OF_STICTION:
-        return stuck && !held;
-    case EVENT_OF_CURRENT:
-        return m->electric && a->motor.current_limit < HUGE_VAL;
-    case EVENT_FUNCTION_COUNT:
-        break;
-    }
-    return false;
+    return w == EVENT_OF_GAP        ? (!contact || m->wall_gives) && wall_stands(&a->wall)
+           : w == EVENT_OF_FORCE    ? contact
+           : w == EVENT_OF_HUB      ? !stuck && !held && a->motor.stiction > 0
+           : w == EVENT_OF_STICTION ? stuck && !held
+                                    : m->electric && a->motor.current_limit < HUGE_VAL;
 }
 
 // Tolerance of the event function: how far below zero still counts as admissible, in its unit.

@@ -207,9 +207,7 @@ bool motion_project(const arm *a, motion *m, double *state)
     for (int i = 0; i < m->dof; i++) {
         q[i] += shift * response[i];
     }
-    double rate;
-    chain_penetration(a, q, w, NULL, &rate);
-    const double jump = rate / compliance;
+    const double jump = chain_penetration(a, q, w).rate / compliance;
     for (int i = 0; i < m->dof; i++) {
         w[i] += jump * response[i];
     }

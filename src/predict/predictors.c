@@ -102,8 +102,6 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
                               fault *f)
 {
     const parameters *p = question->parameters;
-    const three_body_state *s = &question->bodies;
-    status code = STATUS_OK;
 
     // the thesis's begin with an impact of two bare links
     const bool thesis = which != PREDICTOR_LINEARISED;
@@ -123,20 +121,12 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
         return refused;
     }
 
-    switch (which) {
-    case PREDICTOR_ENERGY:
-        code = predict_energy(p, s, out, f);
-        break;
-    case PREDICTOR_IMPACT_DYNAMICS:
-    case PREDICTOR_IMPACT_QUADRATIC:
-        code = ask_impact_dynamics(which, question, out, f);
-        break;
-    case PREDICTOR_LINEARISED:
+    if (!thesis) {
         return ask_linearised(question, out, f);
-    case PREDICTOR_COUNT:
-        break;
     }
 
+    const status code = which == PREDICTOR_ENERGY ? predict_energy(p, &question->bodies, out, f)
+                                                  : ask_impact_dynamics(which, question, out, f);
     return code != STATUS_OK ? PREDICTION_FAILED : out->holds ? PREDICTION_HOLDS : PREDICTION_LOST;
 }
 

@@ -112,8 +112,8 @@ static status solve_step(const arm *a, motion *m, double h, const implicit_coeff
 static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
 {
     double *trial = m->trial, *q = state_angles(m, trial), *w = state_velocities(m, trial);
-    double g, rate, power = 0;
-    chain_penetration(a, q, w, &g, &rate);
+    const penetration at = chain_penetration(a, q, w);
+    double power = 0;
 
     // the impulse of an impact within the step is not part of the force's impulse
     double impulsive = m->state[SLOT_IMPULSE] / (trial[SLOT_TIME] - m->state[SLOT_TIME]);
@@ -123,8 +123,8 @@ static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
     }
 
     trial[SLOT_FRICTION_TORQUE] = it->stuck ? -it->excess : it->sliding;
-    trial[SLOT_GAP] = -g;
-    trial[SLOT_GAP_VELOCITY] = -rate;
+    trial[SLOT_GAP] = -at.depth;
+    trial[SLOT_GAP_VELOCITY] = -at.rate;
     trial[SLOT_GAP_ACCELERATION] = 0; // asked for only at events, which evaluate it
 
     // powers that the quadratures integrate
@@ -141,7 +141,6 @@ static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
 static void bend_to_wall(const arm *a, motion *m)
 {
     double *q = state_angles(m, m->trial), *shape = m->scratch;
-    double g, along;
     for (int k = 0; k < a->dof; k++) {
         double x = a->links > 1 ? (double)(k - a->first) / (a->links - 1) : 1;
         shape[k] = k < a->first ? 0 : x * (2 - x);
@@ -149,8 +148,8 @@ static void bend_to_wall(const arm *a, motion *m)
 
     // the gap depends on it almost linearly: twice is enough
     for (int i = 0; i < 2; i++) {
-        chain_penetration(a, q, q, &g, NULL);
-        along = chain_penetration_rate(a, q, shape);
+        const double g = chain_penetration(a, q, q).depth;
+        const double along = chain_penetration_rate(a, q, shape);
         for (int k = 0; k < a->dof; k++) {
             q[k] -= g / along * shape[k];
         }
@@ -230,10 +229,10 @@ static size_t init(const arm *a, void *memory)
     return (size_t)a->links * sizeof(implicit_sweep);
 }
 
-const engine newmark_engine = {
-    .name = "Newmark", .init = init, .advance = advance, .state_at = step, .implicit = true};
-const engine generalized_alpha_engine = {.name = "generalised-alpha",
-                                         .init = init,
-                                         .advance = advance,
-                                         .state_at = step,
-                                         .implicit = true};
+// The same step with other coefficients.
+#define STEPPER(title)                                                                             \
+    {                                                                                              \
+        .name = (title), .init = init, .advance = advance, .state_at = step, .implicit = true      \
+    }
+const engine newmark_engine = STEPPER("Newmark");
+const engine generalized_alpha_engine = STEPPER("generalised-alpha");

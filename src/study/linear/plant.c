@@ -89,14 +89,14 @@ static void missing(workshop *w, double *residual)
 {
     const int n = w->n;
     const double volts = w->rest[2 * n + 1];
-    double out[MOST_BODIES + 2], j[MOST_BODIES], g, square = 0;
+    double out[MOST_BODIES + 2], j[MOST_BODIES], square = 0;
     w->rest[2 * n] = w->arm.motor.gain * volts / fmax(w->arm.motor.resistance, 1e-300);
     evaluate(w, w->rest, out);
     memcpy(residual, out, (size_t)n * sizeof *residual);
     residual[n] = isnan(w->wanted) ? volts - w->command : out[n] - w->wanted;
     if (w->rigid) {
         jacobian(w, j);
-        chain_penetration(&w->arm, w->rest, w->rest + n, &g, NULL);
+        const double g = chain_penetration(&w->arm, w->rest, w->rest + n).depth;
         for (int k = 0; k < n; k++) {
             square += j[k] * j[k];
         }
