@@ -207,9 +207,10 @@ static double rate_of_change(const arm *a, const motion *m, double slowest)
 // The same with a wall that gives, which the arm is in.
 static double rate_within_wall(const arm *a, motion *m, double own)
 {
-    double compliance, depth = fmax(-m->state[SLOT_GAP], 0), rate = -m->state[SLOT_GAP_VELOCITY];
+    double depth = fmax(-m->state[SLOT_GAP], 0), rate = -m->state[SLOT_GAP_VELOCITY];
     const bool locked = contact_state_of(m->state).friction == HUB_STICK && m->dof > 1;
-    chain_contact_response(a, m->links, state_angles(m, m->state), locked, m->scratch, &compliance);
+    double compliance =
+        chain_contact_response(a, m->links, state_angles(m, m->state), locked, m->scratch);
     compliance /= 1 + a->wall.face_mass * compliance; // both masses on the spring
     double wall = wall_rate(&a->wall, compliance, depth, rate);
     return sqrt(own * own + wall * wall);

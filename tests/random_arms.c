@@ -328,7 +328,7 @@ static double rate_of(const random_arm *r)
     const parameters *p = &r->parameters;
     const double speed = (fabs(r->velocity) + 1) * p->arm.length;
     arm a = arm_of(p);
-    double compliance, rate = a.fastest_rate;
+    double rate = a.fastest_rate;
     if (p->motor.inductance > 0) {
         rate = fmax(rate, p->motor.resistance / p->motor.inductance);
     }
@@ -340,7 +340,7 @@ static double rate_of(const random_arm *r)
     for (int i = 0; i < a.dof; i++) {
         q[i] = r->angle;
     }
-    chain_contact_response(&a, work, q, false, response, &compliance);
+    double compliance = chain_contact_response(&a, work, q, false, response);
     compliance /= 1 + a.wall.face_mass * compliance;
     rate = fmax(rate, wall_rate(&a.wall, compliance, 0, speed));
     return wall_has_face(&a.wall) ? fmax(rate, wall_face_rate(&a.wall, (wall_face){0, 1})) : rate;

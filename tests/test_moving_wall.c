@@ -116,9 +116,9 @@ TEST(only_the_relative_velocity_counts_at_an_impact)
         comes.wall.motion.kind = MOTION_SINE;
         comes.wall.shift.velocity = 0.7;
         const double q[] = {0.19, 0.21, 0.2, 0.18}, rest[4] = {0};
-        double w[4], reach, by_arm[4], by_wall[4];
+        double w[4], by_arm[4], by_wall[4];
         chain_link work[3];
-        chain_contact_response(&still, work, q, false, w, &reach);
+        const double reach = chain_contact_response(&still, work, q, false, w);
         const double same = chain_penetration(&comes, q, rest).rate;
         for (int k = 0; k < 4; k++) {
             w[k] *= -same / reach;

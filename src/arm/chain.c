@@ -120,16 +120,15 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
     }
 }
 
-void chain_contact_response(const arm *a, chain_link *work, const double *q, bool hub_locked,
-                            double *response, double *compliance)
+double chain_contact_response(const arm *a, chain_link *work, const double *q, bool hub_locked,
+                              double *response)
 {
     if (pair_suits(a)) {
-        pair_contact_response(a, q, hub_locked, response, compliance);
-        return;
+        return pair_contact_response(a, q, hub_locked, response);
     }
     const wall_contact wall = contact_of(a, q, q).wall; // velocities play no part here
     unit_response(a, work, q, wall.ex, wall.ey, wall.lever, hub_locked, response);
-    *compliance = -chain_penetration_rate(a, q, response);
+    return -chain_penetration_rate(a, q, response);
 }
 
 void chain_tip_response(const arm *a, chain_link *work, const double *q, double *response)

@@ -44,10 +44,10 @@ typedef struct penetration {
 } penetration;
 penetration chain_penetration(const arm *a, const double *q, const double *w);
 
-// Response to a unit contact force: response[dof] = -M^-1 J^T, and compliance J M^-1 J^T > 0
-// [1/kg]. hub_locked keeps the hub where it is.
-void chain_contact_response(const arm *a, chain_link *work, const double *q, bool hub_locked,
-                            double *response, double *compliance);
+// Response to a unit contact force: response[dof] = -M^-1 J^T. Returns the compliance J M^-1 J^T >
+// 0 [1/kg]. hub_locked keeps the hub where it is.
+double chain_contact_response(const arm *a, chain_link *work, const double *q, bool hub_locked,
+                              double *response);
 
 // The rate of penetration of a velocity-like vector: J v, J taken at q.
 double chain_penetration_rate(const arm *a, const double *q, const double *v);

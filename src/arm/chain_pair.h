@@ -123,11 +123,11 @@ static inline void pair_accelerations(const arm *a, const double *q, const doubl
 }
 
 // chain_contact_response of a pair: [1/(kg m)], and the compliance J M^-1 J^T [1/kg].
-static inline void pair_contact_response(const arm *a, const double *q, bool hub_locked,
-                                         double *response, double *compliance)
+static inline double pair_contact_response(const arm *a, const double *q, bool hub_locked,
+                                           double *response)
 {
     const pair_contact at = pair_contact_at(a, q);
     const pair_mass m = pair_mass_of(a);
     pair_solve(&m, m.m12 * at.cosine, hub_locked, -at.j1, -at.j2, &response[0], &response[1]);
-    *compliance = -(at.j1 * response[0] + at.j2 * response[1]);
+    return -(at.j1 * response[0] + at.j2 * response[1]);
 }

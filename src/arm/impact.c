@@ -5,8 +5,7 @@ impact_result impact_velocity_increments(const arm *a, chain_link *work, const d
                                          double *increment)
 {
     impact_result result;
-    double compliance;
-    chain_contact_response(a, work, q, false, increment, &compliance);
+    double compliance = chain_contact_response(a, work, q, false, increment);
     compliance += wall_has_face(&a->wall) ? 1 / a->wall.face_mass : 0;
     result.speed = chain_penetration(a, q, w).rate;
     const double comes = result.speed - chain_penetration_rate(a, q, w);

@@ -143,10 +143,10 @@ double motion_decay_length(const arm *a, double reach, double since)
 // How much a unit force of a wall that gives accelerates the gap in contact [1/kg].
 static double wall_compliance(const arm *a, motion *m, double *state)
 {
-    double compliance;
     a = motion_arm_at(a, m, state[SLOT_TIME]);
     const bool locked = contact_state_of(state).friction == HUB_STICK && m->dof > 1;
-    chain_contact_response(a, m->links, state_angles(m, state), locked, m->scratch, &compliance);
+    const double compliance =
+        chain_contact_response(a, m->links, state_angles(m, state), locked, m->scratch);
     return compliance / (1 + a->wall.face_mass * compliance); // both masses on the spring
 }
 
@@ -198,9 +198,8 @@ bool motion_project(const arm *a, motion *m, double *state)
         return false;
     }
     a = motion_arm_at(a, m, state[SLOT_TIME]);
-    double compliance, *response = m->scratch;
-    double *q = state_angles(m, state), *w = state_velocities(m, state);
-    chain_contact_response(a, m->links, q, locked, response, &compliance);
+    double *response = m->scratch, *q = state_angles(m, state), *w = state_velocities(m, state);
+    const double compliance = chain_contact_response(a, m->links, q, locked, response);
 
     // position first, then velocity at the new position
     double shift = -state[SLOT_GAP] / compliance; // g = -gap falls along the response

@@ -35,9 +35,9 @@
 // Velocities onto J w = 0 in contact.
 static void project_velocity(const arm *a, motion *m, const double *q, double *w, bool stuck)
 {
-    double compliance, *response = m->scratch;
-    chain_contact_response(a, m->links, q, stuck, response, &compliance);
-    double jump = chain_penetration_rate(a, q, w) / compliance;
+    double *response = m->scratch;
+    const double compliance = chain_contact_response(a, m->links, q, stuck, response);
+    const double jump = chain_penetration_rate(a, q, w) / compliance;
     for (int i = 0; i < a->dof; i++) {
         w[i] += jump * response[i];
     }
