@@ -116,6 +116,22 @@ TEST(stiction_helps_to_hold)
         best_settling(&m, (pressed_state){more / m.spring_force, 0}, more, 0.05, 1.06 * more)));
 }
 
+// A limited current brakes less, and what it cannot hold is not settled on.
+TEST(a_limited_current_stops_later)
+{
+    pressed_arm_model any = model_of(NULL), much = model_of(SETTINGS("motor.current_limit=10"));
+    pressed_arm_model some = model_of(SETTINGS("motor.current_limit=0.4"));
+    pressed_arm_model little = model_of(SETTINGS("motor.current_limit=0.1"));
+    const pressed_state at = {0, 1.37};
+    const double peak = best_peak(&any, at), settling = best_settling(&any, at, 1, 0.05, 9);
+    check_close(best_peak(&much, at), peak, 0);
+    check_close(best_settling(&much, at, 1, 0.05, 9), settling, 0);
+    check_below(peak * 1.01, best_peak(&some, at));
+    check_below(best_peak(&some, at), best_peak(&little, at));
+    assert_true(best_settling(&some, at, 1, 0.05, 9) >= settling);
+    assert_true(isnan(best_settling(&little, at, 1, 0.05, 9)));
+}
+
 TEST(what_cannot_be_is_said)
 {
     pressed_arm_model m = model_of(NULL);

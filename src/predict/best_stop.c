@@ -35,6 +35,7 @@
 #include <math.h>
 
 #include "src/arm/arm.h"
+#include "src/base/extremes.h"
 #include "src/predict/two_link.h"
 
 #define STEP        1e-4 // of the way to the band; fourth order [s]
@@ -46,12 +47,15 @@
 bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
 {
     double l = p->arm.length / 2, quarter = p->arm.mass / 2 * l * l / 4;
+    const bool limited = p->motor.drive == DRIVE_VOLTAGE && p->motor.current_limit > 0;
     *m = (pressed_arm_model){
         .inertia = p->arm.hub_inertia + 2 * p->arm.link_inertia + 2 * quarter,
         .stiffness = 4 * p->arm.k2,
         .damping = motor_damping(&p->motor),
+        .viscous = p->motor.viscous_friction,
         .stiction = p->motor.stiction,
         .torque_limit = motor_torque_per_volt(&p->motor) * motor_command_limit(&p->motor),
+        .current_torque = limited ? p->motor.torque_constant * p->motor.current_limit : HUGE_VAL,
         .spring_force = 2 * p->arm.k2 / l,
         .mass_force = (quarter - p->arm.link_inertia) / l,
     };
@@ -83,7 +87,9 @@ bool pressed_after_impact(const parameters *p, const three_body_state *before, p
 static double force_under(const pressed_arm_model *m, pressed_state s, double torque)
 {
     double friction = s.velocity > 0 ? m->stiction : s.velocity < 0 ? -m->stiction : 0;
-    double sum = torque - m->damping * s.velocity - friction - m->stiffness * s.x;
+    double viscous = m->viscous * s.velocity, motor = torque - m->damping * s.velocity;
+    motor = smaller(m->current_torque - viscous, larger(-m->current_torque - viscous, motor));
+    double sum = motor - friction - m->stiffness * s.x;
     return m->spring_force * s.x - m->mass_force * sum / m->inertia;
 }
 
@@ -268,7 +274,7 @@ double best_settling(const pressed_arm_model *m, pressed_state s, double force, 
 
     // a motor that cannot hold the force never settles there
     double holding = m->stiffness * force / m->spring_force - m->stiction;
-    if (!(force > 0) || holding > m->torque_limit) {
+    if (!(force > 0) || holding > fmin(m->torque_limit, m->current_torque)) {
         return (double)NAN;
     }
 

@@ -14,13 +14,15 @@
 
 // The arm on the wall.
 typedef struct pressed_arm_model {
-    double inertia;      // M [kg m2]
-    double stiffness;    // 4 k2 [N m/rad]
-    double damping;      // D [N m s/rad]
-    double stiction;     // [N m]
-    double torque_limit; // either way [N m]
-    double spring_force; // 2 k2/l [N/rad]
-    double mass_force;   // mu, above 0 [N s2/rad]
+    double inertia;        // M [kg m2]
+    double stiffness;      // 4 k2 [N m/rad]
+    double damping;        // D [N m s/rad]
+    double viscous;        // of it what is no back EMF [N m s/rad]
+    double stiction;       // [N m]
+    double torque_limit;   // either way [N m]
+    double current_torque; // either way of motor and back EMF, HUGE_VAL: any [N m]
+    double spring_force;   // 2 k2/l [N/rad]
+    double mass_force;     // mu, above 0 [N s2/rad]
 } pressed_arm_model;
 
 // Angle of the hub from the wall [rad] and its velocity [rad/s].
