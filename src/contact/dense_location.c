@@ -1,4 +1,3 @@
-#include "src/contact/dense_location.h"
 
 #include <math.h>
 

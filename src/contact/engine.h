@@ -12,7 +12,7 @@
 //
 //     states_at, dense_output     give several states at once, or the course of one quantity;
 //     event_function, second_derivative, excludes_event, first_event
-//                     locate events by finding roots (dense_location.h), without another internal
+//                     locate events by finding roots (locate.h), without another internal
 //                     step.
 //
 // In a stepping engine state_at takes one step of the method from the internal step's start, and
@@ -149,7 +149,7 @@ typedef struct engine {
     // cannot tell.
     bool (*excludes_event)(const motion *m, event_function w);
 
-    // Dense engines: the first event, as dense_search_event (dense_location.h) has it.
+    // Dense engines: the first event, as dense_search_event (locate.h) has it.
     void (*first_event)(const arm *a, motion *m, step_end *end);
 
     // Engines that can do so without evaluating the state, else NULL: adds to accelerations and

@@ -7,7 +7,6 @@
 #include "src/base/instant.h"
 #include "src/base/sincos.h"
 #include "src/contact/contact_machine.h"
-#include "src/contact/dense_location.h"
 #include "src/contact/locate.h"
 
 #define MOST_HALVINGS     8    // of a step that does not converge or makes energy

@@ -6,7 +6,7 @@
 #include "src/arm/chain_pair.h"
 #include "src/base/extremes.h"
 #include "src/base/sincos.h"
-#include "src/contact/dense_location.h"
+#include "src/contact/locate.h"
 #include "src/engines/pair/taylor_integrator.h"
 
 // --- states -------------------------------------------------------------------------------------

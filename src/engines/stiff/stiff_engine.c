@@ -14,7 +14,7 @@
 
 #include "src/base/extremes.h"
 #include "src/base/plain_math.h"
-#include "src/contact/dense_location.h"
+#include "src/contact/locate.h"
 #include "src/engines/pair/taylor_lanes.h"
 #include "src/engines/stiff/stiff_integrator.h"
 
