@@ -293,8 +293,6 @@ status figure_publish(const figure *fig, const figure_options *o, const char *pa
     figure_take_look(&shown, &o->look);
     figure_take_range(&shown, o);
 
-    artwork a = artwork_of_figure(&shown);
-    status code = artwork_publish(&a, o, path, with_csv, f);
-    artwork_finish(&a);
-    return code;
+    g_auto(artwork) a = artwork_of_figure(&shown);
+    return artwork_publish(&a, o, path, with_csv, f);
 }

@@ -41,6 +41,7 @@ status artwork_write_csv(const artwork *a, const char *path, fault *f);
 picture artwork_picture(const artwork *a, const figure_options *options);
 
 void artwork_finish(artwork *a);
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(artwork, artwork_finish)
 
 // An artwork of a plotted figure, which is borrowed; and of one that it owns from now on.
 artwork artwork_of_figure(const figure *fig);

@@ -153,17 +153,13 @@ static void draw_collision(sketch *s, const diagram *d)
 
 status diagram_collision(const figure_order *order, artwork *out, fault *f)
 {
-    diagram *d = diagram_create(order, NULL, 140 + BODY_HEIGHT, draw_collision, f);
+    g_autoptr(diagram) d = diagram_create(order, NULL, 140 + BODY_HEIGHT, draw_collision, f);
     FAIL_IF(d == NULL, f->code);
 
     // the impact, and what the links do after it
     double speed = 0, impulse = 0;
     TRY(diagram_take_impact(d, &speed, f));
-    status code = predict_velocity_jump(&d->p, &d->before, d->after, &impulse, f);
-    if (code != STATUS_OK) {
-        diagram_release(d);
-        return code;
-    }
+    TRY(predict_velocity_jump(&d->p, &d->before, d->after, &impulse, f));
 
     // angles and velocities of both links
     static const char *const bodies[] = {"hub", "first link", "last link"};
@@ -186,7 +182,7 @@ status diagram_collision(const figure_order *order, artwork *out, fault *f)
     diagram_add_value(d, "jump of the point of collision's velocity", b.point_jump, "m/s");
 
     return diagram_open(
-        d, out,
+        &d, out,
         "Above: the arm of corrected/first-impact at the instant of its first contact, seen along "
         "the line to the contact point and enlarged %g times across it; the links' angular "
         "velocities jump from %.3f and %.3f\u2009rad/s to %.3f and \u2212%.3f\u2009rad/s. Below: "

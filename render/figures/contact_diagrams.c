@@ -145,7 +145,7 @@ static void add_shape_values(diagram *d, const arm_shape *a)
 
 status diagram_contact(const figure_order *order, artwork *out, fault *f)
 {
-    diagram *d = diagram_create(order, "method.step=0.01", 232, draw_contact, f);
+    g_autoptr(diagram) d = diagram_create(order, "method.step=0.01", 232, draw_contact, f);
     FAIL_IF(d == NULL, f->code);
 
     // two steps during contact
@@ -167,7 +167,7 @@ status diagram_contact(const figure_order *order, artwork *out, fault *f)
                       "m");
 
     return diagram_open(
-        d, out,
+        &d, out,
         "The printed model in contact, 1\u2009V, at two successive steps of 10\u2009ms: "
         "<i>θ</i><sub>2</sub> = %.4f and %.4f, <i>θ</i><sub>3</sub> = %.4f and %.4f\u2009rad. The "
         "line of the last link always passes through the contact point (<i>a</i>, <i>b</i>) = "
@@ -238,7 +238,7 @@ static const sample *row_before(const trace *t, double contact)
 
 status diagram_deformation(const figure_order *order, artwork *out, fault *f)
 {
-    diagram *d = diagram_create(order, NULL, 148, draw_deformation, f);
+    g_autoptr(diagram) d = diagram_create(order, NULL, 148, draw_deformation, f);
     FAIL_IF(d == NULL, f->code);
     const summary *m = &d->run->result.summary;
     FAIL_IF(!isfinite(m->first_pulse_time_to_peak_s), diagram_lacks(d, "pulse", f));
@@ -262,7 +262,7 @@ status diagram_deformation(const figure_order *order, artwork *out, fault *f)
     diagram_add_value(d, "bend by the energy principle", -bend, "rad");
 
     return diagram_open(
-        d, out,
+        &d, out,
         "The arm of corrected/first-impact %.1f\u2009ms after first contact, at its peak force of "
         "%.3g\u2009N: <i>θ</i><sub>2</sub> = %.4f, <i>θ</i><sub>3</sub> = %.4f\u2009rad, bend "
         "\u2212%.4f\u2009rad; <i>θ</i><sub>0</sub> = %g\u2009rad is the line to the contact point. "

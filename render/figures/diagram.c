@@ -12,12 +12,10 @@ static status paint_diagram(cairo_t *cr, const void *what, figure_report *report
 {
     sketch s;
     const diagram *d = what;
-    status code = sketch_begin(&s, cr, &d->frame, report, f);
-    if (code == STATUS_OK) {
-        d->draw(&s, d);
-        sketch_end(&s);
-    }
-    return code;
+    TRY(sketch_begin(&s, cr, &d->frame, report, f));
+    d->draw(&s, d);
+    sketch_end(&s);
+    return STATUS_OK;
 }
 
 static void write_diagram(const void *what, csv_writer *csv)
@@ -51,7 +49,7 @@ void diagram_release(void *what)
 diagram *diagram_create(const figure_order *order, const char *change, double body,
                         void (*draw)(sketch *s, const diagram *d), fault *f)
 {
-    diagram *d = g_new0(diagram, 1);
+    g_autoptr(diagram) d = g_new0(diagram, 1);
     d->draw = draw;
     d->values = g_array_new(FALSE, FALSE, sizeof(diagram_value));
     d->title = g_strdup(order->title);
@@ -60,21 +58,16 @@ diagram *diagram_create(const figure_order *order, const char *change, double bo
     parameters_resolve(&d->p, NULL);
     if (order->which->scenario != NULL) {
         d->run = run_open(order->which->scenario, change, f);
-        if (d->run == NULL) {
-            diagram_release(d);
-            return NULL;
-        }
+        FAIL_IF(d->run == NULL, NULL);
         d->p = d->run->scenario.parameters;
         d->parameters = parameters_line(&d->run->scenario);
     }
-    return d;
+    return g_steal_pointer(&d);
 }
 
-status diagram_lacks(diagram *d, const char *what, fault *f)
+status diagram_lacks(const diagram *d, const char *what, fault *f)
 {
-    fault_set(f, STATUS_BAD_SCENARIO, "%s: no %s to draw", d->run->scenario.name, what);
-    diagram_release(d);
-    return STATUS_BAD_SCENARIO;
+    return fault_set(f, STATUS_BAD_SCENARIO, "%s: no %s to draw", d->run->scenario.name, what);
 }
 
 status diagram_take_impact(diagram *d, double *speed, fault *f)
@@ -115,8 +108,9 @@ void diagram_link_angle(sketch *s, point at, double radius, double to, const cha
     diagram_angle(s, at, (angle_arc){radius, 0, to, markup});
 }
 
-status diagram_open(diagram *d, artwork *out, const char *caption, ...)
+status diagram_open(diagram **held, artwork *out, const char *caption, ...)
 {
+    diagram *d = g_steal_pointer(held);
     va_list list;
     va_start(list, caption);
     d->frame.caption = d->caption = text_vprintf(caption, list);

@@ -53,17 +53,19 @@ void diagram_link_angle(sketch *s, point at, double radius, double to, const cha
 diagram *diagram_create(const figure_order *order, const char *change, double body,
                         void (*draw)(sketch *s, const diagram *d), fault *f);
 void diagram_release(void *what);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(diagram, diagram_release)
 
 // The first impact of the run: its impulse, the arm the instant before, and *speed that of the
 // contact point [m/s]. Fails as diagram_lacks if there is none.
 status diagram_take_impact(diagram *d, double *speed, fault *f);
 
-// Releases a diagram whose run has not what it shows. Returns STATUS_BAD_SCENARIO.
-status diagram_lacks(diagram *d, const char *what, fault *f);
+// STATUS_BAD_SCENARIO for a diagram whose run has not what it shows.
+status diagram_lacks(const diagram *d, const char *what, fault *f);
 
 // Adds a number to those that the diagram's CSV lists.
 void diagram_add_value(diagram *d, const char *name, double value, const char *unit);
 
-// Gives the diagram its caption, printed as by text_printf, and opens it: the artwork owns it.
-status diagram_open(diagram *d, artwork *out, const char *caption, ...)
+// Gives the diagram its caption, printed as by text_printf, and opens it: the artwork owns it, and
+// *held is NULL.
+status diagram_open(diagram **held, artwork *out, const char *caption, ...)
     __attribute__((format(printf, 3, 4)));

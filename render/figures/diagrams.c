@@ -82,11 +82,11 @@ static void add_arm_values(diagram *d)
 
 status diagram_links(const figure_order *order, artwork *out, fault *f)
 {
-    diagram *d = diagram_create(order, NULL, 190, draw_links, f);
+    g_autoptr(diagram) d = diagram_create(order, NULL, 190, draw_links, f);
     add_arm_values(d);
 
     return diagram_open(
-        d, out,
+        &d, out,
         "Hub (body 1) and two rigid links (bodies 2 and 3) in the proportions of the model, bent "
         "far more than in use. <i>l</i> = %g\u2009m, <i>ε</i> = %g\u2009m, <i>m</i> = "
         "%.4g\u2009kg, "
@@ -155,10 +155,10 @@ static void draw_free_bodies(sketch *s, const diagram *d)
 
 status diagram_free_bodies(const figure_order *order, artwork *out, fault *f)
 {
-    diagram *d = diagram_create(order, NULL, 158, draw_free_bodies, f);
+    g_autoptr(diagram) d = diagram_create(order, NULL, 158, draw_free_bodies, f);
     add_arm_values(d);
     return diagram_open(
-        d, out,
+        &d, out,
         "Each body on its own with what its neighbours do to it: torques <i>τ</i> of the springs "
         "<i>k</i><sub>1</sub>, <i>k</i><sub>2</sub> and forces <i>f</i><sub>1</sub>, "
         "<i>f</i><sub>2</sub> of the hinges, equal and opposite on both sides of a joint. Added "
@@ -208,7 +208,7 @@ static void draw_springs(sketch *s, const diagram *d)
 
 status diagram_springs(const figure_order *order, artwork *out, fault *f)
 {
-    diagram *d = diagram_create(order, NULL, 108, draw_springs, f);
+    g_autoptr(diagram) d = diagram_create(order, NULL, 108, draw_springs, f);
     double speed = 0;
     FAIL_IF(d == NULL, f->code);
     TRY(diagram_take_impact(d, &speed, f));
@@ -225,7 +225,7 @@ status diagram_springs(const figure_order *order, artwork *out, fault *f)
     diagram_add_value(d, "mass at the contact point", d->impulse / speed, "kg");
 
     return diagram_open(
-        d, out,
+        &d, out,
         "What the wall feels: a mass on the arm's springs in series. The stiff hub joint hardly "
         "counts, the beam's spring takes almost all the energy. At 1\u2009V the contact point "
         "arrives with <i>v</i><sub>0</sub> = %.3g\u2009m/s and the impact of %.3g\u2009N·s shows a "
@@ -387,7 +387,7 @@ static void draw_sensor(sketch *s, const diagram *d)
 
 status diagram_sensor(const figure_order *order, artwork *out, fault *f)
 {
-    diagram *d = diagram_create(order, NULL, 186 + 52 / 25.4 * 72, draw_sensor, f);
+    g_autoptr(diagram) d = diagram_create(order, NULL, 186 + 52 / 25.4 * 72, draw_sensor, f);
     const sensor_parameters *p = &d->p.sensor;
     diagram_add_value(d, "measuring resistor", p->fsr_divider, "ohm");
     diagram_add_value(d, "gain resistor R5", R_GAIN, "ohm");
@@ -407,7 +407,7 @@ status diagram_sensor(const figure_order *order, artwork *out, fault *f)
     }
 
     return diagram_open(
-        d, out,
+        &d, out,
         "The sheet sensor (FSR) and the measuring resistor divide the supply; a buffer keeps the "
         "divider unloaded, a second amplifier doubles its output. Resistors as in the thesis; "
         "supply and sensor are not printed there and are the rig's: %g\u2009V, %g\u2009kΩ at "

@@ -199,24 +199,22 @@ status figure_draw(const char *id, const figure_options *o, const char *folder, 
                 fault_set(f, STATUS_BAD_ARGUMENT,
                           "there is no figure format '%s', expected png, pdf or svg", format));
     }
-    artwork drawn;
+    g_auto(artwork) drawn = {0};
     TRY(figure_open(which, o, &drawn, f));
 
     // caption and what LaTeX needs go with the first picture, numbers with them all
     figure_options beside = *o;
     beside.latex = NULL;
-    status code = make_folder(folder, f);
-    for (int i = 0; list[i] != NULL && code == STATUS_OK; i++) {
+    TRY(make_folder(folder, f));
+    for (int i = 0; list[i] != NULL; i++) {
         g_autofree char *path = text_printf("%s/%s.%s", folder, which->file, list[i]);
         beside.look.bare = o->look.bare && i == 0;
-        code = artwork_publish(&drawn, &beside, path, false, f);
-        if (code == STATUS_OK && i == 0 && tex != NULL && o->latex != NULL) {
+        TRY(artwork_publish(&drawn, &beside, path, false, f));
+        if (i == 0 && tex != NULL && o->latex != NULL) {
             g_autofree char *text = latex_environment(&drawn, o->latex, path);
             fputs(text, tex);
         }
     }
     g_autofree char *numbers = text_printf("%s/%s.csv", folder, which->file);
-    code = code == STATUS_OK ? artwork_publish_csv(&drawn, numbers, f) : code;
-    artwork_finish(&drawn);
-    return code;
+    return artwork_publish_csv(&drawn, numbers, f);
 }

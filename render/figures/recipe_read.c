@@ -19,14 +19,6 @@ typedef struct multiples {
     int count;
 } multiples;
 
-TAKE(take_vary, multiples)
-{
-    const char *path = recipe_text(c, node, "vary");
-    if (path != NULL && recipe_knows_parameter(c, node, path)) {
-        ((multiples *)into)->parameter = path;
-    }
-}
-
 TAKE(take_values, multiples)
 {
     multiples *m = into;
@@ -132,14 +124,18 @@ static bool repeat_panels(recipe_context *c, const multiples *m, int at[][RECIPE
 // Reads `multiples` and repeats runs and panels for each of its values, after both are read.
 TAKE(take_multiples, recipe)
 {
-    static const recipe_form form = {"multiples",
-                                     "vary: motor.voltage",
-                                     {OWN_KEY("vary", take_vary), OWN_KEY("values", take_values)}};
+    static const recipe_form form = {
+        "multiples",
+        "vary: motor.voltage",
+        {FIELD_KEY("vary", VALUE_TEXT, multiples, parameter), OWN_KEY("values", take_values)}};
     recipe *r = into;
     multiples m = {0};
     int at[MULTIPLES_MOST][RECIPE_SOURCES];
     if (c->reader.faults == 0) {
         recipe_map(c, node, &form, &m);
+    }
+    if (m.parameter != NULL) {
+        recipe_knows_parameter(c, recipe_child(node, "vary"), m.parameter);
     }
     if (c->reader.faults > 0) {
         return;

@@ -68,14 +68,13 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
 {
     const report_page *page = what;
     TRY(text_check_font(f));
-    status code = STATUS_OK;
     double y = PAGE_MARGIN;
-    PangoContext *context = text_context_create();
+    g_autoptr(PangoContext) context = text_context_create();
     if (page->number == 0) {
         put_title_page(cr, context, page->report);
     }
 
-    for (guint i = page->first; i < page->last && code == STATUS_OK; i++) {
+    for (guint i = page->first; i < page->last; i++) {
         const report_item *item = report_item_at(page->report, i);
         double scale = item_scale(item);
 
@@ -92,7 +91,7 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
         cairo_save(cr);
         cairo_translate(cr, PAGE_MARGIN, y);
         cairo_scale(cr, scale, scale);
-        code = artwork_paint(&item->drawn, cr, NULL, f);
+        TRY(artwork_paint(&item->drawn, cr, NULL, f));
         cairo_restore(cr);
         g_autoptr(GString) facts = g_string_new(NULL);
         report_add_facts(facts, item, "  ", "b");
@@ -105,8 +104,7 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
         g_autofree char *number = text_printf("%d", page->number + 1);
         put_text(cr, context, number, 8, false, PAGE_WIDTH / 2, PAGE_HEIGHT - 30);
     }
-    g_object_unref(context);
-    return code;
+    return STATUS_OK;
 }
 
 // Puts as many items on each page as there is room for.
@@ -134,8 +132,8 @@ static GArray *make_pages(const report_content *r)
 
 static status write_pdf(const report_content *r, const char *path, fault *f)
 {
-    GArray *pages = make_pages(r);
-    picture *pictures = g_new0(picture, pages->len);
+    g_autoptr(GArray) pages = make_pages(r);
+    g_autofree picture *pictures = g_new0(picture, pages->len);
 
     for (guint i = 0; i < pages->len; i++) {
         pictures[i] = (picture){r->heading,          PAGE_WIDTH,
@@ -143,10 +141,7 @@ static status write_pdf(const report_content *r, const char *path, fault *f)
                                 .paint = paint_page, .what = &g_array_index(pages, report_page, i)};
     }
 
-    status code = picture_write_pages(pictures, (int)pages->len, path, f);
-    g_free(pictures);
-    g_array_free(pages, TRUE);
-    return code;
+    return picture_write_pages(pictures, (int)pages->len, path, f);
 }
 
 // ---- what it shows
@@ -250,34 +245,37 @@ static status add_own(report_content *r, char *const *names, int count, fault *f
 
 // ---- the whole
 
+// Fills the report and writes both files.
+static status write_both(report_content *r, const char *folder, char *const *names, int count,
+                         fault *f)
+{
+    // what was asked for, or all there is
+    TRY(count > 0 ? add_own(r, names, count, f) : add_figures(r, f));
+    if (count == 0) {
+        add_parameters(r);
+    }
+    g_autofree char *html = g_strconcat(folder, "/report.html", NULL);
+    g_autofree char *pdf = g_strconcat(folder, "/report.pdf", NULL);
+    TRY(make_folder(folder, f));
+    TRY(report_write_html(r, html, f));
+    return write_pdf(r, pdf, f);
+}
+
 status report_write(const char *folder, char *const *names, int count, run_monitor *monitor,
                     fault *f)
 {
     assert(names != NULL || count == 0);
     fault why = {0};
-    report_content r = {.monitor = monitor,
-                        .items = g_array_new(FALSE, TRUE, sizeof(report_item)),
-                        .heading = g_strconcat("impactlab ", lab_version(), ": report", NULL)};
+    g_autoptr(GArray) items = g_array_new(FALSE, TRUE, sizeof(report_item));
+    g_autofree char *heading = g_strconcat("impactlab ", lab_version(), ": report", NULL);
+    report_content r = {.monitor = monitor, .items = items, .heading = heading};
     r.preface = count > 0
                     ? "Runs and recipes, drawn by the lab. Under each stand the scenario, the "
                       "model and the one command that makes it again."
                     : "Every figure and table of the thesis on impact and force control of a "
                       "flexible arm, drawn by the lab from its own runs. Under each stand the "
                       "scenario, the model and the one command that makes it again.";
-    g_array_set_clear_func(r.items, clear_item);
-
-    // what was asked for, or all there is
-    status code = count > 0 ? add_own(&r, names, count, &why) : add_figures(&r, &why);
-    if (code == STATUS_OK && count == 0) {
-        add_parameters(&r);
-    }
-    g_autofree char *html = g_strconcat(folder, "/report.html", NULL);
-    g_autofree char *pdf = g_strconcat(folder, "/report.pdf", NULL);
-    code = code == STATUS_OK ? make_folder(folder, &why) : code;
-    code = code == STATUS_OK ? report_write_html(&r, html, &why) : code;
-    code = code == STATUS_OK ? write_pdf(&r, pdf, &why) : code;
-
-    g_array_free(r.items, TRUE);
-    g_free(r.heading);
+    g_array_set_clear_func(items, clear_item);
+    const status code = write_both(&r, folder, names, count, &why);
     return code == STATUS_OK ? code : fault_set(f, code, "%s", why.text);
 }

@@ -99,25 +99,23 @@ static status read_panel(const char *text, trace_panel *p, fault *f)
 // All panels, "force,hub_angle+last_angle".
 static status read_signals(const char *text, trace_panel *panels, int *count, fault *f)
 {
-    status code = STATUS_OK;
     g_auto(GStrv) words = g_strsplit(text, ",", -1);
-    for (*count = 0; (*count == 0 || words[*count] != NULL) && code == STATUS_OK; ++*count) {
+    for (*count = 0; *count == 0 || words[*count] != NULL; ++*count) {
         FAIL_IF(*count == FIGURE_PANELS - 1,
                 fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a figure has at most %d panels", text,
                           FIGURE_PANELS - 1));
         trace_panel *p = &panels[*count];
         *p = (trace_panel){.weight = 1};
-        code = read_panel(words[*count] != NULL ? words[*count] : "", p, f);
-        if (code == STATUS_OK) {
-            // what goes without saying for a panel of its first signal
-            const signal_info *signal = &signal_table[signal_index(p->signals[0])];
-            p->with_zero = strcmp(signal->unit, "N") == 0 || strcmp(signal->unit, "V") == 0;
-            p->wall = strcmp(signal->unit, "rad") == 0;
-            p->impulses = *count == 0 && strcmp(signal->name, "force") == 0;
-            p->label = p->signals[1] != NULL ? signal->quantity : NULL;
-        }
+        TRY(read_panel(words[*count] != NULL ? words[*count] : "", p, f));
+
+        // what goes without saying for a panel of its first signal
+        const signal_info *signal = &signal_table[signal_index(p->signals[0])];
+        p->with_zero = strcmp(signal->unit, "N") == 0 || strcmp(signal->unit, "V") == 0;
+        p->wall = strcmp(signal->unit, "rad") == 0;
+        p->impulses = *count == 0 && strcmp(signal->name, "force") == 0;
+        p->label = p->signals[1] != NULL ? signal->quantity : NULL;
     }
-    return code;
+    return STATUS_OK;
 }
 
 // ---- the figure

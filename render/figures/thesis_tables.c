@@ -122,15 +122,14 @@ status table_stability(const figure_order *order, artwork *out, fault *f)
     arm a;
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
-    status code = parameter_set_text(&p, PARAMETER_INDEX(arm.hub_joint), "spring", f);
-    code = code == STATUS_OK ? parameters_resolve(&p, f) : code;
-    TRY(code);
+    TRY(parameter_set_text(&p, PARAMETER_INDEX(arm.hub_joint), "spring", f));
+    TRY(parameters_resolve(&p, f));
     // hub and two links: three modes, the last is the fastest
     double frequencies[3], shapes[9];
     int count = 0;
     arm_init(&a, &p);
-    code = modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes);
-    FAIL_IF(code != STATUS_OK || count < 1,
+    FAIL_IF(modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes) != STATUS_OK ||
+                count < 1,
             fault_set(f, STATUS_SINGULAR, "the modes of the two-link arm cannot be computed"));
     double fastest = frequencies[count - 1];
 

@@ -276,23 +276,18 @@ status picture_write_png(const picture *p, FILE *stream, fault *f)
                       "a PNG of %.0f x %.0f pixels, expected 1 to %g along each edge",
                       pixels_across, pixels_down, MOST_PIXELS));
 
-    cairo_surface_t *surface =
+    g_autoptr(cairo_surface_t) surface =
         cairo_image_surface_create(p->transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24,
                                    (int)pixels_across, (int)pixels_down);
     // the page ends exactly where the pixels do
     cairo_surface_set_device_scale(surface, pixels_across / p->width, pixels_down / p->height);
-    status code = paint_surface(surface, p, false, f);
-
-    if (code == STATUS_OK) {
-        const png_note notes[] = {{"Title", p->title},
-                                  {"Software", p->software},
-                                  {"Parameters", p->parameters},
-                                  {"Command", p->command},
-                                  {"Description", p->alternative}};
-        code = png_file_write(stream, surface, dpi, notes, 5, f);
-    }
-    cairo_surface_destroy(surface);
-    return code;
+    TRY(paint_surface(surface, p, false, f));
+    const png_note notes[] = {{"Title", p->title},
+                              {"Software", p->software},
+                              {"Parameters", p->parameters},
+                              {"Command", p->command},
+                              {"Description", p->alternative}};
+    return png_file_write(stream, surface, dpi, notes, 5, f);
 }
 
 static void set_metadata(cairo_surface_t *surface, cairo_pdf_metadata_t what, const char *value)

@@ -11,6 +11,8 @@
 
 typedef enum picture_format { FORMAT_NONE, FORMAT_PNG, FORMAT_PDF, FORMAT_SVG } picture_format;
 
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(cairo_surface_t, cairo_surface_destroy)
+
 typedef struct picture {
     const char *title;       // this and other texts: for the file's metadata, plain, NULL for none
     double width, height;    // of the page [pt]

@@ -90,11 +90,10 @@ static void frame_heights(PangoContext *context, const sketch_frame *frame, doub
 void sketch_size(const sketch_frame *frame, double *width, double *height)
 {
     double above, below, scale = page_scale(frame);
-    PangoContext *context = text_context_create();
+    g_autoptr(PangoContext) context = text_context_create();
     frame_heights(context, frame, &above, &below);
     *width = scale * (inner_width(frame) + 2 * SKETCH_MARGIN);
     *height = scale * (above + frame->body_height + below);
-    g_object_unref(context);
 }
 
 static void draw_block(sketch *s, const text_block *t, point at, anchor part, colour c)

@@ -148,11 +148,10 @@ static double row_height(const table_layout *l, const table_page *t, int row)
     return most + (row == HEADING ? 2 : 1) * CELL_SPACE;
 }
 
-// Lays the table out; give l->context to g_object_unref.
-static void lay_out(table_layout *l, const table_page *t)
+static void lay_out(table_layout *l, const table_page *t, PangoContext *context)
 {
     // the frame is laid out at its own width: nothing is scaled
-    *l = (table_layout){text_context_create(), {t->title, t->caption, .look = t->look}};
+    *l = (table_layout){context, {t->title, t->caption, .look = t->look}};
     l->frame.design_width = t->look.width > 0 ? t->look.width * 72 / 25.4 : SKETCH_WIDTH;
     choose_columns(l->context, t, &l->frame, l->widths);
     l->frame.body_height = CELL_SPACE;
@@ -164,9 +163,9 @@ static void lay_out(table_layout *l, const table_page *t)
 void table_size(const table_page *t, double *width, double *height)
 {
     table_layout l;
-    lay_out(&l, t);
+    g_autoptr(PangoContext) context = text_context_create();
+    lay_out(&l, t, context);
     sketch_size(&l.frame, width, height);
-    g_object_unref(l.context);
 }
 
 static void draw_cells(sketch *s, const table_layout *l, const table_page *t, int row, double y)
@@ -187,12 +186,9 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
 {
     sketch s;
     table_layout l;
-    lay_out(&l, t);
-    status code = sketch_begin(&s, cr, &l.frame, report, f);
-    if (code != STATUS_OK) {
-        g_object_unref(l.context);
-        return code;
-    }
+    g_autoptr(PangoContext) context = text_context_create();
+    lay_out(&l, t, context);
+    TRY(sketch_begin(&s, cr, &l.frame, report, f));
 
     // a line above and below the heading, then the rows
     double y = s.top;
@@ -217,7 +213,6 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
     sketch_line(&s, (point){s.left, y + CELL_SPACE}, (point){s.right, y + CELL_SPACE}, 0.9,
                 SKETCH_INK);
     sketch_end(&s);
-    g_object_unref(l.context);
     return STATUS_OK;
 }
 

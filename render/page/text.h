@@ -94,6 +94,7 @@ status text_check_family(const char *family, fault *f);
 // A context whose layouts do not depend on the surface: no hinting, no rounding, 72 per inch. To be
 // freed with g_object_unref.
 PangoContext *text_context_create(void);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(PangoContext, g_object_unref)
 
 // A layout of t, to be freed with g_object_unref. Markup that cannot be parsed is shown unchanged.
 PangoLayout *text_layout_create(PangoContext *context, const text_block *t);

@@ -97,7 +97,7 @@ void figure_take_look(figure *fig, const page_look *look)
 static double wrapped_height(const figure *fig, const char *markup, double size, bool bold)
 {
     const double page = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM;
-    PangoContext *context = text_context_create();
+    g_autoptr(PangoContext) context = text_context_create();
     text_block t = {.markup = markup,
                     .size = page_letters(fig->letters, size),
                     .family = fig->font,
@@ -105,9 +105,7 @@ static double wrapped_height(const figure *fig, const char *markup, double size,
                     .balanced = bold,
                     .width = page - (page < NARROW_PAGE ? 2 * PAGE_MARGIN : SIDES)};
 
-    const double height = text_measure(context, &t).height;
-    g_object_unref(context);
-    return height + 4;
+    return text_measure(context, &t).height + 4;
 }
 
 void figure_size(const figure *fig, double *width, double *height)

@@ -384,30 +384,28 @@ status layout_figure(drawing *d, fault *f)
 
     d->marks_inside = d->columns == 1 && fig->mark_count > 0 && !fig->marks_above;
     d->right = d->page.width - PAGE_MARGIN;
-    status code = choose_x_range(d, f);
-
-    for (int i = 0; i < fig->panel_count && code == STATUS_OK; i++) {
+    TRY(choose_x_range(d, f));
+    for (int i = 0; i < fig->panel_count; i++) {
         panel_layout *l = &d->panels[i];
-
         l->panel = &fig->panels[i];
         l->row = i / d->columns;
         l->column = i % d->columns;
-        code = choose_y_range(d, l, f);
+        TRY(choose_y_range(d, l, f));
         if (l->panel->colours != NULL) {
             map_choose_scale(l);
         }
     }
 
-    if (fig->shared_y && code == STATUS_OK) {
+    if (fig->shared_y) {
         share_y_ranges(d);
     }
 
     // legends that find no room inside move out and shrink the panels: again
     bool again = true;
-    for (int pass = 0; pass < 5 && again && code == STATUS_OK; pass++) {
+    for (int pass = 0; pass < 5 && again; pass++) {
         place_all(d, &mark_rows);
-        code = check_room(d, f);
-        again = code == STATUS_OK && fill_panels(d, grid);
+        TRY(check_room(d, f));
+        again = fill_panels(d, grid);
     }
-    return code;
+    return STATUS_OK;
 }

@@ -180,13 +180,11 @@ static status record(film_making *m, const char *path, fault *f)
                               {"Software", picture_software()},
                               {"Parameters", values},
                               {"Renderer", scene_renderer_name(m->painter->scenes[0])}};
-    TRY(film_file_open(&m->file, path, &plan->options, notes, 4, f));
-    status code = add_frames(m, f);
-    if (code == STATUS_OK) {
-        return film_file_commit(m->file, f);
-    }
-    film_file_abandon(m->file);
-    return code;
+    g_autoptr(film_file) file = NULL;
+    TRY(film_file_open(&file, path, &plan->options, notes, 4, f));
+    m->file = file;
+    TRY(add_frames(m, f));
+    return film_file_commit(g_steal_pointer(&file), f);
 }
 
 status film_write(const film_run *runs, int run_count, const film_options *options,
@@ -212,16 +210,11 @@ status film_write(const film_run *runs, int run_count, const film_options *optio
     }
 
     // planned, then painted
-    film_plan plan;
-    film_making m = {.plan = &plan};
-    status code = film_plan_init(&plan, runs, run_count, &o, f);
-    code = code == STATUS_OK ? film_painter_create(&m.painter, &plan, f) : code;
-    if (code == STATUS_OK) {
-        m.frame = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o.width, o.height);
-        code = record(&m, path, f);
-    }
-    cairo_surface_destroy(m.frame);
-    film_painter_destroy(m.painter);
-    film_plan_finish(&plan);
-    return code;
+    g_auto(film_plan) plan = {0};
+    g_autoptr(film_painter) painter = NULL;
+    TRY(film_plan_init(&plan, runs, run_count, &o, f));
+    TRY(film_painter_create(&painter, &plan, f));
+    g_autoptr(cairo_surface_t) frame =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, o.width, o.height);
+    return record(&(film_making){.plan = &plan, .painter = painter, .frame = frame}, path, f);
 }

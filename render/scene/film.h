@@ -91,11 +91,13 @@ typedef struct film_painter {
 status film_plan_init(film_plan *plan, const film_run *runs, int run_count,
                       const film_options *options, fault *f);
 void film_plan_finish(film_plan *plan);
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(film_plan, film_plan_finish)
 
 // A painter of a film's frames, to be used and destroyed by the thread that creates it. Fails as
 // scene_create does.
 status film_painter_create(film_painter **out, const film_plan *plan, fault *f);
 void film_painter_destroy(film_painter *p);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(film_painter, film_painter_destroy)
 
 // Paints the frame at a film's time [s] onto a surface RGB24 of the film's size.
 status film_painter_frame(film_painter *p, double film_time, cairo_surface_t *onto, fault *f);
@@ -140,3 +142,4 @@ status film_file_add(film_file *film, cairo_surface_t *frame, fault *f);
 // either case.
 status film_file_commit(film_file *film, fault *f);
 void film_file_abandon(film_file *film);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(film_file, film_file_abandon)

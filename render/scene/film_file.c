@@ -281,9 +281,7 @@ static bool looks_whole(const film_file *film)
 {
     char found[4];
     FILE *file = fopen(target_of(film), "rb");
-    if (file == NULL) {
-        return false;
-    }
+    FAIL_IF(file == NULL, false);
     const bool whole = fseek(file, film->format->offset, SEEK_SET) == 0 &&
                        fread(found, 1, sizeof found, file) == sizeof found &&
                        memcmp(found, film->format->mark, sizeof found) == 0;
@@ -328,14 +326,10 @@ status film_file_open(film_file **out, const char *path, const film_options *opt
     assert(options->width > 0 && options->height > 0);
     *out = NULL;
     TRY(film_file_check(path, f));
-    film_file *film = g_new0(film_file, 1);
+    g_autoptr(film_file) film = g_new0(film_file, 1);
     *film = (film_file){format_of(path), options, notes, note_count, g_strdup(path), .pipe = -1};
-    status code = open_target(film, f);
-    if (code != STATUS_OK) {
-        film_file_abandon(film);
-        return code;
-    }
-    *out = film;
+    TRY(open_target(film, f));
+    *out = g_steal_pointer(&film);
     return STATUS_OK;
 }
 
@@ -391,27 +385,24 @@ status film_file_add(film_file *film, cairo_surface_t *frame, fault *f)
 
 status film_file_commit(film_file *film, fault *f)
 {
-    status code = STATUS_OK;
-
-    // only an encoder can fail this late, frames are there already
-    if (film->format != NULL) {
-        char said[512];
-        bool content = end_encoder(film, said, sizeof said);
-
-        // a stop also makes the encoder fail, so it is asked for first
-        if (is_asked_to_stop(film)) {
-            code = stopped(film, f);
-        } else if (!content) {
-            code = complain_encoder(film, said, f);
-        } else if (film->file.temporary != NULL && !looks_whole(film)) {
-            code = fault_set(f, STATUS_CANNOT_WRITE,
-                             "%s could not be made: ffmpeg left a file that is no such film",
-                             film->path);
-        }
-        code = whole_file_close(&film->file, code, f);
+    // of no more use, whatever comes of it; frames in a folder are there already
+    g_autoptr(film_file) ended = film;
+    char said[512];
+    if (film->format == NULL) {
+        return STATUS_OK;
     }
 
-    // of no more use, whatever came of it
-    film_file_abandon(film);
-    return code;
+    // only an encoder can fail this late; a stop also makes it fail, so that is asked for first
+    status code = STATUS_OK;
+    const bool content = end_encoder(film, said, sizeof said);
+    if (is_asked_to_stop(film)) {
+        code = stopped(film, f);
+    } else if (!content) {
+        code = complain_encoder(film, said, f);
+    } else if (film->file.temporary != NULL && !looks_whole(film)) {
+        code =
+            fault_set(f, STATUS_CANNOT_WRITE,
+                      "%s could not be made: ffmpeg left a file that is no such film", film->path);
+    }
+    return whole_file_close(&film->file, code, f);
 }

@@ -167,21 +167,17 @@ static void place_views(film_plan *plan)
 // The traces: force, angles and velocities of one run, the forces of several.
 static owned_figure *describe_traces(const film_plan *plan)
 {
-    static const trace_panel one[] = {
-        {.signals = {"force"}, .with_zero = true, .impulses = true, .weight = 1.2},
-        {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},
-        {.label = "Angular velocity",
-         .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
-    };
-    static const trace_panel several[] = {{.signals = {"force"}, .with_zero = true}};
+    static const trace_panel several = {.signals = {"force"}, .with_zero = true};
+    trace_panel one[] = {usual_panels[0], usual_panels[1], usual_panels[2]};
     trace_run runs[FILM_RUNS];
+    one[0].inset = false;
 
     for (int i = 0; i < plan->run_count; i++) {
         runs[i] = (trace_run){plan->runs[i].scenario, plan->runs[i].result, plan->runs[i].name,
                               .rank = plan->run_count > 1 ? i + 1 : 0};
     }
     return plan->run_count == 1 ? trace_figure_create(NULL, one, (int)G_N_ELEMENTS(one), runs, 1)
-                                : trace_figure_create(NULL, several, 1, runs, plan->run_count);
+                                : trace_figure_create(NULL, &several, 1, runs, plan->run_count);
 }
 
 // Paints all of the traces once; frames veil what has not happened yet.
@@ -242,14 +238,13 @@ void film_plan_finish(film_plan *plan)
 
 status film_painter_create(film_painter **out, const film_plan *plan, fault *f)
 {
-    film_painter *p = g_new0(film_painter, 1);
+    g_autoptr(film_painter) p = g_new0(film_painter, 1);
     *out = NULL;
     p->plan = plan;
     p->context = text_context_create();
 
     // a scene for each run, as large as its view
-    status code = STATUS_OK;
-    for (int i = 0; i < plan->run_count && code == STATUS_OK; i++) {
+    for (int i = 0; i < plan->run_count; i++) {
         scene_options view = plan->options.view;
         view.width = plan->views[i].width;
         view.height = plan->views[i].height;
@@ -259,15 +254,10 @@ status film_painter_create(film_painter **out, const film_plan *plan, fault *f)
         view.renderer = view.renderer == RENDER_AUTO ? RENDER_CAIRO : view.renderer;
         // small views have the letters of the whole
         view.letters = plan->run_count > 1 ? film_scale(plan) : 0;
-        code = scene_create(&p->scenes[i], plan->runs[i].scenario, plan->runs[i].result, &view, f);
+        TRY(scene_create(&p->scenes[i], plan->runs[i].scenario, plan->runs[i].result, &view, f));
         p->views[i] = cairo_image_surface_create(CAIRO_FORMAT_RGB24, view.width, view.height);
     }
-
-    if (code != STATUS_OK) {
-        film_painter_destroy(p);
-        return code;
-    }
-    *out = p;
+    *out = g_steal_pointer(&p);
     return STATUS_OK;
 }
 

@@ -178,13 +178,9 @@ static status open_egl(gl_offscreen *g, fault *f)
 
     // the library and its display
     g->handle = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
-    if (g->handle == NULL) {
-        return complain_egl(f, "is not installed (libEGL.so.1)");
-    }
+    FAIL_IF(g->handle == NULL, complain_egl(f, "is not installed (libEGL.so.1)"));
     g->display = egl_display(g->handle);
-    if (g->display == NULL) {
-        return complain_egl(f, "gives no display without a screen");
-    }
+    FAIL_IF(g->display == NULL, complain_egl(f, "gives no display without a screen"));
 
     // OpenGL and a configuration for small surfaces
     if (!load(g->handle, "eglBindAPI", &bind) || !load(g->handle, "eglChooseConfig", &choose) ||
@@ -197,9 +193,8 @@ static status open_egl(gl_offscreen *g, fault *f)
 
     g->surface = create_surface(g->display, config, surface_wanted);
     g->context = create_context(g->display, config, NULL, NULL);
-    if (g->surface == NULL || g->context == NULL || !make_current(g)) {
-        return complain_egl(f, "gives no context of OpenGL");
-    }
+    FAIL_IF(g->surface == NULL || g->context == NULL || !make_current(g),
+            complain_egl(f, "gives no context of OpenGL"));
     return STATUS_OK;
 }
 
@@ -262,19 +257,13 @@ status gl_offscreen_create(gl_offscreen **out, scene_renderer library, int width
                            char name[RENDERER_NAME], fault *f)
 {
     assert(width > 0 && height > 0);
-    gl_offscreen *g = g_new0(gl_offscreen, 1);
+    g_autoptr(gl_offscreen) g = g_new0(gl_offscreen, 1);
     *out = NULL;
     g->library = library;
     g->width = width;
     g->height = height;
-
-    // whatever was opened is closed by the destructor
-    status code = set_up(g, name, f);
-    if (code != STATUS_OK) {
-        gl_offscreen_destroy(g);
-        return code;
-    }
-    *out = g;
+    TRY(set_up(g, name, f));
+    *out = g_steal_pointer(&g);
     return STATUS_OK;
 }
 

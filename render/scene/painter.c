@@ -20,8 +20,9 @@ status scene_painter_create(scene_painter **out, scene_renderer which, int width
                             int samples, fault *f)
 {
     assert(width > 0 && height > 0 && samples > 0);
-    scene_painter *p = *out = g_new0(scene_painter, 1);
+    g_autoptr(scene_painter) p = g_new0(scene_painter, 1);
     status code = STATUS_OK;
+    *out = NULL;
     snprintf(p->name, sizeof p->name, "cairo %s, own depth buffer", cairo_version_string());
 
     // the renderer asked for, or the first that is there; OSMesa needs no driver
@@ -32,16 +33,12 @@ status scene_painter_create(scene_painter **out, scene_renderer which, int width
     }
 
     // drawing by hand needs only memory
-    code = which == RENDER_AUTO ? STATUS_OK : code;
-    if (code == STATUS_OK && !samples_init(&p->samples, width, height, samples, p->gl == NULL)) {
-        code = fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", width,
-                         height);
-    }
-    if (code != STATUS_OK) {
-        scene_painter_destroy(p);
-        *out = NULL;
-    }
-    return code;
+    TRY(which == RENDER_AUTO ? STATUS_OK : code);
+    FAIL_IF(
+        !samples_init(&p->samples, width, height, samples, p->gl == NULL),
+        fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", width, height));
+    *out = g_steal_pointer(&p);
+    return STATUS_OK;
 }
 
 void scene_painter_destroy(scene_painter *p)

@@ -6,6 +6,8 @@
 // more than the links do.
 #pragma once
 
+#include <glib.h>
+
 #include "render/scene/geometry.h"
 #include "src/run/run.h"
 
@@ -48,6 +50,7 @@ void scene_options_scale(scene_options *o, const trace *t);
 status scene_create(scene **out, const scenario *s, const run_result *result,
                     const scene_options *options, fault *f);
 void scene_destroy(scene *sc);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(scene, scene_destroy)
 
 // Name of the renderer, for metadata.
 const char *scene_renderer_name(const scene *sc);

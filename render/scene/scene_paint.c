@@ -86,7 +86,7 @@ static status prepare(scene *sc, fault *f)
 status scene_create(scene **out, const scenario *s, const run_result *result,
                     const scene_options *options, fault *f)
 {
-    scene *sc = g_new0(scene, 1);
+    g_autoptr(scene) sc = g_new0(scene, 1);
     *out = NULL;
     sc->scenario = s;
     sc->result = result;
@@ -106,12 +106,8 @@ status scene_create(scene **out, const scenario *s, const run_result *result,
     double share = sc->length / 10 / power;
     sc->grid = (share >= 5 ? 5 : share >= 2 ? 2 : 1) * power;
 
-    status code = prepare(sc, f);
-    if (code != STATUS_OK) {
-        scene_destroy(sc);
-        return code;
-    }
-    *out = sc;
+    TRY(prepare(sc, f));
+    *out = g_steal_pointer(&sc);
     return STATUS_OK;
 }
 
@@ -202,30 +198,25 @@ static status paint_inset(scene *sc, const double *times, int count, cairo_surfa
 {
     scene *tip = sc->tip;
     int width = tip->options.width, height = tip->options.height;
-    cairo_surface_t *view = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
-    status code = scene_paint(tip, times, count, view, f);
+    g_autoptr(cairo_surface_t) view = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    TRY(scene_paint(tip, times, count, view, f));
 
     // its frame and how much larger it is than the picture, at the contact
-    if (code == STATUS_OK) {
-        double margin = INSET_MARGIN * sc->options.width, left = sc->options.width - width - margin;
-        const sample row = scene_shape(sc, times[count - 1]);
-        const vector at = scene_contact(sc, &row);
-        const double larger =
-            labels_pixels(&tip->camera, at, 1) / labels_pixels(&sc->camera, at, 1);
-        cairo_t *cr = cairo_create(onto);
-        cairo_set_source_surface(cr, view, left, margin);
-        cairo_paint(cr);
-        set_colour(cr, sc->around->faint);
-        cairo_set_line_width(cr, fmax(1, labels_scale(sc)));
-        cairo_rectangle(cr, left, margin, width, height);
-        picture_stroke(cr);
-        if (!sc->options.plain) {
-            labels_inset(sc, cr, left, margin + height, larger);
-        }
-        code = picture_end_drawing(cr, STATUS_OK, f);
+    double margin = INSET_MARGIN * sc->options.width, left = sc->options.width - width - margin;
+    const sample row = scene_shape(sc, times[count - 1]);
+    const vector at = scene_contact(sc, &row);
+    const double larger = labels_pixels(&tip->camera, at, 1) / labels_pixels(&sc->camera, at, 1);
+    cairo_t *cr = cairo_create(onto);
+    cairo_set_source_surface(cr, view, left, margin);
+    cairo_paint(cr);
+    set_colour(cr, sc->around->faint);
+    cairo_set_line_width(cr, fmax(1, labels_scale(sc)));
+    cairo_rectangle(cr, left, margin, width, height);
+    picture_stroke(cr);
+    if (!sc->options.plain) {
+        labels_inset(sc, cr, left, margin + height, larger);
     }
-    cairo_surface_destroy(view);
-    return code;
+    return picture_end_drawing(cr, STATUS_OK, f);
 }
 
 status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *onto, fault *f)
@@ -296,15 +287,15 @@ static status check_instants(const scene_picture *p, fault *f)
 
 status scene_write(const scene_picture *p, const char *path, fault *f)
 {
-    scene *sc;
+    g_autoptr(scene) sc = NULL;
     TRY(scene_check_path(path, f));
     TRY(check_instants(p, f));
     TRY(scene_create(&sc, p->scenario, p->result, &p->options, f));
 
-    cairo_surface_t *surface = cairo_image_surface_create(
+    g_autoptr(cairo_surface_t) surface = cairo_image_surface_create(
         p->options.transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, sc->options.width,
         sc->options.height);
-    status code = scene_paint(sc, p->times, p->count, surface, f);
+    TRY(scene_paint(sc, p->times, p->count, surface, f));
 
     // with what it was made from
     whole_file file;
@@ -314,12 +305,7 @@ status scene_write(const scene_picture *p, const char *path, fault *f)
                               {"Software", picture_software()},
                               {"Parameters", values},
                               {"Renderer", scene_renderer_name(sc)}};
-    code = code == STATUS_OK ? whole_file_open(&file, path, f) : code;
-    if (code == STATUS_OK) {
-        code = png_file_write(file.stream, surface, PICTURE_DPI, notes, 4, f);
-        code = whole_file_close(&file, code, f);
-    }
-    cairo_surface_destroy(surface);
-    scene_destroy(sc);
-    return code;
+    TRY(whole_file_open(&file, path, f));
+    const status code = png_file_write(file.stream, surface, PICTURE_DPI, notes, 4, f);
+    return whole_file_close(&file, code, f);
 }

@@ -68,6 +68,7 @@ typedef struct scene_painter scene_painter;
 status scene_painter_create(scene_painter **out, scene_renderer which, int width, int height,
                             int samples, fault *f);
 void scene_painter_destroy(scene_painter *p);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(scene_painter, scene_painter_destroy)
 
 // The mesh to be painted, with camera and light.
 typedef struct painting {
@@ -99,6 +100,7 @@ enum { RENDERER_NAME = 300 };
 status gl_offscreen_create(gl_offscreen **out, scene_renderer library, int width, int height,
                            char name[RENDERER_NAME], fault *f);
 void gl_offscreen_destroy(gl_offscreen *g);
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(gl_offscreen, gl_offscreen_destroy)
 
 // Triangles, three corners each, as numbers of vertices.
 typedef struct gl_triangles {
