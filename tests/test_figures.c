@@ -2,7 +2,7 @@
 // next to them, bytes of files.
 #include "tests/plot_fixture.h"
 
-#include "render/figures/report.h"
+#include "render/figures/figures.h"
 
 // But those that take long: test_figure_legibility looks at them, and at all in a column of 85 mm.
 TEST(every_figure_is_tidy)

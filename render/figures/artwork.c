@@ -38,7 +38,8 @@ status artwork_write_csv(const artwork *a, const char *path, fault *f)
 
 static status paint(cairo_t *cr, const void *what, fault *f)
 {
-    return artwork_paint(what, cr, NULL, f);
+    const artwork *a = what;
+    return artwork_paint(a, cr, a->seen, f);
 }
 
 picture artwork_picture(const artwork *a, const figure_options *options)

@@ -28,6 +28,7 @@ typedef struct artwork {
     // of anything else: what the functions below do of its owner
     status (*paint)(cairo_t *cr, const void *owner, figure_report *report, fault *f);
     void (*write_csv)(const void *owner, csv_writer *csv);
+    figure_report *seen;          // filled when its picture is painted; NULL: nobody asks
     void *owner;                  // holds all of it
     void (*release)(void *owner); // NULL: nothing to free
 } artwork;

@@ -41,7 +41,6 @@ void diagram_release(void *what)
     g_free(d->caption);
     g_free(d->parameters);
     g_array_free(d->values, TRUE);
-    g_free(d->shapes);
     run_close(d->run);
     g_free(d);
 }

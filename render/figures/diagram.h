@@ -11,6 +11,19 @@ typedef struct diagram_value {
     double value;
 } diagram_value;
 
+// The arm at an instant.
+typedef struct arm_shape {
+    double first, last; // angles of the links [rad]
+    double force;       // contact force [N]
+    double time;        // [s]
+} arm_shape;
+
+// What is drawn: 3.1 one step and the next; 4.6 the peak, first contact, and the energy
+// principle's.
+typedef struct arm_shapes {
+    arm_shape one, other, assumed;
+} arm_shapes;
+
 typedef struct diagram {
     sketch_frame frame;
     char *title, *caption, *parameters;
@@ -21,7 +34,7 @@ typedef struct diagram {
     three_body_state before; // 4.2: the instant before the impact
     double after[3];         // angular velocities just after it [rad/s]
     double impulse;          // [N s]
-    void *shapes;            // 3.1, 4.6: owned, shapes of their own
+    arm_shapes shapes;       // 3.1, 4.6
 } diagram;
 
 // The transformation from metres of the model, y upwards, to the page. `across` enlarges distances

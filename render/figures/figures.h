@@ -84,6 +84,10 @@ const thesis_tables *computed_tables(fault *f);
 const table_row *computed_row(const thesis_tables *t, const char *table, const char *model,
                               const char *quantity);
 
+// The defaults of both models, of the parameters from *next on that are of its group, "arm" or
+// "motor", as a table; *next is the first of another group then.
+table_page *defaults_table(int *next);
+
 // --- scenarios run for figures
 
 // A run with its scenario; of measured data the trace alone.
@@ -130,3 +134,14 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
 
 // Whether a file is a recipe: YAML with panels. False for a file that cannot be read.
 bool recipe_is(const char *path);
+
+// --- the report: every figure and table of the catalogue, or the given runs and recipes, each with
+// its origin and the command that makes it, as one web page and one PDF
+
+// Writes FOLDER/report.html, which needs no other file and no network, and FOLDER/report.pdf.
+// `names` are `count` scenarios and recipe files; without any the catalogue is shown. The folder is
+// created if it does not exist. Returns the status of runs and writing; STATUS_STOPPED if `monitor`
+// (may be NULL) requested it, with both files unchanged. Counts in the monitor each item when it is
+// computed and again when it is drawn on the page.
+status report_write(const char *folder, char *const *names, int count, run_monitor *monitor,
+                    fault *f);

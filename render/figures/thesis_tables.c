@@ -304,3 +304,37 @@ status table_errors(const figure_order *order, artwork *out, fault *f)
                       "Mean size of the difference from the thesis over the cells of a row that "
                       "have a value, three stiffnesses at four voltages.");
 }
+
+// ---- the lab's own parameters
+
+table_page *defaults_table(int *next)
+{
+    static const table_column columns[] = {
+        {"Parameter", 3.7}, {"Corrected", 1.1}, {"Printed", 1.1}, {"Unit", 0.9}, {"Meaning", 3.2}};
+    parameters corrected, printed;
+    parameters_defaults(&corrected, ARM_CORRECTED);
+    parameters_defaults(&printed, ARM_PRINTED);
+    parameters_resolve(&corrected, NULL);
+    parameters_resolve(&printed, NULL);
+
+    // all whose paths begin alike
+    const char *group = parameter_table[*next].path;
+    const size_t length = strcspn(group, ".");
+    g_autofree char *title = text_printf("Parameters: %.*s", (int)length, group);
+    table_page *t = table_create(title, columns, G_N_ELEMENTS(columns));
+    for (; *next < parameter_count && strncmp(parameter_table[*next].path, group, length + 1) == 0;
+         ++*next) {
+        const parameter_info *info = &parameter_table[*next];
+        char own[128], theirs[128];
+        parameter_format(&corrected, *next, own, sizeof own);
+        parameter_format(&printed, *next, theirs, sizeof theirs);
+        g_autofree char *unit = text_unit(info->unit);
+        g_auto(GStrv) cells = g_new0(char *, G_N_ELEMENTS(columns) + 1);
+        const char *const texts[] = {info->path, own, theirs, unit, info->description};
+        for (size_t k = 0; k < G_N_ELEMENTS(texts); k++) {
+            cells[k] = text_escape(texts[k]);
+        }
+        table_add_row(t, (const char *const *)cells);
+    }
+    return t;
+}

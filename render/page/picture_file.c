@@ -375,7 +375,7 @@ char *picture_svg(const picture *p, fault *f)
             g_string_insert(svg, end + 1 - svg->str, metadata->str);
             g_string_free(metadata, TRUE);
         }
-        numbered = svg_renumber_ids(svg->str);
+        numbered = svg_renumber_ids(svg->str, "");
     }
     g_string_free(svg, TRUE);
     return numbered;

@@ -85,9 +85,9 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const 
 
 // cairo makes ids from counters of the whole process ("surface96"), so that the second figure of a
 // program differs from the first. Returns the SVG with the number in every id="name<number>", and
-// in every reference to it, replaced by its place in the order of the ids. Free the result with
-// g_free.
-char *svg_renumber_ids(const char *svg);
+// in every reference to it, replaced by its place in the order of the ids, and with a prefix before
+// it. Free the result with g_free.
+char *svg_renumber_ids(const char *svg, const char *prefix);
 
 // The SVG as an element of a page with others, in fewer bytes: without the XML declaration and
 // metadata; with a prefix before every id; lengths to a hundredth of a point (those of lines to a

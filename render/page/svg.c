@@ -13,14 +13,21 @@
 static text_pattern set_id = {"( id=\")([^\"')]*)"};
 static text_pattern any_id = {"( id=\"|\"#|url\\(#)([^\"')]*)"};
 
+// What ids become, new ones with a prefix.
+typedef struct id_names {
+    GHashTable *names;
+    const char *prefix;
+} id_names;
+
 // Gives an id a new name: its letters and its place among all.
-static gboolean collect_id(const GMatchInfo *match, GString *out, gpointer names)
+static gboolean collect_id(const GMatchInfo *match, GString *out, gpointer context)
 {
     (void)out;
+    const id_names *n = context;
     char *id = g_match_info_fetch(match, 2);
     const int letters = (int)strcspn(id, "0123456789");
-    char *name = text_printf("%.*s%u", letters, id, g_hash_table_size(names));
-    g_hash_table_insert(names, id, name);
+    g_hash_table_insert(
+        n->names, id, text_printf("%s%.*s%u", n->prefix, letters, id, g_hash_table_size(n->names)));
     return FALSE;
 }
 
@@ -33,17 +40,10 @@ static gboolean rename_id(const GMatchInfo *match, GString *out, gpointer names)
     return FALSE;
 }
 
-static gboolean prefix_id(const GMatchInfo *match, GString *out, gpointer prefix)
-{
-    g_autofree char *before = g_match_info_fetch(match, 1), *id = g_match_info_fetch(match, 2);
-    text_append(out, "%s%s%s", before, (const char *)prefix, id);
-    return FALSE;
-}
-
-char *svg_renumber_ids(const char *svg)
+char *svg_renumber_ids(const char *svg, const char *prefix)
 {
     g_autoptr(GHashTable) names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
-    g_free(text_replaced(&set_id, svg, collect_id, names));
+    g_free(text_replaced(&set_id, svg, collect_id, &(id_names){names, prefix}));
     return text_replaced(&any_id, svg, rename_id, names);
 }
 
@@ -163,7 +163,7 @@ static gboolean compact(const GMatchInfo *match, GString *out, gpointer context)
 char *svg_for_page(const char *svg, const char *prefix, GHashTable *known)
 {
     const char *root = strstr(svg, "<svg");
-    g_autofree char *own = text_replaced(&any_id, root ? root : svg, prefix_id, (gpointer)prefix);
+    g_autofree char *own = svg_renumber_ids(root ? root : svg, prefix);
 
     // the page that holds the picture says what it is
     char *from = strstr(own, "<metadata>"), *to = from ? strstr(from, "</metadata>") : NULL;

@@ -72,7 +72,7 @@ extern const trace_panel usual_panels[USUAL_PANELS];
 status plot_run(const scenario *s, const run_result *result, const run_result *old,
                 const figure_mark *notes, int note_count, const char *path, fault *f);
 
-// --- reference data: overlay.c
+// --- reference data: trace_series.c
 
 // Reads measured data, FILE.csv[:COLUMN][@SHIFT]. The file's first line names its columns, with or
 // without unit ("time[s],force[N]"): "time" and at least one more. A column with the name of a

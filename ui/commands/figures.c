@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "render/figures/figures.h"
-#include "render/figures/report.h"
 #include "src/base/json.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
