@@ -53,6 +53,12 @@ TEST(test_the_wheel_zooms_where_it_points)
     }
     state_window(&ex.state, &from, &to);
     check_close(to - from, 1, 0);
+
+    // over a legend, too
+    const hit_area l = part_on_screen(&ex, PANEL_CURVES, PART_LEGEND);
+    point(&ex, POINTER_WHEEL_UP, l.area.x, l.area.y);
+    state_window(&ex.state, &from, &to);
+    check_close(from, 0.2 * (l.area.x - c.area.x + 0.5) / c.area.width, 1e-9);
 }
 
 TEST(test_the_time_axis_is_dragged)

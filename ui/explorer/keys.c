@@ -278,6 +278,9 @@ static void turn_wheel(explorer *ex, pointer_event e)
 {
     const explorer_state *st = &ex->state;
     hit_area hit = layout_hit(&ex->layout, e.x, e.y);
+    if (hit.part == PART_LEGEND) {
+        hit.area = ex->layout.plot; // over a legend it zooms as in the curves
+    }
     const bool typing = st->prompt.open && hit.panel != PANEL_PALETTE;
     if (typing || is_behind_page(st, hit.panel)) {
         return;
