@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "render/scene/plan.h"
 #include "ui/terminal/pictures.h"

@@ -1,8 +1,6 @@
 // The strip of a lesson below the title: the task, or its result.
 #include "ui/explorer/panels/panel.h"
 
-#include <string.h>
-
 enum { MOST_LINES = 7 };
 
 // The step as text: its sentence, the answers to choose from, what it says when it is done.

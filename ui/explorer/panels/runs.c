@@ -53,8 +53,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 static bool point(explorer_state *st, const panel_gesture *g)
 {
     const bool pressed = g->event.kind == POINTER_PRESS;
-    pinned_run *p = &st->pinned.runs[g->hit.index];
-    p->hidden = p->hidden != pressed;
+    st->pinned.runs[g->hit.index].hidden ^= pressed;
     return pressed;
 }
 

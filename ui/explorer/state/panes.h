@@ -5,7 +5,6 @@
 #include <stdbool.h>
 
 #include "src/tables/signals.h"
-#include "src/run/trace.h"
 
 // The panes of the table, and those that users define.
 enum { PANES_OF_TABLE = 9, PANES = 24, PANE_SIGNALS = 4 };
