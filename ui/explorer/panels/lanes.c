@@ -127,16 +127,15 @@ static bool any_row(const trace *t, double from, double to, int signal, double a
     return found;
 }
 
-// What a lane holds between two instants [s].
-static lane_band band_between(const explorer_state *st, lane l, double from, double to)
+// What a lane of some rows holds between two instants [s].
+static lane_band band_between(const explorer_state *st, lane l, const trace *t, double from,
+                              double to)
 {
     enum { COLOURS = 6 }; // of modes
     static const ink colours[LANE_KINDS] = {[LANE_CONTACT] = INK_FORCE,
                                             [LANE_SATURATION] = INK_WARNING,
                                             [LANE_LOCK] = INK_EVENT,
                                             [LANE_STICKING] = INK_HUB};
-    // what the run did, also where panes show a difference
-    const trace *t = l.run == 0 ? &st->session.run.trace : state_run(st, l.run).trace;
     lane_band band = {-1, colours[l.kind], ""};
 
     // one value for each name
@@ -180,6 +179,8 @@ static void name_band(screen *s, int start, int end, int y, const lane_band *ban
 // A lane of bands, as far as the run has been seen.
 static void draw_bands(const explorer_state *st, screen *s, area line, lane l)
 {
+    // what the run did, also where panes show a difference
+    const trace *t = l.run == 0 ? &st->session.run.trace : state_run(st, l.run).trace;
     const bool future = st->session.has_ghost || l.run > 0;
     lane_band before = {.value = -1};
     double left, right;
@@ -190,7 +191,7 @@ static void draw_bands(const explorer_state *st, screen *s, area line, lane l)
         const double to = left + (right - left) * (i + 1) / line.width;
         const bool known = i < line.width && (future || from <= st->session.seen);
         const lane_band band =
-            known ? band_between(st, l, from, future ? to : fmin(to, st->session.seen))
+            known ? band_between(st, l, t, from, future ? to : fmin(to, st->session.seen))
                   : (lane_band){.value = -1};
 
         // a band ends where the next one begins

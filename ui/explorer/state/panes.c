@@ -33,19 +33,6 @@ const char *const axis_scaling_words[AXIS_SCALINGS] = {
 
 const value_range value_range_empty = {(double)INFINITY, (double)-INFINITY};
 
-void value_range_widen(value_range *r, value_range other)
-{
-    r->low = fmin(r->low, other.low);
-    r->high = fmax(r->high, other.high);
-}
-
-void value_range_add(value_range *r, double value)
-{
-    if (isfinite(value)) {
-        value_range_widen(r, (value_range){value, value});
-    }
-}
-
 value_range value_range_opened(value_range r)
 {
     const double rounding = 1e-12; // a smaller range is shown as a flat line

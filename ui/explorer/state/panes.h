@@ -2,6 +2,7 @@
 // part of the run is visible.
 #pragma once
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "src/tables/signals.h"
@@ -29,8 +30,18 @@ typedef struct value_range {
 extern const value_range value_range_empty;
 
 // Widens a range to include another one, or a value if it is finite.
-void value_range_widen(value_range *r, value_range other);
-void value_range_add(value_range *r, double value);
+static inline void value_range_widen(value_range *r, value_range other)
+{
+    r->low = fmin(r->low, other.low);
+    r->high = fmax(r->high, other.high);
+}
+
+static inline void value_range_add(value_range *r, double value)
+{
+    if (isfinite(value)) {
+        value_range_widen(r, (value_range){value, value});
+    }
+}
 
 // A range, or one about its only value.
 value_range value_range_opened(value_range r);
