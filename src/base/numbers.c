@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/fault.h"
 #include "src/base/plain_math.h"
 
 // Gives the calling thread the "C" locale; returns the one to go back to. The C library keeps the
@@ -320,7 +319,9 @@ bool decimal_read(const char *text, double *value, const char **rest)
     const char *digits = text + (*text == '+' || *text == '-');
     bool begins = isdigit((unsigned char)digits[0]) ||
                   (digits[0] == '.' && isdigit((unsigned char)digits[1]));
-    FAIL_IF(!begins || (digits[0] == '0' && tolower((unsigned char)digits[1]) == 'x'), false);
+    if (!begins || (digits[0] == '0' && tolower((unsigned char)digits[1]) == 'x')) {
+        return false;
+    }
 
     char *end;
     *value = decimal_parse(text, &end);
