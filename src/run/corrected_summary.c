@@ -203,16 +203,6 @@ static void judge(const corrected_run *c)
     judge_size(c, energy > rounding ? energy : 0);
 }
 
-// The bounds of the mean force over the last of the run.
-static void tell_steady_bounds(const corrected_run *c)
-{
-    const recording *r = c->recording;
-    summary *s = &r->result->summary;
-    const double window = fmin(STEADY_WINDOW, r->scenario->parameters.run.duration);
-    const force_bounds mean = {r->state.in_window.low / window, r->state.in_window.high / window};
-    corrected_tell_bounds(mean, &s->steady_force_low_N, &s->steady_force_high_N);
-}
-
 void corrected_summarise(corrected_run *c, status failed)
 {
     recording *r = c->recording;
@@ -250,7 +240,9 @@ void corrected_summarise(corrected_run *c, status failed)
     if (failed == STATUS_OK) {
         double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         recording_finish_summary(r, integral - r->state.integral_at_window);
-        tell_steady_bounds(c);
+        const double window = fmin(STEADY_WINDOW, r->scenario->parameters.run.duration);
+        const force_bounds sum = r->state.in_window, mean = {sum.low / window, sum.high / window};
+        corrected_tell_bounds(mean, &s->steady_force_low_N, &s->steady_force_high_N);
         recording_finish_rig_summary(r, state_angles(m, m->state)[0]);
         judge(c);
     }

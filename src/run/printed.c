@@ -117,15 +117,6 @@ sample printed_sample(const printed_run *p)
     return sampled;
 }
 
-static status add_row(const printed_run *p)
-{
-    if (!p->recording->options->keep_trace) {
-        return STATUS_OK;
-    }
-    const sample sampled = printed_sample(p);
-    return recording_add_row(p->recording, &sampled, p->motion.row.angle, p->motion.row.velocity);
-}
-
 static sensed_motion sensed_at(const printed_row *row)
 {
     return (sensed_motion){.angle = row->angle[0],
@@ -169,7 +160,10 @@ static status record_row(printed_run *p, fault *f)
     // and is kept
     TRY(failed);
     TRY(force_history_add(&r->result->history.forces, step));
-    TRY(add_row(p));
+    if (r->options->keep_trace) {
+        const sample sampled = printed_sample(p);
+        TRY(recording_add_row(r, &sampled, row->angle, row->velocity));
+    }
     FAULT_IF(recording_asked_to_stop(r), f, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
              status_text(STATUS_STOPPED));
     return STATUS_OK;

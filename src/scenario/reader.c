@@ -82,12 +82,6 @@ bool node_is_empty(const tree_node *node)
     return node_is_scalar(node) && node->plain && node->text[0] == '\0';
 }
 
-bool node_is_null(const tree_node *node)
-{
-    return node_is_scalar(node) && node->plain &&
-           (strcmp(node->text, "null") == 0 || strcmp(node->text, "~") == 0);
-}
-
 size_t node_text_length(const tree_node *node)
 {
     size_t length = node_is_scalar(node) ? strlen(node->text) : 0;

@@ -43,10 +43,9 @@ bool reader_report_at(reader *r, int line, int column, const char *format, ...)
 // Reports all faults in the order of their places, and frees them.
 void reader_report_all(reader *r, fault_handler report, void *context);
 
-// Whether a node is a single value; nothing at all; the word for nothing (null, ~).
+// Whether a node is a single value; nothing at all.
 bool node_is_scalar(const tree_node *node);
 bool node_is_empty(const tree_node *node);
-bool node_is_null(const tree_node *node);
 
 // Bytes of a node's text without the blanks at its end; 0 if it holds none.
 size_t node_text_length(const tree_node *node);

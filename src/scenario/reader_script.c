@@ -258,7 +258,8 @@ void reader_expectations(reader *r, const tree_node *map)
 
         expectation e = {
             .quantity = quantity, .line = child->key->line, .column = child->key->column};
-        e.is_null = node_is_null(child);
+        e.is_null = node_is_scalar(child) && child->plain &&
+                    (strcmp(child->text, "null") == 0 || strcmp(child->text, "~") == 0);
         if (e.is_null || parse_value_and_tolerance(r, child, &e)) {
             s->expectations[s->expectation_count++] = e;
         }
