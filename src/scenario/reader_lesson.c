@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/base/words.h"
 #include "src/tables/summary.h"
 
 #define NEAR_ENOUGH 0.001 // share of a value that a parameter may be off
@@ -220,6 +221,7 @@ static bool read_check(reader *r, const char *key, const tree_node *node, lesson
 
 static void read_step(reader *r, const tree_node *map, lesson_step *step)
 {
+    static const char *const texts[] = {"say", "then", "hint"}; // as in lesson_step
     if (!reader_expect_map(r, map, "a step", "say: ...")) {
         return;
     }
@@ -228,12 +230,9 @@ static void read_step(reader *r, const tree_node *map, lesson_step *step)
         if (key == NULL || read_check(r, key, child, step)) {
             continue;
         }
-        if (strcmp(key, "say") == 0) {
-            step->say = read_text(r, child, key);
-        } else if (strcmp(key, "then") == 0) {
-            step->then = read_text(r, child, key);
-        } else if (strcmp(key, "hint") == 0) {
-            step->hint = read_text(r, child, key);
+        const int which = name_find(texts, sizeof *texts, 3, key);
+        if (which >= 0) {
+            step->texts[which] = read_text(r, child, key);
         } else if (strcmp(key, "do") == 0) {
             step->command_count = read_texts(r, child, key, step->commands, LESSON_COMMANDS);
         } else {

@@ -8,32 +8,10 @@
 #include "src/rig/rig.h"
 #include "src/tables/settings.h"
 
-enum { STEP_TEXTS = 3 + LESSON_CHOICES + LESSON_COMMANDS };
-
-// Where a step keeps its texts, those that it has not included.
-static void text_places(lesson_step *step, char **places[STEP_TEXTS])
-{
-    int count = 0;
-    places[count++] = &step->say;
-    places[count++] = &step->then;
-    places[count++] = &step->hint;
-    for (int k = 0; k < LESSON_CHOICES; k++) {
-        places[count++] = &step->choices[k];
-    }
-    for (int k = 0; k < LESSON_COMMANDS; k++) {
-        places[count++] = &step->commands[k];
-    }
-    assert(count == STEP_TEXTS);
-}
-
 static void finish_lesson(lesson *l)
 {
-    char **places[STEP_TEXTS];
-    for (int i = 0; i < l->step_count; i++) {
-        text_places(&l->steps[i], places);
-        for (int k = 0; k < STEP_TEXTS; k++) {
-            free(*places[k]);
-        }
+    for (int i = 0; i < l->step_count * LESSON_TEXTS; i++) {
+        free(l->steps[i / LESSON_TEXTS].texts[i % LESSON_TEXTS]);
     }
 
     // nothing else of a lesson is allocated
@@ -93,12 +71,9 @@ status scenario_copy(scenario *copy, const scenario *s)
         copy_of(s->expectations, (size_t)s->expectation_count * sizeof *s->expectations, &good);
     copy->lesson.steps = copy_of(l->steps, (size_t)l->step_count * sizeof *l->steps, &good);
     copy->lesson.step_count = copy->lesson.steps != NULL ? l->step_count : 0;
-    for (int i = 0; i < copy->lesson.step_count; i++) {
-        char **places[STEP_TEXTS];
-        text_places(&copy->lesson.steps[i], places);
-        for (int k = 0; k < STEP_TEXTS; k++) {
-            *places[k] = text_of(*places[k], &good);
-        }
+    for (int i = 0; i < copy->lesson.step_count * LESSON_TEXTS; i++) {
+        char **text = &copy->lesson.steps[i / LESSON_TEXTS].texts[i % LESSON_TEXTS];
+        *text = text_of(*text, &good);
     }
 
     // an incomplete copy is discarded

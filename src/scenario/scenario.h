@@ -12,6 +12,7 @@
 // checked. It stands in a scenario file, under `lesson:`.
 enum { LESSON_PARAMETERS = 6, LESSON_CHOICES = 6, LESSON_COMMANDS = 8 };
 enum { LESSON_PINNED_RUNS = 7 }; // that the lab pins at most
+enum { LESSON_TEXTS = 3 + LESSON_CHOICES + LESSON_COMMANDS };
 
 // What has to be so before a step is done.
 typedef enum lesson_check {
@@ -25,9 +26,16 @@ typedef enum lesson_check {
 } lesson_check;
 
 typedef struct lesson_step {
-    char *say;  // what to do or to think about
-    char *then; // said when it is done, "" for nothing
-    char *hint; // said to who asks before, "" for none
+    union {
+        struct {
+            char *say;  // what to do or to think about
+            char *then; // said when it is done, "" for nothing
+            char *hint; // said to who asks before, "" for none
+            char *choices[LESSON_CHOICES];
+            char *commands[LESSON_COMMANDS]; // of the lab, that do the step
+        };
+        char *texts[LESSON_TEXTS]; // all of these, NULL where there is none
+    };
     lesson_check check;
     int quantity;     // NUMBER, CURSOR, RATIO: index in summary_table
     double within;    // NUMBER: share of the quantity; CURSOR: [s]; VALUE: share of the value
@@ -35,10 +43,8 @@ typedef struct lesson_step {
     double low, high; // RATIO
     int parameter;    // VALUE: index in parameter_table
     double value;     // VALUE, in the parameter's unit
-    char *choices[LESSON_CHOICES];
-    int choice_count, right;         // CHOICE: the right one, from 0
-    int pinned;                      // PINNED
-    char *commands[LESSON_COMMANDS]; // of the lab, that do the step
+    int choice_count, right; // CHOICE: the right one, from 0
+    int pinned;              // PINNED
     int command_count;
 } lesson_step;
 
