@@ -212,9 +212,9 @@ static status cannot_list(const char *folder, fault *f)
 static status add_entry(name_list *list, const char *folder, const char *prefix, const char *entry,
                         int depth, fault *f)
 {
-    char *path = text_of("%s/%s", folder, entry), *name = text_of("%s%s", prefix, entry);
-    char *below = name != NULL ? text_of("%s/", name) : NULL;
-    status code = path != NULL && below != NULL ? STATUS_OK : fault_no_memory(f);
+    char *path = text_of("%s/%s", folder, entry);
+    char *name = text_of("%s%s%s", prefix, prefix[0] != '\0' ? "/" : "", entry);
+    status code = path != NULL && name != NULL ? STATUS_OK : fault_no_memory(f);
     size_t length = code == STATUS_OK ? strlen(name) : 0;
     const size_t tail = sizeof suffix - 1;
     struct stat about = {0};
@@ -224,7 +224,7 @@ static status add_entry(name_list *list, const char *folder, const char *prefix,
 
     // a folder's scenarios have its name before theirs; other files than .yaml are none
     if (code == STATUS_OK && S_ISDIR(about.st_mode)) {
-        code = depth < MAX_FOLDER_DEPTH ? walk(list, path, below, depth + 1, f) : STATUS_OK;
+        code = depth < MAX_FOLDER_DEPTH ? walk(list, path, name, depth + 1, f) : STATUS_OK;
     } else if (code == STATUS_OK && strlen(entry) > tail &&
                strcmp(name + length - tail, suffix) == 0) {
         code = add_name(list, name, length - tail) ? STATUS_OK : fault_no_memory(f);
@@ -232,7 +232,6 @@ static status add_entry(name_list *list, const char *folder, const char *prefix,
 
     free(path);
     free(name);
-    free(below);
     return code;
 }
 
@@ -330,19 +329,15 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
     }
 
     // the nearest of the shipped scenarios, if their folder can be read
-    nearest_word near = nearest_begin(stem);
-    for (int i = 0; i < count; i++) {
-        nearest_try(&near, names[i]);
-    }
-
+    const char *near = name_nearest(names, sizeof *names, count, stem);
     const status code = STATUS_BAD_ARGUMENT;
     const status told =
         unread.text[0] != '\0'
             ? tell(report, context, code, "'%s' is no file, and no scenario can be found: %s",
                    wanted, unread.text)
-        : near.best != NULL
+        : near != NULL
             ? tell(report, context, code,
-                   "'%s' is neither a scenario nor a file, did you mean '%s'?", wanted, near.best)
+                   "'%s' is neither a scenario nor a file, did you mean '%s'?", wanted, near)
             : tell(report, context, code,
                    "'%s' is neither a scenario nor a file, expected a name that 'impactlab list' "
                    "shows or the path of a file",

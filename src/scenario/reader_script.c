@@ -109,14 +109,10 @@ static void find_action_parts(reader *r, const tree_node *map, const tree_node *
         if (strcmp(key, "at") == 0) {
             *at = child;
         } else if (strcmp(key, "set") != 0 && strcmp(key, "push") != 0) {
-            nearest_word near = nearest_begin(key);
-            nearest_try(&near, "at");
-            nearest_try(&near, "set");
-            nearest_try(&near, "push");
-            report_node(r, child->key, "unknown key '%.60s' in an action, %s%s%s", key,
-                        near.best ? "did you mean '" : "expected at, set or push",
-                        near.best ? near.best : "", near.best ? "'?" : "");
-
+            static const char *const words[] = {"at", "set", "push"};
+            const char *near = name_nearest(words, sizeof *words, 3, key);
+            report_node(r, child->key, "unknown key '%.60s' in an action%s%s%s", key,
+                        DID_YOU_MEAN(near, ", expected at, set or push"));
         } else if (*deed != NULL) {
             report_node(r, child->key,
                         "'%s' after '%s' in one action, expected one of them (begin a new '- at:')",
@@ -181,9 +177,8 @@ static int parse_quantity(reader *r, const tree_node *key)
                     key->text);
     } else {
         const char *near = summary_suggest(key->text);
-        report_node(r, key, "unknown quantity '%.60s', %s%s%s", key->text,
-                    near ? "did you mean '" : "expected a key of 'run --json'", near ? near : "",
-                    near ? "'?" : "");
+        report_node(r, key, "unknown quantity '%.60s'%s%s%s", key->text,
+                    DID_YOU_MEAN(near, ", expected a key of 'run --json'"));
     }
     return -1;
 }
