@@ -329,7 +329,10 @@ status corrected_record_step(corrected_run *c, bool at_event)
 
     // how fast the tip came towards the wall on its own
     if (r->rig != NULL && m->trial[SLOT_CONTACT] == 0) {
-        recording_follow_flight(r, flight_closing_speed(&c->arm, m));
+        summary *all = &r->result->summary;
+        double *most =
+            isnan(all->first_contact_s) ? &all->approach_speed_m_s : &all->return_speed_m_s;
+        *most = larger(flight_closing_speed(&c->arm, m), *most);
     }
 
     TRY(s);

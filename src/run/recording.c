@@ -203,13 +203,6 @@ void recording_before_change(recording *r, const action *todo, double time, doub
     }
 }
 
-void recording_follow_flight(recording *r, double closing_speed)
-{
-    summary *s = &r->result->summary;
-    double *largest = isnan(s->first_contact_s) ? &s->approach_speed_m_s : &s->return_speed_m_s;
-    *largest = larger(closing_speed, *largest);
-}
-
 void recording_finish_rig_summary(recording *r, double hub_angle)
 {
     summary *s = &r->result->summary;

@@ -104,8 +104,5 @@ void recording_change_command(recording *r, double time, double hub_angle);
 // fed in under another limit is booked.
 void recording_before_change(recording *r, const action *todo, double time, double hub_angle);
 
-// The tip moves in the air towards the wall, at most with closing_speed [m/s] since the last call.
-void recording_follow_flight(recording *r, double closing_speed);
-
 // Fills in what the summary says of the rig; the hub is at the given angle at the end [rad].
 void recording_finish_rig_summary(recording *r, double hub_angle);

@@ -108,17 +108,14 @@ static status resolve_changed(const scenario *s, parameters *p, fault *f)
     TRY(scenario_check_timing(&changed, f));
 
     // what the script sets may change, and a push acts on the corrected arm only
+    const action *push = NULL;
     for (int i = 0; i < s->action_count; i++) {
-        if (s->actions[i].kind == ACTION_SET) {
-            TRY(parameter_may_change(p, s->actions[i].parameter, f));
-        }
+        const action *a = &s->actions[i];
+        TRY(a->kind == ACTION_SET ? parameter_may_change(p, a->parameter, f) : STATUS_OK);
+        push = push == NULL && a->kind == ACTION_PUSH ? a : push;
     }
-    for (int i = 0; i < s->action_count; i++) {
-        FAULT_IF(s->actions[i].kind == ACTION_PUSH && p->arm.model == ARM_PRINTED, f,
-                 STATUS_BAD_SCENARIO,
-                 "the printed model takes no pushes, but the script has one at %g s",
-                 s->actions[i].time);
-    }
+    FAULT_IF(push != NULL && p->arm.model == ARM_PRINTED, f, STATUS_BAD_SCENARIO,
+             "the printed model takes no pushes, but the script has one at %g s", push->time);
     return STATUS_OK;
 }
 
