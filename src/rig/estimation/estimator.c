@@ -81,17 +81,19 @@ void sampled_model_step(const sampled_model *m, double *z, double u)
 // A matrix of states, of which the first rows and columns are in use.
 typedef double matrix[N][N];
 
-// out += a b, `rows` x `inner` times `inner` x `columns`, of matrices of states; the factors may be
+// out = a b, `rows` x `inner` times `inner` x `columns`, of matrices of states; the factors may be
 // transposed.
-static inline void add_product(int rows, int inner, int columns, double *out, const double *a,
-                               bool transpose_a, const double *b, bool transpose_b)
+static inline void multiply_states(int rows, int inner, int columns, double *out, const double *a,
+                                   bool transpose_a, const double *b, bool transpose_b)
 {
     for (int i = 0; i < rows; i++) {
         for (int j = 0; j < columns; j++) {
+            double sum = 0;
             for (int k = 0; k < inner; k++) {
-                out[i * N + j] += (transpose_a ? a[k * N + i] : a[i * N + k]) *
-                                  (transpose_b ? b[j * N + k] : b[k * N + j]);
+                sum += (transpose_a ? a[k * N + i] : a[i * N + k]) *
+                       (transpose_b ? b[j * N + k] : b[k * N + j]);
             }
+            out[i * N + j] = sum;
         }
     }
 }
@@ -99,17 +101,19 @@ static inline void add_product(int rows, int inner, int columns, double *out, co
 void estimator_predict(estimator *e, const sampled_model *m, double u, const double *noise)
 {
     const int n = m->n;
-    matrix ap = {{0}};
+    matrix ap;
     sampled_model_step(m, e->z, u);
 
     // P = A P A' + noise
-    add_product(n, n, n, ap[0], m->a[0], false, e->p[0], false);
+    multiply_states(n, n, n, ap[0], m->a[0], false, e->p[0], false);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             e->p[i][j] = i == j ? noise[i] : 0;
+            for (int k = 0; k < n; k++) {
+                e->p[i][j] += ap[i][k] * m->a[j][k];
+            }
         }
     }
-    add_product(n, n, n, e->p[0], ap[0], false, m->a[0], true);
 }
 
 void estimator_correct(estimator *e, int n, const double *row, double offset, double reading,
@@ -141,15 +145,15 @@ void estimator_transform(estimator *e, int from, int to,
 {
     assert(from <= N && to <= N);
     const estimator before = *e;
-    matrix product = {{0}};
+    matrix product;
     memset(e, 0, sizeof *e);
     for (int i = 0; i < to; i++) {
         for (int j = 0; j < from; j++) {
             e->z[i] += t[i][j] * before.z[j];
         }
     }
-    add_product(to, from, from, product[0], t[0], false, before.p[0], false);
-    add_product(to, from, to, e->p[0], product[0], false, t[0], true);
+    multiply_states(to, from, from, product[0], t[0], false, before.p[0], false);
+    multiply_states(to, from, to, e->p[0], product[0], false, t[0], true);
 }
 
 // --- the gain of a regulator --------------------------------------------------------------------
@@ -157,8 +161,8 @@ void estimator_transform(estimator *e, int from, int to,
 // The product of two square matrices; `out` may be one of them.
 static void multiply(int n, matrix out, matrix a, bool transpose_a, matrix b, bool transpose_b)
 {
-    matrix product = {{0}};
-    add_product(n, n, n, product[0], a[0], transpose_a, b[0], transpose_b);
+    matrix product;
+    multiply_states(n, n, n, product[0], a[0], transpose_a, b[0], transpose_b);
     for (int i = 0; i < n; i++) {
         memcpy(out[i], product[i], (size_t)n * sizeof(double));
     }
