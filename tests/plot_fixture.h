@@ -288,6 +288,6 @@ static inline void write_figure(const figure *fig, const char *path)
 
 static inline int leave_plot_folder(void **state)
 {
-    text_release();
+    pango_cairo_font_map_set_default(NULL); // what Pango keeps for later figures
     return leave_folder(state);
 }

@@ -11,8 +11,7 @@
 static char *path_of(const char *recipe_path, const char *name)
 {
     g_autofree char *folder = g_path_get_dirname(recipe_path);
-    char *path = g_path_is_absolute(name) ? g_strdup(name) : g_build_filename(folder, name, NULL);
-    return path;
+    return g_path_is_absolute(name) ? g_strdup(name) : g_build_filename(folder, name, NULL);
 }
 
 static status open_data(recipe *r, recipe_source *s, const char *path, fault *f)

@@ -216,8 +216,7 @@ static char *cell_text(const char *format, double value)
         return g_strdup("–");
     }
     g_autofree char *text = text_printf(format, fabs(value));
-    char *cell = g_strconcat(value < 0 ? "\u2212" : "", text, NULL);
-    return cell;
+    return text_printf("%s%s", value < 0 ? "\u2212" : "", text);
 }
 
 // A row of four values, each times `scale`.

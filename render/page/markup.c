@@ -149,8 +149,7 @@ char *text_label(const char *description)
     gunichar first = g_utf8_get_char(label);
     char letter[8] = "";
     letter[g_unichar_to_utf8(g_unichar_toupper(first), letter)] = '\0';
-    char *whole = g_strconcat(letter, label[0] != '\0' ? g_utf8_next_char(label) : "", NULL);
-    return whole;
+    return text_printf("%s%s", letter, label[0] != '\0' ? g_utf8_next_char(label) : "");
 }
 
 char *text_printable(const char *bytes)
@@ -162,21 +161,21 @@ char *text_printable(const char *bytes)
 
 char *text_plain(const char *markup)
 {
-    char *valid = text_printable(markup), *plain = NULL;
-    if (pango_parse_markup(valid, -1, 0, NULL, &plain, NULL, NULL)) {
-        // an entity may have become what the markup did not hold
-        make_printable(plain, '\n');
-        g_free(valid);
-        return plain;
+    g_autofree char *valid = text_printable(markup);
+    char *plain = NULL;
+    if (!pango_parse_markup(valid, -1, 0, NULL, &plain, NULL, NULL)) {
+        return g_steal_pointer(&valid);
     }
-    return valid;
+
+    // an entity may have become what the markup did not hold
+    make_printable(plain, '\n');
+    return plain;
 }
 
 char *text_escape(const char *bytes)
 {
-    char *valid = text_printable(bytes), *escaped = g_markup_escape_text(valid, -1);
-    g_free(valid);
-    return escaped;
+    g_autofree char *valid = text_printable(bytes);
+    return g_markup_escape_text(valid, -1);
 }
 
 // Without memory GLib ends the program, and so does this; GLib's own printing leaves the text out

@@ -82,7 +82,8 @@ static double widest_word(PangoContext *context, const sketch_frame *frame, cons
                           bool bold)
 {
     double widest = 0;
-    char *plain = text_plain(markup), **words = g_strsplit_set(plain, " \n", -1);
+    g_autofree char *plain = text_plain(markup);
+    g_auto(GStrv) words = g_strsplit_set(plain, " \n", -1);
 
     // measured as the cell would set it, bold or not
     for (int i = 0; words[i] != NULL; i++) {
@@ -90,8 +91,6 @@ static double widest_word(PangoContext *context, const sketch_frame *frame, cons
         text_block t = cell_block(frame, word, bold);
         widest = fmax(widest, text_measure(context, &t).width);
     }
-    g_strfreev(words);
-    g_free(plain);
     return widest;
 }
 

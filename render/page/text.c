@@ -252,8 +252,3 @@ void text_when_giving_up(void (*end)(const char *reason))
     g_log_set_default_handler(on_log, NULL);
     g_log_set_writer_func(on_warning, NULL, NULL);
 }
-
-void text_release(void)
-{
-    pango_cairo_font_map_set_default(NULL);
-}

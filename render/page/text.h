@@ -113,8 +113,3 @@ figure_rect text_put(cairo_t *cr, PangoContext *context, const text_block *t, do
 // mostly for lack of memory, or if Pango warns that it cannot draw a text correctly. Without it
 // GLib ends the program by a signal, and Pango draws what it can.
 void text_when_giving_up(void (*end)(const char *reason));
-
-// Frees what Pango keeps for later figures (for leak checkers). No figure may be in progress. What
-// cairo keeps is not freed, because Pango's threads may still hold fonts, which cairo treats as an
-// error.
-void text_release(void);

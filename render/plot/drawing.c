@@ -106,34 +106,23 @@ double axis_title_height(const drawing *d, const axis *a, double length)
     return title[0] == '\0' ? 0 : height_of(d, t);
 }
 
+// Lines at values of an axis, across it, from one place on the page to another.
+static void draw_lines(const drawing *d, const plane *p, bool of_x, const double *values, int count,
+                       double from, double to)
+{
+    for (int i = 0; i < count; i++) {
+        const double at = of_x ? plane_x(p, values[i]) : plane_y(p, values[i]);
+        picture_line(d->cr, of_x ? at : from, of_x ? from : at, of_x ? at : to, of_x ? to : at);
+    }
+}
+
 void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y)
 {
     const figure_rect *box = &p->box;
     set_plain_line(d->cr, d->style.colours->grid, GRID_WIDTH);
-    for (int i = 0; i < y->count; i++) {
-        double at = plane_y(p, y->at[i]);
-        picture_line(d->cr, box->x, at, box->x + box->width, at);
-    }
+    draw_lines(d, p, false, y->at, y->count, box->x, box->x + box->width);
     // where steps are not even the eye needs help across, too
-    for (int i = 0; x->even.count == 0 && i < x->count; i++) {
-        double at = plane_x(p, x->at[i]);
-        picture_line(d->cr, at, box->y, at, box->y + box->height);
-    }
-}
-
-// Ticks of a length at values of both axes.
-static void draw_ticks(const drawing *d, const plane *p, const double *x, int x_count,
-                       const double *y, int y_count, double length)
-{
-    double bottom = p->box.y + p->box.height;
-    for (int i = 0; i < x_count; i++) {
-        double at = plane_x(p, x[i]);
-        picture_line(d->cr, at, bottom, at, bottom + length);
-    }
-    for (int i = 0; i < y_count; i++) {
-        double at = plane_y(p, y[i]);
-        picture_line(d->cr, p->box.x, at, p->box.x - length, at);
-    }
+    draw_lines(d, p, true, x->at, x->even.count == 0 ? x->count : 0, box->y, box->y + box->height);
 }
 
 // A label that would touch the one before it is left out, unless ticks are even.
@@ -170,9 +159,11 @@ void draw_axes(drawing *d, const plane *p, const axis *x, const axis *y, axes_lo
     double minor_x[AXIS_MINOR], minor_y[AXIS_MINOR];
     int x_count = axis_minor_ticks(x, p->box.width, minor_x);
     int y_count = axis_minor_ticks(y, p->box.height, minor_y);
-    draw_ticks(d, p, minor_x, x_count, minor_y, y_count, MINOR_LENGTH);
-    draw_ticks(d, p, x->at, x->count, y->at, y->count, TICK_LENGTH);
     double bottom = p->box.y + p->box.height, right = p->box.x + p->box.width;
+    draw_lines(d, p, true, minor_x, x_count, bottom, bottom + MINOR_LENGTH);
+    draw_lines(d, p, false, minor_y, y_count, p->box.x, p->box.x - MINOR_LENGTH);
+    draw_lines(d, p, true, x->at, x->count, bottom, bottom + TICK_LENGTH);
+    draw_lines(d, p, false, y->at, y->count, p->box.x, p->box.x - TICK_LENGTH);
     cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_SQUARE);
     picture_line(d->cr, p->box.x, p->box.y, p->box.x, bottom);
     picture_line(d->cr, p->box.x, bottom, right, bottom);

@@ -26,12 +26,6 @@ void placement_block(placement *g, figure_rect r, int weight);
 // The ink under a rectangle.
 double placement_ink(const placement *g, figure_rect r);
 
-// The place of a width x height rectangle, `margin` from the box's edges, with the least ink under
-// it; among equal ones the nearest to a corner, preferring the right to the left and the top to the
-// bottom. Returns the ink under it (INFINITY if the box is too small).
-double placement_find(const placement *g, double width, double height, double margin,
-                      figure_rect *found);
-
 // --- the layout
 
 enum { MARKS_LABELLED = 64, MARK_ROWS = 4, LEVELS_LABELLED = 8 };

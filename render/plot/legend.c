@@ -70,8 +70,11 @@ static double corner_cost(const placement *g, const figure_rect *r, double margi
     return 0.4 * across + 0.4 * down;
 }
 
-double placement_find(const placement *g, double width, double height, double margin,
-                      figure_rect *found)
+// The place of a width x height rectangle, `margin` from the box's edges, with the least ink under
+// it; among equal ones the nearest to a corner, preferring the right to the left and the top to the
+// bottom. Returns the ink under it (INFINITY if the box is too small).
+static double placement_find(const placement *g, double width, double height, double margin,
+                             figure_rect *found)
 {
     placement sums = *g;
     // sums over everything above and left of each cell

@@ -53,22 +53,17 @@ int contour_square(const double z[4], double level, contour_piece pieces[2])
 // The border between points i - 1 and i in coordinates; i = 0 and i = count are the outer ends.
 static double cell_edge(scale_kind kind, const double *points, size_t count, size_t i)
 {
-    double before = scale_coordinate(kind, points[i > 0 ? i - 1 : 0]);
-    double after = scale_coordinate(kind, points[i < count ? i : count - 1]);
-
-    // the outer ends are as far from the last points as the borders
     if (count == 1) {
-        return i == 0 ? before - 0.5 : before + 0.5;
-    }
-    if (i == 0) {
-        return before - 0.5 * (scale_coordinate(kind, points[1]) - before);
-    }
-    if (i == count) {
-        return after + 0.5 * (after - scale_coordinate(kind, points[count - 2]));
+        return scale_coordinate(kind, points[0]) + (i == 0 ? -0.5 : 0.5);
     }
 
-    // the middle between neighbours
-    return 0.5 * (before + after);
+    // the middle between neighbours; the outer ends are as far from the last points as the borders
+    const size_t k = CLAMP(i, 1, count - 1);
+    double before = scale_coordinate(kind, points[k - 1]);
+    double after = scale_coordinate(kind, points[k]);
+    return i == 0       ? before - 0.5 * (after - before)
+           : i == count ? after + 0.5 * (after - before)
+                        : 0.5 * (before + after);
 }
 
 void map_include(const figure_map *map, axis_scale *x, axis_scale *y)

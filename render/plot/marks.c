@@ -93,6 +93,17 @@ static bool crosses_line(const drawing *d, const figure_rect *r, int index)
     return false;
 }
 
+// Whether a label of mark `index` can stand at a place of the first panel: off curves, and off the
+// lines of other marks unless it may lie over them.
+static bool is_free(const drawing *d, const placement *grid, const figure_rect *r, int index,
+                    bool over_lines)
+{
+    const figure_rect *box = &d->panels[0].plane.box;
+    return r->x >= box->x + 1 && r->x + r->width <= box->x + box->width && r->y >= box->y &&
+           r->y + r->height <= box->y + box->height && placement_ink(grid, *r) < INK_CURVE &&
+           (over_lines || !crosses_line(d, r, index));
+}
+
 // A place for the label of one mark, as high as can be; false if there is none.
 static bool find_inside(const drawing *d, const placement *grid, int index,
                         const figure_rect *taken, int taken_count, figure_rect *found)
@@ -105,8 +116,7 @@ static bool find_inside(const drawing *d, const placement *grid, int index,
     for (double y = box->y + 1; y + MARK_ROW < box->y + INSIDE_SHARE * box->height; y += MARK_ROW) {
         for (int side = 0; side < (d->fig->marks[index].onwards ? 1 : 2); side++) {
             figure_rect r = {side == 0 ? x + 2 : x - 2 - width, y, width, MARK_ROW};
-            bool fits = r.x >= box->x + 1 && r.x + r.width <= box->x + box->width &&
-                        placement_ink(grid, r) < INK_CURVE && !crosses_line(d, &r, index);
+            bool fits = is_free(d, grid, &r, index, false);
             for (int i = 0; i < taken_count && fits; i++) {
                 fits = !rects_meet(&r, &taken[i], 3);
             }
@@ -125,7 +135,6 @@ static bool find_at_point(const drawing *d, const placement *grid, int index, fi
 {
     const figure_mark *m = &d->fig->marks[index];
     const plane *p = &d->panels[0].plane;
-    const figure_rect *box = &p->box;
     double x = plane_x(p, m->x), y = plane_y(p, m->y);
     double width = width_of(d, m->label, d->style.small);
 
@@ -135,9 +144,7 @@ static bool find_at_point(const drawing *d, const placement *grid, int index, fi
         double tops[] = {y - away - MARK_ROW, y - MARK_ROW / 2, y + away};
         figure_rect r = {left ? x - POINT_SPACE - width : x + POINT_SPACE, tops[k / 2 % 3], width,
                          MARK_ROW};
-        if (r.x >= box->x + 1 && r.x + r.width <= box->x + box->width && r.y >= box->y &&
-            r.y + r.height <= box->y + box->height && placement_ink(grid, r) < INK_CURVE &&
-            (over_lines || !crosses_line(d, &r, index))) {
+        if (is_free(d, grid, &r, index, over_lines)) {
             *found = r;
             return true;
         }

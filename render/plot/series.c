@@ -289,8 +289,7 @@ static int impulse_exponent(const figure_panel *panel)
 char *impulse_strip_label(const figure_panel *panel)
 {
     g_autofree char *unit = axis_label(NULL, panel->impulse_unit, impulse_exponent(panel));
-    char *label = g_strconcat(panel->impulse_label, "\n", unit, NULL);
-    return label;
+    return text_printf("%s\n%s", panel->impulse_label, unit);
 }
 
 enum { IMPULSES_LABELLED = 24 };

@@ -10,24 +10,23 @@ enum { MOST_THREADS = 2, BUFFERS = 2 };
 
 // ---- the frames of a film
 
-// A frame to be painted, and what came of it.
+// A frame that was painted, and what came of it.
 typedef struct frame_job {
-    int frame;
     cairo_surface_t *onto;
     status code;
     fault fault;
 } frame_job;
 
-// What writes the film. A second thread paints every other frame, one ahead of who asks: while one
-// of its two surfaces is being written it paints onto the other.
+// What writes the film. A second thread paints every other frame ahead: while one of its two
+// surfaces is being written it paints onto the other.
 typedef struct film_making {
     const film_plan *plan;
     int total; // frames
     film_painter *painter;
     film_file *file;
     cairo_surface_t *frame;
-    GThread *second;              // NULL: all frames are painted here
-    GAsyncQueue *asked, *painted; // frame_job
+    GThread *second;                 // NULL: all frames are painted here
+    GAsyncQueue *to_paint, *painted; // frame_job
     frame_job jobs[BUFFERS];
 } film_making;
 
@@ -36,59 +35,51 @@ static double film_time_of(const film_making *m, int frame)
     return m->plan->options.seconds * frame / (m->total - 1);
 }
 
-// On the second thread: what is asked for, until a job without a surface ends it.
-static gpointer paint_jobs(gpointer making)
+// On the second thread: every other frame, until a job without a surface ends it.
+static gpointer paint_others(gpointer making)
 {
     film_making *m = making;
-    film_painter *painter = NULL;
-    frame_job *job;
+    g_autoptr(film_painter) painter = NULL;
 
     // signals are for the thread that writes: they end its waiting
     worker_signals_block(NULL);
-    while ((job = g_async_queue_pop(m->asked))->onto != NULL) {
+    for (int frame = 1; frame < m->total; frame += 2) {
+        frame_job *job = g_async_queue_pop(m->to_paint);
+        if (job->onto == NULL) {
+            break;
+        }
         job->code =
             painter != NULL ? STATUS_OK : film_painter_create(&painter, m->plan, &job->fault);
         if (job->code == STATUS_OK) {
-            const double time = film_time_of(m, job->frame);
+            const double time = film_time_of(m, frame);
             job->code = film_painter_frame(painter, time, job->onto, &job->fault);
         }
         g_async_queue_push(m->painted, job);
     }
-    film_painter_destroy(painter);
     return NULL;
-}
-
-// Asks the second thread for a frame, if the film has it.
-static void ask_for(film_making *m, int frame)
-{
-    if (m->second != NULL && frame < m->total) {
-        frame_job *job = &m->jobs[frame / 2 % BUFFERS];
-        job->frame = frame;
-        g_async_queue_push(m->asked, job);
-    }
 }
 
 // Without a thread to be had all frames are painted here.
 static void begin_second(film_making *m)
 {
     const film_options *o = &m->plan->options;
+    m->to_paint = g_async_queue_new();
+    m->painted = g_async_queue_new();
     for (int i = 0; i < BUFFERS; i++) {
         m->jobs[i].onto = cairo_image_surface_create(CAIRO_FORMAT_RGB24, o->width, o->height);
+        g_async_queue_push(m->to_paint, &m->jobs[i]);
     }
-    m->asked = g_async_queue_new();
-    m->painted = g_async_queue_new();
-    m->second = g_thread_try_new("frames", paint_jobs, m, NULL);
-    ask_for(m, 1);
+    m->second = g_thread_try_new("frames", paint_others, m, NULL);
 }
 
 static void end_second(film_making *m)
 {
     frame_job last = {0};
     if (m->second != NULL) {
-        g_async_queue_push(m->asked, &last);
+        g_async_queue_push_front(m->to_paint, &last);
         g_thread_join(m->second);
     }
-    g_clear_pointer(&m->asked, g_async_queue_unref);
+    g_clear_pointer(&m->to_paint, g_async_queue_unref);
     g_clear_pointer(&m->painted, g_async_queue_unref);
     for (int i = 0; i < BUFFERS; i++) {
         cairo_surface_destroy(m->jobs[i].onto);
@@ -102,15 +93,11 @@ static status next_frame(film_making *m, int frame, fault *f)
         TRY(film_painter_frame(m->painter, film_time_of(m, frame), m->frame, f));
         return film_file_add(m->file, m->frame, f);
     }
-
-    // it paints the one after the next while this one is written
     frame_job *done = g_async_queue_pop(m->painted);
-    ask_for(m, frame + 2);
-    if (done->code != STATUS_OK) {
-        *f = done->fault;
-        return done->code;
-    }
-    return film_file_add(m->file, done->onto, f);
+    FAIL_IF(done->code != STATUS_OK, fault_set(f, done->code, "%s", done->fault.text));
+    TRY(film_file_add(m->file, done->onto, f));
+    g_async_queue_push(m->to_paint, done);
+    return STATUS_OK;
 }
 
 static status add_frames(film_making *m, fault *f)

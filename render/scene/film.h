@@ -61,18 +61,13 @@ typedef struct film_run {
     const char *name; // in the legend of the traces; shown if there are several
 } film_run;
 
-// A view's place on the frame [pixels].
-typedef struct film_view {
-    int x, y, width, height;
-} film_view;
-
 // Shared by all frames of a film; not changed while they are painted.
 typedef struct film_plan {
     const film_run *runs;
     int run_count;
     film_options options; // complete, without defaults
     film_clock clock;
-    film_view views[FILM_RUNS], strip; // areas of the arms and of the traces
+    pixel_box views[FILM_RUNS], strip; // of the arms and of the traces, on the frame
     cairo_surface_t *traces;           // of the whole time, painted once
     figure_report *report;             // positions of their panels
     double trace_scale;                // pixels per point in them

@@ -150,18 +150,18 @@ static void place_views(film_plan *plan)
     int width = plan->options.width, height = plan->options.height;
     if (plan->run_count == 1) {
         int scene_width = (int)(width * (1 - TRACE_SHARE));
-        plan->views[0] = (film_view){0, 0, scene_width, height};
-        plan->strip = (film_view){scene_width, 0, width - scene_width, height};
+        plan->views[0] = (pixel_box){0, 0, scene_width, height};
+        plan->strip = (pixel_box){scene_width, 0, width - scene_width, height};
         return;
     }
 
     int rows = (plan->run_count + 1) / 2, strip = (int)(height * STRIP_SHARE);
     int view_width = (width - GAP) / 2, view_height = (height - strip - (rows - 1) * GAP) / rows;
     for (int i = 0; i < plan->run_count; i++) {
-        plan->views[i] = (film_view){i % 2 * (view_width + GAP), i / 2 * (view_height + GAP),
+        plan->views[i] = (pixel_box){i % 2 * (view_width + GAP), i / 2 * (view_height + GAP),
                                      view_width, view_height};
     }
-    plan->strip = (film_view){0, height - strip, width, strip};
+    plan->strip = (pixel_box){0, height - strip, width, strip};
 }
 
 // The traces: force, angles and velocities of one run, the forces of several.
@@ -187,7 +187,7 @@ static status paint_traces(film_plan *plan, fault *f)
     figure *t = &drawn->figure;
 
     // its size: what the views leave of the picture
-    const film_view *strip = &plan->strip;
+    const pixel_box *strip = &plan->strip;
     plan->trace_scale = TRACE_LETTERS * film_scale(plan);
 
     // the views have the titles
@@ -293,7 +293,7 @@ static void soften_seam(const film_plan *plan, cairo_t *cr)
 // The page, and lines between several views.
 static void draw_gaps(const film_plan *plan, cairo_t *cr)
 {
-    const film_view *first = &plan->views[0];
+    const pixel_box *first = &plan->views[0];
     set_colour(cr, page_of(plan));
     cairo_paint(cr);
     set_colour(cr, palette_of(plan->options.view.theme)->grid);
@@ -312,7 +312,7 @@ static void draw_traces(const film_plan *plan, cairo_t *cr, double time)
     // all of it
     const figure_report *r = plan->report;
     const colour page = page_of(plan);
-    const film_view *strip = &plan->strip;
+    const pixel_box *strip = &plan->strip;
     cairo_set_source_surface(cr, plan->traces, strip->x, strip->y);
     cairo_paint(cr);
 
@@ -349,19 +349,13 @@ static void draw_traces(const film_plan *plan, cairo_t *cr, double time)
 
 static void draw_speed(const film_painter *p, cairo_t *cr, double speed)
 {
-    char text[64];
     const film_plan *plan = p->plan;
-    double scale = film_scale(plan);
+    const double scale = film_scale(plan), times = 1 / speed;
 
     // the number that is larger than one
-    if (speed < 1) {
-        double times = 1 / speed;
-        decimal_print(text, sizeof text, "%.*f times slower than real", times < 9.95 ? 1 : 0,
-                      times);
-    } else {
-        decimal_print(text, sizeof text, "%.1f times faster than real", speed);
-    }
-
+    g_autofree char *text =
+        speed < 1 ? text_printf("%.*f times slower than real", times < 9.95 ? 1 : 0, times)
+                  : text_printf("%.1f times faster than real", speed);
     const text_block t = {.markup = text, .size = LABELS_LEAST * scale};
     // with several arms there is a free corner next to the axis of the traces
     const bool alone = plan->run_count == 1;

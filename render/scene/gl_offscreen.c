@@ -297,7 +297,7 @@ void gl_offscreen_destroy(gl_offscreen *g)
     g_free(g);
 }
 
-status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, gl_region region, uint32_t *pixels,
+status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box region, uint32_t *pixels,
                          fault *f)
 {
     FAIL_IF(!make_current(g), fault_set(f, STATUS_CANNOT_WRITE, "OpenGL's context is lost"));

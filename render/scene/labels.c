@@ -5,7 +5,6 @@
 
 #include "render/page/picture_file.h"
 #include "render/page/text.h"
-#include "src/base/numbers.h"
 
 #define TITLE_LETTERS 18.0 // [pixels of a picture 720 high]
 #define FACT_LETTERS  LABELS_LEAST
@@ -65,10 +64,8 @@ void labels_flash(const scene *sc, cairo_t *cr, vector place, double radius, dou
 void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double force)
 {
     static const colour light = {0.70, 0.28, 0}, dark = {1, 0.62, 0.30};
-    char text[48];
-
     // text and its size
-    decimal_print(text, sizeof text, "%.*f\u2009N", force < 10 ? 2 : force < 100 ? 1 : 0, force);
+    g_autofree char *text = text_printf("%.*f\u2009N", force < 10 ? 2 : force < 100 ? 1 : 0, force);
     const double scale = labels_scale(sc);
     const text_block t = {.markup = text, .size = TITLE_LETTERS * scale, .bold = true};
     const text_size size = text_measure(sc->context, &t);
@@ -107,16 +104,8 @@ void labels_caption(const scene *sc, cairo_t *cr, const char *title, const char 
 void labels_inset(const scene *sc, cairo_t *cr, double left, double bottom, double larger)
 {
     assert(larger > 0);
-    char text[64];
-    decimal_print(text, sizeof text, "contact, %.1f times", larger);
+    g_autofree char *text = text_printf("contact, %.1f times", larger);
     draw_text(sc, cr, fact(sc, text), left, bottom + 4 * labels_scale(sc), sc->around->faint);
-}
-
-// "12.3 ms" as a line of facts.
-static text_block print_instant(const scene *sc, double time, char *text, size_t size)
-{
-    decimal_print(text, size, "%.1f\u2009ms", 1e3 * time);
-    return fact(sc, text);
 }
 
 void labels_instants(const scene *sc, cairo_t *cr, const double *times, const colour *inks,
@@ -126,17 +115,18 @@ void labels_instants(const scene *sc, cairo_t *cr, const double *times, const co
     const double scale = labels_scale(sc), swatch = 26 * scale, step = FACT_LETTERS * 1.55 * scale;
     double bottom = sc->camera.height - MARGIN * scale, width = 0;
     double right = sc->camera.width - MARGIN * scale;
-    char text[48];
 
     // all swatches stand left of the widest text
     for (int i = 0; i < count; i++) {
-        const text_block t = print_instant(sc, times[i], text, sizeof text);
+        g_autofree char *text = text_printf("%.1f\u2009ms", 1e3 * times[i]);
+        const text_block t = fact(sc, text);
         width = fmax(width, text_measure(sc->context, &t).width);
     }
 
     for (int i = 0; i < count; i++) {
         double y = bottom - (count - i) * step;
-        const text_block t = print_instant(sc, times[i], text, sizeof text);
+        g_autofree char *text = text_printf("%.1f\u2009ms", 1e3 * times[i]);
+        const text_block t = fact(sc, text);
         const text_size own = text_measure(sc->context, &t);
         draw_text(sc, cr, t, right - own.width, y, sc->around->faint);
         set_colour(cr, inks[i]);

@@ -98,7 +98,7 @@ static void light_vertex(const mesh_vertex *v, const camera *c, vector light, fl
 
 // Lights the vertices and finds their places: clip coordinates whose w is the depth. Returns the
 // pixels that they cover.
-static gl_region project(scene_painter *p, const mesh *m, const camera *c, vector light)
+static pixel_box project(scene_painter *p, const mesh *m, const camera *c, vector light)
 {
     double left = p->samples.width, right = 0, top = p->samples.height, bottom = 0;
     double span = c->farthest - c->nearest;
@@ -126,7 +126,7 @@ static gl_region project(scene_painter *p, const mesh *m, const camera *c, vecto
     int x = (int)fmax(0, floor(left)), y = (int)fmax(0, floor(top));
     int x_end = (int)fmin(p->samples.width, ceil(right));
     int y_end = (int)fmin(p->samples.height, ceil(bottom));
-    return (gl_region){x, y, x_end - x, y_end - y};
+    return (pixel_box){x, y, x_end - x, y_end - y};
 }
 
 status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface_t *onto, fault *f)
@@ -140,18 +140,18 @@ status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface
     }
 
     // only the part of the picture that holds something
-    gl_region r = project(p, m, what->camera, what->light);
+    pixel_box r = project(p, m, what->camera, what->light);
     if (r.width <= 0 || r.height <= 0) {
         return STATUS_OK;
     }
 
     // samples, by hand or by OpenGL
     const gl_triangles all = {p->vertices, m->vertex_count, m->corners, m->corner_count};
-    gl_region held = {0, 0, p->samples.width, p->samples.height};
+    pixel_box held = {0, 0, p->samples.width, p->samples.height};
     samples_take(&p->samples, &all);
     if (p->gl != NULL) {
         const int n = p->samples.samples;
-        const gl_region sampled = {n * r.x, n * r.y, n * r.width, n * r.height};
+        const pixel_box sampled = {n * r.x, n * r.y, n * r.width, n * r.height};
         held = r;
         code = gl_offscreen_draw(p->gl, &all, sampled, p->samples.pixels, f);
     }

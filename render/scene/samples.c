@@ -289,7 +289,7 @@ static uint32_t over(uint32_t upper, uint32_t below)
 }
 
 // Lays the means of a tile's samples over the picture.
-static void lay_tile(const sample_buffer *b, gl_region region, gl_region tile, uint32_t opacity,
+static void lay_tile(const sample_buffer *b, pixel_box region, pixel_box tile, uint32_t opacity,
                      cairo_surface_t *onto)
 {
     unsigned char *data = cairo_image_surface_get_data(onto);
@@ -308,7 +308,7 @@ static void lay_tile(const sample_buffer *b, gl_region region, gl_region tile, u
     }
 }
 
-void samples_lay_over(sample_buffer *b, gl_region region, double opacity, cairo_surface_t *onto)
+void samples_lay_over(sample_buffer *b, pixel_box region, double opacity, cairo_surface_t *onto)
 {
     assert(opacity >= 0 && opacity <= 1);
     const uint32_t share = (uint32_t)(256 * opacity + 0.5);
@@ -321,7 +321,7 @@ void samples_lay_over(sample_buffer *b, gl_region region, double opacity, cairo_
         if (!b->touched[i] || right <= left || bottom <= top) {
             continue;
         }
-        lay_tile(b, region, (gl_region){left, top, right - left, bottom - top}, share, onto);
+        lay_tile(b, region, (pixel_box){left, top, right - left, bottom - top}, share, onto);
 
         // its samples are empty and far again
         const size_t count = (size_t)(b->samples * (right - left));

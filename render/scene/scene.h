@@ -17,6 +17,11 @@ typedef enum scene_renderer { RENDER_AUTO, RENDER_OSMESA, RENDER_EGL, RENDER_CAI
 // "auto", "osmesa", "egl" or "cairo"; false for any other word.
 bool scene_renderer_find(const char *name, scene_renderer *which);
 
+// A rectangle of pixels.
+typedef struct pixel_box {
+    int x, y, width, height;
+} pixel_box;
+
 // Samples of a pixel along each of its edges.
 enum { SAMPLES_QUICK = 2, SAMPLES_FINE = 4 };
 

@@ -158,19 +158,19 @@ static status draw_labels(scene *sc, const double *times, const colour *inks, in
 
     // what a plain scene goes without
     if (!sc->options.plain) {
-        char facts[160], bending[64] = "";
         sample row = scene_shape(sc, time);
         if (scene_force_arrow(sc, &row, &start, &end)) {
             labels_force(sc, cr, start, end, row.force);
         }
 
         // what is not as it is has to be said
-        if (sc->options.exaggerate > 0 && sc->options.exaggerate != 1) {
-            decimal_print(bending, sizeof bending, " \u00b7 bending drawn %g times as large",
-                          sc->options.exaggerate);
-        }
-        decimal_print(facts, sizeof facts, "<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m%s",
-                      1e3 * time, sc->grid, bending);
+        const double larger = sc->options.exaggerate;
+        g_autofree char *bending =
+            larger > 0 && larger != 1
+                ? text_printf(" \u00b7 bending drawn %g times as large", larger)
+                : g_strdup("");
+        g_autofree char *facts = text_printf("<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m%s",
+                                             1e3 * time, sc->grid, bending);
         g_autofree char *title = scenario_title(sc->scenario);
         labels_caption(sc, cr, title, facts, TITLE_SHARE * sc->camera.width);
         if (count > 1 && !sc->options.keyless) {

@@ -110,14 +110,9 @@ typedef struct gl_triangles {
     size_t corner_count;
 } gl_triangles;
 
-// A rectangle of pixels.
-typedef struct gl_region {
-    int x, y, width, height;
-} gl_region;
-
 // Draws triangles on a transparent background with a depth test and stores the region as rows of
 // 0xAARRGGBB with premultiplied opacity.
-status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, gl_region region, uint32_t *pixels,
+status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box region, uint32_t *pixels,
                          fault *f);
 
 enum { SAMPLE_TILE = 16 }; // edge of a tile [pixels]
@@ -145,7 +140,7 @@ void samples_take(sample_buffer *b, const gl_triangles *t);
 // Paints the means of the samples over the image surface (RGB24 or ARGB32, of the picture's size)
 // with the given opacity (0 to 1). `region` is the part of the picture in `pixels`, with contiguous
 // rows. Samples filled without OpenGL are empty afterwards.
-void samples_lay_over(sample_buffer *b, gl_region region, double opacity, cairo_surface_t *onto);
+void samples_lay_over(sample_buffer *b, pixel_box region, double opacity, cairo_surface_t *onto);
 
 // What paints them.
 struct scene_painter {
