@@ -88,16 +88,6 @@ static status run_rig(corrected_run *c, fault *f)
     return corrected_apply_command(c);
 }
 
-// The rig's first sample, and the row of the start, which is there even where that sample fails.
-static status record_start(corrected_run *c, fault *f)
-{
-    recording *r = c->recording;
-    status failed = run_rig(c, f);
-    r->state.grid_row = 1;
-    status recorded = corrected_record_row(c, c->motion->state, 0);
-    return failed == STATUS_OK ? recorded : failed;
-}
-
 // corrected_approach_step where a stretch is over, or the run is to begin; apart from it, which
 // then has little to do for most steps.
 static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *ended, fault *f)
@@ -107,7 +97,11 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
     const parameters *p = &r->scenario->parameters;
     const double duration = p->run.duration, window = larger(duration - STEADY_WINDOW, 0);
     if (r->state.grid_row == 0) {
-        TRY(record_start(c, f));
+        // the row of the start is there even where the rig's first sample fails
+        const status failed = run_rig(c, f);
+        r->state.grid_row = 1;
+        const status recorded = corrected_record_row(c, m->state, 0);
+        TRY(failed == STATUS_OK ? recorded : failed);
     }
 
     // script and rig act between stretches of motion, each ending where one of them is due
@@ -193,14 +187,6 @@ void corrected_begin_step(corrected_run *c)
                                   .sensed = corrected_sample_point_at(c, m->state)};
 }
 
-// Whether the step under way ends after an instant [s].
-static bool goes_beyond(const corrected_run *c, double time)
-{
-    const motion *m = c->motion;
-    return m->step.coming.begun &&
-           instant_after(m->state[SLOT_TIME] + m->step.coming.end.length, time);
-}
-
 // What the sensors are fixed to at an instant [s] within the step under way: most see nothing but
 // the hub, and no force. False if the state there cannot be had.
 static bool sensed_within(const corrected_run *c, double time, sensed_motion *at)
@@ -277,7 +263,8 @@ status corrected_step(corrected_run *c, double until, fault *f)
         corrected_begin_step(c);
     }
     const double next = instant_after(c->stretch.stop, until) ? until : c->stretch.stop;
-    if (c->stretch.open.goes_on && goes_beyond(c, next)) {
+    const double end = m->state[SLOT_TIME] + m->step.coming.end.length;
+    if (c->stretch.open.goes_on && m->step.coming.begun && instant_after(end, next)) {
         return go_along(c, next, f);
     }
 

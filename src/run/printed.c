@@ -191,17 +191,6 @@ status printed_act(printed_run *p, const action *todo, int index, fault *f)
     return failed;
 }
 
-// Carries out the script's actions that are due.
-static status run_script(printed_run *p, fault *f)
-{
-    const scenario *s = p->recording->scenario;
-    int *next = &p->recording->state.next_action;
-    for (; *next < s->action_count && s->actions[*next].time <= p->motion.row.time; ++*next) {
-        TRY(printed_act(p, &s->actions[*next], *next, f));
-    }
-    return STATUS_OK;
-}
-
 // Samples the sensors and changes the command where the time for it has come.
 static status run_rig(printed_run *p, fault *f)
 {
@@ -229,7 +218,11 @@ status printed_approach_step(printed_run *p, bool *ended, fault *f)
     if (*ended || p->ready) {
         return STATUS_OK;
     }
-    TRY(run_script(p, f));
+    const scenario *s = p->recording->scenario;
+    int *next = &p->recording->state.next_action;
+    for (; *next < s->action_count && s->actions[*next].time <= p->motion.row.time; ++*next) {
+        TRY(printed_act(p, &s->actions[*next], *next, f));
+    }
     TRY(run_rig(p, f));
     p->ready = true;
     return STATUS_OK;

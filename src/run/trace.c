@@ -22,13 +22,6 @@ const char *event_description(int kind)
     return kind >= 0 && kind < count ? event_texts[kind].description : NULL;
 }
 
-// Bytes of an element of one of the arrays.
-static size_t element_size(int array, int angle_count)
-{
-    const size_t angles = (angle_count > 0 ? (size_t)angle_count : 1) * sizeof(double);
-    return array == TRACE_ROWS ? sizeof(sample) : array == TRACE_EVENTS ? sizeof(event) : angles;
-}
-
 // Plain arrays move as they grow: where the four lie now.
 static void find_places(trace *t)
 {
@@ -47,9 +40,11 @@ static status give_up(trace *t)
 void trace_init(trace *t, int angle_count)
 {
     assert(angle_count >= 0);
+    const size_t angles = (angle_count > 0 ? (size_t)angle_count : 1) * sizeof(double);
+    const size_t sizes[TRACE_ARRAYS] = {sizeof(sample), angles, angles, sizeof(event)};
     *t = (trace){.angle_count = angle_count};
     for (int i = 0; i < TRACE_ARRAYS; i++) {
-        shared_array_init(&t->arrays[i], element_size(i, angle_count));
+        shared_array_init(&t->arrays[i], sizes[i]);
     }
 }
 
