@@ -50,15 +50,6 @@ controller_parameter controller_parameter_at(const controller *law, int index)
                                   .description = info->description};
 }
 
-// The value without control.settings; i: the parameter of that name, -1 if there is none.
-static double scenario_value(const controller_parameter *own, const parameters *p, int i)
-{
-    if (i >= 0 && (p->set[i] || has_only_a_name(own))) {
-        return parameter_get(p, i);
-    }
-    return own->initial;
-}
-
 // --- control.settings -----------------------------------------------------------------------
 
 int controller_find_parameter(const controller *law, const char *name)
@@ -107,7 +98,9 @@ status controller_values(const controller *law, const parameters *p, double *val
                  "the controller '%s' says of its parameter '%.60s' nothing but the "
                  "name, and there is no control.%.60s",
                  law->name, name, name);
-        values[i] = scenario_value(&law->parameters[i], p, index);
+        values[i] = index >= 0 && (p->set[index] || has_only_a_name(&law->parameters[i]))
+                        ? parameter_get(p, index)
+                        : law->parameters[i].initial;
     }
 
     // those that control.settings replaces; a process reads its settings itself

@@ -27,16 +27,6 @@ static bool stretch_is_over(const corrected_run *c)
     return !(corrected_now(c) < smaller(c->stretch.stop, c->motion->record.tstop));
 }
 
-// The next instant at which steps are cut without being planned for it: an action, or the start of
-// the window of the steady force. The motion before it does not depend on it.
-static double next_cut(const recording *r, double window, double now)
-{
-    const scenario *s = r->scenario;
-    double cut =
-        r->state.next_action < s->action_count ? s->actions[r->state.next_action].time : HUGE_VAL;
-    return instant_after(window, now) ? smaller(window, cut) : cut;
-}
-
 // Puts the arm where it starts.
 static status begin(corrected_run *c, fault *f)
 {
@@ -121,10 +111,15 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
             r->state.in_window = (force_bounds){0};
         }
 
-        // what is due now, then how far the motion may go by itself
+        // what is due now, then how far the motion may go by itself; steps are cut, and not planned
+        // for it, at an action and where the window begins
         TRY(corrected_run_script(c, f));
         TRY(run_rig(c, f));
-        m->record.tstop = next_cut(r, window, m->state[SLOT_TIME]);
+        const scenario *s = r->scenario;
+        const int next = r->state.next_action;
+        const double act = next < s->action_count ? s->actions[next].time : HUGE_VAL;
+        const bool before = instant_after(window, m->state[SLOT_TIME]);
+        m->record.tstop = before ? smaller(window, act) : act;
         c->stretch.stop = r->rig != NULL ? smaller(rig_next_time(r->rig), duration) : duration;
         c->stretch.last_event = -1;
         c->stretch.at_once = 0;

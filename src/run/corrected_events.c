@@ -98,20 +98,14 @@ void corrected_close_landing(corrected_run *c)
     }
 }
 
-// Whether a motion that has just been started lies against the wall: held by a rigid one, or on one
-// that gives without leaving it at once.
-static bool starts_in_contact(const motion *m)
-{
-    // what goes into a wall that gives is in contact, however hard the wall throws it back
-    const bool leaves =
-        m->wall_gives && m->state[SLOT_GAP_VELOCITY] >= 0 && m->state[SLOT_GAP_ACCELERATION] > 0;
-    return m->state[SLOT_CONTACT] != 0 && !leaves;
-}
-
 status corrected_begin_in_contact(corrected_run *c)
 {
+    // held by a rigid wall, or on one that gives: what goes into that is in contact, however hard
+    // the wall throws it back
     const motion *m = c->motion;
-    if (!starts_in_contact(m)) {
+    const bool leaves =
+        m->wall_gives && m->state[SLOT_GAP_VELOCITY] >= 0 && m->state[SLOT_GAP_ACCELERATION] > 0;
+    if (m->state[SLOT_CONTACT] == 0 || leaves) {
         return STATUS_OK;
     }
     const motion_report none = {.event = MOTION_TOUCH, .holds = true};
