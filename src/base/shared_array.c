@@ -51,11 +51,6 @@ void shared_array_init(shared_array *a, size_t size)
     *a = (shared_array){.size = size};
 }
 
-static size_t whole_chunks(size_t elements, size_t size)
-{
-    return (elements * size / ARRAY_CHUNK + 1) * ARRAY_CHUNK;
-}
-
 bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t most)
 {
     assert(least > 0 && least <= most);
@@ -63,7 +58,7 @@ bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t mos
 
     // half as much where the address space has no room for the most
     for (; most >= least; most /= 2) {
-        size_t reserved = whole_chunks(most, size);
+        size_t reserved = (most * size / ARRAY_CHUNK + 1) * ARRAY_CHUNK;
         void *base =
             mmap(NULL, reserved, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (base != MAP_FAILED) {

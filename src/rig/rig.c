@@ -45,16 +45,6 @@ static status start_controller(rig *r, const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// Instant of the next sample, scattered evenly over the jitter's width; the first is not [s].
-static double sampling_instant(rig *r)
-{
-    double nominal = r->clock_start + (double)(r->samples - r->clock_samples) * r->period;
-    if (r->jitter == 0 || r->samples == 0) {
-        return nominal;
-    }
-    return nominal + r->jitter * (random_uniform(&r->clock) - 0.5);
-}
-
 // What a controller answers that fills in nothing.
 static controller_output no_answer(void)
 {
@@ -249,8 +239,12 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     r->pending[r->pending_count] = converter_value(&r->dac, out->command);
     r->effect_time[r->pending_count++] = time + r->delay;
 
+    // the next sample, scattered evenly over the jitter's width
     r->samples++;
-    r->sample_time = sampling_instant(r);
+    r->sample_time = r->clock_start + (double)(r->samples - r->clock_samples) * r->period;
+    if (r->jitter != 0) {
+        r->sample_time += r->jitter * (random_uniform(&r->clock) - 0.5);
+    }
     return STATUS_OK;
 }
 

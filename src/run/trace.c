@@ -31,12 +31,6 @@ static void find_places(trace *t)
     t->events = t->arrays[TRACE_EVENTS].base;
 }
 
-static status give_up(trace *t)
-{
-    trace_finish(t);
-    return STATUS_NO_MEMORY;
-}
-
 void trace_init(trace *t, int angle_count)
 {
     assert(angle_count >= 0);
@@ -50,9 +44,14 @@ void trace_init(trace *t, int angle_count)
 
 status trace_reserve(trace *t, int angle_count, size_t least, size_t most)
 {
+    bool room = true;
     trace_init(t, angle_count);
-    for (int i = 0; i < TRACE_ARRAYS; i++) {
-        FAIL_IF(!shared_array_reserve(&t->arrays[i], t->arrays[i].size, least, most), give_up(t));
+    for (int i = 0; i < TRACE_ARRAYS && room; i++) {
+        room = shared_array_reserve(&t->arrays[i], t->arrays[i].size, least, most);
+    }
+    if (!room) {
+        trace_finish(t);
+        return STATUS_NO_MEMORY;
     }
     find_places(t);
     return STATUS_OK;
