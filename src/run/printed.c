@@ -283,23 +283,17 @@ void printed_sum_up(printed_run *p, status failed)
 
 // --- the beginning ----------------------------------------------------------------------------
 
-// The printed model knows no pushes.
-static status refuse_pushes(const scenario *s, fault *f)
-{
-    for (int i = 0; i < s->action_count; i++) {
-        FAULT_IF(s->actions[i].kind == ACTION_PUSH, f, STATUS_BAD_SCENARIO,
-                 "the script pushes the arm at %g s, but the printed model knows no pushes",
-                 s->actions[i].time);
-    }
-    return STATUS_OK;
-}
-
 status printed_open(printed_run *p, recording *r, fault *f)
 {
     assert(r->scenario->parameters.arm.model == ARM_PRINTED);
     *p = (printed_run){.recording = r};
     TRY(recording_open_trace(r, 3, f));
-    TRY(refuse_pushes(r->scenario, f));
+    for (int i = 0; i < r->scenario->action_count; i++) {
+        const action *a = &r->scenario->actions[i];
+        FAULT_IF(a->kind == ACTION_PUSH, f, STATUS_BAD_SCENARIO,
+                 "the script pushes the arm at %g s, but the printed model knows no pushes",
+                 a->time);
+    }
 
     // the row of time 0, with the command that the rig starts with
     shared_array_init(&r->result->history.forces, sizeof(force_step));
