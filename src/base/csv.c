@@ -45,11 +45,6 @@ void csv_heading(csv_writer *w, const char *name, const char *unit)
     fputs(quote, w->stream);
 }
 
-void csv_text(csv_writer *w, const char *text)
-{
-    csv_heading(w, text, NULL);
-}
-
 void csv_number(csv_writer *w, double value)
 {
     char text[1 + NUMBER_TEXT] = ",";

@@ -21,7 +21,7 @@ void csv_heading(csv_writer *w, const char *name, const char *unit);
 
 // A text, in quotes where commas, quotes or ends of lines need them; what is unprintable (words.h)
 // becomes '?', but for line feeds.
-void csv_text(csv_writer *w, const char *text);
+#define csv_text(w, text) csv_heading(w, text, NULL)
 
 // A number as number_format gives it; NaN is missing.
 void csv_number(csv_writer *w, double value);

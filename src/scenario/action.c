@@ -177,11 +177,6 @@ static void format_action(char *text, size_t size, const action *a)
     snprintf(text, size, "%s at %g s", set, a->time);
 }
 
-const char *scenario_changes(const scenario *s, char text[SCENARIO_CHANGES])
-{
-    return scenario_changes_within(s, text, SCENARIO_CHANGES);
-}
-
 const char *scenario_changes_within(const scenario *s, char *text, size_t room)
 {
     assert(room > 0);

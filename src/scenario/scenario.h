@@ -161,7 +161,7 @@ enum { SCENARIO_CHANGES = 512, SCENARIO_TITLE = 200 }; // SCENARIO_TITLE: most b
 
 // What is another than in the file, to stand after its title or name: ", with motor.voltage = 4 V,
 // a push of 0.1 N s at 0.2 s", or "". What has no room is counted. Returns text.
-const char *scenario_changes(const scenario *s, char text[SCENARIO_CHANGES]);
+#define scenario_changes(s, text) scenario_changes_within(s, text, SCENARIO_CHANGES)
 // The title with these changes. Returns text.
 enum { SCENARIO_TITLED = SCENARIO_TITLE + SCENARIO_CHANGES };
 const char *scenario_titled(const scenario *s, char text[SCENARIO_TITLED]);
