@@ -55,16 +55,9 @@ static controller_output no_answer(void)
 
 // --- what the user has not allowed ------------------------------------------------------------
 
-static void give_no_command(void *memory, const controller_input *in, controller_output *out)
-{
-    (void)memory;
-    (void)in;
-    out->command = (double)NAN;
-}
-
-// Stands where a controller from outside would.
-static const controller withheld_law = ONE_MODE_CONTROLLER(
-    "withheld", "withheld", 0, give_no_command, .tune = controller_takes_anything);
+// Stands where a controller from outside would; it is never asked.
+static const controller withheld_law =
+    ONE_MODE_CONTROLLER("withheld", "withheld", 0, NULL, .tune = controller_takes_anything);
 
 static status explain_withheld(const rig *r, fault *f)
 {
