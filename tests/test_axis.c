@@ -282,6 +282,15 @@ TEST(between_stays_inside_and_misses_none)
     }
 }
 
+// Two ticks inside an axis may stand far from its ends.
+TEST(an_axis_between_round_numbers_has_ticks)
+{
+    ticks t;
+    ticks_between(&t, -0.0571, -0.000155, 2);
+    assert_in_range(t.count, 2, 5);
+    assert_true(t.value[0] >= -0.0571 && t.value[t.count - 1] <= -0.000155);
+}
+
 TEST(about_as_many_as_wanted)
 {
     unsigned long long seed = 11;

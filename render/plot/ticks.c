@@ -120,7 +120,7 @@ static void try_powers(labelling l, const wish *w, labelling *best)
 
 static labelling best_labelling(const wish *w)
 {
-    labelling best = {.score = -2};
+    labelling best = {.score = -100}; // below any that lies within the axis
 
     // ever rarer multiples of the nice numbers, while one could still win
     for (int j = 1;; j++) {
