@@ -4,19 +4,14 @@
 #include "src/arm/modes.h"
 #include "src/contact/contact_machine.h"
 #include "src/engines/motion_create.h"
-#include "src/run/run.h"
-#include "tests/check.h"
+#include "tests/given_parameters.h"
+#include "tests/shipped_scenario.h"
 
 // Parameters of the corrected arm with the given settings; the list ends with NULL.
 static inline parameters unresolved_parameters(const char *const *settings)
 {
-    parameters p;
-    parameters_defaults(&p, ARM_CORRECTED);
-    for (int i = 0; settings != NULL && settings[i] != NULL; i++) {
-        const char *equals = strchr(settings[i], '=');
-        const char *path = formatted("%.*s", (int)(equals - settings[i]), settings[i]);
-        DONE(parameter_set_text(&p, parameter_find(path), equals + 1, &f));
-    }
+    parameters p = fresh(ARM_CORRECTED);
+    give_list(&p, settings);
     return p;
 }
 
@@ -31,39 +26,10 @@ static inline parameters fixture_parameters(const char *const *settings)
 #define SETTINGS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
 // The same of one text with numbers in it, settings between blanks: given("arm.links=%d
-// wall.angle=%g", links, angle). The next eleven calls leave it as it is.
-static __attribute__((format(printf, 1, 2), unused)) const char *const *given(const char *format,
-                                                                              ...)
-{
-    enum { KEPT = 12, MOST = 40 };
-    static char texts[KEPT][4096];
-    static const char *lists[KEPT][MOST];
-    static int next;
-    char *text = texts[next], *rest = NULL;
-    const char **list = lists[next];
-    next = (next + 1) % KEPT;
-    va_list values;
-    va_start(values, format);
-    assert_in_range(vsnprintf(text, sizeof texts[0], format, values), 0, sizeof texts[0] - 1);
-    va_end(values);
-    int count = 0;
-    for (char *item = strtok_r(text, " ", &rest); item != NULL; item = strtok_r(NULL, " ", &rest)) {
-        assert_in_range(count, 0, MOST - 2);
-        list[count++] = item;
-    }
-    list[count] = NULL;
-    return list;
-}
+// wall.angle=%g", links, angle).
+#define given(...)           words_of(formatted(__VA_ARGS__))
 
 #define parameters_with(...) fixture_parameters(given(__VA_ARGS__))
-
-// A run that ends well; the caller calls run_finish.
-static inline run_result run_done(const scenario *s, bool rows)
-{
-    run_result r;
-    fail_if(run_scenario(s, rows, &r) != STATUS_OK, "%s", r.summary.message);
-    return r;
-}
 
 static inline run_result run_arm(parameters p, bool rows)
 {

@@ -48,6 +48,22 @@ char *formatted(const char *format, ...)
     return text;
 }
 
+const char *const *words_of(const char *text)
+{
+    enum { KEPT = 64, MOST = 40 };
+    static const char *lists[KEPT][MOST];
+    static int next;
+    const char **list = lists[next++ % KEPT];
+    char *copy = formatted("%s", text), *rest = NULL;
+    int words = 0;
+    for (char *one = strtok_r(copy, " ", &rest); one != NULL; one = strtok_r(NULL, " ", &rest)) {
+        assert_in_range(words, 0, MOST - 2);
+        list[words++] = one;
+    }
+    list[words] = NULL;
+    return list;
+}
+
 char test_folder[32];
 
 int enter_folder(void **state)
@@ -77,12 +93,51 @@ int leave_folder(void **state)
     return chdir("/") != 0 || nftw(test_folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS) != 0;
 }
 
-void put_file(const char *path, const char *text)
+void put_bytes(const char *path, const void *bytes, size_t length)
 {
     FILE *file = fopen(path, "w");
     assert_non_null(file);
-    assert_true(fputs(text, file) >= 0);
+    assert_int_equal(fwrite(bytes, 1, length, file), length);
     assert_int_equal(fclose(file), 0);
+}
+
+void put_file(const char *path, const char *text)
+{
+    put_bytes(path, text, strlen(text));
+}
+
+char *file_bytes(const char *path, size_t *length)
+{
+    char *bytes = NULL;
+    FILE *file = fopen(path, "r"), *into = open_memstream(&bytes, length);
+    fail_if(file == NULL, "%s: %s", path, strerror(errno));
+    for (int c; (c = getc(file)) != EOF;) {
+        putc(c, into);
+    }
+    fclose(into);
+    fclose(file);
+    return bytes;
+}
+
+char *file_text(const char *path)
+{
+    size_t length;
+    return file_bytes(path, &length);
+}
+
+bool file_has(const char *path, const char *part)
+{
+    size_t length;
+    KEPT_TEXT(bytes) = file_bytes(path, &length);
+    return memmem(bytes, length, part, strlen(part)) != NULL;
+}
+
+void free_names(char **names, int how_many)
+{
+    for (int i = 0; i < how_many; i++) {
+        free(names[i]);
+    }
+    free(names);
 }
 
 __attribute__((weak)) int main(void)

@@ -62,10 +62,14 @@ void add_case(struct CMUnitTest added, int line);
 // Runs all cases between the group's set-up and tear-down; 1 if one failed, 0 if none.
 int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down);
 
-// The main of a program whose cases share a set-up and a tear-down.
-#define ALL_BETWEEN(set_up, tear_down)                                                             \
+// The main of a program whose cases share a set-up and a tear-down; and of one whose cases fail
+// where somebody waits for what never comes.
+#define ALL_BETWEEN(set_up, tear_down) MAIN_AFTER((void)0, set_up, tear_down)
+#define ALL_IN_TWO_MINUTES             MAIN_AFTER(alarm(120), NULL, NULL)
+#define MAIN_AFTER(first, set_up, tear_down)                                                       \
     int main(void)                                                                                 \
     {                                                                                              \
+        first;                                                                                     \
         return run_cases(set_up, tear_down);                                                       \
     }
 
@@ -143,8 +147,24 @@ int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down);
         assert_int_equal(fclose(stream), 0);                                                       \
     } while (0)
 
+static inline int by_size(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
 // A text with numbers in it, which the next 63 leave as it is.
 char *formatted(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+// What stands between the blanks of a text, kept as long; the list ends with NULL.
+const char *const *words_of(const char *text);
+
+// A text of so many characters, all the same, kept as long.
+static inline char *repeated(char c, int length)
+{
+    char *text = formatted("%*s", length, "");
+    return memset(text, c, (size_t)length);
+}
 
 // A case that works in an empty folder of its own, `test_folder`, which goes afterwards with all
 // that is in it. Where all cases share one: ALL_BETWEEN(enter_folder, leave_folder).
@@ -154,12 +174,31 @@ extern char test_folder[];
 int enter_folder(void **state);
 int leave_folder(void **state);
 
-// Writes a file whose content is this text.
+// Writes a file whose content is this text; the text of a file, to be freed, its bytes with a zero
+// behind them, and whether a part is among them.
 void put_file(const char *path, const char *text);
+void put_bytes(const char *path, const void *bytes, size_t length);
+char *file_text(const char *path);
+
+static inline void assert_holds(const char *path, const char *expected)
+{
+    KEPT_TEXT(text) = file_text(path);
+    assert_string_equal(text, expected);
+}
+char *file_bytes(const char *path, size_t *length);
+bool file_has(const char *path, const char *part);
+
+// Names that a list of them gave.
+void free_names(char **names, int how_many);
 
 static inline random_generator seeded(uint64_t seed)
 {
     random_generator g;
     random_seed(&g, seed);
     return g;
+}
+
+static inline double evenly(random_generator *g, double low, double high)
+{
+    return low + (high - low) * random_uniform(g);
 }

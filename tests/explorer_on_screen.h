@@ -6,16 +6,17 @@
 #include "ui/explorer/explorer.h"
 #include "ui/terminal/keys.h"
 
-static inline void open_explorer(explorer *ex, const char *name)
+// Of a shipped scenario with changes, that waits so long for its run.
+static inline void open_changed(explorer *ex, const char *name, const char *changes, double wait)
 {
-    scenario s = shipped(name);
-    DONE(explorer_init(ex, &s, HUGE_VAL, &f));
+    scenario s = shipped_with(name, changes);
+    DONE(explorer_init(ex, &s, wait, &f));
 }
 
-// The same for as long as its block.
+// Of one as it is, whose runs are waited for; for as long as its block.
 #define OPEN_EXPLORER(ex, name)                                                                    \
     SCOPED(explorer_finish) explorer ex;                                                           \
-    open_explorer(&ex, name)
+    open_changed(&ex, name, "", HUGE_VAL)
 
 static inline void press(explorer *ex, const char *keys)
 {
@@ -23,17 +24,20 @@ static inline void press(explorer *ex, const char *keys)
     fail_if(!explorer_keys(ex, keys, &f), "%s", f.text);
 }
 
-// Keys with values in them, as printf writes them.
-__attribute__((format(printf, 2, 3))) static inline void press_text(explorer *ex,
-                                                                    const char *format, ...)
+// The value of a parameter where the cursor is, and the run's largest force.
+static inline double value_of(const explorer *ex, int parameter)
 {
-    char keys[1024];
-    va_list values;
-    va_start(values, format);
-    assert_in_range(vsnprintf(keys, sizeof keys, format, values), 0, sizeof keys - 1);
-    va_end(values);
-    press(ex, keys);
+    parameters p = session_parameters_at(&ex->state.session, ex->state.session.now);
+    return parameter_get(&p, parameter);
 }
+
+static inline double peak(const explorer *ex)
+{
+    return ex->state.session.run.summary.peak_force_N;
+}
+
+// Keys with values in them, as printf writes them.
+#define press_text(ex, ...) press(ex, formatted(__VA_ARGS__))
 
 // Keys that leave a warning which says this.
 static inline void press_warns(explorer *ex, const char *keys, const char *says)
@@ -60,6 +64,13 @@ static inline char *picture(explorer *ex, int width, int height, glyph_set set)
     return text;
 }
 
+// Presses, drags or turns the wheel of the mouse on its screen.
+static inline void point(explorer *ex, pointer_kind kind, int x, int y)
+{
+    explorer_point(ex, (pointer_event){.kind = kind, .x = x, .y = y});
+    free(picture(ex, 120, 40, GLYPHS_BRAILLE));
+}
+
 static inline void assert_shows_at(explorer *ex, int width, int height, const char *wanted)
 {
     KEPT_TEXT(text) = picture(ex, width, height, GLYPHS_BRAILLE);
@@ -80,6 +91,37 @@ static inline void all_shown(explorer *ex, const char *const *wanted)
 
 // The same after keys.
 #define press_shows(ex, keys, ...) (press(ex, keys), assert_shows(ex, __VA_ARGS__))
+
+// The same drawn only.
+static inline void press_draws(explorer *ex, const char *keys)
+{
+    press(ex, keys);
+    free(picture(ex, 120, 40, GLYPHS_BRAILLE));
+}
+
+// Screens of three sizes, each of which shows this.
+static const int screen_sizes[][2] = {{80, 24}, {100, 30}, {200, 60}};
+
+static inline void assert_shows_everywhere(explorer *ex, const char *wanted)
+{
+    for (EACH(size, screen_sizes)) {
+        assert_shows_at(ex, (*size)[0], (*size)[1], wanted);
+    }
+}
+
+// Keys that lead to a scenario.
+static inline void press_opens(explorer *ex, const char *keys, const char *name)
+{
+    press(ex, keys);
+    assert_string_equal(ex->state.session.base.name, name);
+}
+
+// Keys that leave the lab, or do not.
+static inline void press_quits(explorer *ex, const char *keys, bool quits)
+{
+    press(ex, keys);
+    assert_int_equal(ex->state.quit, quits);
+}
 
 // The uppermost part of this kind on a screen of 120 x 40.
 static inline hit_area part_on_screen(explorer *ex, panel_id id, hit_part part)

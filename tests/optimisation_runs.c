@@ -32,9 +32,9 @@ static int fail(const char *run, const char *why)
 
 static status apply(scenario *s, const char *settings, fault *f)
 {
-    char text[256], *rest = NULL;
-    snprintf(text, sizeof text, "%s", settings);
-    for (char *one = strtok_r(text, " ", &rest); one != NULL; one = strtok_r(NULL, " ", &rest)) {
+    char *rest = (char[256]){""}, *one;
+    snprintf(rest, 256, "%s", settings);
+    while ((one = strsep(&rest, " ")) != NULL) {
         status code = scenario_override(s, one, f);
         if (code != STATUS_OK) {
             return code;

@@ -83,6 +83,11 @@ static inline void synthetic_finish(synthetic *s)
     run_finish(&s->result);
 }
 
+// A synthetic run that goes when its block is left.
+#define SYNTHETIC(s, panels, count)                                                                \
+    SCOPED(synthetic_finish) synthetic s;                                                          \
+    synthetic_init(&s, panels, count)
+
 static const trace_panel run_panels[] = {
     {.signals = {"force"}, .with_zero = true, .impulses = true, .inset = true},
     {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},
@@ -147,21 +152,31 @@ static inline cairo_surface_t *paint_pixels(const figure *fig, double scale, fig
     return page_pixels(&a, scale, report);
 }
 
-static inline bool has_text(const figure_report *r, const char *wanted)
+// The place of a text, NULL if it is not drawn.
+static inline const figure_rect *find_text(const figure_report *r, const char *wanted)
 {
-    bool found = false;
     for (int i = 0; i < r->text_count; i++) {
-        found = found || strcmp(r->texts[i].text, wanted) == 0;
+        if (strcmp(r->texts[i].text, wanted) == 0) {
+            return &r->texts[i].place;
+        }
     }
-    return found;
+    return NULL;
 }
 
-static inline void expect_text(const figure_report *r, const char *wanted)
+// The same, which must be drawn.
+static inline const figure_rect *expect_text(const figure_report *r, const char *wanted)
 {
-    for (int i = 0; i < r->text_count && !has_text(r, wanted); i++) {
+    const figure_rect *place = find_text(r, wanted);
+    for (int i = 0; i < r->text_count && place == NULL; i++) {
         print_message("'%s'\n", r->texts[i].text);
     }
-    fail_if(!has_text(r, wanted), "the text '%s' is not drawn", wanted);
+    fail_if(place == NULL, "the text '%s' is not drawn", wanted);
+    return place;
+}
+
+static inline double bottom_of(const figure_rect *r)
+{
+    return r->y + r->height;
 }
 
 // Whether r lies within `outer`, to a slack [pt].
@@ -213,7 +228,7 @@ static inline void expect_tidy(const figure *fig)
         check_close(r.panels[i].x, r.panels[0].x, 0);
         check_close(r.panels[i].width, r.panels[0].width, 0);
         if (i > 0) {
-            check_below(r.panels[i - 1].y + r.panels[i - 1].height, r.panels[i].y);
+            check_below(bottom_of(&r.panels[i - 1]), r.panels[i].y);
         }
         if (r.insets[i].width > 0) {
             expect_inside(&r.insets[i], &r.panels[i], "an inset");
@@ -257,17 +272,10 @@ static inline int coloured_pixels(cairo_surface_t *surface, double scale, figure
     return count;
 }
 
-static __attribute__((noinline, unused)) char *read_file(const char *path, size_t *length)
-{
-    char *bytes = NULL;
-    fail_if(!g_file_get_contents(path, &bytes, length, NULL), "%s cannot be read", path);
-    return bytes;
-}
-
 static inline void expect_same_bytes(const char *a, const char *b)
 {
     size_t a_length, b_length;
-    KEPT_TEXT(a_bytes) = read_file(a, &a_length), *b_bytes = read_file(b, &b_length);
+    KEPT_TEXT(a_bytes) = file_bytes(a, &a_length), *b_bytes = file_bytes(b, &b_length);
     assert_true(a_length > 50);
     assert_int_equal(a_length, b_length);
     assert_memory_equal(a_bytes, b_bytes, a_length);

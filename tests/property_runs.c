@@ -14,6 +14,7 @@
 // last line says how many runs were made, compared, resumed and found wrong.
 #include "src/run/resume.h"
 #include "tests/random_settings.h"
+#include "tests/shipped_scenario.h"
 #include "tests/told_events.h"
 
 #define MOST_SECONDS 20.0 // of the processor for one simulated second
@@ -144,10 +145,7 @@ static void check_step(tally *t, const random_run *r, const summary *of)
 static void check_resumed(tally *t, random_run *r, const run_result *from)
 {
     const double duration = r->scenario.parameters.run.duration;
-    action change = {.time = duration * random_uniform(&r->chance),
-                     .kind = ACTION_SET,
-                     .parameter = PARAMETER_INDEX(motor.voltage),
-                     .value = 0.5};
+    action change = SETS(duration * random_uniform(&r->chance), motor.voltage, 0.5);
     scenario later = r->scenario;
     later.actions = &change;
     later.action_count = 1;

@@ -30,6 +30,7 @@
 // be refused, and no other for where it starts.
 #include <time.h>
 
+#include "src/base/clock.h"
 #include "tests/explicit_stepper.h"
 #include "tests/random_arm.h"
 #include "tests/reference/implicit_arm.h"
@@ -426,13 +427,6 @@ static double worst_of(const distances *d, const distances *change, const limits
     return fmax(worst, d->peak / fmax(may->peak, 10 * change->peak));
 }
 
-static double seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static bool take_option(options *o, const char *text)
 {
     char name[16], value[32];
@@ -507,12 +501,12 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
         t->refused++;
         return;
     }
-    double before = seconds();
+    double before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     const chain_outcome mine = by_setting(r, &r->parameters, "method.engine", o->engine);
-    const double cost = seconds() - before;
-    before = seconds();
+    const double cost = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
+    before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     const chain_outcome truth = by_reference(r, o, 0, 1);
-    const double reference_cost = seconds() - before;
+    const double reference_cost = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - before;
     if (truth.status != STATUS_OK) {
         t->unsure++;
         return;

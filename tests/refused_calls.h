@@ -135,5 +135,5 @@ REFUSABLE(interrupts(), int, poll, -1, EINTR, (struct pollfd * ends, nfds_t coun
           (ends, count, ms))
 REFUSABLE(interrupts(), ssize_t, send, -1, EINTR,
           (int fd, const void *bytes, size_t size, int flags), (fd, bytes, size, flags))
-REFUSABLE(interrupts(), pid_t, waitpid, -1, EINTR, (pid_t process, int *ended, int how),
-          (process, ended, how))
+REFUSABLE(interrupts(), pid_t, waitpid, -1, EINTR, (pid_t which, int *ended, int how),
+          (which, ended, how))

@@ -14,8 +14,7 @@
 
 #include "src/base/json.h"
 #include "src/base/text_stream.h"
-#include "src/scenario/scenario.h"
-#include "tests/check.h"
+#include "tests/shipped_scenario.h"
 
 // --- who refuses --------------------------------------------------------------------------------
 
@@ -170,17 +169,11 @@ static const char *scenario_text = "{}"; // of which the scenarios of a test are
 // The test's scenario with settings, separated by blanks.
 static status make_scenario(scenario *s, const char *settings)
 {
-    char all[256], *rest = NULL;
     status code =
         scenario_parse(s, scenario_text, strlen(scenario_text), "t.yaml", NULL, keep_nothing, NULL);
-    if (code != STATUS_OK) {
-        return code;
-    }
-    snprintf(all, sizeof all, "%s", settings);
-    for (char *one = strtok_r(all, " ", &rest); one != NULL && code == STATUS_OK;
-         one = strtok_r(NULL, " ", &rest)) {
+    for (const char *const *one = words_of(settings); code == STATUS_OK && *one != NULL; one++) {
         fault f = {0};
-        code = scenario_override(s, one, &f);
+        code = scenario_override(s, *one, &f);
         if (code != STATUS_OK) {
             keep_nothing(NULL, f.text);
             scenario_finish(s);

@@ -35,6 +35,18 @@ static inline summary rig_summary(const char *const *settings)
 #define rig_parameters_with(...) rig_parameters(given(__VA_ARGS__))
 #define rig_summary_with(...)    rig_summary(given(__VA_ARGS__))
 
+// The setup that a law gets of these parameters, the hybrid one's.
+static inline controller_setup setup_of(const parameters *p)
+{
+    rig *r = NULL;
+    parameters as_hybrid = *p;
+    as_hybrid.control.law = LAW_HYBRID;
+    DONE(rig_create(&r, &as_hybrid, NULL, &f));
+    controller_setup setup = *(const controller_setup *)r->memory; // it stands first
+    rig_destroy(r);
+    return setup;
+}
+
 // The run under these settings cannot be made, and the sentence says why.
 static inline void check_refused(const char *const *settings, const char *sentence)
 {

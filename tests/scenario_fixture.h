@@ -1,8 +1,7 @@
 // Shared by the tests of scenarios: reading a text and keeping the sentences about it.
 #pragma once
 
-#include "src/scenario/scenario.h"
-#include "tests/check.h"
+#include "tests/shipped_scenario.h"
 
 // All sentences of one reading, a line each.
 typedef struct sentences {
@@ -38,6 +37,13 @@ static inline scenario good(const char *text)
     sentences all;
     fail_if(parse(&s, text, &all) != STATUS_OK || all.count != 0, "refused:\n%s", all.text);
     return s;
+}
+
+// A run of it that does not fail.
+static inline run_result run_told(const char *text)
+{
+    KEPT_SCENARIO(s) = good(text);
+    return run_done(&s, true);
 }
 
 // The text has exactly one fault, at line:column, whose sentence mentions `what`.

@@ -21,9 +21,8 @@ typedef struct recorded {
 
 static inline recorded record(const char *name)
 {
-    recorded r = {.scenario = shipped(name)};
-    assert_int_equal(run_scenario(&r.scenario, true, &r.result), STATUS_OK);
-    return r;
+    const scenario s = shipped(name);
+    return (recorded){s, run_done(&s, true)};
 }
 
 static inline void forget(recorded *r)
@@ -83,15 +82,23 @@ static inline int count_arrow(unsigned pixel)
            channel_of(pixel, 0) > channel_of(pixel, 1) + 70;
 }
 
-static inline int count_pixels(cairo_surface_t *s, int (*counts)(unsigned))
+// Pixels of a kind from one column to another, in rows above one.
+static inline int count_pixels_in(cairo_surface_t *s, int from, int to, int bottom,
+                                  int (*counts)(unsigned))
 {
     int count = 0;
-    for (int y = 0; y < cairo_image_surface_get_height(s); y++) {
-        for (int x = 0; x < cairo_image_surface_get_width(s); x++) {
+    for (int y = 0; y < bottom; y++) {
+        for (int x = from; x < to; x++) {
             count += counts(pixel_at(s, x, y));
         }
     }
     return count;
+}
+
+static inline int count_pixels(cairo_surface_t *s, int (*counts)(unsigned))
+{
+    return count_pixels_in(s, 0, cairo_image_surface_get_width(s),
+                           cairo_image_surface_get_height(s), counts);
 }
 
 // Pixels that differ by more than `tolerance` levels in some channel.
@@ -115,12 +122,7 @@ static inline int count_different(cairo_surface_t *a, cairo_surface_t *b, int to
 
 static inline void check_contains(const char *path, const char *text)
 {
-    FILE *stream = fopen(path, "rb");
-    assert_non_null(stream);
-    static char bytes[1 << 20];
-    size_t length = fread(bytes, 1, sizeof bytes, stream);
-    fclose(stream);
-    fail_if(memmem(bytes, length, text, strlen(text)) == NULL, "'%s' is not in %s", text, path);
+    fail_if(!file_has(path, text), "'%s' is not in %s", text, path);
 }
 
 static inline int tear_down(void **state)

@@ -1,7 +1,6 @@
 // Sessions for tests: opened on a scenario that ships, and saved and run again.
 #pragma once
 
-#include "src/run/run.h"
 #include "src/session/session.h"
 #include "tests/shipped_scenario.h"
 
@@ -15,6 +14,16 @@ static inline void open_session(session *s, const char *name)
 #define OPEN_SESSION(s, name)                                                                      \
     KEPT_SESSION(s);                                                                               \
     open_session(&s, name)
+
+// A change that the session takes, and whose run ends well.
+static inline void change(session *s, const char *path, const char *value)
+{
+    fault f = {0};
+    fail_if(session_change(s, parameter_find(path), value, &f) != STATUS_OK, "%s: %s", path,
+            f.text);
+    fail_if(s->computing == NULL && s->run.summary.status != STATUS_OK, "%s: %s", path,
+            s->run.summary.message);
+}
 
 static inline void assert_same_trace(const trace *a, const trace *b)
 {

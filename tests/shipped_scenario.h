@@ -1,8 +1,12 @@
 // Scenarios for tests: those that ship, with changes, and read again from what they write.
 #pragma once
 
-#include "src/scenario/scenario.h"
+#include "src/run/loop.h"
+#include "src/run/run.h"
+#include "src/study/store/sweep_store.h"
 #include "tests/check.h"
+
+GIVEN_BACK(run_loop, loop_destroy)
 
 static inline void fail_on_fault(void *context, const char *sentence)
 {
@@ -21,14 +25,13 @@ static inline scenario shipped(const char *name)
 // The same with changes, "PATH=VALUE ..." between blanks.
 static inline scenario shipped_with(const char *name, const char *changes)
 {
-    char copy[512], *items[32], *rest = NULL;
+    char *const *all = (char *const *)words_of(changes);
     int count = 0;
-    scenario s = shipped(name);
-    assert_in_range(snprintf(copy, sizeof copy, "%s", changes), 0, sizeof copy - 1);
-    for (char *item = strtok_r(copy, " ", &rest); item != NULL; item = strtok_r(NULL, " ", &rest)) {
-        items[count++] = item;
+    while (all[count] != NULL) {
+        count++;
     }
-    assert_int_equal(scenario_override_all(&s, items, count, fail_on_fault, NULL), STATUS_OK);
+    scenario s = shipped(name);
+    assert_int_equal(scenario_override_all(&s, all, count, fail_on_fault, NULL), STATUS_OK);
     return s;
 }
 
@@ -41,3 +44,30 @@ static inline scenario read_again(const scenario *s)
                      STATUS_OK);
     return again;
 }
+
+// A run that ends well; the caller calls run_finish.
+static inline run_result run_done(const scenario *s, bool rows)
+{
+    run_result r;
+    fail_if(run_scenario(s, rows, &r) != STATUS_OK, "%s", r.summary.message);
+    return r;
+}
+
+// All that two runs came to but their times of computing.
+static inline void assert_same_summary(const summary *a, const summary *b)
+{
+    for (int i = 0; i < summary_count; i++) {
+        const double x = summary_value(a, i), y = summary_value(b, i);
+        assert_true(summary_table[i].timing || x == y || (isnan(x) && isnan(y)));
+    }
+}
+
+// What a script does at an instant, and a scenario of parameters and a script.
+#define SETS(at, path, to)                                                                         \
+    ((action){.time = at, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(path), .value = to})
+#define PUSHES(at, by) ((action){.time = at, .kind = ACTION_PUSH, .parameter = -1, .value = by})
+#define SCRIPTED(given, ...)                                                                       \
+    {                                                                                              \
+        .parameters = given, .actions = (action[]){__VA_ARGS__},                                   \
+        .action_count = sizeof((action[]){__VA_ARGS__}) / sizeof(action)                           \
+    }

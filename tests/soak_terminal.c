@@ -141,6 +141,15 @@ static void watch(soak *s, double seconds)
     } while (seconds_now() < until);
 }
 
+// Takes what the program shows until something is so, or fails with a sentence after a time [s].
+#define AWAIT(s, condition, seconds, ...)                                                          \
+    for (double until = seconds_now() + (seconds); !(condition);) {                                \
+        watch(s, 0.01);                                                                            \
+        if (seconds_now() > until) {                                                               \
+            fail(s, __VA_ARGS__);                                                                  \
+        }                                                                                          \
+    }
+
 static void send_bytes(soak *s, const char *bytes, size_t count)
 {
     double until = seconds_now() + ANSWER_TIME;
@@ -481,29 +490,17 @@ static void check_terminal(soak *s)
 static void drain(soak *s)
 {
     static const char mark[] = "\033[?2999h";
-    double until = seconds_now() + ANSWER_TIME;
     if (write(s->slave, mark, sizeof mark - 1) < 0) {
         fail(s, "the terminal takes nothing any more");
     }
-    while (!s->seen.mode[2999]) {
-        watch(s, 0.01);
-        if (seconds_now() > until) {
-            fail(s, "the terminal keeps back what was written");
-        }
-    }
+    AWAIT(s, s->seen.mode[2999], ANSWER_TIME, "the terminal keeps back what was written");
 }
 
 static void leave(soak *s)
 {
     int status = 0;
-    double until = seconds_now() + ANSWER_TIME;
     send_text(s, ":quit!\r");
-    while (!has_ended(s, &status)) {
-        watch(s, 0.01);
-        if (seconds_now() > until) {
-            fail(s, "does not end within %g s", ANSWER_TIME);
-        }
-    }
+    AWAIT(s, has_ended(s, &status), ANSWER_TIME, "does not end within %g s", ANSWER_TIME);
     drain(s);
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
         fail(s, "ends with status %d", status);
@@ -529,15 +526,9 @@ static void run_session(soak *s, uint64_t seed, double seconds)
     s->sent = 0;
     random_seed(&s->random, seed);
     start(s);
-    double until = seconds_now() + ANSWER_TIME;
-    while (!s->seen.mode[1049]) {
-        watch(s, 0.01); // keys that come before would be echoed
-        if (seconds_now() > until) {
-            fail(s, "does not start within %g s", ANSWER_TIME);
-        }
-    }
-    until = seconds_now() + seconds;
-    while (seconds_now() < until) {
+    // keys that come before would be echoed
+    AWAIT(s, s->seen.mode[1049], ANSWER_TIME, "does not start within %g s", ANSWER_TIME);
+    for (double until = seconds_now() + seconds; seconds_now() < until;) {
         do_something(s);
     }
     come_back(s);

@@ -1,5 +1,7 @@
 #include "tests/sweep_fixture.h"
 
+#include <sqlite3.h>
+
 #include "tests/check.h"
 
 scenario base;
@@ -45,6 +47,15 @@ sweep_store *must_open(const char *path, const sweep *s)
     sweep_store *store;
     DONE(sweep_store_open(&store, path, s, &f));
     return store;
+}
+
+void tamper(const char *path, const char *sql)
+{
+    sqlite3 *database;
+    assert_int_equal(sqlite3_open(path, &database), SQLITE_OK);
+    fail_if(sqlite3_exec(database, sql, NULL, NULL, NULL) != SQLITE_OK, "%s",
+            sqlite3_errmsg(database));
+    sqlite3_close(database);
 }
 
 char *csv_of(sweep_store *store)

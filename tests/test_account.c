@@ -19,32 +19,26 @@ static void check_says(const char *wanted)
 // Numbers found independently: touch and release from the summary, energies from the rows.
 TEST(test_a_first_impact_is_told_in_five_sentences)
 {
-    char wanted[128];
     OPEN_SESSION(s, "corrected/first-impact");
     const summary *m = &s.run.summary;
     const trace *t = &s.run.trace;
     assert_int_equal(run_account(&s.effective, &s.run, sentences), 5);
-    snprintf(wanted, sizeof wanted, "touches the wall at %.4g s", m->first_contact_s);
-    check_says(wanted);
-    snprintf(wanted, sizeof wanted, "impulse of %.3g N s", m->contact_impulse_Ns);
-    check_says(wanted);
-    snprintf(wanted, sizeof wanted, "lets go at %.4g s", m->first_contact_s + m->first_pulse_s);
-    check_says(wanted);
+    check_says(formatted("touches the wall at %.4g s", m->first_contact_s));
+    check_says(formatted("impulse of %.3g N s", m->contact_impulse_Ns));
+    check_says(formatted("lets go at %.4g s", m->first_contact_s + m->first_pulse_s));
 
     // the first turn of the hub in contact, seen in its velocity
     size_t r = trace_row_at(t, m->first_contact_s + 0.001);
     while (t->rows[r].hub_velocity > 0) {
         r++;
     }
-    snprintf(wanted, sizeof wanted, "at %.3g", t->rows[r].time);
-    check_says(wanted);
+    check_says(formatted("at %.3g", t->rows[r].time));
 
     // of the strain energy at the peak, that much is motion when it lets go
     const size_t high = trace_row_at(t, m->first_contact_s + m->first_pulse_time_to_peak_s);
     const size_t free = trace_row_at(t, m->first_contact_s + m->first_pulse_s);
-    snprintf(wanted, sizeof wanted, "give back %.2g %%",
-             100 * t->rows[free].kinetic_energy / t->rows[high].strain_energy);
-    check_says(wanted);
+    check_says(formatted("give back %.2g %%",
+                         100 * t->rows[free].kinetic_energy / t->rows[high].strain_energy));
 }
 
 // Whatever ships: at least a sentence, each ends, and no number is missing.

@@ -81,14 +81,10 @@ TEST(test_keys_change_the_axis_of_the_pane_in_focus)
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     press(&ex, "w");
     assert_int_equal(panes_focused(&ex.state.panes), 2);
-    press(&ex, "a");
-    assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_GROW);
-    press(&ex, "a");
-    assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_FIXED);
-    press(&ex, "a");
-    assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_CALM);
-    press(&ex, "a");
-    assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_AUTO);
+    for (EACH_OF(axis_scaling, c, AXIS_GROW, AXIS_FIXED, AXIS_CALM, AXIS_AUTO)) {
+        press(&ex, "a");
+        assert_int_equal(ex.state.panes.pane[2].scaling, *c);
+    }
     press(&ex, "v");
     assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_FIXED);
     assert_int_equal(ex.state.panes.pane[0].scaling, AXIS_AUTO);
@@ -127,8 +123,7 @@ TEST(test_ticks_are_round)
     press_shows(&ex, ":seek 0.35<Enter>", "1.2\u2524", "0.0\u2524", "0.05\u2524", "0.5      ",
                 "1.0 s");
     // the unit is next to the pane's number
-    assert_shows(&ex, "\u25b81      N");
-    assert_shows(&ex, " 3  rad/s");
+    assert_shows(&ex, "\u25b81      N", " 3  rad/s");
     carry_out(&ex, "zoom 0.293 0.294");
     assert_shows(&ex, "0.2935");
 }
@@ -150,11 +145,9 @@ TEST(test_the_visible_part_follows_the_cursor_until_it_is_panned)
     state_window(&ex.state, &from, &to);
     press(&ex, "(");
     check_close(ex.state.window.from, from - 0.0625, 1e-12);
-    press(&ex, "<S-Left><S-Left><S-Left><S-Left><S-Left><S-Left><S-Left><S-Left>");
-    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
+    press_draws(&ex, "<S-Left><S-Left><S-Left><S-Left><S-Left><S-Left><S-Left><S-Left>");
     check_close(ex.state.window.from, 0, 0);
-    press(&ex, ")f");
-    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
+    press_draws(&ex, ")f");
     state_window(&ex.state, &from, &to);
     assert_true(from <= 0.5 && 0.5 <= to);
     carry_out(&ex, "pan 0.1");
@@ -174,12 +167,11 @@ TEST(test_a_controlled_run_shows_readings_and_commands)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.65<Enter>28");
-    char *text = picture(&ex, 160, 60, GLYPHS_BRAILLE);
+    KEPT_TEXT(text) = picture(&ex, 160, 60, GLYPHS_BRAILLE);
     for (EACH_TEXT(c, "force_reading", "calculated_force", "encoder", "desired_angle", "tachometer",
                    "command 2.284", "controller_mode force")) {
         fail_if(strstr(text, *c) == NULL, "'%s' is not on the screen:\n%s", *c, text);
     }
-    free(text);
     // the same panes as before where the user chose them
     press(&ex, ":panes 4<Enter>:open corrected/first-impact<Enter>");
     assert_false(ex.state.panes.pane[0].shown);
@@ -234,10 +226,10 @@ TEST(test_ranges_of_long_runs_are_exact)
         state_update(&ex.state);
         for (size_t r = trace_row_at(t, ex.state.window.from);
              r <= trace_row_at(t, ex.state.window.to) + 1; r++) {
-            low = fmin(low,
-                       fmin(signal_value(&t->rows[r], velocity), signal_value(&t->rows[r], angle)));
-            high = fmax(
-                high, fmax(signal_value(&t->rows[r], velocity), signal_value(&t->rows[r], angle)));
+            const double one = signal_value(&t->rows[r], velocity);
+            const double other = signal_value(&t->rows[r], angle);
+            low = fmin(low, fmin(one, other));
+            high = fmax(high, fmax(one, other));
         }
         value_range axis;
         assert_true(state_pane_axis(&ex.state, PANES_OF_TABLE, &axis));

@@ -97,19 +97,8 @@ TEST(frequencies_converge_at_second_order)
     }
 }
 
-// The damping ratio is asked for the first clamped-free mode, that of the beam with its root.
-TEST(first_mode_has_the_damping_asked_for)
-{
-    const double wanted = 0.02;
-    parameters p = parameters_with("arm.links=8 arm.hub_joint=beam arm.damping_ratio=0.02");
-    arm a = arm_of(&p);
-    const double seconds = 2 * wanted / modes_of(&a, HUB_LOCKED, TIP_FREE).w[0];
-    check_relative(a.joint_damping / a.joint_stiffness, seconds, 1e-6);
-    check_relative(a.hub_joint_damping / a.hub_stiffness, seconds, 1e-6);
-}
-
-// So it is with links and joints that differ, with a mass at the tip, and without a root that
-// bends.
+// The damping ratio is asked for the first clamped-free mode, that of the beam with its root; with
+// links and joints that differ, with a mass at the tip, and without a root that bends.
 TEST(any_arm_has_the_damping_asked_for)
 {
     const char *const *const arms[] = {
@@ -121,17 +110,23 @@ TEST(any_arm_has_the_damping_asked_for)
         given("arm.links=3 arm.joint_stiffness=60,5,12 arm.hub_joint=beam arm.tip_mass=0.05 "
               "arm.link_lengths=0.2,0.5,0.3"),
         given("arm.links=1 arm.hub_joint=beam"),
+        given("arm.links=8 arm.hub_joint=beam"),
+        given("arm.links=1 arm.hub_joint=beam arm.joint_stiffness=7"),
+        given("arm.links=1 arm.hub_joint=spring arm.k1=30"),
+        given("arm.links=1 arm.hub_joint=spring arm.tip_mass=0.2"),
     };
     for (EACH(c, arms)) {
         parameters p = fixture_parameters(*c);
         p.arm.damping_ratio = 0.02;
         arm a = arm_of(&p);
         const double seconds = 2 * 0.02 / modes_of(&a, HUB_LOCKED, TIP_FREE).w[0];
-        check_relative(a.joint_damping / a.joint_stiffness, seconds, 1e-5);
+        check_relative(a.joint_damping / a.joint_stiffness, seconds, 1e-6);
         check_close(a.hub_joint_damping, a.hub_stiffness * seconds,
-                    1e-5 * a.hub_stiffness * seconds);
-        for (int k = 1; a.uneven && k < a.links; k++) {
-            check_relative(a.each[k].damping / a.each[k].stiffness, seconds, 1e-5);
+                    1e-6 * a.hub_stiffness * seconds);
+        const bool root = p.arm.hub_joint == HUB_BEAM || p.arm.links == 1;
+        for (int k = root ? 0 : 1; k < a.links; k++) {
+            const arm_link link = arm_link_of(&a, k);
+            check_relative(link.damping, link.stiffness * seconds, 1e-6);
         }
     }
 

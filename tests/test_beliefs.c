@@ -5,13 +5,8 @@
 // The setup that the hybrid law got under the settings.
 static controller_setup told(const char *const *settings)
 {
-    rig *r = NULL;
-    parameters p = rig_parameters(settings);
-    p.control.law = LAW_HYBRID;
-    DONE(rig_create(&r, &p, NULL, &f));
-    controller_setup setup = *(const controller_setup *)r->memory; // it stands first
-    rig_destroy(r);
-    return setup;
+    const parameters p = rig_parameters(settings);
+    return setup_of(&p);
 }
 
 TEST(without_wrong_beliefs_it_is_the_truth)

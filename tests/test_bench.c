@@ -62,7 +62,7 @@ TEST_IN_FOLDER(what_is_written_is_read_back)
     const bench_result written[BENCHMARKS] = {[1] = {1.25, 1, 2}, [9] = {3e7, 2e7, 4e7}};
     double read[BENCHMARKS];
     json_t *object = bench_export(written);
-    SCOPED(free_kept) char *text = json_dumps(object, 0);
+    KEPT_TEXT(text) = json_dumps(object, 0);
     put_file("times", text);
     json_decref(object);
     DONE(bench_read("times", read, &f));

@@ -37,17 +37,15 @@ static arm make_arm(int links, const char *hub, const char *wall)
 // Links and joints that all differ, in air; every second arm has a beam's root.
 static arm make_uneven_arm(int links, const char *wall, bool rooted)
 {
-    char lengths[160] = "arm.link_lengths=", springs[160] = "arm.joint_stiffness=";
+    const char *lengths = "arm.link_lengths=", *springs = "arm.joint_stiffness=";
     beam = (dense_beam){.drag = 0.3};
     for (int k = 0; k < links; k++) {
         beam.length[k] = 0.1 + 0.01 * ((k * 7) % 5);
         beam.length[LARGEST - 1] += beam.length[k];
         beam.stiffness[k] = 8 + (k * 5) % 7 + 0.5 * k;
-        size_t l = strlen(lengths), j = strlen(springs);
-        snprintf(lengths + l, sizeof lengths - l, "%s%g", k > 0 ? "," : "", beam.length[k]);
+        lengths = formatted("%s%s%g", lengths, k > 0 ? "," : "", beam.length[k]);
         if (k > 0 || rooted) {
-            snprintf(springs + j, sizeof springs - j, "%s%g", k > !rooted ? "," : "",
-                     beam.stiffness[k]);
+            springs = formatted("%s%s%g", springs, k > !rooted ? "," : "", beam.stiffness[k]);
         }
     }
     parameters p =

@@ -2,12 +2,6 @@
 // leave one in the dark about what has an effect and when.
 #include "tests/explorer_on_screen.h"
 
-static double value_of(const explorer *ex, int parameter)
-{
-    parameters p = session_parameters_at(&ex->state.session, ex->state.session.now);
-    return parameter_get(&p, parameter);
-}
-
 TEST(test_typing_replaces_the_value)
 {
     const int voltage = PARAMETER_INDEX(motor.voltage);
@@ -97,8 +91,8 @@ TEST(test_what_has_no_effect_says_why)
     // a parameter that is called inert is: the run is the same to the last bit
     press(&ex, ":seek end<Enter>");
     const double end = session_sample(&ex.state.session)->hub_angle;
-    press(&ex, ":set printed.newton_iterations 5<Enter>:set control.kp 3<Enter>:set arm.k1 100"
-               "<Enter>:seek end<Enter>");
+    press(&ex, ":set printed.newton_iterations 5<Enter>:set control.kp 3<Enter>:set arm.k1 "
+               "100<Enter>:seek end<Enter>");
     check_close(session_sample(&ex.state.session)->hub_angle, end, 0);
 }
 
@@ -146,43 +140,32 @@ TEST(test_predictors_take_the_voltage_in_force)
 
 TEST(test_predictors_say_that_they_know_two_links)
 {
-    SCOPED(explorer_finish) explorer ex;
     static const char said[] = "the first two know two links";
-    open_explorer(&ex, "corrected/five-links");
+    OPEN_EXPLORER(ex, "corrected/five-links");
     assert_shows(&ex, said);
     press_shows(&ex, ":set arm.links 2<Enter>", "!the first two know two links");
     press_shows(&ex, ":set arm.links 1<Enter>", said);
-    explorer_finish(&ex);
 
     // and one that has nothing to say of an arm says that
-    open_explorer(&ex, "thesis/fig-3-4");
-    assert_shows(&ex, "linearised      does not apply");
+    OPEN_EXPLORER(printed, "thesis/fig-3-4");
+    assert_shows(&printed, "linearised      does not apply");
 }
 
 TEST(test_values_that_have_no_room_are_cut_visibly)
 {
-    SCOPED(explorer_finish) explorer ex;
-    open_explorer(&ex, "corrected/known-springs");
-    press_shows(&ex, "/link_lengths<Enter>", "0.3, 0.25, 0.25, 0.2");
-    KEPT_TEXT(text) = picture(&ex, 80, 24, GLYPHS_BRAILLE);
-    assert_non_null(strstr(text, "link_lengths  0.3, 0.25, 0.."));
-    free(text);
-    explorer_finish(&ex);
+    OPEN_EXPLORER(springs, "corrected/known-springs");
+    press_shows(&springs, "/link_lengths<Enter>", "0.3, 0.25, 0.25, 0.2");
+    assert_shows_at(&springs, 80, 24, "link_lengths  0.3, 0.25, 0..");
 
     // a word in whole where there is room
-    open_explorer(&ex, "compare/inverse-dynamics");
-    press(&ex, "/law<Enter>");
-    text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
-    assert_non_null(strstr(text, "law          inverse-dynamics"));
-    free(text);
-
-    explorer_finish(&ex);
+    OPEN_EXPLORER(word, "compare/inverse-dynamics");
+    press(&word, "/law<Enter>");
+    assert_shows_at(&word, 80, 24, "law          inverse-dynamics");
 
     // between characters, and right-aligned, for any number of bytes
-    open_explorer(&ex, "compare/inverse-dynamics");
+    OPEN_EXPLORER(ex, "compare/inverse-dynamics");
     press(&ex, ":set control.command ./xééééééééééééééééééé<Enter>/command<Enter>");
-    text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
-    assert_non_null(strstr(text, "command  ./xééééééééééééééé.. │"));
+    assert_shows_at(&ex, 80, 24, "command  ./xééééééééééééééé.. │");
 }
 
 TEST(test_changes_to_come_are_seen_edited_and_dropped)
@@ -245,8 +228,7 @@ TEST(test_nudges_are_one_change_and_reversible)
 TEST_IN_FOLDER(test_saving_never_replaces_a_file_unasked)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, ":save run.csv<Enter>");
-    assert_shows(&ex, formatted("saved %s/run.csv", test_folder));
+    press_shows(&ex, ":save run.csv<Enter>", formatted("saved %s/run.csv", test_folder));
     assert_false(explorer_carry_out(&ex, "save run.csv"));
     assert_non_null(strstr(ex.state.message.text, "is there already"));
     assert_true(explorer_carry_out(&ex, "save! run.csv"));
@@ -273,15 +255,13 @@ TEST(test_everything_that_is_listed_can_be_filtered)
     press(&ex, "<Esc><Esc>");
 
     // a filtered list of scenarios opens at once
-    press(&ex, "o/five<Enter>");
-    assert_string_equal(ex.state.session.base.name, "corrected/five-links");
+    press_opens(&ex, "o/five<Enter>", "corrected/five-links");
 }
 
 TEST(test_groups_of_parameters_fold)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    assert_shows(&ex, "\u25be motor");
-    assert_shows(&ex, "amplifier_gain");
+    assert_shows(&ex, "\u25be motor", "amplifier_gain");
     press_shows(&ex, "k<Enter>", "\u25b8 motor", "!amplifier_gain");
     press_shows(&ex, "<Enter>", "amplifier_gain");
     press_shows(&ex, ":fold all<Enter>", "\u25b8 sensor");
@@ -313,35 +293,26 @@ TEST(test_descriptions_are_shown)
 TEST(test_leaving_asks_if_changes_would_be_lost)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, ":seek 0.2<Enter><lt>q");
-    assert_false(ex.state.quit);
+    press_quits(&ex, ":seek 0.2<Enter><lt>q", false);
     assert_shows(&ex, "1 change would be lost");
-    press(&ex, "<Right>q");
-    assert_false(ex.state.quit);
-    press(&ex, "q");
-    assert_true(ex.state.quit);
+    press_quits(&ex, "<Right>q", false);
+    press_quits(&ex, "q", true);
     ex.state.quit = false;
-    press(&ex, "<C-c>");
-    assert_false(ex.state.quit);
-    press(&ex, "<C-c>");
-    assert_true(ex.state.quit);
+    press_quits(&ex, "<C-c>", false);
+    press_quits(&ex, "<C-c>", true);
     ex.state.quit = false;
-    press(&ex, "u<C-c>");
-    assert_true(ex.state.quit);
+    press_quits(&ex, "u<C-c>", true);
 }
 
 TEST(test_an_interrupt_stops_a_computation_first)
 {
     SCOPED(explorer_finish) explorer ex;
-    scenario s = shipped("corrected/twenty-links");
-    DONE(scenario_override(&s, "run.duration=20", &f));
-    DONE(explorer_init(&ex, &s, 0, &f));
+    open_changed(&ex, "corrected/twenty-links", "run.duration=20", 0);
     assert_non_null(ex.state.session.computing);
     press(&ex, "<C-c>");
     assert_null(ex.state.session.computing);
     assert_false(ex.state.quit);
-    press(&ex, "<C-c>");
-    assert_true(ex.state.quit);
+    press_quits(&ex, "<C-c>", true);
 }
 
 // The numbers of the panes that are shown on a screen of 120 columns.
@@ -391,14 +362,11 @@ TEST(test_ticks_are_even_and_names_whole)
     press(&ex, ":seek 0.35<Enter>");
 
     // the force's axis in three rows: no tick is left out between two others
-    char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
-    assert_null(strstr(text, "rad/s\u2524"));
-    free(text);
+    assert_shows_at(&ex, 80, 24, "!rad/s\u2524");
     press(&ex, ":law off<Enter>");
-    text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+    KEPT_TEXT(text) = picture(&ex, 80, 24, GLYPHS_BRAILLE);
     assert_false(strstr(text, "1.2\u2524") && strstr(text, "0.8\u2524") &&
                  !strstr(text, "0.4\u2524"));
-    free(text);
     press_shows(&ex, "<Tab>", "first_acceleration", "\u25c6 contact point");
 
     // keys reach the last value

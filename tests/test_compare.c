@@ -254,11 +254,11 @@ TEST(a_row_has_the_numbers_of_its_run)
         KEPT_RUN(r) = run_done(&s, false);
         const summary *m = &r.summary;
         const compare_row row = compare_row_of(&s, &r);
-        const bool rig = i != 1 && i != 5;
+        const bool on_rig = i != 1 && i != 5;
         const double expected[COMPARE_QUANTITIES] = {
             [0] = m->peak_force_N,
-            [2] = rig ? 100 * m->force_over_command_N / m->force_command_N
-                      : m->force_overshoot_percent,
+            [2] = on_rig ? 100 * m->force_over_command_N / m->force_command_N
+                         : m->force_overshoot_percent,
             [3] = m->settling_time_s,
             [5] = m->first_contact_s + m->settling_time_s,
             [7] = m->impacts,

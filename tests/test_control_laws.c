@@ -8,12 +8,10 @@ static const char *manual; // path of docs/reference/laws.md
 
 TEST(every_word_chooses_the_controller_of_that_name)
 {
-    const int index = PARAMETER_INDEX(control.law);
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
-        parameters p;
-        parameters_defaults(&p, ARM_CORRECTED);
+        parameters p = fresh(ARM_CORRECTED);
         const char *word = control_law_table[law].word;
-        DONE(parameter_set_text(&p, index, word, &f));
+        give(&p, "control.law", word);
         assert_int_equal(p.control.law, law);
         const controller *c = controller_of(law);
         assert_true((c == NULL) == (law == LAW_NONE || law == LAW_PLUGIN || law == LAW_PROCESS));
@@ -205,12 +203,7 @@ TEST(answers_are_numbers)
 
 TEST(manual_says_of_every_law_when_to_take_it)
 {
-    FILE *file = fopen(manual, "rb");
-    KEPT_TEXT(text) = calloc(1, 1 << 20);
-    assert_non_null(file);
-    assert_non_null(text);
-    text[fread(text, 1, (1 << 20) - 1, file)] = '\0';
-    fclose(file);
+    KEPT_TEXT(text) = file_text(manual);
 
     char *end = strstr(text, "\n## ");
     assert_non_null(end);

@@ -1,10 +1,7 @@
 // A program in the place of a control law: odd ways to answer, and states of a run that it is led
 // back to and on from.
 
-#include "src/run/loop.h"
 #include "tests/rig_fixture.h"
-
-GIVEN_BACK(run_loop, loop_destroy)
 
 // The arm under a program in the shell, asked a hundred times a second.
 static scenario under(const char *program)
@@ -111,8 +108,4 @@ TEST(a_program_that_answers_otherwise_is_said)
     REFUSED(STATUS_CONTROLLER_FAILED, "not", loop_until(l, 0.105, &f));
 }
 
-int main(void)
-{
-    alarm(120); // where somebody waits for what never comes, this fails
-    return run_cases(NULL, NULL);
-}
+ALL_IN_TWO_MINUTES

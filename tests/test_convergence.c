@@ -27,8 +27,7 @@ TEST(the_order_of_made_up_errors_is_found)
 
 static convergence_panel panel_of(const char *const *settings)
 {
-    static char name[] = "test";
-    scenario s = {.name = name, .parameters = fixture_parameters(settings)};
+    scenario s = {.name = (char *)"test", .parameters = fixture_parameters(settings)};
     convergence_panel panel;
     DONE(convergence_compute(&s, NULL, NULL, &panel, &f));
     return panel;
@@ -75,12 +74,11 @@ TEST(rows_at_an_event_are_compared_in_their_order)
 {
     enum { ROWS = 3000 };
     static double x[ROWS], y[ROWS];
-    static char name[] = "test";
     run_result results[2];
     for (int i = 0; i < 2; i++) {
-        scenario s = {.name = name, .parameters = fixture_parameters(NULL)};
+        scenario s = {.name = (char *)"test", .parameters = fixture_parameters(NULL)};
         s.parameters.method.step = i == 0 ? 1e-3 : 5e-4;
-        assert_int_equal(run_scenario(&s, true, &results[i]), STATUS_OK);
+        results[i] = run_done(&s, true);
     }
     const trace *coarse = &results[0].trace;
     assert_true(coarse->row_count < ROWS);
@@ -139,8 +137,7 @@ TEST(instants_of_one_trace_only_are_left_out)
 
 TEST(a_run_that_fails_is_told_with_its_step)
 {
-    static char name[] = "test";
-    scenario s = {.name = name,
+    scenario s = {.name = (char *)"test",
                   .parameters = parameters_with(
                       "method.name=newmark method.gamma=0.3 arm.links=8 run.duration=3")};
     convergence_panel panel;
@@ -197,10 +194,9 @@ static int stop_after_two(void *context)
 
 TEST(a_study_that_is_stopped_keeps_the_runs_before)
 {
-    static char name[] = "test";
     static method_study study;
     // its shortest steps would take hours
-    scenario s = {.name = name,
+    scenario s = {.name = (char *)"test",
                   .parameters = parameters_with("run.duration=50 wall.angle=3 motor.voltage=0.01")};
     run_monitor monitor = {0};
     fault f = {0};
@@ -226,13 +222,12 @@ TEST(a_study_that_is_stopped_keeps_the_runs_before)
 
 TEST(a_study_runs_each_method_at_each_step_once)
 {
-    static char name[] = "test";
     static struct {
         method_study study;
         method_study untouched;
     } both;
     static const method_study none;
-    scenario s = {.name = name,
+    scenario s = {.name = (char *)"test",
                   .parameters = parameters_with(
                       "run.duration=0.1 wall.angle=0 initial.angle=-1e-4 motor.voltage=1")};
     run_monitor monitor = {0};

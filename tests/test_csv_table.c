@@ -3,23 +3,11 @@
 
 #include "tests/check.h"
 
-static const char *written(const char *text)
-{
-    static char path[] = "/tmp/test_csv_table.XXXXXX";
-    memcpy(path + sizeof path - 7, "XXXXXX", 6);
-    const int file = mkstemp(path);
-    assert_true(file >= 0 && write(file, text, strlen(text)) == (ssize_t)strlen(text));
-    close(file);
-    return path;
-}
-
 static status read_table(csv_table *t, const char *text, size_t least, fault *f)
 {
-    const char *path = written(text);
+    put_file("table.csv", text);
     *f = (fault){.text = ""};
-    const status code = csv_table_read(t, path, least, f);
-    unlink(path);
-    return code;
+    return csv_table_read(t, "table.csv", least, f);
 }
 
 TEST(columns_are_found_by_name_and_converted)
@@ -108,3 +96,5 @@ TEST(between_rows_a_value_holds_or_lies_on_a_line)
         check_close(csv_table_at(times, values, 4, c->time, true), c->linear, 0);
     }
 }
+
+ALL_BETWEEN(enter_folder, leave_folder)

@@ -48,8 +48,7 @@ TEST(test_playing_shows_an_impact_within_seconds)
     assert_shows(&ex, "free flight");
     press(&ex, "<Space>");
     act_advance(&ex.state, 2);
-    assert_shows(&ex, "impact 0.0443 N s");
-    assert_shows(&ex, "in contact");
+    assert_shows(&ex, "impact 0.0443 N s", "in contact");
     act_advance(&ex.state, 100);
     assert_false(ex.state.playback.playing);
     assert_shows(&ex, "end of the run");
@@ -61,8 +60,7 @@ TEST(test_a_lower_voltage_is_compared_with_the_run_before)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<Space>");
     act_advance(&ex.state, 3);
-    press(&ex, "<Space>NNNN<Home>nN");
-    press_shows(&ex, ":seek 0.2<Enter>b<Enter>", ":set motor.voltage 1");
+    press_shows(&ex, "<Space>NNNN<Home>nN:seek 0.2<Enter>b<Enter>", ":set motor.voltage 1");
     press_shows(&ex, "<Backspace>0.5<Enter>", "motor.voltage = 0.5 V from 0.2000 s on");
     check_below(ex.state.session.run.summary.peak_force_N,
                 ex.state.session.other.summary.peak_force_N);
@@ -100,8 +98,7 @@ static int tallest_column(explorer *ex, int width)
 TEST(test_a_spike_of_one_row_is_drawn)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, "134:extend 19<Enter><End>");
-    press(&ex, ":trace impulse<Enter>");
+    press(&ex, "134:extend 19<Enter><End>:trace impulse<Enter>");
     // the impulse is one row of twenty thousand, and its line goes up the whole pane
     assert_true(tallest_column(&ex, 120) >= ex.layout.plot.height - 4);
 }
@@ -119,10 +116,8 @@ TEST(test_the_list_filters_and_opens)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press_shows(&ex, "o/three", "corrected/three-links", "Three links against a flat wall",
                 "!five-links");
-    press(&ex, "<Enter>");
-    assert_string_equal(ex.state.session.base.name, "corrected/three-links");
-    press(&ex, ":open thesis/fig-3-4<Enter>");
-    assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
+    press_opens(&ex, "<Enter>", "corrected/three-links");
+    press_opens(&ex, ":open thesis/fig-3-4<Enter>", "thesis/fig-3-4");
     assert_shows(&ex, "printed");
     press_warns(&ex, ":open nowhere<Enter>", "");
     assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
@@ -147,8 +142,7 @@ TEST(test_help_lists_every_key)
     press_shows(&ex, "<End>", "leave the lab");
     press_shows(&ex, "<Esc>", "!leave the lab");
     assert_false(ex.state.quit);
-    press(&ex, "q");
-    assert_true(ex.state.quit);
+    press_quits(&ex, "q", true);
 }
 
 TEST(test_pages_scroll_to_their_ends)
@@ -162,7 +156,6 @@ TEST(test_pages_scroll_to_their_ends)
 
 TEST_IN_FOLDER(test_saved_scenario_and_screen)
 {
-    char line[128];
     OPEN_EXPLORER(ex, "corrected/first-impact");
     ex.state.size.width = 100;
     ex.state.size.height = 30;
@@ -170,7 +163,7 @@ TEST_IN_FOLDER(test_saved_scenario_and_screen)
     assert_true(explorer_carry_out(&ex, "set motor.voltage 0.5"));
     static const char *const endings[] = {"csv", "yaml", "txt", "svg"};
     for (EACH(one, endings)) {
-        snprintf(line, sizeof line, "save run.%s", *one);
+        const char *line = formatted("save run.%s", *one);
         fail_if(!explorer_carry_out(&ex, line), "%s: %s", line, ex.state.message.text);
     }
     assert_false(explorer_carry_out(&ex, "save /nowhere/run.csv"));
@@ -179,8 +172,7 @@ TEST_IN_FOLDER(test_saved_scenario_and_screen)
     assert_true(explorer_carry_out(&ex, "open ./run.yaml"));
     check_close(ex.state.session.run.summary.peak_force_N, peak, 0);
     for (EACH(one, endings)) {
-        snprintf(line, sizeof line, "run.%s", *one);
-        assert_int_equal(access(line, F_OK), 0);
+        assert_int_equal(access(formatted("run.%s", *one), F_OK), 0);
     }
 }
 
@@ -290,18 +282,13 @@ TEST(test_random_keys_do_no_harm)
 TEST(test_a_long_run_is_drawn_while_it_is_computed)
 {
     SCOPED(explorer_finish) explorer ex;
-    SCOPED(explorer_finish) explorer patient;
-    scenario s = shipped("corrected/twenty-links");
-    DONE(scenario_override(&s, "run.duration=20", &f));
-    DONE(explorer_init(&ex, &s, 0, &f));
-    assert_shows(&ex, "computing");
-    assert_shows(&ex, "of 20 s (Esc stops)");
+    open_changed(&ex, "corrected/twenty-links", "run.duration=20", 0);
+    assert_shows(&ex, "computing", "of 20 s (Esc stops)");
     press_shows(&ex, ":save never-written.csv<Enter>", "wait for its end, or stop it with Esc");
     press_shows(&ex, "b", "wait for its end, or stop it");
     press(&ex, "<Esc>");
     assert_null(ex.state.session.computing);
-    assert_shows(&ex, "stopped at");
-    assert_shows(&ex, "!computing");
+    assert_shows(&ex, "stopped at", "!computing");
     // Space at the end of the rows continues when there are more
     press(&ex, "<End><Space>");
     assert_true(ex.state.playback.playing);
@@ -312,7 +299,7 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
         explorer_follow(&ex);
         free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     }
-    open_explorer(&patient, "corrected/twenty-links");
+    OPEN_EXPLORER(patient, "corrected/twenty-links");
     press(&patient,
           ":set run.duration 20<Enter>:set run.duration 3<Enter>:set run.duration 4<Enter>");
     patient.state.playback.playing = ex.state.playback.playing = false;
@@ -322,10 +309,8 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
     ex.state.session.seen = patient.state.session.seen;
     ex.state.session.base.parameters = patient.state.session.base.parameters;
     ex.state.session.input_count = patient.state.session.input_count = 0;
-    char *one = picture(&ex, 150, 50, GLYPHS_BRAILLE);
-    char *other = picture(&patient, 150, 50, GLYPHS_BRAILLE);
+    KEPT_TEXT(one) = picture(&ex, 150, 50, GLYPHS_BRAILLE);
+    KEPT_TEXT(other) = picture(&patient, 150, 50, GLYPHS_BRAILLE);
     assert_string_equal(one, other);
-    free(one);
-    free(other);
     ex.state.session.input_count = 0;
 }

@@ -1,18 +1,11 @@
 #include "src/run/export.h"
 
-#include "src/run/run.h"
-#include "tests/check.h"
-
-static void print_fault(void *context, const char *sentence)
-{
-    (void)context;
-    print_error("%s\n", sentence);
-}
+#include "tests/shipped_scenario.h"
 
 static scenario parse(const char *text)
 {
     scenario s;
-    assert_int_equal(scenario_parse(&s, text, strlen(text), "t.yaml", NULL, print_fault, NULL),
+    assert_int_equal(scenario_parse(&s, text, strlen(text), "t.yaml", NULL, fail_on_fault, NULL),
                      STATUS_OK);
     return s;
 }

@@ -2,16 +2,8 @@
 // finite number passes for a result.
 #include <signal.h>
 
-#include "src/study/store/sweep_store.h"
 #include "tests/arm_fixture.h"
 #include "tests/scenario_fixture.h"
-
-// A run of the scenario with this text, which comes to its end.
-static run_result run_of(const char *text)
-{
-    KEPT_SCENARIO(s) = good(text);
-    return run_done(&s, false);
-}
 
 // Runs an arm of so many links that is pushed, and says how it ended.
 static status ends_of_push(int links, double impulse)
@@ -70,9 +62,9 @@ TEST(the_peak_of_a_damped_chain_is_at_its_impact)
     double before = 0;
     for (EACH_OF(int, c, 16, 24, 28, 32, 40)) {
         KEPT_RUN(result) =
-            run_of(formatted("title: Damped\nmotor: {voltage: 5 V}\nwall: {kind: plane}\n"
-                             "arm: {links: %d, damping_ratio: 1}\nrun: {duration: 0.2 s}\n",
-                             *c));
+            run_told(formatted("title: Damped\nmotor: {voltage: 5 V}\nwall: {kind: plane}\n"
+                               "arm: {links: %d, damping_ratio: 1}\nrun: {duration: 0.2 s}\n",
+                               *c));
         const double coefficient = result.summary.peak_force_N / pow(*c, 3);
         check_close(result.summary.time_to_peak_s, 0, 1e-9);
         check_relative(coefficient, before > 0 ? before : coefficient, 0.03);
@@ -85,9 +77,9 @@ TEST(a_touch_behind_the_link_is_told)
 {
     for (int way = -1; way <= 1; way += 2) {
         KEPT_RUN(result) =
-            run_of(formatted("title: Round\nmotor: {voltage: %d V}\nwall: {angle: 2.9 rad}\n"
-                             "run: {duration: 3 s}\n",
-                             way));
+            run_told(formatted("title: Round\nmotor: {voltage: %d V}\nwall: {angle: 2.9 rad}\n"
+                               "run: {duration: 3 s}\n",
+                               way));
         assert_true(result.summary.impacts > 0);
         assert_int_equal(result.summary.message[0] != '\0', way < 0);
     }

@@ -19,22 +19,17 @@ TEST(every_figure_is_tidy)
     }
 }
 
-static bool mentions(const figure_report *r, const char *wanted)
-{
-    bool found = false;
-    for (int i = 0; i < r->text_count; i++) {
-        found = found || strstr(r->texts[i].text, wanted) != NULL;
-    }
-    return found;
-}
-
 static void expect_texts(const char *id, const char *const *texts)
 {
     static figure_report r;
     SCOPED(artwork_finish) artwork drawn = open_figure(id, (figure_options){0});
     record_page(&drawn, &r);
     for (; *texts != NULL; texts++) {
-        fail_if(!mentions(&r, *texts), "%s: '%s' is not drawn", id, *texts);
+        bool found = false;
+        for (int i = 0; i < r.text_count; i++) {
+            found = found || strstr(r.texts[i].text, *texts) != NULL;
+        }
+        fail_if(!found, "%s: '%s' is not drawn", id, *texts);
     }
 }
 
@@ -84,10 +79,9 @@ static status draw_plain(const char *id, const char *into, const char *formats, 
 static char *csv_of(const char *id)
 {
     fault f = {0};
-    size_t length;
     const thesis_figure *which = thesis_figure_find(id);
     fail_if(draw_plain(id, "csv", "svg", &f) != STATUS_OK, "%s: %s", id, f.text);
-    return read_file(formatted("csv/%s.csv", which->file), &length);
+    return file_text(formatted("csv/%s.csv", which->file));
 }
 
 TEST(recorded_signals_stand_beside_their_picture)
@@ -106,25 +100,19 @@ TEST(recorded_signals_stand_beside_their_picture)
 static status overlaid(const char *csv, const char *id, fault *f)
 {
     put_file("measured.csv", csv);
-    KEPT_TEXT(path) = strdup("measured.csv");
-    const figure_options o = {.overlay = path};
+    const figure_options o = {.overlay = "measured.csv"};
     return figure_draw(id, &o, "overlaid", "svg", NULL, f);
 }
 
 TEST(reference_data_lie_over_signals)
 {
-    size_t length;
     const char *good = "time[s],force [N],remark\n0.35,1.5,first\r\n0.4,,missing\n\n0.45,0.25,\n";
     DONE(overlaid(good, "3.4", &f));
-    char *csv = read_file("overlaid/fig-3-4.csv", &length);
-    assert_non_null(strstr(csv, ",force measured.csv,0.35,1.5\n"));
-    assert_non_null(strstr(csv, ",force measured.csv,0.45,0.25\n"));
-    free(csv);
+    assert_true(file_has("overlaid/fig-3-4.csv", ",force measured.csv,0.35,1.5\n"));
+    assert_true(file_has("overlaid/fig-3-4.csv", ",force measured.csv,0.45,0.25\n"));
     // panels that the data do not speak of stay as they are
     DONE(overlaid(good, "3.2", &f));
-    csv = read_file("overlaid/fig-3-2.csv", &length);
-    assert_null(strstr(csv, "measured.csv"));
-    free(csv);
+    assert_false(file_has("overlaid/fig-3-2.csv", "measured.csv"));
     REFUSED(STATUS_BAD_ARGUMENT, "measured.csv:2:2: 'x1'",
             overlaid("time[s],force[N]\n0.3,x1\n", "3.4", &f));
     REFUSED(STATUS_BAD_ARGUMENT, "no column 'time'", overlaid("force[N]\n1\n", "3.4", &f));
@@ -184,7 +172,6 @@ TEST(table_cells_are_right)
 }
 
 // ---- files
-// ---------------------------------------------------------------------------------------
 
 TEST(a_second_run_writes_the_same_bytes)
 {
@@ -230,17 +217,15 @@ TEST(figures_are_asked_for_by_id)
 }
 
 // ---- the report
-// ----------------------------------------------------------------------------------
 
 TEST(the_report_stands_alone)
 {
-    size_t length;
     DONE(report_write("report", NULL, 0, NULL, &f));
-    char *html = read_file("report/report.html", &length);
+    KEPT_TEXT(html) = file_text("report/report.html");
     for (const char *at = strstr(html, "src="); at != NULL; at = strstr(at + 1, "src=")) {
         assert_int_equal(strncmp(at, "src=\"data:image/png;base64,", 27), 0);
     }
-    assert_true(length < 2000000);
+    assert_true(strlen(html) < 2000000);
     assert_non_null(strstr(html, "aria-label=\"Fig. 3.4"));
     assert_null(strstr(html, "href=\"http"));
     assert_null(strstr(html, "@import"));
@@ -254,12 +239,10 @@ TEST(the_report_stands_alone)
     const char *first = strstr(html, " id=\"i0-");
     assert_non_null(first);
     assert_non_null(strstr(html, " id=\"i1-"));
-    free(html);
-    KEPT_TEXT(pdf) = read_file("report/report.pdf", &length);
-    assert_non_null(memmem(pdf, length, "%PDF-", 5));
-    assert_null(memmem(pdf, length, "/Type3", 6));
-    assert_non_null(memmem(pdf, length, "/Outlines", 9));
-    assert_non_null(memmem(pdf, length, "/Annots", 7));
+    for (EACH_TEXT(c, "%PDF-", "/Outlines", "/Annots")) {
+        assert_true(file_has("report/report.pdf", *c));
+    }
+    assert_false(file_has("report/report.pdf", "/Type3"));
 }
 
 TEST(a_report_without_a_folder_is_complained_about)
@@ -270,17 +253,11 @@ TEST(a_report_without_a_folder_is_complained_about)
 // --- what follows the thesis: captions, axes and numbers, by equations that the drawing does not
 // use
 
-static char *caption_of(const char *id)
-{
-    SCOPED(artwork_finish) artwork drawn = open_figure(id, (figure_options){0});
-    return text_plain(drawn.caption);
-}
-
 static void expect_in_caption(const char *id, const char *part)
 {
-    char *caption = caption_of(id);
+    SCOPED(artwork_finish) artwork drawn = open_figure(id, (figure_options){0});
+    g_autofree char *caption = text_plain(drawn.caption);
     fail_if(strstr(caption, part) == NULL, "%s: '%s' is not in '%s'", id, part, caption);
-    g_free(caption);
 }
 
 // The number behind a start of a line.
@@ -309,8 +286,7 @@ TEST(captions_say_whose_shading_it_is)
 {
     expect_in_caption("3.4", "of the first run (printed)");
     for (int i = 1; i <= 7; i++) {
-        char id[4] = {'5', '.', (char)('0' + i), '\0'};
-        expect_in_caption(id, "Shaded: impact mode");
+        expect_in_caption(formatted("5.%d", i), "Shaded: impact mode");
     }
 }
 

@@ -42,14 +42,17 @@ TEST(test_clock)
     check_relative(speed, untouched.scenario.parameters.run.duration / 5, 1e-6);
 }
 
-static film_options small_film(void)
-{
-    return (film_options){.view = {.renderer = RENDER_CAIRO, .samples = SAMPLES_QUICK},
-                          .width = 320,
-                          .height = 240,
-                          .frames_per_second = 10,
-                          .seconds = 0.5};
-}
+static const film_options small_film = {
+    .view = {.renderer = RENDER_CAIRO, .samples = SAMPLES_QUICK},
+    .width = 320,
+    .height = 240,
+    .frames_per_second = 10,
+    .seconds = 0.5};
+
+// A run that goes when its block is left, and what a small film is made by.
+#define FILMED(r, options, name)                                                                   \
+    SCOPED(forget) recorded r = record(name);                                                      \
+    film_options options = small_film
 
 // Every impact is slowed down, not the first alone, and the speed told is the clock's own.
 TEST(test_clock_of_bounces)
@@ -88,8 +91,7 @@ static int count_files(const char *path)
 
 TEST(test_frames)
 {
-    SCOPED(forget) recorded r = record("corrected/first-impact");
-    film_options options = small_film();
+    FILMED(r, options, "corrected/first-impact");
     DONE(film_of(&r, &options, "frames", &f));
     assert_int_equal(count_files("frames"), 5);
     PIXELS(frame) = cairo_image_surface_create_from_png("frames/frame-00003.png");
@@ -103,10 +105,8 @@ TEST(test_frames)
 static void expect_same_frames(const char *one, const char *two, int count)
 {
     for (int i = 1; i <= count; i++) {
-        char command[600];
-        snprintf(command, sizeof command, "cmp %s %s/%s/frame-%05d.png",
-                 formatted("%s/%s/frame-%05d.png", test_folder, one, i), test_folder, two, i);
-        assert_int_equal(system(command), 0);
+        assert_int_equal(
+            system(formatted("cmp %s/frame-%05d.png %s/frame-%05d.png", one, i, two, i)), 0);
     }
 }
 
@@ -121,7 +121,7 @@ TEST(test_threads)
     static const char *const names[][2] = {{"one-1", "one-2"}, {"many-1", "many-2"}};
     for (int k = 0; k < 2; k++) {
         for (int threads = 1; threads <= 2; threads++) {
-            film_options options = small_film();
+            film_options options = small_film;
             options.threads = threads;
             DONE(film_write(runs, k == 0 ? 1 : 3, &options, names[k][threads - 1], &f));
         }
@@ -136,7 +136,7 @@ TEST(test_films_by_gl)
     SCOPED(forget) recorded r = record("corrected/first-impact");
     static const char *const names[] = {"gl-1", "gl-2", "gl-3"};
     for (int i = 0; i < 3; i++) {
-        film_options options = small_film();
+        film_options options = small_film;
         options.view.renderer = RENDER_AUTO;
         options.threads = i == 0 ? 1 : 2;
         DONE(film_of(&r, &options, names[i], &f));
@@ -150,31 +150,12 @@ TEST(test_split_screen)
     SCOPED(forget)
     recorded a = record("corrected/first-impact"), b = record("corrected/plane-wall");
     const film_run runs[2] = {{&a.scenario, &a.result, "one"}, {&b.scenario, &b.result, "two"}};
-    film_options options = small_film();
+    film_options options = small_film;
     DONE(film_write(runs, 2, &options, "split", &f));
     PIXELS(frame) = cairo_image_surface_create_from_png("split/frame-00003.png");
     assert_int_equal(cairo_image_surface_get_width(frame), 320);
-    int beam[2] = {0, 0};
-    for (int y = 0; y < 160; y++) {
-        for (int x = 0; x < 320; x++) {
-            beam[x / 160] += count_beam(pixel_at(frame, x, y));
-        }
-    }
-    check_below(60, beam[0]);
-    check_below(60, beam[1]);
-}
-
-// The arrow's pixels of the left or right one of two views.
-static int arrow_of_view(cairo_surface_t *frame, bool right)
-{
-    const int width = cairo_image_surface_get_width(frame);
-    int count = 0;
-    for (int y = 0; y < 2 * cairo_image_surface_get_height(frame) / 3; y++) {
-        for (int x = right ? width / 2 + 2 : 0; x < (right ? width : width / 2 - 2); x++) {
-            count += count_arrow(pixel_at(frame, x, y));
-        }
-    }
-    return count;
+    check_below(60, count_pixels_in(frame, 0, 160, 160, count_beam));
+    check_below(60, count_pixels_in(frame, 160, 320, 160, count_beam));
 }
 
 // Runs side by side have one scale of force: where each presses with its share of its own peak, the
@@ -186,13 +167,14 @@ TEST(test_one_scale_of_force)
     recorded b = {.scenario = shipped_with("corrected/first-impact", "motor.voltage=4")};
     DONE(run_scenario(&b.scenario, true, &b.result));
     const film_run runs[2] = {{&a.scenario, &a.result, "one"}, {&b.scenario, &b.result, "two"}};
-    film_options options = small_film();
+    film_options options = small_film;
     options.width = 640;
     options.height = 480;
     options.view.plain = true;
     DONE(film_write(runs, 2, &options, "scale", &f));
     PIXELS(frame) = cairo_image_surface_create_from_png("scale/frame-00005.png");
-    const int one = arrow_of_view(frame, false), four = arrow_of_view(frame, true);
+    const int one = count_pixels_in(frame, 0, 318, 320, count_arrow);
+    const int four = count_pixels_in(frame, 322, 640, 320, count_arrow);
     check_below(0, one);
     check_below(2.5 * one, four);
 }
@@ -204,8 +186,7 @@ TEST(test_film)
         assert_non_null(strstr(f.text, "install the package ffmpeg"));
         skip();
     }
-    SCOPED(forget) recorded r = record("corrected/plane-wall");
-    film_options options = small_film();
+    FILMED(r, options, "corrected/plane-wall");
     const char *const names[] = {"film.mp4", "film.webm", "film.gif", "film.webp"};
     const char *const marks[] = {"ftypisom", "webm", "GIF89a", "WEBPVP8X"};
     for (int i = 0; i < 4; i++) {
@@ -214,55 +195,51 @@ TEST(test_film)
     }
 }
 
-// Puts a program of the given text in the place of ffmpeg. Returns the old PATH, to be restored.
+// Puts a program of the given text in the place of ffmpeg. Returns the old PATH.
 static char *with_encoder(const char *text)
 {
-    char path[256], *old = strdup(getenv("PATH"));
+    char *old = strdup(getenv("PATH"));
     put_file("ffmpeg", text);
     assert_int_equal(chmod("ffmpeg", 0755), 0);
-    snprintf(path, sizeof path, "%s:/bin:/usr/bin", test_folder);
-    setenv("PATH", path, 1);
+    setenv("PATH", formatted("%s:/bin:/usr/bin", test_folder), 1);
     return old;
 }
 
-static void restore_encoder(char *old)
+static void restore_encoder(char **old)
 {
-    setenv("PATH", old, 1);
-    free(old);
+    setenv("PATH", *old, 1);
+    free(*old);
     unlink("ffmpeg");
 }
+
+// The same until the block is left.
+#define ENCODER(text)                                                                              \
+    SCOPED(restore_encoder) char *old_path = with_encoder(text);                                   \
+    (void)old_path
 
 // An encoder that gives up is quoted, and nothing of the film is left.
 TEST(test_encoder_fails)
 {
-    SCOPED(forget) recorded r = record("corrected/first-impact");
-    film_options options = small_film();
-    char *old = with_encoder("#!/bin/sh\necho 'no such codec' >&2\nexit 1\n");
+    FILMED(r, options, "corrected/first-impact");
+    ENCODER("#!/bin/sh\necho 'no such codec' >&2\nexit 1\n");
     int before = count_files(test_folder);
     REFUSED(STATUS_CANNOT_WRITE, "no such codec", film_of(&r, &options, "bad.mp4", &f));
     assert_int_equal(count_files(test_folder), before);
-    restore_encoder(old);
-    old = with_encoder("#!/bin/sh\n");
     setenv("PATH", "/nowhere", 1);
     REFUSED(STATUS_CANNOT_WRITE, "install the package ffmpeg",
             film_of(&r, &options, "bad.mp4", &f));
-    restore_encoder(old);
 }
 
 // A GIF has the size and the frames that were asked for: nothing scales or drops them.
 TEST(test_gif_as_asked)
 {
-    SCOPED(forget) recorded r = record("corrected/first-impact");
-    film_options options = small_film();
-    char *old = with_encoder("#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
-                             "printf 'GIF89a %s;' \"$*\" >\"${last#file:}\"\n");
+    FILMED(r, options, "corrected/first-impact");
+    ENCODER("#!/bin/sh\ncat >/dev/null\nfor last; do :; done\n"
+            "printf 'GIF89a %s;' \"$*\" >\"${last#file:}\"\n");
     DONE(film_of(&r, &options, "asked.gif", &f));
-    restore_encoder(old);
-    g_autofree char *words = NULL;
-    assert_true(g_file_get_contents("asked.gif", &words, NULL, NULL));
-    assert_non_null(strstr(words, "-s 320x240 -r 10 "));
-    assert_null(strstr(words, "scale="));
-    assert_null(strstr(words, "fps="));
+    check_contains("asked.gif", "-s 320x240 -r 10 ");
+    assert_false(file_has("asked.gif", "scale="));
+    assert_false(file_has("asked.gif", "fps="));
 }
 
 static volatile sig_atomic_t stopped;
@@ -276,16 +253,14 @@ static void stop_soon(void *context, int done, int total)
 
 TEST(test_interrupted)
 {
-    SCOPED(forget) recorded r = record("corrected/first-impact");
-    film_options options = small_film();
+    FILMED(r, options, "corrected/first-impact");
     stopped = 0;
     options.progress = stop_soon;
     options.stop = &stopped;
-    char *old = with_encoder("#!/bin/sh\ncat >/dev/null\n");
+    ENCODER("#!/bin/sh\ncat >/dev/null\n");
     int before = count_files(test_folder);
     REFUSED(STATUS_STOPPED, "interrupted after 2 of 5", film_of(&r, &options, "half.mp4", &f));
     assert_int_equal(count_files(test_folder), before);
-    restore_encoder(old);
 }
 
 // An error message is a failure for any status of the encoder, as with a full disk; and what it
@@ -302,20 +277,14 @@ TEST(test_encoder_complains)
         {"#!/bin/sh\ncat >/dev/null\nfor last; do :; done\necho nonsense >\"${last#file:}\"\n",
          "no such film"},
     };
-    SCOPED(forget) recorded r = record("corrected/first-impact");
-    film_options options = small_film();
-    fault f = {0};
+    FILMED(r, options, "corrected/first-impact");
 
     // a film that was there before stays
     put_file("kept.mp4", "old");
     for (int i = 0; i < 3; i++) {
-        g_autofree char *text = NULL;
-        char *old = with_encoder(cases[i].script);
-        assert_int_equal(film_of(&r, &options, "kept.mp4", &f), STATUS_CANNOT_WRITE);
-        restore_encoder(old);
-        assert_non_null(strstr(f.text, cases[i].said));
-        assert_true(g_file_get_contents("kept.mp4", &text, NULL, NULL));
-        assert_string_equal(text, "old");
+        ENCODER(cases[i].script);
+        REFUSED(STATUS_CANNOT_WRITE, cases[i].said, film_of(&r, &options, "kept.mp4", &f));
+        assert_holds("kept.mp4", "old");
     }
     unlink("kept.mp4");
 }
@@ -329,31 +298,28 @@ static void stop_now(int number)
 // An encoder that hangs, before the first frame or after the last, is left at the first signal.
 TEST(test_encoder_hangs)
 {
-    SCOPED(forget) recorded r = record("corrected/first-impact");
-    film_options options = small_film();
+    FILMED(r, options, "corrected/first-impact");
     options.stop = &stopped;
     struct sigaction act = {.sa_handler = stop_now};
     sigaction(SIGALRM, &act, NULL);
     for (EACH_TEXT(c, "#!/bin/sh\ntrap '' TERM\nexec sleep 1000\n",
                    "#!/bin/sh\ncat >/dev/null\nexec sleep 1000\n")) {
-        char *old = with_encoder(*c);
+        ENCODER(*c);
         int before = count_files(test_folder);
         stopped = 0;
         alarm(1);
         REFUSED(STATUS_STOPPED, "", film_of(&r, &options, "half.mp4", &f));
         assert_int_equal(count_files(test_folder), before);
-        restore_encoder(old);
     }
 }
 
 TEST(test_film_refused)
 {
-    SCOPED(forget) recorded r = record("corrected/first-impact");
-    film_options options = small_film();
+    FILMED(r, options, "corrected/first-impact");
     REFUSED(STATUS_BAD_ARGUMENT, ".webm", film_file_check("film.avi", &f));
     options.width = 321;
     REFUSED(STATUS_BAD_ARGUMENT, "", film_of(&r, &options, "odd.mp4", &f));
-    options = small_film();
+    options = small_film;
     options.seconds = -1;
     REFUSED(STATUS_BAD_ARGUMENT, "", film_of(&r, &options, "odd.mp4", &f));
 }

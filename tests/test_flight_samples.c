@@ -1,13 +1,10 @@
 // Samples of the rig that are taken in flight while a step goes on: a loop from one to the next is
 // the run to the last bit, and what they read is what is read where every one of them ends a step,
 // with a piezo film, which these laws do not read, and in a loop that a program stops anywhere.
-#include "src/run/loop.h"
 #include "src/study/batch.h"
 #include "tests/rig_fixture.h"
 
-GIVEN_BACK(run_loop, loop_destroy)
-
-enum { RUNS = 40, MOST_SETTINGS = 16, SETTING_SIZE = 64 };
+enum { RUNS = 40 };
 
 #define SAME      1e-7 // of a quantity's largest value
 #define SAME_TIME 1e-9 // [s]
@@ -19,47 +16,27 @@ static const char *one_of(random_generator *g, const char *const *texts, uint64_
 }
 
 // A random arm under a random law.
-typedef struct drawn_settings {
-    char text[MOST_SETTINGS][SETTING_SIZE];
-    int count;
-} drawn_settings;
-
-static __attribute__((format(printf, 2, 3))) void add(drawn_settings *s, const char *format, ...)
-{
-    va_list values;
-    va_start(values, format);
-    vsnprintf(s->text[s->count++], SETTING_SIZE, format, values);
-    va_end(values);
-}
-
-static drawn_settings draw(random_generator *g)
+static parameters draw(random_generator *g)
 {
     static const char *const laws[] = {"hybrid",    "force-pd",  "inverse-dynamics",
                                        "open-loop", "bang-bang", "impedance"};
     static const char *const walls[] = {"point", "plane", "none"};
     static const char *const hubs[] = {"rigid", "spring"};
-    drawn_settings s = {.count = 0};
-    add(&s, "control.law=%s", one_of(g, laws, 6));
-    add(&s, "control.rate=%.3g", 50 + 350 * random_uniform(g));
-    add(&s, "control.delay=%.3g", random_below(g, 2) == 0 ? 0 : 0.002 * random_uniform(g));
-    add(&s, "control.jitter=%.3g", random_below(g, 3) == 0 ? 1e-4 * random_uniform(g) : 0);
-    add(&s, "wall.kind=%s", one_of(g, walls, 3));
-    add(&s, "arm.hub_joint=%s", one_of(g, hubs, 2));
-    add(&s, "arm.k2=%.4g", 2 + 20 * random_uniform(g));
-    add(&s, "sensor.film=%s", random_below(g, 2) == 0 ? "true" : "false");
-    add(&s, "sensor.accelerometer=%s", random_below(g, 2) == 0 ? "true" : "false");
-    add(&s, "run.duration=0.6");
-    add(&s, "sensor.ideal=true"); // no code step at which a last bit would show
-    return s;
-}
+    const char *law = one_of(g, laws, 6);
+    const double rate = 50 + 350 * random_uniform(g);
+    const double delay = random_below(g, 2) == 0 ? 0 : 0.002 * random_uniform(g);
+    const double jitter = random_below(g, 3) == 0 ? 1e-4 * random_uniform(g) : 0;
+    const char *wall = one_of(g, walls, 3), *hub = one_of(g, hubs, 2);
+    const double k2 = 2 + 20 * random_uniform(g);
+    const char *film = random_below(g, 2) == 0 ? "true" : "false";
+    const char *accelerometer = random_below(g, 2) == 0 ? "true" : "false";
 
-static parameters drawn_parameters(const drawn_settings *s)
-{
-    const char *settings[MOST_SETTINGS + 1] = {NULL};
-    for (int i = 0; i < s->count; i++) {
-        settings[i] = s->text[i];
-    }
-    return rig_parameters(settings);
+    // ideal sensors have no code step at which a last bit would show
+    return rig_parameters_with(
+        "control.law=%s control.rate=%.3g control.delay=%.3g control.jitter=%.3g wall.kind=%s "
+        "arm.hub_joint=%s arm.k2=%.4g sensor.film=%s sensor.accelerometer=%s run.duration=0.6 "
+        "sensor.ideal=true",
+        law, rate, delay, jitter, wall, hub, k2, film, accelerometer);
 }
 
 static double signal_of(const sample *row, size_t offset)
@@ -210,15 +187,9 @@ static void check_same_run(const run_result *whole, const run_result *loop, cons
 
 static void check_loops(uint64_t seed, looping how)
 {
-    static char name[] = "loop", none[] = "";
     random_generator g = seeded(seed);
     for (int i = 0; i < RUNS; i++) {
-        const drawn_settings drawn = draw(&g);
-        const scenario s = {.name = name,
-                            .file = none,
-                            .title = none,
-                            .description = none,
-                            .parameters = drawn_parameters(&drawn)};
+        const scenario s = {.name = (char *)"loop", .parameters = draw(&g)};
         KEPT_RUN(whole) = run_done(&s, true);
 
         const loop_options options = {.keep_trace = true};
@@ -254,8 +225,7 @@ static status make(void *context, size_t i, scenario *made, fault *f)
 {
     random_generator g = seeded(100 + i);
     (void)context, (void)f;
-    const drawn_settings drawn = draw(&g);
-    made->parameters = drawn_parameters(&drawn);
+    made->parameters = draw(&g);
     return STATUS_OK;
 }
 

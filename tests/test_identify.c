@@ -7,10 +7,7 @@
 
 #include "src/base/dense.h"
 #include "src/rig/sensors.h"
-#include "src/run/loop.h"
 #include "tests/rig_fixture.h"
-
-GIVEN_BACK(run_loop, loop_destroy)
 
 enum { SAMPLES = 1501, READINGS = 3, FITTED = 5, OWN = 3, RECORDINGS = 3 };
 #define PERIOD 1e-3
@@ -34,30 +31,18 @@ typedef struct recording_made {
 static scenario rig_scenario(const recording_made *r, const double *values, int seed)
 {
     static action reversals[3];
-    char text[13][64];
-    const char *settings[14] = {0};
-    snprintf(text[0], 64, "control.law=%s", r->law);
-    snprintf(text[1], 64, "control.rate=1000");
-    snprintf(text[2], 64, "method.step=0.0005");
-    snprintf(text[3], 64, "initial.angle=%g", r->angle);
-    snprintf(text[4], 64, "control.approach_voltage=%g", r->voltage);
-    snprintf(text[5], 64, "control.seed=%d", seed);
-    snprintf(text[6], 64, "control.force=1");
-    snprintf(text[7], 64, "wall.kind=%s", r->no_wall ? "none" : "point");
-    int count = 8;
+    const char *known = "";
     for (int i = 0; i < FITTED && values != NULL; i++) {
-        snprintf(text[count++], 64, "%s=%.17g", paths[i], values[i]);
+        known = formatted("%s %s=%.17g", known, paths[i], values[i]);
     }
-    for (int i = 0; i < count; i++) {
-        settings[i] = text[i];
-    }
-    scenario s = {.parameters = rig_parameters(settings), .actions = reversals};
-    s.name = (char *)"rig";
+    scenario s = {.name = (char *)"rig", .actions = reversals};
+    s.parameters = rig_parameters_with(
+        "control.law=%s control.rate=1000 method.step=0.0005 initial.angle=%g control.force=1 "
+        "control.approach_voltage=%g control.seed=%d wall.kind=%s%s",
+        r->law, r->angle, r->voltage, seed, r->no_wall ? "none" : "point", known);
     for (int i = 0; i < 3 && r->reverses; i++) {
-        reversals[i] = (action){.time = 0.25 + 0.4 * i,
-                                .kind = ACTION_SET,
-                                .parameter = PARAMETER_INDEX(control.approach_voltage),
-                                .value = i % 2 == 0 ? -r->voltage : r->voltage};
+        reversals[i] =
+            SETS(0.25 + 0.4 * i, control.approach_voltage, i % 2 == 0 ? -r->voltage : r->voltage);
         s.action_count = 3;
     }
     return s;
@@ -225,14 +210,11 @@ static void bound(const recording_made *made, int count, int fitted, double *dev
 
 // --- many seeds -------------------------------------------------------------------------------
 
-static int compare_doubles(const void *a, const void *b)
+static void study(const recording_made *from, int fitted, bool bounded)
 {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static void study(recording_made *made, int count, int fitted, bool bounded)
-{
+    enum { count = RECORDINGS };
+    recording_made made[count];
+    memcpy(made, from, sizeof made);
     double(*errors)[FITTED] = calloc((size_t)seeds, sizeof *errors), least[FITTED];
     double squares[FITTED] = {0}; // of what estimates are off, in their own standard errors
     SCOPED(free_kept) double *sorted = calloc((size_t)seeds, sizeof *sorted);
@@ -269,7 +251,7 @@ static void study(recording_made *made, int count, int fitted, bool bounded)
         for (int s = 0; s < seeds; s++) {
             sorted[s] = errors[s][i];
         }
-        qsort(sorted, (size_t)seeds, sizeof *sorted, compare_doubles);
+        qsort(sorted, (size_t)seeds, sizeof *sorted, by_size);
         const double median = sorted[seeds / 2];
         print_message(
             "%-24s covered %d of %d, off %.2f, error %.3g of %.4g, bound %.3g, ratio %.3g\n",
@@ -295,16 +277,12 @@ static const recording_made three[RECORDINGS] = {
 
 TEST(intervals_cover_and_errors_are_near_the_bound)
 {
-    recording_made made[RECORDINGS];
-    memcpy(made, three, sizeof made);
-    study(made, RECORDINGS, 4, true);
+    study(three, 4, true);
 }
 
 TEST(so_they_do_with_viscous_friction)
 {
-    recording_made made[RECORDINGS];
-    memcpy(made, three, sizeof made);
-    study(made, RECORDINGS, 5, false);
+    study(three, 5, false);
 }
 
 TEST(so_they_do_in_a_closed_loop)
@@ -313,7 +291,7 @@ TEST(so_they_do_in_a_closed_loop)
     memcpy(made, three, sizeof made);
     made[1].law = made[2].law = "hybrid";
     made[2].voltage = 2;
-    study(made, RECORDINGS, 4, true);
+    study(made, 4, true);
 }
 
 // --- what the data do not say -----------------------------------------------------------------

@@ -231,11 +231,10 @@ TEST(tip_meets_the_wall_as_fast_as_planned)
 TEST(force_follows_its_plan)
 {
     for (EACH_TEXT(c, "control.arrival_speed=0", "control.arrival_speed=0.3")) {
-        KEPT_RUN(r) =
-            rig_run(given("control.law=inverse-dynamics sensor.ideal=true motor.stiction=0 "
-                          "control.rate=5000 control.transition_time=0.1 %s",
-                          *c),
-                    true);
+        RIG_RUN(r,
+                "control.law=inverse-dynamics sensor.ideal=true motor.stiction=0 "
+                "control.rate=5000 control.transition_time=0.1 %s",
+                *c);
         for (EACH_ROW(row, &r.trace)) {
             // a touch without speed comes when the force is above what the tip is off its plan
             check_close(row->force, row->calculated_force, row->time < 0.62 ? 0.15 : 0.01);
@@ -263,7 +262,7 @@ TEST(press_ends_near_its_force)
 
 TEST(early_touch_moves_the_plan_on)
 {
-    KEPT_RUN(r) = rig_run(given("control.law=inverse-dynamics belief.wall_error=0.02"), true);
+    RIG_RUN(r, "control.law=inverse-dynamics belief.wall_error=0.02");
     double touch = first_impact(&r)->time;
     check_below(touch, 0.5);
     for (EACH_ROW(row, &r.trace)) {

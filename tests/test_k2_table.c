@@ -65,9 +65,9 @@ TEST(what_is_no_table_is_refused)
     }
 
     // one entry too many
-    char text[8 * (K2_TABLE_MOST + 1) + 1] = "";
+    char *text = formatted("%s", "");
     for (int i = 0; i <= K2_TABLE_MOST; i++) {
-        snprintf(text + strlen(text), 9, "%d:5 ", i + 1);
+        text = formatted("%s%d:5 ", text, i + 1);
     }
     k2_table t;
     fault f = {.text = ""};

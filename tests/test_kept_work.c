@@ -2,14 +2,6 @@
 // matters is on the screen, at three sizes.
 #include "tests/explorer_on_screen.h"
 
-static const int sizes[][2] = {{80, 24}, {100, 30}, {200, 60}};
-enum { SIZES = sizeof sizes / sizeof sizes[0] };
-
-static double peak(const explorer *ex)
-{
-    return ex->state.session.run.summary.peak_force_N;
-}
-
 // Each way of opening another scenario keeps the changes and the pins; u brings them back, U leaves
 // again.
 TEST(test_opening_loses_nothing)
@@ -28,8 +20,7 @@ TEST(test_opening_loses_nothing)
         // the run that is compared with is still the pinned one
         assert_true(ex.state.session.has_other);
         check_close(ex.state.session.other.summary.peak_force_N, changed, 0);
-        press(&ex, "u");
-        assert_string_equal(ex.state.session.base.name, "corrected/first-impact");
+        press_opens(&ex, "u", "corrected/first-impact");
         check_close(peak(&ex), changed, 0);
         check_close(ex.state.session.now, 0.3, 1e-12);
         press(&ex, "U");
@@ -62,13 +53,10 @@ TEST(test_a_pinned_run_of_another_scenario_is_drawn_and_taken)
     const double first = peak(&ex);
     press(&ex, "b]");
     assert_int_equal(state_run_count(&ex.state), 2);
-    for (size_t i = 0; i < SIZES; i++) {
-        assert_shows_at(&ex, sizes[i][0], sizes[i][1], " first-impact");
-    }
+    assert_shows_everywhere(&ex, " first-impact");
     const double second = peak(&ex);
     press_shows(&ex, "R", "of corrected/first-impact");
-    press(&ex, "<Enter>");
-    assert_string_equal(ex.state.session.base.name, "corrected/first-impact");
+    press_opens(&ex, "<Enter>", "corrected/first-impact");
     check_close(peak(&ex), first, 0);
     check_close(ex.state.session.other.summary.peak_force_N, second, 0);
     press(&ex, "u");
@@ -99,11 +87,9 @@ TEST(test_leaving_asks_for_everything_that_would_be_lost)
     for (EACH(c, cases)) {
         OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, c->keys);
-        press(&ex, "q");
-        assert_false(ex.state.quit);
+        press_quits(&ex, "q", false);
         assert_shows(&ex, c->lost);
-        press(&ex, "q");
-        assert_true(ex.state.quit);
+        press_quits(&ex, "q", true);
     }
 }
 
@@ -124,13 +110,11 @@ TEST(test_sentences_are_whole_and_numbers_short)
         {":seek 99<Enter>", "the run goes from 0 to 1 s", "|"},
         {":seek end<Enter>", "in contact", "the run goes"},
     };
-    for (size_t i = 0; i < SIZES * sizeof cases / sizeof cases[0]; i++) {
-        const int *size = sizes[i % SIZES];
+    for (EACH(c, cases)) {
         OPEN_EXPLORER(ex, "corrected/first-impact");
-        press(&ex, cases[i / SIZES].keys);
-        assert_shows_at(&ex, size[0], size[1], cases[i / SIZES].says);
-        KEPT_TEXT(text) = picture(&ex, size[0], size[1], GLYPHS_BRAILLE);
-        assert_null(strstr(text, cases[i / SIZES].never));
+        press(&ex, c->keys);
+        assert_shows_everywhere(&ex, c->says);
+        assert_shows_everywhere(&ex, formatted("!%s", c->never));
     }
 
     // a title that is too long ends in a sign
@@ -160,16 +144,14 @@ TEST(test_parameters_keep_their_rows)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, "b:set control.force 2<Enter>b:set control.force 3<Enter>");
-    for (size_t i = 0; i < SIZES; i++) {
-        assert_true(parameter_rows(&ex, sizes[i][0], sizes[i][1]) >= 6);
+    for (EACH(size, screen_sizes)) {
+        assert_true(parameter_rows(&ex, (*size)[0], (*size)[1]) >= 6);
     }
     assert_shows_at(&ex, 80, 24, "Tab: ");
     for (int i = 0; i < 6; i++) {
         press(&ex, "<Tab>");
-        char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
-        const bool there = strstr(text, "impact dynamics") != NULL;
-        free(text);
-        if (there) {
+        KEPT_TEXT(text) = picture(&ex, 80, 24, GLYPHS_BRAILLE);
+        if (strstr(text, "impact dynamics") != NULL) {
             break;
         }
     }
@@ -228,10 +210,8 @@ TEST(test_a_limit_is_asked_for_in_few_keys)
     const double before = peak(&ex);
     assert_true(count_keys(keys) <= 25);
     press(&ex, keys);
-    for (size_t i = 0; i < SIZES; i++) {
-        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "up to motor.voltage = 1.4441 V: 2.0000 N");
-        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "limit");
-    }
+    assert_shows_everywhere(&ex, "up to motor.voltage = 1.4441 V: 2.0000 N");
+    assert_shows_everywhere(&ex, "limit");
 
     // the answer is pinned, the present run stays
     const pinned_run *p = &ex.state.pinned.runs[0];
@@ -256,10 +236,8 @@ TEST(test_why_is_answered_on_the_screen)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "W");
-    for (size_t i = 0; i < SIZES; i++) {
-        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "Driven by 1 V the arm touches");
-        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "controller");
-        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "0.3662");
+    for (EACH_TEXT(c, "Driven by 1 V the arm touches", "controller", "0.3662")) {
+        assert_shows_everywhere(&ex, *c);
     }
     press_shows(&ex, "<Esc>", "!Driven by");
 }
@@ -269,10 +247,8 @@ TEST(test_help_is_where_one_stands)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>NNNN<Home>n<F1>");
-    for (size_t i = 0; i < SIZES; i++) {
-        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "motor.voltage");
-        assert_shows_at(&ex, sizes[i][0], sizes[i][1], ":sweep and :solve vary it");
-        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "the event at the cursor");
+    for (EACH_TEXT(c, "motor.voltage", ":sweep and :solve vary it", "the event at the cursor")) {
+        assert_shows_everywhere(&ex, *c);
     }
     press(&ex, "<Esc>");
     static const char *const words[][2] = {
@@ -294,8 +270,8 @@ TEST(test_own_panes_stand_side_by_side)
     press(&ex, ":trace impulse<Enter>");
     assert_true(count_keys(keys) <= 12);
     press(&ex, keys);
-    press(&ex, ":spectrum force<Enter>:phase gap force<Enter>:panes 1<Enter>");
-    press(&ex, ":trace 10<Enter>:trace 11<Enter>:trace 12<Enter>:trace 13<Enter>");
+    press(&ex, ":spectrum force<Enter>:phase gap force<Enter>:panes 1<Enter>:trace 10<Enter>:trace "
+               "11<Enter>:trace 12<Enter>:trace 13<Enter>");
     const pane *own = &ex.state.panes.pane[PANES_OF_TABLE];
     assert_true(own[0].shown && own[1].shown && own[2].shown && own[3].shown);
     assert_int_equal(own[0].signals[0], SIGNAL_INDEX(impulse));

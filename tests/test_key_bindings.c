@@ -97,15 +97,15 @@ static void make_settings(const char *text)
 
 TEST_IN_FOLDER(test_settings_keep_looks_axes_and_keys)
 {
-    explorer ex;
     make_settings(NULL);
-    open_explorer(&ex, "corrected/first-impact");
-    press(&ex,
+    OPEN_EXPLORER(keeps, "corrected/first-impact");
+    press(&keeps,
           ":theme light<Enter>:glyphs blocks<Enter>:colours 16<Enter>:axis -0.5 2.25 1<Enter>");
-    press(&ex, ":axis grow 3<Enter>:key <lt> step -5<Enter>:key C-t trace 5<Enter>:unkey x<Enter>");
-    press_shows(&ex, ":key Space step 3<Enter>:key # mark<Enter>:remember<Enter>", "settings kept");
-    explorer_finish(&ex);
-    open_explorer(&ex, "corrected/first-impact");
+    press_shows(&keeps,
+                ":axis grow 3<Enter>:key <lt> step -5<Enter>:key C-t trace 5<Enter>:unkey "
+                "x<Enter>:key Space step 3<Enter>:key # mark<Enter>:remember<Enter>",
+                "settings kept");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     explorer_load_settings(&ex);
     assert_string_equal(ex.state.message.text, "");
     assert_int_equal(ex.state.looks.theme, COLOURS_LIGHT);
@@ -124,12 +124,10 @@ TEST_IN_FOLDER(test_settings_keep_looks_axes_and_keys)
     assert_null(key_line(&ex.state.keys, 'x'));
     // without a choice of panes a controlled run shows its own
     assert_false(ex.state.panes.chosen);
-    explorer_finish(&ex);
 }
 
 TEST_IN_FOLDER(test_faults_in_settings_are_told_with_their_place)
 {
-    SCOPED(explorer_finish) explorer ex;
     make_settings("# mine\n"
                   "key x step 5\n"
                   "key y stepp 5\n"
@@ -137,7 +135,7 @@ TEST_IN_FOLDER(test_faults_in_settings_are_told_with_their_place)
                   "\n"
                   "axis 2 1 1\n"
                   "theme light\n");
-    open_explorer(&ex, "corrected/first-impact");
+    OPEN_EXPLORER(ex, "corrected/first-impact");
     explorer_load_settings(&ex);
     assert_false(ex.state.quit);
     assert_int_equal(ex.state.looks.theme, COLOURS_LIGHT);

@@ -2,65 +2,42 @@
 // measured data, residuals, the clipboard, the first visit.
 #include "tests/explorer_on_screen.h"
 
-static const int sizes[][2] = {{80, 24}, {100, 30}, {200, 60}};
-enum { SIZES = sizeof sizes / sizeof sizes[0] };
-
-static void assert_shows_everywhere(explorer *ex, const char *wanted)
-{
-    for (size_t i = 0; i < SIZES; i++) {
-        assert_shows_at(ex, sizes[i][0], sizes[i][1], wanted);
-    }
-}
-
-// A file that is removed at the end of the block.
-static void remove_file(char *const *path)
-{
-    unlink(*path);
-}
-#define FILE_FOR_A_WHILE(name, text)                                                               \
-    char name##_text[] = text, *name __attribute__((cleanup(remove_file))) = name##_text
-
 // A pane whose line can be typed is kept whole; a line that cannot be is refused with a sentence.
 TEST(long_lines_of_a_view_are_kept_whole_or_refused)
 {
-    FILE_FOR_A_WHILE(path, "/tmp/test_lab_tools_long.session");
-    char keys[LINE_TEXT], sum[128] = "force", line[LINE_TEXT], save[LINE_TEXT];
+    const char *path = "long.session";
+    char sum[128] = "force";
     while (strlen(sum) < 55) {
         strcat(sum, "+force");
     }
-    snprintf(save, sizeof save, ":session save %s<Enter>", path);
-    snprintf(line, sizeof line, "trace %s,20*%s,30*%s,40*%s", sum, sum, sum, sum);
+    const char *line = formatted("trace %s,20*%s,30*%s,40*%s", sum, sum, sum, sum);
     const size_t length = strlen(line);
     assert_in_range(length, LINE_TEXT - 3, LINE_TEXT - 1);
     {
         OPEN_EXPLORER(ex, "corrected/first-impact");
         assert_true(explorer_execute(&ex.state, line));
-        press(&ex, save);
+        press_text(&ex, ":session save %s<Enter>", path);
         assert_false(ex.state.message.warning);
     }
     OPEN_EXPLORER(ex, "compare/hybrid");
-    snprintf(keys, sizeof keys, ":session open %s<Enter>", path);
-    press(&ex, keys);
+    press_text(&ex, ":session open %s<Enter>", path);
     assert_false(ex.state.message.warning);
     const pane *p = &ex.state.panes.pane[PANES_OF_TABLE];
     assert_int_equal(p->count, 4);
     assert_int_equal(strlen(signal_table[p->signals[3]].name), strlen(sum) + 3);
 
     // the same beside others takes more than a line can
-    char longer[LINE_TEXT + 64];
-    snprintf(longer, sizeof longer, "%s+force+force+force+force", line);
-    assert_false(explorer_execute(&ex.state, longer));
+    assert_false(explorer_execute(&ex.state, formatted("%s+force+force+force+force", line)));
     assert_non_null(strstr(ex.state.message.text, "too long"));
 }
 
 TEST(notes_are_kept_in_time_and_in_sessions)
 {
-    FILE_FOR_A_WHILE(path, "/tmp/test_lab_tools_notes.session");
-    char keys[LINE_TEXT];
+    const char *path = "notes.session";
     {
         OPEN_EXPLORER(ex, "corrected/first-impact");
-        press(&ex, ":seek 0.4<Enter>:note late<Enter>:note @0.1 early, by hand<Enter>");
-        press(&ex, ":note @0.4 later<Enter>:notes<Enter>");
+        press(&ex, ":seek 0.4<Enter>:note late<Enter>:note @0.1 early, by hand<Enter>:note @0.4 "
+                   "later<Enter>:notes<Enter>");
         assert_int_equal(ex.state.note_count, 2);
         assert_shows_everywhere(&ex, "early, by hand");
         assert_shows_everywhere(&ex, "0.40000 s  later");
@@ -70,17 +47,13 @@ TEST(notes_are_kept_in_time_and_in_sessions)
         check_close(ex.state.session.now, 0.1, 1e-3);
         press_warns(&ex, ":note<Enter>:note<Enter>", "takes a text");
         press_warns(&ex, ":note @nan x<Enter>", "no instant");
-        press(&ex, ":note @0.1 early, by hand<Enter>");
-        snprintf(keys, sizeof keys,
-                 ":band force 0.1<Enter>:colourby run<Enter>"
-                 ":trace force - voltage<Enter>:axis calm 10<Enter>"
-                 ":session save %s<Enter>",
-                 path);
-        press(&ex, keys);
+        press_text(&ex,
+                   ":note @0.1 early, by hand<Enter>:band force 0.1<Enter>:colourby run<Enter>"
+                   ":trace force - voltage<Enter>:axis calm 10<Enter>:session save %s<Enter>",
+                   path);
     }
     OPEN_EXPLORER(ex, "compare/hybrid");
-    snprintf(keys, sizeof keys, ":session open %s<Enter>", path);
-    press(&ex, keys);
+    press_text(&ex, ":session open %s<Enter>", path);
     assert_false(ex.state.message.warning);
     assert_int_equal(ex.state.note_count, 2);
     assert_string_equal(ex.state.notes[0].text, "early, by hand");
@@ -92,8 +65,7 @@ TEST(notes_are_kept_in_time_and_in_sessions)
 
     // no more than there is room for, and they can be dropped
     for (int i = 0; i < 40; i++) {
-        snprintf(keys, sizeof keys, ":note @%d x<Enter>", i + 1);
-        press(&ex, keys);
+        press_text(&ex, ":note @%d x<Enter>", i + 1);
     }
     assert_non_null(strstr(ex.state.message.text, "are the most"));
     press(&ex, ":notes<Enter>");
@@ -119,9 +91,7 @@ TEST(a_band_tells_where_it_is_left)
     press(&ex, ":band force 9<Enter>");
     assert_non_null(strstr(ex.state.message.text, "stays within"));
     press(&ex, ":band force 0.5<Enter>");
-    for (size_t i = 0; i < SIZES; i++) {
-        free(picture(&ex, sizes[i][0], sizes[i][1], GLYPHS_BRAILLE));
-    }
+    assert_shows_everywhere(&ex, "force");
     press_warns(&ex, ":band force<Enter>", "a signal and a value");
     press_warns(&ex, ":band force -1<Enter>", "above 0");
     press(&ex, ":colourby<Enter>");
@@ -137,9 +107,7 @@ TEST(a_map_gives_what_single_runs_give)
     assert_true(lab_sweep_is_map(m) && lab_sweep_is_done(m));
     assert_int_equal(m->count, 6);
     assert_int_equal(state_run_count(&ex.state), 1);
-    for (size_t i = 0; i < SIZES; i++) {
-        assert_shows_at(&ex, sizes[i][0], sizes[i][1], "6 of 6");
-    }
+    assert_shows_everywhere(&ex, "6 of 6");
 
     // one up, one to the right; beyond the edge there is nothing
     press(&ex, "<Up><Up>><lt><lt>>");
@@ -182,18 +150,15 @@ static void write_recording(explorer *ex, const char *path)
 
 TEST(the_arm_that_was_measured_is_found)
 {
-    FILE_FOR_A_WHILE(path, "/tmp/test_lab_tools_data.csv");
+    const char *path = "data.csv";
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":set arm.k2 5.5<Enter>");
     write_recording(&ex, path);
-    press(&ex, "u");
-    press_warns(&ex, ":identify k2<Enter>", ":data");
+    press_warns(&ex, "u:identify k2<Enter>", ":data");
     press(&ex, formatted(":data %s<Enter>:residual force_reading, encoder<Enter>", path));
 
     // what was measured less what this run reads, at the rows of the table
-    for (size_t i = 0; i < SIZES; i++) {
-        free(picture(&ex, sizes[i][0], sizes[i][1], GLYPHS_BRAILLE));
-    }
+    assert_shows_everywhere(&ex, "force");
     assert_shows(&ex, "data minus run");
     const trace *rest = &ex.state.residual.trace;
     assert_true(rest->row_count > 200);
@@ -215,13 +180,10 @@ TEST(the_arm_that_was_measured_is_found)
 
 TEST(data_without_a_command_say_what_is_missing_and_what_for)
 {
-    FILE_FOR_A_WHILE(path, "/tmp/test_lab_tools_no_command.csv");
+    const char *path = "no_command.csv";
     OPEN_EXPLORER(ex, "compare/hybrid");
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    fputs("time[s],encoder[rad]\n0,0\n0.1,0.01\n0.2,0.02\n", file);
-    assert_int_equal(fclose(file), 0);
-    press(&ex, formatted(":data %s<Enter>", path));
+    put_file(path, "time[s],encoder[rad]\n0,0\n0.1,0.01\n0.2,0.02\n");
+    press_text(&ex, ":data %s<Enter>", path);
     press_warns(&ex, ":identify k2<Enter>", "no column 'command', the voltage [V] with which");
     assert_non_null(strstr(ex.state.message.text, "record it, or rename its heading"));
 }
@@ -368,12 +330,12 @@ TEST_IN_FOLDER(the_walk_through_does_what_it_says)
         {"o/hybrid<Enter>", "compare/hybrid"},
         {":save mine.yaml<Enter>", "saved "},
     };
-    for (size_t i = 0; i < SIZES; i++) {
+    for (EACH(size, screen_sizes)) {
         OPEN_EXPLORER(ex, "corrected/first-impact");
         unlink("mine.yaml");
         for (EACH(step, steps)) {
             press(&ex, step->keys);
-            assert_shows_at(&ex, sizes[i][0], sizes[i][1], step->shows);
+            assert_shows_at(&ex, (*size)[0], (*size)[1], step->shows);
         }
 
         // what was saved gives the run again
@@ -385,3 +347,5 @@ TEST_IN_FOLDER(the_walk_through_does_what_it_says)
         assert_same_trace(&ex.state.session.run.trace, &again.trace);
     }
 }
+
+ALL_BETWEEN(enter_folder, leave_folder)

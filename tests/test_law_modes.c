@@ -15,7 +15,7 @@ TEST(test_the_panel_is_whole_on_every_screen)
     for (EACH_TEXT(c, "hybrid", "recovering", "force-pd", "force-integral", "discontinuous",
                    "optimal", "predictive", "speed-limit", "open-loop", "bang-bang",
                    "reverse-torque")) {
-        char mode[MODE_NAME_SIZE], wanted[64];
+        char mode[MODE_NAME_SIZE];
         assert_true(explorer_carry_out(&ex, formatted("law %s", *c)));
         session_seek(&ex.state.session, 0.9);
         law_mode_name(state_law_modes(&ex.state),
@@ -23,10 +23,9 @@ TEST(test_the_panel_is_whole_on_every_screen)
         for (int k = 0; k < 8; k++) {
             int width = sizes[k / 2][0], height = sizes[k / 2][1];
             glyph_set set = k % 2 ? GLYPHS_ASCII : GLYPHS_BRAILLE;
-            snprintf(wanted, sizeof wanted, "%s %s, 200 Hz ", k % 2 ? "-" : "\u2500", *c);
-            assert_pictured(&ex, width, height, set, wanted);
-            snprintf(wanted, sizeof wanted, "[%s]", mode);
-            assert_pictured(&ex, width, height, set, wanted);
+            assert_pictured(&ex, width, height, set,
+                            formatted("%s %s, 200 Hz ", k % 2 ? "-" : "\u2500", *c));
+            assert_pictured(&ex, width, height, set, formatted("[%s]", mode));
             assert_pictured(&ex, width, height, set, " command ");
             assert_pictured(&ex, width, height, set, " V ");
             assert_pictured(&ex, width, height, set,
@@ -60,14 +59,11 @@ TEST(test_one_key_goes_through_the_modes)
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.9<Enter>");
     for (EACH_TEXT(c, "approach", "impact", "force")) {
-        char wanted[64];
         press(&ex, "L");
         // going on replaces the lock made at the same instant
         assert_int_equal(ex.state.session.input_count, 1);
-        snprintf(wanted, sizeof wanted, "locked: %s (F frees)", *c);
-        assert_shows(&ex, wanted);
-        snprintf(wanted, sizeof wanted, "[%s]", *c);
-        assert_shows(&ex, wanted);
+        assert_shows(&ex, formatted("locked: %s (F frees)", *c));
+        assert_shows(&ex, formatted("[%s]", *c));
     }
     press(&ex, "L");
     assert_int_equal(ex.state.session.input_count, 0);
@@ -97,8 +93,7 @@ TEST(test_laws_and_modes_are_completed_and_checked)
     press_warns(&ex, ":seek 0.5<Enter>:lock press<Enter>", "");
     assert_shows(&ex, "expected none, approach, impact, force or recover");
     press_warns(&ex, ":lock recover<Enter>:law hybrid<Enter>", "");
-    assert_shows(&ex, "undo the lock first");
-    assert_shows(&ex, "recovering, 200 Hz");
+    assert_shows(&ex, "undo the lock first", "recovering, 200 Hz");
     press_shows(&ex, "u:law inverse-dynamics<Enter>L", "this law cannot be held in a mode");
     press_shows(&ex, "C", "!, 200 Hz");
     press_shows(&ex, "L", "no law is on");
@@ -114,11 +109,9 @@ TEST(test_the_log_names_modes)
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, "nn");
     check_close(ex.state.session.now, 0.295, 0);
-    assert_shows(&ex, "goes into its mode 'impact' at 0.295000 s");
-    assert_shows(&ex, "0.29500 s  mode impact");
+    assert_shows(&ex, "goes into its mode 'impact' at 0.295000 s", "0.29500 s  mode impact");
     press_shows(&ex, "<End>", "mode force");
-    press(&ex, "N");
-    press_shows(&ex, ":seek 0.7<Enter>:lock approach<Enter>", "change lock approach");
+    press_shows(&ex, "N:seek 0.7<Enter>:lock approach<Enter>", "change lock approach");
     press_shows(&ex, "n", "0.70000 s  mode approach");
     // a click on a line goes there
     press(&ex, ":seek 0.3<Enter>");

@@ -54,9 +54,10 @@ TEST(a_forecast_knows_the_hubs_spring)
 }
 
 // The run of a script with one change at an instant.
-static status run_with_change(const char *const *settings, const char *path, const char *text,
-                              double time, run_result *r)
+static run_result run_with_change(const char *const *settings, const char *path, const char *text,
+                                  double time)
 {
+    run_result r;
     scenario s = {.parameters = rig_parameters(settings)};
     parameters p = s.parameters;
     const int index = parameter_index(path);
@@ -68,7 +69,8 @@ static status run_with_change(const char *const *settings, const char *path, con
     }
     s.actions = &change;
     s.action_count = 1;
-    return run_scenario(&s, true, r);
+    run_scenario(&s, true, &r);
+    return r;
 }
 
 // A transition under way is planned anew to another force, or to another end; with no time left it
@@ -84,9 +86,8 @@ TEST(a_transition_leads_where_it_is_told)
                    {"control.transition_time", "0.35", 0.05, 1},
                    {"control.transition_time", "0.06", 0.1, 1}};
     for (EACH(c, changes)) {
-        KEPT_RUN(r);
-        assert_int_equal(run_with_change(settings, c->path, c->text, touch + c->after, &r),
-                         STATUS_OK);
+        KEPT_RUN(r) = run_with_change(settings, c->path, c->text, touch + c->after);
+        assert_int_equal(r.summary.status, STATUS_OK);
         check_relative(r.summary.steady_force_N, c->force, 0.1);
     }
 }
@@ -94,9 +95,9 @@ TEST(a_transition_leads_where_it_is_told)
 // A rate that a script sets at the start is the rig's from its first sample on.
 TEST(a_rate_set_at_the_start_is_that_of_the_rig)
 {
-    KEPT_RUN(r);
-    const char *const *const settings = given("control.law=hybrid control.rate=200");
-    assert_int_equal(run_with_change(settings, "control.rate", "100", 0, &r), STATUS_OK);
+    KEPT_RUN(r) =
+        run_with_change(given("control.law=hybrid control.rate=200"), "control.rate", "100", 0);
+    assert_int_equal(r.summary.status, STATUS_OK);
     KEPT_RUN(from_the_start) = rig_run(given("control.law=hybrid control.rate=100"), false);
     check_relative(r.summary.peak_force_N, from_the_start.summary.peak_force_N, 1e-9);
     check_relative(r.summary.first_contact_s, from_the_start.summary.first_contact_s, 1e-9);
@@ -105,10 +106,9 @@ TEST(a_rate_set_at_the_start_is_that_of_the_rig)
 // A law that refuses a change says when.
 TEST(a_refused_change_says_its_time)
 {
-    KEPT_RUN(r);
-    assert_int_equal(run_with_change(given("control.law=observer control.force=1"), "control.rate",
-                                     "250", 0.3, &r),
-                     STATUS_BAD_SCENARIO);
+    KEPT_RUN(r) =
+        run_with_change(given("control.law=observer control.force=1"), "control.rate", "250", 0.3);
+    assert_int_equal(r.summary.status, STATUS_BAD_SCENARIO);
     assert_non_null(strstr(r.summary.message, "at t = 0.3 s the controller 'observer' refuses: "
                                               "it takes its model and its rate at the start only"));
 }
@@ -116,11 +116,11 @@ TEST(a_refused_change_says_its_time)
 // A limit that changes during the run is passed to the forecast, too.
 TEST(a_limit_may_change)
 {
-    KEPT_RUN(r);
     const char *const *const settings =
         given("control.law=speed-limit control.force_limit=4 control.approach_voltage=5 "
               "control.speed_limit=100 control.force=0.3 initial.angle=-0.4");
-    assert_int_equal(run_with_change(settings, "control.force_limit", "1", 0.05, &r), STATUS_OK);
+    KEPT_RUN(r) = run_with_change(settings, "control.force_limit", "1", 0.05);
+    assert_int_equal(r.summary.status, STATUS_OK);
     const summary high = rig_summary(settings);
     check_below(r.summary.peak_force_N, high.peak_force_N);
 }

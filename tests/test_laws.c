@@ -1,7 +1,6 @@
 // Required results of the control laws, on the impact of the thesis's 5.4: 1 V from rest, 0.1 rad
 // before the wall.
 #include "tests/rig_fixture.h"
-#include "tests/shipped_scenario.h"
 
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
@@ -40,7 +39,7 @@ TEST(hybrid_force_follows_its_coefficients)
 // The impact mode starts where the hub is and ends at the angle that (5.23) gives.
 TEST(quintic_joins_contact_and_rest)
 {
-    KEPT_RUN(r) = rig_run(given("control.law=hybrid sensor.ideal=true"), true);
+    RIG_RUN(r, "control.law=hybrid sensor.ideal=true");
     const trace *t = &r.trace;
     size_t first = 0, last = 0;
     for (size_t i = 0; i < t->row_count; i++) {
@@ -250,9 +249,8 @@ TEST(every_law_ends_near_its_force)
 
 TEST(recovering_law_returns_to_position_control)
 {
-    KEPT_RUN(r) = rig_run(
-        given("control.law=recovering control.approach_voltage=7 control.force=0.5 run.duration=2"),
-        true);
+    RIG_RUN(r,
+            "control.law=recovering control.approach_voltage=7 control.force=0.5 run.duration=2");
     bool recovered = false, pressed_after = false;
     for (EACH_ROW(row, &r.trace)) {
         recovered |= row->controller_mode == 3;
@@ -388,8 +386,7 @@ TEST(an_impact_angle_needs_its_sensor)
 {
     parameters p = rig_parameters_with("control.impact_angle=film");
     assert_true(p.sensor.film && !p.sensor.accelerometer);
-    parameters_defaults(&p, ARM_CORRECTED);
-    DONE(parameter_set_text(&p, parameter_find("control.impact_angle"), "accelerometer", &f));
-    DONE(parameter_set_text(&p, parameter_find("sensor.accelerometer"), "false", &f));
+    p = fresh(ARM_CORRECTED);
+    give_all(&p, "control.impact_angle=accelerometer sensor.accelerometer=false");
     REFUSED(STATUS_BAD_SCENARIO, "", parameters_resolve(&p, &f));
 }

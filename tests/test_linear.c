@@ -7,6 +7,13 @@
 
 enum { MOST = 200 };
 
+static void finish_arm(linear_arm *l)
+{
+    linear_system_finish(&l->system);
+}
+
+#define LINEARISED(l, ...) SCOPED(finish_arm) linear_arm l = linearised(__VA_ARGS__)
+
 static linear_arm linearised(const char *name, const char *changes, linear_place place)
 {
     KEPT_SCENARIO(s) = shipped_with(name, changes);
@@ -36,7 +43,7 @@ TEST(two_links_have_their_closed_forms)
                  mu = (m * half * half / 4 - own) / half;
 
     // pressed without force
-    linear_arm l = linearised(ROUND, "motor.voltage=0", LINEAR_CONTACT);
+    LINEARISED(l, ROUND, "motor.voltage=0", LINEAR_CONTACT);
     poles_of(&l, poles);
     check_relative(creal(poles[0]), -D / (2 * M), 1e-9);
     check_relative(cimag(poles[0]), sqrt(4 * k2 / M - D * D / (4 * M * M)), 1e-9);
@@ -45,11 +52,10 @@ TEST(two_links_have_their_closed_forms)
     assert_int_equal(count, 2);
     check_relative(creal(zeros[0]), -sqrt(4 * k2 / mu), 1e-9);
     check_relative(creal(zeros[1]), sqrt(4 * k2 / mu), 1e-9);
-    linear_system_finish(&l.system);
 
     // in flight: det(M s^2 + C s + K)/s vanishes at every pole but the one at rest
-    l = linearised(ROUND, "", LINEAR_FREE);
-    poles_of(&l, poles);
+    LINEARISED(free, ROUND, "", LINEAR_FREE);
+    poles_of(&free, poles);
     const double M11 = 5.2e-3 + own + m * half * half * 1.25, M22 = own + m * half * half / 4,
                  M12 = m * half * half / 2;
     check_close(cabs(poles[0]), 0, 1e-9);
@@ -59,7 +65,6 @@ TEST(two_links_have_their_closed_forms)
         const double complex c = M12 * s * s - k2;
         check_close(cabs(a * b - c * c) / cabs(a * b), 0, 1e-9);
     }
-    linear_system_finish(&l.system);
 }
 
 // Where the motor cannot move the hub are the frequencies of the arm with its hub locked.
@@ -71,7 +76,7 @@ TEST(zeros_to_the_hub_are_frequencies_of_the_held_arm)
         const char *changes =
             formatted("arm.links=6 motor.voltage=0 arm.hub_joint=%s", joints[i / 2]);
         KEPT_SCENARIO(s) = shipped_with(ROUND, changes);
-        linear_arm with = linearised(ROUND, changes, place);
+        LINEARISED(with, ROUND, changes, place);
         double complex zeros[MOST];
         double frequencies[MOST], shapes[MOST];
         arm a;
@@ -86,7 +91,6 @@ TEST(zeros_to_the_hub_are_frequencies_of_the_held_arm)
             check_relative(cimag(zeros[2 * k]), frequencies[k], 1e-9);
             check_close(creal(zeros[2 * k]), 0, 1e-8 * frequencies[k]);
         }
-        linear_system_finish(&with.system);
     }
 }
 
@@ -95,42 +99,34 @@ TEST(zeros_to_the_hub_are_frequencies_of_the_held_arm)
 TEST(the_arm_rests_under_its_force)
 {
     const double K = 6.02 * 0.249092 * 9.80665 / 33.6;
-    linear_arm l = linearised(ROUND, "motor.voltage=1e-3", LINEAR_CONTACT);
+    LINEARISED(l, ROUND, "motor.voltage=1e-3", LINEAR_CONTACT);
     check_relative(l.force, K * 1e-3, 1e-6);
-    linear_system_finish(&l.system);
 
     // its weight presses more than the motor pulls
-    l = linearised(ROUND, "motor.voltage=-0.5 arm.tilt=-0.2", LINEAR_CONTACT);
-    check_close(l.force, 9.80665 * sin(0.2) * 0.40108 / 2 * cos(0.1) - K * 0.5, 1e-3);
-    linear_system_finish(&l.system);
+    LINEARISED(low, ROUND, "motor.voltage=-0.5 arm.tilt=-0.2", LINEAR_CONTACT);
+    check_close(low.force, 9.80665 * sin(0.2) * 0.40108 / 2 * cos(0.1) - K * 0.5, 1e-3);
 
     // which a wall that stiffens with its depth does not change, be it soft or hard
     static const char *const weights[] = {"", " control.force=2"};
     for (int i = 0; i < 4; i++) {
-        char changes[160];
-        snprintf(changes, sizeof changes,
-                 "wall.contact=hunt-crossley wall.stiffness=%s arm.tilt=-1.5%s",
-                 i % 2 == 0 ? "1e4" : "1e8", weights[i / 2]);
-        l = linearised(i / 2 == 0 ? ROUND : "compare/hybrid", changes, LINEAR_CONTACT);
-        check_close(l.force, i / 2 == 0 ? 9.80665 * sin(1.5) * 0.40108 / 2 * cos(0.1) + K : 2,
+        const char *changes =
+            formatted("wall.contact=hunt-crossley wall.stiffness=%s arm.tilt=-1.5%s",
+                      i % 2 == 0 ? "1e4" : "1e8", weights[i / 2]);
+        LINEARISED(gives, i / 2 == 0 ? ROUND : "compare/hybrid", changes, LINEAR_CONTACT);
+        check_close(gives.force, i / 2 == 0 ? 9.80665 * sin(1.5) * 0.40108 / 2 * cos(0.1) + K : 2,
                     i / 2 == 0 ? 0.03 : 1e-9);
-        linear_system_finish(&l.system);
     }
 
-    static const char *const walls[] = {
-        "wall.contact=kelvin-voigt wall.stiffness=1e4 wall.damping=5 control.force=2",
-        "wall.contact=hunt-crossley wall.stiffness=1e6 wall.damping=5 control.force=2",
-    };
-    for (int i = 0; i < 2; i++) {
-        l = linearised("compare/hybrid", walls[i], LINEAR_CONTACT);
+    for (EACH_TEXT(c, "kelvin-voigt wall.stiffness=1e4", "hunt-crossley wall.stiffness=1e6")) {
+        LINEARISED(gives, "compare/hybrid",
+                   formatted("wall.contact=%s wall.damping=5 control.force=2", *c), LINEAR_CONTACT);
         double complex poles[MOST];
-        poles_of(&l, poles);
-        check_close(l.force, 2, 1e-9);
-        assert_int_equal(l.system.states, 4);
+        poles_of(&gives, poles);
+        check_close(gives.force, 2, 1e-9);
+        assert_int_equal(gives.system.states, 4);
         for (int k = 0; k < 4; k++) {
             check_below(creal(poles[k]), 0);
         }
-        linear_system_finish(&l.system);
     }
 }
 
@@ -156,9 +152,8 @@ TEST(what_has_no_linear_form_is_refused)
         linear_arm l;
         REFUSED(STATUS_BAD_ARGUMENT, c->says, linear_arm_init(&l, &s.parameters, c->place, &f));
     }
-    linear_arm stuck = linearised(ROUND, "", LINEAR_STUCK);
+    LINEARISED(stuck, ROUND, "", LINEAR_STUCK);
     assert_int_equal(stuck.system.states, 0);
-    linear_system_finish(&stuck.system);
 }
 
 // A word of a file in this machine's order of bytes.

@@ -3,19 +3,18 @@
 #include <assert.h>
 
 #include "src/arm/chain.h"
-#include "src/run/loop.h"
-#include "src/run/run.h"
 #include "src/study/linear/linear.h"
 #include "tests/shipped_scenario.h"
 
 #define IDEAL "motor.stiction=0 sensor.ideal=true "
 
-// Its loop; the caller finishes both.
-static linear_system loop_of(const scenario *s, linear_arm *l)
+static linear_system loop_of(const scenario *s)
 {
+    linear_arm l;
     linear_system loop = {0};
-    DONE(linear_arm_init(l, &s->parameters, LINEAR_CONTACT, &f) != STATUS_OK ||
-         linear_loop(&loop, l, &s->parameters, &f));
+    DONE(linear_arm_init(&l, &s->parameters, LINEAR_CONTACT, &f) != STATUS_OK ||
+         linear_loop(&loop, &l, &s->parameters, &f));
+    linear_system_finish(&l.system);
     return loop;
 }
 
@@ -33,9 +32,8 @@ TEST(limits_are_those_found_otherwise)
     };
     for (EACH(c, cases)) {
         KEPT_SCENARIO(s) = shipped_with(c->name, c->changes);
-        char range[64], *vary[] = {range};
+        char *vary[] = {(char *)formatted("%s=%g:%g:2", c->path, c->from, c->to)};
         SCOPED(linear_survey_finish) linear_survey found;
-        snprintf(range, sizeof range, "%s=%g:%g:2", c->path, c->from, c->to);
         DONE(linear_survey_make(&found, &s, &(sweep_request){vary, 1}, LINEAR_CONTACT, &f));
         assert_false(found.limits[0].by_runs);
         check_relative(found.limits[0].value, c->known, 1e-2);
@@ -53,8 +51,7 @@ TEST(margins_are_met_by_the_poles)
     };
     for (EACH(c, cases)) {
         KEPT_SCENARIO(s) = shipped_with((*c)[0], (*c)[1]);
-        linear_arm l;
-        linear_system loop = loop_of(&s, &l);
+        SCOPED(linear_system_finish) linear_system loop = loop_of(&s);
         linear_response r;
         const double period = 1 / s.parameters.control.rate;
         DONE(linear_respond(&loop, 0, period, &r, &f));
@@ -82,8 +79,6 @@ TEST(margins_are_met_by_the_poles)
             check_close(growth * period, 0, 2e-2);
         }
         free(r.frequency);
-        linear_system_finish(&loop);
-        linear_system_finish(&l.system);
     }
 }
 
@@ -92,10 +87,8 @@ static const char *plugin_path, *program_path;
 // Small sines in a run meet what the matrices say, also of laws that are not the lab's.
 TEST(measured_loops_are_the_exact_ones)
 {
-    char loaded[1024];
-    snprintf(loaded, sizeof loaded,
-             IDEAL "control.law=plugin control.settings=rise_time=0.05 control.plugin=%s",
-             plugin_path);
+    const char *loaded = formatted(
+        IDEAL "control.law=plugin control.settings=rise_time=0.05 control.plugin=%s", plugin_path);
     const char *const cases[][2] = {
         {"compare/force-pd", IDEAL},  {"compare/hybrid", IDEAL},   {"compare/impedance", IDEAL},
         {"compare/force-pd", loaded}, {"compare/force-pd", IDEAL},
@@ -111,12 +104,10 @@ TEST(measured_loops_are_the_exact_ones)
 
         // one that does not hold the force is asked for that which it comes to
         for (int k = 0; k < 6 && i >= 3; k++) {
-            KEPT_RUN(result);
-            assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
+            KEPT_RUN(result) = run_done(&s, false);
             p->control.force = result.summary.steady_force_N;
         }
-        linear_arm l;
-        linear_system loop = loop_of(&s, &l);
+        SCOPED(linear_system_finish) linear_system loop = loop_of(&s);
         linear_response r;
         fault f = {.text = ""};
         fail_if(linear_inject(&s, &r, &f) != STATUS_OK, "%s: %s", cases[i][1], f.text);
@@ -135,8 +126,6 @@ TEST(measured_loops_are_the_exact_ones)
         }
         assert_true(compared > 20);
         free(r.frequency);
-        linear_system_finish(&loop);
-        linear_system_finish(&l.system);
     }
 }
 
@@ -191,7 +180,7 @@ static double losses_with(double factor)
 // the further delay that its measured loop bears.
 TEST(measured_margins_are_those_of_runs)
 {
-    scenario s = shipped_with("compare/observer", IDEAL "run.duration=3");
+    KEPT_SCENARIO(s) = shipped_with("compare/observer", IDEAL "run.duration=3");
     linear_arm l;
     linear_system loop;
     linear_response r;
@@ -201,7 +190,6 @@ TEST(measured_margins_are_those_of_runs)
     const linear_margins m = linear_margins_of(&r);
     free(r.frequency);
     linear_system_finish(&l.system);
-    scenario_finish(&s);
     const double factor = pow(10, m.gain_db / 20);
     assert_true(losses_with(0.9 * factor) == 0);
     assert_true(losses_with(1.1 * factor) > 0);
@@ -209,14 +197,12 @@ TEST(measured_margins_are_those_of_runs)
     // the law is not told of the delay, which is five periods at most
     for (int more = 0; more < 2; more++) {
         const double delay = more ? fmin(1.1 * m.delay_s, 0.0249) : 0.9 * m.delay_s;
-        char changes[256];
-        snprintf(changes, sizeof changes,
-                 IDEAL "run.duration=6 control.delay=%.6g belief.delay_error=-%.6g", delay, delay);
-        KEPT_RUN(result);
-        s = shipped_with("compare/observer", changes);
-        assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
+        KEPT_SCENARIO(late) =
+            shipped_with("compare/observer", formatted(IDEAL "run.duration=6 control.delay=%.6g "
+                                                             "belief.delay_error=-%.6g",
+                                                       delay, delay));
+        KEPT_RUN(result) = run_done(&late, false);
         assert_true(isfinite(result.summary.settling_time_s) == !more); // or it never does
-        scenario_finish(&s);
     }
 }
 
@@ -233,10 +219,8 @@ TEST(the_least_push_lifts_the_arm_by_a_micrometre)
     arm a;
     chain_link work[2];
     double q[2], response[2];
-    run_result result;
-    assert_int_equal(run_scenario(&s, false, &result), STATUS_OK);
+    KEPT_RUN(result) = run_done(&s, false);
     const double force = result.summary.steady_force_N;
-    run_finish(&result);
     arm_init(&a, &s.parameters);
     q[0] = l.hub_angle;
     q[1] = l.hub_angle + l.bending;

@@ -25,30 +25,30 @@ static motion *before_impact(const arm *a, const method_parameters *method)
     return m;
 }
 
+// What is predicted of an arm at a state.
+static prediction predicted(const parameters *p, const double *q, const double *w)
+{
+    const arm a = arm_of(p);
+    prediction out;
+    DONE(predict_linearised(&a, &p->method, q, w, &out));
+    return out;
+}
+
+static prediction predicted_of(const parameters *p, motion *m)
+{
+    return predicted(p, state_angles(m, m->state), state_velocities(m, m->state));
+}
+
 // Prediction at the instant before the first contact, and what the simulation then did.
 static comparison compare(double k2, double volts, const char *wall, const char *more)
 {
     scenario s = {.parameters =
                       parameters_with("arm.k2=%.17g motor.voltage=%.17g %s %s run.duration=2", k2,
                                       volts, wall, more)};
-    comparison c;
-    run_result r = run_done(&s, false);
-    c.simulated = r.summary;
-    run_finish(&r);
-
-    arm a;
-    arm_init(&a, &s.parameters);
+    KEPT_RUN(r) = run_done(&s, false);
+    const arm a = arm_of(&s.parameters);
     KEPT_MOTION(m) = before_impact(&a, &s.parameters.method);
-    assert_int_equal(predict_linearised(&a, &s.parameters.method, state_angles(m, m->state),
-                                        state_velocities(m, m->state), &c.predicted),
-                     STATUS_OK);
-    return c;
-}
-
-static int by_size(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    return (comparison){predicted_of(&s.parameters, m), r.summary};
 }
 
 // Percentages of the errors, as docs/explanation/model.md has them.
@@ -165,14 +165,11 @@ TEST(in_flight_it_approaches_the_prediction_at_the_wall)
     arm a = arm_of(&p);
     KEPT_MOTION(m) = motion_create(&a, &p.method);
     motion_report report;
-    prediction early, late;
     motion_start(&a, m, 0, 0);
     assert_int_equal(motion_advance(&a, m, 0.2, 1e-3, &report), STATUS_OK);
-    predict_linearised(&a, &p.method, state_angles(m, m->state), state_velocities(m, m->state),
-                       &early);
+    const prediction early = predicted_of(&p, m);
     assert_int_equal(motion_advance(&a, m, 0.293, 1e-3, &report), STATUS_OK);
-    predict_linearised(&a, &p.method, state_angles(m, m->state), state_velocities(m, m->state),
-                       &late);
+    const prediction late = predicted_of(&p, m);
     check_relative(late.impulse, at_wall.predicted.impulse, 0.01);
     check_relative(late.force, at_wall.predicted.force, 0.01);
     assert_true(early.impulse > 0 && early.impulse < late.impulse);
@@ -180,11 +177,8 @@ TEST(in_flight_it_approaches_the_prediction_at_the_wall)
 
 TEST(a_receding_arm_does_not_touch)
 {
-    parameters p = fixture_parameters(NULL);
-    arm a = arm_of(&p);
-    double q[2] = {0.05, 0.05}, w[2] = {-1, -1};
-    prediction out;
-    predict_linearised(&a, &p.method, q, w, &out);
+    const parameters p = fixture_parameters(NULL);
+    const prediction out = predicted(&p, (double[]){0.05, 0.05}, (double[]){-1, -1});
     assert_false(out.holds);
     check_close(out.impulse, 0, 0);
 }
@@ -235,11 +229,8 @@ TEST(one_link_presses_with_its_motor)
 // Where no wall stands there is nothing to be touched.
 TEST(without_a_wall_there_is_no_touch)
 {
-    parameters p = parameters_with("wall.kind=none");
-    arm a = arm_of(&p);
-    const double q[2] = {0.1, 0.1}, w[2] = {0.6, 0.8};
-    prediction out;
-    assert_int_equal(predict_linearised(&a, &p.method, q, w, &out), STATUS_OK);
+    const parameters p = parameters_with("wall.kind=none");
+    const prediction out = predicted(&p, (double[]){0.1, 0.1}, (double[]){0.6, 0.8});
     assert_false(out.holds);
     assert_true(isnan(out.force));
 }
@@ -337,11 +328,8 @@ TEST(a_short_pulse_gives_back_the_same_by_any_engine)
 
 TEST(an_elastic_impact_does_not_hold)
 {
-    parameters p = parameters_with("wall.restitution=0.5");
-    arm a = arm_of(&p);
-    const double q[2] = {0.1, 0.1}, w[2] = {0.6, 0.8};
-    prediction out;
-    assert_int_equal(predict_linearised(&a, &p.method, q, w, &out), STATUS_OK);
+    const parameters p = parameters_with("wall.restitution=0.5");
+    const prediction out = predicted(&p, (double[]){0.1, 0.1}, (double[]){0.6, 0.8});
     assert_false(out.holds);
     assert_false(out.doubtful);
 }
@@ -431,8 +419,8 @@ TEST(a_gentle_touch_is_one_oscillation)
             }
         }
 
-        prediction one, other;
-        assert_int_equal(predict_linearised(&a, &p.method, q, w, &one), STATUS_OK);
+        const prediction one = predicted(&p, q, w);
+        prediction other;
         assert_int_equal(predict_pulse(&a, &p.method, q, w, NULL, true, &other), STATUS_OK);
         assert_int_equal(one.holds, isfinite(peak));
         assert_int_equal(other.holds, isfinite(peak));

@@ -1,14 +1,13 @@
 // How far a number of links is from a beam.
-#include "src/run/run.h"
 #include "src/study/links.h"
 
+#include "tests/given_parameters.h"
 #include "tests/shipped_scenario.h"
 
-static links_study studied(const char *name, char *const *changes, int count)
+static links_study studied(const char *name, const char *changes)
 {
-    KEPT_SCENARIO(s) = shipped(name);
+    KEPT_SCENARIO(s) = shipped_with(name, changes);
     links_study study;
-    assert_int_equal(scenario_override_all(&s, changes, count, NULL, NULL), STATUS_OK);
     DONE(links_study_compute(&s, NULL, &study, &f));
     assert_int_equal(study.count, LINKS_LENGTHS);
     return study;
@@ -19,7 +18,7 @@ static const links_study *of_fast_arm(void)
 {
     static links_study study;
     if (study.count == 0) {
-        study = studied("corrected/plane-wall-fast", NULL, 0);
+        study = studied("corrected/plane-wall-fast", "");
     }
     return &study;
 }
@@ -41,9 +40,9 @@ TEST(small_motion_tends_to_the_beam)
 {
     static const char *const keys[] = {"frequency_tip_free_Hz", "frequency_tip_pinned_Hz",
                                        "tip_compliance_m_per_N"};
-    char *hubs[] = {"arm.hub_joint=rigid", "arm.hub_joint=beam"};
+    static const char *const hubs[] = {"arm.hub_joint=rigid", "arm.hub_joint=beam"};
     for (int order = 1; order <= 2; order++) {
-        const links_study study = studied("corrected/damped-beam", &hubs[order - 1], 1);
+        const links_study study = studied("corrected/damped-beam", hubs[order - 1]);
         for (int k = 0; k < 3; k++) {
             const links_row *row = row_of(&study, keys[k]);
             check_close(row->order, order, 0.15);
@@ -64,10 +63,8 @@ TEST(a_blow_tends_to_the_stopped_beam)
     assert_true(momentum->enough >= 8 && momentum->enough <= 32);
     check_below(2 * momentum->beam, momentum->value[0]);
 
-    char *damped[] = {"arm.damping_ratio=0.05"};
-    char *giving[] = {"wall.contact=kelvin-voigt"};
-    const links_study soft = studied("corrected/plane-wall-fast", giving, 1),
-                      slow = studied("corrected/plane-wall-fast", damped, 1);
+    const links_study soft = studied("corrected/plane-wall-fast", "wall.contact=kelvin-voigt"),
+                      slow = studied("corrected/plane-wall-fast", "arm.damping_ratio=0.05");
     assert_true(isnan(row_of(&soft, "momentum_2ms_Ns")->beam));
     assert_true(isnan(row_of(&slow, "sensed_1ms_N")->beam));
 }
@@ -78,14 +75,12 @@ TEST(a_blow_is_what_rows_and_events_come_to)
 {
     static const char *const bounces[] = {"wall.restitution=0", "wall.restitution=0.3"};
     for (int kind = 0; kind < 2; kind++) {
-        char *changes[] = {(char *)bounces[kind]};
-        const links_study study = studied("corrected/plane-wall-fast", changes, 1);
+        const links_study study = studied("corrected/plane-wall-fast", bounces[kind]);
         for (int i = 0; i < 3; i++) {
             KEPT_SCENARIO(s) = shipped_with(
                 "corrected/plane-wall-fast",
                 formatted("arm.links=%d method.step=1e-5 %s", links_numbers[i], bounces[kind]));
-            KEPT_RUN(r);
-            assert_int_equal(run_scenario(&s, true, &r), STATUS_OK);
+            KEPT_RUN(r) = run_done(&s, true);
             const double touch = r.summary.first_contact_s, end = touch + 0.02;
 
             // impulses at their instants, forces between them
@@ -143,9 +138,7 @@ TEST(a_rigid_contact_has_no_limit)
 // sqrt(t).
 TEST(the_beams_limit_is_the_lag_of_an_inverse_root)
 {
-    parameters p;
-    parameters_defaults(&p, ARM_CORRECTED);
-    DONE(parameters_resolve(&p, &f));
+    const parameters p = defaults_of(ARM_CORRECTED);
     const double tau = 1e-3, k = links_beam_momentum(&p, 2, 1) / 2;
     double largest = 0;
     for (double t = 0.5 * tau; t < 1.5 * tau; t += 0.002 * tau) {
@@ -180,8 +173,8 @@ TEST(enough_is_enough_for_all_that_follow)
 // A mass at the tip has no closed form here, but limits of its own.
 TEST(uneven_arms_have_no_beam)
 {
-    char *changes[] = {"arm.tip_mass=0.05", "arm.hub_joint=beam"};
-    const links_study study = studied("corrected/damped-beam", changes, 2);
+    const links_study study =
+        studied("corrected/damped-beam", "arm.tip_mass=0.05 arm.hub_joint=beam");
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
         assert_true(isnan(study.rows[k].beam));
     }

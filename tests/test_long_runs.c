@@ -15,11 +15,6 @@ static void open_lasting(session *s, const char *name, const char *duration, dou
     DONE(session_open(s, &base, patience, &f));
 }
 
-static void change(session *s, const char *path, const char *value)
-{
-    DONE(session_change(s, parameter_find(path), value, &f));
-}
-
 // Opens a session on a run of twenty links and looks until it has `rows` rows. Where a busy machine
 // ends the run before anybody looks, a longer one is opened. Returns the run's duration [s].
 static int open_while_computing(session *s, size_t rows)
@@ -64,16 +59,11 @@ static void assert_as_from_the_start(const session *s)
     run_scenario(&s->effective, true, &whole);
     const trace *a = &s->run.trace, *b = &whole.trace;
     assert_null(s->computing);
-    assert_int_equal(a->row_count, b->row_count);
-    assert_int_equal(a->event_count, b->event_count);
-    assert_memory_equal(a->rows, b->rows, a->row_count * sizeof *a->rows);
-    assert_memory_equal(a->angles, b->angles,
-                        a->row_count * (size_t)a->angle_count * sizeof *a->angles);
+    assert_same_trace(a, b);
     check_same_events(a, b, a->event_count);
     for (int i = 0; i < summary_count; i++) {
-        double one, other;
-        one = summary_value(&s->run.summary, i);
-        other = summary_value(&whole.summary, i);
+        double one = summary_value(&s->run.summary, i);
+        double other = summary_value(&whole.summary, i);
         fail_if(!summary_table[i].timing && memcmp(&one, &other, sizeof one) != 0,
                 "%s is %.17g, from the start %.17g", summary_table[i].key, one, other);
     }

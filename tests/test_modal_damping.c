@@ -39,35 +39,6 @@ TEST(only_joints_that_are_there_are_damped)
     }
 }
 
-// Of links and joints that differ, too, structural damping gives the first mode its ratio; a rod
-// that cannot bend has none.
-TEST(structural_damping_is_of_the_first_mode)
-{
-    const char *const *const arms[] = {
-        given("arm.damping_ratio=0.03 arm.links=4 arm.link_lengths=0.2,0.3,0.1,0.4 "
-              "arm.joint_stiffness=9,5,12"),
-        given("arm.damping_ratio=0.03 arm.links=3 arm.hub_joint=beam arm.link_lengths=0.2,0.3,0.5 "
-              "arm.joint_stiffness=20,9,5"),
-        given("arm.damping_ratio=0.03 arm.links=1 arm.hub_joint=beam arm.joint_stiffness=7"),
-        given("arm.damping_ratio=0.03 arm.links=1 arm.hub_joint=spring arm.k1=30"),
-        given("arm.damping_ratio=0.03 arm.links=1 arm.hub_joint=spring arm.tip_mass=0.2")};
-    for (EACH(c, arms)) {
-        parameters p = fixture_parameters(*c);
-        held_modes m = held_modes_of(&p);
-        const double per_stiffness = 2 * 0.03 / m.modes.w[0];
-        const bool root = p.arm.hub_joint == HUB_BEAM || p.arm.links == 1;
-        for (int k = root ? 0 : 1; k < p.arm.links; k++) {
-            check_relative(arm_link_of(&m.arm, k).damping,
-                           per_stiffness * arm_link_of(&m.arm, k).stiffness, 1e-6);
-        }
-    }
-
-    parameters rod = parameters_with("arm.damping_ratio=0.03 arm.links=1");
-    held_modes none = held_modes_of(&rod);
-    assert_int_equal(none.modes.count, 0);
-    check_close(none.arm.joint_damping, 0, 0);
-}
-
 // x' M y over the bodies beyond the hub.
 static double product(const held_modes *m, const double *x, const double *y)
 {

@@ -254,19 +254,14 @@ TEST(without_a_trace_the_summary_is_the_same)
     KEPT_RUN(with) = run_arm(fixture_parameters(NULL), true);
     KEPT_RUN(without) = run_arm(fixture_parameters(NULL), false);
     assert_int_equal(without.trace.row_count, 0);
-    for (int i = 0; i < summary_count; i++) {
-        const double x = summary_value(&with.summary, i), y = summary_value(&without.summary, i);
-        assert_true(summary_table[i].timing || x == y || (isnan(x) && isnan(y)));
-    }
+    assert_same_summary(&with.summary, &without.summary);
 }
 
 TEST(script_acts_at_its_time_and_is_booked)
 {
     action todo[] = {
-        {.time = 0.70005, .kind = ACTION_PUSH, .value = 0.02},
-        {.time = 1.0, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(motor.voltage), .value = 2},
-        {.time = 1.2, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k2), .value = 10},
-        {.time = 1.4, .kind = ACTION_PUSH, .value = -0.2}, // away from the wall
+        PUSHES(0.70005, 0.02), SETS(1.0, motor.voltage, 2), SETS(1.2, arm.k2, 10),
+        PUSHES(1.4, -0.2), // away from the wall
     };
     KEPT_RUN(r) = run_acted(todo, 4, SETTINGS("run.duration=2"));
     check_close(find_event(&r, EVENT_PUSH, 0)->time, 0.70005, 1e-12);
@@ -302,15 +297,11 @@ TEST(events_tell_what_is_in_contact_and_what_sticks)
         {"wall.contact=kelvin-voigt", "wall.damping=200", "wall.mass=0"},
         {"wall.contact=kelvin-voigt", "wall.damping=20", "wall.mass=0.05"},
         {"wall.contact=hunt-crossley", "wall.damping=1e6", "wall.mass=0"}};
-    const int voltage = PARAMETER_INDEX(motor.voltage), stiction = PARAMETER_INDEX(motor.stiction);
     for (int i = 0; i < 4 * 5 * 2; i++) {
-        action todo[] = {{.time = 0.9, .kind = ACTION_PUSH, .value = -0.05},
-                         {.time = 1.4, .kind = ACTION_PUSH, .value = 0.05},
-                         {.time = 1.5, .kind = ACTION_SET, .parameter = voltage, .value = -3},
-                         {.time = 1.7, .kind = ACTION_SET, .parameter = voltage, .value = 4},
-                         {.time = 2.3, .kind = ACTION_SET, .parameter = stiction, .value = 2},
-                         {.time = 2.4, .kind = ACTION_PUSH, .value = -0.02},
-                         {.time = 2.6, .kind = ACTION_SET, .parameter = stiction, .value = 0}};
+        action todo[] = {PUSHES(0.9, -0.05),           PUSHES(1.4, 0.05),
+                         SETS(1.5, motor.voltage, -3), SETS(1.7, motor.voltage, 4),
+                         SETS(2.3, motor.stiction, 2), PUSHES(2.4, -0.02),
+                         SETS(2.6, motor.stiction, 0)};
         const char *const *wall = walls[i / 4 % 5];
         KEPT_RUN(r) =
             run_acted(todo, sizeof todo / sizeof *todo,
@@ -323,10 +314,7 @@ TEST(events_tell_what_is_in_contact_and_what_sticks)
 // The hub stops, friction turns round, and the arm lifts off: that is a release, too.
 TEST(a_hub_that_stops_may_release_the_arm)
 {
-    action todo = {.time = 0.284,
-                   .kind = ACTION_SET,
-                   .parameter = PARAMETER_INDEX(motor.voltage),
-                   .value = 0.3};
+    action todo = SETS(0.284, motor.voltage, 0.3);
     KEPT_RUN(r) = run_acted(&todo, 1, SETTINGS("motor.voltage=2", "motor.stiction=0.35"));
     int lifted = 0;
     for (size_t i = 0; i + 1 < r.trace.event_count; i++) {
@@ -340,14 +328,13 @@ TEST(a_hub_that_stops_may_release_the_arm)
 // A contact that a push or the script ends is released then.
 TEST(a_contact_ended_from_outside_is_released)
 {
-    const int voltage = PARAMETER_INDEX(motor.voltage);
     const struct {
         const char *restitution;
         action todo;
     } cases[] = {
-        {"wall.restitution=0", {.time = 1, .kind = ACTION_PUSH, .value = -0.02}},
-        {"wall.restitution=0.5", {.time = 1, .kind = ACTION_PUSH, .value = 0.02}},
-        {"wall.restitution=0", {.time = 1, .kind = ACTION_SET, .parameter = voltage, .value = -1}},
+        {"wall.restitution=0", PUSHES(1, -0.02)},
+        {"wall.restitution=0.5", PUSHES(1, 0.02)},
+        {"wall.restitution=0", SETS(1, motor.voltage, -1)},
     };
     for (EACH(c, cases)) {
         action todo = c->todo;

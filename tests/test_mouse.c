@@ -1,12 +1,6 @@
 // The mouse in each part of the explorer's screen.
 #include "tests/explorer_on_screen.h"
 
-static void point(explorer *ex, pointer_kind kind, int x, int y)
-{
-    explorer_point(ex, (pointer_event){.kind = kind, .x = x, .y = y});
-    free(picture(ex, 120, 40, GLYPHS_BRAILLE));
-}
-
 static void click(explorer *ex, int x, int y)
 {
     point(ex, POINTER_PRESS, x, y);
@@ -148,8 +142,7 @@ TEST(test_the_wheel_scrolls_pages_and_panels)
     }
     assert_shows(&ex, "calculated_for");
     // elsewhere it selects parameters as the arrows do, but not while something is typed
-    press(&ex, "<Tab><Tab>");
-    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
+    press_draws(&ex, "<Tab><Tab>");
     int before = ex.state.parameters.parameter;
     point(&ex, POINTER_WHEEL_DOWN, values.area.x + 5, values.area.y + 5);
     assert_int_not_equal(ex.state.parameters.parameter, before);

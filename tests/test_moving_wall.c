@@ -2,13 +2,10 @@
 // law that holds its force on one.
 
 #include "src/arm/impact.h"
-#include "src/run/loop.h"
 #include "src/session/session.h"
 #include "tests/passage.h"
 #include "tests/rig_fixture.h"
 #include "tests/scenario_fixture.h"
-
-GIVEN_BACK(run_loop, loop_destroy)
 
 // One link without friction, pressed by its weight against a flat wall at the angle 0.
 #define PRESSED_LINK                                                                               \

@@ -53,6 +53,14 @@ static passage go_through(const char *const *settings)
     return seen;
 }
 
+// That goes through so many events of a kind and allocates nothing.
+static void nothing_is_allocated(const char *const *settings, motion_event kind, int least)
+{
+    const passage seen = go_through(settings);
+    assert_int_equal(seen.allocations, 0);
+    assert_true(seen.events[kind] >= least);
+}
+
 TEST(the_counter_counts)
 {
     long before = allocations;
@@ -69,36 +77,27 @@ TEST(a_run_through_impacts_allocates_nothing)
     assert_true(seen.events[MOTION_IMPACT] >= 2);
     assert_true(seen.events[MOTION_RELEASE] >= 1);
     assert_true(seen.events[MOTION_STICK] >= 1);
-    seen = go_through(SETTINGS("arm.links=5", "wall.kind=plane", "wall.restitution=0.5",
-                               "arm.damping_ratio=0.02"));
-    assert_int_equal(seen.allocations, 0);
-    assert_true(seen.events[MOTION_IMPACT] >= 5);
+    nothing_is_allocated(
+        given("arm.links=5 wall.kind=plane wall.restitution=0.5 arm.damping_ratio=0.02"),
+        MOTION_IMPACT, 5);
 
     // by the modes of a stiff chain, and on a wall that gives
-    seen = go_through(
-        SETTINGS("arm.links=64", "wall.kind=plane", "arm.damping_ratio=0.01", "run.duration=0.32"));
-    assert_int_equal(seen.allocations, 0);
-    assert_true(seen.events[MOTION_IMPACT] >= 1);
-    seen = go_through(SETTINGS("wall.contact=hunt-crossley", "motor.inductance=0.01"));
-    assert_int_equal(seen.allocations, 0);
-    assert_true(seen.events[MOTION_RELEASE] >= 1);
+    nothing_is_allocated(
+        given("arm.links=64 wall.kind=plane arm.damping_ratio=0.01 run.duration=0.32"),
+        MOTION_IMPACT, 1);
+    nothing_is_allocated(given("wall.contact=hunt-crossley motor.inductance=0.01"), MOTION_RELEASE,
+                         1);
 }
 
 TEST(implicit_runs_through_impacts_allocate_nothing)
 {
-    passage seen = go_through(SETTINGS("method.name=newmark"));
-    assert_int_equal(seen.allocations, 0);
-    assert_true(seen.events[MOTION_IMPACT] >= 2);
-    seen = go_through(SETTINGS("method.name=generalized-alpha", "arm.links=6"));
-    assert_int_equal(seen.allocations, 0);
-    assert_true(seen.events[MOTION_IMPACT] >= 1);
+    nothing_is_allocated(given("method.name=newmark"), MOTION_IMPACT, 2);
+    nothing_is_allocated(given("method.name=generalized-alpha arm.links=6"), MOTION_IMPACT, 1);
 }
 
 TEST(a_hub_spring_allocates_nothing)
 {
-    passage seen = go_through(SETTINGS("arm.hub_joint=spring", "run.duration=0.4"));
-    assert_int_equal(seen.allocations, 0);
-    assert_true(seen.events[MOTION_IMPACT] >= 1);
+    nothing_is_allocated(given("arm.hub_joint=spring run.duration=0.4"), MOTION_IMPACT, 1);
 }
 
 // The predictor of two links is asked in free flight at every sample.

@@ -4,16 +4,12 @@
 #include "src/predict/predictors.h"
 #include "src/rig/rig.h"
 #include "src/run/export.h"
-#include "src/run/loop.h"
 #include "src/session/session.h"
 #include "src/study/batch.h"
 #include "src/study/compare.h"
 #include "src/study/robust.h"
-#include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
 #include "tests/refused_requests.h"
-
-GIVEN_BACK(run_loop, loop_destroy)
 
 // Of all that a scenario may hold.
 static const char whole_scenario[] =
@@ -102,6 +98,12 @@ static status predict(scenario *s, FILE *out)
     return code;
 }
 
+// What came of something done to a session, and of its run.
+static status and_run(const session *s, status done)
+{
+    return done == STATUS_OK ? s->run.summary.status : done;
+}
+
 static status change_on_the_way(scenario *s, FILE *out)
 {
     scenario own;
@@ -118,31 +120,24 @@ static status change_on_the_way(scenario *s, FILE *out)
     session *t = &made_session;
     code = t->run.summary.status;
     session_seek(t, 0.03);
-    code = code == STATUS_OK ? session_change(t, PARAMETER_INDEX(motor.voltage), "1.5", &f) : code;
-    code = code == STATUS_OK ? t->run.summary.status : code;
+    const int voltage = PARAMETER_INDEX(motor.voltage), k2 = PARAMETER_INDEX(arm.k2);
+    code = code == STATUS_OK ? and_run(t, session_change(t, voltage, "1.5", &f)) : code;
     code = code == STATUS_OK ? session_keep_beside(t, &t->run, &f) : code;
     session_seek(t, 0.07);
-    code = code == STATUS_OK ? session_push(t, 0.01, &f) : code;
-    code = code == STATUS_OK ? t->run.summary.status : code;
-    code = code == STATUS_OK ? session_undo(t, &f) : code;
-    code = code == STATUS_OK ? t->run.summary.status : code;
-    code = code == STATUS_OK ? session_redo(t, &f) : code;
-    code = code == STATUS_OK ? t->run.summary.status : code;
+    code = code == STATUS_OK ? and_run(t, session_push(t, 0.01, &f)) : code;
+    code = code == STATUS_OK ? and_run(t, session_undo(t, &f)) : code;
+    code = code == STATUS_OK ? and_run(t, session_redo(t, &f)) : code;
 
     // in small steps, without the first input, and with all of before
     session_input before[2];
     if (code == STATUS_OK) {
         memcpy(before, t->inputs, sizeof before);
     }
-    code = code == STATUS_OK ? session_adjust(t, PARAMETER_INDEX(arm.k2), "7", &f) : code;
-    code = code == STATUS_OK ? t->run.summary.status : code;
-    code = code == STATUS_OK ? session_adjust(t, PARAMETER_INDEX(arm.k2), "8", &f) : code;
-    code = code == STATUS_OK ? t->run.summary.status : code;
+    code = code == STATUS_OK ? and_run(t, session_adjust(t, k2, "7", &f)) : code;
+    code = code == STATUS_OK ? and_run(t, session_adjust(t, k2, "8", &f)) : code;
     code = code == STATUS_OK ? session_keep_beside(t, &t->run, &f) : code;
-    code = code == STATUS_OK ? session_drop_input(t, 0, &f) : code;
-    code = code == STATUS_OK ? t->run.summary.status : code;
-    code = code == STATUS_OK ? session_take_inputs(t, before, 2, &f) : code;
-    code = code == STATUS_OK ? t->run.summary.status : code;
+    code = code == STATUS_OK ? and_run(t, session_drop_input(t, 0, &f)) : code;
+    code = code == STATUS_OK ? and_run(t, session_take_inputs(t, before, 2, &f)) : code;
     code = code == STATUS_OK ? show(&t->effective, &t->run, out) : code;
     session_finish(t);
     return code;

@@ -5,7 +5,6 @@
 #include "src/study/calibrate.h"
 #include "src/study/convergence.h"
 #include "src/study/robust.h"
-#include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
 #include "src/study/thesis_tables.h"
 #include "tests/refused_requests.h"
@@ -38,9 +37,8 @@ static status list_all(const char *ignored, FILE *out)
     status code = scenario_list(&names, &count, &f);
     for (int i = 0; i < count; i++) {
         fprintf(out, "%s\n", names[i]);
-        free(names[i]);
     }
-    free(names);
+    free_names(names, count);
     return code;
 }
 

@@ -303,18 +303,6 @@ TEST(it_settles_on_many_links)
     }
 }
 
-// The setup that a law gets of these parameters.
-static controller_setup setup_of(const parameters *p)
-{
-    rig *r = NULL;
-    parameters as_hybrid = *p;
-    as_hybrid.control.law = LAW_HYBRID;
-    DONE(rig_create(&r, &as_hybrid, NULL, &f));
-    controller_setup setup = *(const controller_setup *)r->memory; // it stands first
-    rig_destroy(r);
-    return setup;
-}
-
 // Behind a spring a torque is no force at once, and a limit on that force is none of the command.
 TEST(a_hub_on_a_spring_does_not_swing)
 {
@@ -324,6 +312,26 @@ TEST(a_hub_on_a_spring_does_not_swing)
         check_below(s.settling_time_s, 0.3);
         check_close(s.steady_error_N, 0, 0.05);
     }
+}
+
+// What a law gets at sample k, with this voltage so far: what the first row of these shows that is
+// between it and the next sample.
+static controller_input input_of(const sample **rows, int k, double period, double voltage)
+{
+    const sample *read = *rows;
+    while (read->time < (k + 0.5) * period) {
+        read++;
+    }
+    *rows = read;
+    return (controller_input){.time = k * period,
+                              .encoder = read->encoder,
+                              .tachometer = read->tachometer,
+                              .force = read->force_reading,
+                              .voltage = voltage,
+                              .piezo_force = read->piezo_force,
+                              .film = read->film,
+                              .accelerometer = read->accelerometer,
+                              .wanted_mode = -1};
 }
 
 // The readings of a run with these settings, as all observers of the arms held possible see them:
@@ -338,24 +346,11 @@ static observer_arms arms_after(const char *const *settings)
     memset(&arms, 0, sizeof arms);
     assert_null(observer_arms_init(&arms, &setup, &task));
 
-    // sample k is what a row between it and the next one shows
-    size_t row = 0;
+    const sample *read = r.trace.rows;
     int felt = 0;
     double voltage = 0;
     for (int k = 0; k < 160; k++) {
-        while (r.trace.rows[row].time < (k + 0.5) * setup.period) {
-            row++;
-        }
-        const sample *read = &r.trace.rows[row];
-        controller_input in = {.time = k * setup.period,
-                               .encoder = read->encoder,
-                               .tachometer = read->tachometer,
-                               .force = read->force_reading,
-                               .voltage = voltage,
-                               .piezo_force = (double)NAN,
-                               .film = (double)NAN,
-                               .accelerometer = (double)NAN,
-                               .wanted_mode = -1};
+        controller_input in = input_of(&read, k, setup.period, voltage);
         felt = in.force > s.parameters.control.contact_threshold ? felt + 1 : 0;
         if (k == 0) {
             observer_arms_start(&arms, &in);
@@ -426,8 +421,7 @@ TEST(a_wall_that_gives_is_found)
 TEST(it_learns_how_stiff_the_arm_is)
 {
     for (EACH_OF(double, c, 0.75, 1.25)) {
-        const char *const settings[] = {"control.law=observer", NULL};
-        parameters p = rig_parameters(settings);
+        parameters p = rig_parameters_with("control.law=observer");
         p.belief.k2_factor = *c;
         controller_setup setup = setup_of(&p);
         arm_observer o;
@@ -464,9 +458,8 @@ TEST(it_learns_how_stiff_the_arm_is)
 TEST(it_finds_the_wall_again)
 {
     for (int sign = -1; sign <= 1; sign += 2) {
-        const char *const settings[] = {"control.law=observer", "run.duration=2", NULL};
-        action push = {.time = 1, .kind = ACTION_PUSH, .parameter = -1, .value = sign * 0.05};
-        scenario s = {.parameters = rig_parameters(settings), .actions = &push, .action_count = 1};
+        scenario s = SCRIPTED(rig_parameters_with("control.law=observer run.duration=2"),
+                              PUSHES(1, sign * 0.05));
         KEPT_RUN(r) = run_done(&s, false);
         check_close(r.summary.steady_error_N, 0, 0.05);
         // a blow against the wall does not reach the hub, and is not answered
@@ -479,10 +472,9 @@ TEST(it_finds_the_wall_again)
 // than it came.
 TEST(the_tip_comes_back_no_faster_than_it_came)
 {
-    const char *const settings[] = {"control.law=observer", "wall.restitution=0.3", NULL};
-    action push = {.time = 0.8, .kind = ACTION_PUSH, .parameter = -1, .value = -0.05};
-    scenario s = {.parameters = rig_parameters(settings), .actions = &push, .action_count = 1};
-    run_result r = run_done(&s, true);
+    scenario s = SCRIPTED(rig_parameters_with("control.law=observer wall.restitution=0.3"),
+                          PUSHES(0.8, -0.05));
+    KEPT_RUN(r) = run_done(&s, true);
 
     double there = 0, back = 0;
     for (EACH_ROW(row, &r.trace)) {
@@ -495,7 +487,6 @@ TEST(the_tip_comes_back_no_faster_than_it_came)
     check_relative(r.summary.return_speed_m_s, back, 1e-3);
     check_below(0.01, back);
     check_below(back, there);
-    run_finish(&r);
 
     // contact that is never lost has nothing to come back from
     check_close(rig_summary_with("control.law=observer").return_speed_m_s, 0, 0);
@@ -520,13 +511,11 @@ TEST(it_settles_on_walls_that_give)
 // rate or at once (0).
 static run_result force_after_change(double from, double to, double rate)
 {
-    const char *force = formatted("control.force=%g", from);
-    action change = {
-        .time = 1, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(control.force), .value = to};
-    scenario s = {.parameters = rig_parameters_with(
-                      "control.law=observer %s control.force_rate=%g run.duration=2", force, rate),
-                  .actions = &change,
-                  .action_count = 1};
+    scenario s =
+        SCRIPTED(rig_parameters_with("control.law=observer control.force=%g control.force_rate=%g "
+                                     "run.duration=2",
+                                     from, rate),
+                 SETS(1, control.force, to));
     return run_done(&s, true);
 }
 
@@ -570,9 +559,8 @@ TEST(no_force_is_wanted_and_none_is_held)
 TEST(the_same_readings_give_the_same_commands)
 {
     for (int law = LAW_NONE + 1; law < LAW_PLUGIN; law++) {
-        const char *const settings[] = {"sensor.film=true", "sensor.accelerometer=true",
-                                        "run.duration=0.8", NULL};
-        scenario s = {.parameters = rig_parameters(settings)};
+        scenario s = {.parameters = rig_parameters_with(
+                          "sensor.film=true sensor.accelerometer=true run.duration=0.8")};
         s.parameters.control.law = law;
         KEPT_RUN(r) = run_done(&s, true);
 
@@ -587,24 +575,11 @@ TEST(the_same_readings_give_the_same_commands)
         assert_non_null(memory);
         assert_null(c->start != NULL ? c->start(memory, &setup) : NULL);
 
-        // sample k is what a row between it and the next one shows
         double voltage = 0;
-        size_t row = 0;
+        const sample *read = r.trace.rows;
         const converter dac = converter_of(s.parameters.sensor.dac_bits, setup.voltage_limit);
         for (int k = 0; k < 159; k++) {
-            while (r.trace.rows[row].time < (k + 0.5) * setup.period) {
-                row++;
-            }
-            const sample *read = &r.trace.rows[row];
-            controller_input in = {.time = k * setup.period,
-                                   .encoder = read->encoder,
-                                   .tachometer = read->tachometer,
-                                   .force = read->force_reading,
-                                   .voltage = voltage,
-                                   .piezo_force = read->piezo_force,
-                                   .film = read->film,
-                                   .accelerometer = read->accelerometer,
-                                   .wanted_mode = -1};
+            controller_input in = input_of(&read, k, setup.period, voltage);
             controller_output out = {0};
             c->sample(memory, &in, &out);
             check_close(out.command, read->command, 0);

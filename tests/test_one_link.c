@@ -5,13 +5,6 @@
 #include "tests/arm_fixture.h"
 #include "tests/scenario_fixture.h"
 
-// A run of the scenario with this text, which does not fail.
-static run_result run_of(const char *text)
-{
-    KEPT_SCENARIO(s) = good(text);
-    return run_done(&s, true);
-}
-
 // The number of the first event of a kind at or after an instant [s]; fails if there is none.
 static size_t event_after(const run_result *r, event_kind kind, double time)
 {
@@ -27,11 +20,7 @@ static size_t event_after(const run_result *r, event_kind kind, double time)
 // The last row at or before an instant [s].
 static const sample *row_at(const run_result *r, double time)
 {
-    const sample *row = r->trace.rows;
-    for (size_t i = 0; i < r->trace.row_count && r->trace.rows[i].time <= time; i++) {
-        row = &r->trace.rows[i];
-    }
-    return row;
+    return &r->trace.rows[trace_row_at(&r->trace, time)];
 }
 
 // A link that friction holds within a wall stays there while the current changes, until the motor
@@ -52,7 +41,7 @@ TEST(a_link_stuck_within_a_wall_slips_when_its_current_lets_it)
     const double stiction = 0.045, resistance = 33.6;
     for (EACH(c, cases)) {
         const double inductance = c->inductance;
-        KEPT_RUN(r) = run_of(formatted(
+        KEPT_RUN(r) = run_told(formatted(
             "arm: {links: 1}\nmotor: {voltage: 3, inductance: %g%s}\nwall: {angle: 0.1, %s}\n"
             "script:\n  - at: 2.4 s\n    set: {motor.voltage: 0}\nrun: {duration: 2.42}\n",
             inductance, c->limit, c->wall));
@@ -93,7 +82,7 @@ TEST(what_stands_still_names_the_event_that_repeats)
 }
 
 // A script that changes the command.
-#define SETS "script:\n  - at: %g s\n    set: {motor.voltage: %g}\n"
+#define COMMANDED "script:\n  - at: %g s\n    set: {motor.voltage: %g}\n"
 
 static const double kst = 0.045; // [N m]
 
@@ -133,8 +122,8 @@ TEST(wall_and_friction_leave_open_what_the_force_is)
     };
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
         for (EACH_OF(double, c, 1, 0.2, 9)) {
-            KEPT_RUN(r) = run_of(formatted(
-                "%s%srun: {duration: 4}\n" SETS,
+            KEPT_RUN(r) = run_told(formatted(
+                "%s%srun: {duration: 4}\n" COMMANDED,
                 strncmp(ways[i], "arm", 3) == 0 ? "" : "arm: {links: 1}\n", ways[i], 0.0, *c));
             const summary *s = &r.summary;
             const double length = i == 6 ? 0.5 : 1;
@@ -161,12 +150,10 @@ TEST(wall_and_friction_leave_open_what_the_force_is)
 TEST(the_weight_of_a_link_shifts_what_is_open)
 {
     for (EACH_OF(double, tilt, -0.4, 0.2, 0.5)) {
-        char text[200];
-        snprintf(text, sizeof text,
-                 "arm: {links: 1, mass: 0.4, tilt: %g}\nmotor: {voltage: 4}\n"
-                 "wall: {angle: 0.2}\nrun: {duration: 4}\n",
-                 *tilt);
-        SCOPED(run_finish) run_result r = run_of(text);
+        KEPT_RUN(r) =
+            run_told(formatted("arm: {links: 1, mass: 0.4, tilt: %g}\nmotor: {voltage: 4}\n"
+                               "wall: {angle: 0.2}\nrun: {duration: 4}\n",
+                               *tilt));
         const summary *s = &r.summary;
         const double balanced = torque_of(4) - 0.4 * 9.80665 * sin(*tilt) / 2 * cos(0.2);
         check_bounds(s->steady_force_low_N, s->steady_force_high_N, balanced - kst, balanced + kst);
@@ -181,10 +168,9 @@ TEST(a_force_that_stays_is_largest_at_once)
                                        "current_limit: 100}\nwall: {kind: plane}",
                                        "current_limit: 0.2}\nwall: {angle: 0.3, restitution: 0}"};
     for (EACH(way, ways)) {
-        char text[200];
-        snprintf(text, sizeof text,
-                 "arm: {links: 1, tilt: 0.1, air_drag: 0.6}\nmotor: {voltage: 4, %s\n", *way);
-        SCOPED(run_finish) run_result r = run_of(text);
+        KEPT_RUN(r) = run_told(formatted("arm: {links: 1, tilt: 0.1, air_drag: 0.6}\n"
+                                         "motor: {voltage: 4, %s\n",
+                                         *way));
         assert_true(r.summary.steady_force_N > 0.05);
         assert_true(r.summary.time_to_peak_s == 0 && r.summary.first_pulse_time_to_peak_s == 0);
     }
@@ -194,15 +180,15 @@ TEST(a_force_that_stays_is_largest_at_once)
 TEST(a_link_that_rests_may_be_pressed_or_not)
 {
     for (EACH_OF(double, c, 0.05, 0, -0.05)) {
-        KEPT_RUN(at_start) =
-            run_of(formatted("arm: {links: 1}\nmotor: {voltage: %g}\ninitial: {angle: 0.1}\n", *c));
+        KEPT_RUN(at_start) = run_told(
+            formatted("arm: {links: 1}\nmotor: {voltage: %g}\ninitial: {angle: 0.1}\n", *c));
         const double least = torque_of(*c) - kst, most = torque_of(*c) + kst;
         const summary *s = &at_start.summary;
         check_bounds(s->steady_force_low_N, s->steady_force_high_N, least, most);
         check_bounds(s->peak_force_low_N, s->peak_force_high_N, least, most);
 
         // the same after an impact and less and less of a command
-        KEPT_RUN(later) = run_of(formatted("arm: {links: 1}\n" SETS, 0.5, *c));
+        KEPT_RUN(later) = run_told(formatted("arm: {links: 1}\n" COMMANDED, 0.5, *c));
         s = &later.summary;
         check_bounds(s->steady_force_low_N, s->steady_force_high_N, least, most);
         check_bounds(s->peak_force_low_N, s->peak_force_high_N, torque_of(1) - kst,
@@ -213,15 +199,15 @@ TEST(a_link_that_rests_may_be_pressed_or_not)
 // The mean of bounds that change in the window: at once, with a current, where one reaches zero.
 TEST(steady_bounds_are_means)
 {
-    KEPT_RUN(r) = run_of("arm: {links: 1}\nscript:\n  - at: 0.95 s\n"
-                         "    set: {motor.voltage: 0.05}\n");
+    KEPT_RUN(r) = run_told("arm: {links: 1}\nscript:\n  - at: 0.95 s\n"
+                           "    set: {motor.voltage: 0.05}\n");
     const double before = torque_of(1), after = torque_of(0.05);
     check_bounds(r.summary.steady_force_low_N, r.summary.steady_force_high_N, (before - kst) / 2,
                  (before + after) / 2 + kst);
     run_finish(&r);
 
-    r = run_of("arm: {links: 1}\nmotor: {inductance: 0.5}\nscript:\n  - at: 0.9 s\n"
-               "    set: {motor.voltage: 0}\n");
+    r = run_told("arm: {links: 1}\nmotor: {inductance: 0.5}\nscript:\n  - at: 0.9 s\n"
+                 "    set: {motor.voltage: 0}\n");
     const double rate = 33.6 / 0.5, zero = log(before / kst) / rate;
     const double low = before * (1 - exp(-rate * zero)) / rate - kst * zero;
     const double high = before * (1 - exp(-rate * 0.1)) / rate + kst * 0.1;
@@ -239,8 +225,8 @@ TEST(steady_bounds_are_means)
 // Once it has left, the first pulse's bounds stay, and no force is open any more.
 TEST(a_link_that_was_pushed_off_has_no_open_force)
 {
-    KEPT_RUN(r) = run_of("arm: {links: 1}\nscript:\n  - at: 0.5 s\n"
-                         "    set: {motor.voltage: -3}\n");
+    KEPT_RUN(r) = run_told("arm: {links: 1}\nscript:\n  - at: 0.5 s\n"
+                           "    set: {motor.voltage: -3}\n");
     check_bounds(r.summary.first_pulse_peak_low_N, r.summary.first_pulse_peak_high_N,
                  torque_of(1) - kst, torque_of(1) + kst);
     check_bounds(r.summary.peak_force_low_N, r.summary.peak_force_high_N, torque_of(1) - kst,
@@ -264,7 +250,7 @@ TEST(what_else_holds_still_has_one_force)
         "arm: {links: 1}\nwall: {contact: hunt-crossley, damping: 1e8}\n",
     };
     for (int i = 0; i < 9; i++) {
-        KEPT_RUN(r) = run_of(formatted("%srun: {duration: 4}\n", texts[i]));
+        KEPT_RUN(r) = run_told(formatted("%srun: {duration: 4}\n", texts[i]));
         check_determined(&r.summary);
         const bool tells = strstr(r.summary.message, "where it came to rest") != NULL;
         const sample *last = LAST_ROW(&r.trace);
@@ -276,21 +262,16 @@ TEST(what_else_holds_still_has_one_force)
     }
 }
 
-static double between(random_generator *g, double low, double high)
-{
-    return low + (high - low) * random_uniform(g);
-}
-
 // A link that the wall stops rests, to the last bit: friction holds it.
 TEST(a_link_that_is_stopped_sticks_whatever_rounding_says)
 {
     random_generator g = seeded(5);
     for (int i = 0; i < 100; i++) {
-        KEPT_RUN(r) = run_of(
+        KEPT_RUN(r) = run_told(
             formatted("arm: {links: 1, mass: %.17g, length: %.17g}\nmotor: {voltage: %.17g}\n"
                       "wall: {kind: %s, angle: %.17g}\nrun: {duration: 6}\n",
-                      between(&g, 0.1, 1), between(&g, 0.3, 2), between(&g, 0.5, 9),
-                      i % 2 ? "plane" : "point", between(&g, 0.05, 2.5)));
+                      evenly(&g, 0.1, 1), evenly(&g, 0.3, 2), evenly(&g, 0.5, 9),
+                      i % 2 ? "plane" : "point", evenly(&g, 0.05, 2.5)));
         const trace *t = &r.trace;
         assert_int_equal(t->event_count, 3);
         assert_int_equal(t->events[2].kind, EVENT_STICK);
@@ -302,7 +283,7 @@ TEST(a_link_that_is_stopped_sticks_whatever_rounding_says)
 TEST(a_link_stops_in_long_steps)
 {
     for (EACH_TEXT(c, "newmark", "generalized-alpha")) {
-        KEPT_RUN(r) = run_of(
+        KEPT_RUN(r) = run_told(
             formatted("arm: {links: 1}\nmotor: {viscous_friction: 150, voltage: 9}\n"
                       "wall: {angle: 0.02}\nmethod: {name: %s, step: 0.01}\nrun: {duration: 2}\n",
                       *c));

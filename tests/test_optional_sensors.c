@@ -4,7 +4,7 @@
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 
-#define ALL_FITTED     "sensor.piezo=true", "sensor.film=true", "sensor.accelerometer=true"
+#define ALL_FITTED     "sensor.piezo=true sensor.film=true sensor.accelerometer=true"
 #define RISE_CONSTANTS 2.1972245773362196 // ln 9: time constants from 10 % to 90 %
 #define CONVERTER_STEP (20.0 / 4096)      // [V]
 
@@ -54,7 +54,7 @@ TEST(sensors_not_fitted_read_nothing)
 TEST(choice_of_the_piezo_fits_it)
 {
     fault f;
-    parameters p = rig_parameters(SETTINGS("sensor.force=piezo"));
+    parameters p = rig_parameters_with("sensor.force=piezo");
     assert_true(p.sensor.piezo);
     parameter_set_text(&p, PARAMETER_INDEX(sensor.piezo), "false", &f);
     assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
@@ -67,8 +67,8 @@ TEST(choice_of_the_piezo_fits_it)
 
 TEST(fitting_them_changes_no_other_signal)
 {
-    KEPT_RUN(without) = rig_run(SETTINGS("control.law=optimal"), true);
-    KEPT_RUN(with) = rig_run(SETTINGS("control.law=optimal", ALL_FITTED), true);
+    RIG_RUN(without, "control.law=optimal");
+    RIG_RUN(with, "control.law=optimal " ALL_FITTED);
     assert_int_equal(without.trace.row_count, with.trace.row_count);
     size_t readings = 0; // three sensors, one each in every row
     for (size_t row = 0; row < with.trace.row_count; row++) {
@@ -85,7 +85,7 @@ TEST(fitting_them_changes_no_other_signal)
 
 TEST(ideal_sensors_tell_the_truth)
 {
-    sensors s = fresh_sensors(SETTINGS("sensor.ideal=true", ALL_FITTED));
+    sensors s = fresh_sensors(given("sensor.ideal=true " ALL_FITTED));
     sensed_motion m = {.acceleration = -1234.567, .bending = 2.345678, .force = 98.7654};
     sensors_strike(&s, 0.1);
     hold(&s, 3, m);
@@ -116,9 +116,9 @@ static void check_steps(double (*read)(sensors *, double), sensors *s, double ga
 
 TEST(readings_have_the_steps_of_the_converter)
 {
-    sensors s = fresh_sensors(SETTINGS(ALL_FITTED, "sensor.piezo_noise=0", "sensor.film_noise=0",
-                                       "sensor.accelerometer_noise=0", "sensor.piezo_rise_time=0",
-                                       "sensor.accelerometer_rise_time=0"));
+    sensors s = fresh_sensors(
+        given(ALL_FITTED " sensor.piezo_noise=0 sensor.film_noise=0 sensor.accelerometer_noise=0 "
+                         "sensor.piezo_rise_time=0 sensor.accelerometer_rise_time=0"));
     check_steps(piezo, &s, 1);
     check_steps(film, &s, 10);
     check_steps(accelerometer, &s, 0.02);
@@ -126,20 +126,20 @@ TEST(readings_have_the_steps_of_the_converter)
 
 TEST(sensors_go_off_scale)
 {
-    sensors s = fresh_sensors(SETTINGS(ALL_FITTED, "sensor.piezo_noise=0", "sensor.film_noise=0",
-                                       "sensor.accelerometer_noise=0", "sensor.piezo_rise_time=0",
-                                       "sensor.adc_bits=0", "sensor.accelerometer_rise_time=0",
-                                       "sensor.piezo_range=8", "sensor.accelerometer_range=400"));
+    sensors s = fresh_sensors(given(
+        ALL_FITTED " sensor.piezo_noise=0 sensor.film_noise=0 sensor.accelerometer_noise=0 "
+                   "sensor.piezo_rise_time=0 sensor.adc_bits=0 sensor.accelerometer_rise_time=0 "
+                   "sensor.piezo_range=8 sensor.accelerometer_range=400"));
     check_close(piezo(&s, 9), 8, 1e-12);
     check_close(piezo(&s, -9), -8, 1e-12);
     check_close(piezo(&s, 7.9), 7.9, 1e-12);
     check_close(accelerometer(&s, 401), 400, 1e-12);
     check_close(accelerometer(&s, -401), -400, 1e-12);
     check_close(film(&s, 1.5), 1, 1e-12); // 10 V/rad: where the converter ends
-    sensors wide = fresh_sensors(
-        SETTINGS(ALL_FITTED, "sensor.adc_range=1000", "sensor.piezo_noise=0", "sensor.adc_bits=0",
-                 "sensor.accelerometer_noise=0", "sensor.piezo_rise_time=0", "sensor.piezo_range=0",
-                 "sensor.accelerometer_rise_time=0", "sensor.accelerometer_range=0"));
+    sensors wide = fresh_sensors(given(
+        ALL_FITTED " sensor.adc_range=1000 sensor.piezo_noise=0 sensor.adc_bits=0 "
+                   "sensor.accelerometer_noise=0 sensor.piezo_rise_time=0 sensor.piezo_range=0 "
+                   "sensor.accelerometer_rise_time=0 sensor.accelerometer_range=0"));
     check_close(piezo(&wide, 900), 900, 1e-9);
     check_close(accelerometer(&wide, 9000), 9000, 1e-9);
 }
@@ -161,8 +161,8 @@ static void check_spread(double (*read)(sensors *, double), sensors *s, double s
 TEST(noise_has_its_spread)
 {
     sensors s =
-        fresh_sensors(SETTINGS(ALL_FITTED, "sensor.adc_bits=0", "sensor.piezo_noise=0.03",
-                               "sensor.film_noise=0.02", "sensor.accelerometer_noise=0.01"));
+        fresh_sensors(given(ALL_FITTED " sensor.adc_bits=0 sensor.piezo_noise=0.03 "
+                                       "sensor.film_noise=0.02 sensor.accelerometer_noise=0.01"));
     check_spread(piezo, &s, 0.03);
     check_spread(film, &s, 0.002);
     check_spread(accelerometer, &s, 0.5);
@@ -170,11 +170,11 @@ TEST(noise_has_its_spread)
 
 TEST(each_noise_is_its_own)
 {
-    sensors s = fresh_sensors(SETTINGS(ALL_FITTED, "sensor.adc_bits=0", "sensor.tachometer_noise=1",
-                                       "sensor.piezo_noise=1", "sensor.film_noise=1",
-                                       "sensor.accelerometer_noise=1", "sensor.tachometer_gain=1",
-                                       "sensor.film_gain=1", "sensor.accelerometer_gain=1",
-                                       "sensor.piezo_range=0", "sensor.accelerometer_range=0"));
+    sensors s = fresh_sensors(given(
+        ALL_FITTED
+        " sensor.adc_bits=0 sensor.tachometer_noise=1 sensor.piezo_noise=1 sensor.film_noise=1 "
+        "sensor.accelerometer_noise=1 sensor.tachometer_gain=1 sensor.film_gain=1 "
+        "sensor.accelerometer_gain=1 sensor.piezo_range=0 sensor.accelerometer_range=0"));
     enum { COUNT = 20000 };
     double product[6] = {0};
     for (int i = 0; i < COUNT; i++) {
@@ -194,14 +194,14 @@ TEST(each_noise_is_its_own)
 // --- lags and leaks -------------------------------------------------------------------------
 
 #define QUIET                                                                                      \
-    ALL_FITTED, "sensor.adc_bits=0", "sensor.piezo_noise=0", "sensor.film_noise=0",                \
-        "sensor.accelerometer_noise=0"
+    ALL_FITTED                                                                                     \
+    " sensor.adc_bits=0 sensor.piezo_noise=0 sensor.film_noise=0 sensor.accelerometer_noise=0"
 
 // A step of 1 N: exp(-t/q) - exp(-t/r), times q/(q - r), with the rise's r and the leak's q.
 TEST(piezo_rises_and_leaks)
 {
     const double r = 5e-5 / RISE_CONSTANTS, q = 5, instants[] = {1e-5, 5e-5, 2e-4, 5e-3, 1, 4, 20};
-    sensors s = fresh_sensors(SETTINGS(QUIET));
+    sensors s = fresh_sensors(given(QUIET));
     double t = 0, tenth = 0;
     for (int i = 0; i < 7; i++) {
         hold(&s, instants[i] - t, (sensed_motion){.force = 1});
@@ -209,7 +209,7 @@ TEST(piezo_rises_and_leaks)
         double expected = q / (q - r) * (exp(-t / q) - exp(-t / r));
         check_close(piezo(&s, 1), expected, 1e-9);
     }
-    s = fresh_sensors(SETTINGS(QUIET));
+    s = fresh_sensors(given(QUIET));
     for (t = 0; piezo(&s, 1) < 0.9; t += 1e-7) {
         tenth = piezo(&s, 1) < 0.1 ? t : tenth;
         hold(&s, 1e-7, (sensed_motion){.force = 1});
@@ -221,13 +221,13 @@ TEST(piezo_rises_and_leaks)
 // converter's step is so much finer.
 TEST(a_gain_is_taken_back)
 {
-    sensors s = fresh_sensors(SETTINGS(QUIET, "sensor.piezo_rise_time=0", "sensor.piezo_gain=4",
-                                       "sensor.accelerometer_rise_time=0",
-                                       "sensor.accelerometer_gain=0.5"));
+    sensors s = fresh_sensors(
+        given(QUIET " sensor.piezo_rise_time=0 sensor.piezo_gain=4 "
+                    "sensor.accelerometer_rise_time=0 sensor.accelerometer_gain=0.5"));
     check_relative(piezo(&s, 1.3), 1.3, 1e-14);
     check_relative(accelerometer(&s, 3), 3.0, 1e-14);
-    s = fresh_sensors(SETTINGS(ALL_FITTED, "sensor.piezo_noise=0", "sensor.piezo_rise_time=0",
-                               "sensor.piezo_gain=4"));
+    s = fresh_sensors(
+        given(ALL_FITTED " sensor.piezo_noise=0 sensor.piezo_rise_time=0 sensor.piezo_gain=4"));
     const double step = 2 * s.p.adc_range / (double)(1 << s.p.adc_bits) / 4;
     const double codes = piezo(&s, 1.3) / step;
     check_close(codes, round(codes), 1e-9);
@@ -236,10 +236,10 @@ TEST(a_gain_is_taken_back)
 
 TEST(piezo_without_leak_stays_and_without_rise_is_instant)
 {
-    sensors s = fresh_sensors(SETTINGS(QUIET, "sensor.piezo_leak_time=0"));
+    sensors s = fresh_sensors(given(QUIET " sensor.piezo_leak_time=0"));
     hold(&s, 1000, (sensed_motion){.force = 2});
     check_close(piezo(&s, 2), 2, 1e-12);
-    s = fresh_sensors(SETTINGS(QUIET, "sensor.piezo_rise_time=0"));
+    s = fresh_sensors(given(QUIET " sensor.piezo_rise_time=0"));
     check_close(piezo(&s, 2), 2, 1e-12);
     hold(&s, 5, (sensed_motion){.force = 2});
     check_close(piezo(&s, 2), 2 * exp(-1), 1e-12);
@@ -250,7 +250,7 @@ TEST(impulse_drives_the_piezo_off_scale)
 {
     const double impulse = 0.02, r = 5e-5 / RISE_CONSTANTS;
     const double back = r * log(impulse / r / 10);
-    sensors s = fresh_sensors(SETTINGS(QUIET, "sensor.adc_range=20"));
+    sensors s = fresh_sensors(given(QUIET " sensor.adc_range=20"));
     sensors_strike(&s, impulse);
     check_close(piezo(&s, 0), 10, 0);
     hold(&s, 0.98 * back, (sensed_motion){.force = 0});
@@ -269,7 +269,7 @@ TEST(leak_keeps_its_digits_over_short_strides)
     const int strides = 100000;
     const sensed_motion edge = {.force = -5};
     for (double h = 2e-6; h < 1e-3; h *= 6) {
-        sensors s = fresh_sensors(SETTINGS(QUIET, "sensor.piezo_leak_time=10"));
+        sensors s = fresh_sensors(given(QUIET " sensor.piezo_leak_time=10"));
         for (int i = 0; i < strides; i++) {
             sensors_follow(&s, h, &edge, &edge, 5.0 / 3); // -5 + 40 u - 40 u^2
         }
@@ -279,14 +279,14 @@ TEST(leak_keeps_its_digits_over_short_strides)
 
 TEST(film_leaks)
 {
-    sensors s = fresh_sensors(SETTINGS(QUIET));
+    sensors s = fresh_sensors(given(QUIET));
     double t = 0;
     for (int i = 0; i < 40; i++) {
         check_close(film(&s, 0.3), 0.3 * exp(-t), 1e-12);
         hold(&s, 0.05, (sensed_motion){.bending = 0.3});
         t += 0.05;
     }
-    sensors tight = fresh_sensors(SETTINGS(QUIET, "sensor.film_leak_time=0"));
+    sensors tight = fresh_sensors(given(QUIET " sensor.film_leak_time=0"));
     hold(&tight, 1000, (sensed_motion){.bending = 0.3});
     check_close(film(&tight, 0.3), 0.3, 1e-12);
 }
@@ -295,7 +295,7 @@ TEST(film_leaks)
 TEST(film_follows_a_swing)
 {
     const double w = 12, q = 0.2, h = 0.005, share = w * q / (1 + w * w * q * q);
-    sensors s = fresh_sensors(SETTINGS(QUIET, "sensor.film_leak_time=0.2"));
+    sensors s = fresh_sensors(given(QUIET " sensor.film_leak_time=0.2"));
     for (int i = 0; i < 1000; i++) {
         double a = w * h * i, b = w * h * (i + 1);
         sensed_motion first = {.bending = 0.1 * sin(a), .bending_rate = 0.1 * w * cos(a)};
@@ -309,7 +309,7 @@ TEST(film_follows_a_swing)
 TEST(accelerometer_rises_in_its_time)
 {
     const double tau = 3.5e-4 / RISE_CONSTANTS;
-    sensors s = fresh_sensors(SETTINGS(QUIET));
+    sensors s = fresh_sensors(given(QUIET));
     for (int i = 0; i < 20; i++) {
         check_close(accelerometer(&s, 100), 100 * (1 - exp(-i * 5e-5 / tau)), 1e-7);
         sensed_motion first = {.velocity = i * 5e-3, .acceleration = 100};
@@ -322,8 +322,7 @@ TEST(accelerometer_rises_in_its_time)
 TEST(accelerometer_feels_a_jump)
 {
     const double tau = 3.5e-4 / RISE_CONSTANTS, h = 1e-6;
-    sensors s =
-        fresh_sensors(SETTINGS(QUIET, "sensor.adc_range=1000", "sensor.accelerometer_range=0"));
+    sensors s = fresh_sensors(given(QUIET " sensor.adc_range=1000 sensor.accelerometer_range=0"));
     const sensed_motion before = {.velocity = 0.8}, after = {.velocity = 0.5};
     sensors_follow(&s, 0.01, &before, &before, 0);
     double last = sensors_read(&s, &after).accelerometer, gained = 0;
@@ -343,11 +342,10 @@ TEST(accelerometer_feels_a_jump)
 TEST(run_feeds_the_sensors)
 {
     const double tau = 0.01 / RISE_CONSTANTS, leak = 0.1;
-    run_result run =
-        rig_run(SETTINGS(QUIET, "control.law=force-pd", "method.step=2e-5", "run.duration=0.4",
-                         "initial.angle=-0.02", "sensor.film_leak_time=0.1",
-                         "sensor.accelerometer_rise_time=0.01"),
-                true);
+    run_result run = rig_run(
+        given(QUIET " control.law=force-pd method.step=2e-5 run.duration=0.4 initial.angle=-0.02 "
+                    "sensor.film_leak_time=0.1 sensor.accelerometer_rise_time=0.01"),
+        true);
     const trace *t = &run.trace;
     double felt = 0, leaked = 0, largest = 0, bending_before = 0;
     int compared = 0;
@@ -380,10 +378,8 @@ TEST(run_feeds_the_sensors)
 TEST(sensors_feel_a_push_in_contact)
 {
     // a twentieth of a millisecond before a sample
-    action push = {.kind = ACTION_PUSH, .time = 0.99995, .value = 0.02};
-    scenario s = {.parameters = rig_parameters(SETTINGS("control.law=force-pd", QUIET)),
-                  .actions = &push,
-                  .action_count = 1};
+    scenario s =
+        SCRIPTED(rig_parameters_with("control.law=force-pd " QUIET), PUSHES(0.99995, 0.02));
     KEPT_RUN(run) = run_done(&s, true);
     double fsr = 0, piezo_force = 0, acceleration = 0;
     for (EACH_ROW(row, &run.trace)) {
@@ -402,10 +398,8 @@ TEST(sensors_feel_a_push_in_contact)
 // and an impulse like any other.
 TEST(sensors_feel_an_unresolved_rebound)
 {
-    KEPT_RUN(run) = rig_run(SETTINGS(QUIET, "control.law=open-loop", "control.rate=5000",
-                                     "method.name=newmark", "arm.links=12", "wall.kind=plane",
-                                     "wall.restitution=0.8", "run.duration=0.305"),
-                            true);
+    RIG_RUN(run, QUIET " control.law=open-loop control.rate=5000 method.name=newmark arm.links=12 "
+                       "wall.kind=plane wall.restitution=0.8 run.duration=0.305");
     double fsr = 0, largest_impulse = 0;
     for (EACH_ROW(row, &run.trace)) {
         largest_impulse = fmax(largest_impulse, row->impulse);
@@ -443,33 +437,31 @@ static void see(const char *const *settings)
 
 TEST(controller_gets_what_is_fitted)
 {
-    see(SETTINGS("control.law=open-loop"));
+    see(given("control.law=open-loop"));
     assert_true(isnan(got.piezo_force) && isnan(got.film) && isnan(got.accelerometer));
     check_close(got.force, 1.5, 0.1);
-    see(SETTINGS("control.law=open-loop", ALL_FITTED));
+    see(given("control.law=open-loop " ALL_FITTED));
     check_close(got.force, 1.5, 0.1); // the FSR's
     check_close(got.piezo_force, 1.5 * exp(-1), 0.05);
     check_close(got.film, -0.2 * exp(-5), 0.01);
     assert_false(isnan(got.accelerometer));
-    see(SETTINGS("control.law=open-loop", "sensor.force=piezo"));
+    see(given("control.law=open-loop sensor.force=piezo"));
     check_close(got.force, 1.5 * exp(-1), 0.05);
     assert_true(isnan(got.film) && isnan(got.accelerometer));
 }
 
 TEST(ideal_force_sensors_are_alike)
 {
-    summary by_fsr = rig_summary(SETTINGS("control.law=force-pd", "sensor.ideal=true"));
+    summary by_fsr = rig_summary_with("control.law=force-pd sensor.ideal=true");
     summary by_piezo =
-        rig_summary(SETTINGS("control.law=force-pd", "sensor.ideal=true", "sensor.force=piezo"));
+        rig_summary_with("control.law=force-pd sensor.ideal=true sensor.force=piezo");
     check_relative(by_piezo.peak_force_N, by_fsr.peak_force_N, 1e-9);
     check_relative(by_piezo.steady_force_N, by_fsr.steady_force_N, 1e-9);
 }
 
 TEST(printed_arm_feeds_the_sensors_too)
 {
-    KEPT_RUN(run) = rig_run(
-        SETTINGS("control.law=open-loop", "arm.model=printed", "sensor.ideal=true", ALL_FITTED),
-        true);
+    RIG_RUN(run, "control.law=open-loop arm.model=printed sensor.ideal=true " ALL_FITTED);
     double largest = 0;
     for (size_t i = 1; i < run.trace.row_count; i++) {
         const sample *before = &run.trace.rows[i - 1], *row = &run.trace.rows[i];

@@ -6,7 +6,6 @@
 
 #include "src/scenario/outside.h"
 #include "src/session/session.h"
-#include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
 static char *plugin_files[2];
@@ -155,12 +154,9 @@ SWEEP_TEST(files_that_a_command_names_are_its_content)
 // Writes a file of so many bytes, all the same.
 static void write_bytes(const char *path, size_t count, int byte)
 {
-    FILE *file = fopen(path, "w");
-    assert_non_null(file);
-    for (size_t i = 0; i < count; i++) {
-        fputc(byte, file);
-    }
-    assert_int_equal(fclose(file), 0);
+    static char bytes[1000001];
+    memset(bytes, byte, count);
+    put_bytes(path, bytes, count);
 }
 
 // A stamp is another one after a change; of a small file only then.
@@ -247,8 +243,7 @@ SWEEP_TEST(rows_of_what_is_gone_are_refused)
     for (int i = 0; i < CASES; i++) {
         base.parameters = parameters_of(&cases[i]);
         const char *name = parameter_table[parameter_at(cases[i].parameter)].path;
-        KEPT_SWEEP(s);
-        must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2,-0.3,-0.4", NULL);
+        SWEPT(s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2,-0.3,-0.4", NULL);
         cases[i].write(0);
         KEPT_TEXT(rows) = uninterrupted(&s, 1);
         must_compute(&s, "first", (sweep_share){1, 2});
@@ -307,8 +302,7 @@ SWEEP_TEST(rows_of_what_cannot_be_told_stay_alone)
         .parameter = cases[1].parameter, .value = "exec sh law.sh; exit", .law = LAW_PROCESS};
     base.parameters = parameters_of(&shell);
     write_program(0);
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
+    SWEPT(s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
     must_compute(&s, "first", (sweep_share){1, 2});
     must_compute(&s, "second", (sweep_share){2, 2});
     check_refused("first", &s, "control.command may be another one, it cannot be told");
@@ -323,8 +317,7 @@ SWEEP_TEST(what_changes_during_a_sweep_ends_it)
 {
     base.parameters = parameters_of(&cases[1]);
     write_program(0);
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2,-0.3,-0.4", NULL);
+    SWEPT(s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2,-0.3,-0.4", NULL);
     must_compute(&s, "rows", (sweep_share){1, 4});
 
     sweep_store *store = must_open("rows", &s);
@@ -360,8 +353,7 @@ SWEEP_TEST(what_could_not_begin_is_no_row)
         base.parameters = parameters_of(&cases[i]);
         base.parameters.code_allowed = false;
         cases[i].write(0);
-        KEPT_SWEEP(s);
-        must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
+        SWEPT(s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
         sweep_store *store = must_open("rows", &s);
         REFUSED(STATUS_NOT_ALLOWED, "--allow-code", sweep_run(&s, store, &options, &progress, &f));
         sweep_store_close(store);
@@ -373,8 +365,7 @@ SWEEP_TEST(what_could_not_begin_is_no_row)
 
     base.parameters = parameters_of(&cases[0]);
     put_file("law.so", "no library");
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
+    SWEPT(s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
     sweep_store *store = must_open("rows", &s);
     REFUSED(STATUS_CANNOT_READ, "run 1: control.plugin = ./law.so cannot be loaded",
             sweep_run(&s, store, &options, &progress, &f));

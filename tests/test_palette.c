@@ -52,8 +52,7 @@ TEST(test_enter_does_what_the_entry_is_for)
     // a signal gets a pane, a scenario opens
     press(&ex, "<C-p>energy_residual<Enter>");
     assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].signals[0], SIGNAL_INDEX(energy_residual));
-    press(&ex, "<C-p>fig-3-4<Enter>");
-    assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
+    press_opens(&ex, "<C-p>fig-3-4<Enter>", "thesis/fig-3-4");
 }
 
 TEST(test_the_prompt_has_it_too)

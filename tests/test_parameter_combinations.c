@@ -71,10 +71,7 @@ TEST(an_arm_starts_in_front_of_its_wall)
     }
 
     // without a wall anywhere
-    parameters p = fresh(ARM_CORRECTED);
-    give(&p, "wall.kind", "none");
-    give(&p, "initial.angle", "2");
-    DONE(parameters_resolve(&p, &f));
+    resolved("wall.kind=none initial.angle=2");
 }
 
 // The bound of what the ledger may lack follows the method, unless it was given.
@@ -108,10 +105,8 @@ TEST(the_ledgers_bound_follows_the_method)
 
 TEST(resolving_twice_changes_nothing)
 {
-    parameters p = fresh(ARM_CORRECTED);
-    give(&p, "arm.links", "7");
-    DONE(parameters_resolve(&p, &f));
-    parameters once = p;
+    parameters p = resolved("arm.links=7");
+    const parameters once = p;
     DONE(parameters_resolve(&p, &f));
     assert_memory_equal(&p, &once, sizeof p);
 }
@@ -245,12 +240,7 @@ TEST(conditions_hold_up_to_their_limits)
     for (EACH(c, cases)) {
         parameters p = fresh(ARM_CORRECTED);
         fault f = {0};
-        char all[128], *rest = all;
-        snprintf(all, sizeof all, "%s", c->settings);
-        for (char *one; (one = strsep(&rest, " ")) != NULL;) {
-            char *path = strsep(&one, "=");
-            give(&p, path, one);
-        }
+        give_all(&p, c->settings);
         const status code = parameters_resolve(&p, &f);
         const bool right = c->blamed != NULL && strcmp(f.path, c->blamed) == 0 &&
                            strstr(f.text, f.path) != NULL &&
@@ -263,38 +253,25 @@ TEST(conditions_hold_up_to_their_limits)
 // Parameters that are not given follow from the others.
 TEST(walls_motors_and_sensors_follow_what_was_given)
 {
-    parameters p = fresh(ARM_CORRECTED);
-    give(&p, "motor.amplifier_gain", "3");
-    give(&p, "motor.resistance", "4");
-    DONE(parameters_resolve(&p, &f));
+    parameters p = resolved("motor.amplifier_gain=3 motor.resistance=4");
     check_close(p.motor.transconductance, 0.75, 0);
     assert_false(p.sensor.film || p.sensor.accelerometer || p.sensor.piezo);
 
     // damping of a Hunt-Crossley wall is 3/2 of its loss times its stiffness
-    give(&p, "wall.contact", "hunt-crossley");
-    give(&p, "wall.stiffness", "2e5");
-    DONE(parameters_resolve(&p, &f));
+    p = resolved("wall.contact=hunt-crossley wall.stiffness=2e5");
     check_relative(p.wall.damping, 0.3 * 2e5, 1e-15);
-    p = fresh(ARM_CORRECTED);
-    give(&p, "wall.contact", "hunt-crossley");
-    give(&p, "wall.damping", "7");
-    DONE(parameters_resolve(&p, &f));
+    p = resolved("wall.contact=hunt-crossley wall.damping=7");
     check_close(p.wall.stiffness, 1e6, 0);
     check_close(p.wall.damping, 7, 0);
-    p = fresh(ARM_CORRECTED);
-    give(&p, "wall.contact", "kelvin-voigt");
-    DONE(parameters_resolve(&p, &f));
+    p = resolved("wall.contact=kelvin-voigt");
     check_close(p.wall.stiffness, 75e3, 0);
     check_close(p.wall.damping, 20, 0);
 
     // what a law or a signal is taken from is there
-    static const char *const asked[][2] = {{"control.impact_angle", "film"},
-                                           {"control.impact_angle", "accelerometer"},
-                                           {"sensor.force", "piezo"}};
+    static const char *const asked[] = {"control.impact_angle=film",
+                                        "control.impact_angle=accelerometer", "sensor.force=piezo"};
     for (int i = 0; i < 3; i++) {
-        p = fresh(ARM_CORRECTED);
-        give(&p, asked[i][0], asked[i][1]);
-        DONE(parameters_resolve(&p, &f));
+        p = resolved(asked[i]);
         assert_int_equal(p.sensor.film, i == 0);
         assert_int_equal(p.sensor.accelerometer, i == 1);
         assert_int_equal(p.sensor.piezo, i == 2);

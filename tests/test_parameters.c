@@ -212,20 +212,16 @@ TEST(values_next_to_nothing_are_refused)
 
 TEST(an_endless_value_is_refused)
 {
-    char text[4096];
-    memset(text, '1', sizeof text - 1);
-    text[sizeof text - 1] = '\0';
+    char *text = repeated('1', 4095);
     check_refused("arm.k2", text, "127");
     check_refused("control.plugin", text, "127");
 
     // 127 characters are no more than 127, blanks around them not counted
     parameters p = fresh(ARM_CORRECTED);
-    memset(text, '0', PARAMETER_TEXT_SIZE);
-    text[PARAMETER_TEXT_SIZE] = '\0';
+    text = repeated('0', PARAMETER_TEXT_SIZE);
     check_refused("arm.k2", text, "127");
     check_refused("control.plugin", text, "127");
-    memcpy(text, "5.0", 3);
-    strcpy(text + PARAMETER_TEXT_SIZE - 1, "  ");
+    text = formatted("5.0%s  ", repeated('0', PARAMETER_TEXT_SIZE - 4));
     give(&p, "arm.k2", text);
     check_close(p.arm.k2, 5, 0);
     give(&p, "control.plugin", text);
@@ -265,8 +261,7 @@ TEST(texts_are_lines)
         for (size_t i = 0; i < sizeof characters; i++) {
             parameters p = fresh(ARM_CORRECTED), before = p;
             fault f = {0};
-            char text[64];
-            snprintf(text, sizeof text, "%s", plain);
+            char *text = formatted("%s", plain);
             text[at] = characters[i];
             assert_int_equal(parameter_set_text(&p, index, text, &f), STATUS_BAD_SCENARIO);
             assert_memory_equal(&p, &before, sizeof p);
@@ -326,10 +321,7 @@ TEST(a_misspelt_path_suggests_the_nearest)
     assert_string_equal(parameter_suggest("control.k2_factor"), "belief.k2_factor");
     assert_string_equal(parameter_suggest("control.wall_error"), "belief.wall_error");
     assert_null(parameter_suggest("something.quite.different"));
-    char endless[5000];
-    memset(endless, 'a', sizeof endless - 1);
-    endless[sizeof endless - 1] = '\0';
-    assert_null(parameter_suggest(endless));
+    assert_null(parameter_suggest(repeated('a', 4999)));
 }
 
 TEST(defaults_follow_the_model)

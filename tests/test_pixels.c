@@ -15,22 +15,32 @@ typedef struct decoded {
 
 #define UNSET 0xff000000u // of a pixel that was not drawn
 
+static decoded unset_pixels(int width, int height)
+{
+    const long count = (long)width * height;
+    decoded d = {width, height, malloc((size_t)count * sizeof *d.pixels)};
+    assert_non_null(d.pixels);
+    for (long i = 0; i < count; i++) {
+        d.pixels[i] = UNSET;
+    }
+    return d;
+}
+
+static void forget(decoded *d)
+{
+    free(d->pixels);
+}
+
 // --- decoders ---------------------------------------------------------------------------------
 
 // What a VT340 makes of a sixel picture, by the book of 1988.
 static decoded decode_sixel(const char *text)
 {
-    decoded d = {0};
     uint32_t colours[SIXEL_COLOURS] = {0}, colour = 0;
-    int x = 0, top = 0, n[5], used = 0;
+    int width, height, x = 0, top = 0, n[5], used = 0;
     assert_int_equal(strncmp(text, "\033P0;1;0q\"1;1;", 13), 0);
-    assert_int_equal(sscanf(text + 13, "%d;%d%n", &d.width, &d.height, &used), 2);
-    d.pixels = malloc((size_t)d.width * (size_t)d.height * sizeof *d.pixels);
-    assert_non_null(d.pixels);
-    for (long i = 0; i < (long)d.width * d.height; i++) {
-        d.pixels[i] = UNSET;
-    }
-
+    assert_int_equal(sscanf(text + 13, "%d;%d%n", &width, &height, &used), 2);
+    const decoded d = unset_pixels(width, height);
     for (const char *at = text + 13 + used; *at != '\033';) {
         int count = 1;
         if (*at == '#') {
@@ -84,12 +94,11 @@ static int digit_of(char c)
 // What kitty makes of the chunks of one picture.
 static decoded decode_kitty(const char *text, int *columns, int *rows)
 {
-    decoded d = {0};
     SCOPED(free_kept) unsigned char *packed = malloc(strlen(text));
     size_t size = 0;
-    int number, more = 1, used;
+    int number, width, height, more = 1, used;
     assert_int_equal(sscanf(text, "\033_Ga=T,i=%d,p=1,f=24,s=%d,v=%d,c=%d,r=%d,o=z,C=1,q=2,m=%d;%n",
-                            &number, &d.width, &d.height, columns, rows, &more, &used),
+                            &number, &width, &height, columns, rows, &more, &used),
                      6);
     const char *at = text + used;
     for (;;) {
@@ -116,11 +125,11 @@ static decoded decode_kitty(const char *text, int *columns, int *rows)
     }
     assert_int_equal(*at, '\0');
 
+    const decoded d = unset_pixels(width, height);
     uLongf plain_size = 3 * (uLongf)d.width * (uLongf)d.height, wanted = plain_size;
     SCOPED(free_kept) unsigned char *plain = malloc(plain_size);
     assert_int_equal(uncompress(plain, &plain_size, packed, size), Z_OK);
     assert_int_equal(plain_size, wanted);
-    d.pixels = malloc((size_t)d.width * (size_t)d.height * sizeof *d.pixels);
     for (long i = 0; i < (long)d.width * d.height; i++) {
         d.pixels[i] =
             (uint32_t)plain[3 * i] << 16 | (uint32_t)plain[3 * i + 1] << 8 | plain[3 * i + 2];
@@ -143,13 +152,10 @@ static void draw_pictures(explorer *ex, screen *s, picture_layer *layer)
 // A surface as a PNG and back again.
 static decoded through_png(cairo_surface_t *surface)
 {
-    char path[] = "/tmp/impactlab-pixels-XXXXXX";
-    close(mkstemp(path));
-    assert_int_equal(cairo_surface_write_to_png(surface, path), CAIRO_STATUS_SUCCESS);
-    cairo_surface_t *read = cairo_image_surface_create_from_png(path);
-    unlink(path);
-    decoded d = {cairo_image_surface_get_width(read), cairo_image_surface_get_height(read), NULL};
-    d.pixels = malloc((size_t)d.width * (size_t)d.height * sizeof *d.pixels);
+    assert_int_equal(cairo_surface_write_to_png(surface, "pixels.png"), CAIRO_STATUS_SUCCESS);
+    cairo_surface_t *read = cairo_image_surface_create_from_png("pixels.png");
+    const decoded d =
+        unset_pixels(cairo_image_surface_get_width(read), cairo_image_surface_get_height(read));
     for (int y = 0; y < d.height; y++) {
         const unsigned char *row =
             cairo_image_surface_get_data(read) + (long)y * cairo_image_surface_get_stride(read);
@@ -184,7 +190,7 @@ static pixel_block block_of(cairo_surface_t *surface)
                          cairo_image_surface_get_stride(surface) / 4};
 }
 
-TEST(test_what_is_written_is_the_picture)
+TEST_IN_FOLDER(test_what_is_written_is_the_picture)
 {
     SCOPED(screen_finish) screen s = {0};
     SCOPED(pictures_finish) picture_layer layer;
@@ -194,34 +200,23 @@ TEST(test_what_is_written_is_the_picture)
     for (int i = 0; i < layer.count; i++) {
         const screen_picture *p = &layer.items[i];
         const pixel_block block = block_of(p->surface);
-        char *text = NULL;
-        size_t size = 0;
         int columns, rows;
-        decoded png = through_png(p->surface);
+        SCOPED(forget) decoded png = through_png(p->surface);
         assert_int_equal(png.width, 8 * p->width);
         assert_int_equal(png.height, 16 * p->height);
 
         // five bits of each colour, and hundredths of it
-        FILE *stream = open_memstream(&text, &size);
-        assert_true(sixel_write(stream, &block, SIXEL_COLOURS));
-        fclose(stream);
-        decoded sixel = decode_sixel(text);
+        SCOPED(free_kept) WRITTEN(lines, assert_true(sixel_write(stream, &block, SIXEL_COLOURS)));
+        SCOPED(forget) decoded sixel = decode_sixel(lines);
         assert_in_range(difference(&sixel, &png), 0, 10);
-        free(sixel.pixels);
-        free(text);
 
         // to the bit
-        stream = open_memstream(&text, &size);
-        assert_true(kitty_write(stream, &block, i + 1, p->width, p->height));
-        fclose(stream);
-        decoded kitty = decode_kitty(text, &columns, &rows);
+        SCOPED(free_kept)
+        WRITTEN(text, assert_true(kitty_write(stream, &block, i + 1, p->width, p->height)));
+        SCOPED(forget) decoded kitty = decode_kitty(text, &columns, &rows);
         assert_int_equal(columns, p->width);
         assert_int_equal(rows, p->height);
-        png.pixels = realloc(png.pixels, (size_t)png.width * (size_t)png.height * 4);
         assert_int_equal(difference(&kitty, &png), 0);
-        free(kitty.pixels);
-        free(text);
-        free(png.pixels);
     }
 }
 
@@ -235,11 +230,10 @@ TEST(test_few_registers_are_enough)
     const pixel_block block = {pixels, 64, 20, 64};
     SCOPED(free_kept) WRITTEN(text, assert_true(sixel_write(stream, &block, 4)));
     assert_null(strstr(text, "#4"));
-    decoded d = decode_sixel(text);
+    SCOPED(forget) decoded d = decode_sixel(text);
     // the commonest are as they were
     const decoded first = {30, 1, d.pixels}, wanted = {30, 1, pixels};
     assert_in_range(difference(&first, &wanted), 0, 2);
-    free(d.pixels);
 }
 
 // The colour that most pixels of a surface near to it have, other than the ground.

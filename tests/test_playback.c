@@ -9,10 +9,8 @@ static const char *const recorded_csv = "recorded.csv";
 static summary record(const char *const *settings)
 {
     KEPT_RUN(r) = rig_run(settings, true);
-    FILE *file = fopen(recorded_csv, "w");
-    assert_non_null(file);
-    export_csv(file, &r.trace, 2);
-    assert_int_equal(fclose(file), 0);
+    SCOPED(free_kept) WRITTEN(text, export_csv(stream, &r.trace, 2));
+    put_file(recorded_csv, text);
     return r.summary;
 }
 
@@ -57,12 +55,11 @@ TEST(a_command_is_held_or_goes_straight)
     };
     put_file("u.csv", "\"t[ms]\",u[mV]\n100,1000\n200,2000\n300,3000\n");
     for (EACH(c, cases)) {
-        KEPT_RUN(r) = rig_run(
-            given("control.law=playback control.playback_file=u.csv control.playback_column=u %s "
-                  "%s control.rate=1000 sensor.ideal=true run.duration=0.45 wall.kind=none",
-                  formatted("control.playback_hold=%s", c->hold),
-                  formatted("control.playback_shift=%s", c->shift)),
-            true);
+        RIG_RUN(r,
+                "control.law=playback control.playback_file=u.csv control.playback_column=u %s "
+                "%s control.rate=1000 sensor.ideal=true run.duration=0.45 wall.kind=none",
+                formatted("control.playback_hold=%s", c->hold),
+                formatted("control.playback_shift=%s", c->shift));
         const size_t row = trace_rows_until(&r.trace, c->time) - 1;
         check_close(r.trace.rows[row].voltage, c->volts, 1e-9);
     }

@@ -61,6 +61,26 @@ static pool_work work_on(tally *t)
                        .stop = &t->stop};
 }
 
+// What is left of a tally when the work was done on so many threads.
+static tally ran_on(int threads, tally t)
+{
+    pool_work w = work_on(&t);
+    assert_int_equal(pool_run(&w, threads, NULL), STATUS_OK);
+    return t;
+}
+
+// Each piece was computed and collected once.
+static void check_complete(const tally *t)
+{
+    assert_int_equal(t->computed, PIECES);
+    assert_int_equal(t->total, PIECES);
+    assert_int_equal(t->last_ticks, 1);
+    for (int i = 0; i < PIECES; i++) {
+        assert_int_equal(t->collected[i], 1);
+        check_close(t->results[i], sqrt(i), 0);
+    }
+}
+
 // The linker puts this in the place of the C library's (-Wl,--wrap=pthread_create, see
 // meson.build): of the threads asked for only so many are to be had.
 static int threads_left = 1000;
@@ -110,34 +130,23 @@ TEST(every_thread_is_joined_once)
 TEST(every_piece_is_computed_and_collected_once)
 {
     for (int threads = 1; threads <= POOL_MOST_THREADS; threads *= threads < 8 ? 2 : 32) {
-        tally t = {.fail_at = 0};
-        pool_work w = work_on(&t);
-        assert_int_equal(pool_run(&w, threads, NULL), STATUS_OK);
-        assert_int_equal(t.computed, PIECES);
-        assert_int_equal(t.last_ticks, 1);
-        for (int i = 0; i < PIECES; i++) {
-            assert_int_equal(t.collected[i], 1);
-            check_close(t.results[i], sqrt(i), 0);
-        }
+        const tally t = ran_on(threads, (tally){0});
+        check_complete(&t);
     }
 }
 
 TEST(a_failure_ends_the_work_and_is_returned)
 {
-    fault f = {.text = ""};
     tally t = {.fail_at = 10};
     pool_work w = work_on(&t);
-    assert_int_equal(pool_run(&w, 4, &f), STATUS_CANNOT_WRITE);
-    assert_int_equal(f.code, STATUS_CANNOT_WRITE);
+    REFUSED(STATUS_CANNOT_WRITE, "piece", pool_run(&w, 4, &f));
     assert_int_equal(t.total, 10);
     assert_true(t.computed <= 2 * QUEUE + 4); // what was there when it failed and what came then
 }
 
 TEST(a_stop_ends_it_early_without_a_fault)
 {
-    tally t = {.stop = 1};
-    pool_work w = work_on(&t);
-    assert_int_equal(pool_run(&w, 2, NULL), STATUS_OK);
+    const tally t = ran_on(2, (tally){.stop = 1});
     // what was under way is collected, all the rest is left
     assert_int_equal(t.total, t.computed);
     assert_true(t.computed <= QUEUE + 2);
@@ -189,36 +198,24 @@ TEST(no_pieces_are_no_work)
 TEST(the_work_is_done_without_threads)
 {
     for (int left = 0; left < 3; left++) {
-        tally t = {.fail_at = 0};
-        pool_work w = work_on(&t);
         threads_left = left;
-        assert_int_equal(pool_run(&w, left == 0 ? 1 : 4, NULL), STATUS_OK);
-        assert_int_equal(t.total, PIECES);
-        assert_int_equal(t.last_ticks, 1);
+        const tally t = ran_on(left == 0 ? 1 : 4, (tally){0});
+        check_complete(&t);
         assert_true(left > 0 || t.ticks == PIECES + 1); // after each, and at the end
-        for (int i = 0; i < PIECES; i++) {
-            assert_int_equal(t.collected[i], 1);
-            check_close(t.results[i], sqrt(i), 0);
-        }
     }
 
     // failures and stops end it at once
-    tally failing = {.fail_at = 10}, stopped = {.stop = 1};
+    tally failing = {.fail_at = 10};
     pool_work w = work_on(&failing);
     threads_left = 0;
     REFUSED(STATUS_CANNOT_WRITE, "", pool_run(&w, 4, &f));
     assert_int_equal(failing.total, 10);
     assert_int_equal(failing.computed, 10);
-    w = work_on(&stopped);
     threads_left = 0;
-    assert_int_equal(pool_run(&w, 4, NULL), STATUS_OK);
+    const tally stopped = ran_on(4, (tally){.stop = 1});
     assert_int_equal(stopped.computed, 0);
     assert_int_equal(stopped.last_ticks, 1);
     threads_left = 1000;
 }
 
-int main(void)
-{
-    alarm(120); // where somebody waits for what never comes, this fails
-    return run_cases(NULL, NULL);
-}
+ALL_IN_TWO_MINUTES

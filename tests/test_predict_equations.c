@@ -132,7 +132,7 @@ TEST(listed_energy_of_any_state)
     for (int trial = 0; trial < 200; trial++) {
         three_body_state s;
         const parameters other = any_arm(trial, &seed, &s);
-        parameters p = parameters_of(ARM_PRINTED);
+        parameters p = defaults_of(ARM_PRINTED);
         p.arm.length = other.arm.length, p.arm.mass = other.arm.mass;
         p.arm.link_inertia = other.arm.link_inertia, p.arm.hub_inertia = other.arm.hub_inertia;
         p.arm.k2 = other.arm.k2, p.motor.voltage = other.motor.voltage;
@@ -251,7 +251,7 @@ TEST(the_printed_quadratic_form_solves_two_of_the_equations)
     unsigned seed = 25;
     int found = 0;
     for (int trial = 0; trial < 200; trial++) {
-        parameters p = parameters_of(ARM_PRINTED);
+        parameters p = defaults_of(ARM_PRINTED);
         p.arm.k2 *= pow(10, 1 + noise(&seed));
         p.printed.spring_counted_twice = trial % 2;
         const three_body_state s = state_at_wall(&p, &seed);

@@ -8,18 +8,36 @@ static double penetration_rate(const parameters *p, const double q[3], const dou
     return l * c * w[1] + (a * cos(q[2]) + b * sin(q[2]) - l * c) * w[2];
 }
 
+typedef status (*predictor)(const parameters *, const three_body_state *, prediction *, fault *);
+static const predictor predictors[3] = {predict_energy, predict_impact_dynamics,
+                                        predict_impact_quadratic};
+
+static prediction predicted(predictor which, const parameters *p, const three_body_state *s)
+{
+    prediction out;
+    DONE(which(p, s, &out, &f));
+    return out;
+}
+
+// The impulse of an impact, and the velocities after it.
+static double impulse_of(const parameters *p, const three_body_state *s, double after[3])
+{
+    double impulse;
+    DONE(predict_velocity_jump(p, s, after, &impulse, &f));
+    return impulse;
+}
+
 TEST(springs_share_energy_by_their_compliance)
 {
     const double k[3] = {1, 3, 6}; // compliances 6 : 2 : 1
-    double deflection[3], torque = 0, energy = 0;
+    double deflection[3], energy = 0;
     quasi_principle_deflections(3, k, 9, deflection);
     check_close(0.5 * k[0] * deflection[0] * deflection[0], 6, 1e-12);
     check_close(0.5 * k[1] * deflection[1] * deflection[1], 2, 1e-12);
     check_close(0.5 * k[2] * deflection[2] * deflection[2], 1, 1e-12);
     // springs in series carry one torque
-    torque = k[0] * deflection[0];
     for (int i = 0; i < 3; i++) {
-        check_close(k[i] * deflection[i], torque, 1e-12);
+        check_close(k[i] * deflection[i], k[0] * deflection[0], 1e-12);
         energy += 0.5 * k[i] * deflection[i] * deflection[i];
     }
     check_close(energy, 9, 1e-12);
@@ -31,14 +49,13 @@ TEST(energy_of_a_small_bend_can_be_computed_by_hand)
 {
     const double D = 1e-4;
     three_body_state s = {{0.1 + D / 2, 0.1 + D / 2, 0.1 - D / 2}, {0, 0, 0}};
-    prediction out;
 
     // printed: 4u a + 2l f = S - k D, u a + l f = k D, so l f = (5 k D - S) / 2
-    parameters p = parameters_of(ARM_PRINTED);
+    parameters p = defaults_of(ARM_PRINTED);
     p.arm.link_inertia = 0;
     p.motor.voltage = 1e-3;
     double u = p.arm.mass / 2 * 0.0625, torque = 0.4377e-3, k = p.arm.k2;
-    assert_int_equal(predict_energy(&p, &s, &out, NULL), STATUS_OK);
+    prediction out = predicted(predict_energy, &p, &s);
     check_close(out.force, (5 * k * D - torque) / 2 / 0.5, 1e-6);
     assert_true(isnan(out.delay) && isnan(out.impulse));
 
@@ -47,7 +64,7 @@ TEST(energy_of_a_small_bend_can_be_computed_by_hand)
     p.arm.link_inertia = 0;
     p.motor.voltage = 1e-3;
     double a = (torque - 2 * k * D) / (p.arm.hub_inertia + 2 * u);
-    assert_int_equal(predict_energy(&p, &s, &out, NULL), STATUS_OK);
+    out = predicted(predict_energy, &p, &s);
     check_close(out.force, (k * D - u * a) / 0.5, 1e-6);
 }
 
@@ -58,13 +75,12 @@ TEST(damping_takes_its_share_of_the_energy)
     const double ratio = 0.02;
     three_body_state s = {{0.1, 0.1, 0.1}, {1e-4, 1e-4, 1e-4}};
     parameters p = corrected_with(HUB_RIGID);
-    prediction undamped, damped;
     p.arm.link_inertia = 0;
     p.motor.voltage = p.motor.stiction = 0;
-    assert_int_equal(predict_energy(&p, &s, &undamped, NULL), STATUS_OK);
+    const prediction undamped = predicted(predict_energy, &p, &s);
     s.velocity[2] = 1e-4 + 1e-12; // bends from here on
     p.arm.damping_ratio = ratio;
-    assert_int_equal(predict_energy(&p, &s, &damped, NULL), STATUS_OK);
+    const prediction damped = predicted(predict_energy, &p, &s);
 
     double u = p.arm.mass / 2 * 0.0625, square = 4 * p.arm.k2 / (p.arm.hub_inertia + 2 * u);
     double d = square * ratio / sqrt(p.arm.k2 / u), w = sqrt(square - d * d);
@@ -75,14 +91,13 @@ TEST(energy_cross_term_makes_no_difference_at_half_a_metre_only)
 {
     unsigned seed = 2;
     for (int longer = 0; longer <= 1; longer++) {
-        parameters listed = parameters_of(ARM_PRINTED), meant;
+        parameters listed = defaults_of(ARM_PRINTED), meant;
         listed.arm.length = longer ? 1.4 : 1;
         meant = listed;
         meant.printed.energy_cross_term = false;
         three_body_state s = state_at_wall(&listed, &seed);
-        prediction a, b;
-        assert_int_equal(predict_energy(&listed, &s, &a, NULL), STATUS_OK);
-        assert_int_equal(predict_energy(&meant, &s, &b, NULL), STATUS_OK);
+        const prediction a = predicted(predict_energy, &listed, &s);
+        const prediction b = predicted(predict_energy, &meant, &s);
         if (longer) {
             check_below(a.force, b.force);
         } else {
@@ -95,12 +110,11 @@ TEST(impact_stops_the_contact_point)
 {
     unsigned seed = 4;
     for (int trial = 0; trial < 60; trial++) {
-        parameters p = trial % 3 == 0   ? parameters_of(ARM_PRINTED)
+        parameters p = trial % 3 == 0   ? defaults_of(ARM_PRINTED)
                        : trial % 3 == 1 ? corrected_with(HUB_RIGID)
                                         : corrected_with(HUB_SPRING);
         three_body_state s = state_at_wall(&p, &seed);
-        double after[3], impulse;
-        assert_int_equal(predict_velocity_jump(&p, &s, after, &impulse, NULL), STATUS_OK);
+        double after[3], impulse = impulse_of(&p, &s, after);
         assert_true(impulse > 0);
         assert_true(penetration_rate(&p, s.angle, s.velocity) > 0);
         // the corrected form has the contact point on the arm, second order in the bend from (a, b)
@@ -119,8 +133,7 @@ TEST(plastic_impact_loses_half_impulse_times_speed)
     for (int trial = 0; trial < 20; trial++) {
         parameters p = corrected_with(trial % 2 ? HUB_SPRING : HUB_RIGID);
         three_body_state s = state_at_wall(&p, &seed);
-        double after[3], impulse;
-        assert_int_equal(predict_velocity_jump(&p, &s, after, &impulse, NULL), STATUS_OK);
+        double after[3], impulse = impulse_of(&p, &s, after);
         double loss = kinetic_energy(&p, s.angle, s.velocity) - kinetic_energy(&p, s.angle, after);
         assert_true(loss > 0);
         check_relative(loss, 0.5 * impulse * penetration_rate(&p, s.angle, s.velocity), 1e-3);
@@ -152,11 +165,10 @@ TEST(printed_dynamics_solves_the_printed_equations)
     int held = 0;
     for (int trial = 0; trial < 60; trial++) {
         const double factor[3] = {1, 10, 100};
-        parameters p = parameters_of(ARM_PRINTED);
+        parameters p = defaults_of(ARM_PRINTED);
         p.arm.k2 *= factor[trial % 3];
         three_body_state s = state_at_wall(&p, &seed);
-        prediction out;
-        assert_int_equal(predict_impact_dynamics(&p, &s, &out, NULL), STATUS_OK);
+        const prediction out = predicted(predict_impact_dynamics, &p, &s);
         if (out.holds) {
             double left[2];
             thesis_equations(&p, &s, &out, left);
@@ -175,7 +187,7 @@ TEST(any_springs_solve_the_printed_equations)
     unsigned seed = 12;
     int held = 0;
     for (int trial = 0; trial < 4000; trial++) {
-        parameters p = parameters_of(ARM_PRINTED);
+        parameters p = defaults_of(ARM_PRINTED);
         p.arm.k1 *= pow(10, 4 * noise(&seed));
         p.arm.k2 *= pow(10, 4 * noise(&seed));
         p.arm.hub_inertia *= pow(10, 3 * noise(&seed));
@@ -214,13 +226,12 @@ TEST(corrected_dynamics_meets_the_peak_of_a_half_oscillation)
     assert_int_equal(predict_velocity_jump(&p, &s, after, &impulse, NULL), STATUS_OK);
     double frequency = sqrt(4 * p.arm.k2 / (inertia + 2 * u));
     double peak = after[1] * (p.arm.k2 * 2 / frequency + u * frequency) / 0.5;
-    prediction out, quadratic;
-    assert_int_equal(predict_impact_dynamics(&p, &s, &out, NULL), STATUS_OK);
+    const prediction out = predicted(predict_impact_dynamics, &p, &s);
     assert_true(out.holds);
     check_relative(out.force, peak, 1e-9);
     check_relative(out.delay, 4 / M_PI * M_PI / 2 / frequency, 1e-9);
     check_close(out.impulse, impulse, 0);
-    assert_int_equal(predict_impact_quadratic(&p, &s, &quadratic, NULL), STATUS_OK);
+    const prediction quadratic = predicted(predict_impact_quadratic, &p, &s);
     check_close(quadratic.force, out.force, 0);
 }
 
@@ -233,9 +244,8 @@ TEST(a_stiff_hub_spring_predicts_like_a_rigid_hub)
     for (int trial = 0; trial < 20; trial++) {
         three_body_state s = state_at_wall(&rigid, &seed);
         s.angle[0] = s.angle[1] + (0.4377 - 0.045) / spring.arm.k1;
-        prediction a, b;
-        assert_int_equal(predict_impact_dynamics(&rigid, &s, &a, NULL), STATUS_OK);
-        assert_int_equal(predict_impact_dynamics(&spring, &s, &b, NULL), STATUS_OK);
+        const prediction a = predicted(predict_impact_dynamics, &rigid, &s);
+        const prediction b = predicted(predict_impact_dynamics, &spring, &s);
         check_relative(b.force, a.force, 0.01);
         check_relative(b.delay, a.delay, 0.01);
     }
@@ -251,26 +261,21 @@ TEST(prediction_does_not_depend_on_where_the_corrected_arm_stands)
         for (int i = 0; i < 3; i++) {
             far.angle[i] -= 0.7;
         }
-        prediction a, b;
-        assert_int_equal(predict_impact_dynamics(&p, &near, &a, NULL), STATUS_OK);
-        assert_int_equal(predict_impact_dynamics(&p, &far, &b, NULL), STATUS_OK);
+        prediction a = predicted(predict_impact_dynamics, &p, &near);
+        prediction b = predicted(predict_impact_dynamics, &p, &far);
         check_relative(a.force, b.force, 1e-9);
-        assert_int_equal(predict_energy(&p, &near, &a, NULL), STATUS_OK);
-        assert_int_equal(predict_energy(&p, &far, &b, NULL), STATUS_OK);
+        a = predicted(predict_energy, &p, &near);
+        b = predicted(predict_energy, &p, &far);
         check_relative(a.force, b.force, 1e-9);
     }
 }
-
-typedef status (*predictor)(const parameters *, const three_body_state *, prediction *, fault *);
-static const predictor predictors[3] = {predict_energy, predict_impact_dynamics,
-                                        predict_impact_quadratic};
 
 TEST(no_state_gives_garbage)
 {
     unsigned seed = 12;
     int held = 0;
     for (int trial = 0; trial < 3000; trial++) {
-        parameters p = trial % 3 == 0   ? parameters_of(ARM_PRINTED)
+        parameters p = trial % 3 == 0   ? defaults_of(ARM_PRINTED)
                        : trial % 3 == 1 ? corrected_with(HUB_RIGID)
                                         : corrected_with(HUB_SPRING);
         p.arm.k2 *= pow(10, 1 + noise(&seed));
@@ -285,10 +290,7 @@ TEST(no_state_gives_garbage)
         // what a motor and a beam can bend the hub's joint by
         s.angle[0] = s.angle[1] + 10 * noise(&seed) / p.arm.k1;
         for (int i = 0; i < 3; i++) {
-            prediction out;
-            fault f = {.text = ""};
-            fail_if(predictors[i](&p, &s, &out, &f) != STATUS_OK, "trial %d, predictor %d: %s",
-                    trial, i, f.text);
+            const prediction out = predicted(predictors[i], &p, &s);
             if (out.holds) {
                 held++;
                 assert_true(out.force > 0 && out.force < 1e4);
@@ -303,11 +305,10 @@ TEST(no_state_gives_garbage)
 TEST(an_arm_that_moves_away_does_not_touch)
 {
     for (int model = ARM_CORRECTED; model <= ARM_PRINTED; model++) {
-        parameters p = parameters_of((arm_model_kind)model);
+        parameters p = defaults_of((arm_model_kind)model);
         three_body_state s = {{0.1, 0.1, 0.1}, {-1, -1, -1}};
         for (int i = 0; i < 3; i++) {
-            prediction out;
-            assert_int_equal(predictors[i](&p, &s, &out, NULL), STATUS_OK);
+            const prediction out = predicted(predictors[i], &p, &s);
             assert_false(out.holds);
         }
     }
@@ -320,10 +321,9 @@ TEST(a_link_that_is_bent_forwards_loses_contact_at_once)
     for (int i = 0; i < 3; i++) {
         three_body_state forwards = {{0.05, 0.05, 0.15}, {0.3, 0.3, 0.3}};
         three_body_state backwards = {{0.15, 0.15, 0.05}, {0.3, 0.3, 0.3}};
-        prediction out;
-        assert_int_equal(predictors[i](&p, &forwards, &out, NULL), STATUS_OK);
+        prediction out = predicted(predictors[i], &p, &forwards);
         assert_false(out.holds);
-        assert_int_equal(predictors[i](&p, &backwards, &out, NULL), STATUS_OK);
+        out = predicted(predictors[i], &p, &backwards);
         assert_true(out.holds);
     }
 }
@@ -331,15 +331,14 @@ TEST(a_link_that_is_bent_forwards_loses_contact_at_once)
 TEST(faster_hits_harder)
 {
     for (int model = ARM_CORRECTED; model <= ARM_PRINTED; model++) {
-        parameters p = parameters_of((arm_model_kind)model);
+        parameters p = defaults_of((arm_model_kind)model);
         p.arm.k2 *= 10;
         for (int i = 0; i < 3; i++) {
             double last = 0;
             for (double speed = 0.5; speed < 4; speed += 0.5) {
                 // bent backwards, so that back EMF does not pull it off the wall
                 three_body_state s = {{0.11, 0.11, 0.09}, {speed, speed, speed}};
-                prediction out;
-                assert_int_equal(predictors[i](&p, &s, &out, NULL), STATUS_OK);
+                const prediction out = predicted(predictors[i], &p, &s);
                 assert_true(out.holds);
                 check_below(last, out.force);
                 last = out.force;
@@ -350,15 +349,11 @@ TEST(faster_hits_harder)
 
 TEST(more_links_are_predicted_as_the_two_link_arm)
 {
-    parameters two = corrected_with(HUB_RIGID), many;
-    parameters_defaults(&many, ARM_CORRECTED);
-    assert_int_equal(parameter_set_number(&many, PARAMETER_INDEX(arm.links), 12, NULL), STATUS_OK);
-    assert_int_equal(parameters_resolve(&many, NULL), STATUS_OK);
+    const parameters two = corrected_with(HUB_RIGID), many = resolved("arm.links=12");
     three_body_state s = {{0.1, 0.1, 0.1}, {1, 1, 1}};
     for (int i = 0; i < 3; i++) {
-        prediction a, b;
-        assert_int_equal(predictors[i](&two, &s, &a, NULL), STATUS_OK);
-        assert_int_equal(predictors[i](&many, &s, &b, NULL), STATUS_OK);
+        const prediction a = predicted(predictors[i], &two, &s);
+        const prediction b = predicted(predictors[i], &many, &s);
         check_relative(b.force, a.force, 1e-12);
     }
 }
@@ -387,22 +382,19 @@ TEST(a_list_of_equal_joints_changes_no_prediction)
 
 TEST(a_state_that_is_not_finite_is_refused)
 {
-    parameters p = parameters_of(ARM_CORRECTED);
+    parameters p = defaults_of(ARM_CORRECTED);
     three_body_state s = {{0.1, 0.1, 0.1}, {1, 1, (double)NAN}};
     for (int i = 0; i < 3; i++) {
         prediction out;
-        fault f = {.text = ""};
-        assert_int_equal(predictors[i](&p, &s, &out, &f), STATUS_NOT_FINITE);
-        assert_non_null(strstr(f.text, "second link's velocity"));
+        REFUSED(STATUS_NOT_FINITE, "second link's velocity", predictors[i](&p, &s, &out, &f));
         assert_false(out.holds);
     }
 
     // an angle, and the velocities alone after an impact
-    fault f = {.text = ""};
     double after[3], impulse;
     s = (three_body_state){{0.1, (double)INFINITY, 0.1}, {1, 1, 1}};
-    assert_int_equal(predict_velocity_jump(&p, &s, after, &impulse, &f), STATUS_NOT_FINITE);
-    assert_non_null(strstr(f.text, "first link's angle is inf"));
+    REFUSED(STATUS_NOT_FINITE, "first link's angle is inf",
+            predict_velocity_jump(&p, &s, after, &impulse, &f));
 }
 
 // A state too fast for its impulse to be a number is said to have none.
@@ -410,7 +402,7 @@ TEST(an_impact_without_a_finite_impulse_is_refused)
 {
     const three_body_state s = {{0.1, 0.1, 0.1}, {1e308, 1e308, 1.5e308}};
     for (int model = ARM_CORRECTED; model <= ARM_PRINTED; model++) {
-        parameters p = parameters_of((arm_model_kind)model);
+        parameters p = defaults_of((arm_model_kind)model);
         p.arm.mass = 1000;
         double after[3], impulse;
         REFUSED(STATUS_SINGULAR, "no single impulse",
@@ -429,9 +421,8 @@ TEST(an_overdamped_arm_gives_no_energy_back)
     parameters p = corrected_with(HUB_RIGID), plain = p;
     p.arm.damping_ratio = 4;
     const three_body_state s = {{0.11, 0.11, 0.09}, {1, 1, 1}};
-    prediction damped, free;
-    assert_int_equal(predict_energy(&p, &s, &damped, NULL), STATUS_OK);
-    assert_int_equal(predict_energy(&plain, &s, &free, NULL), STATUS_OK);
+    const prediction damped = predicted(predict_energy, &p, &s);
+    const prediction free = predicted(predict_energy, &plain, &s);
     check_below(damped.force, free.force);
     assert_true(isfinite(damped.force));
 }

@@ -1,5 +1,4 @@
 // One question to all predictors: which answer, and why the others do not.
-#include "src/run/run.h"
 
 #include "tests/arm_fixture.h"
 
@@ -42,9 +41,7 @@ TEST(an_arm_that_moves_away_does_not_hold)
 
 TEST(the_linearised_arm_says_what_it_lacks)
 {
-    parameters p = fixture_parameters(NULL), printed;
-    parameters_defaults(&printed, ARM_PRINTED);
-    assert_int_equal(parameters_resolve(&printed, NULL), STATUS_OK);
+    const parameters p = fixture_parameters(NULL), printed = parameters_with("arm.model=printed");
 
     prediction_answer answer =
         predict_with(PREDICTOR_LINEARISED, &(prediction_question){&p, closing, NULL, NULL});
@@ -184,9 +181,8 @@ TEST(the_row_before_landing_is_asked_about)
         assert_null(row_before_landing(&given));
     }
 
-    scenario s = {.name = (char *)"printed"};
-    parameters_defaults(&s.parameters, ARM_PRINTED);
-    assert_int_equal(parameters_resolve(&s.parameters, NULL), STATUS_OK);
+    const scenario s = {.name = (char *)"printed",
+                        .parameters = parameters_with("arm.model=printed")};
     prediction_answer answers[PREDICTOR_COUNT];
     KEPT_RUN(r) = run_done(&s, true);
     assert_true(isnan(r.landing.before.angle[0]));

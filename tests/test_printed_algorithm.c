@@ -1,4 +1,4 @@
-#include "tests/check.h"
+#include "tests/given_parameters.h"
 
 #include "src/thesis/printed_algorithm.h"
 
@@ -36,9 +36,7 @@ static status run_into(recording *r, parameters p, script change, fault *f)
 
 static parameters printed_parameters_of(double voltage, double duration)
 {
-    parameters p;
-    parameters_defaults(&p, ARM_PRINTED);
-    assert_int_equal(parameters_resolve(&p, NULL), STATUS_OK);
+    parameters p = defaults_of(ARM_PRINTED);
     p.motor.voltage = voltage;
     p.run.duration = duration;
     return p;

@@ -1,14 +1,7 @@
-#include "tests/check.h"
+#include "tests/three_body_states.h"
 
 #include "src/thesis/printed_arm.h"
 #include "src/base/dense.h"
-
-// A fixed sequence of numbers between -1 and 1.
-static double noise(unsigned *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (double)(*seed >> 8) / (double)(1u << 23) - 1;
-}
 
 typedef struct motion_state {
     double q[3], w[3], alpha[3], force;
@@ -29,9 +22,7 @@ static motion_state some_state(unsigned *seed, bool contact)
 
 static printed_arm arm_with(unsigned switches)
 {
-    parameters p;
-    parameters_defaults(&p, ARM_PRINTED);
-    assert_int_equal(parameters_resolve(&p, NULL), STATUS_OK);
+    parameters p = defaults_of(ARM_PRINTED);
     p.printed.spring_counted_twice = switches & 1;
     p.printed.force_at_link_end = switches & 2;
     p.printed.sign_dead_band = switches & 4;

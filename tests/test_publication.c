@@ -6,13 +6,6 @@
 
 // ---- files
 
-static void expect_contents(const char *path, const char *contents)
-{
-    size_t length;
-    KEPT_TEXT(text) = read_file(path, &length);
-    assert_string_equal(text, contents);
-}
-
 TEST(bare_pages_have_no_title_and_no_caption)
 {
     static figure_report r;
@@ -22,11 +15,9 @@ TEST(bare_pages_have_no_title_and_no_caption)
         artwork a = open_figure(*c, dressed), b = open_figure(*c, bare);
         check_below(b.height, a.height - 12);
         record_page(&b, &r);
-        char *start = g_strndup(b.title, 12);
         for (int t = 0; t < r.text_count; t++) {
-            assert_null(strstr(r.texts[t].text, start));
+            assert_null(strstr(r.texts[t].text, formatted("%.12s", b.title)));
         }
-        g_free(start);
     }
 }
 
@@ -49,17 +40,15 @@ static void publish(const figure_options *o, const char *path)
 TEST(a_bare_picture_has_its_caption_beside_it)
 {
     publish(&(figure_options){.look.bare = true}, "bare.svg");
-    expect_contents("bare.txt", "A title & more\n\nWith β = 0.4, 5 % off, θ1\n");
+    assert_holds("bare.txt", "A title & more\n\nWith β = 0.4, 5 % off, θ1\n");
     publish(&(figure_options){0}, "dressed.svg");
     assert_int_not_equal(access("dressed.txt", F_OK), 0);
 }
 
 TEST(latex_sets_the_figure)
 {
-    size_t length;
-    char *tex = g_strdup("paper.tex");
-    publish(&(figure_options){.look.width = 85, .latex = tex}, "force.pdf");
-    char *text = read_file(tex, &length);
+    publish(&(figure_options){.look.width = 85, .latex = "paper.tex"}, "force.pdf");
+    KEPT_TEXT(text) = file_text("paper.tex");
     assert_non_null(strstr(text, "\\begin{figure}\n"));
     assert_non_null(strstr(text, "width=85mm,alt={A title \\& more. 1 panel over Time in s: Force "
                                  "f in N.}]{force.pdf}"));
@@ -74,22 +63,16 @@ TEST(latex_sets_the_figure)
         assert_true(depth >= 0);
     }
     assert_int_equal(depth, 0);
-    free(text);
-    g_free(tex);
 }
 
 TEST(files_know_the_command_and_tell_what_they_show)
 {
-    size_t length;
     const figure_options o = {.command = "impactlab run x --set arm.k2=3"};
     publish(&o, "m.svg");
-    char *svg = read_file("m.svg", &length);
-    assert_non_null(strstr(svg, "<dc:source>impactlab run x --set arm.k2=3</dc:source>"));
-    assert_non_null(strstr(svg, "<desc>A title &amp; more. 1 panel over Time in s"));
-    free(svg);
+    assert_true(file_has("m.svg", "<dc:source>impactlab run x --set arm.k2=3</dc:source>"));
+    assert_true(file_has("m.svg", "<desc>A title &amp; more. 1 panel over Time in s"));
     publish(&o, "m.png");
-    KEPT_TEXT(png) = read_file("m.png", &length);
-    assert_non_null(memmem(png, length, "impactlab run x --set arm.k2=3", 30));
+    assert_true(file_has("m.png", "impactlab run x --set arm.k2=3"));
 }
 
 TEST(a_transparent_picture_has_no_ground)
@@ -102,12 +85,9 @@ TEST(a_transparent_picture_has_no_ground)
 
 TEST(serif_pictures_have_serif_letters)
 {
-    size_t length;
     publish(&(figure_options){.look.font = "DejaVu Serif"}, "serif.pdf");
-    char *pdf = read_file("serif.pdf", &length);
-    assert_non_null(memmem(pdf, length, "DejaVuSerif", 11));
-    assert_null(memmem(pdf, length, "DejaVuSans", 10));
-    free(pdf);
+    assert_true(file_has("serif.pdf", "DejaVuSerif"));
+    assert_false(file_has("serif.pdf", "DejaVuSans"));
     REFUSED(STATUS_BAD_ARGUMENT, "No Such Font", text_check_family("No Such Font", &f));
 }
 
@@ -115,7 +95,7 @@ TEST(serif_pictures_have_serif_letters)
 static GString *unpack_pdf(const char *path)
 {
     size_t length;
-    KEPT_TEXT(bytes) = read_file(path, &length);
+    KEPT_TEXT(bytes) = file_bytes(path, &length);
     GString *all = g_string_new_len(bytes, (gssize)length);
     for (size_t at = 0; at + 7 < length; at++) {
         if (memcmp(bytes + at, "stream\n", 7) != 0) {
@@ -142,8 +122,7 @@ static bool contains(const GString *bytes, const char *wanted)
 
 TEST(pdf_embeds_fonts_and_has_no_type_3)
 {
-    SCOPED(synthetic_finish) synthetic s;
-    synthetic_init(&s, run_panels, RUN_PANELS);
+    SYNTHETIC(s, run_panels, RUN_PANELS);
     write_figure(&s.plot->figure, "fonts.pdf");
     GString *pdf = unpack_pdf("fonts.pdf");
     assert_true(contains(pdf, "/FontFile2"));
@@ -160,8 +139,7 @@ TEST(pdf_embeds_fonts_and_has_no_type_3)
 
 TEST(png_knows_its_resolution_and_origin)
 {
-    SCOPED(synthetic_finish) synthetic s;
-    synthetic_init(&s, run_panels, 2);
+    SYNTHETIC(s, run_panels, 2);
     s.plot->figure.width = 127;
     s.plot->figure.height = 101.6;
     s.plot->figure.dpi = 300;
@@ -193,11 +171,9 @@ TEST(png_knows_its_resolution_and_origin)
 
 TEST(svg_ids_are_unique_and_all_references_resolve)
 {
-    SCOPED(synthetic_finish) synthetic s;
-    size_t length;
-    synthetic_init(&s, run_panels, RUN_PANELS);
+    SYNTHETIC(s, run_panels, RUN_PANELS);
     write_figure(&s.plot->figure, "ids.svg");
-    KEPT_TEXT(svg) = read_file("ids.svg", &length);
+    KEPT_TEXT(svg) = file_text("ids.svg");
     assert_non_null(strstr(svg, "<metadata>"));
     assert_non_null(strstr(svg, "<title>Synthetic run &amp; &lt;more&gt;</title>"));
     GHashTable *ids = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
@@ -209,9 +185,8 @@ TEST(svg_ids_are_unique_and_all_references_resolve)
     for (EACH_TEXT(each, "href=\"#", "url(#")) {
         for (char *c = strstr(svg, *each); c != NULL; c = strstr(c, *each)) {
             c += strlen(*each);
-            char *id = g_strndup(c, strcspn(c, "\")"));
-            assert_true(g_hash_table_contains(ids, id));
-            g_free(id);
+            const int length = (int)strcspn(c, "\")");
+            assert_true(g_hash_table_contains(ids, formatted("%.*s", length, c)));
             references++;
         }
     }
@@ -235,25 +210,24 @@ TEST(csv_holds_what_is_drawn)
     figure_mark mark = {0.1, "<i>contact</i>"};
     figure fig = {.x = {.name = "time", .unit = "s"}, .panels = panels, .panel_count = 1};
     write_csv(&fig, "data.csv");
-    expect_contents("data.csv", "panel,series,time[s],force[N]\n"
-                                "force[N],\"force, \"\"raw\"\"\",0,1\n"
-                                "force[N],\"force, \"\"raw\"\"\",0.1,\n"
-                                "force[N],\"force, \"\"raw\"\"\",0.2,-2.5\n");
+    assert_holds("data.csv", "panel,series,time[s],force[N]\n"
+                             "force[N],\"force, \"\"raw\"\"\",0,1\n"
+                             "force[N],\"force, \"\"raw\"\"\",0.1,\n"
+                             "force[N],\"force, \"\"raw\"\"\",0.2,-2.5\n");
     series.count = panels[0].impulse_count = fig.mark_count = 1;
     fig.marks = &mark;
     fig.panel_count = 2;
     fig.x = (figure_axis){0};
     write_csv(&fig, "data.csv");
-    expect_contents("data.csv", "panel,series,x,value\n"
-                                "force[N],\"force, \"\"raw\"\"\",0,1\n"
-                                "force[N],impulse[N s],0.1,0.04\n"
-                                "mark,contact,0.1,\n");
+    assert_holds("data.csv", "panel,series,x,value\n"
+                             "force[N],\"force, \"\"raw\"\"\",0,1\n"
+                             "force[N],impulse[N s],0.1,0.04\n"
+                             "mark,contact,0.1,\n");
 }
 
 TEST(faults_are_sentences)
 {
-    SCOPED(synthetic_finish) synthetic s;
-    synthetic_init(&s, run_panels, RUN_PANELS);
+    SYNTHETIC(s, run_panels, RUN_PANELS);
     figure *fig = &s.plot->figure;
     REFUSED(STATUS_BAD_ARGUMENT, ".svg", figure_write(fig, "x.gif", &f));
     REFUSED(STATUS_BAD_ARGUMENT, "", figure_write(fig, "png", &f));
@@ -272,8 +246,7 @@ TEST(faults_are_sentences)
 
 TEST(a_full_disk_is_noticed)
 {
-    SCOPED(synthetic_finish) synthetic s;
-    synthetic_init(&s, run_panels, RUN_PANELS);
+    SYNTHETIC(s, run_panels, RUN_PANELS);
     for (EACH_TEXT(c, "full.png", "full.pdf", "full.svg")) {
         fault f = {0};
         assert_int_equal(symlink("/dev/full", *c), 0);
@@ -287,12 +260,11 @@ TEST(a_full_disk_is_noticed)
 TEST(measured_data_have_a_panel_of_residuals)
 {
     static figure_report r;
-    SCOPED(synthetic_finish) synthetic s;
-    synthetic_init(&s, run_panels, RUN_PANELS);
+    SYNTHETIC(s, run_panels, RUN_PANELS);
     put_file("bench.csv", "time[s],cell[N]\n0.30,0\n0.325,2\n0.345,1.6\n");
-    char *spec = g_strconcat("bench.csv", ":cell@0.02", NULL);
     const trace_run run = {&s.scenario, &s.result, "run"};
-    const figure_options o = {.overlay = spec, .signals = "force,hub_angle+last_angle"};
+    const figure_options o = {.overlay = "bench.csv:cell@0.02",
+                              .signals = "force,hub_angle+last_angle"};
     owned_figure *drawn = NULL;
     DONE((drawn = run_figure_create("t", NULL, 0, &run, 1, &o, &f)) == NULL ? f.code : STATUS_OK);
     const figure *fig = &drawn->figure;
@@ -314,7 +286,6 @@ TEST(measured_data_have_a_panel_of_residuals)
         REFUSED(STATUS_BAD_ARGUMENT, strcmp(*signals, "force+hub_angle") == 0 ? "" : "did you mean",
                 run_figure_create("t", NULL, 0, &run, 1, &bad, &f) == NULL ? f.code : STATUS_OK);
     }
-    g_free(spec);
 }
 
 // ---- recipes
@@ -327,9 +298,9 @@ static void listen(void *context, const char *sentence)
     g_string_append_printf(heard, "%s\n", sentence);
 }
 
-static status open_recipe(const char *name, artwork *drawn, fault *f)
+static status open_recipe(const char *name, double width, artwork *drawn, fault *f)
 {
-    const figure_options o = {0};
+    const figure_options o = {.look.width = width};
     heard = heard != NULL ? g_string_truncate(heard, 0) : g_string_new(NULL);
     return recipe_open(name, &o, listen, NULL, drawn, f);
 }
@@ -338,7 +309,7 @@ static status open_recipe(const char *name, artwork *drawn, fault *f)
 TEST(shipped_recipes_are_drawn)
 {
     static figure_report r;
-    char *recipes = g_build_filename(getenv("IMPACTLAB_SCENARIOS"), "recipes", NULL);
+    const char *recipes = formatted("%s/recipes", getenv("IMPACTLAB_SCENARIOS"));
     GDir *entries = g_dir_open(recipes, 0, NULL);
     assert_non_null(entries);
     const char *name;
@@ -349,79 +320,67 @@ TEST(shipped_recipes_are_drawn)
         }
         drawn_recipes++;
         fault f = {0};
-        artwork drawn;
-        const figure_options o = {.look.width = 85};
-        char *path = g_build_filename(recipes, name, NULL);
-        heard = heard != NULL ? g_string_truncate(heard, 0) : g_string_new(NULL);
-        fail_if(recipe_open(path, &o, listen, NULL, &drawn, &f) != STATUS_OK, "%s: %s%s", path,
-                heard->str, f.text);
+        SCOPED(artwork_finish) artwork drawn = {0};
+        fail_if(open_recipe(formatted("%s/%s", recipes, name), 85, &drawn, &f) != STATUS_OK,
+                "%s: %s%s", name, heard->str, f.text);
         expect_tidy_page(&drawn, &r);
-        artwork_finish(&drawn);
-        g_free(path);
     }
     assert_true(drawn_recipes >= 20);
     g_dir_close(entries);
-    g_free(recipes);
+}
+
+// The data of a recipe, to be freed; how many panels it has.
+static char *data_of_recipe(const char *name, int *panels)
+{
+    static figure_report r;
+    SCOPED(artwork_finish) artwork drawn = {0};
+    DONE(open_recipe(name, 0, &drawn, &f));
+    record_page(&drawn, &r);
+    *panels = r.panel_count;
+    DONE(artwork_write_csv(&drawn, "recipe.csv", &f));
+    return file_text("recipe.csv");
+}
+
+// The number behind a part of a text that must be there.
+static double number_behind(const char *text, const char *part)
+{
+    const char *at = strstr(text, part);
+    fail_if(at == NULL, "'%s' is not there", part);
+    return atof(at + strlen(part));
 }
 
 // Small multiples are what the same runs give one by one.
 TEST(multiples_are_runs_at_their_values)
 {
-    artwork drawn;
-    size_t length;
-    static figure_report r;
+    int panels;
     put_file("many.yaml", "runs: [{name: arm, scenario: corrected/first-impact}]\n"
                           "multiples: {vary: motor.voltage, values: [1 V, 2 V]}\n"
                           "panels: [{signals: [force]}, {signals: [hub_angle]}]\n");
-    DONE(open_recipe("many.yaml", &drawn, &f));
-    record_page(&drawn, &r);
-    assert_int_equal(r.panel_count, 4);
-    DONE(artwork_write_csv(&drawn, "many.csv", &f));
-    artwork_finish(&drawn);
-
+    KEPT_TEXT(many) = data_of_recipe("many.yaml", &panels);
+    assert_int_equal(panels, 4);
     put_file("one.yaml", "runs: [{name: arm 2 V, scenario: corrected/first-impact, set: "
                          "{motor.voltage: 2}}]\npanels: [{signals: [force]}]\n");
-    DONE(open_recipe("one.yaml", &drawn, &f));
-    DONE(artwork_write_csv(&drawn, "one.csv", &f));
-    artwork_finish(&drawn);
+    KEPT_TEXT(one) = data_of_recipe("one.yaml", &panels);
 
     // the same rows, for any other contents of the file
-    KEPT_TEXT(many) = read_file("many.csv", &length);
-    KEPT_TEXT(one) = read_file("one.csv", &length);
-    const char *row = ",arm 2 V force,0.3,";
-    const char *a = strstr(many, row), *b = strstr(one, row);
-    assert_non_null(a);
-    assert_non_null(b);
-    check_close(atof(a + strlen(row)), atof(b + strlen(row)), 0);
-    assert_true(atof(a + strlen(row)) > 1);
+    const double force = number_behind(many, ",arm 2 V force,0.3,");
+    check_close(force, number_behind(one, ",arm 2 V force,0.3,"), 0);
+    assert_true(force > 1);
 }
 
 // A recipe of figure 3.4 shows the numbers that figure 3.4 does, and their difference.
 TEST(a_recipe_shows_what_its_runs_give)
 {
-    artwork drawn;
-    size_t length;
-    char *path = g_strdup_printf("%s/recipes/fig-3-4.yaml", getenv("IMPACTLAB_SCENARIOS"));
-    DONE(open_recipe(path, &drawn, &f));
-    DONE(artwork_write_csv(&drawn, "recipe.csv", &f));
-    artwork_finish(&drawn);
-    g_free(path);
+    int panels;
+    KEPT_TEXT(recipe) = data_of_recipe(
+        formatted("%s/recipes/fig-3-4.yaml", getenv("IMPACTLAB_SCENARIOS")), &panels);
     DONE(figure_draw("3.4", &(figure_options){0}, "thesis", "svg", NULL, &f));
-    KEPT_TEXT(recipe) = read_file("recipe.csv", &length);
-    KEPT_TEXT(thesis) = read_file("thesis/fig-3-4.csv", &length);
-    const char *const rows[][2] = {{"printed force,0.4,", ",force,0.4,"},
-                                   {"corrected force,0.4,", ",force corrected,0.4,"}};
-    double values[2];
-    for (int i = 0; i < 2; i++) {
-        const char *a = strstr(recipe, rows[i][0]), *b = strstr(thesis, rows[i][1]);
-        assert_non_null(a);
-        assert_non_null(b);
-        values[i] = atof(a + strlen(rows[i][0]));
-        check_close(values[i], atof(b + strlen(rows[i][1])), 0);
-    }
-    const char *difference = strstr(recipe, ",difference,0.4,");
-    assert_non_null(difference);
-    check_close(atof(difference + strlen(",difference,0.4,")), values[1] - values[0], 1e-12);
+    KEPT_TEXT(thesis) = file_text("thesis/fig-3-4.csv");
+    const double printed = number_behind(recipe, "printed force,0.4,");
+    const double corrected = number_behind(recipe, "corrected force,0.4,");
+    check_close(printed, number_behind(thesis, ",force,0.4,"), 0);
+    check_close(corrected, number_behind(thesis, ",force corrected,0.4,"), 0);
+    check_close(number_behind(recipe, ",difference,0.4,"), corrected - printed, 1e-12);
 }
 
 TEST(faults_of_recipes_have_their_places)
@@ -465,19 +424,16 @@ TEST(faults_of_recipes_have_their_places)
         fault f = {0};
         artwork drawn;
         put_file("bad.yaml", cases[i].text);
-        assert_int_equal(open_recipe("bad.yaml", &drawn, &f), STATUS_BAD_SCENARIO);
-        char *expected = g_strconcat("bad.yaml", cases[i].said, NULL);
+        assert_int_equal(open_recipe("bad.yaml", 0, &drawn, &f), STATUS_BAD_SCENARIO);
+        const char *expected = formatted("bad.yaml%s", cases[i].said);
         fail_if(strstr(heard->str, expected) == NULL, "expected '%s', heard '%s'", expected,
                 heard->str);
-        g_free(expected);
     }
 
     // what is found out only when a run is opened has a place, too
-    fault f = {0};
     artwork drawn;
     put_file("bad.yaml", "runs:\n  - scenario: no/such\npanels: [{signals: [force]}]\n");
-    assert_true(open_recipe("bad.yaml", &drawn, &f) != STATUS_OK);
-    assert_non_null(strstr(f.text, "bad.yaml:2:5: "));
+    REFUSED(STATUS_BAD_ARGUMENT, "bad.yaml:2:5: ", open_recipe("bad.yaml", 0, &drawn, &f));
 }
 
 ALL_BETWEEN(enter_folder, leave_plot_folder)

@@ -78,10 +78,8 @@ TEST(test_a_pull_gives_the_spring_s_impulse)
     check_close(row->energy_residual, 0, 1e-9);
 }
 
-TEST(test_a_pull_is_one_change_and_comes_again)
+TEST_IN_FOLDER(test_a_pull_is_one_change_and_comes_again)
 {
-    scenario again;
-    run_result result;
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.1<Enter>");
     const size_t rows = ex.state.session.run.trace.row_count;
@@ -91,18 +89,10 @@ TEST(test_a_pull_is_one_change_and_comes_again)
     assert_true(pushes > 5);
 
     // the saved scenario gives the same rows
-    char path[] = "/tmp/impactlab-pull-XXXXXX.yaml", line[128];
-    close(mkstemps(path, 5));
-    snprintf(line, sizeof line, "save! %s", path);
-    assert_true(explorer_carry_out(&ex, line));
-    assert_int_equal(scenario_open(&again, path, fail_on_fault, NULL), STATUS_OK);
-    assert_int_equal(run_scenario(&again, true, &result), STATUS_OK);
-    assert_int_equal(result.trace.row_count, s->run.trace.row_count);
-    assert_memory_equal(result.trace.rows, s->run.trace.rows,
-                        result.trace.row_count * sizeof *result.trace.rows);
-    run_finish(&result);
-    scenario_finish(&again);
-    unlink(path);
+    assert_true(explorer_carry_out(&ex, "save pull.yaml"));
+    KEPT_SCENARIO(again) = shipped("./pull.yaml");
+    KEPT_RUN(result) = run_done(&again, true);
+    assert_same_trace(&result.trace, &s->run.trace);
 
     // taken back at once, and put in again
     press(&ex, "u");

@@ -97,7 +97,7 @@ TEST(no_other_force_costs_less)
 
 #define VOLTS 10.0
 
-static controller_setup setup_of(const parameters *p)
+static controller_setup believed_of(const parameters *p)
 {
     return (controller_setup){.period = 0.005,
                               .voltage_limit = p->motor.voltage_limit,
@@ -115,7 +115,7 @@ static controller_setup setup_of(const parameters *p)
 
 static observer_design design_of(const parameters *p)
 {
-    const controller_setup setup = setup_of(p);
+    const controller_setup setup = believed_of(p);
     const observer_task task = {.force = 1, .stopping_force = 1, .approach_voltage = VOLTS};
     observer_design d;
     assert_null(observer_design_init(&d, &setup, &task));

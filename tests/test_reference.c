@@ -59,12 +59,8 @@ static reference_answer reference_of(const reference_case *c)
 // The library's answer to the same case by a method and its step.
 static summary library_of(const reference_case *c, const char *method, double step)
 {
-    char *name = (char *)c->name;
     const scenario s = {
-        .name = name,
-        .file = name,
-        .title = name,
-        .description = name,
+        .name = (char *)c->name,
         .parameters = parameters_with(
             "arm.links=%d arm.hub_joint=%s wall.kind=%s wall.restitution=%.17g "
             "motor.voltage=%.17g run.duration=%.17g method.name=%s method.step=%.17g",
@@ -169,8 +165,7 @@ static void implicit_methods_converge(void **state)
     }
 }
 
-// ---------------------------------------------------------------------------------------------
-// the reference itself
+// --- the reference itself
 
 static void reference_conserves_energy(void **state)
 {

@@ -11,7 +11,7 @@
 
 // --- whole files --------------------------------------------------------------------------------
 
-static void assert_holds(const char *path, const char *expected)
+static void assert_has(const char *path, const char *expected)
 {
     char now[8] = "";
     FILE *file = __real_fopen64(path, "r");
@@ -36,7 +36,7 @@ static status write_whole_file(const char *path, FILE *out)
     }
 
     // the former file, or the complete new one; every refusal is reported
-    assert_holds(path, code == STATUS_OK ? "new" : "old");
+    assert_has(path, code == STATUS_OK ? "new" : "old");
     assert_true(code == STATUS_OK || strstr(f.text, "cannot be written: ") != NULL);
     fputs(code == STATUS_OK ? "new" : "old", out);
     return code;
@@ -116,7 +116,17 @@ static status ask_once(const char *command, FILE *out)
     return asked && length > 0 && ended == 7 ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-// A program in the shell that is asked, and asked again after a change.
+// Has a scenario led by a program in the shell.
+static status lead_by_program(scenario *s)
+{
+    char command[] = "control.command=while read -r line; do echo '{\"command\": 1}'; done";
+    char law[] = "control.law=process";
+    char *const settings[] = {command, law};
+    s->parameters.code_allowed = true;
+    return scenario_override_all(s, settings, 2, keep_nothing, NULL);
+}
+
+// That program is asked, and asked again after a change.
 static status ask_a_program(scenario *s, FILE *out)
 {
     scenario own;
@@ -126,15 +136,11 @@ static status ask_a_program(scenario *s, FILE *out)
     if (code != STATUS_OK) {
         return code;
     }
-    char command[] = "control.command=while read -r line; do echo '{\"command\": 1}'; done";
-    char law[] = "control.law=process";
-    char *const settings[] = {command, law};
-    code = scenario_override_all(&own, settings, 2, keep_nothing, NULL);
+    code = lead_by_program(&own);
     if (code != STATUS_OK) {
         scenario_finish(&own);
         return refused_at > 0 ? STATUS_NO_MEMORY : code;
     }
-    own.parameters.code_allowed = true;
     code = session_open(&t, &own, HUGE_VAL, &f);
     if (code != STATUS_OK) {
         return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
@@ -164,11 +170,7 @@ TEST(answers_that_cannot_be_read)
         KEPT_SCENARIO(s);
         KEPT_RUN(result);
         assert_int_equal(make_scenario(&s, "control.rate=100"), STATUS_OK);
-        char command[] = "control.command=while read -r line; do echo '{\"command\": 1}'; done";
-        char law[] = "control.law=process";
-        char *const settings[] = {command, law};
-        assert_int_equal(scenario_override_all(&s, settings, 2, keep_nothing, NULL), STATUS_OK);
-        s.parameters.code_allowed = true;
+        assert_int_equal(lead_by_program(&s), STATUS_OK);
 
         reads = 0;
         unreadable_at = k;
@@ -196,9 +198,8 @@ static status list_scenarios(const char *ignored, FILE *out)
     assert_true(code == STATUS_OK || f.text[0] != '\0');
     for (int i = 0; i < count; i++) {
         fprintf(out, "%s\n", names[i]);
-        free(names[i]);
     }
-    free(names);
+    free_names(names, count);
 
     // a folder that cannot be opened, for want of descriptors, is not an empty one
     return code == STATUS_CANNOT_READ && refused_at > 0 ? STATUS_NO_MEMORY : code;

@@ -3,18 +3,14 @@
 // sanitizers see what it does.
 
 #include "src/base/csv_table.h"
-#include "src/run/loop.h"
 #include "src/session/session.h"
 #include "src/session/session_file.h"
 #include "src/study/identify.h"
 #include "src/study/linear/linear.h"
 #include "src/study/robust.h"
-#include "src/study/store/sweep_store.h"
 #include "src/study/sweep_definition.h"
 #include "src/study/tune.h"
 #include "tests/refused_requests.h"
-
-GIVEN_BACK(run_loop, loop_destroy)
 
 static const char *put(const char *name, const char *text)
 {
@@ -23,10 +19,10 @@ static const char *put(const char *name, const char *text)
 }
 
 // Each takes what it is about, makes one, and finishes it whatever came of it.
+#define FINISHED(name, about) static status name(about, FILE *out __attribute__((unused)))
 
-static status table(const char *text, FILE *out)
+FINISHED(table, const char *text)
 {
-    (void)out;
     csv_table t = {0};
     fault f = {0};
     SCOPED(free_kept) double *times = NULL;
@@ -39,17 +35,15 @@ static status table(const char *text, FILE *out)
     return code;
 }
 
-static status set(const char *text, FILE *out)
+FINISHED(set, const char *text)
 {
-    (void)out;
     SCOPED(robust_set_finish) robust_set s = {0};
     fault f = {0};
     return robust_set_read(&s, put("a.set", text), &f);
 }
 
-static status session_of_lines(const char *text, FILE *out)
+FINISHED(session_of_lines, const char *text)
 {
-    (void)out;
     SCOPED(session_file_finish) session_file s = {0};
     fault f = {0};
     return session_file_read(&s, put("a.session", text), &f);
@@ -61,9 +55,8 @@ static void ignore(void *context, const char *sentence)
     (void)sentence;
 }
 
-static status parsed(const char *text, FILE *out)
+FINISHED(parsed, const char *text)
 {
-    (void)out;
     KEPT_SCENARIO(s) = {0};
     return scenario_parse(&s, text, strlen(text), "p.yaml", NULL, ignore, NULL);
 }
@@ -71,16 +64,15 @@ static status parsed(const char *text, FILE *out)
 // Axes of a sweep, blanks between them.
 static status plan_of(const char *text, sweep_sampling how, bool tuned)
 {
-    char all[256], *rest = NULL, *vary[SWEEP_MOST_AXES];
+    char *rest = formatted("%s", text), *vary[SWEEP_MOST_AXES], *one;
     int count = 0;
-    scenario s;
+    KEPT_SCENARIO(s) = {0};
     fault f = {0};
     status code = make_scenario(&s, "control.law=force-pd");
     if (code != STATUS_OK) {
         return code;
     }
-    snprintf(all, sizeof all, "%s", text);
-    for (char *one = strtok_r(all, ";", &rest); one != NULL; one = strtok_r(NULL, ";", &rest)) {
+    while ((one = strsep(&rest, ";")) != NULL) {
         vary[count++] = one;
     }
     if (tuned) {
@@ -96,42 +88,31 @@ static status plan_of(const char *text, sweep_sampling how, bool tuned)
         const sweep_request request = {
             .vary = vary, .vary_count = count, .sampling = how, .runs = how == SWEEP_GRID ? 0 : 3};
         code = sweep_init(&w, &s, &request, &f);
-        if (code == STATUS_OK) {
-            code = definition_init(&d, &w, &f);
-        }
-        if (code == STATUS_OK) {
-            code = definition_plan(&d, "here", &again, &f);
-        }
-        if (code == STATUS_OK) {
-            code = sweep_store_open(&store, NULL, &w, &f);
-        }
+        code = code == STATUS_OK ? definition_init(&d, &w, &f) : code;
+        code = code == STATUS_OK ? definition_plan(&d, "here", &again, &f) : code;
+        code = code == STATUS_OK ? sweep_store_open(&store, NULL, &w, &f) : code;
     }
-    scenario_finish(&s);
     return code;
 }
 
-static status grid(const char *text, FILE *out)
+FINISHED(grid, const char *text)
 {
-    (void)out;
     return plan_of(text, SWEEP_GRID, false);
 }
 
-static status drawn(const char *text, FILE *out)
+FINISHED(drawn, const char *text)
 {
-    (void)out;
     return plan_of(text, SWEEP_LATIN, false);
 }
 
-static status tuned(const char *text, FILE *out)
+FINISHED(tuned, const char *text)
 {
-    (void)out;
     return plan_of(text, SWEEP_LATIN, true);
 }
 
-static status fitted(const char *text, FILE *out)
+FINISHED(fitted, const char *text)
 {
-    (void)out;
-    scenario s;
+    KEPT_SCENARIO(s) = {0};
     fault f = {0};
     status code = make_scenario(&s, "control.law=open-loop control.rate=1000");
     if (code != STATUS_OK) {
@@ -145,21 +126,18 @@ static status fitted(const char *text, FILE *out)
                                                "0.001,1,0\n0.002,1,0.001\n"),
                                   NULL, 0, &f);
     }
-    scenario_finish(&s);
     return code;
 }
 
-static status looped(scenario *s, FILE *out)
+FINISHED(looped, scenario *s)
 {
-    (void)out;
     fault f = {0};
     KEPT_LOOP(l) = NULL;
     return loop_create(&l, s, &(loop_options){.keep_trace = true}, &f);
 }
 
-static status linearised(scenario *s, FILE *out)
+FINISHED(linearised, scenario *s)
 {
-    (void)out;
     fault f = {0};
     linear_arm arm = {0};
     linear_system loop = {0};
@@ -173,7 +151,6 @@ static status linearised(scenario *s, FILE *out)
 }
 
 // --- for want of memory, and by the arguments
-// ------------------------------------------------------
 
 TEST(what_is_refused_for_want_of_memory_is_finished)
 {

@@ -34,18 +34,14 @@ static void check_same_run(const run_result *a, const run_result *b)
     assert_memory_equal(force_steps(&a->history.forces), force_steps(&b->history.forces),
                         a->history.forces.count * sizeof(force_step));
     assert_memory_equal(&a->landing, &b->landing, sizeof a->landing);
-    for (int i = 0; i < summary_count; i++) {
-        double x = summary_value(&a->summary, i), y = summary_value(&b->summary, i);
-        assert_true(summary_table[i].timing || x == y || (isnan(x) && isnan(y)));
-    }
+    assert_same_summary(&a->summary, &b->summary);
 }
 
 // A change at 2.5 s of the arm that presses on the wall.
 static scenario changed_late(const scenario *s, action *change)
 {
     scenario changed = *s;
-    *change = (action){
-        .time = 2.5, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(motor.voltage), .value = 0.5};
+    *change = SETS(2.5, motor.voltage, 0.5);
     changed.actions = change;
     changed.action_count = 1;
     return changed;
@@ -56,15 +52,14 @@ TEST(a_resumed_run_is_the_run_from_the_start)
     action change;
     scenario s = {.parameters = parameters_with("run.duration=4 motor.stiction=0")};
     scenario later = changed_late(&s, &change);
-    run_result old = run_keeping_history(&s), whole = run_keeping_history(&later), result;
+    run_result old = run_keeping_history(&s);
+    KEPT_RUN(whole) = run_keeping_history(&later), result;
     assert_true(old.history.checkpoints.count > 2);
     assert_true(resumed(&old, &s, &later, &result));
     check_same_run(&result, &whole);
     assert_true(result.landing.before.velocity[0] > 0); // the impact before it is still known
     run_finish(&old);
     check_same_run(&result, &whole);
-    run_finish(&result);
-    run_finish(&whole);
 }
 
 // One link whose force is determined within bounds only, and arms that start on the wall and come
@@ -76,9 +71,7 @@ TEST(bounds_and_landing_are_resumed)
                                        given("run.duration=4 wall.angle=0 initial.velocity=0.5 "
                                              "arm.links=3 wall.contact=kelvin-voigt")};
     for (int i = 0; i < 3; i++) {
-        const int volts = PARAMETER_INDEX(motor.voltage);
-        action actions[] = {{.time = 1.5, .kind = ACTION_SET, .parameter = volts, .value = 0.5},
-                            {.time = 2.5, .kind = ACTION_SET, .parameter = volts, .value = 0.2}};
+        action actions[] = {SETS(1.5, motor.voltage, 0.5), SETS(2.5, motor.voltage, 0.2)};
         scenario s = {.parameters = fixture_parameters(arms[i]), .actions = actions};
         scenario later = s;
         s.action_count = 1;
@@ -95,13 +88,11 @@ TEST(bounds_and_landing_are_resumed)
 // A face that the arm has left behind and that is on its way back when the runs part.
 TEST(a_face_on_its_way_back_is_resumed_where_it_was)
 {
-    const int volts = PARAMETER_INDEX(motor.voltage);
     const char *const *const walls[] = {
         given("run.duration=4 wall.contact=kelvin-voigt wall.stiffness=100 wall.damping=500"),
         given("run.duration=4 wall.contact=hunt-crossley wall.stiffness=1e4 wall.damping=2e7")};
     for (int i = 0; i < 2; i++) {
-        action actions[] = {{.time = 1, .kind = ACTION_SET, .parameter = volts, .value = -0.5},
-                            {.time = 2.5, .kind = ACTION_SET, .parameter = volts, .value = 2}};
+        action actions[] = {SETS(1, motor.voltage, -0.5), SETS(2.5, motor.voltage, 2)};
         scenario s = {.parameters = fixture_parameters(walls[i]), .actions = actions};
         scenario later = s;
         s.action_count = 1;
@@ -127,8 +118,7 @@ TEST(a_face_on_its_way_back_is_resumed_where_it_was)
 TEST(an_arm_made_stiff_is_resumed_as_it_is)
 {
     for (int links = 2; links <= 3; links++) {
-        action changes[2] = {
-            {.time = 1, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k1), .value = 1e8}};
+        action changes[2] = {SETS(1, arm.k1, 1e8)};
         scenario s = {.parameters = parameters_with(
                           "run.duration=4 arm.hub_joint=spring arm.k1=500 arm.damping_ratio=0.02")};
         s.parameters.arm.links = links;
@@ -147,16 +137,11 @@ TEST(an_arm_made_stiff_is_resumed_as_it_is)
 // one that differs in whatever, is missing or is new.
 TEST(scripts_that_part_are_resumed_where_they_part)
 {
-    const int volts = PARAMETER_INDEX(motor.voltage), spring = PARAMETER_INDEX(arm.k2);
-    const action one = {.time = 0.8, .kind = ACTION_SET, .parameter = volts, .value = 1.5};
-    const action two = {.time = 2.5, .kind = ACTION_SET, .parameter = volts, .value = 0.5};
-    const action three = {.time = 3, .kind = ACTION_SET, .parameter = volts, .value = 0.8};
-    action other = two, later = two, elsewhere = two, pushed = two;
+    const action one = SETS(0.8, motor.voltage, 1.5), two = SETS(2.5, motor.voltage, 0.5),
+                 three = SETS(3, motor.voltage, 0.8), other = SETS(2.5, motor.voltage, 0.6),
+                 later = SETS(2.7, motor.voltage, 0.5), elsewhere = SETS(2.5, arm.k2, 5);
+    action pushed = two;
     pushed.kind = ACTION_PUSH;
-    other.value = 0.6;
-    later.time = 2.7;
-    elsewhere.parameter = spring;
-    elsewhere.value = 5;
     action scripts[][3] = {{one},
                            {one, two},
                            {one, two, three},
@@ -229,22 +214,20 @@ TEST(another_arm_has_nothing_in_common)
 TEST(a_run_without_history_cannot_be_resumed)
 {
     scenario s = {.parameters = parameters_with("run.duration=3")};
-    run_result old, result;
-    assert_int_equal(run_scenario(&s, true, &old), STATUS_OK);
+    KEPT_RUN(old) = run_done(&s, true);
+    run_result result;
     assert_false(run_resume(&old, &s, &s, ROWS, &result));
-    run_finish(&old);
 }
 
 TEST(a_shared_result_outlives_the_first)
 {
     scenario s = {.parameters = parameters_with("run.duration=3")};
-    run_result old = run_keeping_history(&s), again = run_keeping_history(&s), shared;
+    run_result old = run_keeping_history(&s);
+    KEPT_RUN(again) = run_keeping_history(&s), shared;
     assert_int_equal(run_share(&old, ROWS, &shared), STATUS_OK);
     check_same_run(&shared, &old);
     run_finish(&old);
     check_same_run(&shared, &again);
-    run_finish(&shared);
-    run_finish(&again);
 }
 
 // On the rig runs have rows but no history, and none when they are shared.

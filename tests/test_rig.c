@@ -1,14 +1,11 @@
 // The sampled loop.
 #include "src/rig/rig.h"
-#include "src/run/loop.h"
 #include "src/contact/contact_machine.h"
 #include "tests/rig_fixture.h"
 
-GIVEN_BACK(run_loop, loop_destroy)
-
 TEST(command_holds_between_samples)
 {
-    KEPT_RUN(r) = rig_run(given("control.law=hybrid"), true);
+    RIG_RUN(r, "control.law=hybrid");
     const trace *t = &r.trace;
     int changes = 0;
     for (size_t i = 1; i < t->row_count; i++) {
@@ -24,7 +21,7 @@ TEST(command_holds_between_samples)
 
 TEST(delay_shifts_the_command)
 {
-    KEPT_RUN(r) = rig_run(given("control.law=hybrid control.delay=0.002"), true);
+    RIG_RUN(r, "control.law=hybrid control.delay=0.002");
     const trace *t = &r.trace;
     for (size_t i = 1; i < t->row_count; i++) {
         if (t->rows[i].voltage != t->rows[i - 1].voltage) {
@@ -39,10 +36,10 @@ TEST(delay_shifts_the_command)
 TEST(a_command_still_on_its_way_does_not_count)
 {
     for (EACH_TEXT(c, "run.duration=0.32", "run.duration=0.3102", "run.duration=0.305")) {
-        KEPT_RUN(r) = rig_run(given("control.law=force-pd control.force_gain=5 "
-                                    "control.delay=0.003068 control.seed=423 %s",
-                                    *c),
-                              true);
+        RIG_RUN(r,
+                "control.law=force-pd control.force_gain=5 "
+                "control.delay=0.003068 control.seed=423 %s",
+                *c);
         double largest = 0;
         for (EACH_ROW(row, &r.trace)) {
             largest = fmax(largest, fabs(row->voltage));
@@ -157,14 +154,9 @@ TEST(energy_under_a_limit_that_changes)
 {
     static const char *const models[] = {"arm.model=corrected", "arm.model=printed"};
     for (int i = 0; i < 2; i++) {
-        action lower = {.time = 0.5,
-                        .kind = ACTION_SET,
-                        .parameter = PARAMETER_INDEX(motor.voltage_limit),
-                        .value = 1};
-        scenario s = {.parameters = rig_parameters_with(
-                          "%s control.law=open-loop control.approach_voltage=5", models[i]),
-                      .actions = &lower,
-                      .action_count = 1};
+        scenario s = SCRIPTED(
+            rig_parameters_with("%s control.law=open-loop control.approach_voltage=5", models[i]),
+            SETS(0.5, motor.voltage_limit, 1));
         KEPT_RUN(r) = run_done(&s, true);
 
         // the printed arm's row has the voltage of the step before it
@@ -184,11 +176,8 @@ TEST(energy_under_a_limit_that_changes)
 // Errors are those from the force that is commanded at the end.
 TEST(errors_are_from_the_last_command)
 {
-    action raise = {
-        .time = 1, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(control.force), .value = 2};
-    scenario s = {.parameters = rig_parameters_with("control.law=force-pd run.duration=3"),
-                  .actions = &raise,
-                  .action_count = 1};
+    scenario s = SCRIPTED(rig_parameters_with("control.law=force-pd run.duration=3"),
+                          SETS(1, control.force, 2));
     KEPT_RUN(r) = run_done(&s, false);
     const summary *m = &r.summary;
     check_close(m->force_command_N, 2, 0);
@@ -200,9 +189,9 @@ TEST(errors_are_from_the_last_command)
 
 TEST(same_seed_same_bytes)
 {
-    KEPT_RUN(a) = rig_run(given("control.law=optimal control.jitter=0.0005"), true);
-    KEPT_RUN(b) = rig_run(given("control.law=optimal control.jitter=0.0005"), true);
-    KEPT_RUN(c) = rig_run(given("control.law=optimal control.jitter=0.0005 control.seed=2"), true);
+    RIG_RUN(a, "control.law=optimal control.jitter=0.0005");
+    RIG_RUN(b, "control.law=optimal control.jitter=0.0005");
+    RIG_RUN(c, "control.law=optimal control.jitter=0.0005 control.seed=2");
     assert_int_equal(a.trace.row_count, b.trace.row_count);
     assert_memory_equal(a.trace.rows, b.trace.rows, a.trace.row_count * sizeof(sample));
     assert_true(a.summary.peak_force_N != c.summary.peak_force_N);

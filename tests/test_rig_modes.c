@@ -8,14 +8,17 @@
 #define LOCK_TIME    0.5 // [s]
 #define RELEASE_TIME 0.9
 
+static action locked_at(double time, const char *mode)
+{
+    action lock = SETS(time, control.lock, 0);
+    strcpy(lock.text, mode);
+    return lock;
+}
+
 // The rig's run with the law held in a mode from LOCK_TIME to RELEASE_TIME.
 static run_result locked_run(const char *const *settings, const char *mode)
 {
-    const int lock = PARAMETER_INDEX(control.lock);
-    action script[2] = {{.time = LOCK_TIME, .kind = ACTION_SET, .parameter = lock},
-                        {.time = RELEASE_TIME, .kind = ACTION_SET, .parameter = lock}};
-    snprintf(script[0].text, sizeof script[0].text, "%s", mode);
-    snprintf(script[1].text, sizeof script[1].text, "none");
+    action script[2] = {locked_at(LOCK_TIME, mode), locked_at(RELEASE_TIME, "none")};
     scenario s = {.parameters = rig_parameters(settings), .actions = script, .action_count = 2};
     run_result result;
     fail_if(run_scenario(&s, true, &result) != STATUS_OK, "%s: %s", mode, result.summary.message);
@@ -64,7 +67,7 @@ TEST(approach_means_the_approach_command)
 TEST(force_means_the_force_law_at_once)
 {
     // in free flight, from the first sample on
-    KEPT_RUN(r) = rig_run(given("control.law=hybrid control.lock=force sensor.ideal=true"), true);
+    RIG_RUN(r, "control.law=hybrid control.lock=force sensor.ideal=true");
     const sample *first = &r.trace.rows[0];
     double final = 0.5 / (2 * 4.92), torque = 2 * 1 * 0.5 + 10.15 * (final - first->hub_angle);
     check_close(first->controller_mode, 2, 0);
@@ -114,10 +117,8 @@ TEST(observers_survive_a_lock_in_contact)
     static const char *const laws[] = {"control.law=optimal", "control.law=predictive"};
     static const char *const modes[] = {"approach", "press", "hold"};
     for (size_t i = 0; i < 6; i++) {
-        run_result r =
-            locked_run(given("%s control.approach_voltage=2", laws[i / 3]), modes[i % 3]);
+        KEPT_RUN(r) = locked_run(given("%s control.approach_voltage=2", laws[i / 3]), modes[i % 3]);
         check_close(r.summary.steady_force_N, 1, 0.1);
-        run_finish(&r);
     }
 }
 
@@ -143,45 +144,14 @@ TEST(unknown_modes_are_refused)
     assert_int_equal(scenario_override(&bare, "control.lock=force", NULL), STATUS_OK);
 }
 
-static void keep_sentences(void *context, const char *sentence)
-{
-    char *all = context;
-    snprintf(all + strlen(all), 1024 - strlen(all), "%s\n", sentence);
-}
-
-TEST(files_are_checked_where_the_lock_stands)
-{
-    const char *text = "title: t\n"
-                       "control: {law: hybrid, lock: pres}\n"
-                       "script:\n"
-                       "  - at: 0.2 s\n"
-                       "    set: {control.lock: recover}\n"
-                       "  - at: 0.4 s\n"
-                       "    set: {control.lock: none}\n";
-    char sentences[1024] = "";
-    scenario s;
-    assert_int_equal(
-        scenario_parse(&s, text, strlen(text), "x.yaml", NULL, keep_sentences, sentences),
-        STATUS_BAD_SCENARIO);
-    assert_non_null(strstr(sentences, "x.yaml:2:30: control.lock = 'pres' is no mode of"));
-    assert_non_null(strstr(sentences, "x.yaml:5:25: control.lock = 'recover' is no mode of"));
-}
-
 // --- in a session -----------------------------------------------------------------------------
-
-static void assert_same_rows(const trace *a, const trace *b)
-{
-    assert_int_equal(a->row_count, b->row_count);
-    assert_memory_equal(a->rows, b->rows, a->row_count * sizeof *a->rows);
-}
 
 TEST(lock_is_an_input_that_a_saved_scenario_repeats)
 {
     const int lock = PARAMETER_INDEX(control.lock);
     scenario s = shipped("compare/hybrid");
     KEPT_SESSION(e);
-    KEPT_RUN(free_run);
-    run_scenario(&s, true, &free_run);
+    KEPT_RUN(free_run) = run_done(&s, true);
     DONE(session_open(&e, &s, HUGE_VAL, &f));
     session_seek(&e, 0.4);
     DONE(session_change(&e, lock, "approach", &f));
@@ -197,7 +167,7 @@ TEST(lock_is_an_input_that_a_saved_scenario_repeats)
 
     DONE(session_undo(&e, &f));
     DONE(session_undo(&e, &f));
-    assert_same_rows(&e.run.trace, &free_run.trace);
+    assert_same_trace(&e.run.trace, &free_run.trace);
     DONE(session_redo(&e, &f));
     check_close(e.run.trace.rows[trace_row_at(&e.run.trace, 0.6)].controller_mode, 0, 0);
 }
@@ -219,7 +189,6 @@ TEST(pressing_from_the_start_finds_the_wall)
 TEST(every_mode_is_gone_into_from_every_other)
 {
     enum { MOST = 32 };
-    const int lock = PARAMETER_INDEX(control.lock);
     const char *const models[] = {"arm.model=corrected", "arm.model=printed"};
     for (int law = LAW_NONE + 1; law < 2 * LAW_PLUGIN; law++) {
         const controller *c = law % LAW_PLUGIN == LAW_NONE ? NULL : controller_of(law % LAW_PLUGIN);
@@ -239,10 +208,7 @@ TEST(every_mode_is_gone_into_from_every_other)
                 for (int j = 0; j < modes && count + 2 <= MOST; j++) {
                     for (int k = 0; k < 2; k++, time += 0.01, count++) {
                         mode[count] = k == 0 ? i : j;
-                        script[count] =
-                            (action){.time = time, .kind = ACTION_SET, .parameter = lock};
-                        snprintf(script[count].text, sizeof script[count].text, "%s",
-                                 c->modes[mode[count]]);
+                        script[count] = locked_at(time, c->modes[mode[count]]);
                     }
                 }
             }

@@ -1,7 +1,5 @@
 // Control laws over many beliefs: the set, the judgement, and that it depends on the seed alone.
 #include "src/study/robust.h"
-
-#include "src/study/store/sweep_store.h"
 #include "tests/rig_fixture.h"
 
 static const char path[] = "the.set";
@@ -27,61 +25,62 @@ static scenario derived_of(const scenario *base, const robust_case *of)
     return derived;
 }
 
+// Both of them, and the judgement of a law, until their block is left.
+#define SET(set, text)     SCOPED(robust_set_finish) robust_set set = set_of(text)
+#define DERIVED(name, ...) SCOPED(robust_case_finish) scenario name = derived_of(__VA_ARGS__)
+#define JUDGED(found, law, ...)                                                                    \
+    SCOPED(robust_law_finish) robust_law found;                                                    \
+    free(judged(&found, law, __VA_ARGS__))
+
 TEST(a_set_is_its_lines)
 {
-    robust_set set = set_of("# beliefs\n\n  belief.k2_factor=0.75:1.25 \r\nwall.kind=point,plane");
+    SET(set, "# beliefs\n\n  belief.k2_factor=0.75:1.25 \r\nwall.kind=point,plane");
     assert_int_equal(set.count, 2);
     assert_string_equal(set.lines[0], "belief.k2_factor=0.75:1.25");
     assert_string_equal(set.lines[1], "wall.kind=point,plane");
-    robust_set_finish(&set);
 
     // a file without a line, and none
-    REFUSED(STATUS_BAD_ARGUMENT, "", read_set(&set, "\n# nothing\n", &f));
+    robust_set none;
+    REFUSED(STATUS_BAD_ARGUMENT, "", read_set(&none, "\n# nothing\n", &f));
     unlink(path);
-    REFUSED(STATUS_CANNOT_READ, "", robust_set_read(&set, path, &f));
+    REFUSED(STATUS_CANNOT_READ, "", robust_set_read(&none, path, &f));
 }
 
 TEST(cases_are_what_differs)
 {
-    robust_set set =
-        set_of("control.seed=1,2\ncase plain:\n"
-               "case two at once : belief.k2_factor=0.5; arm.links=3 ;push=-0.05@0.8\n");
+    SET(set, "control.seed=1,2\ncase plain:\n"
+             "case two at once : belief.k2_factor=0.5; arm.links=3 ;push=-0.05@0.8\n");
     assert_int_equal(set.count, 1);
     assert_int_equal(set.case_count, 2);
     assert_string_equal(set.cases[1].title, "two at once");
 
     // the first is the scenario itself, the second differs in what it says
     scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
-    scenario derived = derived_of(&base, &set.cases[0]);
-    assert_int_equal(derived.action_count, 0);
-    assert_int_equal(derived.parameters.arm.links, 2);
-    robust_case_finish(&derived);
-    derived = derived_of(&base, &set.cases[1]);
-    assert_int_equal(derived.parameters.arm.links, 3);
-    check_close(derived.parameters.belief.k2_factor, 0.5, 0);
-    assert_int_equal(derived.action_count, 1);
-    assert_int_equal(derived.actions[0].kind, ACTION_PUSH);
-    check_close(derived.actions[0].value, -0.05, 0);
-    check_close(derived.actions[0].time, 0.8, 0);
-    robust_case_finish(&derived);
+    DERIVED(plain, &base, &set.cases[0]);
+    assert_int_equal(plain.action_count, 0);
+    assert_int_equal(plain.parameters.arm.links, 2);
+    DERIVED(two, &base, &set.cases[1]);
+    assert_int_equal(two.parameters.arm.links, 3);
+    check_close(two.parameters.belief.k2_factor, 0.5, 0);
+    assert_int_equal(two.action_count, 1);
+    assert_int_equal(two.actions[0].kind, ACTION_PUSH);
+    check_close(two.actions[0].value, -0.05, 0);
+    check_close(two.actions[0].time, 0.8, 0);
 
     // the scenario's own script stays, with a case and without one
-    action own = {.time = 0.5, .kind = ACTION_PUSH, .parameter = -1, .value = 0.02};
-    base.actions = &own;
+    base.actions = &PUSHES(0.5, 0.02);
     base.action_count = 1;
-    derived = derived_of(&base, NULL);
-    assert_int_equal(derived.action_count, 1);
-    check_close(derived.actions[0].value, 0.02, 0);
-    robust_case_finish(&derived);
-    derived = derived_of(&base, &set.cases[1]);
-    assert_int_equal(derived.action_count, 2);
-    check_close(derived.actions[0].value, 0.02, 0);
-    check_close(derived.actions[1].value, -0.05, 0);
-    robust_case_finish(&derived);
-    base.action_count = 0;
-    robust_set_finish(&set);
+    DERIVED(without, &base, NULL);
+    assert_int_equal(without.action_count, 1);
+    check_close(without.actions[0].value, 0.02, 0);
+    DERIVED(with, &base, &set.cases[1]);
+    assert_int_equal(with.action_count, 2);
+    check_close(with.actions[0].value, 0.02, 0);
+    check_close(with.actions[1].value, -0.05, 0);
+}
 
-    // what is no case, and a case that cannot be
+TEST(what_is_no_case_is_refused)
+{
     for (EACH_TEXT(
              c, "control.seed=1,2\ncase no colon\n", "control.seed=1,2\ncase a: push=0.05\n",
              "control.seed=1,2\ncase a: nonsense\n", "case a:\n",
@@ -92,12 +91,14 @@ TEST(cases_are_what_differs)
              "control.seed=1,2\ncase a: push=much@1\n", "control.seed=1,2\ncase a: push=0.1@soon\n",
              ("control.seed=1,2\ncase a: push=1@1; push=1@2; push=1@3;"
               "push=1@4; push=1@5\n"))) {
+        SCOPED(robust_set_finish) robust_set set; // as callers do
         REFUSED(STATUS_BAD_ARGUMENT, "", read_set(&set, *c, &f));
-        robust_set_finish(&set); // as callers do
     }
 
     // of several settings that cannot be the first is named
-    set = set_of("control.seed=1,2\ncase a: arm.k2=4; arm.links=-3; wall.restitution=7\n");
+    SET(set, "control.seed=1,2\ncase a: arm.k2=4; arm.links=-3; wall.restitution=7\n");
+    const scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
+    SCOPED(robust_case_finish) scenario derived;
     fault f = {0};
     assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "case 'a'"));
@@ -105,8 +106,6 @@ TEST(cases_are_what_differs)
     assert_null(strstr(f.text, "wall.restitution"));
     assert_non_null(strstr(f.text, path));
     assert_int_equal(f.line, 2);
-    robust_case_finish(&derived); // as callers do
-    robust_set_finish(&set);
 }
 
 // A push that would never act, or not on this arm, and what the scenario has besides.
@@ -118,20 +117,19 @@ TEST(pushes_of_a_case_must_act)
                  {"a=1\ncase later: push=1@0.1; push=1@9\n", "a push at 9 s is outside"},
                  {"a=1\ncase short: run.duration=0.4; push=1@0.5\n", "expected 0 to 0.4 s"},
                  {"a=1\ncase old: arm.model=printed; push=1@0.1\n", "takes no pushes"}};
-    scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")}, derived;
+    scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
     base.parameters.control.law = LAW_NONE;
     for (EACH(c, wrong)) {
-        SCOPED(robust_set_finish) robust_set set = set_of(c->text);
+        SET(set, c->text);
+        SCOPED(robust_case_finish) scenario derived;
         fault f = {0};
         assert_int_not_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
         fail_if(strstr(f.text, c->says) == NULL, "'%s' does not say '%s'", f.text, c->says);
-        robust_case_finish(&derived);
     }
 
     // at the very end there is still a run
-    SCOPED(robust_set_finish) robust_set set = set_of("a=1\ncase last: push=1@1\n");
-    derived = derived_of(&base, &set.cases[0]);
-    robust_case_finish(&derived);
+    SET(set, "a=1\ncase last: push=1@1\n");
+    DERIVED(derived, &base, &set.cases[0]);
 }
 
 // Whatever stands in the place of a set is refused once, and the caller goes on.
@@ -152,8 +150,8 @@ TEST(what_is_no_set_is_refused)
 }
 
 // Judges a law over a set, on so many threads; the table as JSON on the heap.
-static char *judged(int law, char *const *lines, int count, size_t runs, int jobs,
-                    robust_law *found)
+static char *judged(robust_law *found, int law, size_t runs, int jobs, int count,
+                    char *const *lines)
 {
     KEPT_SWEEP(s);
     KEPT_STORE(store);
@@ -181,10 +179,9 @@ TEST(sets_have_limits)
 {
     enum { LONGEST = 65536 };
     fault f = {0};
-    robust_set set = set_of("x");
-    assert_int_equal(set.count, 1);
-    assert_string_equal(set.lines[0], "x");
-    robust_set_finish(&set);
+    SET(shortest, "x");
+    assert_int_equal(shortest.count, 1);
+    assert_string_equal(shortest.lines[0], "x");
 
     // lines of one character, and one with as many as the file may have, or one more
     static char text[LONGEST + 2];
@@ -193,7 +190,7 @@ TEST(sets_have_limits)
         text[2 * i + 1] = '\n';
     }
     text[400] = '\0';
-    set = set_of(text);
+    robust_set set = set_of(text);
     assert_int_equal(set.count, SWEEP_MOST_AXES + 1);
     for (int i = 0; i < set.count; i++) {
         assert_int_equal(set.lines[i][0], 'a' + i % 26);
@@ -211,9 +208,7 @@ TEST(sets_have_limits)
     }
 
     // a byte that ends texts
-    FILE *file = fopen(path, "w");
-    fwrite("a=1\0b=2\n", 1, 8, file);
-    fclose(file);
+    put_bytes(path, "a=1\0b=2\n", 8);
     assert_int_equal(robust_set_read(&set, path, &f), STATUS_BAD_ARGUMENT);
     robust_set_finish(&set);
 
@@ -259,10 +254,9 @@ TEST(sets_have_limits)
 TEST(threads_change_nothing)
 {
     char *const lines[] = {"belief.k2_factor=0.75:1.25", "control.seed=1:1000"};
-    SCOPED(robust_law_finish) robust_law one;
-    SCOPED(robust_law_finish) robust_law two;
-    KEPT_TEXT(alone) = judged(LAW_HYBRID, lines, 2, 12, 1, &one);
-    KEPT_TEXT(shared) = judged(LAW_HYBRID, lines, 2, 12, 3, &two);
+    SCOPED(robust_law_finish) robust_law one, two;
+    KEPT_TEXT(alone) = judged(&one, LAW_HYBRID, 12, 1, 2, lines);
+    KEPT_TEXT(shared) = judged(&two, LAW_HYBRID, 12, 3, 2, lines);
     assert_string_equal(alone, shared);
     assert_memory_equal(one.overshoots, two.overshoots, 12 * sizeof(double));
 }
@@ -270,9 +264,7 @@ TEST(threads_change_nothing)
 // One run: every quantile is its value.
 TEST(one_run_is_all_its_quantiles)
 {
-    char *const lines[] = {"wall.kind=point"};
-    SCOPED(robust_law_finish) robust_law found;
-    free(judged(LAW_HYBRID, lines, 1, 1, 1, &found));
+    JUDGED(found, LAW_HYBRID, 1, 1, 1, ((char *const[]){"wall.kind=point"}));
     summary s = rig_summary_with("control.law=hybrid run.duration=1");
     for (int i = 0; i < ROBUST_QUANTILES; i++) {
         check_relative(found.overshoot[i], 100 * s.force_over_command_N / s.force_command_N, 1e-12);
@@ -288,10 +280,9 @@ TEST(quantiles_rise_and_the_observer_law_stands_the_set)
     char *const lines[] = {"belief.mass_factor=0.85:1.15", "belief.torque_factor=0.85:1.15",
                            "belief.friction_factor=0.7:1.3", "belief.wall_error=-0.03:0.03",
                            "control.seed=1:1000"};
-    SCOPED(robust_law_finish) robust_law hybrid;
-    SCOPED(robust_law_finish) robust_law observer;
-    free(judged(LAW_HYBRID, lines, 5, 24, 2, &hybrid));
-    free(judged(LAW_OBSERVER, lines, 5, 24, 2, &observer));
+    SCOPED(robust_law_finish) robust_law hybrid, observer;
+    free(judged(&hybrid, LAW_HYBRID, 24, 2, 5, lines));
+    free(judged(&observer, LAW_OBSERVER, 24, 2, 5, lines));
     check_below(hybrid.overshoot[ROBUST_MEDIAN], hybrid.overshoot[ROBUST_WORST]);
     check_close(hybrid.overshoot[ROBUST_WORST], hybrid.overshoots[23], 0);
     check_below(observer.overshoot[ROBUST_WORST], 30);
@@ -303,9 +294,7 @@ TEST(quantiles_rise_and_the_observer_law_stands_the_set)
 // A run that never settles counts as the worst.
 TEST(what_never_settles_is_in_no_quantile)
 {
-    char *const lines[] = {"initial.angle=-2.9,-0.1"};
-    SCOPED(robust_law_finish) robust_law found;
-    free(judged(LAW_HYBRID, lines, 1, 4, 1, &found));
+    JUDGED(found, LAW_HYBRID, 4, 1, 1, ((char *const[]){"initial.angle=-2.9,-0.1"}));
     check_close(found.settled, 0.5, 0);
     assert_true(isnan(found.settling[ROBUST_WORST]));
 }
@@ -409,14 +398,14 @@ TEST(a_limit_says_what_is_too_much)
     char *const low[] = {"control.force_limit=0.5"}, *const high[] = {"control.force_limit=100"};
     char *const links[] = {"arm.links=3"};
     robust_law found;
-    free(judged(LAW_HYBRID, low, 1, 1, 1, &found));
+    free(judged(&found, LAW_HYBRID, 1, 1, 1, low));
     check_close(found.exceeded, 1, 0);
     robust_law_finish(&found);
-    free(judged(LAW_HYBRID, high, 1, 1, 1, &found));
+    free(judged(&found, LAW_HYBRID, 1, 1, 1, high));
     check_close(found.exceeded, 0, 0);
     robust_law_finish(&found);
 
-    free(judged(LAW_HYBRID, links, 1, 1, 1, &found));
+    free(judged(&found, LAW_HYBRID, 1, 1, 1, links));
     const summary s = rig_summary_with("control.law=hybrid run.duration=1 arm.links=3");
     check_relative(found.overshoot[ROBUST_MEDIAN],
                    100 * s.smoothed_over_command_N / s.force_command_N, 1e-12);
@@ -430,25 +419,21 @@ TEST(a_limit_says_what_is_too_much)
                  {"arm.links=3", "smoothed"},
                  {"arm.links=2,3", "peak and smoothed"}};
     for (int i = 0; i < 3; i++) {
-        KEPT_TEXT(text) = judged(LAW_HYBRID, &kinds[i].line, 1, 2, 1, &found);
+        KEPT_TEXT(text) = judged(&found, LAW_HYBRID, 2, 1, 1, &kinds[i].line);
         assert_string_equal(found.overshoot_of, kinds[i].of);
-        char expected[64];
-        snprintf(expected, sizeof expected, "\"overshoot_of\": \"%s\"", kinds[i].of);
-        assert_non_null(strstr(text, expected));
+        assert_non_null(strstr(text, formatted("\"overshoot_of\": \"%s\"", kinds[i].of)));
         for (int q = 0; q < ROBUST_QUANTILES; q++) {
             check_below(found.smoothed[q], found.raw[q]);
             assert_true(i == 2 || found.overshoot[q] == (i == 0 ? found.raw : found.smoothed)[q]);
         }
         for (EACH_TEXT(key, "median", "nine_tenths", "worst")) {
-            snprintf(expected, sizeof expected, "\"raw_overshoot_%s_percent\": ", *key);
-            assert_non_null(strstr(text, expected));
-            snprintf(expected, sizeof expected, "\"smoothed_overshoot_%s_percent\": ", *key);
-            assert_non_null(strstr(text, expected));
+            assert_non_null(strstr(text, formatted("\"raw_overshoot_%s_percent\": ", *key)));
+            assert_non_null(strstr(text, formatted("\"smoothed_overshoot_%s_percent\": ", *key)));
         }
         robust_law_finish(&found);
     }
     const summary two = rig_summary_with("control.law=hybrid run.duration=1");
-    free(judged(LAW_HYBRID, &kinds[0].line, 1, 1, 1, &found));
+    free(judged(&found, LAW_HYBRID, 1, 1, 1, &kinds[0].line));
     check_relative(found.smoothed[ROBUST_WORST],
                    100 * two.smoothed_over_command_N / two.force_command_N, 1e-12);
     robust_law_finish(&found);

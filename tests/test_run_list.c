@@ -1,11 +1,6 @@
 // Several runs: pinning, comparing, going on with one of them, differences and sweeps.
 #include "tests/explorer_on_screen.h"
 
-static double peak(const explorer *ex)
-{
-    return ex->state.session.run.summary.peak_force_N;
-}
-
 TEST(test_runs_are_pinned_with_what_was_changed)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -40,10 +35,8 @@ TEST(test_names_are_cut_between_words)
     press(&ex, ":seek 0.1234<Enter>:set motor.voltage 0.25<Enter>b");
     const char name[] = "voltage 0.25 from 0.1234 s";
     assert_string_equal(ex.state.pinned.runs[0].name, name);
-    char *text = picture(&ex, 100, 40, GLYPHS_BRAILLE);
-    assert_non_null(strstr(text, "voltage 0.25 from… "));
-    assert_null(strstr(text, name));
-    free(text);
+    assert_shows_at(&ex, 100, 40, "voltage 0.25 from… ");
+    assert_shows_at(&ex, 100, 40, formatted("!%s", name));
 
     // where there is room it is whole, also one that is long
     press_shows(&ex, "B:pin of the second series, with 12345678901234567890 samples<Enter>R",
@@ -53,17 +46,13 @@ TEST(test_names_are_cut_between_words)
 
 TEST(test_no_more_than_seven_and_none_is_lost)
 {
-    char keys[64];
     OPEN_EXPLORER(ex, "corrected/first-impact");
     for (int i = 0; i < PINNED_RUNS; i++) {
-        snprintf(keys, sizeof keys, ":set arm.k2 %d<Enter>b", 4 + i);
-        press(&ex, keys);
+        press_text(&ex, ":set arm.k2 %d<Enter>b", 4 + i);
     }
     assert_int_equal(ex.state.pinned.count, PINNED_RUNS);
-    press(&ex, ":set arm.k2 20<Enter>b");
+    press_warns(&ex, ":set arm.k2 20<Enter>b", "7 runs are pinned already");
     assert_int_equal(ex.state.pinned.count, PINNED_RUNS);
-    assert_true(ex.state.message.warning);
-    assert_shows(&ex, "7 runs are pinned already");
 
     // dropping the baseline leaves another one, dropping all leaves none
     for (int i = 0; i < PINNED_RUNS; i++) {
@@ -147,8 +136,7 @@ TEST(test_the_difference_is_that_of_the_runs)
 TEST(test_states_are_not_subtracted)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
-    press(&ex, ":seek 0.4<Enter>b:set control.force 2<Enter>:seek 1<Enter>8D");
-    free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
+    press_draws(&ex, ":seek 0.4<Enter>b:set control.force 2<Enter>:seek 1<Enter>8D");
     const trace *d = &ex.state.difference.trace, *run = &ex.state.session.run.trace;
     double forces = 0;
     assert_true(d->row_count > 1000);
@@ -160,9 +148,8 @@ TEST(test_states_are_not_subtracted)
         }
     }
     assert_true(forces > 100);
-    assert_shows(&ex, "mode force    \u254c contact 1");
-    assert_shows(&ex, "are this run's; D shows");
-    assert_shows(&ex, "!stick 1                    minus baseline");
+    assert_shows(&ex, "mode force    \u254c contact 1", "are this run's; D shows",
+                 "!stick 1                    minus baseline");
     press_shows(&ex, "X", "minus baseline, visible part");
 }
 
@@ -191,39 +178,33 @@ TEST(test_a_sweep_gives_what_single_runs_give)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":sweep motor.voltage=0.5:2:4<Enter>");
-    const lab_sweep *sweep = &ex.state.sweep;
-    assert_int_equal(sweep->count, 4);
+    const lab_sweep *swept = &ex.state.sweep;
+    assert_int_equal(swept->count, 4);
     assert_int_equal(state_run_count(&ex.state), 5);
     assert_shows(&ex, "sweep motor.voltage, 4 of 4");
 
     // the run of a row, opened, is that run; u leads back
     const double opened = peak(&ex);
     press(&ex, "<Down><Down><Enter>");
-    check_close(sweep->runs[2].value, 1.5, 1e-15);
-    check_close(peak(&ex), sweep->runs[2].run.summary.peak_force_N, 0);
+    check_close(swept->runs[2].value, 1.5, 1e-15);
+    check_close(peak(&ex), swept->runs[2].run.summary.peak_force_N, 0);
     press(&ex, "u");
     check_close(peak(&ex), opened, 0);
 
     // another metric, and the end
     press(&ex, ":metric contact_impulse_Ns<Enter>");
-    assert_int_equal(sweep->metric, SUMMARY_INDEX(contact_impulse_Ns));
+    assert_int_equal(swept->metric, SUMMARY_INDEX(contact_impulse_Ns));
     press(&ex, "<Esc>");
     assert_int_equal(state_run_count(&ex.state), 1);
 
     // what cannot be run says so
     press_warns(&ex, ":sweep motor.voltage=1:2:40<Enter>", "");
     press(&ex, ":sweep stiction=0.01:0.05:3<Enter>");
-    assert_int_equal(sweep->axis.parameter, PARAMETER_INDEX(motor.stiction));
-    char *text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
-    assert_non_null(strstr(text, "sweep motor.stiction, 3 of 3"));
-    free(text);
+    assert_int_equal(swept->axis.parameter, PARAMETER_INDEX(motor.stiction));
+    assert_shows_at(&ex, 80, 24, "sweep motor.stiction, 3 of 3");
     press(&ex, ":sweep viscous_friction=0.01:0.05:3<Enter>");
-    text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
-    assert_non_null(strstr(text, "─ viscous_friction, 3 of 3 ─"));
-    free(text);
+    assert_shows_at(&ex, 80, 24, "─ viscous_friction, 3 of 3 ─");
     press(&ex, ":sweep sensor.accelerometer_rise_time=0.001:0.002:3<Enter>");
-    text = picture(&ex, 80, 24, GLYPHS_BRAILLE);
-    assert_non_null(strstr(text, "─ accelerometer_rise.., 3 of 3 ─"));
-    free(text);
+    assert_shows_at(&ex, 80, 24, "─ accelerometer_rise.., 3 of 3 ─");
     press_shows(&ex, ":sweep motor.volts=1:2:4<Enter>", "did you mean");
 }

@@ -1,4 +1,5 @@
 // Reading scenarios: what a file may say, and the place and sentence of everything it may not.
+#include "tests/given_parameters.h"
 #include "tests/scenario_fixture.h"
 
 #include "src/run/run.h"
@@ -49,9 +50,7 @@ TEST(a_whole_scenario_is_read)
 TEST(what_is_left_out_has_a_default)
 {
     KEPT_SCENARIO(s) = good("{}");
-    parameters p;
-    parameters_defaults(&p, ARM_CORRECTED);
-    DONE(parameters_resolve(&p, &f));
+    const parameters p = defaults_of(ARM_CORRECTED);
     assert_memory_equal(&s.parameters, &p, sizeof p);
     assert_string_equal(s.title, "f.yaml");
     assert_string_equal(s.description, "");
@@ -74,11 +73,10 @@ TEST(the_order_of_groups_does_not_matter)
 
 TEST(a_byte_order_mark_and_windows_lines_are_fine)
 {
-    scenario s = good("\xef\xbb\xbf"
-                      "title: x\r\narm:\r\n  k2: 5\r\n");
+    KEPT_SCENARIO(s) = good("\xef\xbb\xbf"
+                            "title: x\r\narm:\r\n  k2: 5\r\n");
     assert_string_equal(s.title, "x");
     check_close(s.parameters.arm.k2, 5, 0);
-    scenario_finish(&s);
     check_fault("\xef\xbb\xbf"
                 "titel: x\r\n",
                 1, 1, "'title'");
@@ -199,9 +197,7 @@ TEST(prose_is_text)
 
 TEST(a_title_has_a_limit)
 {
-    char text[400] = "title: ";
-    memset(text + 7, 'x', 300);
-    check_fault(text, 1, 8, "at most 200");
+    check_fault(formatted("title: %s", repeated('x', 300)), 1, 8, "at most 200");
 }
 
 // ---- faults of script and expect ----------------------------------------------------------------
@@ -312,12 +308,11 @@ TEST(several_faults_are_all_reported)
 // A list may be written as YAML's or as text; in either it has an end.
 TEST(lists_are_read_in_both_forms)
 {
-    scenario s = good("title: t\narm: {links: 3, joint_stiffness: [10, 12.5]}\n");
-    assert_string_equal(s.parameters.arm.joint_stiffness, "10, 12.5");
-    scenario_finish(&s);
-    s = good("title: t\narm: {links: 3, joint_stiffness: '10,12.5'}\n");
-    assert_string_equal(s.parameters.arm.joint_stiffness, "10, 12.5");
-    scenario_finish(&s);
+    for (EACH_TEXT(c, "[10, 12.5]", "'10,12.5'")) {
+        KEPT_SCENARIO(s) = good(formatted("title: t\narm: {links: 3, joint_stiffness: %s}\n", *c));
+        assert_string_equal(s.parameters.arm.joint_stiffness, "10, 12.5");
+    }
+    scenario s;
 
     char text[2000] = "arm: {links: 32, link_lengths: [0.03125";
     for (int k = 1; k < 32; k++) {
@@ -344,11 +339,9 @@ TEST(an_action_that_cannot_be_changes_nothing)
 TEST(a_list_has_a_limit)
 {
     for (int over = -1; over < 2; over++) {
-        char number[PARAMETER_TEXT_SIZE + 8], text[2 * PARAMETER_TEXT_SIZE];
         const int digits = PARAMETER_TEXT_SIZE - 1 - (int)strlen(", 7.5") + over;
-        snprintf(number, sizeof number, "6.%0*d", digits - 2, 0);
-        snprintf(text, sizeof text, "arm:\n  links: 3\n  joint_stiffness:\n  - %s\n  - 7.5\n",
-                 number);
+        const char *text =
+            formatted("arm:\n  links: 3\n  joint_stiffness:\n  - 6.%0*d\n  - 7.5\n", digits - 2, 0);
         if (over > 0) {
             check_fault(text, 5, 5, "too long");
             continue;
@@ -374,27 +367,22 @@ TEST(nothing_is_read_behind_the_end)
     assert_null(strstr(all.text, "a tab"));
 }
 
-TEST(the_first_lock_is_one_of_the_laws_modes)
+TEST(a_lock_is_one_of_the_laws_modes)
 {
+    KEPT_SCENARIO(s) = good("title: t\ncontrol: {law: hybrid}\n"
+                            "script: [{at: 0.1, set: {control.lock: force}}, "
+                            "{at: 0.2, set: {control.lock: none}}]\n");
     check_fault("title: t\ncontrol: {law: hybrid, lock: nonsense}\n"
                 "script: [{at: 0.1, set: {motor.voltage: 1}}]\n",
-                2, 30, "nonsense");
-}
-
-TEST(a_scripted_lock_is_one_of_the_laws_modes)
-{
-    scenario s = good("title: t\ncontrol: {law: hybrid}\n"
-                      "script: [{at: 0.1, set: {control.lock: force}}]\n");
-    scenario_finish(&s);
+                2, 30, "control.lock = 'nonsense' is no mode of");
     check_fault("title: t\ncontrol: {law: hybrid}\n"
                 "script: [{at: 0.1, set: {control.lock: nonsense}}]\n",
-                3, 40, "nonsense");
+                3, 40, "control.lock = 'nonsense' is no mode of");
 }
 
 TEST(an_expectation_may_be_exact)
 {
-    scenario s = good("title: t\nexpect: {impacts: {value: 2, tolerance: 0}}\n");
+    KEPT_SCENARIO(s) = good("title: t\nexpect: {impacts: {value: 2, tolerance: 0}}\n");
     check_close(s.expectations[0].tolerance, 0, 0);
-    scenario_finish(&s);
     check_fault("title: t\nexpect: {impacts: {value: 2, tolerance: -1}}\n", 2, 41, "tolerance");
 }

@@ -24,102 +24,108 @@ static int make_folder(void **state)
     return 0;
 }
 
+// Scenarios are looked for in these folders; what they were looked for in before.
+static char *look_in(const char *folders)
+{
+    const char *before = getenv("IMPACTLAB_SCENARIOS");
+    char *kept = strdup(before != NULL ? before : "");
+    setenv("IMPACTLAB_SCENARIOS", folders, 1);
+    return kept;
+}
+
+static void look_back(char **before)
+{
+    setenv("IMPACTLAB_SCENARIOS", *before, 1);
+    free(*before);
+}
+
+// The same until the block is left.
+#define LOOKING_IN(folders)                                                                        \
+    SCOPED(look_back) char *before __attribute__((unused)) = look_in(folders)
+
 // Opens with the folder of this test as the scenario folder.
 static status open_here(scenario *s, const char *name, sentences *all)
 {
-    KEPT_TEXT(before) = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
+    LOOKING_IN(test_folder);
     *all = (sentences){0};
-    setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
-    status result = scenario_open(s, name, keep_sentence, all);
-    setenv("IMPACTLAB_SCENARIOS", before, 1);
-    return result;
+    return scenario_open(s, name, keep_sentence, all);
 }
 
 TEST_BETWEEN(scenarios_open_by_name_and_by_file, make_folder, leave_folder)
 {
     KEPT_SCENARIO(s);
     sentences all;
-    char path[128];
+    const char *path = formatted("%s/deep/alpha-9.yaml", test_folder);
     assert_int_equal(open_here(&s, "deep/alpha-9", &all), STATUS_OK);
     assert_string_equal(s.name, "deep/alpha-9");
     assert_string_equal(s.title, "Nine");
-    snprintf(path, sizeof path, "%s/deep/alpha-9.yaml", test_folder);
     assert_string_equal(s.file, path);
     scenario_finish(&s);
     assert_int_equal(open_here(&s, path, &all), STATUS_OK);
     assert_string_equal(s.name, path);
     scenario_finish(&s);
-    snprintf(path, sizeof path, "%s/deep/alpha-10", test_folder);
-    assert_int_equal(open_here(&s, path, &all), STATUS_OK);
+    assert_int_equal(open_here(&s, formatted("%s/deep/alpha-10", test_folder), &all), STATUS_OK);
     assert_string_equal(s.title, "Ten");
 }
 
 TEST_BETWEEN(an_unknown_name_suggests_the_nearest, make_folder, leave_folder)
 {
-    scenario s;
-    sentences all;
-    assert_int_equal(open_here(&s, "deep/alpha-8", &all), STATUS_BAD_ARGUMENT);
-    assert_int_equal(all.count, 1);
-    assert_non_null(strstr(all.text, "did you mean 'deep/alpha-9'?"));
-    assert_int_equal(open_here(&s, "alpha-10", &all), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(all.text, "did you mean 'deep/alpha-10'?"));
-    assert_int_equal(open_here(&s, "alpha-9.yaml", &all), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(all.text, "did you mean 'deep/alpha-9'?"));
-    assert_int_equal(open_here(&s, "zzzzzzzzzz", &all), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(all.text, "impactlab list"));
-    assert_int_equal(open_here(&s, "../etc/passwd", &all), STATUS_BAD_ARGUMENT);
-    assert_int_equal(open_here(&s, "", &all), STATUS_BAD_ARGUMENT);
+    static const char *const cases[][2] = {{"deep/alpha-8", "did you mean 'deep/alpha-9'?"},
+                                           {"alpha-10", "did you mean 'deep/alpha-10'?"},
+                                           {"alpha-9.yaml", "did you mean 'deep/alpha-9'?"},
+                                           {"zzzzzzzzzz", "impactlab list"},
+                                           {"../etc/passwd", ""},
+                                           {"", ""}};
+    for (EACH(c, cases)) {
+        scenario s;
+        sentences all;
+        assert_int_equal(open_here(&s, (*c)[0], &all), STATUS_BAD_ARGUMENT);
+        assert_int_equal(all.count, 1);
+        assert_non_null(strstr(all.text, (*c)[1]));
+    }
 }
 
 TEST_BETWEEN(files_that_cannot_be_read, make_folder, leave_folder)
 {
+    const struct {
+        const char *path, *says;
+        status code;
+    } cases[] = {{"/nonexistent/x.yaml", "cannot be opened (No such file", STATUS_CANNOT_READ},
+                 {test_folder, "it is a folder", STATUS_CANNOT_READ},
+                 {"/dev/zero", "the file is larger", STATUS_BAD_SCENARIO},
+                 // one that opens and gives nothing
+                 {"/proc/self/mem", "cannot be read (Input/output error)", STATUS_CANNOT_READ}};
     scenario s;
-    sentences all = {0};
-    assert_int_equal(scenario_read(&s, "/nonexistent/x.yaml", NULL, keep_sentence, &all),
-                     STATUS_CANNOT_READ);
-    assert_non_null(strstr(all.text, "/nonexistent/x.yaml:1:1: cannot be opened (No such file"));
-    all = (sentences){0};
-    assert_int_equal(scenario_read(&s, test_folder, NULL, keep_sentence, &all), STATUS_CANNOT_READ);
-    assert_non_null(strstr(all.text, ":1:1: it is a folder"));
+    for (EACH(c, cases)) {
+        sentences all = {0};
+        assert_int_equal(scenario_read(&s, c->path, NULL, keep_sentence, &all), c->code);
+        assert_non_null(strstr(all.text, formatted("%s:1:1: %s", c->path, c->says)));
+    }
+    sentences all;
     assert_int_equal(open_here(&s, test_folder, &all), STATUS_CANNOT_READ);
     assert_int_equal(all.count, 1);
-    all = (sentences){0};
-    assert_int_equal(scenario_read(&s, "/dev/zero", NULL, keep_sentence, &all),
-                     STATUS_BAD_SCENARIO);
-    assert_non_null(strstr(all.text, "/dev/zero:1:1: the file is larger"));
-
-    // one that opens and gives nothing
-    all = (sentences){0};
-    assert_int_equal(scenario_read(&s, "/proc/self/mem", NULL, keep_sentence, &all),
-                     STATUS_CANNOT_READ);
-    assert_non_null(strstr(all.text, "/proc/self/mem:1:1: cannot be read (Input/output error)"));
 }
 
 // A link to a folder above would be listed for ever.
 TEST_BETWEEN(links_in_a_circle_end, make_folder, leave_folder)
 {
     char **names;
-    char *before = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     int count, found = 0;
     assert_int_equal(symlink("..", formatted("%s/deep/again", test_folder)), 0);
-    setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
-    assert_int_equal(scenario_list(&names, &count, NULL), STATUS_OK);
+    LOOKING_IN(test_folder);
+    DONE(scenario_list(&names, &count, &f));
     for (int i = 0; i < count; i++) {
         found += strstr(names[i], "alpha-9") != NULL;
-        free(names[i]);
     }
-    free(names);
+    free_names(names, count);
     assert_in_range(found, 2, 10);
-    setenv("IMPACTLAB_SCENARIOS", before, 1);
-    free(before);
 }
 
 TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, leave_folder)
 {
     char **names;
     int count;
-    KEPT_TEXT(before) = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
-    setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
+    LOOKING_IN(test_folder);
     DONE(scenario_list(&names, &count, &f));
     const char *const own[] = {"beta", "deep/alpha-9", "deep/alpha-10"};
     int found = 0, shipped = 0;
@@ -129,10 +135,7 @@ TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, leave_folder)
     }
     assert_int_equal(found, 3);
     assert_int_equal(shipped, 1);
-    for (int i = 0; i < count; i++) {
-        free(names[i]);
-    }
-    free(names);
+    free_names(names, count);
     setenv("IMPACTLAB_SCENARIOS", "/nonexistent", 1);
     REFUSED(STATUS_CANNOT_READ, "/nonexistent: no such folder", scenario_list(&names, &count, &f));
     assert_int_equal(count, 0);
@@ -144,23 +147,17 @@ TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, leave_folder)
     assert_int_equal(scenario_open(&s, "corrected/first-impact", keep_sentence, &all),
                      STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(all.text, "/nonexistent: no such folder"));
-    setenv("IMPACTLAB_SCENARIOS", before, 1);
 }
 
 // However many folders are named, the last one counts too.
 TEST_BETWEEN(every_folder_is_looked_into, make_folder, leave_folder)
 {
     enum { FOLDERS = 100 };
-    KEPT_TEXT(before) = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
-    KEPT_TEXT(all) = NULL;
-    size_t length;
-    FILE *list = open_memstream(&all, &length);
+    const char *all = "";
     for (int i = 1; i < FOLDERS; i++) {
-        fprintf(list, "%s/deep:", test_folder);
+        all = formatted("%s%s/deep:", all, test_folder);
     }
-    fprintf(list, ":%s::", test_folder); // one without a name is none
-    fclose(list);
-    setenv("IMPACTLAB_SCENARIOS", all, 1);
+    LOOKING_IN(formatted("%s:%s::", all, test_folder)); // one without a name is none
 
     // listed once each, and opened
     char **names;
@@ -168,16 +165,11 @@ TEST_BETWEEN(every_folder_is_looked_into, make_folder, leave_folder)
     DONE(scenario_list(&names, &count, &f));
     for (int i = 0; i < count; i++) {
         found += strcmp(names[i], "beta") == 0 || strcmp(names[i], "alpha-9") == 0;
-        free(names[i]);
     }
-    free(names);
+    free_names(names, count);
     assert_int_equal(found, 2);
-    scenario s;
-    sentences told = {0};
-    assert_int_equal(scenario_open(&s, "deep/alpha-9", keep_sentence, &told), STATUS_OK);
-    scenario_finish(&s);
-
-    setenv("IMPACTLAB_SCENARIOS", before, 1);
+    KEPT_SCENARIO(s);
+    assert_int_equal(scenario_open(&s, "deep/alpha-9", NULL, NULL), STATUS_OK);
 }
 
 TEST(every_shipped_scenario_reads_clean)
@@ -201,9 +193,8 @@ TEST(every_shipped_scenario_reads_clean)
         if (s.parameters.control.law == LAW_NONE && s.lesson.step_count == 0) {
             assert_int_equal(s.parameters.arm.model, of_thesis ? ARM_PRINTED : ARM_CORRECTED);
         }
-        free(names[i]);
     }
-    free(names);
+    free_names(names, count);
     assert_in_range(thesis, 14, 1000);
     assert_in_range(count - thesis, 10, 1000);
 }
@@ -284,9 +275,7 @@ TEST(an_endless_override_is_refused)
 {
     KEPT_SCENARIO(s) = good("{}");
     fault f;
-    char text[5000];
-    memset(text, 'a', sizeof text - 1);
-    text[sizeof text - 1] = '\0';
+    char *text = repeated('a', 4999);
     assert_int_equal(scenario_override(&s, text, &f), STATUS_BAD_ARGUMENT);
     memcpy(text, "arm.k2=", 7);
     assert_int_not_equal(scenario_override(&s, text, &f), STATUS_OK);
@@ -326,9 +315,8 @@ TEST(written_scenarios_read_back)
         KEPT_SCENARIO(s);
         assert_int_equal(scenario_open(&s, names[i], NULL, NULL), STATUS_OK);
         check_written(&s);
-        free(names[i]);
     }
-    free(names);
+    free_names(names, count);
     KEPT_SCENARIO(odd) =
         good("title: '\"a\\b\" # no comment: {'\ndescription: \"one\\ntwo\\t'\"\n"
              "control: {plugin: \"a b: 'c'\"}\n"
@@ -368,13 +356,7 @@ TEST(broken_texts_read_back)
 TEST(changed_scenarios_read_back)
 {
     for (int length = 1; length <= SCENARIO_TITLE; length++) {
-        char head[SCENARIO_TITLE + 16];
-        snprintf(
-            head, sizeof head, "title: %.*s\n", length,
-            "tttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttt"
-            "tttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttttt"
-            "tttttttttttttttttttttttttttttttt");
-        KEPT_SCENARIO(s) = good(head);
+        KEPT_SCENARIO(s) = good(formatted("title: %s\n", repeated('t', length)));
         for (int i = 0; i < parameter_count; i++) {
             // what goes together is no matter here: each is tried by itself
             parameters p = s.parameters;
@@ -440,22 +422,18 @@ TEST(a_copy_shares_nothing_with_the_original)
     int count;
     DONE(scenario_list(&names, &count, &f));
     for (int i = 0; i < count; i++) {
-        scenario s, copy;
-        sentences all = {0};
-        assert_int_equal(scenario_open(&s, names[i], keep_sentence, &all), STATUS_OK);
-        char *before = file_of(&s);
+        scenario s;
+        KEPT_SCENARIO(copy);
+        assert_int_equal(scenario_open(&s, names[i], NULL, NULL), STATUS_OK);
+        KEPT_TEXT(before) = file_of(&s);
         const int expected = s.expectation_count;
 
         // the copy outlives it, and is freed by itself
         assert_int_equal(scenario_copy(&copy, &s), STATUS_OK);
         scenario_finish(&s);
-        char *after = file_of(&copy);
+        KEPT_TEXT(after) = file_of(&copy);
         assert_string_equal(after, before);
         assert_int_equal(copy.expectation_count, expected);
-        scenario_finish(&copy);
-        free(before);
-        free(after);
-        free(names[i]);
     }
-    free(names);
+    free_names(names, count);
 }

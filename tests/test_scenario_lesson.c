@@ -7,14 +7,13 @@ TEST(faults_of_panes)
     check_fault("panes: force\n", 1, 8, "panes is a single value, expected a list of signals");
     check_fault("panes: [force, forse]\n", 1, 16, "no signal 'forse'");
     check_fault("panes: [[force]]\n", 1, 9, "no signal 'a list'");
-    char many[512] = "panes: [force";
+    const char *many = "panes: [force";
     for (int i = 0; i < SCENARIO_PANES; i++) {
-        strcat(many, ", gap");
+        many = formatted("%s, gap", many);
     }
-    strcat(many, "]\n");
     scenario s;
     sentences all;
-    assert_int_equal(parse(&s, many, &all), STATUS_BAD_SCENARIO);
+    assert_int_equal(parse(&s, formatted("%s]\n", many), &all), STATUS_BAD_SCENARIO);
     assert_int_equal(all.count, 1);
     assert_non_null(strstr(all.text, "more than"));
 }
@@ -32,15 +31,13 @@ static void check_step(const char *step, const char *what)
 
 TEST(faults_of_lessons)
 {
-    scenario s = good("lesson: {steps: [{say: a, choice: {of: [a, b], right: 2}}]}\n");
+    KEPT_SCENARIO(s) = good("lesson: {steps: [{say: a, choice: {of: [a, b], right: 2}}]}\n");
     assert_int_equal(s.lesson.steps[0].right, 1);
-    scenario_finish(&s);
 
     // the first of all parameters is one like the others
-    s = good("lesson: {steps: [{say: a, value: {arm.model: printed}}]}\n");
-    assert_int_equal(s.lesson.steps[0].parameter, parameter_find("arm.model"));
-    check_close(s.lesson.steps[0].value, ARM_PRINTED, 0);
-    scenario_finish(&s);
+    KEPT_SCENARIO(first) = good("lesson: {steps: [{say: a, value: {arm.model: printed}}]}\n");
+    assert_int_equal(first.lesson.steps[0].parameter, parameter_find("arm.model"));
+    check_close(first.lesson.steps[0].value, ARM_PRINTED, 0);
 
     // the lesson as a whole
     check_fault("lesson: [a]\n", 1, 9, "lesson is a list");
@@ -128,7 +125,7 @@ TEST(keys_of_a_check_are_words)
 // Every field of every kind of step, and what is left out.
 TEST(everything_of_a_lesson_is_read)
 {
-    scenario s =
+    KEPT_SCENARIO(s) =
         good("lesson:\n"
              "  parameters: [arm.k2, motor.voltage, arm.k1, arm.EI, arm.mass, arm.model]\n"
              "  steps:\n"
@@ -195,7 +192,6 @@ TEST(everything_of_a_lesson_is_read)
     }
     assert_int_equal(l->steps[7].parameter, parameter_find("motor.voltage"));
     check_close(l->steps[7].value, 1.5, 0);
-    scenario_finish(&s);
 
     // one beyond each limit, or below it
     check_step("{say: a, pinned: 8}", "from 1 to 7");

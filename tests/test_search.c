@@ -1,12 +1,5 @@
 // Search by words: what is found, in which order, and that every section of the manual can be.
-#include <stdarg.h>
-#include <stddef.h>
-#include <setjmp.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
-#include <cmocka.h>
+#include "tests/check.h"
 
 #include "ui/manual/search.h"
 
@@ -35,9 +28,8 @@ static int best(const char *question)
     return search_find(&source, 1, question, &hit, 1) > 0 ? hit.index : -1;
 }
 
-static void finds_what_fits_best(void **state)
+TEST(finds_what_fits_best)
 {
-    (void)state;
     assert_int_equal(best("soft wall"), 0);
     assert_int_equal(best("What is the beam that bends?"), 1);
     assert_int_equal(best("length"), 3);
@@ -48,25 +40,22 @@ static void finds_what_fits_best(void **state)
     assert_int_equal(best("?"), -1);
 }
 
-static void compares_without_endings_and_case(void **state)
+TEST(compares_without_endings_and_case)
 {
-    (void)state;
     assert_int_equal(best("SETTLING"), 0);
     assert_int_equal(best("bending"), 1);
     assert_int_equal(best("turned"), 2);
 }
 
-static void corrects_misspelt_words(void **state)
+TEST(corrects_misspelt_words)
 {
-    (void)state;
     assert_int_equal(best("lenght"), 3);
     assert_int_equal(best("hubb"), 2);
     assert_int_equal(best("zzzz"), -1);
 }
 
-static void keeps_the_best_in_order(void **state)
+TEST(keeps_the_best_in_order)
 {
-    (void)state;
     search_hit hits[4];
 
     // all that has the word, the one that is called so first
@@ -81,16 +70,13 @@ static void keeps_the_best_in_order(void **state)
     assert_int_equal(hits[0].index, 2);
 }
 
-static void takes_long_questions(void **state)
+TEST(takes_long_questions)
 {
-    (void)state;
-    char question[4096];
-    memset(question, 'a', sizeof question);
-    for (size_t i = 30; i < sizeof question; i += 40) {
+    char *question = repeated('a', 4095);
+    for (int i = 30; i < 4095; i += 40) {
         question[i] = ' ';
     }
     memcpy(question, "wall ", 5);
-    question[sizeof question - 1] = '\0';
     assert_int_equal(best(question), 0);
 }
 
@@ -101,9 +87,8 @@ static bool only_titled(const char *words, int index)
     return search_titles(&source, 1, words, hits, 4) == 1 && hits[0].index == index;
 }
 
-static void knows_titles(void **state)
+TEST(knows_titles)
 {
-    (void)state;
     search_hit hit;
     assert_true(only_titled("beam_length", 3));
     assert_true(only_titled("walls soft", 0));
@@ -119,17 +104,15 @@ static search_entry heading(int i)
 }
 
 // A search for the titles of a page's section leads to one that is called so.
-static void finds_every_section_by_its_title(void **state)
+TEST(finds_every_section_by_its_title)
 {
-    (void)state;
     const search_source sections = {manual_sections(), heading};
     assert_true(manual_sections() > 100);
     for (int i = 0; i < manual_sections(); i++) {
         const manual_section s = manual_section_at(i);
         search_hit hits[12];
         bool met = false;
-        char question[512];
-        snprintf(question, sizeof question, "%s %s", s.title, s.heading);
+        const char *question = formatted("%s %s", s.title, s.heading);
         const int count = search_find(&sections, 1, question, hits, 12);
         for (int k = 0; k < count; k++) {
             met = met || strcmp(manual_section_at(hits[k].index).heading, s.heading) == 0;
@@ -138,18 +121,4 @@ static void finds_every_section_by_its_title(void **state)
         assert_true(in_docs || strcmp(s.page, "README.md") == 0);
         assert_true(met || !in_docs); // README's headings are words that say little
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_what_fits_best),
-        cmocka_unit_test(compares_without_endings_and_case),
-        cmocka_unit_test(corrects_misspelt_words),
-        cmocka_unit_test(keeps_the_best_in_order),
-        cmocka_unit_test(takes_long_questions),
-        cmocka_unit_test(knows_titles),
-        cmocka_unit_test(finds_every_section_by_its_title),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,11 +3,6 @@
 
 #include "tests/session_fixture.h"
 
-static void change(session *s, const char *path, const char *value)
-{
-    DONE(session_change(s, parameter_find(path), value, &f));
-}
-
 TEST(test_stepping_back_and_forth_gives_the_same_states)
 {
     OPEN_SESSION(s, "corrected/first-impact");
@@ -215,11 +210,9 @@ TEST(test_a_saved_scenario_reproduces_the_run)
         free(save_and_compare(&s));
     }
     // a run that ends before an action of its script
-    session shorter;
-    open_session(&shorter, "corrected/voltage-step");
+    OPEN_SESSION(shorter, "corrected/voltage-step");
     change(&shorter, "run.duration", "0.7");
     free(save_and_compare(&shorter));
-    session_finish(&shorter);
     OPEN_SESSION(printed, "thesis/fig-3-4");
     session_seek(&printed, 0.1);
     change(&printed, "motor.voltage", "2");

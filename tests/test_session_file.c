@@ -5,16 +5,6 @@
 
 static const char path[] = "lab.session";
 
-static char *contents(const char *name)
-{
-    static char text[1 << 20];
-    FILE *stream = fopen(name, "r");
-    assert_non_null(stream);
-    text[fread(text, 1, sizeof text - 1, stream)] = '\0';
-    fclose(stream);
-    return text;
-}
-
 static void save(explorer *ex)
 {
     unlink(path);
@@ -34,12 +24,11 @@ TEST(test_what_was_done_comes_back)
         ":zoom 0.1 0.9<Enter>:mark 0.3<Enter>"
         ":seek 0.5<Enter>";
     SCOPED(explorer_finish) explorer ex;
-    open_explorer(&ex, "corrected/first-impact");
+    open_changed(&ex, "corrected/first-impact", "", HUGE_VAL);
     press(&ex, keys);
     save(&ex);
-    KEPT_TEXT(first) = strdup(contents(path));
-    press(&ex, "q");
-    assert_true(ex.state.quit);
+    KEPT_TEXT(first) = file_text(path);
+    press_quits(&ex, "q", true);
 
     OPEN_EXPLORER(again, "corrected/three-links");
     fail_if(!explorer_open_session(&again.state, path), "%s", again.state.message.text);
@@ -67,21 +56,17 @@ TEST(test_what_was_done_comes_back)
 
     // and again
     assert_true(explorer_carry_out(&again, "session save lab.session"));
-    assert_string_equal(contents(path), first);
+    assert_holds(path, first);
 
     // the run is changed and undone as any other; opening it is undone, too
     press(&again, "uu");
     assert_int_equal(again.state.session.input_count, ex.state.session.input_count - 2);
-    press(&again, "uuu");
-    assert_string_equal(again.state.session.base.name, "corrected/three-links");
+    press_opens(&again, "uuu", "corrected/three-links");
 }
 
 static void write_command(const char *volts)
 {
-    FILE *stream = fopen("command.csv", "w");
-    assert_non_null(stream);
-    fprintf(stream, "t,command\n0,%s\n", volts);
-    fclose(stream);
+    put_file("command.csv", formatted("t,command\n0,%s\n", volts));
 }
 
 // A recording that a run plays belongs to it, by content: another one in its place is told.
@@ -116,7 +101,7 @@ TEST(test_only_the_visits_own_file_is_replaced)
     put_file(path, "precious");
     OPEN_EXPLORER(ex, "corrected/first-impact");
     assert_false(explorer_carry_out(&ex, "session save lab.session"));
-    assert_string_equal(contents(path), "precious");
+    assert_holds(path, "precious");
     save(&ex);
     assert_true(explorer_carry_out(&ex, "session save lab.session"));
     assert_false(explorer_carry_out(&ex, "session open none.session"));
@@ -126,14 +111,11 @@ TEST(test_only_the_visits_own_file_is_replaced)
 // A session whose law is a program asks before it starts it, and its lines do nothing but look.
 TEST(test_a_file_from_elsewhere_starts_nothing)
 {
-    char text[512], mark[80];
-    snprintf(mark, sizeof mark, "%s/started", test_folder);
-    snprintf(text, sizeof text,
-             "impactlab-session: 1\nscenario: mine\n| title: \"mine\"\npresent:\n"
-             "start: 0 control.command touch %s\nstart: 0 control.law process\n"
-             "cursor: 0 0\nbaseline: 0\nview: save %s\nview: allow\n",
-             mark, mark);
-    put_file(path, text);
+    const char *mark = formatted("%s/started", test_folder);
+    put_file(path, formatted("impactlab-session: 1\nscenario: mine\n| title: \"mine\"\npresent:\n"
+                             "start: 0 control.command touch %s\nstart: 0 control.law process\n"
+                             "cursor: 0 0\nbaseline: 0\nview: save %s\nview: allow\n",
+                             mark, mark));
     OPEN_EXPLORER(ex, "corrected/first-impact");
     explorer_open_session(&ex.state, path);
     assert_int_equal(ex.state.session.run.summary.status, STATUS_NOT_ALLOWED);
@@ -182,7 +164,7 @@ TEST(test_broken_files_are_refused_with_their_line)
 
     // any beginning of a good one is told, or is whole; none crashes
     save(&ex);
-    KEPT_TEXT(good) = strdup(contents(path));
+    KEPT_TEXT(good) = file_text(path);
     const size_t length = strlen(good);
     for (size_t cut = 0; cut < length; cut += 37) {
         KEPT_TEXT(part) = strndup(good, cut);
@@ -200,11 +182,9 @@ TEST(test_broken_files_are_refused_with_their_line)
 // More pins than there is room for change nothing.
 TEST(test_pins_without_room_are_refused)
 {
-    char keys[64];
     OPEN_EXPLORER(ex, "corrected/first-impact");
     for (int i = 0; i < 4; i++) {
-        snprintf(keys, sizeof keys, ":set arm.k2 %d<Enter>b", 4 + i);
-        press(&ex, keys);
+        press_text(&ex, ":set arm.k2 %d<Enter>b", 4 + i);
     }
     save(&ex);
     press(&ex, ":session save<Enter>"); // proposes the visit's own file

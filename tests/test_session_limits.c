@@ -76,9 +76,7 @@ TEST(what_is_too_long_or_no_value_is_refused)
 {
     session s = opened(brief);
     fault f = {0};
-    char endless[4 * PARAMETER_TEXT_SIZE];
-    memset(endless, '1', sizeof endless - 1);
-    endless[sizeof endless - 1] = '\0';
+    const char *endless = repeated('1', 4 * PARAMETER_TEXT_SIZE - 1);
     session_seek(&s, 0.1);
     assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "2", &f), STATUS_OK);
     assert_int_equal(session_push(&s, 0.01, &f), STATUS_OK);
@@ -91,11 +89,7 @@ TEST(what_is_too_long_or_no_value_is_refused)
     assert_false(s.has_ghost);
 
     // too long by its last character
-    char just[SESSION_INPUT_TEXT + 1];
-    memset(just, '0', SESSION_INPUT_TEXT);
-    just[SESSION_INPUT_TEXT] = '\0';
-    just[SESSION_INPUT_TEXT - 2] = '7';
-    just[SESSION_INPUT_TEXT - 1] = ' ';
+    const char *just = formatted("%s7 ", repeated('0', SESSION_INPUT_TEXT - 2));
     f = (fault){0};
     assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.k2), just, &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "too long"));

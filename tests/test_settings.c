@@ -36,11 +36,9 @@ TEST(one_number_is_exchanged_and_the_others_stay)
         {"mode=fast", "gain", "0.30000000000000004", "mode=fast gain=0.30000000000000004"},
     };
     for (EACH(c, cases)) {
-        parameters p;
+        parameters p = fresh(ARM_CORRECTED);
         double value = 0;
-        parameters_defaults(&p, ARM_CORRECTED);
-        const int index = PARAMETER_INDEX(control.settings);
-        assert_int_equal(parameter_set_text(&p, index, c->before, NULL), STATUS_OK);
+        give(&p, "control.settings", c->before);
         assert_int_equal(settings_set_text(&p, c->name, c->text, NULL), STATUS_OK);
         assert_string_equal(p.control.settings, c->after);
         assert_true(settings_get(&p, c->name, &value));
@@ -120,10 +118,7 @@ TEST(a_file_has_a_map_or_the_text)
 TEST(a_script_sets_one_of_them)
 {
     char said[1024];
-    scenario plain, again;
-    KEPT_SCENARIO(scripted);
-    KEPT_RUN(before);
-    KEPT_RUN(after);
+    KEPT_SCENARIO(plain), scripted, again;
     const char *law = "impedance";
     assert_int_equal(parse(&plain, law, "  settings: {force: 0.5}\n", said), STATUS_OK);
     assert_int_equal(parse(&scripted, law,
@@ -135,27 +130,20 @@ TEST(a_script_sets_one_of_them)
     assert_string_equal(changed.control.settings, "force=0.5 stiffness=300");
 
     // the runs
-    assert_int_equal(run_scenario(&plain, true, &before), STATUS_OK);
-    assert_int_equal(run_scenario(&scripted, true, &after), STATUS_OK);
+    KEPT_RUN(before) = run_done(&plain, true), after = run_done(&scripted, true);
     assert_true(before.summary.steady_force_N != after.summary.steady_force_N);
     const size_t rows = trace_rows_until(&before.trace, 0.19);
     assert_true(rows > 10);
     check_close(before.trace.rows[rows - 1].hub_angle, after.trace.rows[rows - 1].hub_angle, 0);
 
     // written and read
-    KEPT_TEXT(text);
-    size_t size;
-    FILE *stream = open_memstream(&text, &size);
-    scenario_write(stream, &scripted);
-    fclose(stream);
+    SCOPED(free_kept) WRITTEN(text, scenario_write(stream, &scripted));
     assert_non_null(strstr(text, "set: {control.settings.stiffness: 300}"));
-    assert_int_equal(scenario_parse(&again, text, size, "again.yaml", NULL, keep_fault, said),
-                     STATUS_OK);
+    assert_int_equal(
+        scenario_parse(&again, text, strlen(text), "again.yaml", NULL, keep_fault, said),
+        STATUS_OK);
     assert_int_equal(again.action_count, 1);
     assert_string_equal(again.actions[0].text, scripted.actions[0].text);
-
-    scenario_finish(&plain);
-    scenario_finish(&again);
 }
 
 // Two of them adjusted at one instant are two inputs, each undone by itself.

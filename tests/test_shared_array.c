@@ -27,10 +27,16 @@ static void check_numbers(const shared_array *a, size_t count)
     }
 }
 
-static shared_array filled(size_t count)
+static shared_array reserved(size_t few, size_t most)
 {
     shared_array a;
-    assert_true(shared_array_reserve(&a, sizeof(uint64_t), MANY, 4 * MANY));
+    assert_true(shared_array_reserve(&a, sizeof(uint64_t), few, most));
+    return a;
+}
+
+static shared_array filled(size_t count)
+{
+    shared_array a = reserved(MANY, 4 * MANY);
     fill(&a, 0, count);
     return a;
 }
@@ -71,9 +77,8 @@ TEST(shared_arrays_keep_their_place_as_they_grow)
 // An array of many chunks.
 TEST(a_long_array_keeps_its_elements)
 {
-    SCOPED(shared_array_finish) shared_array a;
     const size_t many = 40 * PER_CHUNK;
-    assert_true(shared_array_reserve(&a, sizeof(uint64_t), many, many));
+    SCOPED(shared_array_finish) shared_array a = reserved(many, many);
     fill(&a, 0, many);
     check_numbers(&a, many);
     assert_int_equal(a.mapped, 40 * ARRAY_CHUNK);
@@ -81,8 +86,7 @@ TEST(a_long_array_keeps_its_elements)
 
 TEST(growing_beyond_the_address_space_fails_and_changes_nothing)
 {
-    SCOPED(shared_array_finish) shared_array a;
-    assert_true(shared_array_reserve(&a, sizeof(uint64_t), 10, 10));
+    SCOPED(shared_array_finish) shared_array a = reserved(10, 10);
     fill(&a, 0, 10);
     assert_false(shared_array_grow(&a, 10 * PER_CHUNK));
     check_numbers(&a, 10);
@@ -90,9 +94,9 @@ TEST(growing_beyond_the_address_space_fails_and_changes_nothing)
 
 TEST(a_beginning_is_shared_and_the_rest_is_each_ones_own)
 {
-    shared_array a = filled(MANY), b;
+    shared_array a = filled(MANY);
     size_t alone = shared_array_memory();
-    assert_true(shared_array_reserve(&b, sizeof(uint64_t), MANY, 4 * MANY));
+    SCOPED(shared_array_finish) shared_array b = reserved(MANY, 4 * MANY);
     assert_true(shared_array_share(&b, &a, MANY));
     check_numbers(&b, MANY);
 
@@ -104,17 +108,15 @@ TEST(a_beginning_is_shared_and_the_rest_is_each_ones_own)
     // the beginning stays when the first array goes
     shared_array_finish(&a);
     check_numbers(&b, MANY - 1);
-    shared_array_finish(&b);
 }
 
 // A plain array has no chunks that others could have too.
 TEST(the_beginning_of_a_plain_array_is_copied)
 {
     shared_array plain;
-    SCOPED(shared_array_finish) shared_array a;
+    SCOPED(shared_array_finish) shared_array a = reserved(MANY, 4 * MANY);
     shared_array_init(&plain, sizeof(uint64_t));
     fill(&plain, 0, MANY);
-    assert_true(shared_array_reserve(&a, sizeof(uint64_t), MANY, 4 * MANY));
     assert_true(shared_array_share(&a, &plain, MANY));
     check_numbers(&a, MANY);
     shared_array_finish(&plain);

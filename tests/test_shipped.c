@@ -1,21 +1,17 @@
 // Every shipped scenario runs, meets its own expectations and keeps its ledger.
-#include "src/run/run.h"
-#include "tests/check.h"
+#include "tests/shipped_scenario.h"
 
 static void print_fault(void *context, const char *sentence)
 {
-    (void)context;
-    print_error("%s\n", sentence);
+    print_error("%s: %s\n", (const char *)context, sentence);
 }
 
 static void check_scenario(const char *name)
 {
-    KEPT_SCENARIO(s);
+    KEPT_SCENARIO(s) = shipped(name);
     KEPT_RUN(r);
-    fail_if(scenario_open(&s, name, print_fault, NULL) != STATUS_OK, "%s cannot be read", name);
     fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s: %s", name, r.summary.message);
-    fail_if(run_check_expectations(&s, &r, print_fault, NULL) != 0,
-            "%s does not meet its expectations", name);
+    assert_int_equal(run_check_expectations(&s, &r, print_fault, (void *)name), 0);
     if (s.parameters.arm.model == ARM_CORRECTED && s.parameters.method.name == METHOD_EVENT) {
         // what the motor did, or where it did nothing, what the arm began with
         double m = s.parameters.arm.mass, l = s.parameters.arm.length,
@@ -39,7 +35,6 @@ TEST(every_scenario_is_its_own_test)
     assert_true(count > 30);
     for (int i = 0; i < count; i++) {
         check_scenario(names[i]);
-        free(names[i]);
     }
-    free(names);
+    free_names(names, count);
 }

@@ -1,12 +1,6 @@
 // Sliders of the explorer's parameters: what they span, and the mouse on them.
 #include "tests/explorer_on_screen.h"
 
-static void point(explorer *ex, pointer_kind kind, int x, int y)
-{
-    explorer_point(ex, (pointer_event){.kind = kind, .x = x, .y = y});
-    free(picture(ex, 120, 40, GLYPHS_BRAILLE));
-}
-
 // The slider drawn last for a parameter, the wide one where it is selected.
 static hit_area slider_of(explorer *ex, int parameter)
 {
@@ -20,12 +14,6 @@ static hit_area slider_of(explorer *ex, int parameter)
     }
     assert_int_equal(widest.part, PART_SLIDER);
     return widest;
-}
-
-static double value_of(const explorer *ex, int parameter)
-{
-    parameters p = session_parameters_at(&ex->state.session, ex->state.session.now);
-    return parameter_get(&p, parameter);
 }
 
 TEST(test_every_number_has_a_scale_that_suits_it)

@@ -1,16 +1,7 @@
 // Limits of a parameter for a condition on a result.
 #include "src/study/solve.h"
 
-#include "src/run/run.h"
 #include "tests/shipped_scenario.h"
-
-// A shipped scenario with changes; ends with NULL.
-static scenario opened(const char *name, char *const *changes, int count)
-{
-    scenario s = shipped(name);
-    assert_int_equal(scenario_override_all(&s, changes, count, NULL, NULL), STATUS_OK);
-    return s;
-}
 
 static sweep_axis axis_of(const char *path, double low, double high)
 {
@@ -39,11 +30,10 @@ static solution solved(const scenario *s, const sweep_axis *axis, const char *te
 static double quantity_at(const scenario *s, const char *path, double value, const char *key)
 {
     scenario changed = *s;
-    KEPT_RUN(result);
     parameters p = s->parameters;
     assert_int_equal(parameter_set_number(&p, parameter_find(path), value, NULL), STATUS_OK);
     assert_int_equal(scenario_take_parameters(&changed, &p, NULL), STATUS_OK);
-    assert_int_equal(run_scenario(&changed, false, &result), STATUS_OK);
+    KEPT_RUN(result) = run_done(&changed, false);
     return summary_value(&result.summary, summary_find(key));
 }
 
@@ -51,9 +41,9 @@ static double quantity_at(const scenario *s, const char *path, double value, con
 // where there is no friction: twice the force takes twice the voltage.
 TEST(statics_have_the_limit_of_statics)
 {
-    char *changes[] = {"motor.stiction=0", "arm.links=1", "initial.angle=0", "wall.angle=0",
-                       "run.duration=0.2"};
-    KEPT_SCENARIO(s) = opened("corrected/first-impact", changes, 5);
+    KEPT_SCENARIO(s) =
+        shipped_with("corrected/first-impact",
+                     "motor.stiction=0 arm.links=1 initial.angle=0 wall.angle=0 run.duration=0.2");
     sweep_axis axis = axis_of("motor.voltage", 0.1, 4);
     const double at_one = quantity_at(&s, "motor.voltage", 1, "steady_force_N");
 
@@ -69,7 +59,7 @@ TEST(statics_have_the_limit_of_statics)
 // values nor that of threads has a say in where it is.
 TEST(limits_are_where_the_condition_ceases_to_hold)
 {
-    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = shipped("corrected/first-impact");
     sweep_axis axis = axis_of("motor.voltage", 0.5, 5);
     const solution few = solved(&s, &axis, "peak_force_N<2", 5, 1),
                    many = solved(&s, &axis, "peak_force_N<2", 40, 3);
@@ -94,7 +84,7 @@ TEST(limits_are_where_the_condition_ceases_to_hold)
 // those that do not. Within 1e-9 V of a grazing impact rounding decides whether it is one.
 TEST(jumps_are_located_and_told)
 {
-    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = shipped("corrected/first-impact");
     sweep_axis axis = axis_of("motor.voltage", 5, 0.5);
     const solution found = solved(&s, &axis, "impacts<3", 65, 1);
     assert_true(found.count >= 2);
@@ -111,7 +101,7 @@ TEST(jumps_are_located_and_told)
 
 TEST(whole_numbers_have_a_last_one)
 {
-    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = shipped("corrected/first-impact");
     sweep_axis axis = axis_of("arm.links", 2, 20);
 
     // run one by one, and with most of them left out
@@ -129,7 +119,7 @@ TEST(whole_numbers_have_a_last_one)
 // Where the quantity is missing or the run fails, there is no limit of its value.
 TEST(what_is_not_there_has_no_limit)
 {
-    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = shipped("corrected/first-impact");
 
     // a voltage too small to reach the wall
     sweep_axis axis = axis_of("motor.voltage", 0, 1);
@@ -170,7 +160,7 @@ TEST(conditions_say_what_they_lack)
 
 TEST(parameters_that_are_no_numbers_have_no_range)
 {
-    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = shipped("corrected/first-impact");
     sweep_axis axis = axis_of("method.name", 0, 1);
     REFUSED(STATUS_BAD_ARGUMENT, "", solve_usual_range(&axis, &s, &f));
     axis = axis_of("motor.voltage", 0, 0);
@@ -182,7 +172,7 @@ TEST(one_can_be_stopped)
 {
     solution found;
     run_monitor monitor = {0};
-    KEPT_SCENARIO(s) = opened("corrected/first-impact", NULL, 0);
+    KEPT_SCENARIO(s) = shipped("corrected/first-impact");
     sweep_axis axis = axis_of("motor.voltage", 0, 5);
     const solve_condition c = condition_of("peak_force_N<2");
     atomic_store(&monitor.stop, true);

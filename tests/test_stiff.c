@@ -301,18 +301,6 @@ TEST(a_force_that_stays_has_its_peak_at_its_start)
     check_close(m->record.pulse_peak, m->state[SLOT_FORCE], 1e-9 * m->record.pulse_peak);
 }
 
-// Tip against a flat wall through the hub's axis, where the force has a pole.
-TEST(steps_keep_clear_of_a_fold)
-{
-    for (EACH_TEXT(c, "motor.voltage=8.6", "motor.voltage=8.8", "motor.voltage=9.8")) {
-        const parameters p = fixture_parameters(SETTINGS(
-            "wall.kind=plane", "wall.angle=0.0018", "wall.restitution=0.08", "arm.mass=1.5",
-            "arm.length=0.3", "arm.hub_inertia=0.00036", "arm.k2=0.27", "arm.tip_mass=1e-15", *c));
-        const chain_outcome o = chain_outcome_of(&(chain_start){&p, 0, 0, 0.3, 0.3, &stiff_engine});
-        assert_int_equal(o.status, STATUS_FOLDED);
-    }
-}
-
 // Bounces amplify errors: 62 of them leave a hundred-thousandth of the momentum in doubt.
 TEST(a_chain_that_bounces_keeps_its_impacts)
 {

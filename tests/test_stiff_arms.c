@@ -1,7 +1,6 @@
 // Arms with decays or vibrations much faster than the motion of interest: they take few strides or
 // report why not, and their slow modes are right. And arms that start on the wall, with first
 // flights that are lower than rounding.
-#include "src/run/loop.h"
 #include "src/contact/zeno_monitor.h"
 #include "tests/explicit_stepper.h"
 #include "tests/passage.h"
@@ -255,9 +254,7 @@ TEST(expensive_strides_are_given_up_sooner)
 TEST(a_loop_makes_as_many_strides_as_are_asked_for)
 {
     enum { EPISODES = 750, STEPS = 100, INSTANTS = 70000 };
-    char name[] = "rewound", none[] = "";
-    scenario s = {.name = name, .file = none, .title = none, .description = none};
-    s.parameters = parameters_with("run.duration=1");
+    scenario s = {.parameters = parameters_with("run.duration=1")};
     const loop_options options = {0};
     run_loop *l;
     DONE(loop_create(&l, &s, &options, &f));

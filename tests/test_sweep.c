@@ -1,16 +1,11 @@
 // The runs of a sweep and their store.
-#include <sqlite3.h>
-
-#include "src/run/run.h"
 #include "src/engines/pair/taylor_lanes.h"
 #include "src/study/sweep_definition.h"
-#include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
 TEST(every_run_is_what_the_scenario_gives_alone)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=0.5:2:4", NULL);
+    SWEPT(s, SWEEP_GRID, 0, "motor.voltage=0.5:2:4", NULL);
     KEPT_STORE(store) = must_open(NULL, &s);
     must_run(&s, store, 2);
     double peaks[4], contacts[4];
@@ -18,9 +13,8 @@ TEST(every_run_is_what_the_scenario_gives_alone)
     DONE(sweep_store_quantity(store, "first_contact_s", contacts, NULL, &f));
     for (int run = 0; run < 4; run++) {
         scenario alone = base;
-        KEPT_RUN(result);
         alone.parameters.motor.voltage = 0.5 + 0.5 * run;
-        assert_int_equal(run_scenario(&alone, false, &result), STATUS_OK);
+        KEPT_RUN(result) = run_done(&alone, false);
         check_close(peaks[run], result.summary.peak_force_N, 0);
         check_close(contacts[run], result.summary.first_contact_s, 0);
     }
@@ -30,8 +24,7 @@ TEST(every_run_is_what_the_scenario_gives_alone)
 
 TEST(the_number_of_jobs_does_not_change_a_byte)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_LATIN, 60, "motor.voltage=0.5:5", "arm.links=1:4");
+    SWEPT(s, SWEEP_LATIN, 60, "motor.voltage=0.5:5", "arm.links=1:4");
     KEPT_TEXT(one) = uninterrupted(&s, 1), *two = uninterrupted(&s, 2),
     *many = uninterrupted(&s, 7);
     assert_string_equal(one, two);
@@ -48,8 +41,7 @@ TEST(the_number_of_jobs_does_not_change_a_byte)
 // one thread and on several, and where some of the runs are there already.
 TEST(the_number_of_lanes_does_not_change_a_byte)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_LATIN, 201, "motor.voltage=0.5:5", "wall.restitution=0:1");
+    SWEPT(s, SWEEP_LATIN, 201, "motor.voltage=0.5:5", "wall.restitution=0:1");
     taylor_limit_width(1);
     KEPT_TEXT(alone) = uninterrupted(&s, 1);
     taylor_limit_width(0);
@@ -108,11 +100,8 @@ TEST(another_sweep_is_refused_with_the_difference)
 TEST(a_changed_script_is_another_sweep)
 {
     scenario with = base, without = base, settled = base;
-    action script[] = {{.time = 0.1,
-                        .kind = ACTION_SET,
-                        .parameter = PARAMETER_INDEX(control.lock),
-                        .text = "none"},
-                       {.time = 0.2, .kind = ACTION_PUSH, .parameter = -1, .value = 0.01}};
+    action script[] = {SETS(0.1, control.lock, 0), PUSHES(0.2, 0.01)};
+    strcpy(script[0].text, "none");
     with.actions = script;
     with.action_count = 2;
     DONE(scenario_override(&settled, "control.settings=kp=2", &f));
@@ -140,8 +129,7 @@ TEST(a_script_goes_with_every_run)
 {
     fault f = {.text = ""};
     sweep s;
-    action push = {.time = 0.2, .kind = ACTION_PUSH, .parameter = -1, .value = 0.01};
-    base.actions = &push;
+    base.actions = &PUSHES(0.2, 0.01);
     base.action_count = 1;
     assert_int_equal(
         sweep_of(&s, SWEEP_GRID, 0, 1, &f, "arm.model=corrected,printed", "motor.voltage=1,2"),
@@ -156,28 +144,26 @@ TEST(a_script_goes_with_every_run)
 TEST(lists_have_an_end)
 {
     enum { VALUES = 400000 };
-    fault f = {.text = ""};
     sweep s;
     KEPT_TEXT(text) = malloc(16 + 8 * VALUES);
     char *end = text + sprintf(text, "control.seed=0");
     for (int i = 1; i < VALUES; i++) {
         end += sprintf(end, ",%d", i);
     }
-    assert_int_equal(sweep_of(&s, SWEEP_GRID, 0, 1, &f, text, NULL), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(f.text, "at most 20000 values, here are 400000"));
+    REFUSED(STATUS_BAD_ARGUMENT, "at most 20000 values, here are 400000",
+            sweep_of(&s, SWEEP_GRID, 0, 1, &f, text, NULL));
 }
 
 // Values that are drawn together stay pairs, through a database's definition too.
 TEST(values_drawn_together_stay_pairs)
 {
-    fault f = {.text = ""};
     for (sweep_sampling how = SWEEP_RANDOM; how <= SWEEP_LATIN; how++) {
         KEPT_SWEEP(s);
         KEPT_SWEEP(again);
         must_sweep(&s, how, 60, "arm.k2=1,2,3", "with arm.mass=0.1,0.2,0.2");
         SCOPED(definition_finish) definition d = {0};
-        assert_int_equal(definition_init(&d, &s, &f), STATUS_OK);
-        assert_int_equal(definition_plan(&d, "here", &again, &f), STATUS_OK);
+        DONE(definition_init(&d, &s, &f));
+        DONE(definition_plan(&d, "here", &again, &f));
         bool seen[4] = {false};
         for (size_t run = 0; run < 60; run++) {
             const double k2 = sweep_value(&s, run, 0), mass = sweep_value(&s, run, 1);
@@ -200,18 +186,15 @@ TEST(values_drawn_together_stay_pairs)
     };
     for (EACH(c, refused)) {
         sweep s;
-        assert_int_equal(
-            sweep_of(&s, c->how, c->how == SWEEP_GRID ? 0 : 4, 1, &f, c->first, c->second),
-            STATUS_BAD_ARGUMENT);
-        assert_non_null(strstr(f.text, c->says));
+        REFUSED(STATUS_BAD_ARGUMENT, c->says,
+                sweep_of(&s, c->how, c->how == SWEEP_GRID ? 0 : 4, 1, &f, c->first, c->second));
     }
 }
 
 // A name that begins with a colon is a file like any other.
 TEST(a_colon_begins_a_name)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
+    SWEPT(s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     sweep_store_close(must_open(":memory:", &s));
     assert_int_equal(access("./:memory:", F_OK), 0);
     unlink("./:memory:");
@@ -220,14 +203,12 @@ TEST(a_colon_begins_a_name)
 TEST(more_axes_than_there_may_be_are_refused)
 {
     enum { TOO_MANY = SWEEP_MOST_AXES + 1 };
-    char text[TOO_MANY][48], *vary[TOO_MANY];
+    char *vary[TOO_MANY];
     int count = 0;
     for (int i = 0; i < parameter_count && count < TOO_MANY; i++) {
         const parameter_info *info = &parameter_table[i];
         if (info->type == PARAMETER_REAL && info->minimum <= 1 && info->maximum >= 2) {
-            snprintf(text[count], sizeof text[count], "%s=1:2:2", info->path);
-            vary[count] = text[count];
-            count++;
+            vary[count++] = formatted("%s=1:2:2", info->path);
         }
     }
     assert_int_equal(count, TOO_MANY);
@@ -242,14 +223,10 @@ TEST(rows_that_are_no_runs_are_refused)
 {
     for (EACH_TEXT(c, "UPDATE run SET run = 0 WHERE run = 1",
                    "UPDATE run SET run = 9 WHERE run = 1")) {
-        KEPT_SWEEP(s);
-        must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
+        SWEPT(s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
         sweep_store *store = must_open("rows.sqlite", &s);
         must_run(&s, store, 1);
-        sqlite3 *database;
-        assert_int_equal(sqlite3_open("rows.sqlite", &database), SQLITE_OK);
-        assert_int_equal(sqlite3_exec(database, *c, NULL, NULL, NULL), SQLITE_OK);
-        sqlite3_close(database);
+        tamper("rows.sqlite", *c);
 
         // whoever reads from it, and whoever goes on with it
         double values[3];
@@ -264,20 +241,13 @@ TEST(rows_that_are_no_runs_are_refused)
 
 TEST(what_is_no_sweep_is_left_alone)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
-    FILE *stream = fopen("text", "w");
-    assert_non_null(stream);
-    fputs("my notes, which are longer than a few bytes\n", stream);
-    fclose(stream);
+    SWEPT(s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
+    put_file("text", "my notes, which are longer than a few bytes\n");
     assert_refused("text", &s, STATUS_BAD_ARGUMENT, "no SQLite database");
     struct stat about;
     assert_int_equal(stat("text", &about), 0);
     assert_int_equal(about.st_size, 44);
-    sqlite3 *database;
-    assert_int_equal(sqlite3_open("theirs.sqlite", &database), SQLITE_OK);
-    sqlite3_exec(database, "CREATE TABLE run (x)", NULL, NULL, NULL);
-    sqlite3_close(database);
+    tamper("theirs.sqlite", "CREATE TABLE run (x)");
     assert_refused("theirs.sqlite", &s, STATUS_BAD_ARGUMENT, "holds no sweep");
     assert_refused("nowhere/x.sqlite", &s, STATUS_CANNOT_WRITE, "No such file");
     unlink("text");
@@ -286,8 +256,7 @@ TEST(what_is_no_sweep_is_left_alone)
 
 TEST(two_sweeps_do_not_write_to_one_file_at_once)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
+    SWEPT(s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     sweep_store *store = must_open("busy.sqlite", &s);
     assert_refused("busy.sqlite", &s, STATUS_CANNOT_WRITE, "another sweep is writing");
     sweep_store_close(store);
@@ -297,8 +266,7 @@ TEST(two_sweeps_do_not_write_to_one_file_at_once)
 
 TEST(a_file_deleted_within_a_transaction_is_missed)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
+    SWEPT(s, SWEEP_GRID, 0, "motor.voltage=1:2:3", NULL);
     KEPT_STORE(store) = must_open("gone.sqlite", &s);
     const summary result = {.peak_force_N = 2};
     DONE(sweep_store_put(store, 0, &result, &f));

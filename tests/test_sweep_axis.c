@@ -121,12 +121,12 @@ TEST(a_number_of_a_list_is_set_alone)
         parameters p;
         SCOPED(sweep_axis_finish) sweep_axis axis = {0};
         fault f = {0};
-        char name[64], text[PARAMETER_TEXT_SIZE];
+        const char *name = formatted("arm.joint_stiffness[%d]", k);
+        char text[PARAMETER_TEXT_SIZE];
         double found[PARAMETER_LIST_MOST];
         parameters_defaults(&p, ARM_CORRECTED);
         const int list = parameter_find("arm.joint_stiffness");
         assert_int_equal(parameter_set_text(&p, list, "5.25,12,30.5", &f), STATUS_OK);
-        snprintf(name, sizeof name, "arm.joint_stiffness[%d]", k);
         assert_int_equal(sweep_axis_find(&axis, name, &f), STATUS_OK);
         assert_string_equal(axis.name, name);
         assert_int_equal(axis.element, k);
@@ -148,13 +148,11 @@ TEST(a_number_of_a_list_is_set_alone)
 
     // the last number that a list can have
     sweep_axis axis = {0};
-    char name[64];
-    fault f = {0};
-    snprintf(name, sizeof name, "arm.joint_stiffness[%d]", PARAMETER_LIST_MOST);
-    assert_int_equal(sweep_axis_find(&axis, name, &f), STATUS_OK);
+    const char *last = formatted("arm.joint_stiffness[%d]", PARAMETER_LIST_MOST);
+    DONE(sweep_axis_find(&axis, last, &f));
     assert_int_equal(axis.element, PARAMETER_LIST_MOST);
-    snprintf(name, sizeof name, "arm.joint_stiffness[%d]", PARAMETER_LIST_MOST + 1);
-    assert_int_equal(sweep_axis_find(&axis, name, &f), STATUS_BAD_ARGUMENT);
+    const char *beyond = formatted("arm.joint_stiffness[%d]", PARAMETER_LIST_MOST + 1);
+    REFUSED(STATUS_BAD_ARGUMENT, "", sweep_axis_find(&axis, beyond, &f));
 }
 
 // Every value of a grid, a list or a draw, and the text by which a database knows it.

@@ -5,7 +5,7 @@
 
 #include "src/base/text_stream.h"
 #include "src/study/store/sweep_store.h"
-#include "tests/check.h"
+#include "tests/shipped_scenario.h"
 
 enum { RUNS = 60, COMMIT_EVERY = 25 };
 

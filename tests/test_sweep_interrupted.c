@@ -2,7 +2,6 @@
 #include <signal.h>
 #include <sqlite3.h>
 
-#include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
 // What the child of the next test does at each report of progress: at the first one it commits, at
@@ -77,8 +76,7 @@ static long long number_from(const char *path, const char *sql)
 
 TEST(a_killed_sweep_goes_on_and_loses_and_doubles_nothing)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, MANY_RUNS, NULL);
+    SWEPT(s, SWEEP_GRID, 0, MANY_RUNS, NULL);
     sweep_in_a_child_that_is_killed(&s, "killed.sqlite");
     long long kept = number_from("killed.sqlite", "SELECT count(*) FROM run");
     assert_in_range(kept, 1, MANY - 1);

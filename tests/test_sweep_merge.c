@@ -1,7 +1,5 @@
 // Parts of a sweep computed apart and merged: the rows of one sweep, and nothing else gets in.
-#include <sqlite3.h>
-
-#include "tests/check.h"
+#include "tests/given_parameters.h"
 #include "tests/sweep_fixture.h"
 
 static void sweep_voltages(sweep *s, const char *values)
@@ -55,10 +53,8 @@ static void check_refused(char **files, int count, const char *says)
 SWEEP_TEST(parts_may_vary_the_model)
 {
     assert_string_equal(parameter_table[0].path, "arm.model");
-    parameters_defaults(&base.parameters, ARM_CORRECTED);
-    DONE(parameters_resolve(&base.parameters, &f));
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, "arm.model=corrected,printed", NULL);
+    base.parameters = defaults_of(ARM_CORRECTED);
+    SWEPT(s, SWEEP_GRID, 0, "arm.model=corrected,printed", NULL);
     check_merge(&s, (char *[]){"1", "2"}, 2);
 }
 
@@ -109,16 +105,6 @@ SWEEP_TEST(the_plan_of_a_merge_is_that_of_the_sweep)
         assert_true(unlink("whole") == 0 && unlink("merged") == 0 && unlink("some") == 0);
         assert_true(unlink("1") == 0 && unlink("2") == 0);
     }
-}
-
-// Carries out SQL on a file, as somebody else's program might.
-static void tamper(const char *path, const char *sql)
-{
-    sqlite3 *database;
-    assert_int_equal(sqlite3_open(path, &database), SQLITE_OK);
-    fail_if(sqlite3_exec(database, sql, NULL, NULL, NULL) != SQLITE_OK, "%s",
-            sqlite3_errmsg(database));
-    sqlite3_close(database);
 }
 
 SWEEP_TEST(foreign_parts_are_refused)
@@ -242,15 +228,10 @@ SWEEP_TEST(what_cannot_be_read_is_said)
     // all pages but the first, which says what kind of file it is
     sweep_voltages(&s, "motor.voltage=1:2:3");
     free(compute(&s, "part", (sweep_share){0, 0}));
-    FILE *file = fopen("part", "r+");
-    assert_non_null(file);
-    fseek(file, 0, SEEK_END);
-    const long size = ftell(file);
-    fseek(file, 4096, SEEK_SET);
-    for (long i = 4096; i < size; i++) {
-        fputc('x', file);
-    }
-    fclose(file);
+    size_t size;
+    KEPT_TEXT(bytes) = file_bytes("part", &size);
+    memset(bytes + 4096, 'x', size - 4096);
+    put_bytes("part", bytes, size);
     REFUSED(STATUS_CANNOT_READ, "is damaged", sweep_merge(part, 1, "out", &merged, &f));
     sweep_store *store;
     REFUSED(STATUS_CANNOT_READ, "", sweep_store_open(&store, "part", &s, &f));
@@ -261,15 +242,11 @@ SWEEP_TEST(what_cannot_be_read_is_said)
 static void write_journal(const char *database, const char *named)
 {
     static const unsigned char mark[] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
-    unsigned char head[512] = {0}, size[2];
-    FILE *file = fopen(database, "rb");
-    assert_non_null(file);
-    assert_int_equal(fseek(file, 16, SEEK_SET), 0);
-    assert_int_equal(fread(size, 2, 1, file), 1);
-    const unsigned page = (unsigned)size[0] << 8 | size[1];
-    fseek(file, 0, SEEK_END);
-    const unsigned length = (unsigned)strlen(named), pages = (unsigned)ftell(file) / page;
-    fclose(file);
+    unsigned char head[512] = {0};
+    size_t all;
+    KEPT_TEXT(content) = file_bytes(database, &all);
+    const unsigned page = (unsigned char)content[16] * 256u + (unsigned char)content[17];
+    const unsigned length = (unsigned)strlen(named), pages = (unsigned)all / page;
 
     // as SQLite writes it: no pages, then the page of the locks, the name, its length and its sum
     unsigned sum = 0;
@@ -285,7 +262,7 @@ static void write_journal(const char *database, const char *named)
     }
     memcpy(head, mark, sizeof mark);
     memcpy(head + sizeof mark, bytes, 5 * sizeof bytes[0]);
-    file = fopen(formatted("%s-journal", database), "wb");
+    FILE *file = fopen(formatted("%s-journal", database), "wb");
     assert_non_null(file);
     fwrite(head, sizeof head, 1, file);
     fwrite(bytes[5], 4, 1, file);

@@ -3,7 +3,6 @@
 #include "render/page/text.h"
 #include "render/plot/plot.h"
 #include "render/plot/study_plot.h"
-#include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
 static int close_all(void **state)
@@ -15,8 +14,7 @@ static int close_all(void **state)
 static void must_draw(const char *a, const char *b, sweep_sampling sampling, size_t runs,
                       const char *path, double offset)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, sampling, runs, a, b);
+    SWEPT(s, sampling, runs, a, b);
     SCOPED(free_kept) double *values = malloc(s.run_count * sizeof *values);
     assert_non_null(values);
     for (size_t run = 0; run < s.run_count; run++) {

@@ -1,11 +1,9 @@
 // The varied values of a sweep: grids, lists, random values; invalid requests.
-#include "tests/check.h"
 #include "tests/sweep_fixture.h"
 
 TEST(the_last_parameter_of_a_grid_changes_fastest)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, "motor.voltage=1:2:3", "method.name=event,newmark");
+    SWEPT(s, SWEEP_GRID, 0, "motor.voltage=1:2:3", "method.name=event,newmark");
     static const double voltage[] = {1, 1, 1.5, 1.5, 2, 2};
     assert_int_equal(s.run_count, 6);
     for (size_t run = 0; run < 6; run++) {
@@ -19,8 +17,7 @@ TEST(the_last_parameter_of_a_grid_changes_fastest)
 
 TEST(ranges_meet_their_ends_and_are_spaced_as_asked)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_GRID, 0, "arm.k2=0.1:0.7:7", NULL);
+    SWEPT(s, SWEEP_GRID, 0, "arm.k2=0.1:0.7:7", NULL);
     check_close(sweep_value(&s, 0, 0), 0.1, 0);
     check_close(sweep_value(&s, 6, 0), 0.7, 0);
     check_close(sweep_value(&s, 2, 0), 0.3, 1e-16);
@@ -128,8 +125,7 @@ TEST(bad_requests_are_refused_with_a_sentence)
 TEST(a_latin_hypercube_meets_every_part_of_every_range_once)
 {
     enum { RUNS = 1000 };
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_LATIN, RUNS, "motor.voltage=2:1", "arm.k2=0.1:1000:log");
+    SWEPT(s, SWEEP_LATIN, RUNS, "motor.voltage=2:1", "arm.k2=0.1:1000:log");
     unsigned char seen[2][RUNS] = {{0}};
     double together = 0;
     for (size_t run = 0; run < RUNS; run++) {
@@ -148,8 +144,7 @@ TEST(a_latin_hypercube_meets_every_part_of_every_range_once)
 
 TEST(whole_numbers_and_words_are_drawn_evenly)
 {
-    KEPT_SWEEP(s);
-    must_sweep(&s, SWEEP_LATIN, 120, "arm.links=2:5", "method.name=event,newmark");
+    SWEPT(s, SWEEP_LATIN, 120, "arm.links=2:5", "method.name=event,newmark");
     int links[8] = {0}, methods[4] = {0};
     for (size_t run = 0; run < 120; run++) {
         double n = sweep_value(&s, run, 0);

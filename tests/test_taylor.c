@@ -9,14 +9,21 @@ typedef struct moving_arm {
     motion *motion;
 } moving_arm;
 
-static moving_arm some_motion(const char *const *settings, bool contact, random_generator *g)
+static moving_arm started(const char *const *settings)
 {
     moving_arm made;
-    parameters p = fixture_parameters(settings);
+    const parameters p = fixture_parameters(settings);
     arm_init(&made.arm, &p);
-    motion *m = made.motion = motion_create(&made.arm, &p.method);
-    assert_ptr_equal(m->engine, &taylor_engine);
-    motion_start(&made.arm, m, -0.2, 0.3);
+    made.motion = motion_create(&made.arm, &p.method);
+    assert_ptr_equal(made.motion->engine, &taylor_engine);
+    motion_start(&made.arm, made.motion, p.initial.angle, p.initial.velocity);
+    return made;
+}
+
+static moving_arm some_motion(const char *const *settings, bool contact, random_generator *g)
+{
+    moving_arm made = started(settings);
+    motion *m = made.motion;
 
     // on the wall: the state nearest to a random one that is admissible
     double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
@@ -340,11 +347,9 @@ TEST(rows_change_nothing)
 // An impact, a release and a touch within microseconds of each other.
 TEST(events_that_nearly_coincide_are_told_apart)
 {
-    run_result r =
-        RUN_OF("motor.voltage=0.63671875", "arm.k2=6.909140625", "wall.angle=0.141015625");
+    RUN(r, "motor.voltage=0.63671875", "arm.k2=6.909140625", "wall.angle=0.141015625");
     check_close(r.summary.first_contact_s, 0.452259, 1e-6);
     check_below(r.summary.energy_residual_J, 1e-13);
-    run_finish(&r);
 }
 
 // Motor, arm, wall and restitution at random.
@@ -379,17 +384,6 @@ static motion_event next_event(moving_arm *moving, double until)
     assert_int_equal(motion_advance(&moving->arm, moving->motion, until, 1e-3, &report), STATUS_OK);
     motion_apply(&moving->arm, moving->motion, &report);
     return report.event;
-}
-
-static moving_arm started(const char *const *settings)
-{
-    moving_arm made;
-    const parameters p = fixture_parameters(settings);
-    arm_init(&made.arm, &p);
-    made.motion = motion_create(&made.arm, &p.method);
-    assert_ptr_equal(made.motion->engine, &taylor_engine);
-    motion_start(&made.arm, made.motion, p.initial.angle, p.initial.velocity);
-    return made;
 }
 
 // An arm that starts on the wall and goes into it, however slowly, strikes it at once, though the

@@ -5,19 +5,12 @@
 
 static char *page; // the text of both
 
-// Fails unless the page says so.
-static __attribute__((format(printf, 1, 2))) void page_says(const char *format, ...)
+// Fails unless the page has these words.
+static void must_say(const char *words)
 {
-    char words[512];
-    va_list values;
-    va_start(values, format);
-    vsnprintf(words, sizeof words, format, values);
-    va_end(values);
-    if (strstr(page, words) == NULL) {
-        print_error("neither thesis.md nor claims.tsv says '%s'\n", words);
-        fail();
-    }
+    fail_if(strstr(page, words) == NULL, "neither thesis.md nor claims.tsv says '%s'", words);
 }
+#define page_says(...) must_say(formatted(__VA_ARGS__))
 
 typedef struct computed {
     scenario scenario;
@@ -25,18 +18,13 @@ typedef struct computed {
 } computed;
 
 // Runs a scenario with changes "PATH=VALUE ...".
-static computed run_with(const char *name, const char *format, ...)
+static computed run_of(const char *name, const char *changes)
 {
-    computed c;
-    char changes[256];
-    va_list values;
-    va_start(values, format);
-    vsnprintf(changes, sizeof changes, format, values);
-    va_end(values);
-    c.scenario = shipped_with(name, changes);
+    computed c = {.scenario = shipped_with(name, changes)};
     run_scenario(&c.scenario, true, &c.result);
     return c;
 }
+#define run_with(name, ...) run_of(name, formatted(__VA_ARGS__))
 
 static void forget(computed *c)
 {
@@ -47,7 +35,7 @@ static void forget(computed *c)
 // A number of a run's summary.
 static double number(const char *name, const char *changes, const char *key)
 {
-    SCOPED(forget) computed c = run_with(name, "%s", changes);
+    SCOPED(forget) computed c = run_of(name, changes);
     return summary_value(&c.result.summary, summary_index(key));
 }
 
@@ -66,7 +54,7 @@ TEST(numbers_of_the_first_chapters)
     check_close(number("compare/reverse-torque", "", "separations"), 1, 0);
 
     // where the hub turns back
-    SCOPED(forget) computed first = run_with("corrected/first-impact", "");
+    SCOPED(forget) computed first = run_of("corrected/first-impact", "");
     const summary *m = &first.result.summary;
     const trace *t = &first.result.trace;
     size_t e = 0;
@@ -85,8 +73,7 @@ TEST(the_table_of_the_single_run)
         {"0.2", "0.5"}, {"0.3", "0.5"}, {"0.4", "0.5"}, {"0.4", "0.6"}, {"0.5", "0.5"},
         {"0.5", "0.7"}, {"0.6", "0.5"}, {"0.6", "0.9"}, {"0.7", "0.5"}, {"0.7", "0.9"}};
     for (EACH(one, pairs)) {
-        char row[256];
-        int used = snprintf(row, sizeof row, "| %s, %s |", (*one)[0], (*one)[1]);
+        const char *row = formatted("| %s, %s |", (*one)[0], (*one)[1]);
         for (EACH_TEXT(each, "1e-3", "1e-4", "1e-5")) {
             SCOPED(forget)
             computed c = run_with("thesis/fig-3-4",
@@ -94,10 +81,8 @@ TEST(the_table_of_the_single_run)
                                   "method.gamma=%s method.step=%s",
                                   (*one)[0], (*one)[1], *each);
             const summary *m = &c.result.summary;
-            used +=
-                m->status == STATUS_OK
-                    ? snprintf(row + used, sizeof row - (size_t)used, " %.0f |", m->peak_force_N)
-                    : snprintf(row + used, sizeof row - (size_t)used, " fails |");
+            row = m->status == STATUS_OK ? formatted("%s %.0f |", row, m->peak_force_N)
+                                         : formatted("%s fails |", row);
         }
         page_says("%s", row);
     }
@@ -135,9 +120,8 @@ static void errors_of(int from, int to, const char *sets, double later, double e
     int cells = 0;
     error[0] = error[1] = 0;
     for (int k = from; k <= to; k++) {
-        char name[] = "4.1";
+        const char *name = formatted("4.%d", k + 1);
         double forces[TABLE_VOLTAGES], delays[TABLE_VOLTAGES];
-        name[2] = (char)('1' + k);
         assert_true(tables_printed(name, "max_force_simulation", forces));
         assert_true(tables_printed(name, "delay_simulation", delays));
         for (int v = 0; v < TABLE_VOLTAGES; v++) {
@@ -228,8 +212,7 @@ TEST(what_was_tried_on_the_delays)
     DONE(tables_compute(&t, &f));
     double error[7] = {0};
     for (int k = 0; k < 12; k++) {
-        char name[] = "4.1";
-        name[2] = (char)('1' + k / 4);
+        const char *name = formatted("4.%d", 1 + k / 4);
         const table_row *r = row_of(&t, name, "printed", "delay_dynamics");
         const double T = r->computed[k % 4], wanted = r->printed[k % 4];
         const double tried[] = {floor(1e3 * T) / 1e3, T - 1e-3,  T - 2e-3,   M_PI / 4 * T,
@@ -306,11 +289,11 @@ TEST(figures_of_the_hybrid_controller)
 
     // 5.6 and 5.7 are the run of 5.1 at twice the force
     SCOPED(forget)
-    computed one = run_with("thesis/fig-5-1", ""), two = run_with("thesis/fig-5-7", "");
-    SCOPED(forget) computed angle = run_with("thesis/fig-5-6", "");
+    computed one = run_of("thesis/fig-5-1", ""), two = run_of("thesis/fig-5-7", "");
+    SCOPED(forget) computed angle = run_of("thesis/fig-5-6", "");
     assert_true(one.scenario.parameters.initial.angle == two.scenario.parameters.initial.angle &&
                 one.scenario.parameters.initial.angle == angle.scenario.parameters.initial.angle);
-    SCOPED(forget) computed far = run_with("thesis/fig-5-7", "initial.angle=-0.1");
+    SCOPED(forget) computed far = run_of("thesis/fig-5-7", "initial.angle=-0.1");
     page_says(
         "agrees at 1 N: one contact, 90 %% of the steady force after %.3f s, settled after %.2f "
         "s; at 2 N one contact, settled after %.2f s, but 90 %% only after %.3f s, and after "
@@ -363,44 +346,29 @@ TEST(numbers_of_the_control_laws)
         "at 1 V/N one contact, at 3 V/N a bounce, from 4 V/N on it bounces and never settles");
     static const int rates[] = {30, 50, 55, 100, 160, 170, 200};
     for (int i = 0; i < 7; i++) {
-        char rate[64];
-        const int used = snprintf(rate, sizeof rate, "control.rate=%d", rates[i]);
+        const char *rate = formatted("control.rate=%d", rates[i]);
         const double on_spring = number("compare/sampling-rate", rate, "settling_time_s");
-        snprintf(rate + used, sizeof rate - (size_t)used, " arm.hub_joint=rigid");
-        const double rigid = number("compare/sampling-rate", rate, "settling_time_s");
+        const double rigid = number("compare/sampling-rate",
+                                    formatted("%s arm.hub_joint=rigid", rate), "settling_time_s");
         assert_int_equal(isnan(on_spring), i == 0 || (i >= 2 && i <= 4));
         assert_int_equal(isnan(rigid), i == 0);
     }
     page_says("agrees on a hub spring, 55 to 160 Hz fail; on a rigid hub 30 Hz do");
 }
 
-// The files one behind the other; false if one cannot be read.
-static bool read_pages(char *const *files, int count)
+// The files one behind the other.
+static void read_pages(FILE *into, char *const *files)
 {
-    size_t size = 0, length = 0;
-    FILE *all = open_memstream(&page, &length);
-    KEPT_TEXT(text) = NULL;
-    bool complete = all != NULL;
-
-    for (int i = 0; complete && i < count; i++) {
-        FILE *stream = fopen(files[i], "r");
-        complete = stream != NULL && getdelim(&text, &size, '\0', stream) >= 0;
-        if (complete) {
-            fputs(text, all);
-        }
-        if (stream != NULL) {
-            fclose(stream);
-        }
+    for (; *files != NULL; files++) {
+        KEPT_TEXT(text) = file_text(*files);
+        fputs(text, into);
     }
-    return all != NULL && fclose(all) == 0 && complete;
 }
 
 int main(int argc, char **argv)
 {
-    if (argc < 2 || !read_pages(argv + 1, argc - 1)) {
-        fputs("the pages cannot be read\n", stderr);
-        return 1;
-    }
+    WRITTEN(text, read_pages(stream, argv + (argc > 0)));
+    page = text;
     const int failed = run_cases(NULL, NULL);
     free(page);
     return failed != 0;

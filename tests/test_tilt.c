@@ -108,12 +108,10 @@ TEST(what_knows_no_weight_says_so)
 {
     static const char *const engines[] = {"pair", NULL}; // NULL: the printed model
     for (EACH(c, engines)) {
-        parameters p;
-        parameters_defaults(&p, *c == NULL ? ARM_PRINTED : ARM_CORRECTED);
-        DONE(parameter_set_text(&p, parameter_find("arm.tilt"), "0.1", &f));
+        parameters p = fresh(*c == NULL ? ARM_PRINTED : ARM_CORRECTED);
+        give(&p, "arm.tilt", "0.1");
         if (*c != NULL) {
-            const int path = parameter_find("method.engine");
-            DONE(parameter_set_text(&p, path, *c, &f));
+            give(&p, "method.engine", *c);
         }
         REFUSED(STATUS_BAD_SCENARIO, "level", parameters_resolve(&p, &f));
     }

@@ -23,10 +23,10 @@ TEST(readings_of_the_hub_say_what_the_state_says)
     const char *const volts[] = {"control.approach_voltage=1", "control.approach_voltage=4"};
     const char *const ways[] = {"initial.angle=-0.1", "initial.angle=-0.3"};
     for (int i = 0; i < 4; i++) {
-        const char *const settings[] = {"sensor.ideal=true", "control.law=open-loop",
-                                        "control.rate=1000", "control.force_limit=1",
-                                        "run.duration=0.6",  volts[i & 1],
-                                        ways[i >> 1],        NULL};
+        const char *const *const settings =
+            given("sensor.ideal=true control.law=open-loop control.rate=1000 "
+                  "control.force_limit=1 run.duration=0.6 %s %s",
+                  volts[i & 1], ways[i >> 1]);
         const parameters p = rig_parameters(settings);
         KEPT_RUN(r) = rig_run(settings, true);
         double worst = 0, largest = 0;
@@ -56,8 +56,8 @@ TEST(readings_of_the_hub_say_what_the_state_says)
 // It is there only with a limit, and only without contact.
 TEST(there_is_none_in_contact_or_without_a_limit)
 {
-    KEPT_RUN(with) = rig_run(SETTINGS("control.law=hybrid", "control.force_limit=1.5"), true);
-    KEPT_RUN(without) = rig_run(SETTINGS("control.law=hybrid"), true);
+    RIG_RUN(with, "control.law=hybrid control.force_limit=1.5");
+    RIG_RUN(without, "control.law=hybrid");
     for (EACH_ROW(row, &without.trace)) {
         assert_true(isnan(row->predicted_force));
     }
@@ -78,7 +78,7 @@ TEST(there_is_none_in_contact_or_without_a_limit)
 // An arm that swings back is not on its way to the wall.
 TEST(a_receding_tip_predicts_nothing)
 {
-    const parameters p = rig_parameters(SETTINGS("control.law=open-loop", "control.force_limit=1"));
+    const parameters p = rig_parameters_with("control.law=open-loop control.force_limit=1");
     const controller_setup setup = {.torque_per_volt = 1,
                                     .hub_damping = 0.1,
                                     .stiction = p.motor.stiction,
@@ -138,9 +138,8 @@ TEST(the_bend_obeys_its_equation)
 {
     for (int kind = 0; kind < 4; kind++) {
         const bool spring = kind % 2;
-        parameters p =
-            rig_parameters(SETTINGS("control.law=open-loop", "control.force_limit=1",
-                                    "belief.torque_factor=1.1", "belief.friction_factor=0.7"));
+        parameters p = rig_parameters_with("control.law=open-loop control.force_limit=1 "
+                                           "belief.torque_factor=1.1 belief.friction_factor=0.7");
         const controller_setup setup = {.stiction = 0.03,
                                         .hub_inertia = 6e-3,
                                         .link_mass = 0.19,

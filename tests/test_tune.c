@@ -3,6 +3,7 @@
 #include "src/study/tune.h"
 
 #include "src/base/expression.h"
+#include "src/study/linear/linear.h"
 #include "src/study/store/sweep_store.h"
 #include "tests/rig_fixture.h"
 

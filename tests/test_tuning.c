@@ -4,14 +4,6 @@
 #include "tests/rig_fixture.h"
 #include "tests/session_fixture.h"
 
-static void change(session *s, const char *path, const char *value)
-{
-    fault f = {0};
-    fail_if(session_change(s, parameter_index(path), value, &f) != STATUS_OK, "%s: %s", path,
-            f.text);
-    fail_if(s->run.summary.status != STATUS_OK, "%s: %s", path, s->run.summary.message);
-}
-
 // Rows before an instant are the same to the last bit, and some after it differ.
 static void assert_changes_from(const run_result *before, const run_result *after, double time,
                                 double until)
@@ -372,8 +364,7 @@ TEST(test_a_saved_tuned_run_is_the_same)
 // Without a law, or under one that hears of every change, all of control.* may change at any time.
 TEST(what_nobody_took_at_the_start_can_change)
 {
-    parameters p;
-    parameters_defaults(&p, ARM_CORRECTED);
+    parameters p = fresh(ARM_CORRECTED);
     const int force = PARAMETER_INDEX(control.force);
     for (EACH_OF(int, c, LAW_NONE, LAW_PROCESS, LAW_HYBRID)) {
         p.control.law = *c;

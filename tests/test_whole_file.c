@@ -20,17 +20,6 @@ static int files(void)
     return count;
 }
 
-static void assert_holds(const char *path, const char *expected)
-{
-    char text[64] = "";
-    FILE *stream = fopen(path, "r");
-    assert_non_null(stream);
-    size_t length = fread(text, 1, sizeof text - 1, stream);
-    text[length] = '\0';
-    fclose(stream);
-    assert_string_equal(text, expected);
-}
-
 // A file that can be begun, with this in it.
 static void begin(whole_file *w, const char *path, const char *text)
 {
@@ -523,8 +512,4 @@ TEST_IN_FOLDER(a_file_may_have_the_number_of_the_standard_input)
     assert_int_equal(files(), 1);
 }
 
-int main(void)
-{
-    alarm(120); // where somebody waits for what never comes, this fails
-    return run_cases(NULL, NULL);
-}
+ALL_IN_TWO_MINUTES

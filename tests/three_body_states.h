@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/predict/predict.h"
-#include "tests/check.h"
+#include "tests/given_parameters.h"
 
 // A number from -1 to 1.
 static inline double noise(unsigned *seed)
@@ -11,23 +11,12 @@ static inline double noise(unsigned *seed)
     return (double)(*seed >> 8) / (double)(1u << 23) - 1;
 }
 
-// The defaults of a model.
-static inline parameters parameters_of(arm_model_kind model)
-{
-    parameters p;
-    parameters_defaults(&p, model);
-    assert_int_equal(parameters_resolve(&p, NULL), STATUS_OK);
-    return p;
-}
-
 // The corrected arm with a hub of this kind.
 static inline parameters corrected_with(hub_joint_kind joint)
 {
-    parameters p;
-    parameters_defaults(&p, ARM_CORRECTED);
-    assert_int_equal(parameter_set_number(&p, PARAMETER_INDEX(arm.hub_joint), joint, NULL),
-                     STATUS_OK);
-    assert_int_equal(parameters_resolve(&p, NULL), STATUS_OK);
+    parameters p = fresh(ARM_CORRECTED);
+    DONE(parameter_set_number(&p, PARAMETER_INDEX(arm.hub_joint), joint, &f));
+    DONE(parameters_resolve(&p, &f));
     return p;
 }
 

@@ -12,8 +12,7 @@
 #define SEPARATION_GAP 1e-6
 #define REST_SPEED     1e-4 // slower impacts are plastic [m/s]
 
-// ---------------------------------------------------------------------------------------------
-// bookkeeping
+// --- bookkeeping
 
 static void note_force(simulation *s, double tau, double force)
 {
@@ -80,8 +79,7 @@ static void note_touch(simulation *s)
     }
 }
 
-// ---------------------------------------------------------------------------------------------
-// the machine
+// --- the machine
 
 static bool mode_change(simulation *s, bool may_touch)
 {

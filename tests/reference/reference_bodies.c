@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
 
-// ---------------------------------------------------------------------------------------------
-// the arm
+// --- the arm
 
 // First frequency of the straight chain with its hub held, or with it the first link where that is
 // fixed to it.
@@ -165,44 +165,24 @@ double body_energy(const body_chain *arm, const double *q, const double *w)
     return sum;
 }
 
-// ---------------------------------------------------------------------------------------------
-// dense systems
+// --- dense systems
 
-// Gaussian elimination with partial pivoting; false if singular.
+// By elimination with partial pivoting; false if singular.
 static bool solve_dense(int n, double a[UNKNOWNS_MAX][UNKNOWNS_MAX], double *x)
 {
+    const size_t size = (size_t)n;
+    size_t order[UNKNOWNS_MAX];
+    int sign;
+    gsl_permutation pivots = {size, order};
+    gsl_matrix_view matrix = gsl_matrix_view_array_with_tda(a[0], size, size, UNKNOWNS_MAX);
+    gsl_vector_view unknowns = gsl_vector_view_array(x, size);
+    gsl_linalg_LU_decomp(&matrix.matrix, &pivots, &sign);
     for (int k = 0; k < n; k++) {
-        int pivot = k;
-        for (int i = k + 1; i < n; i++) {
-            if (fabs(a[i][k]) > fabs(a[pivot][k])) {
-                pivot = i;
-            }
-        }
-        if (!(fabs(a[pivot][k]) > 1e-14)) {
+        if (!(fabs(a[k][k]) > 1e-14)) {
             return false;
         }
-        for (int j = 0; j < n; j++) {
-            double swap = a[k][j];
-            a[k][j] = a[pivot][j];
-            a[pivot][j] = swap;
-        }
-        double swap = x[k];
-        x[k] = x[pivot];
-        x[pivot] = swap;
-        for (int i = k + 1; i < n; i++) {
-            double factor = a[i][k] / a[k][k];
-            for (int j = k; j < n; j++) {
-                a[i][j] -= factor * a[k][j];
-            }
-            x[i] -= factor * x[k];
-        }
     }
-    for (int i = n - 1; i >= 0; i--) {
-        for (int j = i + 1; j < n; j++) {
-            x[i] -= a[i][j] * x[j];
-        }
-        x[i] /= a[i][i];
-    }
+    gsl_linalg_LU_svx(&matrix.matrix, &pivots, &unknowns.vector);
     return true;
 }
 

@@ -9,8 +9,7 @@
 #define EVENT_RESOLUTION 1e-14
 #define EDGE_ROUNDING    4e-15 // of a gap, at most [m]
 
-// ---------------------------------------------------------------------------------------------
-// integration
+// --- integration
 
 int simulation_derivative(double t, const double y[], double dydt[], void *context)
 {
@@ -95,8 +94,7 @@ double simulation_force(simulation *s, const double *y)
     return b.force;
 }
 
-// ---------------------------------------------------------------------------------------------
-// events: functions that are positive while the mode lasts
+// --- events: functions that are positive while the mode lasts
 
 bool event_active(contact_mode mode, event_function e)
 {

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "src/base/clock.h"
 #include "src/base/whole_file.h"
 #include "tests/bench/peers/peer.h"
 
@@ -33,13 +34,6 @@ typedef struct options {
     const char *json; // file, "-" for the standard output, NULL for none
 } options;
 
-static double computing_time(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 // All runs on the core this starts on.
 static void stay_on_one_core(void)
 {
@@ -55,7 +49,7 @@ static void stay_on_one_core(void)
 // Computing time of so many runs [s]; negative if one failed.
 static double time_runs(contestant *c, int runs)
 {
-    double told = 0, start = computing_time();
+    double told = 0, start = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     for (int i = 0; i < runs; i++) {
         peer_answer_clear(&c->answer);
         if (!c->peer->run(c->instance, &c->answer)) {
@@ -63,7 +57,7 @@ static double time_runs(contestant *c, int runs)
         }
         told += c->answer.computing_time;
     }
-    return isnan(told) ? computing_time() - start : told;
+    return isnan(told) ? clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - start : told;
 }
 
 static int by_size(const void *a, const void *b)
