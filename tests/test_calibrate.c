@@ -25,25 +25,6 @@ static void table_setting(const calibration *c, char *text, size_t size)
 
 // --- the table ------------------------------------------------------------------------------
 
-TEST(tables_read_and_interpolate)
-{
-    k2_table t;
-    assert_int_equal(k2_table_read(&t, "  0.5:4.8 1:5   3:2 ", NULL), STATUS_OK);
-    assert_int_equal(t.count, 3);
-    check_close(k2_table_at(&t, 0), 4.8, 0);
-    check_close(k2_table_at(&t, 0.5), 4.8, 0);
-    check_close(k2_table_at(&t, 0.75), 4.9, 1e-15);
-    check_close(k2_table_at(&t, 1), 5, 0);
-    check_close(k2_table_at(&t, 2.5), 2.75, 1e-15);
-    check_close(k2_table_at(&t, 9), 2, 0);
-    char text[PARAMETER_TEXT_SIZE], small[8];
-    assert_true(k2_table_write(&t, text, sizeof text));
-    assert_string_equal(text, "0.5:4.8 1:5 3:2");
-    assert_false(k2_table_write(&t, small, sizeof small));
-    assert_int_equal(k2_table_read(&t, "", NULL), STATUS_OK);
-    assert_int_equal(t.count, 0);
-}
-
 TEST(wrong_tables_are_refused)
 {
     const struct {
@@ -123,8 +104,8 @@ TEST(stiction_does_not_spoil_the_ratio)
         force[i] = last->force_reading;
         k2[i] = last->force_reading * 0.5 / (2 * last->encoder);
     }
-    double low = fmin(force[0], fmin(force[1], force[2])),
-           high = fmax(force[0], fmax(force[1], force[2]));
+    double low = fmin(force[0], fmin(force[1], force[2]));
+    double high = fmax(force[0], fmax(force[1], force[2]));
     check_below(0.02, high / low - 1);
     check_relative(k2[1], k2[0], 2e-3);
     check_relative(k2[2], k2[0], 2e-3);
@@ -170,11 +151,9 @@ TEST(what_does_not_press_is_said)
         assert_int_not_equal(calibrate(&s, commands, COMMANDS, NULL, &c, &f), STATUS_OK);
         assert_non_null(strstr(f.text, cases[i].sentence));
     }
-    fault f;
     k2_table t;
     calibration alike = {.count = 2, .points = {{.force = 1, .k2 = 5}, {.force = 1.001, .k2 = 5}}};
-    assert_int_equal(calibration_table(&alike, &t, &f), STATUS_BAD_ARGUMENT);
-    assert_non_null(strstr(f.text, "press alike"));
+    REFUSED(STATUS_BAD_ARGUMENT, "press alike", calibration_table(&alike, &t, &f));
 }
 
 TEST(results_reach_every_form)
@@ -183,13 +162,10 @@ TEST(results_reach_every_form)
         .count = 2,
         .points = {{.command = 2, .force = 1.5, .angle = 0.05, .k2 = 4.5},
                    {.command = 1, .force = 0.5, .angle = 0.02, .k2 = 4.92, .k2_over_arm = 1}}};
-    char setting[PARAMETER_TEXT_SIZE + 32], *csv = NULL;
+    char setting[PARAMETER_TEXT_SIZE + 32];
     table_setting(&c, setting, sizeof setting);
     assert_string_equal(setting, "control.k2_table=0.5:4.92 1.5:4.5");
-    size_t size;
-    FILE *stream = open_memstream(&csv, &size);
-    calibration_csv(stream, &c);
-    fclose(stream);
+    SCOPED(free_kept) WRITTEN(csv, calibration_csv(stream, &c));
     assert_non_null(strstr(csv, "command[V],force[N],hub_angle[rad],k2[N m/rad],k2_over_arm[],"));
     assert_non_null(strstr(csv, "\n1,0.5,0.02,4.92,1,"));
     json_t *whole = calibration_json(&c, "arm", "0.5:4.92 1.5:4.5");
@@ -197,7 +173,6 @@ TEST(results_reach_every_form)
     check_close(json_number_value(json_object_get(first, "k2_Nm_per_rad")), 4.5, 0);
     assert_string_equal(json_string_value(json_object_get(whole, "k2_table")), "0.5:4.92 1.5:4.5");
     json_decref(whole);
-    free(csv);
 }
 
 // With an argument the case that takes most of the time, without one the others. The arm is pressed

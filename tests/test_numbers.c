@@ -3,32 +3,6 @@
 
 #include "tests/check.h"
 
-TEST(numbers_are_short_and_read_back)
-{
-    const struct {
-        double value;
-        const char *text;
-    } cases[] = {
-        {0.1, "0.1"},  {12, "12"}, {-0.0, "0"}, {1e-5, "1e-05"}, {0.1 + 0.2, "0.30000000000000004"},
-        {-2.5, "-2.5"}};
-    char text[NUMBER_TEXT];
-    for (EACH(c, cases)) {
-        number_format(text, c->value);
-        assert_string_equal(text, c->text);
-    }
-    // numbers of every size survive being written and read
-    unsigned long long bits = 0x9E3779B97F4A7C15ULL;
-    for (int i = 0; i < 10000; i++) {
-        double value;
-        bits = bits * 6364136223846793005ULL + 1442695040888963407ULL;
-        memcpy(&value, &bits, sizeof value);
-        if (isfinite(value)) {
-            number_format(text, value);
-            assert_true(strtod(text, NULL) == value);
-        }
-    }
-}
-
 TEST(short_numbers_have_exponents_from_a_million)
 {
     const struct {
@@ -59,7 +33,11 @@ TEST(decimals_are_read_with_what_follows)
         const char *text;
         double value;
         const char *rest;
-    } cases[] = {{"0.4 s", 0.4, "s"}, {"-1e-3", -1e-3, ""}, {"+.5N", 0.5, "N"}, {"12 ", 12, ""}};
+    } cases[] = {{"0.4 s", 0.4, "s"},
+                 {"-1e-3", -1e-3, ""},
+                 {"+.5N", 0.5, "N"},
+                 {"12 ", 12, ""},
+                 {"-1.5e2  N", -150, "N"}};
     for (EACH(c, cases)) {
         double value;
         const char *rest;
@@ -71,7 +49,7 @@ TEST(decimals_are_read_with_what_follows)
 
 TEST(what_is_no_decimal_is_refused)
 {
-    for (EACH_TEXT(c, "", "x", "0x10", "inf", "nan", "-.", " 1", "+-1", "e5")) {
+    for (EACH_TEXT(c, "", "x", "-", ".", "0x10", "inf", ".inf", "nan", "-.", " 1", "+-1", "e5")) {
         double value;
         const char *rest;
         assert_false(decimal_read(*c, &value, &rest));
@@ -100,7 +78,7 @@ TEST(digits_are_as_few_as_read_back)
         if (!isfinite(value) || value == 0) {
             continue;
         }
-        char text[NUMBER_TEXT], less[NUMBER_TEXT], nearest[NUMBER_TEXT];
+        char text[NUMBER_TEXT], nearest[NUMBER_TEXT];
         number_format(text, value);
         assert_true(strtod(text, NULL) == value);
 
@@ -109,8 +87,7 @@ TEST(digits_are_as_few_as_read_back)
             digits += *c >= '0' && *c <= '9' && (digits > 0 || *c != '0');
         }
         if (digits > 1 && digits <= 17 && strchr(text, 'e') != NULL) {
-            snprintf(less, sizeof less, "%.*e", digits - 2, value);
-            assert_true(strtod(less, NULL) != value);
+            assert_true(strtod(formatted("%.*e", digits - 2, value), NULL) != value);
         }
         if (digits > 0 && digits <= 17 && strchr(text, 'e') != NULL) {
             snprintf(nearest, sizeof nearest, "%.*e", digits - 1, value);
@@ -125,6 +102,11 @@ TEST(digits_of_known_numbers)
         double value;
         const char *text;
     } known[] = {
+        {0.1, "0.1"},
+        {12, "12"},
+        {-0.0, "0"},
+        {1e-5, "1e-05"},
+        {-2.5, "-2.5"},
         {5e-324, "5e-324"},
         {2.2250738585072014e-308, "2.2250738585072014e-308"},
         {1.7976931348623157e308, "1.7976931348623157e+308"},
@@ -142,18 +124,6 @@ TEST(digits_of_known_numbers)
         char text[NUMBER_TEXT];
         number_format(text, c->value);
         assert_string_equal(text, c->text);
-    }
-}
-
-TEST(decimals)
-{
-    double value;
-    const char *rest;
-    assert_true(decimal_read("-1.5e2  N", &value, &rest));
-    check_close(value, -150, 0);
-    assert_string_equal(rest, "N");
-    for (EACH_TEXT(c, "", "x", "-", ".", "+-1", "0x10", "inf", ".inf", "nan", " 1")) {
-        assert_false(decimal_read(*c, &value, &rest));
     }
 }
 
