@@ -48,6 +48,12 @@ static inline arm arm_of(const parameters *p)
     return a;
 }
 
+static inline arm arm_with(const char *const *settings)
+{
+    const parameters p = fixture_parameters(settings);
+    return arm_of(&p);
+}
+
 GIVEN_BACK(motion, motion_destroy)
 
 // An arm `a` of parameters and its motion `m`, by an engine (NULL: the arm's own), started at an

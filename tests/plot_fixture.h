@@ -299,3 +299,11 @@ static inline int leave_plot_folder(void **state)
     pango_cairo_font_map_set_default(NULL); // what Pango keeps for later figures
     return leave_folder(state);
 }
+
+// The number behind a part of a text that must be there.
+static inline double number_behind(const char *text, const char *part)
+{
+    const char *at = strstr(text, part);
+    fail_if(at == NULL, "'%s' is not there", part);
+    return atof(at + strlen(part));
+}

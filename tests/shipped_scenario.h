@@ -62,6 +62,18 @@ static inline void assert_same_summary(const summary *a, const summary *b)
     }
 }
 
+// The event of a kind with this number, from 0 on; it must be there.
+static inline const event *find_event(const run_result *r, event_kind kind, int number)
+{
+    for (EACH_EVENT(e, &r->trace)) {
+        if (e->kind == kind && number-- == 0) {
+            return e;
+        }
+    }
+    fail_msg("event %s did not occur", event_name(kind));
+    return NULL;
+}
+
 // What a script does at an instant, and a scenario of parameters and a script.
 #define SETS(at, path, to)                                                                         \
     ((action){.time = at, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(path), .value = to})

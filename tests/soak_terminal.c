@@ -19,6 +19,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "src/base/clock.h"
 #include "src/base/random.h"
 #include "tests/terminal_tracker.h"
 
@@ -54,13 +55,6 @@ typedef struct soak {
     char last_keys[400]; // what was sent lately
     size_t sent;
 } soak;
-
-static double seconds_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static int chance(soak *s, int bound)
 {
@@ -125,10 +119,10 @@ static void answer(soak *s)
 // Takes what the program shows for some time, 0: what is there.
 static void watch(soak *s, double seconds)
 {
-    double until = seconds_now() + seconds;
+    double until = clock_seconds(CLOCK_MONOTONIC) + seconds;
     do {
         struct pollfd p = {s->master, POLLIN, 0};
-        double left = until - seconds_now();
+        double left = until - clock_seconds(CLOCK_MONOTONIC);
         char bytes[4096];
         if (poll(&p, 1, left > 0 ? (int)(1e3 * left + 0.999) : 0) <= 0) {
             continue;
@@ -138,21 +132,21 @@ static void watch(soak *s, double seconds)
             track(&s->seen, bytes[i]);
         }
         answer(s);
-    } while (seconds_now() < until);
+    } while (clock_seconds(CLOCK_MONOTONIC) < until);
 }
 
 // Takes what the program shows until something is so, or fails with a sentence after a time [s].
 #define AWAIT(s, condition, seconds, ...)                                                          \
-    for (double until = seconds_now() + (seconds); !(condition);) {                                \
+    for (double until = clock_seconds(CLOCK_MONOTONIC) + (seconds); !(condition);) {               \
         watch(s, 0.01);                                                                            \
-        if (seconds_now() > until) {                                                               \
+        if (clock_seconds(CLOCK_MONOTONIC) > until) {                                              \
             fail(s, __VA_ARGS__);                                                                  \
         }                                                                                          \
     }
 
 static void send_bytes(soak *s, const char *bytes, size_t count)
 {
-    double until = seconds_now() + ANSWER_TIME;
+    double until = clock_seconds(CLOCK_MONOTONIC) + ANSWER_TIME;
     for (size_t i = 0; i < count; i++) {
         s->last_keys[s->sent++ % sizeof s->last_keys] = bytes[i];
     }
@@ -161,7 +155,7 @@ static void send_bytes(soak *s, const char *bytes, size_t count)
         if (done > 0) {
             bytes += done;
             count -= (size_t)done;
-        } else if (seconds_now() > until) {
+        } else if (clock_seconds(CLOCK_MONOTONIC) > until) {
             fail(s, "takes no input for %g s", ANSWER_TIME);
         }
         watch(s, done > 0 ? 0 : 0.01);
@@ -209,7 +203,7 @@ static double processor_time(const soak *s)
 static void probe(soak *s)
 {
     int status;
-    double start = seconds_now(), spent = processor_time(s);
+    double start = clock_seconds(CLOCK_MONOTONIC), spent = processor_time(s);
     long cleared = s->seen.cleared;
     // the same size again would be no news
     resize(s, 60 + chance(s, 100), s->height == 20 ? 21 : 20);
@@ -218,11 +212,11 @@ static void probe(soak *s)
         if (has_ended(s, &status)) {
             fail(s, "ended by itself with status %d", status);
         }
-        if (seconds_now() - start > ANSWER_TIME) {
+        if (clock_seconds(CLOCK_MONOTONIC) - start > ANSWER_TIME) {
             fail(s, "no answer within %g s", ANSWER_TIME);
         }
     }
-    const double took = seconds_now() - start;
+    const double took = clock_seconds(CLOCK_MONOTONIC) - start;
     spent = processor_time(s) - spent;
     s->longest = spent > s->longest ? spent : s->longest;
     if (s->answer_count < MOST_PROBES) {
@@ -427,7 +421,7 @@ static void save(soak *s, const char *name)
 {
     char line[128];
     int tries = 0;
-    double until = seconds_now() + COMPUTE_TIME;
+    double until = clock_seconds(CLOCK_MONOTONIC) + COMPUTE_TIME;
     snprintf(line, sizeof line, ":save %s\r", name);
     while (!file_exists(s, name)) {
         int status;
@@ -440,7 +434,7 @@ static void save(soak *s, const char *name)
         if (has_ended(s, &status)) {
             fail(s, "ended by itself with status %d", status);
         }
-        if (seconds_now() > until) {
+        if (clock_seconds(CLOCK_MONOTONIC) > until) {
             fail(s, "%s is not saved", name);
         }
     }
@@ -528,7 +522,8 @@ static void run_session(soak *s, uint64_t seed, double seconds)
     start(s);
     // keys that come before would be echoed
     AWAIT(s, s->seen.mode[1049], ANSWER_TIME, "does not start within %g s", ANSWER_TIME);
-    for (double until = seconds_now() + seconds; seconds_now() < until;) {
+    for (double until = clock_seconds(CLOCK_MONOTONIC) + seconds;
+         clock_seconds(CLOCK_MONOTONIC) < until;) {
         do_something(s);
     }
     come_back(s);
@@ -556,14 +551,14 @@ int main(int count, char **arguments)
         fprintf(stderr, "soak_terminal PROGRAM SECONDS [FIRST-SEED]\n");
         return 2;
     }
-    double seconds = strtod(arguments[2], NULL), until = seconds_now() + seconds;
+    double seconds = strtod(arguments[2], NULL), until = clock_seconds(CLOCK_MONOTONIC) + seconds;
     uint64_t seed = count > 3 ? strtoull(arguments[3], NULL, 10) : 1, first = seed;
     s.program = realpath(arguments[1], NULL);
     s.answers = answers;
     do {
-        double left = until - seconds_now();
+        double left = until - clock_seconds(CLOCK_MONOTONIC);
         run_session(&s, seed++, left < SESSION_TIME ? left : SESSION_TIME);
-    } while (seconds_now() < until - 1);
+    } while (clock_seconds(CLOCK_MONOTONIC) < until - 1);
     qsort(answers, s.answer_count, sizeof answers[0], by_size);
     printf("%ld pictures, at most %.3f s of the processor for an answer, ", s.drawn, s.longest);
     printf("seeds %llu to %llu, %zu keys, %zu answers: median %.1f ms, 99 %% within %.1f ms, all "

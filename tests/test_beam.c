@@ -146,8 +146,7 @@ TEST(the_highest_frequency_bounds_the_modes)
                                    {"arm.links=3", "arm.hub_joint=rigid"},
                                    {"arm.links=8", "arm.hub_joint=rigid"}};
     for (EACH(c, arms)) {
-        parameters p = parameters_with("%s %s", (*c)[0], (*c)[1]);
-        arm a = arm_of(&p);
+        arm a = arm_with(given("%s %s", (*c)[0], (*c)[1]));
         const arm_modes m = modes_of(&a, HUB_FREE, TIP_FREE);
         check_below(m.w[m.count - 1], a.highest_frequency);
         check_below(a.highest_frequency, 1.1 * m.w[m.count - 1]);
@@ -158,8 +157,7 @@ TEST(the_highest_frequency_bounds_the_modes)
 // frequency w and whose sum is 2 zeta w; the faster one is what steps have to follow.
 TEST(an_overdamped_mode_decays_by_the_roots_of_its_equation)
 {
-    parameters p = parameters_with("arm.links=8 arm.damping_ratio=0.1");
-    arm a = arm_of(&p);
+    arm a = arm_with(given("arm.links=8 arm.damping_ratio=0.1"));
     const double w = a.highest_frequency, fast = a.fastest_decay, slow = w * w / fast;
     assert_true(fast > 2 * w);
     check_relative(fast + slow, w * w * a.joint_damping / a.joint_stiffness, 1e-12);
@@ -206,8 +204,7 @@ TEST(whatever_decays_faster_is_followed)
 // decays by 2 zeta of the held arm's frequency, as much more as the free arm is faster squared.
 TEST(damping_by_mode_is_followed)
 {
-    const parameters p = parameters_with("arm.links=2 arm.modal_ratios=0.9");
-    arm a = arm_of(&p);
+    arm a = arm_with(given("arm.links=2 arm.modal_ratios=0.9"));
     const arm_modes held = modes_of(&a, HUB_LOCKED, TIP_FREE);
     const double free = modes_of(&a, HUB_FREE, TIP_FREE).w[1];
     assert_int_equal(held.count, 1);

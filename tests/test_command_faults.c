@@ -58,53 +58,27 @@ static bool refused(void)
 #define THERE(name) __libc_##name
 #endif
 
-void *HERE(malloc)(size_t size);
-void *HERE(calloc)(size_t count, size_t size);
-void *HERE(realloc)(void *memory, size_t size);
-void *THERE(malloc)(size_t size);
-void *THERE(calloc)(size_t count, size_t size);
-void *THERE(realloc)(void *memory, size_t size);
-
-void *HERE(malloc)(size_t size)
-{
-    return refused() ? (errno = ENOMEM, NULL) : THERE(malloc)(size);
-}
-
-void *HERE(calloc)(size_t count, size_t size)
-{
-    return refused() ? (errno = ENOMEM, NULL) : THERE(calloc)(count, size);
-}
-
-void *HERE(realloc)(void *memory, size_t size)
-{
-    return refused() ? (errno = ENOMEM, NULL) : THERE(realloc)(memory, size);
-}
+// A function of the C library that gives `none` where it is refused.
+#define REFUSABLE(here, there, type, none, parameters, arguments)                                  \
+    type here parameters;                                                                          \
+    type there parameters;                                                                         \
+    type here parameters                                                                           \
+    {                                                                                              \
+        return refused() ? (errno = ENOMEM, none) : there arguments;                               \
+    }
+REFUSABLE(HERE(malloc), THERE(malloc), void *, NULL, (size_t size), (size))
+REFUSABLE(HERE(calloc), THERE(calloc), void *, NULL, (size_t count, size_t size), (count, size))
+REFUSABLE(HERE(realloc), THERE(realloc), void *, NULL, (void *memory, size_t size), (memory, size))
 
 #ifdef REFUSES_OWN
 // What asks for memory on this project's behalf.
-char *__wrap_strdup(const char *text);
-char *__wrap_strndup(const char *text, size_t most);
-int __wrap_vasprintf(char **text, const char *format, va_list list);
+REFUSABLE(__wrap_strdup, __real_strdup, char *, NULL, (const char *text), (text))
+REFUSABLE(__wrap_strndup, __real_strndup, char *, NULL, (const char *text, size_t most),
+          (text, most))
+REFUSABLE(__wrap_vasprintf, __real_vasprintf, int, -1,
+          (char **text, const char *format, va_list list), (text, format, list))
+
 int __wrap_asprintf(char **text, const char *format, ...);
-char *__real_strdup(const char *text);
-char *__real_strndup(const char *text, size_t most);
-int __real_vasprintf(char **text, const char *format, va_list list);
-
-char *__wrap_strdup(const char *text)
-{
-    return refused() ? (errno = ENOMEM, NULL) : __real_strdup(text);
-}
-
-char *__wrap_strndup(const char *text, size_t most)
-{
-    return refused() ? (errno = ENOMEM, NULL) : __real_strndup(text, most);
-}
-
-int __wrap_vasprintf(char **text, const char *format, va_list list)
-{
-    return refused() ? (errno = ENOMEM, -1) : __real_vasprintf(text, format, list);
-}
-
 int __wrap_asprintf(char **text, const char *format, ...)
 {
     va_list list;

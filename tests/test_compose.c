@@ -65,29 +65,22 @@ TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
     }
 }
 
-static void assert_has(explorer *ex, int width, int height, const char *wanted)
-{
-    KEPT_TEXT(text) = picture(ex, width, height, GLYPHS_BRAILLE);
-    fail_if(strstr(text, wanted) == NULL, "'%s' is not on a screen of %d x %d:\n%s", wanted, width,
-            height, text);
-}
-
 TEST(test_the_status_keeps_what_matters)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.65<Enter>m");
     for (int width = 40; width < 200; width += 3) {
-        assert_has(&ex, width, 24, "paused");
-        assert_has(&ex, width, 24, "t 0.65000 s");
+        assert_shows_at(&ex, width, 24, "paused");
+        assert_shows_at(&ex, width, 24, "t 0.65000 s");
     }
-    assert_has(&ex, 60, 24, "in contact, hub sticks");
-    assert_has(&ex, 90, 24, "corrected, hybrid");
-    assert_has(&ex, 120, 24, "row 728/1726");
+    assert_shows_at(&ex, 60, 24, "in contact, hub sticks");
+    assert_shows_at(&ex, 90, 24, "corrected, hybrid");
+    assert_shows_at(&ex, 120, 24, "row 728/1726");
     // the keys for help and quitting are always shown
     press(&ex, "<Esc>");
     for (int width = 40; width < 200; width += 3) {
-        assert_has(&ex, width, 24, "? help  q quit");
-        assert_has(&ex, width, 24, "Space run/pause");
+        assert_shows_at(&ex, width, 24, "? help  q quit");
+        assert_shows_at(&ex, width, 24, "Space run/pause");
     }
 }
 
@@ -97,50 +90,50 @@ TEST(test_eighty_columns_show_what_a_first_visit_needs)
     press(&ex, ":seek 0.35<Enter>");
     for (EACH_TEXT(c, "force 1.2", "w1 0.2", "gap 0", "voltage", "0.0\u2524", "1 s", "0.1\u2524",
                    "N, 93 ms")) {
-        assert_has(&ex, 80, 24, *c);
+        assert_shows_at(&ex, 80, 24, *c);
     }
     press(&ex, "b");
-    assert_has(&ex, 80, 24, "drops it)");
+    assert_shows_at(&ex, 80, 24, "drops it)");
     press(&ex, "c");
-    assert_has(&ex, 80, 24, "first pulse peak [N]");
-    assert_has(&ex, 40, 12, "now as opened      change");
+    assert_shows_at(&ex, 80, 24, "first pulse peak [N]");
+    assert_shows_at(&ex, 40, 12, "now as opened      change");
     press(&ex, "<Esc>:set motor.voltage 0.5");
-    assert_has(&ex, 40, 12, ":set motor.voltage 0.5");
+    assert_shows_at(&ex, 40, 12, ":set motor.voltage 0.5");
     // a long prompt shows its end
     press(&ex, "<C-u>set control.plugin /a/long/name/of/a/folder/and/then/a/file.so");
-    assert_has(&ex, 40, 12, "then/a/file.so");
+    assert_shows_at(&ex, 40, 12, "then/a/file.so");
 }
 
 TEST(test_a_narrow_screen_reaches_the_side)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    assert_has(&ex, 60, 20, "\u25b81      N");
+    assert_shows_at(&ex, 60, 20, "\u25b81      N");
     press(&ex, "<Tab>");
-    assert_has(&ex, 60, 20, "parameters (Tab: values");
+    assert_shows_at(&ex, 60, 20, "parameters (Tab: values");
     press(&ex, "<Tab>");
-    assert_has(&ex, 60, 20, "hub_angle");
+    assert_shows_at(&ex, 60, 20, "hub_angle");
     press(&ex, "<Tab>");
-    assert_has(&ex, 60, 20, "statistics");
+    assert_shows_at(&ex, 60, 20, "statistics");
     press(&ex, "<Tab>");
-    assert_has(&ex, 60, 20, "\u25b81      N");
+    assert_shows_at(&ex, 60, 20, "\u25b81      N");
     // too many panes for the rows: the one in focus is there
     press(&ex, ":panes 123456789<Enter>ww");
-    assert_has(&ex, 60, 20, "\u25b83  rad/s");
+    assert_shows_at(&ex, 60, 20, "\u25b83  rad/s");
 }
 
 TEST(test_poles_follow_the_values_at_the_cursor)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":poles<Enter>");
-    assert_has(&ex, 40, 12, "poles (Esc closes)");
-    assert_has(&ex, 80, 40, "pressing on the wall, hub held by friction");
+    assert_shows_at(&ex, 40, 12, "poles (Esc closes)");
+    assert_shows_at(&ex, 80, 40, "pressing on the wall, hub held by friction");
     KEPT_TEXT(before) = picture(&ex, 80, 40, GLYPHS_ASCII);
     press(&ex, "<Esc>:seek 0<Enter>:set wall.kind none<Enter>:poles<Enter>");
-    assert_has(&ex, 80, 40, "there is no wall to press on");
+    assert_shows_at(&ex, 80, 40, "there is no wall to press on");
     press(&ex, "<Esc>u:poles<Enter>");
     KEPT_TEXT(again) = picture(&ex, 80, 40, GLYPHS_ASCII);
     fail_if(strstr(again, "there is no wall") != NULL, "taken back, and still shown:\n%s", again);
     fail_if(strstr(before, "damping") == NULL, "no numbers:\n%s", before);
     press(&ex, "<Esc>:model<Enter>:poles<Enter>");
-    assert_has(&ex, 80, 40, "printed");
+    assert_shows_at(&ex, 80, 40, "printed");
 }

@@ -260,14 +260,6 @@ static void expect_in_caption(const char *id, const char *part)
     fail_if(strstr(caption, part) == NULL, "%s: '%s' is not in '%s'", id, part, caption);
 }
 
-// The number behind a start of a line.
-static double number_behind(const char *csv, const char *start)
-{
-    const char *line = strstr(csv, start);
-    fail_if(line == NULL, "no line begins with '%s'", start);
-    return atof(line + strlen(start));
-}
-
 // The number in the second column of the line that begins with a quantity.
 static double value_in(const char *csv, const char *quantity)
 {

@@ -1,20 +1,13 @@
 // Laws that follow a set-point and a wall that move, over frequency: what friction, delay and arm
 // make of them in closed form.
 #include "src/study/follow.h"
-#include "tests/check.h"
-
-static scenario opened(const char *name)
-{
-    scenario s;
-    assert_int_equal(scenario_open(&s, name, NULL, NULL), STATUS_OK);
-    return s;
-}
+#include "tests/shipped_scenario.h"
 
 // The bound is an all-pass with a delay: gain one, and the phases of the zero and the delay add.
 TEST(the_bound_is_that_of_zero_and_delay)
 {
     follow_study study;
-    KEPT_SCENARIO(s) = opened("compare/observer");
+    KEPT_SCENARIO(s) = shipped("compare/observer");
     DONE(follow_study_compute(&s, NULL, &study, &f));
     assert_int_equal(study.done, FOLLOW_RUNS);
 
@@ -53,7 +46,7 @@ TEST(a_scenario_with_nothing_to_follow_is_refused)
         {"compare/hybrid", "control.force=0", "no commanded force"}};
     for (size_t i = 0; i < 3; i++) {
         follow_study study;
-        KEPT_SCENARIO(s) = opened(without[i][0]);
+        KEPT_SCENARIO(s) = shipped(without[i][0]);
         DONE(scenario_override(&s, without[i][1], &f));
         REFUSED(STATUS_BAD_SCENARIO, without[i][2], follow_study_compute(&s, NULL, &study, &f));
         assert_int_equal(study.done, 0);

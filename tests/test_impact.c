@@ -4,12 +4,6 @@
 
 enum { LARGEST = 16 };
 
-static arm make_arm(const char *const *settings)
-{
-    parameters p = fixture_parameters(settings);
-    return arm_of(&p);
-}
-
 // Near the wall, bent and closing in; different for each seed.
 static void approaching_state(const arm *a, int seed, double *q, double *w)
 {
@@ -47,7 +41,7 @@ TEST(impulse_is_the_change_of_momentum)
 {
     for (int links = 1; links <= 12; links++) {
         for (int kind = 0; kind < 8; kind++) {
-            arm a = make_arm(given("arm.links=%d %s %s", links,
+            arm a = arm_with(given("arm.links=%d %s %s", links,
                                    kind & 1 ? "arm.hub_joint=spring" : "arm.hub_joint=rigid",
                                    kind & 2 ? "wall.kind=plane" : "wall.kind=point"));
             double e = kind & 4 ? 0.6 : 0, q[LARGEST], w[LARGEST], dw[LARGEST], after[LARGEST];
@@ -73,7 +67,7 @@ TEST(increments_of_the_two_links_have_opposite_signs)
 {
     for (int seed = 0; seed < 50; seed++) {
         for (int rigid = 0; rigid < 2; rigid++) {
-            arm a = make_arm(given("%s", rigid ? "arm.hub_joint=rigid" : "arm.hub_joint=spring"));
+            arm a = arm_with(given("%s", rigid ? "arm.hub_joint=rigid" : "arm.hub_joint=spring"));
             double q[3], w[3], dw[3];
             chain_link work[2];
             approaching_state(&a, seed, q, w);
@@ -87,14 +81,14 @@ TEST(hub_jumps_only_with_a_rigid_joint)
 {
     double q[3], w[3], dw[3];
     chain_link work[2];
-    arm spring = make_arm(given("arm.hub_joint=spring"));
+    arm spring = arm_with(given("arm.hub_joint=spring"));
     approaching_state(&spring, 1, q, w);
     impact_velocity_increments(&spring, work, q, w, 0, 0, dw);
     check_close(dw[0], 0, 0); // (4.10)
     assert_true(fabs(dw[1]) > 1e-3);
 
     // the rigid hub is the first link's: its jump is that of the limit of a heavier first link
-    arm rigid = make_arm(given("arm.hub_joint=rigid"));
+    arm rigid = arm_with(given("arm.hub_joint=rigid"));
     double q2[2] = {q[1], q[2]}, w2[2] = {w[1], w[2]}, dw2[2];
     impact_velocity_increments(&rigid, work, q2, w2, 0, 0, dw2);
     assert_true(fabs(dw2[0]) > 0 && fabs(dw2[0]) < fabs(dw[1]));
@@ -103,7 +97,7 @@ TEST(hub_jumps_only_with_a_rigid_joint)
 // (4.11), (4.12), (4.14) with the contact force at the contact point (errata B5), by Cramer's rule.
 TEST(agrees_with_the_closed_form)
 {
-    arm a = make_arm(given("arm.hub_joint=spring"));
+    arm a = arm_with(given("arm.hub_joint=spring"));
     double q[3], w[3], dw[3];
     chain_link work[2];
     approaching_state(&a, 3, q, w);
@@ -125,7 +119,7 @@ TEST(a_face_takes_the_impulse_that_the_arm_gives)
 {
     for (int kind = 0; kind < 4; kind++) {
         const double e = kind & 1 ? 0.6 : 0, face = kind & 2 ? -0.3 : 0.2;
-        arm a = make_arm(given("wall.contact=kelvin-voigt wall.stiffness=1e5 wall.mass=0.05"));
+        arm a = arm_with(given("wall.contact=kelvin-voigt wall.stiffness=1e5 wall.mass=0.05"));
         double q[LARGEST], w[LARGEST], dw[LARGEST], after[LARGEST];
         chain_link work[LARGEST];
         approaching_state(&a, kind, q, w);

@@ -204,13 +204,7 @@ TEST(wrong_stiffness_costs)
 
 static const event *first_impact(const run_result *r)
 {
-    for (EACH_EVENT(e, &r->trace)) {
-        if (e->kind == EVENT_IMPACT) {
-            return e;
-        }
-    }
-    fail_msg("no impact");
-    return NULL;
+    return find_event(r, EVENT_IMPACT, 0);
 }
 
 TEST(tip_meets_the_wall_as_fast_as_planned)

@@ -25,9 +25,8 @@ TEST(only_joints_that_are_there_are_damped)
     const char *const *const arms[] = {given("arm.links=5"),
                                        given("arm.links=32 arm.hub_joint=beam")};
     for (int j = 0; j < 2; j++) {
-        parameters p = fixture_parameters(arms[j]);
         double rows[PARAMETER_MODES_MOST][PARAMETER_LIST_MOST];
-        arm a = arm_of(&p);
+        arm a = arm_with(arms[j]);
         assert_int_equal(modal_damping_rows(&a, "0.1,0.2,0.3", rows), 3);
         for (int i = 0; i < 3; i++) {
             int damped = 0;

@@ -40,8 +40,7 @@ TEST(clamped_pinned_modes_converge)
 
 TEST(two_links_with_locked_hub_have_the_closed_form)
 {
-    parameters p = fixture_parameters(NULL);
-    arm a = arm_of(&p);
+    arm a = arm_with(NULL);
     const double mass = 0.20054, l = 0.5;
     const arm_modes m = modes_of(&a, HUB_LOCKED, TIP_FREE);
     assert_int_equal(m.count, 1);
@@ -52,8 +51,7 @@ TEST(two_links_with_locked_hub_have_the_closed_form)
 
 TEST(free_hub_has_one_mode_of_rigid_turning)
 {
-    parameters p = fixture_parameters(SETTINGS("arm.links=4", "arm.hub_joint=spring"));
-    arm a = arm_of(&p);
+    arm a = arm_with(SETTINGS("arm.links=4", "arm.hub_joint=spring"));
     const arm_modes m = modes_of(&a, HUB_FREE, TIP_FREE);
     assert_int_equal(m.count, 5);
     check_close(m.w[0], 0, 1e-2);
@@ -79,8 +77,7 @@ static const char *const *const any_arms[] = {
 TEST(matrices_are_those_of_the_energies)
 {
     for (EACH(c, any_arms)) {
-        parameters p = fixture_parameters(*c);
-        arm a = arm_of(&p);
+        arm a = arm_with(*c);
         const int n = a.dof;
         const double straight[9] = {0};
         double mass[81] = {0}, stiffness[81] = {0};
@@ -112,8 +109,7 @@ TEST(every_mode_balances_but_for_what_holds_the_arm)
     for (size_t i = 0; i < 4 * sizeof any_arms / sizeof any_arms[0]; i++) {
         const hub_end hub = i % 2 ? HUB_LOCKED : HUB_FREE;
         const tip_end tip = i / 2 % 2 ? TIP_PINNED : TIP_FREE;
-        parameters p = fixture_parameters(any_arms[i / 4]);
-        arm a = arm_of(&p);
+        arm a = arm_with(any_arms[i / 4]);
         const int n = a.dof;
         double mass[81] = {0}, stiffness[81] = {0};
         modes_matrices(&a, mass, stiffness);

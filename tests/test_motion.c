@@ -12,17 +12,6 @@ static run_result run_acted(action *todo, int count, const char *const *settings
     return run_done(&s, true);
 }
 
-static const event *find_event(const run_result *r, event_kind kind, int number)
-{
-    for (EACH_EVENT(e, &r->trace)) {
-        if (e->kind == kind && number-- == 0) {
-            return e;
-        }
-    }
-    fail_msg("event %s did not occur", event_name(kind));
-    return NULL;
-}
-
 // One link on a rigid hub: I w' = T - D w, first order.
 typedef struct rod {
     double inertia, torque, damping, rate; // rate = damping / inertia

@@ -28,8 +28,7 @@ static double angle_at(const char *const *settings, double time, double *force)
 // (-I w^2 + L^2 (k + i w c)) q = -L (k + i w c) u.
 TEST(a_driven_spring_has_its_amplitude_and_phase)
 {
-    const parameters p = fixture_parameters(SETTINGS(PRESSED_LINK));
-    arm a = arm_of(&p);
+    arm a = arm_with(SETTINGS(PRESSED_LINK));
     const double length = a.link_length, k = 2000, c = 20, u = 1e-5;
     const double inertia = a.hub_inertia + a.link_mass * length * length / 3;
     for (EACH_TEXT(one, "2", "15", "20", "60")) {
@@ -57,8 +56,7 @@ TEST(a_driven_spring_has_its_amplitude_and_phase)
 // On a rigid one the tip goes where the wall does, and the force makes it so.
 TEST(a_rigid_wall_leads_the_tip)
 {
-    const parameters p = fixture_parameters(SETTINGS(PRESSED_LINK));
-    arm a = arm_of(&p);
+    arm a = arm_with(SETTINGS(PRESSED_LINK));
     const double length = a.link_length, u0 = 1e-3, w = 2 * M_PI * 2;
     const double inertia = a.hub_inertia + a.link_mass * length * length / 3;
     for (int i = 1; i < 8; i++) {
@@ -333,12 +331,10 @@ TEST(a_wall_moved_in_contact_lets_go_or_is_refused)
         run_finish(&r);
 
         r = run_of(*c, 0.1, pressed, 0.15, STATUS_OK);
-        size_t change = 0;
-        while (r.trace.events[change].kind != EVENT_CHANGE) {
-            assert_true(++change < r.trace.event_count);
-        }
-        assert_int_equal(r.trace.events[change + 1].kind, EVENT_RELEASE);
-        check_close(r.trace.events[change + 1].time, pressed, 0);
+        const event *change = find_event(&r, EVENT_CHANGE, 0);
+        assert_true(change < r.trace.events + r.trace.event_count - 1);
+        assert_int_equal(change[1].kind, EVENT_RELEASE);
+        check_close(change[1].time, pressed, 0);
         assert_true(r.summary.energy_residual_J < 1e-10 * r.summary.motor_work_J);
         run_finish(&r);
 

@@ -5,18 +5,6 @@
 #include "tests/arm_fixture.h"
 #include "tests/scenario_fixture.h"
 
-// The number of the first event of a kind at or after an instant [s]; fails if there is none.
-static size_t event_after(const run_result *r, event_kind kind, double time)
-{
-    for (size_t i = 0; i < r->trace.event_count; i++) {
-        if (r->trace.events[i].kind == kind && r->trace.events[i].time >= time) {
-            return i;
-        }
-    }
-    fail_msg("no %s after %g s", event_name(kind), time);
-    return 0;
-}
-
 // The last row at or before an instant [s].
 static const sample *row_at(const run_result *r, double time)
 {
@@ -45,17 +33,16 @@ TEST(a_link_stuck_within_a_wall_slips_when_its_current_lets_it)
             "arm: {links: 1}\nmotor: {voltage: 3, inductance: %g%s}\nwall: {angle: 0.1, %s}\n"
             "script:\n  - at: 2.4 s\n    set: {motor.voltage: 0}\nrun: {duration: 2.42}\n",
             inductance, c->limit, c->wall));
-        const trace *t = &r.trace;
-        const size_t change = event_after(&r, EVENT_CHANGE, 0);
-        assert_int_equal(t->events[change - 1].kind, EVENT_STICK);
-        assert_int_equal(t->events[change + 1].kind, EVENT_SLIP);
+        const event *change = find_event(&r, EVENT_CHANGE, 0);
+        assert_int_equal(change[-1].kind, EVENT_STICK);
+        assert_int_equal(change[1].kind, EVENT_SLIP);
 
         // held until the change, and on, by the wall's force of that depth
         const sample *last = row_at(&r, 2.4);
         const double left = last->force - stiction;
         assert_true(last->contact != 0 && last->sticking != 0);
         const double slips = 2.4 + inductance / resistance * log(last->motor_torque / left);
-        check_close(t->events[change + 1].time, slips, 1e-9);
+        check_close(change[1].time, slips, 1e-9);
         check_close(row_at(&r, slips - 1e-3)->force, last->force, 1e-12);
     }
 }

@@ -341,14 +341,6 @@ static char *data_of_recipe(const char *name, int *panels)
     return file_text("recipe.csv");
 }
 
-// The number behind a part of a text that must be there.
-static double number_behind(const char *text, const char *part)
-{
-    const char *at = strstr(text, part);
-    fail_if(at == NULL, "'%s' is not there", part);
-    return atof(at + strlen(part));
-}
-
 // Small multiples are what the same runs give one by one.
 TEST(multiples_are_runs_at_their_values)
 {

@@ -490,10 +490,7 @@ TEST(a_slow_face_lets_go_behind_the_wall)
                                      "wall.kind=plane wall.contact=hunt-crossley "
                                      "wall.stiffness=1e5 wall.damping=1e6 run.duration=0.2");
         KEPT_RUN(r) = run_arm(p, true);
-        const event *release = r.trace.events;
-        while (release->kind != EVENT_RELEASE) {
-            release++;
-        }
+        const event *release = find_event(&r, EVENT_RELEASE, 0);
         const sample *left = r.trace.rows, *last = LAST_ROW(&r.trace);
         while (left->time < release->time) {
             left++;
@@ -522,18 +519,9 @@ TEST(a_slow_face_lets_go_behind_the_wall)
     }
 }
 
-// The instant at which the i-th contact began, from 0 on.
 static double contact_time(const run_result *r, int i)
 {
-    size_t e = 0;
-    for (; e < r->trace.event_count; e++) {
-        i -= r->trace.events[e].kind == EVENT_CONTACT;
-        if (i < 0) {
-            break;
-        }
-    }
-    assert_true(e < r->trace.event_count);
-    return r->trace.events[e].time;
+    return find_event(r, EVENT_CONTACT, i)->time;
 }
 
 // A face without a mass is what light ones come to, in proportion to their mass, also where the arm

@@ -56,13 +56,9 @@ TEST(numbers_of_the_first_chapters)
     // where the hub turns back
     SCOPED(forget) computed first = run_of("corrected/first-impact", "");
     const summary *m = &first.result.summary;
-    const trace *t = &first.result.trace;
-    size_t e = 0;
-    while (t->events[e].kind != EVENT_REVERSAL) {
-        e++;
-    }
+    const event *turns = find_event(&first.result, EVENT_REVERSAL, 0);
     page_says("(%.1f ms after the touch; the hub turns at %.1f ms)",
-              1e3 * m->first_pulse_time_to_peak_s, 1e3 * (t->events[e].time - m->first_contact_s));
+              1e3 * m->first_pulse_time_to_peak_s, 1e3 * (turns->time - m->first_contact_s));
 }
 
 // ---- the single run of 3.1.3

@@ -7,17 +7,11 @@
 
 enum { LINKS = 64 };
 
-static arm beam_of(const char *const *settings)
-{
-    const parameters p = fixture_parameters(settings);
-    return arm_of(&p);
-}
-
 // Deflection of the tip of a clamped beam under its weight w: w L^3/8EI; where the tip is held the
 // wall bears 3/8 of w.
 TEST(a_level_beam_sags_as_eulers_does)
 {
-    const arm a = beam_of(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1e-3"));
+    const arm a = arm_with(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1e-3"));
     const double length = a.link_length * LINKS, weight = a.link_mass * LINKS * a.gravity;
     const double EI = a.joint_stiffness * a.link_length;
     double q[LINKS + 1], x, y, force;
@@ -63,8 +57,8 @@ static void frequencies_of_a_hanging_beam(const arm *a, double *frequency, int c
 TEST(a_hanging_beam_has_its_frequencies)
 {
     enum { COUNT = 3 };
-    const arm a = beam_of(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1.5707963267949",
-                                   "initial.angle=-1.5707963267949"));
+    const arm a = arm_with(SETTINGS("arm.links=64", "arm.hub_joint=beam",
+                                    "arm.tilt=1.5707963267949", "initial.angle=-1.5707963267949"));
     double expected[COUNT];
     const arm_modes m = modes_of(&a, HUB_LOCKED, TIP_FREE);
     frequencies_of_a_hanging_beam(&a, expected, COUNT);
