@@ -8,9 +8,8 @@
 
 status make_folder(const char *folder, fault *f)
 {
-    FAIL_IF(mkdir(folder, 0777) != 0 && errno != EEXIST,
-            fault_set(f, STATUS_CANNOT_WRITE, "the folder '%s' cannot be made: %s", folder,
-                      strerror(errno)));
+    FAULT_IF(mkdir(folder, 0777) != 0 && errno != EEXIST, f, STATUS_CANNOT_WRITE,
+             "the folder '%s' cannot be made: %s", folder, strerror(errno));
     return STATUS_OK;
 }
 
@@ -243,11 +242,10 @@ status artwork_publish_csv(const artwork *a, const char *path, fault *f)
     if (there != NULL) {
         fclose(there);
     }
-    FAIL_IF(written && strcmp(start, heading) != 0,
-            fault_set(f, STATUS_CANNOT_WRITE,
-                      "'%s' holds other numbers and is kept, so that those of the picture are not "
-                      "written",
-                      csv));
+    FAULT_IF(written && strcmp(start, heading) != 0, f, STATUS_CANNOT_WRITE,
+             "'%s' holds other numbers and is kept, so that those of the picture are not "
+             "written",
+             csv);
     return artwork_write_csv(a, csv, f);
 }
 
@@ -283,11 +281,10 @@ void figure_take_range(figure *fig, const figure_options *o)
 status figure_publish(const figure *fig, const figure_options *o, const char *path, bool with_csv,
                       fault *f)
 {
-    FAIL_IF(o->overlay != NULL || o->signals != NULL,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "%s: the picture shows no recorded signals that %s could choose or lie "
-                      "over",
-                      path, o->overlay != NULL ? "--overlay" : "--signals"));
+    FAULT_IF(o->overlay != NULL || o->signals != NULL, f, STATUS_BAD_ARGUMENT,
+             "%s: the picture shows no recorded signals that %s could choose or lie "
+             "over",
+             path, o->overlay != NULL ? "--overlay" : "--signals");
 
     // a copy with the look and the range asked for
     figure shown = *fig;

@@ -137,19 +137,17 @@ static status read_panel(const char *text, trace_panel *p, fault *f)
         int index = signal_find(name);
 
         // known, with room, and of the panel's one unit
-        FAIL_IF(index <= 0,
-                fault_set(f, STATUS_BAD_ARGUMENT, "there is no signal '%s', did you mean '%s'?",
-                          name, nearest_signal(name)));
-        FAIL_IF(i == TRACE_SIGNALS,
-                fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a panel shows at most %d signals", text,
-                          TRACE_SIGNALS));
+        FAULT_IF(index <= 0, f, STATUS_BAD_ARGUMENT, "there is no signal '%s', did you mean '%s'?",
+                 name, nearest_signal(name));
+        FAULT_IF(i == TRACE_SIGNALS, f, STATUS_BAD_ARGUMENT,
+                 "'%s': a panel shows at most %d signals", text, TRACE_SIGNALS);
         p->signals[i] = signal_table[index].name;
-        FAIL_IF(strcmp(signal_table[index].unit, signal_table[signal_index(p->signals[0])].unit) !=
-                    0,
-                fault_set(f, STATUS_BAD_ARGUMENT,
-                          "'%s': the signals of a panel have one unit, expected a comma between "
-                          "%s and %s",
-                          text, p->signals[0], name));
+        FAULT_IF(strcmp(signal_table[index].unit, signal_table[signal_index(p->signals[0])].unit) !=
+                     0,
+                 f, STATUS_BAD_ARGUMENT,
+                 "'%s': the signals of a panel have one unit, expected a comma between "
+                 "%s and %s",
+                 text, p->signals[0], name);
     }
     return STATUS_OK;
 }
@@ -159,9 +157,8 @@ static status read_signals(const char *text, trace_panel *panels, int *count, fa
 {
     g_auto(GStrv) words = g_strsplit(text, ",", -1);
     for (*count = 0; *count == 0 || words[*count] != NULL; ++*count) {
-        FAIL_IF(*count == FIGURE_PANELS - 1,
-                fault_set(f, STATUS_BAD_ARGUMENT, "'%s': a figure has at most %d panels", text,
-                          FIGURE_PANELS - 1));
+        FAULT_IF(*count == FIGURE_PANELS - 1, f, STATUS_BAD_ARGUMENT,
+                 "'%s': a figure has at most %d panels", text, FIGURE_PANELS - 1);
         trace_panel *p = &panels[*count];
         *p = (trace_panel){.weight = 1};
         TRY(read_panel(words[*count] != NULL ? words[*count] : "", p, f));
@@ -326,10 +323,9 @@ status scenario_figure_open(const char *name, run_monitor *monitor, artwork *out
 
 status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f)
 {
-    FAIL_IF(which->open != NULL && (o->overlay != NULL || o->signals != NULL),
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "%s shows no recorded signals that %s could choose or lie over", which->id,
-                      o->overlay != NULL ? o->overlay : o->signals));
+    FAULT_IF(which->open != NULL && (o->overlay != NULL || o->signals != NULL), f,
+             STATUS_BAD_ARGUMENT, "%s shows no recorded signals that %s could choose or lie over",
+             which->id, o->overlay != NULL ? o->overlay : o->signals);
     // "Fig. 3.4  ...", "Table 4.1  ...", or the caption alone
     const bool table = which->id[0] == 'T', numbered = table || g_ascii_isdigit(which->id[0]);
     g_autofree char *title = numbered ? text_printf("%s %s  %s", table ? "Table" : "Fig.",
@@ -343,17 +339,15 @@ status figure_draw(const char *id, const figure_options *o, const char *folder, 
                    FILE *tex, fault *f)
 {
     const thesis_figure *which = thesis_figure_find(id);
-    FAIL_IF(which == NULL,
-            fault_set(f, STATUS_BAD_ARGUMENT, "there is no figure '%s', expected %s to %s", id,
-                      thesis_figures[0].id, thesis_figures[FIGURES - 1].id));
+    FAULT_IF(which == NULL, f, STATUS_BAD_ARGUMENT, "there is no figure '%s', expected %s to %s",
+             id, thesis_figures[0].id, thesis_figures[FIGURES - 1].id);
 
     // every format is known before anything is computed
     g_auto(GStrv) list = g_strsplit(formats, ",", -1);
     for (int i = 0; i == 0 || list[i] != NULL; i++) {
         const char *format = list[i] != NULL ? list[i] : "";
-        FAIL_IF(picture_format_of(format) == FORMAT_NONE,
-                fault_set(f, STATUS_BAD_ARGUMENT,
-                          "there is no figure format '%s', expected png, pdf or svg", format));
+        FAULT_IF(picture_format_of(format) == FORMAT_NONE, f, STATUS_BAD_ARGUMENT,
+                 "there is no figure format '%s', expected png, pdf or svg", format);
     }
     g_auto(artwork) drawn = {0};
     TRY(figure_open(which, o, &drawn, f));

@@ -128,9 +128,9 @@ status table_stability(const figure_order *order, artwork *out, fault *f)
     double frequencies[3], shapes[9];
     int count = 0;
     arm_init(&a, &p);
-    FAIL_IF(modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes) != STATUS_OK ||
-                count < 1,
-            fault_set(f, STATUS_SINGULAR, "the modes of the two-link arm cannot be computed"));
+    FAULT_IF(modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes) != STATUS_OK ||
+                 count < 1,
+             f, STATUS_SINGULAR, "the modes of the two-link arm cannot be computed");
     double fastest = frequencies[count - 1];
 
     static const table_column columns[] = {{"Method", 2.3},

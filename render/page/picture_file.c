@@ -165,11 +165,11 @@ picture_format picture_format_of(const char *path)
 
 static status check_extension(const char *path, fault *f)
 {
-    FAIL_IF(picture_format_of(path) == FORMAT_NONE || strchr(path, '.') == NULL,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%s' is no name for a picture: expected one that ends in .png, .pdf or "
-                      ".svg",
-                      path));
+    FAULT_IF(picture_format_of(path) == FORMAT_NONE || strchr(path, '.') == NULL, f,
+             STATUS_BAD_ARGUMENT,
+             "'%s' is no name for a picture: expected one that ends in .png, .pdf or "
+             ".svg",
+             path);
     return STATUS_OK;
 }
 
@@ -266,15 +266,14 @@ static status paint_surface(cairo_surface_t *surface, const picture *p, bool fin
 status picture_write_png(const picture *p, FILE *stream, fault *f)
 {
     double dpi = p->dpi != 0 ? p->dpi : DEFAULT_DPI;
-    FAIL_IF(!(dpi >= LEAST_DPI && dpi <= MOST_DPI),
-            fault_set(f, STATUS_BAD_ARGUMENT, "a PNG of %g dpi, expected %g to %g", dpi, LEAST_DPI,
-                      MOST_DPI));
+    FAULT_IF(!(dpi >= LEAST_DPI && dpi <= MOST_DPI), f, STATUS_BAD_ARGUMENT,
+             "a PNG of %g dpi, expected %g to %g", dpi, LEAST_DPI, MOST_DPI);
     double pixels_across = round(p->width * dpi / 72), pixels_down = round(p->height * dpi / 72);
-    FAIL_IF(!(pixels_across >= 1 && pixels_across <= MOST_PIXELS && pixels_down >= 1 &&
-              pixels_down <= MOST_PIXELS),
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "a PNG of %.0f x %.0f pixels, expected 1 to %g along each edge",
-                      pixels_across, pixels_down, MOST_PIXELS));
+    FAULT_IF(!(pixels_across >= 1 && pixels_across <= MOST_PIXELS && pixels_down >= 1 &&
+               pixels_down <= MOST_PIXELS),
+             f, STATUS_BAD_ARGUMENT,
+             "a PNG of %.0f x %.0f pixels, expected 1 to %g along each edge", pixels_across,
+             pixels_down, MOST_PIXELS);
 
     g_autoptr(cairo_surface_t) surface =
         cairo_image_surface_create(p->transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24,
@@ -393,7 +392,7 @@ static status write_svg(const picture *p, FILE *stream, fault *f)
 {
     fault why = {0};
     g_autofree char *svg = picture_svg(p, &why);
-    FAIL_IF(svg == NULL, fault_set(f, why.code, "%s", why.text));
+    FAULT_IF(svg == NULL, f, why.code, "%s", why.text);
     fputs(svg, stream);
     return STATUS_OK;
 }

@@ -46,10 +46,9 @@ status text_check_font(fault *f)
     }
 
     // only the answer is kept, each caller gets the words
-    FAIL_IF(known == MISSING,
-            fault_set(f, STATUS_CANNOT_READ,
-                      "the font " TEXT_FAMILY " is not installed, figures need it: install "
-                      "fonts-dejavu-core"));
+    FAULT_IF(known == MISSING, f, STATUS_CANNOT_READ,
+             "the font " TEXT_FAMILY " is not installed, figures need it: install "
+             "fonts-dejavu-core");
     return STATUS_OK;
 }
 
@@ -58,7 +57,7 @@ status text_check_family(const char *family, fault *f)
     page_libraries++;
     const bool there = family_is_there(family);
     page_libraries--;
-    FAIL_IF(!there, fault_set(f, STATUS_BAD_ARGUMENT, "the font '%s' is not installed", family));
+    FAULT_IF(!there, f, STATUS_BAD_ARGUMENT, "the font '%s' is not installed", family);
     return STATUS_OK;
 }
 

@@ -235,15 +235,13 @@ static void draw_all(drawing *d)
 
 static status check_description(const figure *fig, fault *f)
 {
-    FAIL_IF(fig->panel_count < 1 || fig->panel_count > FIGURE_PANELS,
-            fault_set(f, STATUS_BAD_ARGUMENT, "a figure has %d panels, expected 1 to %d",
-                      fig->panel_count, FIGURE_PANELS));
+    FAULT_IF(fig->panel_count < 1 || fig->panel_count > FIGURE_PANELS, f, STATUS_BAD_ARGUMENT,
+             "a figure has %d panels, expected 1 to %d", fig->panel_count, FIGURE_PANELS);
 
     for (int i = 0; i < fig->panel_count; i++) {
-        FAIL_IF(fig->panels[i].series_count < 0 || fig->panels[i].series_count > PANEL_SERIES,
-                fault_set(f, STATUS_BAD_ARGUMENT,
-                          "panel %d of a figure has %d series, expected at most %d", i + 1,
-                          fig->panels[i].series_count, PANEL_SERIES));
+        FAULT_IF(fig->panels[i].series_count < 0 || fig->panels[i].series_count > PANEL_SERIES, f,
+                 STATUS_BAD_ARGUMENT, "panel %d of a figure has %d series, expected at most %d",
+                 i + 1, fig->panels[i].series_count, PANEL_SERIES);
     }
     return STATUS_OK;
 }

@@ -20,10 +20,9 @@
 // The range of the data and a share of it round them.
 static status widen_range(axis_scale *s, double share, const figure_axis *from, fault *f)
 {
-    FAIL_IF(s->kind == SCALE_LOGARITHMIC && scale_is_empty(s),
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "the logarithmic axis '%s' has no point above zero to show",
-                      from->name != NULL ? from->name : ""));
+    FAULT_IF(s->kind == SCALE_LOGARITHMIC && scale_is_empty(s), f, STATUS_BAD_ARGUMENT,
+             "the logarithmic axis '%s' has no point above zero to show",
+             from->name != NULL ? from->name : "");
     scale_widen(s, share);
     return STATUS_OK;
 }
@@ -359,12 +358,11 @@ static status check_room(const drawing *d, fault *f)
     // one panel without room spoils the figure; its size is told as it was given
     for (int i = 0; i < panels; i++) {
         const figure_rect *box = &d->panels[i].plane.box;
-        FAIL_IF(!(box->width >= LEAST_WIDTH && box->height >= LEAST_HEIGHT),
-                fault_set(f, STATUS_BAD_ARGUMENT,
-                          "a figure of %.0f x %.0f mm has no room for its %d panel%s, expected "
-                          "a larger page",
-                          d->page.width / 72 * 25.4, d->page.height / 72 * 25.4, panels,
-                          panels == 1 ? "" : "s"));
+        FAULT_IF(
+            !(box->width >= LEAST_WIDTH && box->height >= LEAST_HEIGHT), f, STATUS_BAD_ARGUMENT,
+            "a figure of %.0f x %.0f mm has no room for its %d panel%s, expected "
+            "a larger page",
+            d->page.width / 72 * 25.4, d->page.height / 72 * 25.4, panels, panels == 1 ? "" : "s");
     }
     return STATUS_OK;
 }

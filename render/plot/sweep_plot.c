@@ -299,10 +299,8 @@ static char *command_of(const sweep *s)
 
 status sweep_plot_check(const sweep *s, const char *path, fault *f)
 {
-    FAIL_IF(s->axis_count > 2,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "--plot shows one or two varied parameters, but %d are varied",
-                      s->axis_count));
+    FAULT_IF(s->axis_count > 2, f, STATUS_BAD_ARGUMENT,
+             "--plot shows one or two varied parameters, but %d are varied", s->axis_count);
     TRY(picture_check_path(path, f));
     return text_check_font(f);
 }

@@ -94,7 +94,7 @@ static status next_frame(film_making *m, int frame, fault *f)
         return film_file_add(m->file, m->frame, f);
     }
     frame_job *done = g_async_queue_pop(m->painted);
-    FAIL_IF(done->code != STATUS_OK, fault_set(f, done->code, "%s", done->fault.text));
+    FAULT_IF(done->code != STATUS_OK, f, done->code, "%s", done->fault.text);
     TRY(film_file_add(m->file, done->onto, f));
     g_async_queue_push(m->to_paint, done);
     return STATUS_OK;
@@ -133,27 +133,24 @@ static status add_frames(film_making *m, fault *f)
 
 static status check_options(const film_options *o, fault *f)
 {
-    FAIL_IF(o->width < 320 || o->width > 4096 || o->height < 240 || o->height > 4096 ||
-                o->width % 2 != 0 || o->height % 2 != 0,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "a film of %d x %d pixels, expected even numbers from 320 x 240 to 4096 x "
-                      "4096",
-                      o->width, o->height));
+    FAULT_IF(o->width < 320 || o->width > 4096 || o->height < 240 || o->height > 4096 ||
+                 o->width % 2 != 0 || o->height % 2 != 0,
+             f, STATUS_BAD_ARGUMENT,
+             "a film of %d x %d pixels, expected even numbers from 320 x 240 to 4096 x "
+             "4096",
+             o->width, o->height);
 
-    FAIL_IF(o->frames_per_second < 1 || o->frames_per_second > 120,
-            fault_set(f, STATUS_BAD_ARGUMENT, "%d frames per second, expected 1 to 120",
-                      o->frames_per_second));
+    FAULT_IF(o->frames_per_second < 1 || o->frames_per_second > 120, f, STATUS_BAD_ARGUMENT,
+             "%d frames per second, expected 1 to 120", o->frames_per_second);
 
-    FAIL_IF(!(o->seconds >= 0.1 && o->seconds <= 3600),
-            fault_set(f, STATUS_BAD_ARGUMENT, "a film of %g s, expected 0.1 to 3600", o->seconds));
+    FAULT_IF(!(o->seconds >= 0.1 && o->seconds <= 3600), f, STATUS_BAD_ARGUMENT,
+             "a film of %g s, expected 0.1 to 3600", o->seconds);
 
-    FAIL_IF(o->ghosts < 0 || o->ghosts >= SCENE_INSTANTS,
-            fault_set(f, STATUS_BAD_ARGUMENT, "%d ghosts, expected 0 to %d", o->ghosts,
-                      SCENE_INSTANTS - 1));
+    FAULT_IF(o->ghosts < 0 || o->ghosts >= SCENE_INSTANTS, f, STATUS_BAD_ARGUMENT,
+             "%d ghosts, expected 0 to %d", o->ghosts, SCENE_INSTANTS - 1);
 
-    FAIL_IF(!(o->slow >= 1 && o->slow <= 1000),
-            fault_set(f, STATUS_BAD_ARGUMENT, "impacts slowed down %g times, expected 1 to 1000",
-                      o->slow));
+    FAULT_IF(!(o->slow >= 1 && o->slow <= 1000), f, STATUS_BAD_ARGUMENT,
+             "impacts slowed down %g times, expected 1 to 1000", o->slow);
     return STATUS_OK;
 }
 
@@ -192,8 +189,8 @@ status film_write(const film_run *runs, int run_count, const film_options *optio
     // only a film that can be painted
     TRY(check_options(&o, f));
     for (int i = 0; i < run_count; i++) {
-        FAIL_IF(runs[i].result->trace.row_count == 0,
-                fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw"));
+        FAULT_IF(runs[i].result->trace.row_count == 0, f, STATUS_BAD_ARGUMENT,
+                 "the run has no rows to draw");
     }
 
     // planned, then painted

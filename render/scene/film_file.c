@@ -88,18 +88,16 @@ static status check_folder(const char *path, fault *f)
         // made later; its own folder must take it
         return whole_file_check(path, f);
     }
-    FAIL_IF(!g_file_test(path, G_FILE_TEST_IS_DIR),
-            fault_set(f, STATUS_CANNOT_WRITE,
-                      "%s is a file: expected the name of a folder, or one that ends in .mp4, "
-                      ".webm, .gif or .webp",
-                      path));
+    FAULT_IF(!g_file_test(path, G_FILE_TEST_IS_DIR), f, STATUS_CANNOT_WRITE,
+             "%s is a file: expected the name of a folder, or one that ends in .mp4, "
+             ".webm, .gif or .webp",
+             path);
     whole_file_clean_folder(path);
     g_autoptr(GDir) folder = g_dir_open(path, 0, NULL);
-    FAIL_IF(folder == NULL || g_dir_read_name(folder) != NULL,
-            fault_set(f, STATUS_CANNOT_WRITE,
-                      "the folder %s is not empty: frames of two films would mix, empty it or "
-                      "name another",
-                      path));
+    FAULT_IF(folder == NULL || g_dir_read_name(folder) != NULL, f, STATUS_CANNOT_WRITE,
+             "the folder %s is not empty: frames of two films would mix, empty it or "
+             "name another",
+             path);
     return STATUS_OK;
 }
 
@@ -110,20 +108,18 @@ status film_file_check(const char *path, fault *f)
     // a name without an ending means a folder, as does one that is there
     const bool bare = strlen(picture_ending(path)) < 2;
     const bool folder = !film && (bare || g_file_test(path, G_FILE_TEST_IS_DIR));
-    FAIL_IF((!film && !folder) || strcmp(path, "-") == 0,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%s' is no name for a film: expected one that ends in .mp4, .webm, "
-                      ".gif or .webp, or a folder for PNG frames",
-                      path));
+    FAULT_IF((!film && !folder) || strcmp(path, "-") == 0, f, STATUS_BAD_ARGUMENT,
+             "'%s' is no name for a film: expected one that ends in .mp4, .webm, "
+             ".gif or .webp, or a folder for PNG frames",
+             path);
     if (folder) {
         return check_folder(path, f);
     }
     g_autofree char *program = g_find_program_in_path("ffmpeg");
-    FAIL_IF(program == NULL,
-            fault_set(f, STATUS_CANNOT_WRITE,
-                      "%s needs the program ffmpeg, which is not installed: install the package "
-                      "ffmpeg, or give a folder to get PNG frames",
-                      path));
+    FAULT_IF(program == NULL, f, STATUS_CANNOT_WRITE,
+             "%s needs the program ffmpeg, which is not installed: install the package "
+             "ffmpeg, or give a folder to get PNG frames",
+             path);
     return whole_file_check(path, f);
 }
 
@@ -189,9 +185,9 @@ static status start_encoder(film_file *film, fault *f)
     g_autoptr(GError) error = NULL;
     g_auto(GStrv) words = list_arguments(film, target_of(film));
     film->words = tmpfile();
-    FAIL_IF(film->words == NULL || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0,
-            fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
-                      strerror(errno)));
+    FAULT_IF(film->words == NULL || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0,
+             f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
+             strerror(errno));
     const bool started = g_spawn_async_with_fds(
         NULL, words, NULL,
         G_SPAWN_SEARCH_PATH | G_SPAWN_DO_NOT_REAP_CHILD | G_SPAWN_STDOUT_TO_DEV_NULL, part_from_us,
@@ -314,9 +310,8 @@ static status open_target(film_file *film, fault *f)
         TRY(whole_file_open(&film->file, film->path, f));
         return start_encoder(film, f);
     }
-    FAIL_IF(mkdir(film->path, 0777) != 0 && errno != EEXIST,
-            fault_set(f, STATUS_CANNOT_WRITE, "the folder %s could not be made: %s", film->path,
-                      strerror(errno)));
+    FAULT_IF(mkdir(film->path, 0777) != 0 && errno != EEXIST, f, STATUS_CANNOT_WRITE,
+             "the folder %s could not be made: %s", film->path, strerror(errno));
     return STATUS_OK;
 }
 

@@ -128,9 +128,9 @@ status scene_floor_init(scene *sc, vector middle, double reach, fault *f)
                            .map_left = middle.x - reach,
                            .map_low = middle.y - reach,
                            .map_cell = 2 * reach / MAP};
-    FAIL_IF(!floor->ground || !floor->x || !floor->y || !floor->mask || !floor->spare,
-            fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels",
-                      sc->options.width, sc->options.height));
+    FAULT_IF(!floor->ground || !floor->x || !floor->y || !floor->mask || !floor->spare, f,
+             STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", sc->options.width,
+             sc->options.height);
     paint_ground(sc);
     return STATUS_OK;
 }

@@ -112,20 +112,18 @@ static status open_osmesa(gl_offscreen *g, fault *f)
     // the library, where it is installed
     void *(*create)(unsigned, int, int, int, void *);
     g->handle = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
-    FAIL_IF(g->handle == NULL,
-            fault_set(f, STATUS_CANNOT_WRITE,
-                      "OSMesa is not installed (libOSMesa.so.8): install libosmesa6, or choose "
-                      "--gl=egl or --gl=cairo"));
+    FAULT_IF(g->handle == NULL, f, STATUS_CANNOT_WRITE,
+             "OSMesa is not installed (libOSMesa.so.8): install libosmesa6, or choose "
+             "--gl=egl or --gl=cairo");
 
     // a context without a window
-    FAIL_IF(!load(g->handle, "OSMesaCreateContextExt", &create) ||
-                !load(g->handle, "OSMesaGetProcAddress", &g->find),
-            fault_set(f, STATUS_CANNOT_WRITE,
-                      "libOSMesa.so.8 is too old: expected one of Mesa 17 or later"));
+    FAULT_IF(!load(g->handle, "OSMesaCreateContextExt", &create) ||
+                 !load(g->handle, "OSMesaGetProcAddress", &g->find),
+             f, STATUS_CANNOT_WRITE, "libOSMesa.so.8 is too old: expected one of Mesa 17 or later");
     g->small = g_malloc0_n(SMALL * SMALL, 4);
     g->context = create(GL_RGBA, 0, 0, 0, NULL);
-    FAIL_IF(g->context == NULL || !make_current(g),
-            fault_set(f, STATUS_CANNOT_WRITE, "OSMesa gives no context of OpenGL"));
+    FAULT_IF(g->context == NULL || !make_current(g), f, STATUS_CANNOT_WRITE,
+             "OSMesa gives no context of OpenGL");
     return STATUS_OK;
 }
 
@@ -236,11 +234,9 @@ static status set_up(gl_offscreen *g, char name[RENDERER_NAME], fault *f)
 
     // a context with OpenGL's functions
     TRY(g->library == RENDER_OSMESA ? open_osmesa(g, f) : open_egl(g, f));
-    FAIL_IF(!load_functions(g),
-            fault_set(f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3", library));
-    FAIL_IF(!make_framebuffer(g),
-            fault_set(f, STATUS_CANNOT_WRITE, "%s cannot draw a picture of %d x %d pixels", library,
-                      g->width, g->height));
+    FAULT_IF(!load_functions(g), f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3", library);
+    FAULT_IF(!make_framebuffer(g), f, STATUS_CANNOT_WRITE,
+             "%s cannot draw a picture of %d x %d pixels", library, g->width, g->height);
 
     // what draws, as the picture's notes name it
     snprintf(name, RENDERER_NAME, "%s, %s, OpenGL %s", library,
@@ -300,7 +296,7 @@ void gl_offscreen_destroy(gl_offscreen *g)
 status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box region, uint32_t *pixels,
                          fault *f)
 {
-    FAIL_IF(!make_current(g), fault_set(f, STATUS_CANNOT_WRITE, "OpenGL's context is lost"));
+    FAULT_IF(!make_current(g), f, STATUS_CANNOT_WRITE, "OpenGL's context is lost");
 
     // only the part of the picture that is wanted
     g->Viewport(0, 0, g->width, g->height);
@@ -316,7 +312,6 @@ status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box regio
 
     // one question for all calls
     unsigned error = g->GetError();
-    FAIL_IF(error != 0,
-            fault_set(f, STATUS_CANNOT_WRITE, "OpenGL refused to draw (error 0x%x)", error));
+    FAULT_IF(error != 0, f, STATUS_CANNOT_WRITE, "OpenGL refused to draw (error 0x%x)", error);
     return STATUS_OK;
 }

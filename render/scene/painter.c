@@ -34,9 +34,8 @@ status scene_painter_create(scene_painter **out, scene_renderer which, int width
 
     // drawing by hand needs only memory
     TRY(which == RENDER_AUTO ? STATUS_OK : code);
-    FAIL_IF(
-        !samples_init(&p->samples, width, height, samples, p->gl == NULL),
-        fault_set(f, STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", width, height));
+    FAULT_IF(!samples_init(&p->samples, width, height, samples, p->gl == NULL), f, STATUS_NO_MEMORY,
+             "no memory for a scene of %d x %d pixels", width, height);
     *out = g_steal_pointer(&p);
     return STATUS_OK;
 }

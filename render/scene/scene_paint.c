@@ -36,13 +36,12 @@ static const surroundings dark_surroundings = {
 static status check_options(const scene *sc, fault *f)
 {
     const scene_options *o = &sc->options;
-    FAIL_IF(o->width < LEAST_PIXELS || o->width > MOST_PIXELS || o->height < LEAST_PIXELS ||
-                o->height > MOST_PIXELS,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "a scene of %d x %d pixels, expected %d to %d along each edge", o->width,
-                      o->height, LEAST_PIXELS, MOST_PIXELS));
-    FAIL_IF(sc->result->trace.row_count == 0,
-            fault_set(f, STATUS_BAD_ARGUMENT, "the run has no rows to draw"));
+    FAULT_IF(o->width < LEAST_PIXELS || o->width > MOST_PIXELS || o->height < LEAST_PIXELS ||
+                 o->height > MOST_PIXELS,
+             f, STATUS_BAD_ARGUMENT, "a scene of %d x %d pixels, expected %d to %d along each edge",
+             o->width, o->height, LEAST_PIXELS, MOST_PIXELS);
+    FAULT_IF(sc->result->trace.row_count == 0, f, STATUS_BAD_ARGUMENT,
+             "the run has no rows to draw");
     return text_check_font(f);
 }
 
@@ -261,9 +260,9 @@ enum { PICTURE_DPI = 144 };
 
 status scene_check_path(const char *path, fault *f)
 {
-    FAIL_IF(picture_format_of(path) != FORMAT_PNG || strchr(path, '.') == NULL,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "'%s' is no name for a scene: expected one that ends in .png", path));
+    FAULT_IF(picture_format_of(path) != FORMAT_PNG || strchr(path, '.') == NULL, f,
+             STATUS_BAD_ARGUMENT, "'%s' is no name for a scene: expected one that ends in .png",
+             path);
     return whole_file_check(path, f);
 }
 
@@ -271,16 +270,13 @@ static status check_instants(const scene_picture *p, fault *f)
 {
     const trace *t = &p->result->trace;
 
-    FAIL_IF(p->count < 1 || p->count > SCENE_INSTANTS,
-            fault_set(f, STATUS_BAD_ARGUMENT, "a scene of %d instants, expected 1 to %d", p->count,
-                      SCENE_INSTANTS));
+    FAULT_IF(p->count < 1 || p->count > SCENE_INSTANTS, f, STATUS_BAD_ARGUMENT,
+             "a scene of %d instants, expected 1 to %d", p->count, SCENE_INSTANTS);
 
     for (int i = 0; i < p->count; i++) {
         double end = t->row_count > 0 ? t->rows[t->row_count - 1].time : 0;
-        FAIL_IF(!(p->times[i] >= 0 && !instant_after(p->times[i], end)),
-                fault_set(f, STATUS_BAD_ARGUMENT,
-                          "a scene at %g s, expected an instant of the run, 0 to %g s", p->times[i],
-                          end));
+        FAULT_IF(!(p->times[i] >= 0 && !instant_after(p->times[i], end)), f, STATUS_BAD_ARGUMENT,
+                 "a scene at %g s, expected an instant of the run, 0 to %g s", p->times[i], end);
     }
     return STATUS_OK;
 }

@@ -127,11 +127,11 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
     *out = prediction_none();
     TRY(three_body_state_check(s, f));
     double force, after[3], impulse;
-    FAIL_IF(!(printed ? printed_force(p, s, &force) : corrected_force(p, s, &force)) ||
-                !isfinite(force),
-            fault_set(f, STATUS_SINGULAR,
-                      "the energy principle has no single force for this state: its system "
-                      "(4.28), (4.29), (4.34) is singular"));
+    FAULT_IF(!(printed ? printed_force(p, s, &force) : corrected_force(p, s, &force)) ||
+                 !isfinite(force),
+             f, STATUS_SINGULAR,
+             "the energy principle has no single force for this state: its system "
+             "(4.28), (4.29), (4.34) is singular");
 
     // it holds for an arm that comes near and, corrected, stays on the wall
     two_link_at(&touch, p, printed ? FORM_LISTED_IMPACT : FORM_CORRECTED, s->angle[1], s->angle[2]);

@@ -263,10 +263,8 @@ static status solve_with_hub_spring(const integrated_motion *g, double hub_veloc
     if (!isfinite(best)) {
         return STATUS_OK;
     }
-    FAIL_IF(!newton(g, x) || !(x[0] > 0),
-            fault_set(f, STATUS_NEWTON_FAILED,
-                      "Newton's method found no solution of (4.20)-(4.22) near a delay of %g s",
-                      x[0]));
+    FAULT_IF(!newton(g, x) || !(x[0] > 0), f, STATUS_NEWTON_FAILED,
+             "Newton's method found no solution of (4.20)-(4.22) near a delay of %g s", x[0]);
 
     *delay = x[0];
     *force = x[1];

@@ -86,10 +86,9 @@ status two_link_velocity_jump(const two_link *t, const three_body_state *s, doub
                               double *impulse, fault *f)
 {
     double r[3] = {0, 0, -two_link_approach_speed(t, s)};
-    FAIL_IF(!two_link_solve(t, r) || !isfinite(r[2]),
-            fault_set(f, STATUS_SINGULAR,
-                      "the impact at this state has no single impulse: the system (4.11), "
-                      "(4.12), (4.14) is singular"));
+    FAULT_IF(!two_link_solve(t, r) || !isfinite(r[2]), f, STATUS_SINGULAR,
+             "the impact at this state has no single impulse: the system (4.11), "
+             "(4.12), (4.14) is singular");
 
     after[1] = s->velocity[1] + r[0];
     after[2] = s->velocity[2] + r[1];
@@ -125,11 +124,10 @@ status three_body_state_check(const three_body_state *s, fault *f)
 {
     static const char *const names[3] = {"hub", "first link", "second link"};
     for (int i = 0; i < 3; i++) {
-        FAIL_IF(!isfinite(s->angle[i]) || !isfinite(s->velocity[i]),
-                fault_set(f, STATUS_NOT_FINITE,
-                          "a prediction needs a finite state, but the %s's %s is %g", names[i],
-                          isfinite(s->angle[i]) ? "velocity" : "angle",
-                          isfinite(s->angle[i]) ? s->velocity[i] : s->angle[i]));
+        FAULT_IF(!isfinite(s->angle[i]) || !isfinite(s->velocity[i]), f, STATUS_NOT_FINITE,
+                 "a prediction needs a finite state, but the %s's %s is %g", names[i],
+                 isfinite(s->angle[i]) ? "velocity" : "angle",
+                 isfinite(s->angle[i]) ? s->velocity[i] : s->angle[i]);
     }
     return STATUS_OK;
 }

@@ -190,18 +190,16 @@ status printed_motion_step(printed_motion *m, fault *f)
 
     // the equations' own failures
     status result = try_step(m, &r);
-    FAIL_IF(result != STATUS_OK,
-            fault_set(f, result, "the equations of the step from t = %.9g s %s contact %s", start,
-                      r.contact ? "in" : "without",
-                      result == STATUS_SINGULAR ? "are singular"
-                                                : "have a residual that is not finite"));
+    FAULT_IF(result != STATUS_OK, f, result,
+             "the equations of the step from t = %.9g s %s contact %s", start,
+             r.contact ? "in" : "without",
+             result == STATUS_SINGULAR ? "are singular" : "have a residual that is not finite");
 
     // an overflow, reported before the next step starts from it
     r.force = m->force;
     const char *name = not_finite(&r);
-    FAIL_IF(name != NULL, fault_set(f, STATUS_NOT_FINITE,
-                                    "%s is not finite after the step from t = %.9g s to t = %.9g s",
-                                    name, start, end));
+    FAULT_IF(name != NULL, f, STATUS_NOT_FINITE,
+             "%s is not finite after the step from t = %.9g s to t = %.9g s", name, start, end);
 
     // the step's end is what the next one starts from
     const double *fed =

@@ -86,11 +86,10 @@ static status check_lines(const session_file *file, fault *f)
 {
     for (int i = 0; i < file->line_count; i++) {
         const size_t length = strlen(file->lines[i]);
-        FAIL_IF(length >= LINE_TEXT,
-                fault_set(f, STATUS_CANNOT_WRITE,
-                          "'%.40s...' takes %zu bytes in a session, expected at most %d: show "
-                          "fewer signals in a pane",
-                          file->lines[i], length, LINE_TEXT - 1));
+        FAULT_IF(length >= LINE_TEXT, f, STATUS_CANNOT_WRITE,
+                 "'%.40s...' takes %zu bytes in a session, expected at most %d: show "
+                 "fewer signals in a pane",
+                 file->lines[i], length, LINE_TEXT - 1);
     }
     return STATUS_OK;
 }

@@ -174,8 +174,8 @@ status terminal_open(fault *f)
     assert(tty.curses == NULL);
     terminal_leaving = 0;
     tcgetattr(STDIN_FILENO, &tty.saved);
-    FAIL_IF(pipe2(tty.wake, O_NONBLOCK | O_CLOEXEC) != 0,
-            fault_set(f, STATUS_NO_MEMORY, "no pipe for signals: %s", strerror(errno)));
+    FAULT_IF(pipe2(tty.wake, O_NONBLOCK | O_CLOEXEC) != 0, f, STATUS_NO_MEMORY,
+             "no pipe for signals: %s", strerror(errno));
 
     // before ncurses, which then leaves the resizing to us
     take_signals();

@@ -143,9 +143,8 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
             return STATUS_OK;
         }
     }
-    FAIL_IF(list->count == PINNED_RUNS,
-            fault_set(f, STATUS_BAD_ARGUMENT,
-                      "%d runs are pinned already: R lists them, d there drops one", PINNED_RUNS));
+    FAULT_IF(list->count == PINNED_RUNS, f, STATUS_BAD_ARGUMENT,
+             "%d runs are pinned already: R lists them, d there drops one", PINNED_RUNS);
 
     // the rows are shared, the changes are copied
     snprintf(p.name, sizeof p.name, "%s", name);
@@ -238,13 +237,13 @@ static status read_axis(sweep_axis *axis, const char *definition, fault *f)
     char text[256];
     snprintf(text, sizeof text, "%s", definition);
     char *values = strchr(text, '=');
-    FAIL_IF(values == NULL, fault_set(f, STATUS_BAD_ARGUMENT,
-                                      "sweep takes PATH=FROM:TO:N or PATH=V1,V2,..., such as "
-                                      "control.rate=50:400:8, and for a map two of them"));
+    FAULT_IF(values == NULL, f, STATUS_BAD_ARGUMENT,
+             "sweep takes PATH=FROM:TO:N or PATH=V1,V2,..., such as "
+             "control.rate=50:400:8, and for a map two of them");
     *values++ = '\0';
     axis->parameter = parameter_of_name(text);
-    FAIL_IF(axis->parameter == -2,
-            fault_set(f, STATUS_BAD_ARGUMENT, "several parameters begin with '%s'", text));
+    FAULT_IF(axis->parameter == -2, f, STATUS_BAD_ARGUMENT, "several parameters begin with '%s'",
+             text);
     if (axis->parameter < 0) {
         parameter_look_up(text, f);
         return STATUS_BAD_ARGUMENT;
@@ -262,12 +261,12 @@ static status read_sweep(lab_sweep *fresh, const char *definition, fault *f)
     TRY(map ? read_axis(&fresh->second, rest, f) : STATUS_OK);
     const size_t runs = fresh->axis.count * (map ? fresh->second.count : 1);
     const size_t most = map ? MAP_CELLS : SWEPT_RUNS;
-    FAIL_IF(runs > most, fault_set(f, STATUS_BAD_ARGUMENT,
-                                   "%zu runs are too many here, at most %zu: 'impactlab sweep' "
-                                   "takes any number",
-                                   runs, most));
-    FAIL_IF(map && fresh->axis.parameter == fresh->second.parameter,
-            fault_set(f, STATUS_BAD_ARGUMENT, "a map takes two different parameters"));
+    FAULT_IF(runs > most, f, STATUS_BAD_ARGUMENT,
+             "%zu runs are too many here, at most %zu: 'impactlab sweep' "
+             "takes any number",
+             runs, most);
+    FAULT_IF(map && fresh->axis.parameter == fresh->second.parameter, f, STATUS_BAD_ARGUMENT,
+             "a map takes two different parameters");
     fresh->summaries = calloc(runs, sizeof *fresh->summaries);
     TRY_MEMORY(fresh->summaries != NULL, f);
     return STATUS_OK;
