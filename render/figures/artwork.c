@@ -243,8 +243,7 @@ status artwork_publish_csv(const artwork *a, const char *path, fault *f)
         fclose(there);
     }
     FAULT_IF(written && strcmp(start, heading) != 0, f, STATUS_CANNOT_WRITE,
-             "'%s' holds other numbers and is kept, so that those of the picture are not "
-             "written",
+             "'%s' holds other numbers and is kept, so that those of the picture are not written",
              csv);
     return artwork_write_csv(a, csv, f);
 }
@@ -282,9 +281,8 @@ status figure_publish(const figure *fig, const figure_options *o, const char *pa
                       fault *f)
 {
     FAULT_IF(o->overlay != NULL || o->signals != NULL, f, STATUS_BAD_ARGUMENT,
-             "%s: the picture shows no recorded signals that %s could choose or lie "
-             "over",
-             path, o->overlay != NULL ? "--overlay" : "--signals");
+             "%s: the picture shows no recorded signals that %s could choose or lie over", path,
+             o->overlay != NULL ? "--overlay" : "--signals");
 
     // a copy with the look and the range asked for
     figure shown = *fig;

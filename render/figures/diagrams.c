@@ -89,12 +89,10 @@ status diagram_links(const figure_order *order, artwork *out, fault *f)
         &d, out,
         "Hub (body 1) and two rigid links (bodies 2 and 3) in the proportions of the model, bent "
         "far more than in use. <i>l</i> = %g\u2009m, <i>ε</i> = %g\u2009m, <i>m</i> = "
-        "%.4g\u2009kg, "
-        "<i>I</i> = %.3g\u2009kg·m², <i>I</i><sub>1</sub> = %.3g\u2009kg·m², <i>k</i><sub>1</sub> "
-        "= "
-        "%.6g\u2009N·m/rad, <i>k</i><sub>2</sub> = %g\u2009N·m/rad: the corrected model's own; the "
-        "printed runs of chapter 3 have <i>k</i><sub>1</sub> = 90\u2009N·m/rad and <i>I</i> = "
-        "1.67·10<sup>−5</sup>\u2009kg·m². Angles are absolute.",
+        "%.4g\u2009kg, <i>I</i> = %.3g\u2009kg·m², <i>I</i><sub>1</sub> = %.3g\u2009kg·m², "
+        "<i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>k</i><sub>2</sub> = %g\u2009N·m/rad: the "
+        "corrected model's own; the printed runs of chapter 3 have <i>k</i><sub>1</sub> = "
+        "90\u2009N·m/rad and <i>I</i> = 1.67·10<sup>−5</sup>\u2009kg·m². Angles are absolute.",
         d->p.arm.length / 2, d->p.arm.length / 4, d->p.arm.mass / 2, d->p.arm.link_inertia,
         d->p.arm.hub_inertia, d->p.arm.k1, d->p.arm.k2);
 }
@@ -161,8 +159,8 @@ status diagram_free_bodies(const figure_order *order, artwork *out, fault *f)
         &d, out,
         "Each body on its own with what its neighbours do to it: torques <i>τ</i> of the springs "
         "<i>k</i><sub>1</sub>, <i>k</i><sub>2</sub> and forces <i>f</i><sub>1</sub>, "
-        "<i>f</i><sub>2</sub> of the hinges, equal and opposite on both sides of a joint. Added "
-        "up over bodies 2 and 3, <i>τ</i><sub>2</sub> and <i>f</i><sub>2</sub> cancel; the printed "
+        "<i>f</i><sub>2</sub> of the hinges, equal and opposite on both sides of a joint. Added up "
+        "over bodies 2 and 3, <i>τ</i><sub>2</sub> and <i>f</i><sub>2</sub> cancel; the printed "
         "(2.16) keeps <i>k</i><sub>2</sub> all the same. The contact force <i>f</i> acts across "
         "the last link.");
 }

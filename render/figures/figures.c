@@ -145,8 +145,7 @@ static status read_panel(const char *text, trace_panel *p, fault *f)
         FAULT_IF(strcmp(signal_table[index].unit, signal_table[signal_index(p->signals[0])].unit) !=
                      0,
                  f, STATUS_BAD_ARGUMENT,
-                 "'%s': the signals of a panel have one unit, expected a comma between "
-                 "%s and %s",
+                 "'%s': the signals of a panel have one unit, expected a comma between %s and %s",
                  text, p->signals[0], name);
     }
     return STATUS_OK;
@@ -238,12 +237,11 @@ static void add_printed_peak(owned_figure *o, const summary *m, const thesis_fig
     // how far the run is from it
     double more = m->first_pulse_peak_N - forces[column];
     double late = m->first_pulse_time_to_peak_s - delays[column];
-    text_append(
-        caption,
-        " Diamond: the peak of Table 4.3, %.2f\u2009N after %.0f\u2009ms; that of the printed "
-        "run's first pulse is %.2f\u2009N %s and comes %.0f\u2009ms %s.",
-        forces[column], 1e3 * delays[column], fabs(more), more < 0 ? "lower" : "higher",
-        1e3 * fabs(late), late < 0 ? "earlier" : "later");
+    text_append(caption,
+                " Diamond: the peak of Table 4.3, %.2f\u2009N after %.0f\u2009ms; that of the "
+                "printed run's first pulse is %.2f\u2009N %s and comes %.0f\u2009ms %s.",
+                forces[column], 1e3 * delays[column], fabs(more), more < 0 ? "lower" : "higher",
+                1e3 * fabs(late), late < 0 ? "earlier" : "later");
 }
 
 // What the catalogue adds to a figure of recorded signals.

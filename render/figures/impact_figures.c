@@ -93,10 +93,9 @@ status figure_force_profile(const figure_order *order, artwork *out, fault *f)
     o->figure.intervals = OWNED(o, figure_interval, fig.contact, fig.contact + pulse);
     o->figure.interval_count = 1;
     show_pulse(&fig, fig.contact - 0.25 * pulse, fig.contact + 1.25 * pulse);
-    o->figure.caption =
-        "First pulse of corrected/first-impact, 1\u2009V. The impact is an impulse that takes no "
-        "time (arrow, its own axis); the force that follows is finite and grows to its peak while "
-        "the beam bends. Shaded: contact.";
+    o->figure.caption = "First pulse of corrected/first-impact, 1\u2009V. The impact is an impulse "
+                        "that takes no time (arrow, its own axis); the force that follows is "
+                        "finite and grows to its peak while the beam bends. Shaded: contact.";
 
     // T stands above the peak, from contact to it
     o->figure.measure = OWNED(
@@ -200,17 +199,15 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
     }
 
     show_pulse(&fig, fig.contact - 0.4 * period, fig.contact + 1.4 * period);
-    fig.plot->figure.caption =
-        owned_figure_printf(fig.plot,
-                            "First and last link of corrected/first-impact from first contact to "
-                            "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
-                            "departure between them: %.2g and %.2g\u2009%s.",
-                            1e3 * period,
-                            of_angle ? "The angles that belong to velocities falling to zero in a "
-                                       "straight line"
-                                     : "The predictors assume that velocities fall to zero in a "
-                                       "straight line",
-                            most[0], most[1], of_angle ? "rad" : "rad/s");
+    fig.plot->figure.caption = owned_figure_printf(
+        fig.plot,
+        "First and last link of corrected/first-impact from first contact to the peak of the "
+        "force, <i>T</i> = %.1f\u2009ms. %s. Largest departure between them: %.2g and "
+        "%.2g\u2009%s.",
+        1e3 * period,
+        of_angle ? "The angles that belong to velocities falling to zero in a straight line"
+                 : "The predictors assume that velocities fall to zero in a straight line",
+        most[0], most[1], of_angle ? "rad" : "rad/s");
     *out = artwork_of_owned(fig.plot);
     return STATUS_OK;
 }

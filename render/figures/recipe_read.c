@@ -183,9 +183,8 @@ TAKE(take_signals, panel)
         } else if (p->signal_count > 0 && strcmp(signal_table[signal_find(p->signals[0])].unit,
                                                  signal_table[index].unit) != 0) {
             report_node(&c->reader, item,
-                        "'%s' has another unit than '%s', expected a panel of "
-                        "its own",
-                        name, p->signals[0]);
+                        "'%s' has another unit than '%s', expected a panel of its own", name,
+                        p->signals[0]);
         } else {
             p->signals[p->signal_count++] = signal_table[index].name;
         }

@@ -220,8 +220,8 @@ static void add_head(const report_content *r, GString *html)
     add_lines(html, style, G_N_ELEMENTS(style));
     text_append(
         html,
-        "</style>\n</head>\n<body>\n<h1>%s</h1>\n<p>%s <q>Printed</q> is the thesis's model "
-        "with its slips, <q>corrected</q> the mechanics derived anew.</p>\n"
+        "</style>\n</head>\n<body>\n<h1>%s</h1>\n<p>%s <q>Printed</q> is the thesis's model with "
+        "its slips, <q>corrected</q> the mechanics derived anew.</p>\n"
         "<p class=\"note\">Point at a curve for its values; Ctrl or Shift and the wheel zoom, "
         "dragging moves, a double click shows all again; the buttons take curves away.</p>\n",
         r->heading, r->preface);
@@ -465,12 +465,11 @@ status report_write(const char *folder, char *const *names, int count, run_monit
     g_autoptr(GArray) items = g_array_new(FALSE, TRUE, sizeof(report_item));
     g_autofree char *heading = g_strconcat("impactlab ", lab_version(), ": report", NULL);
     report_content r = {.monitor = monitor, .items = items, .heading = heading};
-    r.preface = count > 0
-                    ? "Runs and recipes, drawn by the lab. Under each stand the scenario, the "
-                      "model and the one command that makes it again."
-                    : "Every figure and table of the thesis on impact and force control of a "
-                      "flexible arm, drawn by the lab from its own runs. Under each stand the "
-                      "scenario, the model and the one command that makes it again.";
+    r.preface = count > 0 ? "Runs and recipes, drawn by the lab. Under each stand the scenario, "
+                            "the model and the one command that makes it again."
+                          : "Every figure and table of the thesis on impact and force control of a "
+                            "flexible arm, drawn by the lab from its own runs. Under each stand "
+                            "the scenario, the model and the one command that makes it again.";
     g_array_set_clear_func(items, clear_item);
     const status code = write_both(&r, folder, names, count, &why);
     return code == STATUS_OK ? code : fault_set(f, code, "%s", why.text);

@@ -144,9 +144,8 @@ status table_stability(const figure_order *order, artwork *out, fault *f)
     add_pair(t, "the thesis's choice", 0.4, 0.5, fastest);
     add_pair(t, "with damping of fast modes", 0.36, 0.7, fastest);
 
-    table_add_group(
-        t, "Stable up to <i>ωh</i> = (<i>γ</i>/2 − <i>β</i>)<sup>−1/2</sup>: <i>γ</i> ≥ ½, "
-           "<i>β</i> &lt; <i>γ</i>/2");
+    table_add_group(t, "Stable up to <i>ωh</i> = (<i>γ</i>/2 − <i>β</i>)<sup>−1/2</sup>: <i>γ</i> "
+                       "≥ ½, <i>β</i> &lt; <i>γ</i>/2");
     add_pair(t, "linear acceleration", 1.0 / 6, 0.5, fastest);
     add_pair(t, "Fox and Goodwin", 1.0 / 12, 0.5, fastest);
     add_pair(t, "central differences", 0, 0.5, fastest);
@@ -155,8 +154,7 @@ status table_stability(const figure_order *order, artwork *out, fault *f)
         t, out,
         "Without damping; <i>ω</i> is the fastest mode, for the two-link arm with the printed hub "
         "spring %.4g\u2009rad/s. <i>γ</i> > ½ damps fast modes and costs one order. In contact "
-        "<i>β</i> "
-        "has to exceed ¼ as well, whatever the step: figure beta-gamma.",
+        "<i>β</i> has to exceed ¼ as well, whatever the step: figure beta-gamma.",
         fastest);
 }
 
@@ -170,8 +168,8 @@ status table_algorithm(const figure_order *order, artwork *out, fault *f)
         {"2", "Not in contact in the step before: would a free step end behind the wall?",
          "solve_step"},
         {"2.1",
-         "It would not: Newmark's rule and Newton's method for the three bodies; the next "
-         "state is found.",
+         "It would not: Newmark's rule and Newton's method for the three bodies; the next state is "
+         "found.",
          "solve_step"},
         {"2.2",
          "It would: take it back and do it again with the constraint (3.9) and the force as a "
@@ -192,10 +190,10 @@ status table_algorithm(const figure_order *order, artwork *out, fault *f)
         table_add_row(t, rows[i]);
     }
 
-    return open_table(t, out,
-                      "Numbered as in the thesis, told as the lab runs it for the printed "
-                      "model. The corrected model locates "
-                      "contact and release in time instead (docs/explanation/model.md).");
+    return open_table(
+        t, out,
+        "Numbered as in the thesis, told as the lab runs it for the printed model. The corrected "
+        "model locates contact and release in time instead (docs/explanation/model.md).");
 }
 
 // ---- 4.1 to 4.3: predictions

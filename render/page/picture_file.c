@@ -167,9 +167,7 @@ static status check_extension(const char *path, fault *f)
 {
     FAULT_IF(picture_format_of(path) == FORMAT_NONE || strchr(path, '.') == NULL, f,
              STATUS_BAD_ARGUMENT,
-             "'%s' is no name for a picture: expected one that ends in .png, .pdf or "
-             ".svg",
-             path);
+             "'%s' is no name for a picture: expected one that ends in .png, .pdf or .svg", path);
     return STATUS_OK;
 }
 

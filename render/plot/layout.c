@@ -360,8 +360,7 @@ static status check_room(const drawing *d, fault *f)
         const figure_rect *box = &d->panels[i].plane.box;
         FAULT_IF(
             !(box->width >= LEAST_WIDTH && box->height >= LEAST_HEIGHT), f, STATUS_BAD_ARGUMENT,
-            "a figure of %.0f x %.0f mm has no room for its %d panel%s, expected "
-            "a larger page",
+            "a figure of %.0f x %.0f mm has no room for its %d panel%s, expected a larger page",
             d->page.width / 72 * 25.4, d->page.height / 72 * 25.4, panels, panels == 1 ? "" : "s");
     }
     return STATUS_OK;

@@ -136,8 +136,7 @@ static status check_options(const film_options *o, fault *f)
     FAULT_IF(o->width < 320 || o->width > 4096 || o->height < 240 || o->height > 4096 ||
                  o->width % 2 != 0 || o->height % 2 != 0,
              f, STATUS_BAD_ARGUMENT,
-             "a film of %d x %d pixels, expected even numbers from 320 x 240 to 4096 x "
-             "4096",
+             "a film of %d x %d pixels, expected even numbers from 320 x 240 to 4096 x 4096",
              o->width, o->height);
 
     FAULT_IF(o->frames_per_second < 1 || o->frames_per_second > 120, f, STATUS_BAD_ARGUMENT,

@@ -113,8 +113,8 @@ static status open_osmesa(gl_offscreen *g, fault *f)
     void *(*create)(unsigned, int, int, int, void *);
     g->handle = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
     FAULT_IF(g->handle == NULL, f, STATUS_CANNOT_WRITE,
-             "OSMesa is not installed (libOSMesa.so.8): install libosmesa6, or choose "
-             "--gl=egl or --gl=cairo");
+             "OSMesa is not installed (libOSMesa.so.8): install libosmesa6, or choose --gl=egl or "
+             "--gl=cairo");
 
     // a context without a window
     FAULT_IF(!load(g->handle, "OSMesaCreateContextExt", &create) ||
@@ -131,10 +131,9 @@ static status open_osmesa(gl_offscreen *g, fault *f)
 
 static status complain_egl(fault *f, const char *what)
 {
-    return fault_set(f, STATUS_CANNOT_WRITE,
-                     "EGL %s: install libegl1 and libgl1-mesa-dri, or choose --gl=osmesa or "
-                     "--gl=cairo",
-                     what);
+    return fault_set(
+        f, STATUS_CANNOT_WRITE,
+        "EGL %s: install libegl1 and libgl1-mesa-dri, or choose --gl=osmesa or --gl=cairo", what);
 }
 
 // The display without a screen. It is kept until the end of the process: closing it would unload

@@ -92,8 +92,7 @@ static status split(csv_table *t, char *text, fault *f)
             continue;
         }
         FAULT_PLACE_IF(columns < t->columns || !last, f, STATUS_BAD_ARGUMENT, begin, columns,
-                       "%.300s:%d:%d: the row has %s than %d fields, expected one "
-                       "for each heading",
+                       "%.300s:%d:%d: the row has %s than %d fields, expected one for each heading",
                        t->file, begin, columns, last ? "fewer" : "more", t->columns);
         t->lines[t->rows++] = begin;
         count += (size_t)columns;
@@ -236,18 +235,18 @@ status csv_table_numbers(const csv_table *t, const char *heading, const char *un
 {
     *values = NULL;
     const int column = csv_table_find(t, heading);
-    FAULT_PLACE_IF(column < 0, f, STATUS_BAD_ARGUMENT, 1, 1,
-                   "%.300s:1:1: there is no column '%.*s', expected one of its %d "
-                   "headings, such as '%.*s'",
-                   t->file, SHOWN, heading, t->columns, SHOWN, t->headings[0]);
+    FAULT_PLACE_IF(
+        column < 0, f, STATUS_BAD_ARGUMENT, 1, 1,
+        "%.300s:1:1: there is no column '%.*s', expected one of its %d headings, such as '%.*s'",
+        t->file, SHOWN, heading, t->columns, SHOWN, t->headings[0]);
 
     // its unit
     char own[32];
     const bool said = unit_of(heading, own) || unit_of(t->headings[column], own);
     const double factor = said ? factor_to(own, unit) : 1;
     FAULT_PLACE_IF(factor == 0, f, STATUS_BAD_ARGUMENT, 1, column + 1,
-                   "%.300s:1:%d: the unit [%s] of '%.*s' is not known, expected [%s] "
-                   "or what can be converted to it",
+                   "%.300s:1:%d: the unit [%s] of '%.*s' is not known, expected [%s] or what can "
+                   "be converted to it",
                    t->file, column + 1, own, SHOWN, t->headings[column], unit);
 
     // and its numbers

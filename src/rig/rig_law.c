@@ -44,8 +44,7 @@ status rig_find_mode(const controller *law, const char *lock, int *mode, fault *
         return STATUS_OK;
     }
     FAULT_AT_IF(!law->lockable || law->modes == NULL, f, STATUS_BAD_SCENARIO, "control.lock",
-                "control.lock = '%.60s', but the law '%s' cannot be held in a mode, "
-                "expected none",
+                "control.lock = '%.60s', but the law '%s' cannot be held in a mode, expected none",
                 lock, law->name);
 
     // the mode of that name

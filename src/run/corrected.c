@@ -37,12 +37,11 @@ static status begin(corrected_run *c, fault *f)
     memccpy(s->method, m->engine->name, 0, sizeof s->method - 1);
 
     if (motion_unresolved(&c->arm, m)) {
-        decimal_print(
-            s->message, sizeof s->message,
-            "steps of %g s do not resolve the fastest modes of %d links (%.3g rad/s): the "
-            "method was %s, what happens within a few steps of an impact is rough; a shorter "
-            "method.step resolves it",
-            p->method.step, c->arm.links, c->arm.highest_frequency, m->engine->name);
+        decimal_print(s->message, sizeof s->message,
+                      "steps of %g s do not resolve the fastest modes of %d links (%.3g rad/s): "
+                      "the method was %s, what happens within a few steps of an impact is rough; a "
+                      "shorter method.step resolves it",
+                      p->method.step, c->arm.links, c->arm.highest_frequency, m->engine->name);
     }
 
     TRY(recording_open_trace(r, c->arm.dof, f));
@@ -52,8 +51,8 @@ static status begin(corrected_run *c, fault *f)
     motion_start(&c->arm, m, p->initial.angle, p->initial.velocity);
     FAULT_AT_IF(m->wall_moves && m->state[SLOT_GAP] < -DEEPEST, f, STATUS_BAD_SCENARIO,
                 "wall.motion",
-                "at t = 0 the wall has moved %.4g m past the arm, which must start in "
-                "front of it (initial.angle)",
+                "at t = 0 the wall has moved %.4g m past the arm, which must start in front of it "
+                "(initial.angle)",
                 -m->state[SLOT_GAP]);
     TRY_MEMORY(corrected_begin_in_contact(c) == STATUS_OK, f);
     return STATUS_OK;

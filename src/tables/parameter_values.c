@@ -174,9 +174,8 @@ static status store_list(parameters *p, int index, const char *text, size_t leng
         // a number of the parameter's unit and range, and no comma too many
         double value;
         REFUSE_IF(first == last, info->path, f,
-                  "%s: number %d is missing, expected numbers with commas between "
-                  "them",
-                  info->path, count + 1);
+                  "%s: number %d is missing, expected numbers with commas between them", info->path,
+                  count + 1);
         TRY(parse_quantity(info, word, &value, f));
         TRY(check_number(info, value, f));
 

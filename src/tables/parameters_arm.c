@@ -189,11 +189,10 @@ static status check_damping(const parameters *p, fault *f)
     REFUSE_IF(ratios > 0 && a->links > PARAMETER_LIST_MOST, BLAME2(p, arm.modal_ratios, arm.links),
               f, "arm.modal_ratios is for at most %d links, but arm.links = %d",
               PARAMETER_LIST_MOST, a->links);
-    REFUSE_IF(
-        ratios > most, BLAME2(p, arm.modal_ratios, arm.links), f,
-        "arm.modal_ratios has %d number%s, expected at most %d: arm.links = %d have %d mode%s "
-        "with the hub held",
-        ratios, plural(ratios), most, a->links, modes, plural(modes));
+    REFUSE_IF(ratios > most, BLAME2(p, arm.modal_ratios, arm.links), f,
+              "arm.modal_ratios has %d number%s, expected at most %d: arm.links = %d have %d "
+              "mode%s with the hub held",
+              ratios, plural(ratios), most, a->links, modes, plural(modes));
     return STATUS_OK;
 }
 
@@ -259,11 +258,11 @@ status parameters_resolve_arm(parameters *p, fault *f)
     TRY(resolve_lists(p, f));
     TRY(check_damping(p, f));
     TRY(check_beam_method(p, f));
-    REFUSE_IF(
-        IS_SET(p, arm.link_inertia) && a->links != 2, BLAME2(p, arm.link_inertia, arm.links), f,
-        "arm.link_inertia is for two links only, but arm.links = %d (other N take the inertia "
-        "of a uniform rod)",
-        a->links);
+    REFUSE_IF(IS_SET(p, arm.link_inertia) && a->links != 2, BLAME2(p, arm.link_inertia, arm.links),
+              f,
+              "arm.link_inertia is for two links only, but arm.links = %d (other N take the "
+              "inertia of a uniform rod)",
+              a->links);
 
     // a uniform rod's moment of inertia about its centre, m l^2 / 12 (errata B3)
     if (isnan(a->link_inertia)) {
@@ -273,19 +272,18 @@ status parameters_resolve_arm(parameters *p, fault *f)
     TRY(resolve_stiffness(p, f));
 
     // behind a spring the hub is a body of its own
-    REFUSE_IF(
-        a->hub_joint != HUB_RIGID && a->hub_inertia == 0, BLAME2(p, arm.hub_inertia, arm.hub_joint),
-        f,
-        "arm.hub_inertia = 0 kg m2 leaves a hub on a spring nothing to move, expected above 0 "
-        "or arm.hub_joint = rigid");
+    REFUSE_IF(a->hub_joint != HUB_RIGID && a->hub_inertia == 0,
+              BLAME2(p, arm.hub_inertia, arm.hub_joint), f,
+              "arm.hub_inertia = 0 kg m2 leaves a hub on a spring nothing to move, expected above "
+              "0 or arm.hub_joint = rigid");
 
     // the straight arm starts in front of the wall, whose gap is length sin(ahead) for any kind
     const double ahead = p->wall.angle - p->initial.angle;
-    REFUSE_IF(
-        p->wall.kind != WALL_NONE && !(ahead >= -START_ROUNDING && ahead <= M_PI + START_ROUNDING),
-        BLAME2(p, initial.angle, wall.angle), f,
-        "initial.angle = %.10g rad lies behind the wall, expected from wall.angle - pi = %.10g "
-        "to wall.angle = %.10g rad",
-        p->initial.angle, p->wall.angle - M_PI, p->wall.angle);
+    REFUSE_IF(p->wall.kind != WALL_NONE &&
+                  !(ahead >= -START_ROUNDING && ahead <= M_PI + START_ROUNDING),
+              BLAME2(p, initial.angle, wall.angle), f,
+              "initial.angle = %.10g rad lies behind the wall, expected from wall.angle - pi = "
+              "%.10g to wall.angle = %.10g rad",
+              p->initial.angle, p->wall.angle - M_PI, p->wall.angle);
     return STATUS_OK;
 }

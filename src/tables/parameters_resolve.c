@@ -76,16 +76,15 @@ static status resolve_wall(parameters *p, fault *f)
               "wall.motion = file needs a CSV file in wall.motion_file");
     REFUSE_IF(moves && !events, BLAME2(p, wall.motion, method.name), f,
               "a wall that moves (wall.motion) runs with method.name = event only");
+    REFUSE_IF(moves && w->mass > 0 && w->kind != WALL_PLANE, BLAME2(p, wall.motion, wall.kind), f,
+              "wall.motion shakes along the wall's normal, but the face of a point (wall.mass) "
+              "gives across the last link, which turns: expected wall.kind = plane");
     REFUSE_IF(
-        moves && w->mass > 0 && w->kind != WALL_PLANE, BLAME2(p, wall.motion, wall.kind), f,
-        "wall.motion shakes along the wall's normal, but the face of a point (wall.mass) gives "
-        "across the last link, which turns: expected wall.kind = plane");
-    REFUSE_IF(moves && p->arm.links == 1 && p->arm.hub_joint == HUB_RIGID && !gives &&
-                  p->motor.stiction > 0,
-              BLAME2(p, wall.motion, motor.stiction), f,
-              "a rigid wall that moves would drive a single link against the hub's stiction, whose "
-              "force is not determined: expected motor.stiction = 0, more links or a wall that "
-              "gives");
+        moves && p->arm.links == 1 && p->arm.hub_joint == HUB_RIGID && !gives &&
+            p->motor.stiction > 0,
+        BLAME2(p, wall.motion, motor.stiction), f,
+        "a rigid wall that moves would drive a single link against the hub's stiction, whose force "
+        "is not determined: expected motor.stiction = 0, more links or a wall that gives");
 
     // what a wall that gives cannot be combined with
     REFUSE_IF(gives && IS_SET(p, wall.restitution) && w->mass == 0, BLAME1(p, wall.restitution), f,
@@ -166,11 +165,10 @@ static status resolve_sensors(parameters *p, fault *f)
 
     // rise and leak are a band-pass: its lower edge lies below its upper one
     const double leak = p->sensor.piezo_leak_time, rise = p->sensor.piezo_rise_time;
-    REFUSE_IF(
-        leak > 0 && leak < rise, BLAME2(p, sensor.piezo_leak_time, sensor.piezo_rise_time), f,
-        "sensor.piezo_leak_time = %g s is shorter than sensor.piezo_rise_time = %g s, expected "
-        "a longer one or 0",
-        leak, rise);
+    REFUSE_IF(leak > 0 && leak < rise, BLAME2(p, sensor.piezo_leak_time, sensor.piezo_rise_time), f,
+              "sensor.piezo_leak_time = %g s is shorter than sensor.piezo_rise_time = %g s, "
+              "expected a longer one or 0",
+              leak, rise);
     return STATUS_OK;
 }
 

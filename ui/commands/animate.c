@@ -157,10 +157,9 @@ static const option_row rows[] = {
 const command animate_command = {
     CALLED("animate", PICTURES, "Make a film of a run: the arm in space and its traces"),
     SCENARIOS("SCENARIO...", 1, FILM_RUNS),
-    .help =
-        "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program ffmpeg; any other name is "
-        "that of a folder, to\nbe made, for PNG frames. Every impact is slowed down against the "
-        "rest. Several scenarios, or\n--beside, share the screen and one clock.\n",
+    .help = "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program ffmpeg; any other "
+            "name is that of a folder, to\nbe made, for PNG frames. Every impact is slowed down "
+            "against the rest. Several scenarios, or\n--beside, share the screen and one clock.\n",
     .options = {&set_options, OWN_OPTIONS(rows), &quiet_options, &view_options},
     .run = animate,
 };

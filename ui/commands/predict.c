@@ -236,9 +236,8 @@ const command predict_command = {
     CALLED("predict", ONE_RUN,
            "Predict the peak force from the instant before contact, beside what then happens"),
     ONE_SCENARIO,
-    .help =
-        "On a terminal a run of more than a second tells how far it is; ^C ends it (exit status "
-        "130), and nothing\nis predicted.\n",
+    .help = "On a terminal a run of more than a second tells how far it is; ^C ends it (exit "
+            "status 130), and nothing\nis predicted.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
     .use = predict_and_report,
 };

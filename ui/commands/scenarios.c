@@ -286,9 +286,8 @@ static int show(const arguments *a)
 const command show_command = {
     CALLED("show", ONE_RUN, "The resolved parameters of a scenario, with units and ranges"),
     ONE_SCENARIO,
-    .help =
-        "A parameter marked with = was given by the scenario or by --set, the others have their "
-        "defaults.\n",
+    .help = "A parameter marked with = was given by the scenario or by --set, the others have "
+            "their defaults.\n",
     .options = {&set_options, &json_options},
     .run = show,
 };

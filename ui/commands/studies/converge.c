@@ -145,9 +145,8 @@ static const option_row rows[] = {
 const command converge_command = {
     CALLED("converge", MANY_RUNS, "Run at the steps h, h/2, h/4 and tell the observed orders"),
     ONE_SCENARIO,
-    .help =
-        "h is the scenario's method.step. --plot draws the contact force at the three steps. ^C "
-        "ends it with the\nsteps that are done (exit status 130).\n",
+    .help = "h is the scenario's method.step. --plot draws the contact force at the three steps. "
+            "^C ends it with the\nsteps that are done (exit status 130).\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
     .use = converge,
 };

@@ -139,10 +139,10 @@ static json_t *as_json(const scenario *base, const void *found)
             json_add(roots[set != POLES], root);
         }
     }
-    json_t *object = json_of("scenario:t at:t force_N:n command_V:n hub_angle_rad:n "
-                             "contact_margin_Ns:n poles:o zeros:o",
-                             base->name, x->word, x->arm.force, x->arm.voltage, x->arm.hub_angle,
-                             x->least_push, roots[0], roots[1]);
+    json_t *object = json_of(
+        "scenario:t at:t force_N:n command_V:n hub_angle_rad:n contact_margin_Ns:n poles:o zeros:o",
+        base->name, x->word, x->arm.force, x->arm.voltage, x->arm.hub_angle, x->least_push,
+        roots[0], roots[1]);
 
     // the loop
     const linear_response *r = &x->response;
@@ -151,8 +151,7 @@ static json_t *as_json(const scenario *base, const void *found)
         json_t *loop = json_array();
         json_t *margins =
             !x->stable ? json_null()
-                       : json_of("gain_db:n gain_down_db:n phase_deg:n "
-                                 "delay_s:n disk:n",
+                       : json_of("gain_db:n gain_down_db:n phase_deg:n delay_s:n disk:n",
                                  m->gain_db, m->gain_down_db, m->phase_deg, m->delay_s, m->disk);
         for (int i = 0; i < r->count; i++) {
             json_add(loop, json_of("frequency_Hz:n gain_db:n phase_deg:n", r->frequency[i] / TWO_PI,
@@ -457,13 +456,12 @@ static const option_row rows[] = {
 const command linear_command = {
     CALLED("linear", CONTROL, "Poles, zeros and margins of the arm near rest"),
     ONE_SCENARIO,
-    .help =
-        "Linearises the arm at rest, x' = A x + B u from the command u, with back EMF, "
-        "viscous friction and damping.\nIt presses with control.force where a law "
-        "is to hold it, else under motor.voltage; Coulomb friction is left out.\n"
-        "--law closes the sampled loop of its law; one that does not answer linearly is "
-        "measured by small sines.\n--vary tells where the loop is stable, by its poles and, with "
-        "friction, by runs that settle.\n",
+    .help = "Linearises the arm at rest, x' = A x + B u from the command u, with back EMF, viscous "
+            "friction and damping.\nIt presses with control.force where a law is to hold it, else "
+            "under motor.voltage; Coulomb friction is left out.\n"
+            "--law closes the sampled loop of its law; one that does not answer linearly is "
+            "measured by small sines.\n--vary tells where the loop is stable, by its poles and, "
+            "with friction, by runs that settle.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .use = linear,

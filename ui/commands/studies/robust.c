@@ -353,19 +353,18 @@ static const option_row rows[] = {
 const command robust_command = {
     CALLED("robust", CONTROL, "How control laws stand what they were not told"),
     ONE_SCENARIO,
-    .help =
-        "Runs each law many times on the scenario, with beliefs, sensors, wall and start drawn "
-        "from a set (a Latin\nhypercube, the same draws for every law), and says which share "
-        "of the runs settles, leaves the wall\nand exceeds control.force_limit (without one, "
-        "1.3 times the command), and the median, the 90 %\nquantile and the worst of overshoot, "
-        "settling time and steady error. '-': that many do not settle. back/there: the worst of "
-        "the\ntip's largest speed towards the wall in the air after first contact, over that "
-        "before it. over: of the peak, of arms with more than two links of the "
-        "force's mean over\n5 ms, as 'over of' says; --json and --csv have both.\n\n"
-        "A set with lines 'case TITLE: PATH=VALUE; ...' gives a table of its cases, with the "
-        "worst of the\nruns of each. Of control.settings each law gets those that it has.\n\n"
-        "Ctrl-C finishes the runs in hand, within five seconds (exit status 130); with --db they "
-        "are kept.\n",
+    .help = "Runs each law many times on the scenario, with beliefs, sensors, wall and start drawn "
+            "from a set (a Latin\nhypercube, the same draws for every law), and says which share "
+            "of the runs settles, leaves the wall\nand exceeds control.force_limit (without one, "
+            "1.3 times the command), and the median, the 90 %\nquantile and the worst of "
+            "overshoot, settling time and steady error. '-': that many do not settle. back/there: "
+            "the worst of the\ntip's largest speed towards the wall in the air after first "
+            "contact, over that before it. over: of the peak, of arms with more than two links of "
+            "the force's mean over\n5 ms, as 'over of' says; --json and --csv have both.\n\n"
+            "A set with lines 'case TITLE: PATH=VALUE; ...' gives a table of its cases, with the "
+            "worst of the\nruns of each. Of control.settings each law gets those that it has.\n\n"
+            "Ctrl-C finishes the runs in hand, within five seconds (exit status 130); with --db "
+            "they are kept.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
     .use = robust,
 };

@@ -109,12 +109,11 @@ static const option_row rows[] = {
 const command solve_command = {
     CALLED("solve", MANY_RUNS, "Find the limit of a parameter for a condition on a result"),
     SCENARIOS("SCENARIO PATH[=a:b] 'KEY<VALUE'", 3, 3),
-    .help =
-        "Up to which voltage does the peak stay below 2 N? solve corrected/first-impact\n"
-        "motor.voltage 'peak_force_N<2' runs the range, that of the parameter's slider unless "
-        "a:b is\ngiven, and locates each limit within it. KEY is one of run --json; the condition "
-        "may be\n<, <=, > or >=. A limit is the last value at which the condition holds. Where "
-        "there is\nnone the exit status is 1.\n",
+    .help = "Up to which voltage does the peak stay below 2 N? solve corrected/first-impact\n"
+            "motor.voltage 'peak_force_N<2' runs the range, that of the parameter's slider unless "
+            "a:b is\ngiven, and locates each limit within it. KEY is one of run --json; the "
+            "condition may be\n<, <=, > or >=. A limit is the last value at which the condition "
+            "holds. Where there is\nnone the exit status is 1.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options},
     .use = find_and_report,
 };

@@ -142,11 +142,10 @@ static int plot_methods(const arguments *a, const scenario *s, const void *found
     }
 
     const figure fig = {
-        .caption =
-            "Steps 10\u2009ms, 5\u2009ms, 2\u2009ms ... 1\u2009µs from left to right; the event "
-            "method needs none of them and costs about the same whichever is asked for. Left and "
-            "low is better. Reference: the event method at 20\u2009µs. What agrees with it to the "
-            "last digit stands at half of one.",
+        .caption = "Steps 10\u2009ms, 5\u2009ms, 2\u2009ms ... 1\u2009µs from left to right; the "
+                   "event method needs none of them and costs about the same whichever is asked "
+                   "for. Left and low is better. Reference: the event method at 20\u2009µs. What "
+                   "agrees with it to the last digit stands at half of one.",
         .x = {.name = "computing time", .label = "Computing time", .unit = "s"},
         .panels = panels,
         .panel_count = STUDY_QUANTITIES};
@@ -261,9 +260,8 @@ static int plot_links(const arguments *a, const scenario *s, const void *found)
         .series = series,
         .series_count = drawn,
         .weight = 1.8};
-    const figure fig = {.caption =
-                            "From the Euler-Bernoulli beam where it has a closed form, else from "
-                            "Richardson\u2019s limit; what has neither is left out.",
+    const figure fig = {.caption = "From the Euler-Bernoulli beam where it has a closed form, else "
+                                   "from Richardson\u2019s limit; what has neither is left out.",
                         .x = {.name = "links",
                               .label = "Number of links <i>N</i>",
                               .ticks = ticks,
@@ -371,14 +369,14 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
     }
 
     char caption[400];
-    snprintf(
-        caption, sizeof caption,
-        "Set-point: %g %% of the commanded force; wall: %g mm, against which friction holds the "
-        "hub up to %.2g N. Dashed: the best of a law that takes both to stay; commands act "
-        "%.3g ms late, and a force turned up falls first, by the zero at %.3g 1/s. Laws that "
-        "go on with a rate are better while it lasts.",
-        100 * FOLLOW_WAVE, 1e3 * FOLLOW_WALL,
-        s->parameters.motor.stiction / s->parameters.arm.length, 1e3 * study->later, study->zero);
+    snprintf(caption, sizeof caption,
+             "Set-point: %g %% of the commanded force; wall: %g mm, against which friction holds "
+             "the hub up to %.2g N. Dashed: the best of a law that takes both to stay; commands "
+             "act %.3g ms late, and a force turned up falls first, by the zero at %.3g 1/s. Laws "
+             "that go on with a rate are better while it lasts.",
+             100 * FOLLOW_WAVE, 1e3 * FOLLOW_WALL,
+             s->parameters.motor.stiction / s->parameters.arm.length, 1e3 * study->later,
+             study->zero);
     const figure fig = {.caption = caption,
                         .x = {.name = "frequency", .label = "Frequency", .unit = "Hz"},
                         .panels = panels,

@@ -107,8 +107,8 @@ bool act_tell_failed_run(explorer_state *st)
     if (m->status == STATUS_NOT_ALLOWED) {
         const bool program = c->law == LAW_PROCESS;
         return act_warn(st,
-                        "y lets it %s '%.200s', which can do whatever you can; all else "
-                        "works without (:allow later)",
+                        "y lets it %s '%.200s', which can do whatever you can; all else works "
+                        "without (:allow later)",
                         program ? "start" : "load", program ? c->command : c->plugin);
     }
     return (m->status != STATUS_OK && act_warn(st, "the run stops: %s", m->message)) ||
@@ -157,8 +157,7 @@ bool act_tell_change(explorer_state *st)
     FAIL_IF(in->parameter == PARAMETER_INDEX(motor.voltage) &&
                 fabs(p.motor.voltage) > p.motor.voltage_limit,
             act_warn(st,
-                     "%s = %s V %s, more than motor.voltage_limit: the command saturates "
-                     "at %g V",
+                     "%s = %s V %s, more than motor.voltage_limit: the command saturates at %g V",
                      info->path, value, when, p.motor.voltage_limit));
     return act_tell(st, "%s = %s%s%s %s", info->path, value, blank, info->unit, when);
 }

@@ -153,9 +153,8 @@ static bool apply(explorer_state *st, int index, char *const words[4], int count
     } else if (strcmp(word, "up") == 0 || strcmp(word, "down") == 0) {
         act_shift_axis(st, index, word[0] == 'u' ? 0.25 : -0.25);
     } else {
-        return act_refuse(st,
-                          "axis takes auto, grow, calm, fixed, in, out, up, down or two limits, "
-                          "then a pane (its number, or all)");
+        return act_refuse(st, "axis takes auto, grow, calm, fixed, in, out, up, down or two "
+                              "limits, then a pane (its number, or all)");
     }
     return true;
 }

@@ -239,12 +239,10 @@ static bool tell_limits(explorer_state *st, const sweep_axis *axis, const solve_
     char others[160] = "";
     if (found->count == 0) {
         const double low = fmin(axis->low, axis->high), high = fmax(axis->low, axis->high);
-        return act_refuse(st,
-                          "no limit of %s from %g to %g %s: the %s is as asked in %d runs, and not "
-                          "in %d%s%s",
-                          axis->name, low, high, unit, quantity->label, found->holding,
-                          found->failing, found->unknown > 0 ? "; first of the others: " : "",
-                          found->reason);
+        return act_refuse(
+            st, "no limit of %s from %g to %g %s: the %s is as asked in %d runs, and not in %d%s%s",
+            axis->name, low, high, unit, quantity->label, found->holding, found->failing,
+            found->unknown > 0 ? "; first of the others: " : "", found->reason);
     }
     const int nearest = nearest_limit(st, axis, found);
     for (int i = 0; i < found->count; i++) {
@@ -268,9 +266,10 @@ bool act_solve(explorer_state *st, const char *argument)
     const char *rest = argument + strcspn(argument, " ");
     fault *f = &st->fault;
     snprintf(path, sizeof path, "%.*s", (int)(rest - argument), argument);
-    FAIL_IF(*rest == '\0',
-            act_refuse(st, "solve takes a parameter and a condition, such as motor.voltage "
-                           "peak_force_N<2"));
+    FAIL_IF(
+        *rest == '\0',
+        act_refuse(
+            st, "solve takes a parameter and a condition, such as motor.voltage peak_force_N<2"));
     NEED(act_need_whole_run(st) && act_need_short_runs(st, "solve", 2 * SOLVE_POINTS));
 
     // a parameter may be given by the last part of its path

@@ -238,8 +238,8 @@ static status read_axis(sweep_axis *axis, const char *definition, fault *f)
     snprintf(text, sizeof text, "%s", definition);
     char *values = strchr(text, '=');
     FAULT_IF(values == NULL, f, STATUS_BAD_ARGUMENT,
-             "sweep takes PATH=FROM:TO:N or PATH=V1,V2,..., such as "
-             "control.rate=50:400:8, and for a map two of them");
+             "sweep takes PATH=FROM:TO:N or PATH=V1,V2,..., such as control.rate=50:400:8, and for "
+             "a map two of them");
     *values++ = '\0';
     axis->parameter = parameter_of_name(text);
     FAULT_IF(axis->parameter == -2, f, STATUS_BAD_ARGUMENT, "several parameters begin with '%s'",
@@ -262,9 +262,8 @@ static status read_sweep(lab_sweep *fresh, const char *definition, fault *f)
     const size_t runs = fresh->axis.count * (map ? fresh->second.count : 1);
     const size_t most = map ? MAP_CELLS : SWEPT_RUNS;
     FAULT_IF(runs > most, f, STATUS_BAD_ARGUMENT,
-             "%zu runs are too many here, at most %zu: 'impactlab sweep' "
-             "takes any number",
-             runs, most);
+             "%zu runs are too many here, at most %zu: 'impactlab sweep' takes any number", runs,
+             most);
     FAULT_IF(map && fresh->axis.parameter == fresh->second.parameter, f, STATUS_BAD_ARGUMENT,
              "a map takes two different parameters");
     fresh->summaries = calloc(runs, sizeof *fresh->summaries);
