@@ -6,7 +6,6 @@
 #include <cairo-pdf.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "src/base/json.h"
 #include "src/base/shipped.h"

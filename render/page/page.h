@@ -4,7 +4,6 @@
 #include <cairo.h>
 #include <signal.h>
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "src/tables/signals.h"
 

@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "render/page/page.h"
 #include "render/page/text.h"
 #include "src/base/numbers.h"
 

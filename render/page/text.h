@@ -5,7 +5,6 @@
 #include <pango/pangocairo.h>
 #include <stdarg.h>
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "render/page/page.h"
 #include "src/base/fault.h"

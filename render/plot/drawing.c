@@ -1,7 +1,6 @@
 // What all layers of a figure use: text, strokes and axes.
 #include "render/plot/drawing.h"
 
-#include <assert.h>
 #include <math.h>
 
 #include "render/page/picture_file.h"

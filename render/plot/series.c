@@ -1,6 +1,5 @@
 // Series and impulses on the page: lines, markers, and arrows in a strip above a panel.
 #include <math.h>
-#include <string.h>
 
 #include "render/page/picture_file.h"
 #include "render/plot/drawing.h"

@@ -1,6 +1,5 @@
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "render/page/picture_file.h"
@@ -8,7 +7,6 @@
 #include "render/plot/trace_plot.h"
 #include "render/scene/scene_parts.h"
 #include "src/base/instant.h"
-#include "src/base/numbers.h"
 #include "src/base/whole_file.h"
 
 enum {

@@ -1,8 +1,6 @@
 #include "src/arm/chain.h"
 
-#include <assert.h>
 #include <math.h>
-#include <stddef.h>
 
 #include "src/arm/chain_pair.h"
 #include "src/base/sincos.h"

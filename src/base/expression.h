@@ -1,8 +1,6 @@
 // Expressions of named quantities: names, numbers, + - * / ( ) and max(a, b).
 #pragma once
 
-#include <stdbool.h>
-
 #include "src/base/fault.h"
 
 enum { EXPRESSION_STEPS = 64 };

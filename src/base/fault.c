@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <stdarg.h>
 #include <stddef.h>
-#include <stdio.h>
 
 #include "src/base/numbers.h"
 

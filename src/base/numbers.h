@@ -9,7 +9,6 @@
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
-#include <stdint.h>
 
 enum { NUMBER_TEXT = 32 }; // room for any number written below
 

@@ -6,8 +6,6 @@
 // locate.h.
 #pragma once
 
-#include <math.h>
-
 #include "src/arm/chain.h"
 #include "src/base/fault.h"
 #include "src/contact/engine.h"

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/instant.h"
 #include "src/base/shipped.h"
 #include "src/rig/controller_values.h"
 #include "src/run/driver.h"

@@ -6,7 +6,6 @@
 
 #include "src/arm/motor.h"
 #include "src/base/clock.h"
-#include "src/base/extremes.h"
 
 // Sets up the rig, if the scenario has a control law; until its first command the motor rests.
 static status start_rig(recording *r, fault *f)

@@ -2,8 +2,6 @@
 // parameters, quantities, commands.
 #pragma once
 
-#include <stdbool.h>
-
 // Something that can be found. Texts last until the next one is asked for.
 typedef struct search_entry {
     const char *title;        // words in it count most

@@ -21,7 +21,6 @@
 // first order, but loses energy whatever the step, whereas generalised-alpha, started from the
 // jumps of a thousand links, was seen to gain energy.
 #include <math.h>
-#include <string.h>
 
 #include "src/engines/newmark/implicit_newton.h"
 #include "src/contact/motion.h"

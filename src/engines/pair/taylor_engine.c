@@ -14,7 +14,6 @@
 
 #include "src/base/extremes.h"
 #include "src/base/sincos.h"
-#include "src/contact/locate.h"
 #include "src/engines/motion_create.h"
 #include "src/engines/pair/taylor_integrator.h"
 

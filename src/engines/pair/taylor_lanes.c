@@ -1,6 +1,5 @@
 #include <assert.h>
 #include <stdatomic.h>
-#include <string.h>
 
 #include "src/engines/pair/taylor_lanes.h"
 

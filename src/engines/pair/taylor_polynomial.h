@@ -4,7 +4,6 @@
 // Terms are taken in pairs, so that their number is even, the last one zero if need be.
 #pragma once
 
-#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>

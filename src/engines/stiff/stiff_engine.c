@@ -7,7 +7,6 @@
 // after a change of torque it is predicted from the step before, as every other one is.
 //
 // Its stages are solved in stiff_stages.c, and stiff_output.c has what it tells.
-#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,4 @@
 // Stages of a step: the arm as numbers, Newton's iteration, the error (stiff_step.h).
-#include <assert.h>
 #include <math.h>
 #include <string.h>
 

@@ -1,8 +1,6 @@
 // Arithmetic in lanes, and the stages of a step of the stiff engine: part of stiff_kernel.c.
 #pragma once
 
-#include <math.h>
-
 #include "src/base/sincos.h"
 #include "src/engines/stiff/stiff_step.h"
 

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/text_stream.h"
 #include "src/study/compare.h"
 #include "src/study/sweep.h"
 #include "ui/commands/progress.h"

@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "render/plot/study_plot.h"
 #include "src/base/json.h"

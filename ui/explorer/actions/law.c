@@ -5,7 +5,6 @@
 
 #include "src/base/text_stream.h"
 #include "src/base/words.h"
-#include "src/rig/controller.h"
 
 static bool is_release(const char *word)
 {
