@@ -191,6 +191,12 @@ try c.json compare hit.yaml --columns peak_force_N --quiet --json c.json
 # threads of their own paint every second frame; the encoder runs out of memory, too
 ! command -v ffmpeg >/dev/null ||
     try f.webp animate hit.yaml --size 320x240 --fps 4 --seconds 0.5 --gl cairo --quiet -o f.webp
+# nobody is told that nothing is known where there was no memory to look
+for k in 500 5000 50000; do
+    injected=$((injected + 1))
+    LD_PRELOAD=$preload FAIL_CALL=malloc FAIL_AT=$k FAIL_COUNT=/dev/null "$program" help wall stifness >out 2>err
+    [ $? = 1 ] && grep -q memory err || fail "help without memory for call $k: $(cat err)"
+done
 kill_at_random r.csv run hit.yaml --quiet --csv r.csv
 kill_at_random s.sqlite sweep hit.yaml --vary motor.voltage=1:2:3 --quiet --jobs 1 --db s.sqlite
 kills=$(((most + 3) / 4))

@@ -290,6 +290,7 @@ static int answer(const arguments *a)
     if (print_answers(stdout, question) > 0) {
         return EXIT_DONE;
     }
+    TRY_FAULT(loss_noted() ? fault_no_memory(&f) : STATUS_OK);
     return a->operand_count == 1 && strchr(a->operands[0], ' ') == NULL
                ? complain_command(a->operands[0])
                : complain("nothing is known of these words, expected some that the manual, a "
