@@ -9,7 +9,7 @@ for (const fig of document.querySelectorAll('figure[data-panels]')) {
   const points = p => {
     const out = [], d = p.getAttribute('d').match(/[A-Za-z]|-?\d*\.?\d+/g) || [];
     for (let i = 0, c = ''; i < d.length; i += 2) {
-      while (/[A-Za-z]/.test(d[i])) { c = d[i++]; }
+      while (i < d.length && /[A-Za-z]/.test(d[i])) { c = d[i++]; }
       if (c === 'M') { out.push([NaN, NaN]); }
       if (i < d.length) { out.push([+d[i], +d[i + 1]]); }
     }
