@@ -381,7 +381,7 @@ status film_file_add(film_file *film, cairo_surface_t *frame, fault *f)
 status film_file_commit(film_file *film, fault *f)
 {
     // of no more use, whatever comes of it; frames in a folder are there already
-    g_autoptr(film_file) ended = film;
+    G_GNUC_UNUSED g_autoptr(film_file) ended = film;
     char said[512];
     if (film->format == NULL) {
         return STATUS_OK;

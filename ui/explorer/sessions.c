@@ -59,7 +59,9 @@ static void add_looks(const explorer_state *st, session_file *file)
 {
     char shown[PANES + 1] = "";
     for (int i = 0; i < PANES_OF_TABLE; i++) {
-        text_add(shown, sizeof shown, st->panes.pane[i].shown ? "%d" : "", i + 1);
+        if (st->panes.pane[i].shown) {
+            text_add(shown, sizeof shown, "%d", i + 1);
+        }
     }
     add_line(file, true, "lanes %s", look_word(&st->looks, look_choice_of("lanes")));
     add_line(file, st->panes.chosen, "panes %s", shown);
