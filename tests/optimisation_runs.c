@@ -35,7 +35,7 @@ static status apply(scenario *s, const char *settings, fault *f)
     char *rest = (char[256]){""}, *one;
     snprintf(rest, 256, "%s", settings);
     while ((one = strsep(&rest, " ")) != NULL) {
-        status code = scenario_override(s, one, f);
+        const status code = *one != '\0' ? scenario_override(s, one, f) : STATUS_OK;
         if (code != STATUS_OK) {
             return code;
         }
