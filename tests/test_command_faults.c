@@ -15,6 +15,7 @@
 #include <errno.h>
 #include <execinfo.h>
 #include <fcntl.h>
+#include <fontconfig/fontconfig.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -501,6 +502,10 @@ int main(int count, char **words)
     setvbuf(stdout, NULL, _IOLBF, 0);
     setenv("XDG_CONFIG_HOME", folder, 1);
     prepare();
+
+    // fontconfig keeps a lock of its own where memory is refused while it reads its caches, and
+    // hangs at the next one: it has read them before
+    FcInit();
 
     for (int i = 0; i < command_count; i++) {
         const command *c = command_table[i];
