@@ -28,11 +28,12 @@ static inline void give(parameters *p, const char *path, const char *text)
             "%s = %s was refused: %s", path, text, f.text);
 }
 
-// Sets those of a list of "path=value" that ends with NULL.
+// Sets those of a list of "path=value" that ends with NULL, on any thread.
 static inline void give_list(parameters *p, const char *const *settings)
 {
     for (; settings != NULL && *settings != NULL; settings++) {
-        char *text = formatted("%s", *settings);
+        char copy[8192], *text = copy;
+        assert_in_range(snprintf(copy, sizeof copy, "%s", *settings), 0, sizeof copy - 1);
         const char *path = strsep(&text, "=");
         give(p, path, text);
     }
