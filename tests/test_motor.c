@@ -123,13 +123,13 @@ TEST(free_motion_is_that_of_the_drive)
     }
 }
 
-// The motion of an arm from rest until t [s]; the ledger closes on the way.
+// The motion of an arm from its initial velocity until t [s]; the ledger closes on the way.
 static motion *motion_until(const arm *a, const parameters *p, double t)
 {
     motion *m = motion_create(a, &p->method);
     motion_report report = {.event = MOTION_REACHED};
     assert_non_null(m);
-    motion_start(a, m, 0, 0);
+    motion_start(a, m, 0, p->initial.velocity);
     while (m->state[SLOT_TIME] < t) {
         assert_int_equal(motion_advance(a, m, t, 1e-3, &report), STATUS_OK);
         if (report.event != MOTION_REACHED) {
@@ -210,6 +210,44 @@ TEST(a_limited_current_accelerates_evenly_at_first)
     *after = motion_until(&a, &p, 1.2 * reached);
     check_relative(current_of(before), 6.02 / 33.6 * (1 - exp(-336 * 0.9 * reached)), 1e-9);
     check_close(current_of(after), 0.1, 0);
+}
+
+// A link whose back EMF outweighs the voltage slows at one limit of the current, goes towards the
+// speed at which friction and motor balance, and slows on at the other limit: however short the
+// stretch between the limits is, angle and speed are those of the three pieces.
+TEST(a_limited_current_changes_sides_however_fast)
+{
+    const double volts = 7.298 * 6.02, start = 18.5, whole = 0.4;
+    for (EACH_OF(double, limit, 1e-3, 1e-4, 1e-5, 3e-3)) {
+        for (EACH_OF(double, side, 1, -1)) {
+            parameters p =
+                parameters_with("arm.links=1 arm.mass=0.0837 wall.kind=none motor.voltage=%.17g "
+                                "motor.viscous_friction=0 motor.current_limit=%.17g",
+                                7.298 * *side, *limit);
+            p.initial.velocity = start * *side;
+            const double inertia = p.arm.hub_inertia + p.arm.mass / 3, kst = p.motor.stiction;
+            const double kt = p.motor.torque_constant, kb = p.motor.back_emf;
+            const double resistance = p.motor.resistance, rate = kt * kb / resistance / inertia;
+
+            // evenly until the current leaves one limit, by an exponential to the other, evenly
+            const double drop = resistance * *limit / kb, middle = volts / kb;
+            const double slows = (kst + kt * *limit) / inertia;
+            const double slower = (kst - kt * *limit) / inertia;
+            const double balance = middle - kst * resistance / (kt * kb);
+            const double above = middle + drop - balance, below = middle - drop - balance;
+            const double first = (start - middle - drop) / slows;
+            const double second = log(above / below) / rate, third = whole - first - second;
+            const double turned = (start + middle + drop) / 2 * first + balance * second +
+                                  2 * drop / rate + (middle - drop) * third -
+                                  slower * third * third / 2;
+
+            arm a = arm_of(&p);
+            KEPT_MOTION(m) = motion_until(&a, &p, whole);
+            check_close(*side * state_angles(m, m->state)[0], turned, 1e-10);
+            check_close(*side * state_velocities(m, m->state)[0], middle - drop - slower * third,
+                        1e-10);
+        }
+    }
 }
 
 // A coil that follows at once in the end: the arm's impact goes to that without one with L.

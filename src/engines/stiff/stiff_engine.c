@@ -44,7 +44,7 @@ enum { MOST_ATTEMPTS = 100, MOST_ENDS = 10 };
 static double miss_of(const stiff_integrator *s, const arm *a, const motion *m, event_function w)
 {
     const double *end = s->end;
-    const value_and_slope g = function_at(&s->function[w], 1);
+    const value_and_slope g = stiff_watched_at(s, w, 1);
     const double h = s->step.length;
     double value = g.value;
     double slope = g.slope / h;
@@ -60,8 +60,6 @@ static double miss_of(const stiff_integrator *s, const arm *a, const motion *m, 
         slope = end[SLOT_FRICTION] * state_accelerations(m, s->end)[0];
     } else if (w == EVENT_OF_STICTION) {
         value = a->motor.stiction - fabs(end[SLOT_FRICTION_TORQUE]) + s->stiction_excess;
-        const value_and_slope far = function_at(&s->far[w], 1);
-        slope = (far.value < g.value ? far.slope : g.slope) / h;
     }
     return slope < 0 ? value / -slope : 0;
 }

@@ -106,6 +106,9 @@ void stiff_event_functions(stiff_integrator *s, const arm *a, const motion *m);
 void stiff_state_within(const stiff_integrator *s, const arm *a, motion *m, double time,
                         double *state);
 
+// An event function and its slope at x of the step, the nearer of two limits.
+value_and_slope stiff_watched_at(const stiff_integrator *s, event_function w, double x);
+
 // The engine's functions of these names (engine.h).
 status stiff_state_at(const arm *a, motion *m, double h, state_extent extent);
 void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,

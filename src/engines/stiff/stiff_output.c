@@ -178,17 +178,21 @@ static value_and_slope by_time(const stiff_integrator *s, value_and_slope g)
     return (value_and_slope){g.value, g.slope / s->step.length};
 }
 
-value_and_slope stiff_event_function(const arm *a, const motion *m, event_function w, double h)
+value_and_slope stiff_watched_at(const stiff_integrator *s, event_function w, double x)
 {
-    const stiff_integrator *s = m->memory;
-    const double x = (s->used + h) / s->step.length;
     value_and_slope near = function_at(&s->function[w], x);
     if (w >= EVENT_OF_STICTION) {
         const value_and_slope far = function_at(&s->far[w], x);
         near = near.value < far.value ? near : far;
     }
+    return near;
+}
+
+value_and_slope stiff_event_function(const arm *a, const motion *m, event_function w, double h)
+{
+    const stiff_integrator *s = m->memory;
     (void)a;
-    return by_time(s, near);
+    return by_time(s, stiff_watched_at(s, w, (s->used + h) / s->step.length));
 }
 
 double stiff_second_derivative(const arm *a, const motion *m, event_function w, double from,
