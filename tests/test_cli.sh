@@ -555,6 +555,10 @@ says err "needs a control law"
 expect 0 linear compare/hybrid --at free --law
 expect 2 linear compare/hybrid --at free --law --inject
 says err "not free"
+expect 2 linear corrected/first-impact --set wall.kind=none
+says err "try --at free"
+expect 0 linear compare/inverse-dynamics --law
+says out "gain up none"
 
 # without LAPACK a sentence; runs do not need it
 mkdir -p no_lapack

@@ -1,6 +1,7 @@
 // The loop of a control law about the arm's place of rest, from the law's answers to pulses.
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "src/base/dense.h"
@@ -14,6 +15,9 @@ GIVEN_BACK(rig, rig_destroy)
 #define NOT_LINEAR 1e-7
 
 enum { ANSWERS = 64, MOST_ORDER = 6, MOST_SETTLING = 200000 };
+
+// Periods of further delay of which all poles are found, and halvings of the step that is unstable.
+enum { MOST_LATE = 32, BISECTIONS = 30 };
 
 #define SETTLING 2.0 // that a law is left at rest, besides its own transition [s]
 
@@ -162,38 +166,45 @@ static status learn(linear_law *law, const linear_arm *arm, const parameters *p,
     return code;
 }
 
-status linear_loop(linear_system *loop, const linear_arm *arm, const parameters *p, fault *f)
+// The loop of a law that was learned and an arm under the delay of p.
+static status assemble(linear_system *loop, const linear_law *law, const linear_arm *arm,
+                       const parameters *p, fault *f)
 {
-    assert(p->control.law != LAW_NONE);
     SCOPED(linear_system_finish) linear_system plant = {0};
-    linear_law law = {.order = 0};
-    *loop = (linear_system){0};
-    TRY(learn(&law, arm, p, f));
     TRY(linear_sample(&plant, arm, p, f));
-    const int n = plant.states, states = n + law.order;
+    const int n = plant.states, states = n + law->order;
     TRY(linear_system_init(loop, states, 1, f));
 
     // the law's states are the answers that are still to come
     for (int i = 0; i < n; i++) {
         memcpy(loop->a + i * states, plant.a + i * n, (size_t)n * sizeof *loop->a);
         loop->b[i] = plant.b[i];
-        for (int k = 0; k <= law.order; k++) {
+        for (int k = 0; k <= law->order; k++) {
             double *to = k == 0 ? loop->c : loop->a + (n + k - 1) * states;
             for (int j = 0; j < LINEAR_READINGS; j++) {
-                to[i] += law.h[j][k] * plant.c[j * n + i];
+                to[i] += law->h[j][k] * plant.c[j * n + i];
             }
         }
     }
-    for (int k = 0; k < law.order; k++) {
-        loop->a[(states - 1) * states + n + k] = law.recurrence[k];
-        if (k + 1 < law.order) {
+    for (int k = 0; k < law->order; k++) {
+        loop->a[(states - 1) * states + n + k] = law->recurrence[k];
+        if (k + 1 < law->order) {
             loop->a[(n + k) * states + n + k + 1] = 1;
         }
     }
-    if (law.order > 0) {
+    if (law->order > 0) {
         loop->c[n] = 1;
     }
     return STATUS_OK;
+}
+
+status linear_loop(linear_system *loop, const linear_arm *arm, const parameters *p, fault *f)
+{
+    assert(p->control.law != LAW_NONE);
+    linear_law law = {.order = 0};
+    *loop = (linear_system){0};
+    TRY(learn(&law, arm, p, f));
+    return assemble(loop, &law, arm, p, f);
 }
 
 void linear_close(linear_system *loop)
@@ -203,4 +214,48 @@ void linear_close(linear_system *loop)
             loop->a[i * loop->states + j] += loop->b[i] * loop->c[j];
         }
     }
+}
+
+// The largest pole of the closed loop with a further delay.
+static status radius_with(const linear_law *law, const linear_arm *arm, const parameters *p,
+                          double delay, double *radius, fault *f)
+{
+    SCOPED(linear_system_finish) linear_system loop = {0};
+    parameters later = *p;
+    later.control.delay += delay;
+    TRY(assemble(&loop, law, arm, &later, f));
+    linear_close(&loop);
+    SCOPED(free_kept) double complex *poles = calloc((size_t)loop.states + 1, sizeof *poles);
+    TRY_MEMORY(poles != NULL, f);
+    TRY(linear_poles(&loop, poles, f));
+    *radius = cabs(poles[loop.states - 1]);
+    return STATUS_OK;
+}
+
+status linear_delay_margin(const linear_arm *arm, const parameters *p, double *delay, fault *f)
+{
+    const double period = 1 / p->control.rate;
+    const double last = fmin(*delay, MOST_LATE * period) + 2 * period;
+    double from = 0, to = 0, radius = 0;
+    linear_law law = {.order = 0};
+    TRY(learn(&law, arm, p, f));
+
+    // steps that grow: a frequency that has gone through all phases is a danger no more
+    while (radius < 1 && to < last) {
+        from = to;
+        to += fmax(period / 8, to / 32);
+        TRY(radius_with(&law, arm, p, to, &radius, f));
+    }
+    if (radius < 1) {
+        return STATUS_OK;
+    }
+
+    // the step that reaches the circle
+    for (int i = 0; i < BISECTIONS; i++) {
+        const double middle = (from + to) / 2;
+        TRY(radius_with(&law, arm, p, middle, &radius, f));
+        *(radius < 1 ? &from : &to) = middle;
+    }
+    *delay = to;
+    return STATUS_OK;
 }

@@ -96,7 +96,9 @@ typedef struct linear_response {
 status linear_respond(const linear_system *s, int output, double period, linear_response *r,
                       fault *f);
 
-// Distances of a stable loop from instability, over all crossings; infinite where nothing crosses.
+// Distances of a stable loop from instability, over all crossings; infinite where nothing crosses,
+// or no gain below a million times (120 dB) does it. The delay takes answers to be smooth between
+// samples: linear_delay_margin does without.
 typedef struct linear_margins {
     double gain_db, gain_down_db; // the gain may grow by the one and fall by the other [dB]
     double phase_deg;             // either way [degrees]
@@ -130,6 +132,11 @@ status linear_sample(linear_system *sampled, const linear_arm *arm, const parame
 // of such a law is measured (linear_inject). The closed loop is that with u_k = y_k.
 status linear_loop(linear_system *loop, const linear_arm *arm, const parameters *p, fault *f);
 void linear_close(linear_system *loop);
+
+// The least further delay [s] with which a pole of the closed loop reaches the unit circle, the law
+// being told nothing of it; part of a period is exact. *delay holds that of linear_margins_of,
+// which is right at whole periods, and stays as it is beyond 32 periods or where no delay does it.
+status linear_delay_margin(const linear_arm *arm, const parameters *p, double *delay, fault *f);
 
 // The loop gain of any law in a run of its scenario: once the run has come to its end the arm is
 // left as it is, a small sine is added to the command, and

@@ -225,10 +225,15 @@ status linear_respond(const linear_system *s, int output, double period, linear_
 
 // --- margins ----------------------------------------------------------------------------------
 
+#define MOST_GAIN_DB 120.0 // no law is off by a factor of a million; beyond is rounding
+
 // Takes in a place at which the loop gain is real and negative.
 static void cross_phase(linear_margins *m, double gain)
 {
     const double db = 20 * plain_log(1 / gain) / plain_log(10);
+    if (fabs(db) > MOST_GAIN_DB) {
+        return;
+    }
     double *least = db >= 0 ? &m->gain_db : &m->gain_down_db;
     *least = fmin(*least, fabs(db));
 }

@@ -76,7 +76,8 @@ static status analyse_loop(analysis *x, fault *f)
         x->stable = cabs(x->sets[POLES].values[x->sets[POLES].count - 1]) < 1;
     }
     x->margins = linear_margins_of(&x->response);
-    return STATUS_OK;
+    return x->stable && !x->measured ? linear_delay_margin(&x->arm, p, &x->margins.delay_s, f)
+                                     : STATUS_OK;
 }
 
 static status analyse(analysis *x, bool looped, fault *f)
@@ -221,10 +222,30 @@ static void write_mat(FILE *stream, const scenario *base, const void *found)
     }
 }
 
+static void print_margin(const char *name, const char *format, double value)
+{
+    printf(" %s ", name);
+    if (isfinite(value)) {
+        printf(format, value);
+    } else {
+        printf("none;");
+    }
+}
+
+static void print_margins(const analysis *x)
+{
+    const linear_margins *m = &x->margins;
+    printf("\n  margins%s:", x->measured ? ", measured" : "");
+    print_margin("gain up", "%.3g dB,", m->gain_db);
+    print_margin("down", "%.3g dB;", m->gain_down_db);
+    print_margin("phase", "%.3g degrees;", m->phase_deg);
+    print_margin("delay", "%.3g ms;", 1e3 * m->delay_s);
+    print_margin("disk", "%.3g\n", m->disk);
+}
+
 static void print_analysis(const scenario *s, const void *found)
 {
     const analysis *x = found;
-    const linear_margins *m = &x->margins;
     say_title(s);
     printf("linear arm, %s, %d states", x->word, x->arm.system.states);
     if (x->place != LINEAR_FREE) {
@@ -251,10 +272,7 @@ static void print_analysis(const scenario *s, const void *found)
         printf(set->count == 0 ? "  none\n" : "");
     }
     if (x->response.count > 0 && x->stable) {
-        printf("\n  margins%s: gain %.3g dB up, %.3g dB down; phase %.3g degrees; delay %.3g ms; "
-               "disk %.3g\n",
-               x->measured ? ", measured" : "", m->gain_db, m->gain_down_db, m->phase_deg,
-               1e3 * m->delay_s, m->disk);
+        print_margins(x);
     } else if (x->response.count > 0) {
         printf("\n  the loop is unstable\n");
     }
@@ -407,6 +425,8 @@ static int linear(const arguments *a, scenario *s)
     x.place = strcmp(x.word, "free") == 0      ? LINEAR_FREE
               : strcmp(x.word, "contact") == 0 ? LINEAR_CONTACT
                                                : LINEAR_STUCK;
+    COMPLAIN_IF(x.place != LINEAR_FREE && s->parameters.wall.kind == WALL_NONE,
+                "there is no wall to press on, try --at free");
     COMPLAIN_IF(a->varies.count > 0 && (a->mat != NULL || a->nyquist != NULL || a->injects),
                 "--mat, --nyquist and --inject are of one loop, not of --vary");
     COMPLAIN_IF(a->varies.count > 0 && s->parameters.control.law == LAW_NONE,
