@@ -2,6 +2,7 @@
 #include "src/rig/sensors.h"
 
 #include "tests/rig_fixture.h"
+#include "tests/shipped_scenario.h"
 
 #define PI 3.14159265358979323846
 
@@ -286,6 +287,101 @@ TEST(hysteresis_is_a_play)
         assert_true(sensors_at_rest(&s) == (c->force == 0));
         check_close(read_hub(&s, 0, 0, c->force).force_reading, c->shown, 1e-12);
     }
+}
+
+// A force sensor with a play of that share and a lag of that rise time, nothing else.
+static sensors play_of(double share, double rise_time)
+{
+    return fresh_sensors(given("sensor.fsr_hysteresis=%g sensor.fsr_rise_time=%g "
+                               "sensor.fsr_noise=0 sensor.adc_bits=0 sensor.fsr_saturation=1e6",
+                               share, rise_time),
+                         1);
+}
+
+// A parabola at once and in four thousand strides, each too short to hide a turn: the play is the
+// same, whether the force turns between its ends, the lag once or twice, or nothing.
+TEST(turns_within_a_stride_move_the_play)
+{
+    enum { STRIDES = 4000 };
+    const double parabolas[][3] = {{1, 8, -8}, {2, -6, 7}, {0.5, 3, 0}, {3, -2.9, 0}, {1, 9, -9.5}};
+    const double rises[] = {0, 1.5e-3, 0.02, 1}, starts[] = {0.2, 1.5, 6};
+    int moved = 0;
+    for (EACH(c, parabolas)) {
+        const double a = (*c)[0], b = (*c)[1], d = (*c)[2], h = 4e-4;
+        for (int i = 0; i < 12; i++) {
+            sensors once = play_of(0.2, rises[i / 3]);
+            once.fsr.value = once.fsr_shown = starts[i % 3];
+            sensors often = once, ends = once;
+            follow_force(&once, h, a, a + b + d, a + b / 2 + d / 3);
+            for (int k = 0; k < STRIDES; k++) {
+                const double u = k / (double)STRIDES, v = (k + 1) / (double)STRIDES;
+                follow_force(&often, h / STRIDES, a + u * (b + u * d), a + v * (b + v * d),
+                             a + b / 2 * (u + v) + d / 3 * (u * u + u * v + v * v));
+            }
+            check_close(once.fsr_shown, often.fsr_shown, 1e-5);
+
+            // which the ends alone do not always tell
+            ends.p.fsr_hysteresis = 0;
+            follow_force(&ends, h, a, a + b + d, a + b / 2 + d / 3);
+            const double end = ends.fsr_shown, start = starts[i % 3];
+            const double by_ends = fmax(0.8 * end, fmin(fmax(0.8 * start, start), 1.2 * end));
+            moved += fabs(by_ends - once.fsr_shown) > 1e-3;
+        }
+    }
+    assert_true(moved > 5);
+}
+
+// An impulse is a force larger than any play: behind it the reading stands at the upper edge of
+// what the force falls to, once that has fallen far enough, as after a short strong force.
+TEST(a_blow_moves_the_play)
+{
+    const double h = 0.3, impulse = 0.02, width = 1e-9;
+    sensors s = play_of(h, 1.5e-3), pressed = s;
+    sensors_strike(&s, impulse);
+    check_relative(s.fsr_shown, (1 - h) * impulse / s.fsr.time_constant, 1e-12);
+    follow_force(&pressed, width, impulse / width, impulse / width, impulse / width);
+    check_relative(pressed.fsr_shown, s.fsr_shown, 1e-5);
+    for (int i = 0; i < 4; i++) {
+        follow_force(&s, 1e-3, 0.1, 0.1, 0.1);
+        follow_force(&pressed, 1e-3, 0.1, 0.1, 0.1);
+        check_relative(pressed.fsr_shown, s.fsr_shown, 1e-5);
+        check_relative(s.fsr_shown, (1 + h) * s.fsr.value, 1e-12);
+    }
+
+    // without a lag at once, and in flight nothing is left of it
+    sensors instant = play_of(h, 0), flying = instant;
+    sensors_strike(&instant, impulse);
+    follow_force(&instant, 1e-3, 0.5, 0.5, 0.5);
+    check_relative(instant.fsr_shown, (1 + h) * 0.5, 1e-12);
+    sensors_strike(&flying, impulse);
+    follow_force(&flying, 1e-3, 0, 0, 0);
+    check_close(flying.fsr_shown, 0, 0);
+
+    // a jump of the force before a stride, too: up to 2 N, then down to 1.8 N
+    sensors jumped = play_of(h, 0);
+    follow_force(&jumped, 1e-3, 1, 1, 1);
+    follow_force(&jumped, 1e-3, 2, 1.8, 1.9);
+    check_relative(jumped.fsr_shown, (1 - h) * 2, 1e-12);
+}
+
+// In a run: what the lag holds at a sample 0.7 ms after the second impact, in closed form, is
+// falling, so that the reading stands 30 % above it.
+TEST(a_run_reads_the_play_after_an_impact)
+{
+    KEPT_SCENARIO(s) =
+        shipped_with("compare/open-loop", "sensor.fsr_hysteresis=0.3 control.rate=1000 "
+                                          "sensor.adc_bits=0 sensor.fsr_noise=0 method.step=1e-4");
+    KEPT_RUN(r) = run_done(&s, true);
+    const double lag = s.parameters.sensor.fsr_rise_time / log(9), sampled = 0.579;
+    const event *second = NULL;
+    for (size_t i = 0; i < r.trace.event_count; i++) {
+        second = r.trace.events[i].kind == EVENT_IMPACT ? &r.trace.events[i] : second;
+    }
+    const sample *row = &r.trace.rows[trace_row_at(&r.trace, sampled + 1.5e-4)];
+    double arrived = second->impulse / lag * exp((second->time - sampled) / lag);
+    const double rise = row->force * (1 - exp((second->time - sampled) / lag));
+    arrived += rise; // of a force that hardly changes in this time
+    check_relative(row->force_reading, 1.3 * arrived, 1e-3);
 }
 
 TEST(ideal_sensors_tell_the_truth)

@@ -118,71 +118,27 @@ void sensors_init(sensors *s, const sensor_parameters *p, int seed)
     noise_start(&s->acceleration_noise, 3, seed);
 }
 
-// A stride shorter than this share of the time constant leaves the closed form too few digits.
-#define SHORT_STEP 1e-3
-
-// Lengths that differ by less than this share of the time constant are the same but for rounding:
-// the square of the share is nothing.
-#define SAME_STRETCH 1e-9
-
-// exp(-h/time_constant), h no shorter than SHORT_STEP.
-static double left_after(first_order_lag *y, double h)
-{
-    const double longer = h - y->stretch;
-    if (!(fabs(longer) < SAME_STRETCH * y->time_constant)) {
-        y->stretch = h;
-        y->left = plain_exp(-h / y->time_constant);
-        return y->left;
-    }
-    return y->left - y->left * (longer / y->time_constant);
-}
-
-// y' = (f - y)/lag with f = first + slope u + curve u^2, u = t/h.
-void lag_follow(first_order_lag *y, double h, double first, double last, double mean)
-{
-    double lag = y->time_constant;
-    const bool nothing = y->value == 0 && first == 0 && last == 0 && mean == 0;
-    if (lag == 0 || h <= 0 || nothing) {
-        return;
-    }
-
-    double curve = 3 * (first + last) - 6 * mean, slope = last - first - curve;
-    if (h < SHORT_STEP * lag) {
-        // the integrals of u^n exp(-(1 - u) x) over the stride as series in x
-        double x = h / lag;
-        double of_one = 1 - x / 2 * (1 - x / 3 * (1 - x / 4));
-        double of_u = 1.0 / 2 - x / 6 * (1 - x / 4 * (1 - x / 5));
-        double of_square = 1.0 / 3 - x / 12 * (1 - x / 5 * (1 - x / 6));
-        y->value += x * ((first - y->value) * of_one + slope * of_u + curve * of_square);
-        return;
-    }
-
-    // the particular solution f - lag f' + lag^2 f'' and a transient that dies
-    double r = lag / h;
-    double at_start = first - r * slope + 2 * r * r * curve;
-    double at_end = last - r * (slope + 2 * curve) + 2 * r * r * curve;
-    y->value = at_end + (y->value - at_start) * left_after(y, h);
-}
-
-void lag_strike(first_order_lag *y, double pulse)
-{
-    if (y->time_constant > 0) {
-        y->value += pulse / y->time_constant;
-    }
-}
-
-// What comes out of the lag, an instant sensor having none.
-static double lag_output(const first_order_lag *y, double input)
-{
-    return y->time_constant > 0 ? y->value : input;
-}
-
 // What the FSR shows of a force that turned: a play as wide as the hysteresis times the force.
 static double fsr_shows(sensors *s, double force)
 {
     const double play = s->p.fsr_hysteresis * fabs(force);
     s->fsr_shown = larger(force - play, smaller(s->fsr_shown, force + play));
     return s->fsr_shown;
+}
+
+// Lets the FSR follow the force over a stretch: its play is moved wherever the force turns.
+static void follow_with_fsr(sensors *s, const lag_input *force)
+{
+    if (s->p.fsr_hysteresis > 0) {
+        double turns[LAG_MOST_TURNS];
+        const int count = lag_turns(&s->fsr, force, turns);
+        fsr_shows(s, lag_output(&s->fsr, force->first));
+        for (int i = 0; i < count; i++) {
+            fsr_shows(s, turns[i]);
+        }
+    }
+    lag_follow(&s->fsr, force);
+    fsr_shows(s, lag_output(&s->fsr, force->last));
 }
 
 // Turns a jump of the hub's velocity since the last look into a pulse of its acceleration.
@@ -197,27 +153,27 @@ static void feel_jump(sensors *s, double velocity)
 void sensors_follow(sensors *s, double h, const sensed_motion *first, const sensed_motion *last,
                     double mean_force)
 {
-    lag_follow(&s->fsr, h, first->force, last->force, mean_force);
-    fsr_shows(s, lag_output(&s->fsr, last->force));
-
+    const lag_input force = {h, first->force, last->force, mean_force};
+    follow_with_fsr(s, &force);
     if (s->p.piezo) {
-        lag_follow(&s->piezo_rise, h, first->force, last->force, mean_force);
-        lag_follow(&s->piezo_leak, h, first->force, last->force, mean_force);
+        lag_follow(&s->piezo_rise, &force);
+        lag_follow(&s->piezo_leak, &force);
     }
 
     // the mean of the cubic through both ends' values and rates
     if (s->p.film) {
         double mean = (first->bending + last->bending) / 2 +
                       h * (first->bending_rate - last->bending_rate) / 12;
-        lag_follow(&s->film_leak, h, first->bending, last->bending, mean);
+        lag_follow(&s->film_leak, &(lag_input){h, first->bending, last->bending, mean});
     }
 
     // a jump between strides is a pulse; within the stride the velocity gained is the mean
     if (s->p.accelerometer) {
         feel_jump(s, first->velocity);
         if (h > SHORTEST_GAIN) {
-            lag_follow(&s->acceleration, h, first->acceleration, last->acceleration,
-                       (last->velocity - first->velocity) / h);
+            const double mean = (last->velocity - first->velocity) / h;
+            lag_follow(&s->acceleration,
+                       &(lag_input){h, first->acceleration, last->acceleration, mean});
             s->seen_velocity = last->velocity;
         }
     }
@@ -235,6 +191,11 @@ void sensors_strike(sensors *s, double impulse)
     lag_strike(&s->fsr, impulse);
     lag_strike(&s->piezo_rise, impulse);
     lag_strike(&s->piezo_leak, impulse);
+
+    // a blow takes up any play: without a lag the force was without bounds
+    if (s->p.fsr_hysteresis > 0 && impulse > 0) {
+        s->fsr_shown = s->fsr.time_constant > 0 ? fsr_shows(s, s->fsr.value) : HUGE_VAL;
+    }
 }
 
 // --- readings -------------------------------------------------------------------------------

@@ -3,8 +3,12 @@
 // Hub encoder and tachometer are collocated with the motor. The force sensing resistor (FSR) at the
 // tip lags the force by a first-order rise, its resistance falls with the force by a power law, and
 // a voltage divider and an amplifier (Fig. 2.1) turn that into volts. Its hysteresis is a play: the
-// reading y follows a force f only as far as (1 - h) f <= y <= (1 + h) f asks for. Readings of
-// sensors that are calibrated wrongly are (1 + gain error) times the value plus an offset.
+// reading y follows a force f only as far as (1 - h) f <= y <= (1 + h) f asks for, f being what has
+// arrived through the lag, with every extreme on its way from sample to sample. An impulse p is the
+// limit of a force p/e over a time e -> 0, larger than any play: the lag T rises by p/T, to f, and
+// takes the play to its lower edge, y >= (1 - h) f; without a lag f itself was without bounds and
+// has fallen, so that y = (1 + h) f behind it. Readings of sensors that are calibrated wrongly are
+// (1 + gain error) times the value plus an offset.
 //
 // Three more need not be there: the additional measurements that chapter 6 of the thesis wishes
 // for. A piezoelectric force sensor rises fast, goes off scale in an impact, and its charge leaks
@@ -15,6 +19,7 @@
 #include <stdint.h>
 
 #include "src/base/random.h"
+#include "src/rig/first_order_lag.h"
 #include "src/tables/parameters.h"
 
 // What the sensors are fixed to, at one instant.
@@ -24,22 +29,6 @@ typedef struct sensed_motion {
     double bending_rate; // [rad/s]
     double force;        // of contact, impulses excluded [N]
 } sensed_motion;
-
-// A first-order lag: time_constant value' = input - value.
-typedef struct first_order_lag {
-    double time_constant; // [s], 0 for a sensor without it
-    double value;         // in the input's unit
-    // the factor by which a transient decays over a stretch of that length, kept because most
-    // stretches are, up to rounding, as long as the one before
-    double stretch; // [s], 0: none
-    double left;    // exp(-stretch/time_constant)
-} first_order_lag;
-
-// The lag's value after a time h [s] of an input that is the parabola through `first` and `last`
-// with the given mean: exact.
-void lag_follow(first_order_lag *y, double h, double first, double last, double mean);
-// Under a pulse of the input, given by its integral.
-void lag_strike(first_order_lag *y, double pulse);
 
 // White noise of its own.
 enum { NOISE_AHEAD = 16 };

@@ -95,7 +95,7 @@ static void take_force(blow *b, const force_step *step)
         b->momentum += to <= early ? (to - from) * mean : 0;
         b->peak = fmax(b->peak, fmax(first, last));
         for (int k = 0; k < SENSORS; k++) {
-            lag_follow(&b->lags[k], to - from, first, last, mean);
+            lag_follow(&b->lags[k], &(lag_input){to - from, first, last, mean});
         }
         look_at_sensors(b);
     }

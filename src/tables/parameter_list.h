@@ -182,8 +182,9 @@ TEXT(control, lock, "mode that the law is held in, by its name, or none: the law
 REAL(control, rate, "samples a second", "Hz", 1, 1e5, DEFAULT(200), TIMED)
 REAL(control, delay, "from a sample to the instant its command takes effect, at most five periods",
     "s", 0, 1, DEFAULT(0), TIMED)
-REAL(control, delay_periods, "further delay in sampling periods, five at most in all; 1: a command "
-    "goes out with the next sample", "", 0, 5, DEFAULT(0), TIMED)
+REAL(control, delay_periods, "further delay in nominal periods, 1/control.rate whatever the "
+    "jitter, five at most in all; 1 without jitter: a command goes out with the next sample",
+    "", 0, 5, DEFAULT(0), TIMED)
 REAL(control, jitter, "width over which the sampling instants scatter, at most one period",
     "s", 0, 1, DEFAULT(0), TIMED)
 INTEGER(control, seed, "seed of all noise of the rig", 0, 2147483647, DEFAULT(1))
@@ -291,7 +292,8 @@ REAL(sensor, fsr_gain_error, "share by which the FSR shows more than there is, w
 REAL(sensor, fsr_offset, "what the FSR adds to that, untold too",
     "N", -1000, 1000, DEFAULT(0), TIMED)
 REAL(sensor, fsr_hysteresis, "share by which the FSR shows less than a rising force and more than "
-    "a falling one", "", 0, 0.9, DEFAULT(0), TIMED)
+    "a falling one: a play, which extremes between samples and impulses move, too",
+    "", 0, 0.9, DEFAULT(0), TIMED)
 BOOLEAN(sensor, piezo, "fits a piezoelectric force sensor at the tip (sensor.force = piezo fits it "
     "too)", DEFAULT(false))
 REAL(sensor, piezo_gain, "volts of its charge amplifier per force", "V/N", 1e-6, 1e6, DEFAULT(1))
