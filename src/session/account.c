@@ -21,14 +21,14 @@ __attribute__((format(printf, 2, 3))) static void say(account *a, const char *fo
     va_end(list);
 }
 
-// The last row before an instant.
-static size_t row_before(const trace *t, double time)
+// The row with which an instant begins, of the state before an event there, or the last one before.
+static const sample *row_entering(const trace *t, double time)
 {
     size_t r = trace_row_at(t, time);
-    while (r > 0 && t->rows[r].time >= time) {
+    while (r > 0 && t->rows[r - 1].time >= time) {
         r--;
     }
-    return r;
+    return &t->rows[r];
 }
 
 // --- the sentences ----------------------------------------------------------------------------
@@ -69,7 +69,7 @@ static bool say_approach(account *a)
         }
         return false;
     }
-    const sample *before = &t->rows[row_before(t, touch)];
+    const sample *before = row_entering(t, touch);
     if (before->contact != 0) {
         say(a, "Driven by %s the arm starts on the wall.", drive);
         return true;
@@ -97,11 +97,11 @@ static void say_blow(account *a)
         return;
     }
     const event *impact = &t->events[i];
-    const sample *before = &t->rows[row_before(t, impact->time)];
     say(a,
-        "What has to stop at once takes an impulse of %.3g N s and %.2g %% of that energy: it "
-        "is lost, whatever comes.",
-        impact->impulse, 100 * impact->loss / before->kinetic_energy);
+        "At %.4g s an impulse of %.3g N s stops what has to stop at once: of %.3g J of motion "
+        "%.3g J are left, whatever comes.",
+        impact->time, impact->impulse, row_entering(t, impact->time)->kinetic_energy,
+        t->rows[trace_row_at(t, impact->time)].kinetic_energy);
 }
 
 // The pulse: where its force comes from, and the hub's reversal in it.
@@ -129,7 +129,47 @@ static void say_pulse(account *a, double touch, double end)
         peak, m->first_pulse_peak_N, at_peak->strain_energy, turn);
 }
 
-// How the pulse ends: what the springs give back lets the arm go, or it stays.
+// What gives energy as it falls, and what as it rises.
+static const struct {
+    int signal;
+    const char *name;
+    double sign;
+} energy_shares[] = {
+    {SIGNAL_INDEX(kinetic_energy), "motion", 1},
+    {SIGNAL_INDEX(strain_energy), "springs", 1},
+    {SIGNAL_INDEX(wall_energy), "wall", 1},
+    {SIGNAL_INDEX(weight_energy), "weight", 1},
+    {SIGNAL_INDEX(motor_work), "motor", -1},
+    {SIGNAL_INDEX(external_work), "pushes", -1},
+    {SIGNAL_INDEX(wall_work), "the wall's motion", -1},
+    {SIGNAL_INDEX(viscous_loss), "back EMF", 1},
+    {SIGNAL_INDEX(friction_loss), "friction", 1},
+    {SIGNAL_INDEX(damping_loss), "damping", 1},
+    {SIGNAL_INDEX(impact_loss), "impacts", 1},
+    {SIGNAL_INDEX(wall_loss), "the wall's damping", 1},
+};
+
+// Those that give between two rows (sign 1) or take (-1): "springs 0.01 J, motor 0.002 J". What is
+// below a thousandth of what the arm turns over is left out.
+static void list_shares(const sample *from, const sample *to, double sign, char *text, size_t size)
+{
+    const double least = 1e-3 * (fabs(from->kinetic_energy - to->kinetic_energy) +
+                                 fabs(from->strain_energy - to->strain_energy));
+    const int count = sizeof energy_shares / sizeof *energy_shares;
+    size_t used = 0;
+    snprintf(text, size, "nothing");
+    for (int i = 0; i < count && used < size; i++) {
+        const int signal = energy_shares[i].signal;
+        const double fall = signal_value(from, signal) - signal_value(to, signal);
+        const double share = sign * energy_shares[i].sign * fall;
+        if (share > least) { // one that the scenario has not is NaN
+            used += (size_t)snprintf(text + used, size - used, "%s%s %.3g J", used > 0 ? ", " : "",
+                                     energy_shares[i].name, share);
+        }
+    }
+}
+
+// How the pulse ends: who gives energy from its peak on, and who takes it, or the arm stays.
 static void say_release(account *a, double touch)
 {
     const trace *t = &a->run->trace;
@@ -141,17 +181,19 @@ static void say_release(account *a, double touch)
     }
     const double end = touch + m->first_pulse_s;
     const double delay = isnan(m->first_pulse_time_to_peak_s) ? 0 : m->first_pulse_time_to_peak_s;
+    const char *then = m->impacts > 1 ? ", and comes back" : "";
     const sample *at_peak = &t->rows[trace_row_at(t, touch + delay)];
     const sample *after = &t->rows[trace_row_at(t, end)];
-    if (!(delay > 0) || !(at_peak->strain_energy > 0) || !(end > touch)) {
-        say(a, "The arm lets go at %.4g s%s.", end, m->impacts > 1 ? ", and comes back" : "");
+    if (!(delay > 0) || after == at_peak) {
+        say(a, "The arm lets go at %.4g s%s.", end, then);
         return;
     }
-    say(a,
-        "The springs give back %.2g %% of that as motion away from the wall: so it lets go at "
-        "%.4g s%s.",
-        100 * after->kinetic_energy / at_peak->strain_energy, end,
-        m->impacts > 1 ? ", and comes back" : "");
+
+    char given[160], taken[160];
+    list_shares(at_peak, after, 1, given, sizeof given);
+    list_shares(at_peak, after, -1, taken, sizeof taken);
+    say(a, "From there until it lets go at %.4g s%s, energy is given by %s and taken by %s.", end,
+        then, given, taken);
 }
 
 // What it ends with, and what would change that.
@@ -161,14 +203,17 @@ static void say_end(account *a)
     const summary *m = &a->run->summary;
     const sample *last = &t->rows[t->row_count - 1];
     if (a->scenario->parameters.control.law != LAW_NONE) {
-        say(a, "The law wants %.3g N and gets %.4g at the end%s; its peak is %.3g N above that.",
-            m->force_command_N, m->steady_force_N,
-            last->sticking != 0 ? ", where the hub sticks" : "", m->force_over_command_N);
+        char peak[64] = "";
+        if (!isnan(m->force_over_command_N)) {
+            snprintf(peak, sizeof peak, "; its peak is %.3g N above that", m->force_over_command_N);
+        }
+        say(a, "The law wants %.3g N and gets %.4g at the end%s%s.", m->force_command_N,
+            m->steady_force_N, last->sticking != 0 ? ", where the hub sticks" : "", peak);
     } else if (last->contact != 0) {
         say(a,
-            "At the end the motor's %.3g N m press with %.3g N%s; a controller would choose that "
-            "force and damp the pulse (:law).",
-            last->motor_torque, last->force,
+            "At the end the arm presses with %.3g N under %.3g N m of the motor%s; a controller "
+            "would choose that force and damp the pulse (:law).",
+            last->force, last->motor_torque,
             last->sticking != 0 ? ", the hub held by friction" : "");
     } else {
         say(a,
