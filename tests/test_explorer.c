@@ -314,3 +314,33 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
     assert_string_equal(one, other);
     ex.state.session.input_count = 0;
 }
+
+// Legends, values and what is subtracted from them are of one row: before an impact nothing has a
+// force, and a run changed later equals the one before it on either side.
+TEST(test_both_sides_of_an_impact_are_told_apart)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":seek 0.5<Enter>b:set motor.voltage 2<Enter>:panes 1<Enter>I<Tab>");
+    const sample before = *session_sample(&ex.state.session);
+    press_shows(&ex, "<Right>", formatted("force %.4g ", session_sample(&ex.state.session)->force));
+    check_close(session_sample(&ex.state.session)->time, before.time, 0);
+    press_shows(&ex, "<Left>", "force 0 ", "hub_velocity             0.5851         0 ",
+                "last_velocity            0.9001         0 ");
+    press_shows(&ex, "<Right>", "hub_velocity             0.9061         0 ");
+
+    // a mark keeps its side
+    press_shows(&ex, "<Left>m<Right>", "last_velocity           -0.9056    -1.806 ");
+}
+
+// Numbers far outside of the run are refused or kept within it, and nothing else.
+TEST(test_marks_lie_in_the_run)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    for (EACH_TEXT(c, "1e9", "-1e300", "1.0001")) {
+        press_text(&ex, ":mark %s<Enter>", *c);
+        assert_shows(&ex, "the run goes from 0 to 1 s");
+        assert_false(ex.state.mark.set);
+    }
+    press_shows(&ex, ":mark 1<Enter>", "mark set");
+    press_draws(&ex, ":zoom 0.1 0.1000001<Enter>");
+}

@@ -133,3 +133,27 @@ TEST(a_signal_is_there_if_one_row_has_it)
         assert_int_equal(trace_has(&t, SIGNAL_INDEX(force)), row < COUNT);
     }
 }
+
+// Each row of an instant is found again by its side; of a run with fewer rows there, its nearest.
+TEST(a_row_is_found_by_its_instant_and_side)
+{
+    enum { COUNT = 6 };
+    static const double times[COUNT] = {0, 1, 1, 1 + 1e-13, 2, 3};
+    sample rows[COUNT], single[2] = {{.time = 0}, {.time = 4, .force = 4}};
+    for (int i = 0; i < COUNT; i++) {
+        rows[i] = (sample){.time = times[i], .force = i};
+    }
+    const trace t = {.rows = rows, .row_count = COUNT}, pair = {.rows = rows, .row_count = 3};
+    const trace line = {.rows = single, .row_count = 2};
+    static const int in_pair[COUNT] = {0, 1, 1, 2};
+    for (size_t i = 0; i < COUNT; i++) {
+        const size_t side = trace_side(&t, i);
+        assert_int_equal(trace_row_on_side(&t, times[i], side), i);
+        check_close(trace_sample_at(&t, times[i], side).force, (double)i, 0);
+        check_close(trace_sample_at(&line, times[i], side).force, times[i], 1e-12);
+        if (times[i] < 1.5) {
+            assert_int_equal(trace_row_on_side(&pair, times[i], side), in_pair[i]);
+        }
+    }
+    check_close(trace_sample_at(&t, 2.25, 0).force, 4.25, 1e-15);
+}

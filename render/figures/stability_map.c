@@ -167,7 +167,7 @@ static const double radii[MAP_RINGS] = {1, 0.8, 0.5};       // generalised-alpha
 static void sample_force(const trace *t, double from, double *out)
 {
     for (int i = 0; i < SAMPLES; i++) {
-        out[i] = trace_value(t, SIGNAL_INDEX(force), from + WINDOW * (i + 0.5) / SAMPLES);
+        out[i] = trace_value(t, SIGNAL_INDEX(force), from + WINDOW * (i + 0.5) / SAMPLES, 0);
     }
 }
 

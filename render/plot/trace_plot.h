@@ -46,9 +46,9 @@ char *trace_symbol(const scenario *s, int index);
 // and for the following, is kept by the figure.
 figure_series trace_series(const trace_run *run, int index, owned_figure *o);
 
-// The value of a signal at an instant of a run, interpolated linearly between rows; NaN outside the
-// run.
-double trace_value(const trace *t, int index, double time);
+// The value of a signal at an instant of a run, on a side of an event there (trace_side),
+// interpolated linearly between rows; NaN outside the run.
+double trace_value(const trace *t, int index, double time, size_t side);
 
 // A signal at the instants of one run less that of another, interpolated linearly between its rows.
 figure_series trace_difference(const trace *of, const trace *less, int index, owned_figure *o);

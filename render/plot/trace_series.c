@@ -192,18 +192,14 @@ figure_series trace_series(const trace_run *run, int index, owned_figure *o)
     return s;
 }
 
-double trace_value(const trace *t, int index, double time)
+double trace_value(const trace *t, int index, double time, size_t side)
 {
-    const size_t until = trace_rows_until(t, time), last = t->row_count;
-    if (until == 0 || time > t->rows[last - 1].time) {
+    const size_t last = t->row_count;
+    if (last == 0 || time < t->rows[0].time || time > t->rows[last - 1].time) {
         return (double)NAN;
     }
-
-    // a straight line from the last row that is not later to the next
-    const sample *before = &t->rows[until - 1], *after = &t->rows[until < last ? until : last - 1];
-    double here = signal_value(before, index), span = after->time - before->time;
-    double share = span > 0 ? (time - before->time) / span : 0;
-    return here + share * (signal_value(after, index) - here);
+    const sample there = trace_sample_at(t, time, side);
+    return signal_value(&there, index);
 }
 
 figure_series trace_difference(const trace *of, const trace *less, int index, owned_figure *o)
@@ -212,7 +208,8 @@ figure_series trace_difference(const trace *of, const trace *less, int index, ow
     double *y = owned_figure_numbers(o, of->row_count + 1);
     for (size_t i = 0; i < of->row_count; i++) {
         x[i] = of->rows[i].time;
-        y[i] = signal_value(&of->rows[i], index) - trace_value(less, index, x[i]);
+        y[i] =
+            signal_value(&of->rows[i], index) - trace_value(less, index, x[i], trace_side(of, i));
     }
     return (figure_series){.x = x, .y = y, .count = of->row_count};
 }

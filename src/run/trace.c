@@ -2,8 +2,11 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "src/base/instant.h"
 
 #define EVENT_TEXTS(name, word, description) {word, description},
 static const struct {
@@ -136,6 +139,49 @@ size_t trace_row_at(const trace *t, double time)
 {
     size_t until = trace_rows_until(t, time);
     return until > 0 ? until - 1 : 0;
+}
+
+size_t trace_side(const trace *t, size_t row)
+{
+    const double time = t->rows[row].time;
+    size_t last = row;
+    while (last + 1 < t->row_count && same_instant(t->rows[last + 1].time, time)) {
+        last++;
+    }
+    const bool first = row == 0 || !same_instant(t->rows[row - 1].time, time);
+    return first && last > row ? SIZE_MAX : last - row;
+}
+
+size_t trace_row_on_side(const trace *t, double time, size_t side)
+{
+    // the last row of the instant, then back among its rows
+    size_t r = trace_row_at(t, time);
+    while (r + 1 < t->row_count && same_instant(t->rows[r + 1].time, time)) {
+        r++;
+    }
+    for (; side > 0 && r > 0 && same_instant(t->rows[r - 1].time, time); side--) {
+        r--;
+    }
+    return r;
+}
+
+sample trace_sample_at(const trace *t, double time, size_t side)
+{
+    const size_t r = trace_row_on_side(t, time, side);
+    const sample *a = &t->rows[r];
+    sample value = *a;
+    if (same_instant(a->time, time) || time < a->time || r + 1 >= t->row_count) {
+        return value;
+    }
+
+    // a sample is a row of numbers
+    const sample *b = &t->rows[r + 1];
+    const double share = (time - a->time) / (b->time - a->time);
+    const double *from = (const double *)a, *to = (const double *)b;
+    for (int i = 0; i < SIGNALS_AT_MOST; i++) {
+        ((double *)&value)[i] = from[i] + share * (to[i] - from[i]);
+    }
+    return value;
 }
 
 bool trace_has(const trace *t, int signal)

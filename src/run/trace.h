@@ -78,6 +78,16 @@ size_t trace_rows_until(const trace *t, double time);
 // The last row whose time is not after `time` [s]; 0 for an earlier time.
 size_t trace_row_at(const trace *t, double time);
 
+// Several rows of one instant are the sides of what happens at it. The side that a row stands for:
+// 0 the last one, SIZE_MAX the first of several, else how many follow it.
+size_t trace_side(const trace *t, size_t row);
+
+// The row of an instant [s] on a side, the last row before it if it has none.
+size_t trace_row_on_side(const trace *t, double time, size_t side);
+
+// What a run was at an instant [s] on a side: that row, or straight between two rows.
+sample trace_sample_at(const trace *t, double time, size_t side);
+
 // Whether any row holds a finite value of the signal.
 bool trace_has(const trace *t, int signal);
 

@@ -95,9 +95,14 @@ void act_settle_filter(explorer_state *st, panel_id panel)
 
 bool act_mark(explorer_state *st, const char *argument)
 {
-    st->mark.time = st->session.now;
-    NEED(act_read_number_or(st, argument, "", &st->mark.time));
-    st->mark.set = argument[0] != '\0' || !st->mark.set;
+    const session *s = &st->session;
+    double time = s->now;
+    NEED(act_read_number_or(st, argument, "", &time));
+    const double duration = s->effective.parameters.run.duration;
+    FAIL_IF(!(time >= 0 && time <= duration),
+            act_refuse(st, "the run goes from 0 to %g s", duration));
+    const size_t side = argument[0] != '\0' ? 0 : trace_side(&s->run.trace, s->row);
+    st->mark = (time_mark){argument[0] != '\0' || !st->mark.set, time, side};
     return act_tell(st, st->mark.set ? "mark set: values now show the difference to it, X "
                                        "statistics from it to the cursor"
                                      : "no mark");

@@ -62,7 +62,7 @@ static void format_value(const explorer_state *st, const pane *p, int signal, bo
 {
     shown_run runs[SHOWN_RUNS];
     const trace *t = (state_runs(st, p, runs) > 0 ? runs[0] : state_run(st, 0)).trace;
-    double value = signal_value(&t->rows[trace_row_at(t, st->session.now)], signal);
+    double value = signal_value(&t->rows[state_row(st, t)], signal);
     const controller *law = controller_of(st->session.effective.parameters.control.law);
     bool is_mode = strcmp(signal_table[signal].name, "controller_mode") == 0;
 

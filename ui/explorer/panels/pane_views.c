@@ -81,7 +81,7 @@ static bool draw_phase(const explorer_state *st, screen *s, const pane *of, area
 
     // where the cursor is, and the ends of the axis
     draw_ends(s, a, p.x, signal_table[of->signals[1]].name);
-    const sample *row = &t->rows[trace_row_at(t, e->now)];
+    const sample *row = &t->rows[state_row(st, t)];
     const double at_x = dot_x(&p, signal_value(row, of->signals[1])) / 2;
     const double at_y = dot_y(&p, signal_value(row, of->signals[0])) / 4;
     if (at_x >= 0 && at_x < a.width && at_y >= 0 && at_y < a.height) {

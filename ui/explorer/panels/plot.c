@@ -138,13 +138,15 @@ void plot_frame_signal(const plot_frame *f, const trace *t, int signal, double u
 
 void plot_frame_cursor(const plot_frame *f, screen *s, double time)
 {
-    int column = f->canvas.x + (int)(plot_x(f, time) / 2);
     if (f->picture != NULL) {
         pane_instant_paint(f->picture, &f->pixels, time, pixel_colour(f, INK_CURSOR));
         return;
     }
-    for (int y = f->canvas.y;
-         time >= f->from && time <= f->to && y < f->canvas.y + f->canvas.height; y++) {
+    if (!(time >= f->from && time <= f->to)) {
+        return;
+    }
+    const int column = f->canvas.x + (int)(plot_x(f, time) / 2);
+    for (int y = f->canvas.y; y < f->canvas.y + f->canvas.height; y++) {
         if (s->cells[(long)y * s->width + column].glyph == ' ') {
             screen_put(s, column, y, 0x2506, INK_CURSOR);
         }

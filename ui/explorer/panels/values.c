@@ -23,14 +23,17 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 {
     const session *e = &st->session;
     const sample *row = session_sample(e), *beside = NULL;
+    sample between;
     const char *against = "", *filter = st->filters.text[PANEL_VALUES];
 
     // beside the values at the mark, or else those of the kept run
     if (st->mark.set) {
-        beside = &e->run.trace.rows[trace_row_at(&e->run.trace, st->mark.time)];
+        const trace *t = &e->run.trace;
+        beside = &t->rows[trace_row_on_side(t, st->mark.time, st->mark.side)];
         against = ", minus mark";
     } else if (e->has_other) {
-        beside = &e->other.trace.rows[trace_row_at(&e->other.trace, e->now)];
+        between = trace_sample_at(&e->other.trace, row->time, trace_side(&e->run.trace, e->row));
+        beside = &between;
         against = ", minus old run";
     }
 

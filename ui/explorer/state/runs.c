@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/instant.h"
 #include "src/base/text_stream.h"
 #include "src/run/resume.h"
 #include "ui/explorer/state/parameter_list.h"
@@ -326,39 +325,13 @@ void difference_finish(run_difference *d)
     *d = (run_difference){.built = d->built};
 }
 
-// The other run at an instant, between its rows. Of two rows at one instant, on both sides of an
-// event, the first one is meant if `before`.
-static sample sample_at(const trace *t, double time, bool before)
-{
-    size_t r = trace_row_at(t, time);
-    r -= before && r > 0 && same_instant(t->rows[r].time, time) &&
-         same_instant(t->rows[r - 1].time, time);
-    const sample *a = &t->rows[r];
-    if (same_instant(a->time, time) || r + 1 >= t->row_count) {
-        return *a;
-    }
-
-    // straight from row to row: a sample is a row of numbers
-    sample value = *a;
-    const sample *b = &t->rows[r + 1];
-    const double share = b->time > a->time ? (time - a->time) / (b->time - a->time) : 0;
-    const double *from = (const double *)a, *to = (const double *)b;
-    for (int i = 0; i < SIGNALS_AT_MOST; i++) {
-        ((double *)&value)[i] = from[i] + share * (to[i] - from[i]);
-    }
-    return value;
-}
-
 // Appends the difference of one row.
 static status add_row(run_difference *d, const trace *run, const trace *other, size_t row)
 {
     const double none[1] = {0};
 
-    // of two rows at one instant the first belongs to what was before
     const sample *now = &run->rows[row];
-    const bool before =
-        row + 1 < run->row_count && same_instant(run->rows[row + 1].time, now->time);
-    const sample beside = sample_at(other, now->time, before);
+    const sample beside = trace_sample_at(other, now->time, trace_side(run, row));
 
     // signal by signal; states stay this run's own
     sample difference = *now;

@@ -254,6 +254,12 @@ shown_run state_run(const explorer_state *st, int index)
     return runs[index];
 }
 
+size_t state_row(const explorer_state *st, const trace *t)
+{
+    const session *s = &st->session;
+    return trace_row_on_side(t, s->now, trace_side(&s->run.trace, s->row));
+}
+
 const char *state_run_name(const explorer_state *st, int index)
 {
     const shown_run r = state_run(st, index);

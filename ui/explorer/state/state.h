@@ -35,6 +35,7 @@ typedef struct shown_run {
 typedef struct time_mark {
     bool set;
     double time; // [s]
+    size_t side; // of an event at it (trace_side)
 } time_mark;
 
 // The side panel.
@@ -151,6 +152,8 @@ bool state_subtracts(const explorer_state *st);
 int state_runs(const explorer_state *st, const pane *p, shown_run runs[SHOWN_RUNS]);
 int state_run_count(const explorer_state *st);
 shown_run state_run(const explorer_state *st, int index);
+// The row of a run or a difference at the cursor, on the side of an event where that stands.
+size_t state_row(const explorer_state *st, const trace *t);
 // The name of a run, "" for the present one and for runs without a name.
 const char *state_run_name(const explorer_state *st, int index);
 // The number of pinned runs that are not hidden.
