@@ -133,8 +133,8 @@ TEST(a_map_gives_what_single_runs_give)
     assert_false(lab_sweep_is_on(m));
 }
 
-// A table of what the sensors of a run read, as a bench records them.
-static void write_recording(explorer *ex, const char *path)
+// A table of what the sensors of a run read, as a bench records them, its clock from `begin` [s].
+static void write_recording(explorer *ex, const char *path, double begin)
 {
     const trace *t = &ex->state.session.run.trace;
     FILE *file = fopen(path, "w");
@@ -142,8 +142,8 @@ static void write_recording(explorer *ex, const char *path)
     fputs("time[s],command[V],encoder[rad],tachometer[rad/s],force_reading[N]\n", file);
     for (int k = 0; k < 280; k++) {
         const sample *row = &t->rows[trace_row_at(t, (k + 0.6) / 200)];
-        fprintf(file, "%.17g,%.17g,%.17g,%.17g,%.17g\n", k / 200.0, row->command, row->encoder,
-                row->tachometer, row->force_reading);
+        fprintf(file, "%.17g,%.17g,%.17g,%.17g,%.17g\n", begin + k / 200.0, row->command,
+                row->encoder, row->tachometer, row->force_reading);
     }
     assert_int_equal(fclose(file), 0);
 }
@@ -153,7 +153,7 @@ TEST(the_arm_that_was_measured_is_found)
     const char *path = "data.csv";
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":set arm.k2 5.5<Enter>");
-    write_recording(&ex, path);
+    write_recording(&ex, path, 0);
     press_warns(&ex, "u:identify k2<Enter>", ":data");
     press(&ex, formatted(":data %s<Enter>:residual force_reading, encoder<Enter>", path));
 
@@ -176,6 +176,51 @@ TEST(the_arm_that_was_measured_is_found)
     press_warns(&ex, ":identify nosuch<Enter>", "nosuch");
     press_warns(&ex, ":identify<Enter>", "takes parameters");
     press_shows(&ex, ":data off<Enter>", "no measured data (:data");
+}
+
+// The run that a fit pins is the one that was compared: with the start, the command and the clock
+// of the recording, which are not those of the lab's run. So it moves as the recorded arm did.
+TEST(the_pinned_fit_is_the_run_that_was_compared)
+{
+    enum { INSTANTS = 27 };
+    const char *path = "data.csv";
+    double angle[INSTANTS];
+    OPEN_EXPLORER(ex, "compare/hybrid");
+    press(&ex,
+          ":set arm.k2 5.5<Enter>:set initial.angle -0.15<Enter>:set control.force 1.3<Enter>");
+    write_recording(&ex, path, 7.25);
+    for (int i = 0; i < INSTANTS; i++) {
+        const trace *t = &ex.state.session.run.trace;
+        angle[i] = t->rows[trace_row_at(t, 0.05 * i)].hub_angle;
+    }
+    press(&ex, "uuu");
+    press_text(&ex, ":data %s<Enter>:residual encoder<Enter>:identify k2<Enter>", path);
+    fail_if(ex.state.message.warning, "%s", ex.state.message.text);
+    press_draws(&ex, "R<Enter>");
+    const trace *t = &ex.state.session.run.trace;
+    for (int i = 0; i < INSTANTS; i++) {
+        check_close(t->rows[trace_row_at(t, 0.05 * i)].hub_angle, angle[i], 1e-3);
+    }
+    check_close(ex.state.measured.rows[0].time, 0, 1e-3);
+}
+
+// Data that were laid to the run's touch stay there when that moves; given a shift they keep it.
+TEST(data_follow_the_touch_of_a_changed_run)
+{
+    const char *path = "data.csv";
+    OPEN_EXPLORER(ex, "compare/hybrid");
+    write_recording(&ex, path, 7.25);
+    press_text(&ex, ":data %s<Enter>", path);
+    press_draws(&ex, ":set initial.angle -0.15<Enter>");
+    const trace *data = &ex.state.measured;
+    size_t r = 0;
+    while (!(data->rows[r].force_reading > 0.2)) {
+        r++;
+    }
+    check_close(data->rows[r].time, ex.state.session.run.summary.first_contact_s, 0.006);
+    press_text(&ex, ":data %s@-7<Enter>", path);
+    press_draws(&ex, "u");
+    check_close(data->rows[0].time, 0.25, 1e-12);
 }
 
 TEST(data_without_a_command_say_what_is_missing_and_what_for)

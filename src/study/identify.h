@@ -47,7 +47,8 @@ enum { IDENTIFY_UNKNOWNS = IDENTIFY_PATHS + IDENTIFY_TRACES * OWNS };
 typedef struct recorded_trace {
     char *file;
     size_t rows;                 // one for each sample of the rig
-    double *time;                // since the first [s]
+    double begin;                // of its clock [s]
+    double *time;                // since then [s]
     double *command;             // [V]
     double *reading[CHANNELS];   // in the signal's unit, NULL: not recorded
     double *deviation[CHANNELS]; // standard deviation of each in its residual's unit, 0: left out
@@ -125,6 +126,11 @@ status identify_fit(identification *id, fault *f);
 // The parameters of the scenario with the fitted values, only those that are determined if so
 // asked for.
 status identify_parameters(const identification *id, bool determined, parameters *p, fault *f);
+
+// The scenario whose run is compared with a trace: with the fitted values and what the trace has of
+// its own, it plays the recorded command back. It borrows from the base what the base owns; its
+// sensors are the base's. Of a trace whose columns have the signals' names.
+status identify_scenario(const identification *id, int index, scenario *made, fault *f);
 
 // A combination that the data do not determine, in words, k < undetermined. Returns text.
 const char *identify_words(const identification *id, int k, char *text, size_t size);

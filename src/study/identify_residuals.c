@@ -11,6 +11,7 @@
 
 #define FAILED_RUN      1e3  // residual of a run that fails, in standard deviations
 #define SAME_INSTANT    1e-6 // of a sampling period
+#define ROW_MARGIN      1e-4 // of a sampling period, that its last row keeps from its end
 #define NEAR_RANGE      5.0  // standard deviations from the end of a converter's range
 #define LEAST_DEVIATION 1e-6 // of an ideal channel, in its unit
 
@@ -52,7 +53,7 @@ static void keep_samples(recorded_trace *t, double rate)
 {
     size_t kept = 0;
     double last = -1;
-    const double begin = t->time[0];
+    const double begin = t->begin = t->time[0];
     for (size_t i = 0; i < t->rows; i++) {
         const double number = floor((t->time[i] - begin) * rate + SAME_INSTANT);
         if (number > last) {
@@ -270,6 +271,29 @@ static status make_run(const identification *id, const recorded_trace *t, const 
     from.parameters = *p;
     from.action_count = 0;
     return scenario_with(&from, changes, sizeof changes / sizeof *changes, made, f);
+}
+
+status identify_scenario(const identification *id, int index, scenario *made, fault *f)
+{
+    const recorded_trace *t = &id->traces[index];
+    parameters p;
+    scenario fitted;
+    TRY(identify_parameters(id, true, &p, f));
+    TRY(make_run(id, t, &p, t->own, &fitted, f));
+
+    // its noise and steps come back; a sample takes the last row of its period, as keep_samples has
+    // it
+    fitted.parameters.sensor = p.sensor;
+    const double period = (1 - ROW_MARGIN) / p.control.rate;
+    const parameter_change changes[] = {
+        {PARAMETER_INDEX(sensor.encoder_offset), p.sensor.encoder_offset + t->own[OWN_OFFSET]},
+        {PARAMETER_INDEX(control.law), LAW_PLAYBACK},
+        {PARAMETER_INDEX(control.playback_file), .text = t->file},
+        {PARAMETER_INDEX(control.playback_column), .text = "command"},
+        {PARAMETER_INDEX(control.playback_hold), PLAYBACK_HOLD},
+        {PARAMETER_INDEX(control.playback_shift), -(t->begin + period)},
+    };
+    return scenario_with(&fitted, changes, sizeof changes / sizeof *changes, made, f);
 }
 
 // Between two rows a quantity is the cubic through its values and rates.

@@ -9,28 +9,6 @@
 
 // --- under the run ----------------------------------------------------------------------------
 
-// The force by which two traces are aligned, -1 if none is in both.
-static int common_force(const trace *a, const trace *b)
-{
-    static const int forces[] = {SIGNAL_INDEX(piezo_force), SIGNAL_INDEX(force_reading),
-                                 SIGNAL_INDEX(force)};
-    int found = -1;
-    for (size_t i = 0; i < sizeof forces / sizeof forces[0]; i++) {
-        found = trace_has(a, forces[i]) && trace_has(b, forces[i]) ? forces[i] : found;
-    }
-    return found;
-}
-
-// The first instant at which a signal is above a level [s], NaN if it never is.
-static double first_above(const trace *t, int signal, double level)
-{
-    size_t r = 0;
-    while (r < t->row_count && !(signal_value(&t->rows[r], signal) > level)) {
-        r++;
-    }
-    return r < t->row_count ? t->rows[r].time : (double)NAN;
-}
-
 // Measured columns under the run, shifted as the file's name says, else to the run's first touch.
 bool act_data(explorer_state *st, const char *argument)
 {
@@ -59,26 +37,18 @@ bool act_data(explorer_state *st, const char *argument)
         return act_worked(st, code);
     }
 
-    // a tenth of the measured largest force marks the touch in both
-    const trace *t = &st->session.run.trace;
-    const int force = common_force(&fresh, t);
-    if (isnan(shift) && force >= 0) {
-        const double last = fresh.rows[fresh.row_count - 1].time;
-        const double level = trace_statistics(&fresh, force, fresh.rows[0].time, last).maximum / 10;
-        shift = first_above(t, force, level) - first_above(&fresh, force, level);
-    }
-    for (size_t r = 0; r < fresh.row_count && isfinite(shift); r++) {
-        fresh.rows[r].time += shift;
-    }
     trace_finish(&st->measured);
     st->measured = fresh;
-    st->measured_id++;
+    st->measured_shift = 0;
+    st->measured_aligned = isnan(shift);
     snprintf(st->measured_file, sizeof st->measured_file, "%s", path);
-    return isfinite(shift)
-               ? act_tell(st, "%zu rows, shifted by %.6g s; :data off takes them away",
-                          fresh.row_count, shift)
-               : act_warn(st, "%zu rows, as they are: no force in both that shows a touch",
-                          fresh.row_count);
+    state_shift_data(st, isnan(shift) ? state_aligned_shift(st) : shift);
+    st->measured_run = state_run_id(st);
+    return isnan(shift) && isnan(state_aligned_shift(st))
+               ? act_warn(st, "%zu rows, as they are: no force in both that shows a touch",
+                          fresh.row_count)
+               : act_tell(st, "%zu rows, shifted by %.6g s; :data off takes them away",
+                          fresh.row_count, st->measured_shift);
 }
 
 // --- identification ---------------------------------------------------------------------------
@@ -108,13 +78,29 @@ static bool tell_fit(explorer_state *st, const identification *id)
                                          : "; pinned, but the data show more than the model has");
 }
 
+// Pins the run that was compared with the data in the end, and lays these under it.
+static status pin_fitted(explorer_state *st, const identification *id, fault *f)
+{
+    scenario fitted, copy;
+    session other;
+    const recorded_trace *t = &id->traces[0];
+    TRY(identify_scenario(id, 0, &fitted, f));
+    TRY(scenario_copy(&copy, &fitted));
+    TRY(session_open(&other, &copy, HUGE_VAL, f));
+    const status code = run_list_pin(&st->pinned, &other, "identified", f);
+    session_finish(&other);
+    if (code == STATUS_OK) {
+        state_shift_data(st, -(t->begin + t->own[OWN_SHIFT]));
+        st->measured_aligned = false;
+    }
+    return code;
+}
+
 // Fits parameters to the measured data and pins the run that they give.
 bool act_identify(explorer_state *st, const char *argument)
 {
     char words[LINE_TEXT], *rest = words;
     identification id = {.base = &st->session.effective, .starts = FIT_STARTS, .jobs = FIT_THREADS};
-    const sweep_axis *axes[IDENTIFY_PATHS];
-    double values[IDENTIFY_PATHS];
     FAIL_IF(argument[0] == '\0' || st->measured.row_count == 0,
             act_refuse(st, argument[0] == '\0' ? "identify takes parameters, such as k2 stiction"
                                                : "there are no measured data: :data FILE.csv"));
@@ -130,15 +116,12 @@ bool act_identify(explorer_state *st, const char *argument)
     }
     code = code == STATUS_OK ? identify_add_trace(&id, st->measured_file, NULL, 0, f) : code;
     code = code == STATUS_OK ? identify_fit(&id, f) : code;
-    int count = 0;
-    for (int i = 0; i < id.count && code == STATUS_OK; i++) {
-        if (id.fit[i].determined) {
-            axes[count] = &id.fit[i].axis;
-            values[count++] = id.fit[i].value;
-        }
+    bool determined = false;
+    for (int i = 0; i < id.count; i++) {
+        determined = determined || id.fit[i].determined;
     }
-    if (code == STATUS_OK && count > 0) {
-        code = act_pin_values(st, axes, values, count, "identified", f);
+    if (code == STATUS_OK && determined) {
+        code = pin_fitted(st, &id, f);
     }
     const bool done = act_worked(st, code) && tell_fit(st, &id), all = id.undetermined == 0;
     identify_finish(&id);

@@ -322,6 +322,50 @@ const char *state_inert_reason(const explorer_state *st, int parameter)
 
 // --- up to date -------------------------------------------------------------------------------
 
+// The force by which two traces are aligned, -1 if none is in both.
+static int common_force(const trace *a, const trace *b)
+{
+    static const int forces[] = {SIGNAL_INDEX(piezo_force), SIGNAL_INDEX(force_reading),
+                                 SIGNAL_INDEX(force)};
+    int found = -1;
+    for (size_t i = 0; i < sizeof forces / sizeof forces[0]; i++) {
+        found = trace_has(a, forces[i]) && trace_has(b, forces[i]) ? forces[i] : found;
+    }
+    return found;
+}
+
+// The first instant at which a signal is above a level [s], NaN if it never is.
+static double first_above(const trace *t, int signal, double level)
+{
+    size_t r = 0;
+    while (r < t->row_count && !(signal_value(&t->rows[r], signal) > level)) {
+        r++;
+    }
+    return r < t->row_count ? t->rows[r].time : (double)NAN;
+}
+
+double state_aligned_shift(const explorer_state *st)
+{
+    // a tenth of the measured largest force marks the touch in both
+    const trace *run = &st->session.run.trace, *data = &st->measured;
+    const int force = common_force(data, run);
+    if (force < 0) {
+        return (double)NAN;
+    }
+    const double first = data->rows[0].time, last = data->rows[data->row_count - 1].time;
+    const double level = trace_statistics(data, force, first, last).maximum / 10;
+    return st->measured_shift + first_above(run, force, level) - first_above(data, force, level);
+}
+
+void state_shift_data(explorer_state *st, double shift)
+{
+    for (size_t r = 0; r < st->measured.row_count && isfinite(shift); r++) {
+        st->measured.rows[r].time += shift - st->measured_shift;
+    }
+    st->measured_shift = isfinite(shift) ? shift : st->measured_shift;
+    st->measured_id++;
+}
+
 // The measured data minus the run, where a pane shows them.
 static void update_residual(explorer_state *st)
 {
@@ -353,6 +397,12 @@ void state_update(explorer_state *st)
 
     // what follows the run and its instant
     const session *s = &st->session;
+    const bool realign = st->measured_aligned && st->measured.row_count > 0 &&
+                         s->computing == NULL && st->measured_run != state_run_id(st);
+    if (realign) {
+        state_shift_data(st, state_aligned_shift(st));
+        st->measured_run = state_run_id(st);
+    }
     if (s->has_other) {
         difference_update(&st->difference, state_run_id(st), &s->run.trace, &s->other.trace);
     }

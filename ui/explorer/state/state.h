@@ -79,9 +79,12 @@ typedef struct explorer_state {
     run_difference residual; // of the measured data from the run
     trace measured;          // data laid under the run, no rows: none
     char measured_file[LINE_TEXT];
-    unsigned long measured_id; // counts the files read, and how often one was shifted
-    unsigned opened;           // number of scenarios opened
-    visit visits[VISITS];      // [present_visit] is empty: it is the session
+    double measured_shift;      // by which they lie later than in the file [s]
+    bool measured_aligned;      // they touch when the run does
+    unsigned long measured_run; // the run they were last aligned to
+    unsigned long measured_id;  // counts the files read, and how often one was shifted
+    unsigned opened;            // number of scenarios opened
+    visit visits[VISITS];       // [present_visit] is empty: it is the session
     int visit_count, present_visit;
 
     // the instants of interest
@@ -142,6 +145,11 @@ status state_turn(explorer_state *st, int direction, fault *f);
 // Updates everything that drawing reads: panes, window, growing axes and results derived from the
 // runs.
 void state_update(explorer_state *st);
+
+// The shift with which the measured data touch when the run does [s], NaN if no force of both shows
+// that; and lays them so, which NaN leaves as they are.
+double state_aligned_shift(const explorer_state *st);
+void state_shift_data(explorer_state *st, double shift);
 
 // A number that identifies the present run among the runs of all sessions opened; never 0.
 unsigned long state_run_id(const explorer_state *st);
