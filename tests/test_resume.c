@@ -224,8 +224,13 @@ TEST(a_shared_result_outlives_the_first)
     scenario s = {.parameters = parameters_with("run.duration=3")};
     run_result old = run_keeping_history(&s);
     KEPT_RUN(again) = run_keeping_history(&s), shared;
-    assert_int_equal(run_share(&old, ROWS, &shared), STATUS_OK);
+    assert_int_equal(run_share(&old, &shared), STATUS_OK);
     check_same_run(&shared, &old);
+
+    // it takes no address space but for its rows
+    const shared_array *rows = &shared.trace.arrays[TRACE_ROWS];
+    check_below(rows->reserved, 2 * rows->size * (old.history.forces.count + ROWS));
+    check_below(shared.history.checkpoints.reserved, 2.0 * old.history.checkpoints.mapped);
     run_finish(&old);
     check_same_run(&shared, &again);
 }
@@ -235,7 +240,7 @@ TEST(a_run_of_the_rig_is_shared_without_history)
 {
     scenario s = {.parameters = parameters_with("run.duration=1 control.law=open-loop")};
     KEPT_RUN(old) = run_keeping_history(&s), shared;
-    assert_int_equal(run_share(&old, ROWS, &shared), STATUS_OK);
+    assert_int_equal(run_share(&old, &shared), STATUS_OK);
     check_same_run(&shared, &old);
     assert_int_equal(shared.history.forces.reserved, 0);
     assert_int_equal(shared.history.checkpoints.reserved, 0);

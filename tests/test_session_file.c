@@ -108,6 +108,20 @@ TEST(test_only_the_visits_own_file_is_replaced)
     assert_shows(&ex, "cannot be opened");
 }
 
+// What is said after keeping one is a command that goes on with it, whatever the name.
+TEST(test_the_command_that_is_told_works)
+{
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, "b:session save s 1<Enter>");
+    fail_if(strstr(ex.state.message.text, "impactlab lab 's 1.session'") == NULL, "%s",
+            ex.state.message.text);
+    assert_true(file_has("s 1.session", "impactlab-session"));
+    press(&ex, "b:session save s 1<Enter>");
+    assert_false(ex.state.message.warning);
+    OPEN_EXPLORER(again, "corrected/three-links");
+    press_opens(&again, ":session open s 1<Enter>", "corrected/first-impact");
+}
+
 // A session whose law is a program asks before it starts it, and its lines do nothing but look.
 TEST(test_a_file_from_elsewhere_starts_nothing)
 {

@@ -2,6 +2,8 @@
 #include "tests/check.h"
 #include "tests/shared_memory.h"
 
+#include <sys/resource.h>
+
 #include "src/base/shared_array.h"
 
 enum { PER_CHUNK = ARRAY_CHUNK / sizeof(uint64_t), MANY = 5 * PER_CHUNK / 2 };
@@ -82,6 +84,23 @@ TEST(a_long_array_keeps_its_elements)
     fill(&a, 0, many);
     check_numbers(&a, many);
     assert_int_equal(a.mapped, 40 * ARRAY_CHUNK);
+}
+
+// Where the address space is limited, one array leaves it to the others.
+TEST(a_limited_address_space_is_shared)
+{
+    const size_t most = (size_t)1 << 45, limit = (size_t)1 << 32;
+    struct rlimit before;
+    getrlimit(RLIMIT_AS, &before);
+    setrlimit(RLIMIT_AS, &(struct rlimit){limit, before.rlim_max});
+    SCOPED(shared_array_finish) shared_array a = {0};
+    const bool there = shared_array_reserve(&a, sizeof(uint64_t), MANY, most);
+    setrlimit(RLIMIT_AS, &before);
+    if (!there) {
+        skip(); // a sanitizer has taken it all
+    }
+    check_below((double)a.reserved, (double)limit / 16);
+    fill(&a, 0, MANY);
 }
 
 TEST(growing_beyond_the_address_space_fails_and_changes_nothing)

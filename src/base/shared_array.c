@@ -5,10 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 
 #include "src/base/fault.h"
 
-enum { LEAST_ELEMENTS = 64 };
+enum {
+    LEAST_ELEMENTS = 64,
+    PART = 32 // of an address space that is limited, what an array takes of it at most
+};
 
 // --- chunks -----------------------------------------------------------------------------------
 
@@ -56,7 +60,14 @@ bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t mos
     assert(least > 0 && least <= most);
     shared_array_init(a, size);
 
-    // half as much where the address space has no room for the most
+    // a limited address space is for others, too
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur / PART / size < most) {
+        most = limit.rlim_cur / PART / size;
+        most = most < least ? least : most;
+    }
+
+    // half as much where it has no room for the most
     for (; most >= least; most /= 2) {
         size_t reserved = (most * size / ARRAY_CHUNK + 1) * ARRAY_CHUNK;
         void *base =

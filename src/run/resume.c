@@ -7,10 +7,7 @@
 #include "src/base/instant.h"
 #include "src/engines/motion_create.h"
 
-enum {
-    CHECKPOINT_ROWS = 512, // from one checkpoint to the next
-    ROWS_PER_RESERVED = 64 // address space is for one checkpoint in so many rows
-};
+enum { CHECKPOINT_ROWS = 512 }; // from one checkpoint to the next
 
 // The checkpoint of a number, oldest first.
 static checkpoint *checkpoint_at(const run_history *h, size_t index)
@@ -26,16 +23,15 @@ static bool keeps_history(const recording *r)
 }
 
 // Reserves address space for the forces and checkpoints (of `size` bytes each) of a run of so many
-// rows. False if it cannot be had.
-static bool checkpoint_reserve(run_history *h, size_t size, size_t rows_expected)
+// rows at least and at most. False if it cannot be had.
+static bool checkpoint_reserve(run_history *h, size_t size, size_t least, size_t most)
 {
     assert(size >= sizeof(checkpoint));
-    const size_t most = recording_most_rows(rows_expected);
 
     // of a run of a few rows, too, there is room for one
-    const size_t least = rows_expected / ROWS_PER_RESERVED + 1;
-    return shared_array_reserve(&h->forces, sizeof(force_step), rows_expected, most) &&
-           shared_array_reserve(&h->checkpoints, size, least, most);
+    return shared_array_reserve(&h->forces, sizeof(force_step), least, most) &&
+           shared_array_reserve(&h->checkpoints, size, least / CHECKPOINT_ROWS + 1,
+                                most / CHECKPOINT_ROWS + 1);
 }
 
 status checkpoint_open_history(recording *r, const motion *m, fault *f)
@@ -49,7 +45,8 @@ status checkpoint_open_history(recording *r, const motion *m, fault *f)
         shared_array_init(&h->forces, sizeof(force_step));
         return STATUS_OK;
     }
-    return checkpoint_reserve(h, sizeof(checkpoint) + motion_saved_size(m), expected)
+    const size_t size = sizeof(checkpoint) + motion_saved_size(m);
+    return checkpoint_reserve(h, size, expected, recording_most_rows(expected))
                ? STATUS_OK
                : fault_set(f, STATUS_NO_MEMORY, "no address space for %zu rows", expected);
 }
@@ -151,21 +148,20 @@ static double same_until(const scenario *a, const scenario *b)
 }
 
 // Lets `result` begin with what `from` had recorded as a checkpoint says, so many checkpoints among
-// it, with room for the rows expected. False without memory; result is empty then.
-static bool share(const run_result *from, const checkpoint *part, size_t checkpoints,
-                  size_t rows_expected, run_result *result)
+// it, with room for so many rows at least and at most. False without memory; result is empty then.
+static bool share(const run_result *from, const checkpoint *part, size_t checkpoints, size_t least,
+                  size_t most, run_result *result)
 {
     const run_history *old = &from->history;
     run_history *own = &result->history;
-    const size_t most = recording_most_rows(rows_expected);
     result->summary = part->summary;
 
     // rows and events, then forces and checkpoints of a run that has them
     bool shared =
-        trace_reserve(&result->trace, from->trace.angle_count, rows_expected, most) == STATUS_OK &&
+        trace_reserve(&result->trace, from->trace.angle_count, least, most) == STATUS_OK &&
         trace_share(&result->trace, &from->trace, part->rows, part->events) == STATUS_OK;
     if (shared && old->forces.reserved > 0) {
-        shared = checkpoint_reserve(own, old->checkpoints.size, rows_expected) &&
+        shared = checkpoint_reserve(own, old->checkpoints.size, least, most) &&
                  shared_array_share(&own->forces, &old->forces, part->force_steps) &&
                  shared_array_share(&own->checkpoints, &old->checkpoints, checkpoints);
     }
@@ -191,10 +187,11 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
     }
     FAIL_IF(count == 0, false);
 
-    return share(from, checkpoint_at(h, count - 1), count, rows_expected, result);
+    return share(from, checkpoint_at(h, count - 1), count, rows_expected,
+                 recording_most_rows(rows_expected), result);
 }
 
-status run_share(const run_result *from, size_t rows_expected, run_result *result)
+status run_share(const run_result *from, run_result *result)
 {
     memset(result, 0, sizeof *result);
     const checkpoint whole = {.rows = from->trace.row_count,
@@ -202,7 +199,11 @@ status run_share(const run_result *from, size_t rows_expected, run_result *resul
                               .force_steps = from->history.forces.count,
                               .summary = from->summary};
     const size_t checkpoints = from->history.checkpoints.count;
-    FAIL_IF(!share(from, &whole, checkpoints, rows_expected, result), STATUS_NO_MEMORY);
+
+    // it will not grow
+    const size_t rows = whole.rows > whole.events ? whole.rows : whole.events;
+    const size_t most = (rows > whole.force_steps ? rows : whole.force_steps) + 1;
+    FAIL_IF(!share(from, &whole, checkpoints, most, most, result), STATUS_NO_MEMORY);
     result->landing = from->landing;
     return STATUS_OK;
 }

@@ -41,4 +41,4 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
                 size_t rows_expected, run_result *result);
 
 // A second result of the same run that shares all rows. STATUS_NO_MEMORY if there is no room.
-status run_share(const run_result *from, size_t rows_expected, run_result *result);
+status run_share(const run_result *from, run_result *result);

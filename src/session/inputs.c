@@ -115,8 +115,7 @@ status session_change_from_start(session *s, int parameter, const char *text, fa
 static status begin_adjusting(session *s, int parameter, const char *text, fault *f)
 {
     run_result before;
-    const size_t rows = s->run.trace.row_count;
-    const bool kept = s->computing == NULL && run_share(&s->run, rows, &before) == STATUS_OK;
+    const bool kept = s->computing == NULL && run_share(&s->run, &before) == STATUS_OK;
 
     // the ghost takes over the run before, else it is given back
     status code = session_change(s, parameter, text, f);

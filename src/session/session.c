@@ -318,7 +318,7 @@ parameters session_parameters_at(const session *s, double time)
 status session_keep_beside(session *s, const run_result *run, fault *f)
 {
     run_result kept;
-    FAIL_IF(run_share(run, run->trace.row_count, &kept) != STATUS_OK, fault_no_memory(f));
+    FAIL_IF(run_share(run, &kept) != STATUS_OK, fault_no_memory(f));
     session_forget_other(s);
     s->other = kept;
     s->has_other = true;

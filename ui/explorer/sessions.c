@@ -10,6 +10,8 @@
 #include "src/session/session_file.h"
 #include "ui/explorer/explorer.h"
 
+static const char ending[] = ".session";
+
 // --- saving -----------------------------------------------------------------------------------
 
 // Adds a line on how the runs are looked at, if it is needed.
@@ -131,7 +133,8 @@ static bool save_session(explorer_state *st, const char *path)
     snprintf(st->session_path, sizeof st->session_path, "%s", path);
     st->saved_version = state_run_id(st);
     st->kept_pins = st->pinned.pinned;
-    return act_tell(st, "kept in %.200s: 'impactlab lab %.200s' goes on with it", path, path);
+    FAIL_IF(strchr(path, '\'') != NULL, act_tell(st, "kept in %.200s", path));
+    return act_tell(st, "kept: impactlab lab '%.200s' goes on with it", path);
 }
 
 // --- opening ----------------------------------------------------------------------------------
@@ -224,5 +227,13 @@ bool act_session(explorer_state *st, const char *argument)
     }
     FAIL_IF((!saves && strcmp(word, "open") != 0) || path[0] == '\0',
             act_refuse(st, "session takes save or open, and a file such as lab.session"));
-    return saves ? save_session(st, path) : explorer_open_session(st, path);
+
+    // a name without the ending by which the lab knows a session gets it
+    char whole[LINE_TEXT];
+    const size_t length = strlen(path), tail = strlen(ending);
+    const bool ends = length > tail && strcmp(path + length - tail, ending) == 0;
+    const bool as_it_is = ends || (!saves && access(path, F_OK) == 0);
+    snprintf(whole, sizeof whole, "%.*s%s", (int)(sizeof whole - sizeof ending), path,
+             as_it_is ? "" : ending);
+    return saves ? save_session(st, whole) : explorer_open_session(st, whole);
 }

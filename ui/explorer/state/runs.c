@@ -151,7 +151,7 @@ status run_list_pin(run_list *list, const session *s, const char *name, fault *f
         propose_name(list, s, p.name);
     }
     TRY(run_origin_take(&p.from, s, f));
-    if (run_share(&s->run, s->run.trace.row_count, &p.run) != STATUS_OK) {
+    if (run_share(&s->run, &p.run) != STATUS_OK) {
         run_origin_finish(&p.from);
         return fault_no_memory(f);
     }
