@@ -110,27 +110,8 @@ static void expect_same_frames(const char *one, const char *two, int count)
     }
 }
 
-// Two threads write what one does, of one run and of several.
-TEST(test_threads)
-{
-    SCOPED(forget)
-    recorded a = record("corrected/first-impact"), b = record("corrected/plane-wall");
-    const film_run runs[3] = {{&a.scenario, &a.result, "one"},
-                              {&b.scenario, &b.result, "two"},
-                              {&a.scenario, &a.result, "three"}};
-    static const char *const names[][2] = {{"one-1", "one-2"}, {"many-1", "many-2"}};
-    for (int k = 0; k < 2; k++) {
-        for (int threads = 1; threads <= 2; threads++) {
-            film_options options = small_film;
-            options.threads = threads;
-            DONE(film_write(runs, k == 0 ? 1 : 3, &options, names[k][threads - 1], &f));
-        }
-        expect_same_frames(names[k][0], names[k][1], 5);
-    }
-}
-
-// One film after the other, by OpenGL where it is: the second thread of the one leaves none of its
-// pictures to that of the other.
+// One film after the other, by OpenGL where it is: the one leaves none of its pictures to the
+// other.
 TEST(test_films_by_gl)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
@@ -138,7 +119,6 @@ TEST(test_films_by_gl)
     for (int i = 0; i < 3; i++) {
         film_options options = small_film;
         options.view.renderer = RENDER_AUTO;
-        options.threads = i == 0 ? 1 : 2;
         DONE(film_of(&r, &options, names[i], &f));
         expect_same_frames(names[0], names[i], 5);
     }

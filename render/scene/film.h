@@ -47,7 +47,6 @@ typedef struct film_options {
     double seconds;        // length of the film [s]; 0: 10
     int ghosts;            // number of earlier positions shown behind the present one, 20 ms apart
     double slow;           // factor of slow motion at impacts; 0: 8
-    int threads;           // painting threads; 0: one per processor, at most two
     // called after each frame, or NULL
     void (*progress)(void *context, int done, int total);
     void *context;
@@ -61,37 +60,26 @@ typedef struct film_run {
     const char *name; // in the legend of the traces; shown if there are several
 } film_run;
 
-// Shared by all frames of a film; not changed while they are painted.
-typedef struct film_plan {
+// What paints the frames of a film.
+typedef struct film_painter {
     const film_run *runs;
     int run_count;
     film_options options; // complete, without defaults
     film_clock clock;
-    pixel_box views[FILM_RUNS], strip; // of the arms and of the traces, on the frame
-    cairo_surface_t *traces;           // of the whole time, painted once
-    figure_report *report;             // positions of their panels
-    double trace_scale;                // pixels per point in them
-} film_plan;
-
-// What paints its frames.
-typedef struct film_painter {
-    const film_plan *plan;
-    scene *scenes[FILM_RUNS];
-    cairo_surface_t *views[FILM_RUNS];
+    pixel_box views[FILM_RUNS], strip;    // of the arms and of the traces, on the frame
+    scene *scenes[FILM_RUNS];             // of the arms
+    cairo_surface_t *pictures[FILM_RUNS]; // of the arms, painted anew for each frame
+    cairo_surface_t *traces;              // of the whole time, painted once
+    figure_report report;                 // positions of their panels
+    double trace_scale;                   // pixels per point in them
     PangoContext *context;
 } film_painter;
 
-// Prepares a film of runs with rows. The options must be complete and in range. Fails as
-// figure_paint does. film_plan_finish must be called in either case.
-status film_plan_init(film_plan *plan, const film_run *runs, int run_count,
-                      const film_options *options, fault *f);
-void film_plan_finish(film_plan *plan);
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(film_plan, film_plan_finish)
-
-// A painter of a film's frames, to be used and destroyed by the thread that creates it. Fails as
-// scene_create does.
-status film_painter_create(film_painter **out, const film_plan *plan, fault *f);
-void film_painter_destroy(film_painter *p);
+// A painter of a film of runs with rows, which outlive it. The options must be complete and in
+// range. Fails as figure_paint and scene_create do.
+status film_painter_create(film_painter **out, const film_run *runs, int run_count,
+                           const film_options *options, fault *f);
+void film_painter_destroy(film_painter *p); // may be NULL
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(film_painter, film_painter_destroy)
 
 // Paints the frame at a film's time [s] onto a surface RGB24 of the film's size.
@@ -102,9 +90,8 @@ status film_painter_frame(film_painter *p, double film_time, cairo_surface_t *on
 status film_painter_palette(film_painter *p, cairo_surface_t *onto, fault *f);
 
 // Writes a film of 1 to FILM_RUNS runs over the time that all of them have (see film_file_open for
-// path), frame by frame in bounded memory; its bytes do not depend on the threads.
-// STATUS_BAD_ARGUMENT for options out of range or a run without rows, STATUS_CANNOT_WRITE with the
-// reason, STATUS_STOPPED if `stop` requested it.
+// path), frame by frame in bounded memory. STATUS_BAD_ARGUMENT for options out of range or a run
+// without rows, STATUS_CANNOT_WRITE with the reason, STATUS_STOPPED if `stop` requested it.
 status film_write(const film_run *runs, int run_count, const film_options *options,
                   const char *path, fault *f);
 

@@ -1,3 +1,4 @@
+// Films as files: frames go to the standard input of the ffmpeg program, or to a folder as PNG.
 #include "render/scene/film.h"
 
 #include <assert.h>
@@ -32,7 +33,7 @@ typedef struct film_format {
 // first; RFC 8794, the EBML mark; GIF89a; RFC 9649, WEBP in a RIFF file.
 static const film_format formats[] = {
     {.ending = ".mp4",
-     .codec = "-vf scale=out_color_matrix=bt709 -c:v libx264 -preset fast -crf 18 -threads 2 "
+     .codec = "-vf scale=out_color_matrix=bt709 -c:v libx264 -preset veryfast -crf 18 -threads 2 "
               "-pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 -color_trc bt709 "
               "-movflags +faststart -f mp4",
      .mark = "ftyp",
