@@ -622,10 +622,13 @@ expect 2 solve hit.yaml motor.voltage peak_force_N
 says err "KEY<VALUE"
 
 expect 0 study links --json links.json --plot links.svg
-says out "take "
+says out "from 8 links on"
+says out "it has no limit"
+says out "contact time: does not occur"
+says out "first impulse: falls"
 grep -q '"limits"' links.json && [ -s links.svg ] || fail "study links writes no limits or draws nothing"
 expect 0 study follow --json follow.json --plot follow.svg
-says out "bound"
+grep -q bound out && fail "study follow has a bound"
 grep -q '"follow"' follow.json && [ -s follow.svg ] || fail "study follow writes no answers or draws nothing"
 expect 2 study sense
 says err "expected methods, links or follow"

@@ -159,15 +159,26 @@ TEST(the_beams_limit_is_the_lag_of_an_inverse_root)
 TEST(enough_is_enough_for_all_that_follow)
 {
     links_row row = {.value = {100, 140, 103, 98, 101, 100}, .beam = 100, .limit = 5};
-    assert_int_equal(links_enough(&row), 8);
+    links_judge(&row);
+    assert_int_equal(row.enough, 8);
+    check_close(row.off, 0.03, 1e-12);
     row.value[LINKS_LENGTHS - 1] = 110;
-    assert_int_equal(links_enough(&row), 0);
+    links_judge(&row);
+    assert_int_equal(row.enough, 0);
 
-    // without a beam the limit counts; without either there is no answer
+    // without a beam the limit counts, without either whether the last ones agree
     row = (links_row){.value = {1, 1, 1, 1, 1, 1}, .beam = (double)NAN, .limit = 1.01};
-    assert_int_equal(links_enough(&row), 2);
-    row.limit = (double)NAN;
-    assert_int_equal(links_enough(&row), 0);
+    links_judge(&row);
+    assert_int_equal(row.enough, 2);
+    row = (links_row){.value = {(double)NAN, 0.3, 0.28331, 0.28378, 0.28377, 0.28376},
+                      .beam = (double)NAN,
+                      .limit = (double)NAN};
+    links_judge(&row);
+    assert_int_equal(row.enough, 8);
+    check_close(row.off, 0.00045 / 0.28376, 1e-12);
+    row.value[3] = 0.2;
+    links_judge(&row);
+    assert_int_equal(row.enough, 0);
 }
 
 // A mass at the tip has no closed form here, but limits of its own.

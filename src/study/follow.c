@@ -82,21 +82,6 @@ static follow_point point_of(double frequency, double complex answer)
         .shaken = (double)NAN};
 }
 
-// Of the arm as two links: s^2 = 2 k2/(m l^2/4 - I), a tip that gives by l^2/k2.
-static void find_bound(const parameters *p, follow_study *study)
-{
-    const double l = p->arm.length / 2, ml2 = p->arm.mass / 2 * l * l;
-    study->zero = sqrt(2 * p->arm.k2 / (ml2 / 4 - ml2 / 12));
-    study->later = p->control.delay + (0.5 + p->control.delay_periods) / p->control.rate;
-    for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
-        const double w = 2 * M_PI * follow_frequencies[i];
-        const double complex late = turned(-w * study->later);
-        const double complex falls = turned(-2 * plain_atan2(w, study->zero)); // (s - p)/(s + p)
-        study->bound[i] = point_of(follow_frequencies[i], falls * late);
-        study->bound[i].shaken = cabs(1 - late) * p->arm.k2 / (l * l);
-    }
-}
-
 status follow_study_compute(const scenario *s, run_monitor *monitor, follow_study *study, fault *f)
 {
     *study = (follow_study){0};
@@ -108,7 +93,7 @@ status follow_study_compute(const scenario *s, run_monitor *monitor, follow_stud
              p->control.law == LAW_NONE  ? "control law"
              : p->wall.kind == WALL_NONE ? "wall"
                                          : "commanded force");
-    find_bound(&s->parameters, study);
+    study->later = p->control.delay + (0.5 + p->control.delay_periods) / p->control.rate;
     for (int i = 0; i < FOLLOW_LAWS * FOLLOW_FREQUENCIES; i++) {
         const int k = i % FOLLOW_FREQUENCIES;
         study->points[i / FOLLOW_FREQUENCIES][k] = point_of(follow_frequencies[k], (double)NAN);

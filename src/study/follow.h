@@ -1,5 +1,5 @@
 // How well control laws follow a set-point and a wall that move, over frequency: the force of runs
-// in contact at the frequency of a sine of either, and what a delay and the arm allow.
+// in contact at the frequency of a sine of either.
 #pragma once
 
 #include "src/run/run_result.h"
@@ -27,19 +27,12 @@ typedef struct follow_point {
 typedef struct follow_study {
     int done; // runs, the first ones
     follow_point points[FOLLOW_LAWS][FOLLOW_FREQUENCIES];
-    follow_point bound[FOLLOW_FREQUENCIES];
     double later; // from a reading to the middle of its command's effect: half a period, the delay
                   // [s]
-    double zero;  // s of the arm in contact: a force turned up first falls [1/s]
 } follow_study;
 
 // Runs the scenario under each law with a set-point of 1 + FOLLOW_WAVE sin(2 pi f t) times
 // control.force, and with a wall that moves by FOLLOW_WALL sin(2 pi f t). A run that fails leaves
 // NaN; STATUS_STOPPED if `monitor` (NULL: nobody looks on) asked for it, STATUS_BAD_SCENARIO for a
 // scenario without a law, a force or a wall.
-//
-// The bound. A command takes effect `later` on average and holds, and the contact force has a zero
-// at s = +zero, which no law that knows nothing ahead can cancel: the best mean answer to steps is
-// the all-pass (s - p)/(s + p) exp(-p later), p = i 2 pi f. A law that takes the wall to be where
-// it was read last leaves 2 sin(pi f later) of the force of a hub held, 1/compliance of the tip.
 status follow_study_compute(const scenario *s, run_monitor *monitor, follow_study *study, fault *f);

@@ -257,17 +257,23 @@ static void compute_beam(const parameters *p, double speed, links_row *rows)
     rows[COMPLIANCE].beam = length * length * length / (3 * bending);
 }
 
-int links_enough(const links_row *row)
+void links_judge(links_row *row)
 {
-    const double aim = isnan(row->beam) ? row->limit : row->beam;
-    int enough = 0;
-    for (int i = LINKS_LENGTHS - 1; i >= 0; i--) {
-        if (!(fabs(row->value[i] - aim) <= LINKS_ENOUGH * fabs(aim))) {
+    // values that have no limit told may agree with the last one: three at least
+    const bool told = !isnan(row->beam) || !isnan(row->limit);
+    int i = LINKS_LENGTHS - 1;
+    row->aim = told ? row->limit : row->value[i];
+    row->aim = isnan(row->beam) ? row->aim : row->beam;
+    row->enough = 0;
+    row->off = 0;
+    for (; i >= 0; i--) {
+        const double off = fabs(row->value[i] - row->aim) / fabs(row->aim);
+        if (!(off <= LINKS_ENOUGH)) {
             break;
         }
-        enough = links_numbers[i];
+        row->off = fmax(row->off, off);
+        row->enough = told || i <= LINKS_LENGTHS - 3 ? links_numbers[i] : 0;
     }
-    return enough;
 }
 
 status links_study_compute(const scenario *s, run_monitor *monitor, links_study *study, fault *f)
@@ -296,7 +302,7 @@ status links_study_compute(const scenario *s, run_monitor *monitor, links_study 
     compute_beam(&s->parameters, speed, study->rows);
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
         extrapolate(&study->rows[k]);
-        study->rows[k].enough = links_enough(&study->rows[k]);
+        links_judge(&study->rows[k]);
     }
     return STATUS_OK;
 }

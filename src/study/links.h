@@ -9,6 +9,7 @@ enum { LINKS_LENGTHS = 6, LINKS_QUANTITIES = 11 };
 extern const int links_numbers[LINKS_LENGTHS]; // 2, 4, 8 ... 64
 
 #define LINKS_ENOUGH 0.05 // of the beam's value, or the limit's, that a number of links may be off
+#define LINKS_GROWS  1.5  // times with each doubling: a value that grows without a limit
 
 // A quantity over the number of links. What is not there, or cannot be told, is NaN.
 typedef struct links_row {
@@ -18,7 +19,10 @@ typedef struct links_row {
     double order;                // p observed, the error falling as N^-p
     double limit, error;         // Richardson's from the last three, and what it may be off [unit]
     double beam;                 // of the Euler-Bernoulli beam [unit]
-    int enough;                  // fewest links from which on all are within LINKS_ENOUGH; 0: none
+    double aim;                  // the beam's, else the limit, else that of the most links [unit]
+    int enough;                  // fewest links from which on all are within LINKS_ENOUGH of it;
+                                 // 0: none, or the last two alone of their own
+    double off;                  // what those differ from it at most, as a share
 } links_row;
 
 typedef struct links_study {
@@ -27,9 +31,8 @@ typedef struct links_study {
     double links[LINKS_LENGTHS]; // as curves need them
 } links_study;
 
-// The fewest links from which on every value is within LINKS_ENOUGH of the beam's value (of the
-// limit where there is none), 0 if there are none.
-int links_enough(const links_row *row);
+// Fills in `aim`, `enough` and `off` from the rest.
+void links_judge(links_row *row);
 
 // The Euler-Bernoulli beam whose tip is stopped from the speed v [m/s] presses, as long as nothing
 // has come back from its other end, without damping and on a rigid wall, with K / sqrt(t),

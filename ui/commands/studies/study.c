@@ -173,11 +173,33 @@ static json_t *links_object(const scenario *s, const void *found)
     // what they tend to
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
         const links_row *row = &study->rows[k];
-        json_add(quantities, json_of("quantity:t order:n limit:n error:n beam:n enough_links:o",
-                                     row->key, row->order, row->limit, row->error, row->beam,
-                                     row->enough > 0 ? json_integer(row->enough) : json_null()));
+        json_add(quantities,
+                 json_of("quantity:t order:n limit:n error:n beam:n aim:n off:n enough_links:o",
+                         row->key, row->order, row->limit, row->error, row->beam, row->aim,
+                         row->off, row->enough > 0 ? json_integer(row->enough) : json_null()));
     }
     return json_of("scenario:t links:o limits:o", s->name, rows, quantities);
+}
+
+// What a quantity comes to with more and more links, in words.
+static void print_tendency(const links_row *row)
+{
+    const double *last = &row->value[LINKS_LENGTHS - 3];
+    const double ratio = last[2] / last[1], before = last[1] / last[0];
+    printf("%s: ", row->label);
+    if (!(fabs(last[2]) > 0)) {
+        printf("does not occur with 64 links\n");
+    } else if (row->enough > 0) {
+        printf("%s%.4g %s, within %.2g %% from %d links on\n",
+               isnan(row->beam) ? "" : "the beam's ", row->aim, row->unit, 100 * row->off,
+               row->enough);
+    } else if (fmin(ratio, before) > LINKS_GROWS) {
+        printf("grows, %.3g times with twice the links: it has no limit\n", ratio);
+    } else if (fmax(ratio, before) < 1 / LINKS_GROWS) {
+        printf("falls, %.3g times with twice the links: its limit is zero\n", ratio);
+    } else {
+        printf("still changes by %.2g %% from 32 to 64 links\n", 100 * fabs(ratio - 1));
+    }
 }
 
 static void print_links(const scenario *s, const void *found)
@@ -214,15 +236,7 @@ static void print_links(const scenario *s, const void *found)
     // the answer in words
     printf("\n");
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
-        const links_row *row = &study->rows[k];
-        const char *aim = isnan(row->beam) ? "its limit" : "the beam";
-        if (row->enough > 0) {
-            printf("%s: take %d links; from there on it is within %g %% of %s\n", row->label,
-                   row->enough, 100 * LINKS_ENOUGH, aim);
-        } else {
-            printf("%s: %d links are too few, or it has no limit\n", row->label,
-                   links_numbers[LINKS_LENGTHS - 1]);
-        }
+        print_tendency(&study->rows[k]);
     }
 }
 
@@ -294,8 +308,7 @@ static json_t *follow_object(const scenario *s, const void *found)
     for (int k = 0; k < FOLLOW_LAWS; k++) {
         json_put(laws, follow_laws[k], points_array(study->points[k]));
     }
-    return json_of("scenario:t follow:o bound:o later_s:n zero_per_s:n", s->name, laws,
-                   points_array(study->bound), study->later, study->zero);
+    return json_of("scenario:t follow:o later_s:n", s->name, laws, study->later);
 }
 
 // A number of every point, over the frequencies.
@@ -305,10 +318,10 @@ static void print_table(const char *what, const follow_study *study, size_t offs
     for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
         printf(" %6g Hz", follow_frequencies[i]);
     }
-    for (int k = 0; k <= FOLLOW_LAWS; k++) {
-        printf("\n%-28s", k < FOLLOW_LAWS ? follow_laws[k] : "bound");
+    for (int k = 0; k < FOLLOW_LAWS; k++) {
+        printf("\n%-28s", follow_laws[k]);
         for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
-            const follow_point *p = k < FOLLOW_LAWS ? &study->points[k][i] : &study->bound[i];
+            const follow_point *p = &study->points[k][i];
             print_cell(9, "%.3g", scale * *(const double *)((const char *)p + offset));
         }
     }
@@ -319,9 +332,8 @@ static void print_follow(const scenario *s, const void *found)
 {
     const follow_study *study = found;
     char changes[SCENARIO_CHANGES];
-    say("%s%s: a set-point and a wall that move\ncommands act %g ms late, the force's zero is at "
-        "%.3g 1/s\n",
-        s->name, scenario_changes(s, changes), 1e3 * study->later, study->zero);
+    say("%s%s: a set-point and a wall that move\ncommands act %g ms late\n", s->name,
+        scenario_changes(s, changes), 1e3 * study->later);
     print_table("error of the set-point [%]", study, offsetof(follow_point, error), 100);
     print_table("phase [deg]", study, offsetof(follow_point, phase), 1);
     print_table("wall that moves [N/mm]", study, offsetof(follow_point, shaken), 1e-3);
@@ -348,35 +360,27 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
          offsetof(follow_point, shaken)},
     };
     enum { PANELS = sizeof drawn / sizeof *drawn };
-    figure_series series[PANELS][FOLLOW_LAWS + 1];
+    figure_series series[PANELS][FOLLOW_LAWS];
     figure_panel panels[PANELS];
     for (int n = 0; n < PANELS; n++) {
-        for (int k = 0; k <= FOLLOW_LAWS; k++) {
-            const bool law = k < FOLLOW_LAWS;
-            const follow_point *p = law ? study->points[k] : study->bound;
+        for (int k = 0; k < FOLLOW_LAWS; k++) {
+            const follow_point *p = study->points[k];
             const double *y = (const double *)((const char *)p + drawn[n].offset);
-            series[n][k] = curve_of(law ? follow_laws[k] : "bound",
-                                    law ? follow_laws[k] : "knowing nothing ahead", &p->frequency,
-                                    y, FOLLOW_FREQUENCIES, law ? colours[k] : 7);
+            series[n][k] = curve_of(follow_laws[k], follow_laws[k], &p->frequency, y,
+                                    FOLLOW_FREQUENCIES, colours[k]);
             series[n][k].stride = sizeof *p;
-            series[n][k].marker = law ? markers[k] : MARKER_NONE;
-            series[n][k].secondary = !law;
+            series[n][k].marker = markers[k];
         }
-        panels[n] = (figure_panel){.y = drawn[n].axis,
-                                   .series = series[n],
-                                   .series_count = FOLLOW_LAWS + 1,
-                                   .weight = 1.8};
+        panels[n] = (figure_panel){
+            .y = drawn[n].axis, .series = series[n], .series_count = FOLLOW_LAWS, .weight = 1.8};
     }
 
     char caption[400];
     snprintf(caption, sizeof caption,
              "Set-point: %g %% of the commanded force; wall: %g mm, against which friction holds "
-             "the hub up to %.2g N. Dashed: the best of a law that takes both to stay; commands "
-             "act %.3g ms late, and a force turned up falls first, by the zero at %.3g 1/s. Laws "
-             "that go on with a rate are better while it lasts.",
+             "the hub up to %.2g N. Commands act %.3g ms late.",
              100 * FOLLOW_WAVE, 1e3 * FOLLOW_WALL,
-             s->parameters.motor.stiction / s->parameters.arm.length, 1e3 * study->later,
-             study->zero);
+             s->parameters.motor.stiction / s->parameters.arm.length, 1e3 * study->later);
     const figure fig = {.caption = caption,
                         .x = {.name = "frequency", .label = "Frequency", .unit = "Hz"},
                         .panels = panels,
