@@ -10,6 +10,8 @@
 
 struct impactlab_scenario {
     scenario scenario;
+    impactlab_stop_question ask; // of its runs, loops and batches; NULL: nobody is asked
+    void *ask_context;
     char title[SCENARIO_TITLED]; // with what was changed since it was read
 };
 

@@ -16,7 +16,9 @@ int impactlab_loop_create(impactlab_loop **loop, const impactlab_scenario *handl
 
     fault f = {.text = "", .path = ""};
     const loop_options options = {.keep_trace = (flags & IMPACTLAB_KEEP_ROWS) != 0,
-                                  .commanded = (flags & IMPACTLAB_COMMAND) != 0};
+                                  .commanded = (flags & IMPACTLAB_COMMAND) != 0,
+                                  .ask = handle->ask,
+                                  .ask_context = handle->ask_context};
     if (loop_create(&made->loop, &handle->scenario, &options, &f) != STATUS_OK) {
         free(made);
         return api_error(error, &f);

@@ -55,7 +55,9 @@ int impactlab_run_create_with(impactlab_run **run, const impactlab_scenario *han
     FAIL_IF(made == NULL, IMPACTLAB_NO_MEMORY);
     const given_law given = {law, context};
     const run_options options = {.keep_trace = (flags & IMPACTLAB_KEEP_ROWS) != 0,
-                                 .law = law != NULL ? &given : NULL};
+                                 .law = law != NULL ? &given : NULL,
+                                 .ask = handle->ask,
+                                 .ask_context = handle->ask_context};
     status code = run_scenario_with(&made->scenario, &options, &made->result);
     *run = made;
     API_TRY(error, code == STATUS_OK ? code : summary_fault(&made->result.summary, &f));

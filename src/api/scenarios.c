@@ -120,6 +120,15 @@ void impactlab_scenario_allow_code(impactlab_scenario *handle, int allowed)
     }
 }
 
+void impactlab_scenario_stop_when(impactlab_scenario *handle, impactlab_stop_question question,
+                                  void *context)
+{
+    if (handle != NULL) {
+        handle->ask = question;
+        handle->ask_context = context;
+    }
+}
+
 // --- asking -----------------------------------------------------------------------------------
 
 const char *impactlab_scenario_name(const impactlab_scenario *handle)

@@ -11,6 +11,8 @@
 // So many runs a thread are computed before their outcomes are handed over.
 enum { RUNS_A_TURN = 16 * RUN_TOGETHER };
 
+#define ASKED 0.01 // how often the calling thread asks while others compute [s]
+
 // A batch in hand.
 typedef struct varied {
     const scenario *base;
@@ -18,6 +20,8 @@ typedef struct varied {
     const double *values;   // row by row
     size_t axis_count;
     size_t first; // of this turn
+    stop_request stop;
+    atomic_bool stopped; // the runs in hand are to end
 } varied;
 
 // The scenario of a run of this turn; `f` says what is wrong with it.
@@ -26,6 +30,17 @@ static status vary(void *context, size_t i, scenario *made, fault *f)
     const varied *v = context;
     const double *values = v->values + (v->first + i) * v->axis_count;
     return sweep_axes_scenario(v->axes, (int)v->axis_count, values, v->base, made, f);
+}
+
+// On the calling thread, while runs are computed.
+static status look_up(void *context, bool over, fault *f)
+{
+    varied *v = context;
+    (void)over, (void)f;
+    if (stop_requested(&v->stop)) {
+        atomic_store(&v->stopped, true);
+    }
+    return STATUS_OK;
 }
 
 // Tells an outcome to the caller. False if that is enough.
@@ -44,7 +59,8 @@ static bool hand_over(const summary *s, size_t index, impactlab_outcome_taker ta
     return take(context, &outcome) == 0;
 }
 
-// Runs all in turns, each handed over before the next begins.
+// Runs all in turns, each handed over before the next begins; of one that was stopped those that
+// were done.
 static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker take,
                       void *context, impactlab_error *error)
 {
@@ -55,11 +71,22 @@ static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker
     status code = STATUS_OK;
     for (v->first = 0; code == STATUS_OK && v->first < count; v->first += turn) {
         const size_t now = count - v->first < turn ? count - v->first : turn;
-        const batch runs = {.context = v, .count = now, .make = vary, .summaries = summaries};
+        const batch runs = {.context = v,
+                            .count = now,
+                            .make = vary,
+                            .summaries = summaries,
+                            .tick = v->stop.ask != NULL ? look_up : NULL,
+                            .tick_interval = ASKED,
+                            .abandon = &v->stopped};
         code = batch_run(&runs, jobs, NULL);
         for (size_t i = 0; code == STATUS_OK && i < now; i++) {
-            code =
-                hand_over(&summaries[i], v->first + i, take, context) ? STATUS_OK : STATUS_STOPPED;
+            const bool done = summaries[i].status != STATUS_STOPPED;
+            if (done && !hand_over(&summaries[i], v->first + i, take, context)) {
+                code = STATUS_STOPPED;
+            }
+        }
+        if (code == STATUS_OK && atomic_load(&v->stopped)) {
+            code = STATUS_STOPPED;
         }
     }
     return code == STATUS_OK ? api_done(error) : api_fail(error, code, "%s", status_text(code));
@@ -90,14 +117,20 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
     }
 
     // all values before anything is run
-    varied v = {
-        .base = &handle->scenario, .axes = axes, .values = values, .axis_count = path_count};
+    varied v = {.base = &handle->scenario,
+                .axes = axes,
+                .values = values,
+                .axis_count = path_count,
+                .stop = {.ask = handle->ask, .context = handle->ask_context}};
     fault f = {.text = "", .path = ""};
     scenario tried;
     for (size_t i = 0; i < count && code == IMPACTLAB_OK; i++) {
         code = vary(&v, i, &tried, &f) == STATUS_OK
                    ? IMPACTLAB_OK
                    : api_fail(error, f.code, "run %zu: %.900s", i, f.text);
+        if (code == IMPACTLAB_OK && stop_requested(&v.stop)) {
+            code = api_fail(error, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
+        }
     }
     return code == IMPACTLAB_OK ? run_varied(&v, count, jobs, take, context, error) : code;
 }

@@ -71,7 +71,8 @@ typedef struct controller_input {
 // What a controller answers. The last three are recorded under their names, the others as the
 // signals `command` and `controller_mode`.
 typedef struct controller_output {
-    double command;          // [V]; beyond the limit it saturates, not finite it ends the run
+    double command;          // [V], NaN before the call; beyond the limit it saturates, not finite
+                             // (as one that nobody fills in) it ends the run
     int mode;                // index in controller.modes
     double desired_angle;    // of the hub, NaN if it has none [rad]
     double desired_velocity; // of the hub, NaN if it has none [rad/s]

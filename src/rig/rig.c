@@ -48,7 +48,8 @@ static status start_controller(rig *r, const parameters *p, fault *f)
 // What a controller answers that fills in nothing.
 static controller_output no_answer(void)
 {
-    return (controller_output){.desired_angle = (double)NAN,
+    return (controller_output){.command = (double)NAN,
+                               .desired_angle = (double)NAN,
                                .desired_velocity = (double)NAN,
                                .calculated_force = (double)NAN};
 }
@@ -224,9 +225,11 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     FAIL_IF(failed == STATUS_STOPPED, failed);
     FAULT_AT_IF(failed != STATUS_OK, f, failed, "control.command", "at t = %.9g s %s", time, why);
     FAULT_IF(!isfinite(out->command), f, STATUS_NOT_FINITE,
-             "at t = %.9g s the controller '%s' gave the command %g V, expected a finite "
-             "number; its sensors read %.6g rad, %.6g rad/s and %.6g N",
-             time, r->law->name, out->command, input.encoder, input.tachometer, input.force);
+             "at t = %.9g s the controller '%s' %s, expected a finite number of volts; its "
+             "sensors read %.6g rad, %.6g rad/s and %.6g N",
+             time, r->law->name,
+             isnan(out->command) ? "did not answer with a command" : "gave an infinite command",
+             input.encoder, input.tachometer, input.force);
 
     // what the D/A makes of it goes out after the delay
     r->pending[r->pending_count] = converter_value(&r->dac, out->command);

@@ -23,7 +23,7 @@ typedef struct given_law {
 typedef struct rig_options {
     const given_law *law;           // in the place of control.law
     process_transcript *transcript; // of a process, which must outlive the rig
-    const atomic_bool *stop;        // becomes true where a process is not waited for any more
+    stop_request *stop;             // where a process is not waited for any more; NULL: it is
 } rig_options;
 
 typedef struct rig {

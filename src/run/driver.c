@@ -67,7 +67,9 @@ status driver_approach(run_driver *d, bool *ended, fault *f)
 
 status driver_advance(run_driver *d, double until, bool *ended, fault *f)
 {
+    recording *r = &d->recording;
     while (!*ended && lies_ahead(d, until)) {
+        FAIL_IF(r->options->stepped && stop_requested(&r->stop), STATUS_STOPPED);
         TRY(driver_approach(d, ended, f));
         if (!*ended) {
             TRY(d->is_printed ? printed_step(&d->printed, f)

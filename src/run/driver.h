@@ -27,7 +27,8 @@ void driver_close(run_driver *d, status failed, const fault *f);
 
 // Continues to an instant [s], by phases: what is due of script and rig, then one step of the
 // motion with its rows and the event at its end. A step can be cut at any instant, but for the
-// printed arm, which continues to the first row there or later. What is due at the instant itself
+// printed arm, which continues to the first row there or later. STATUS_STOPPED
+// where it is to end; one that is stepped can go on from there. What is due at the instant itself
 // happens when the run continues from it. *ended becomes true where the run is complete; HUGE_VAL:
 // up to there.
 status driver_advance(run_driver *d, double until, bool *ended, fault *f);

@@ -92,6 +92,9 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
     l->transcript = asks ? process_transcript_create() : NULL;
     l->options = (run_options){.keep_trace = options->keep_trace,
                                .law = l->law.law != NULL ? &l->law : NULL,
+                               .ask = options->ask,
+                               .ask_context = options->ask_context,
+                               .stepped = true,
                                .transcript = l->transcript};
 
     // the run at its start
@@ -128,16 +131,21 @@ bool loop_ended(const run_loop *l)
     return l->ended;
 }
 
-// Keeps what stopped the run and says it.
+// Keeps what ended the run and says it; one that was only stopped can go on.
 static status stay_failed(run_loop *l, fault *f)
 {
-    if (l->failed != STATUS_OK && l->fault.code == STATUS_OK) {
-        fault_set(&l->fault, l->failed, "at t = %.9g s: %s", loop_time(l), status_text(l->failed));
+    const status code = l->failed;
+    if (code != STATUS_OK && l->fault.code == STATUS_OK) {
+        fault_set(&l->fault, code, "at t = %.9g s: %s", loop_time(l), status_text(code));
     }
-    if (l->failed != STATUS_OK) {
+    if (code != STATUS_OK) {
         *f = l->fault;
     }
-    return l->failed;
+    if (code == STATUS_STOPPED) {
+        l->failed = STATUS_OK;
+        l->fault = (fault){.text = "", .path = ""};
+    }
+    return code;
 }
 
 status loop_until(run_loop *l, double time, fault *f)

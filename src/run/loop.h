@@ -17,7 +17,9 @@ typedef struct run_loop run_loop;
 typedef struct loop_options {
     bool keep_trace; // rows are kept
     bool commanded;  // the rig's command is what loop_command says, in the place of control.law
-    struct given_law law; // in the place of control.law, if law.law is not NULL
+    struct given_law law;      // in the place of control.law, if law.law is not NULL
+    int (*ask)(void *context); // asked whether to stop before the instant; NULL: nobody is asked
+    void *ask_context;
 } loop_options;
 
 // Wherever something may fail, f says why and is not NULL.
@@ -32,7 +34,8 @@ double loop_time(const run_loop *l);
 bool loop_ended(const run_loop *l);
 
 // Continues to an instant [s], at most to run.duration; one that is not later changes nothing.
-// What stopped the run stays: every further call returns it again.
+// What ended the run stays: every further call returns it again. STATUS_STOPPED, if `ask` asked for
+// it, does not: the loop stands between two steps, from where the next call goes on.
 status loop_until(run_loop *l, double time, fault *f);
 // Continues to the next sample of the rig, without one to the next multiple of method.step.
 status loop_step(run_loop *l, fault *f);

@@ -25,7 +25,7 @@ static status start_rig(recording *r, fault *f)
     const rig_options given = {
         .law = o->law,
         .transcript = o->transcript,
-        .stop = r->stop,
+        .stop = &r->stop,
     };
     TRY(rig_create(&r->rig, p, &given, f));
     TRY(scenario_check_timing(r->scenario, f));
@@ -41,8 +41,14 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
                      .options = options,
                      .now = s->parameters,
                      .begun_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
-                     .begun_at = clock_seconds(CLOCK_MONOTONIC),
-                     .stop = options->monitor != NULL ? &options->monitor->stop : options->abandon};
+                     .begun_at = clock_seconds(CLOCK_MONOTONIC)};
+    r->stop = (stop_request){
+        .flag = &stop_everything, .ask = options->ask, .context = options->ask_context};
+    if (options->monitor != NULL) {
+        r->stop.flag = &options->monitor->stop;
+    } else if (options->abandon != NULL) {
+        r->stop.flag = options->abandon;
+    }
     *f = (fault){.text = "", .path = ""};
     if (!options->resume) {
         memset(result, 0, sizeof *result);
@@ -53,7 +59,7 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
     }
 
     // not even set up: an arm of a thousand links takes seconds for that
-    const bool abandoned = options->abandon != NULL && recording_asked_to_stop(r);
+    const bool abandoned = options->monitor == NULL && stop_is_set(&r->stop);
     return abandoned ? STATUS_STOPPED : start_rig(r, f);
 }
 

@@ -45,7 +45,7 @@ typedef struct recording {
     rig *rig;                   // NULL for the bare arm
     recorded_command command;   // of the rig
     double begun_cpu, begun_at; // by the thread's clock and the machine's [s]
-    const atomic_bool *stop;    // becomes true where the run is to end; NULL: it does not
+    stop_request stop;          // where the run is to end
 } recording;
 
 // Most rows that a run of which `expected` are expected reserves address space for.
@@ -55,10 +55,10 @@ size_t recording_most_rows(size_t expected);
 status recording_open_trace(recording *r, int angle_count, fault *f)
     __attribute__((warn_unused_result));
 
-// Whether the run was asked to end.
-static inline bool recording_asked_to_stop(const recording *r)
+// Whether the run is to end, within or after a step.
+static inline bool recording_asked_to_stop(recording *r)
 {
-    return r->stop != NULL && atomic_load_explicit(r->stop, memory_order_relaxed);
+    return r->options->stepped ? stop_is_set(&r->stop) : stop_requested(&r->stop);
 }
 
 // Publishes how far the run is to observers: all rows and events counted there are complete.
@@ -80,8 +80,8 @@ void recording_finish_summary(recording *r, double force_integral);
 // --- what begins and ends every run -----------------------------------------------------------
 
 // Begins to record a run of the scenario into result: an empty summary, and the rig if a law is
-// chosen or given. f holds no fault or why it cannot begin; STATUS_STOPPED where options->abandon
-// is true already. recording_end is due in any case.
+// chosen or given. f holds no fault or why it cannot begin; STATUS_STOPPED where it is to end
+// already and no monitor looks on. recording_end is due in any case.
 status recording_begin(recording *r, const scenario *s, const run_options *options,
                        run_result *result, fault *f);
 

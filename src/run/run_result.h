@@ -4,6 +4,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
+#include "src/base/stop.h"
 #include "src/predict/predict.h"
 #include "src/tables/summary.h"
 #include "src/run/trace.h"
@@ -55,6 +56,9 @@ typedef struct run_options {
     bool keep_trace;            // false keeps no rows (events and summary only)
     run_monitor *monitor;       // NULL: nobody looks on
     const atomic_bool *abandon; // without a monitor: becomes true where the run is to end at once
+    int (*ask)(void *context);  // asked whether the run is to end, of a stop_request; NULL: not
+    void *ask_context;
+    bool stepped;         // it can go on where it was stopped: it is asked between steps only
     size_t rows_expected; // if not 0, rows and events stay where they are and can be shared, and
                           // the result has a history; needs keep_trace
     const struct given_law *law; // that a program gives in the place of control.law; NULL: none

@@ -104,6 +104,7 @@ status batch_run(const batch *asked, int jobs, fault *f)
                             .compute = compute,
                             .collect = collect,
                             .tick = b.tick != NULL ? tick : NULL,
+                            .tick_interval = b.tick_interval,
                             .release = release,
                             .stop = b.stop};
     return pool_run(&work, pieces < 1 ? 1 : pieces < threads ? (int)pieces : (int)threads, f);

@@ -18,6 +18,7 @@ typedef struct batch {
 
     size_t together; // runs that make a piece of work, at most; 0: RUN_TOGETHER
     status (*tick)(void *context, bool over, fault *f); // those of pool_work
+    double tick_interval;                               //
     const volatile sig_atomic_t *stop;                  //
     const atomic_bool *abandon;                         // that of run_together
 } batch;

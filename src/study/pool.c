@@ -73,11 +73,16 @@ static void *work_on_pieces(void *argument)
     return NULL;
 }
 
+static double tick_interval(const pool_work *w)
+{
+    return w->tick_interval > 0 ? w->tick_interval : TICK_INTERVAL;
+}
+
 // Waits a little for a finished piece. Its place, -1 without one; *more is false if all threads
 // have ended and nothing is left.
 static int wait_for_piece(pool *p, bool stop, bool *more)
 {
-    const struct timespec until = clock_after(TICK_INTERVAL);
+    const struct timespec until = clock_after(tick_interval(p->work));
     pthread_mutex_lock(&p->mutex);
     p->stop = p->stop || stop;
     int waited = 0;
@@ -118,7 +123,7 @@ static status collect_results(pool *p, fault *f)
 
         // a tick now and then, and one at the end
         double now = clock_seconds(CLOCK_MONOTONIC);
-        if (code == STATUS_OK && w->tick != NULL && (!more || now - ticked >= TICK_INTERVAL)) {
+        if (code == STATUS_OK && w->tick != NULL && (!more || now - ticked >= tick_interval(w))) {
             code = w->tick(w->context, !more, f);
             ticked = now;
         }

@@ -25,9 +25,10 @@ typedef struct pool_work {
     // pieces in hand are finished, and nothing more is collected.
     status (*collect)(void *context, size_t i, const void *result, fault *f);
 
-    // Called on the calling thread about ten times a second, and once at the end; may be NULL.
-    // Fails as collect does.
+    // Called on the calling thread about every tick_interval [s] (0: ten times a second), and once
+    // at the end; may be NULL. Fails as collect does.
     status (*tick)(void *context, bool over, fault *f);
+    double tick_interval;
 
     // Frees what compute keeps in a thread's scratch; NULL if that is nothing.
     void (*release)(void *scratch);

@@ -262,6 +262,110 @@ TEST(commands_come_from_outside)
     check_same(peak_of_loop(loop), quantity_of(run, "peak_force_N"));
 }
 
+// One that falls silent half-way.
+static void fall_silent(void *memory, const controller_input *in, controller_output *out)
+{
+    (void)memory;
+    if (in->time < 0.5) {
+        out->command = 1;
+    }
+}
+
+// What nobody answers is no command of 0 V: the run ends there and says who did not answer.
+TEST(a_controller_that_does_not_answer_ends_the_run)
+{
+    static const char *const modes[] = {"push", NULL};
+    static const controller law = {.interface = CONTROLLER_INTERFACE,
+                                   .name = "silent",
+                                   .modes = modes,
+                                   .memory_size = sizeof(outside),
+                                   .sample = fall_silent};
+    own_scenario *scenario = opened(first_impact);
+    own_run *run;
+    impactlab_series time;
+    check_refused(impactlab_run_create_with(&run, scenario, IMPACTLAB_KEEP_ROWS, &law, NULL, &told),
+                  "at t = 0.5 s the controller 'silent' did not answer");
+    assert_string_equal(impactlab_run_status(run), "failed");
+
+    // what was computed until then is there
+    check_done(impactlab_run_signal(run, "time", &time, &told));
+    assert_true(time.count > 500);
+}
+
+// --- stops ------------------------------------------------------------------------------------
+
+// Counts how often it was asked, and says yes from a question on.
+typedef struct asked {
+    int count, enough;
+} asked;
+
+static int is_enough(void *context)
+{
+    asked *a = context;
+    return ++a->count >= a->enough;
+}
+
+// An arm that nothing damps, which would take hours.
+static impactlab_scenario *endless(asked *a)
+{
+    impactlab_scenario *scenario = opened(first_impact);
+    set(scenario, "arm.links", "24");
+    set(scenario, "arm.damping_ratio", "0");
+    set(scenario, "run.duration", "90000");
+    impactlab_scenario_stop_when(scenario, is_enough, a);
+    return scenario;
+}
+
+TEST(a_question_ends_a_run)
+{
+    asked a = {.enough = 5}, never = {.enough = 1000000};
+    own_scenario *scenario = endless(&a);
+    own_run *run, *whole;
+    impactlab_series time;
+    check_refused(impactlab_run_create(&run, scenario, IMPACTLAB_KEEP_ROWS, &told), "stopped");
+    assert_int_equal(told.status, IMPACTLAB_STOPPED);
+    assert_int_equal(a.count, 5);
+    check_done(impactlab_run_signal(run, "time", &time, &told));
+    assert_true(time.count > 1);
+
+    // who is asked and says no changes nothing
+    set(scenario, "run.duration", "0.5");
+    impactlab_scenario_stop_when(scenario, is_enough, &never);
+    check_done(impactlab_run_create(&run, scenario, 0, &told));
+    impactlab_scenario_stop_when(scenario, NULL, NULL);
+    check_done(impactlab_run_create(&whole, scenario, 0, &told));
+    check_same(quantity_of(run, "peak_force_N"), quantity_of(whole, "peak_force_N"));
+    assert_true(never.count > 0);
+}
+
+// A loop that is stopped again and again comes to the same rows as one that is not.
+TEST(a_stopped_loop_goes_on)
+{
+    asked a = {.enough = 1};
+    own_scenario *scenario = endless(&a);
+    own_loop *stopped = loop_of(scenario, IMPACTLAB_KEEP_ROWS);
+    int stops = 0;
+    while (impactlab_loop_step_until(stopped, 0.5, &told) == IMPACTLAB_STOPPED) {
+        stops++;
+    }
+    assert_int_equal(told.status, IMPACTLAB_OK);
+    assert_true(stops > 0 && stops == a.count);
+
+    // each ends where no step is under way
+    impactlab_scenario_stop_when(scenario, NULL, NULL);
+    own_loop *loop = loop_of(scenario, IMPACTLAB_KEEP_ROWS);
+    check_done(impactlab_loop_step_until(loop, 0.5, &told));
+    own_run *one, *other;
+    check_done(impactlab_loop_run(stopped, &one, &told));
+    check_done(impactlab_loop_run(loop, &other, &told));
+    char *rows, *expected;
+    check_done(impactlab_run_csv(one, &rows, &told));
+    check_done(impactlab_run_csv(other, &expected, &told));
+    assert_string_equal(rows, expected);
+    impactlab_text_free(rows);
+    impactlab_text_free(expected);
+}
+
 static void step_to(impactlab_loop *loop, double time)
 {
     while (!impactlab_loop_ended(loop) && impactlab_loop_time(loop) < time) {
@@ -400,6 +504,65 @@ static int collect(void *context, const impactlab_outcome *outcome)
     assert_int_equal(outcome->index, c->count);
     c->peak[c->count++] = outcome->quantities[peak];
     return c->count == c->most;
+}
+
+// Durations of a batch, what came of each, and how many came.
+typedef struct durations {
+    double values[40], work[40];
+    int status[40];
+    size_t count;
+} durations;
+
+static int keep_work(void *context, const impactlab_outcome *outcome)
+{
+    durations *d = context;
+    size_t work = 0;
+    while (strcmp(impactlab_quantity_at(work)->key, "motor_work_J") != 0) {
+        work++;
+    }
+    d->work[outcome->index] = outcome->quantities[work];
+    d->status[outcome->index] = outcome->status;
+    d->count++;
+    return 0;
+}
+
+// Of a batch that is stopped the runs that were done come, each under its own number, and those
+// that fail among them.
+TEST(a_stopped_batch_has_the_right_rows)
+{
+    static const char *const paths[] = {"run.duration", "control.law"};
+    asked a = {.enough = 30};
+    own_scenario *scenario = endless(&a), *single = endless(&a);
+    durations d = {.count = 0};
+    double values[40][2], plugin;
+    set(scenario, "control.plugin", "not-allowed.so");
+    set(single, "control.plugin", "not-allowed.so");
+    set(single, "control.law", "plugin");
+    plugin = number_of(single, "control.law");
+    set(single, "control.law", "none");
+    impactlab_scenario_stop_when(single, NULL, NULL);
+    for (int i = 0; i < 40; i++) {
+        d.status[i] = -1;
+        values[i][0] = i % 4 == 2 ? 90000 : 0.001 * (i + 1);
+        values[i][1] = i % 4 == 1 ? plugin : number_of(single, "control.law");
+    }
+    check_refused(impactlab_batch(scenario, paths, 2, values[0], 40, 2, keep_work, &d, &told),
+                  "stopped");
+    assert_int_equal(told.status, IMPACTLAB_STOPPED);
+    assert_true(a.count >= 30 && d.count > 0 && d.count <= 30);
+
+    for (int i = 0; i < 40; i++) {
+        if (i % 4 == 2) {
+            assert_int_equal(d.status[i], -1);
+        } else if (i % 4 == 1 && d.status[i] >= 0) {
+            assert_int_equal(d.status[i], IMPACTLAB_NOT_ALLOWED);
+        } else if (d.status[i] >= 0) {
+            check_done(impactlab_scenario_set_number(single, "run.duration", values[i][0], &told));
+            own_run *run = run_of(single, 0);
+            assert_int_equal(d.status[i], IMPACTLAB_OK);
+            check_same(d.work[i], quantity_of(run, "motor_work_J"));
+        }
+    }
 }
 
 TEST(batches_are_runs)

@@ -174,6 +174,17 @@ IMPACTLAB_EXPORT int impactlab_scenario_add_push(impactlab_scenario *scenario, d
 // Whether the scenario may start the program or load the plug-in that it names: 1 or 0 (default).
 IMPACTLAB_EXPORT void impactlab_scenario_allow_code(impactlab_scenario *scenario, int allowed);
 
+// Whether what the library computes is to end before its end: other than 0 if so.
+typedef int (*impactlab_stop_question)(void *context);
+
+// Lets runs, loops and batches that are made from this handle from here on ask `question` (NULL:
+// nobody, as at first), on the thread that called the library, at least every 10 ms or, of arms
+// whose step takes longer, after each step. A run or batch that is stopped returns
+// IMPACTLAB_STOPPED with what it has until then; so does a loop, which goes on from there when it
+// is called again.
+IMPACTLAB_EXPORT void impactlab_scenario_stop_when(impactlab_scenario *scenario,
+                                                   impactlab_stop_question question, void *context);
+
 // The scenario as the text of a YAML file, without its expectations; impactlab_text_free frees it.
 IMPACTLAB_EXPORT int impactlab_scenario_yaml(const impactlab_scenario *scenario, char **yaml,
                                              impactlab_error *error);
@@ -281,7 +292,7 @@ IMPACTLAB_EXPORT void impactlab_loop_destroy(impactlab_loop *loop);
 
 // Advances to the next sample of the rig (without a rig, by method.step), or to an instant [s], but
 // not beyond run.duration. The printed model has no states between its steps: it advances to the
-// first step at or after the instant. An error that stopped the run is returned by every further
+// first step at or after the instant. An error that ended the run is returned by every further
 // call.
 IMPACTLAB_EXPORT int impactlab_loop_step(impactlab_loop *loop, impactlab_error *error);
 IMPACTLAB_EXPORT int impactlab_loop_step_until(impactlab_loop *loop, double time,
@@ -350,8 +361,9 @@ typedef int (*impactlab_outcome_taker)(void *context, const impactlab_outcome *o
 
 // Runs the scenario `count` times on `jobs` threads (0: as many as there are processors): in run i
 // parameter paths[k] has the value values[i * path_count + k]. Each outcome is the same to the last
-// bit as that of a run by itself, whatever the number of threads. IMPACTLAB_STOPPED if `take` ended
-// it. All values are checked before the first run.
+// bit as that of a run by itself, whatever the number of threads. IMPACTLAB_STOPPED if `take` or
+// the scenario's question ended it; `take` gets those that were done. All values are checked before
+// the first run.
 IMPACTLAB_EXPORT int impactlab_batch(const impactlab_scenario *scenario, const char *const *paths,
                                      size_t path_count, const double *values, size_t count,
                                      int jobs, impactlab_outcome_taker take, void *context,

@@ -29,7 +29,7 @@ enum {
 struct process {
     supervised_program program;
     process_transcript *transcript; // of the questions, NULL for none; somebody else's
-    const atomic_bool *stop;        // becomes true where the run is to end; NULL: it does not
+    stop_request *stop;             // where the run is to end; NULL: it does not
     const transcript_node *at;      // the place that the running program has come to
     long asked;                     // questions it has been asked
     int started;                    // how many times it was started
@@ -54,7 +54,7 @@ typedef struct process_memory {
 } process_memory;
 
 process *process_create(const control_parameters *control, process_transcript *transcript,
-                        const atomic_bool *stop)
+                        stop_request *stop)
 {
     process *p = calloc(1, sizeof *p);
     if (p != NULL) {
@@ -142,10 +142,13 @@ static bool fail_without_memory(process *p)
     return fail(p, STATUS_NO_MEMORY, "could not be asked: %s", status_text(STATUS_NO_MEMORY));
 }
 
-// Whether the run was asked to end: the program, too, is ended then.
+// Whether the run is to end: the program, too, is ended then.
 static bool run_ends(process *p)
 {
-    const bool ends = p->stop != NULL && atomic_load_explicit(p->stop, memory_order_relaxed);
+    if (p->stop != NULL) {
+        p->stop->due = 0; // who waits looks seldom
+    }
+    const bool ends = p->stop != NULL && stop_requested(p->stop);
     if (ends) {
         supervised_program_end(&p->program);
         p->failure[0] = '\0';

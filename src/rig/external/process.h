@@ -10,22 +10,21 @@
 // as recorded, or the run fails with a sentence.
 #pragma once
 
-#include <stdatomic.h>
-
 #include "src/tables/parameters.h"
 #include "src/rig/controller.h"
 #include "src/rig/external/process_lines.h"
 #include "src/base/fault.h"
+#include "src/base/stop.h"
 
 typedef struct process process;
 
 // The controller that asks the program; it is given with a process as its context.
 extern const controller process_law;
 
-// A process that is yet to be started, with a transcript of somebody else's or NULL. `stop` becomes
-// true, from outside, where its run is asked to end; it may be NULL. NULL without memory.
+// A process that is yet to be started, with a transcript of somebody else's or NULL. `stop` says
+// where its run is to end; it may be NULL. NULL without memory.
 process *process_create(const control_parameters *control, process_transcript *transcript,
-                        const atomic_bool *stop);
+                        stop_request *stop);
 
 // Ends the program and everything it started that stays in its process group; p may be NULL.
 void process_destroy(process *p);

@@ -4,8 +4,12 @@ import copy
 import gc
 import json
 import math
+import os
 import pickle
+import signal
 import threading
+import time
+import traceback
 import weakref
 
 import numpy as np
@@ -91,6 +95,87 @@ def test_a_function_and_a_loop_are_the_same_controller():
 def test_what_a_controller_raises_comes_out():
     with pytest.raises(ZeroDivisionError):
         Scenario(FIRST).run(controller=lambda reading: 1 / 0)
+
+
+def test_what_a_controller_raises_has_its_place():
+    def divide(reading):
+        return 1 / (0.1 - reading.time)
+
+    def silent(reading):
+        return 1.0 if reading.time < 0.5 else math.nan
+    with pytest.raises(ZeroDivisionError) as raised:
+        Scenario(FIRST).run(controller=divide)
+    assert "divide" in [frame.name for frame in traceback.extract_tb(raised.value.__traceback__)]
+    with pytest.raises(Error, match="at t = 0.5 s the controller 'python' did not answer"):
+        Scenario(FIRST).run(controller=silent)
+
+
+def endless():
+    """A scenario that would take hours."""
+    scenario = Scenario(FIRST)
+    scenario.set({"arm.links": 24, "arm.damping_ratio": 0, "run.duration": 90000})
+    return scenario
+
+
+def steps(scenario):
+    loop = Loop(scenario, command=True)
+    while not loop.ended:
+        loop.command(1.0)
+        loop.step()
+
+
+def waits(reading):
+    time.sleep(1000)
+
+
+WORKS = {
+    "run": lambda s: s.run(),
+    "run without rows": lambda s: s.run(rows=False),
+    "controller": lambda s: s.run(rows=False, controller=lambda reading: 1.0),
+    "controller that waits": lambda s: s.run(controller=waits),
+    "batch": lambda s: s.batch({"motor.voltage": [1, 2, 3, 4]}),
+    "batch of one thread": lambda s: s.batch({"motor.voltage": [1, 2, 3, 4]}, jobs=1),
+    "batch of short runs": lambda s: Scenario(FIRST).batch(
+        {"motor.voltage": np.linspace(1, 2, 2000000)}),
+    "loop": lambda s: Loop(s).step_until(90000),
+    "steps": steps,
+}
+
+
+@pytest.mark.parametrize("delay", [0, 0.02, 0.3])
+@pytest.mark.parametrize("work", WORKS)
+def test_an_interrupt_comes_out(work, delay):
+    # the work ends by nothing else, wherever it is then
+    scenario = endless()
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    timer = threading.Timer(delay, os.kill, (os.getpid(), signal.SIGINT))
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            timer.start()
+            WORKS[work](scenario)
+    finally:
+        timer.join()
+        signal.signal(signal.SIGINT, before)
+    scenario.run.duration = 0.05
+    assert scenario.run().status == "ok"
+
+
+def test_an_interrupted_loop_goes_on():
+    scenario = endless()
+    loop, other = Loop(scenario), Loop(scenario)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            timer.start()
+            loop.step_until(90000)
+    finally:
+        timer.join()
+        signal.signal(signal.SIGINT, before)
+    until = loop.time + 0.01
+    loop.step_until(until)
+    other.step_until(until)
+    assert loop.time == until and np.array_equal(loop.state, other.state)
 
 
 def test_states_are_bytes():

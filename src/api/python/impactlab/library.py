@@ -6,10 +6,11 @@ from __future__ import annotations
 import ctypes
 import difflib
 import os
+import sys
 import threading
 from ctypes import POINTER, c_char, c_char_p, c_double, c_int, c_size_t, c_void_p
 from pathlib import Path
-from typing import Any, Callable, Iterable, Iterator, Optional
+from typing import Any, Callable, Iterable, Iterator, List, Optional
 
 import numpy as np
 
@@ -163,6 +164,7 @@ class OutputStruct(ctypes.Structure):
 
 SampleFunction = ctypes.CFUNCTYPE(None, c_void_p, POINTER(InputStruct), POINTER(OutputStruct))
 TakeFunction = ctypes.CFUNCTYPE(c_int, c_void_p, POINTER(OutcomeStruct))
+StopFunction = ctypes.CFUNCTYPE(c_int, c_void_p)
 
 
 class ControllerStruct(ctypes.Structure):
@@ -232,6 +234,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "scenario_add_change": (c_int, [_handle, c_double, _text, _text, _error]),
     "scenario_add_push": (c_int, [_handle, c_double, c_double, _error]),
     "scenario_allow_code": (None, [_handle, c_int]),
+    "scenario_stop_when": (None, [_handle, StopFunction, c_void_p]),
     "scenario_yaml": (c_int, [_handle, POINTER(c_void_p), _error]),
     "text_free": (None, [c_void_p]),
     "run_create": (c_int, [POINTER(_handle), _handle, c_int, _error]),
@@ -293,6 +296,50 @@ def error_of(error: ErrorStruct) -> Error:
     """The exception of what the library says."""
     return Error(error.sentence.decode(errors="replace"), error.status, error.parameter.decode(),
                  error.line, error.column)
+
+
+class Callbacks:
+    """What is raised while the library calls back, by ^C too, cannot pass through it: it is kept
+    in `raised`, stops what the library does, and is raised by `tell` once that is over.
+
+        with callbacks:
+            code = lib.impactlab_...
+        callbacks.tell()
+    """
+
+    def __init__(self) -> None:
+        raised: List[BaseException] = []
+        self.raised = raised
+        self._question = StopFunction(lambda context: len(raised) > 0)
+
+    def listen(self, scenario: Any) -> None:
+        """Runs, loops and batches made of the scenario's handle ask from now on; they hold no
+        reference to this object."""
+        lib.impactlab_scenario_stop_when(scenario._handle, self._question, None)
+
+    def _keep(self, unraisable: Any) -> None:
+        # a signal's handler runs before the first line of a callback, outside of any `try` there
+        here = threading.current_thread() is threading.main_thread()
+        if here and "ctypes callback" in (unraisable.err_msg or ""):
+            self.raised.append(unraisable.exc_value)
+        else:
+            self._hook(unraisable)
+
+    def __enter__(self) -> None:
+        self.raised.clear()
+        self._hook: Any = None
+        if threading.current_thread() is threading.main_thread():  # others get no signals
+            self._hook = sys.unraisablehook
+            sys.unraisablehook = self._keep
+
+    def __exit__(self, *ignored: Any) -> None:
+        if self._hook is not None:
+            sys.unraisablehook = self._hook
+
+    def tell(self) -> None:
+        """Raises what was raised first, with its traceback."""
+        if self.raised:
+            raise self.raised.pop(0)
 
 
 class Owner:

@@ -10,7 +10,8 @@ from typing import Any, Union
 import numpy as np
 
 from . import library
-from .library import COMMAND, KEEP_ROWS, ErrorStruct, Owner, call, lib, number, raise_error, text
+from .library import (COMMAND, KEEP_ROWS, Callbacks, ErrorStruct, Owner, call, lib, number,
+                      raise_error, text)
 from .run import Run
 from .scenario import Scenario, value_of
 
@@ -37,22 +38,31 @@ class Loop(Owner):
             raise TypeError(f"expected a Scenario, not {type(scenario).__name__}")
         self._error = ErrorStruct()
         flags = (COMMAND if command else 0) | (KEEP_ROWS if rows else 0)
-        with scenario._lock:
-            call("loop_create", byref(self._handle), scenario._handle, flags)
+        self._callbacks = Callbacks()
+        own = scenario.copy()
+        self._callbacks.listen(own)
+        call("loop_create", byref(self._handle), own._handle, flags)
 
     # what is called at every step has the loop's own place for errors
 
-    def step(self) -> float:
-        """Goes on to the rig's next sample (without a rig by method.step). Returns the time [s]."""
+    def _go(self, function: str, *arguments: float) -> float:
+        """Goes on; what stops it, such as ^C, leaves it between two steps."""
         with self._lock:
-            if lib.impactlab_loop_step(self._handle, byref(self._error)) != 0:
+            with self._callbacks:
+                code = getattr(lib, "impactlab_loop_" + function)(self._handle, *arguments,
+                                                                  byref(self._error))
+            self._callbacks.tell()
+            if code != 0:
                 raise_error(self._error)
             return lib.impactlab_loop_time(self._handle)
 
+    def step(self) -> float:
+        """Goes on to the rig's next sample (without a rig by method.step). Returns the time [s]."""
+        return self._go("step")
+
     def step_until(self, time: float) -> float:
         """Goes on to an instant [s], at most to the end. Returns the time [s]."""
-        self._call("loop_step_until", number(time, "an instant"))
-        return self.time
+        return self._go("step_until", number(time, "an instant"))
 
     @property
     def time(self) -> float:

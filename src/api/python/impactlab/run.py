@@ -12,7 +12,7 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Pro
 import numpy as np
 
 from . import library
-from .library import Error, ErrorStruct, Owner, Table, call, error_of, lib, missing, number, text
+from .library import Callbacks, ErrorStruct, Owner, Table, call, error_of, lib, missing, number, text
 
 
 class Source(Protocol):
@@ -100,17 +100,17 @@ class Run(Owner):
         raise TypeError("a run comes from scenario.run() or loop.run()")
 
     @classmethod
-    def _create(cls, scenario: Source, flags: int, law: Any = None) -> "Run":
+    def _create(cls, scenario: Source, flags: int, callbacks: Callbacks, law: Any = None) -> "Run":
         """A run of a scenario that nobody else has."""
         run = cls.__new__(cls)
         error = ErrorStruct()
-        if law is None:
-            code = lib.impactlab_run_create(byref(run._handle), scenario._handle, flags,
-                                            byref(error))
-            run._scenario = scenario if flags else None
-        else:
+        callbacks.listen(scenario)
+        with callbacks:
             code = lib.impactlab_run_create_with(byref(run._handle), scenario._handle, flags,
-                                                 byref(law), None, byref(error))
+                                                 None if law is None else byref(law), None,
+                                                 byref(error))
+        callbacks.tell()
+        run._scenario = scenario if law is None and flags else None
         run._read()
         if code != 0:
             failure = error_of(error)
@@ -276,46 +276,42 @@ class Batch:
                                  **{key: self[key] for key in QUANTITIES}})
 
 
-ANSWERS = ("command", "desired_angle", "desired_velocity", "calculated_force")
+ANSWERS = ("desired_angle", "desired_velocity", "calculated_force", "command")
 
 
 def _take_answer(out: Any, answered: Any) -> None:
-    """What a controller returned: volts, or a mapping of what it may answer."""
+    """What a controller returned: volts, or a mapping of what it may answer. The command, without
+    which there is no answer, comes last."""
     if not isinstance(answered, Mapping):
         out.command = number(answered, "the command of a controller")
         return
-    for name, value in answered.items():
+    for name in answered:
         if name not in ANSWERS:
             raise KeyError(missing("a controller's answer has no", name, ANSWERS))
-        setattr(out, name, number(value, name))
     if "command" not in answered:
         raise KeyError("a controller's answer lacks 'command', expected volts")
+    for name in ANSWERS:
+        if name in answered:
+            setattr(out, name, number(answered[name], name))
 
 
 def run_with(scenario: Source, flags: int, function: Callable[[Any], Any]) -> Run:
     """A run with a Python function as its controller; what it raises is raised again."""
-    raised: List[BaseException] = []
+    callbacks = Callbacks()
     if not callable(function):
         raise TypeError(f"expected a function as the controller, not {type(function).__name__}")
 
     def sample(memory: Any, reading: Any, answer: Any) -> None:
-        out = answer.contents
         try:
-            # a copy, as the function may keep it
-            _take_answer(out, function(library.InputStruct.from_buffer_copy(reading.contents)))
-        except BaseException as failure:  # it cannot pass through the library
-            raised.append(failure)
-            out.command = float("nan")
+            # a copy, as the function may keep it; without a command the run ends
+            if not callbacks.raised:
+                _take_answer(answer.contents,
+                             function(library.InputStruct.from_buffer_copy(reading.contents)))
+        except BaseException as failure:
+            callbacks.raised.append(failure)
 
     modes = (c_char_p * 2)(b"python", None)
     law = library.ControllerStruct(interface=library.CONTROLLER_INTERFACE, name=b"python",
                                    modes=modes, memory_size=ctypes.sizeof(c_void_p),
                                    sample=library.SampleFunction(sample))
-    try:
-        run = Run._create(scenario, flags, law)
-    except Error:
-        if not raised:
-            raise
-    if raised:
-        raise raised[0]
-    return run
+    return Run._create(scenario, flags, callbacks, law)

@@ -11,7 +11,7 @@ from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from . import library
-from .library import KEEP_ROWS, Error, Owner, Table, call, lib, missing
+from .library import KEEP_ROWS, Callbacks, Error, Owner, Table, call, lib, missing
 from .run import QUANTITIES, Batch, Run, run_with
 
 Value = Union[float, int, bool, str, Sequence[float]]
@@ -105,7 +105,7 @@ class Runner(Group):
         scenario = self._scenario.copy()
         if controller is not None:
             return run_with(scenario, KEEP_ROWS if rows else 0, controller)
-        return Run._create(scenario, KEEP_ROWS if rows else 0)
+        return Run._create(scenario, KEEP_ROWS if rows else 0, Callbacks())
 
 
 def value_of(path: str, value: Value) -> Union[float, str]:
@@ -294,31 +294,29 @@ class Scenario(Owner):
         values = np.ascontiguousarray(np.stack([c.ravel() for c in columns], axis=1))
         count = len(values)
         found = np.full((count, len(QUANTITIES)), np.nan)
-        words: List[str] = []
-        messages: List[str] = []
-        raised: List[BaseException] = []
+        words, messages = [""] * count, [""] * count
+        callbacks, error = Callbacks(), library.ErrorStruct()
 
         def take(context: Any, outcome: Any) -> int:
             one = outcome.contents
             try:
                 ctypes.memmove(found[one.index].ctypes.data, one.quantities, 8 * one.quantity_count)
-                words.append(one.word.decode())
-                messages.append(one.message.decode(errors="replace"))
-            except BaseException as failure:  # it cannot pass through the library
-                raised.append(failure)
-            return len(raised)
+                words[one.index] = one.word.decode()
+                messages[one.index] = one.message.decode(errors="replace")
+            except BaseException as failure:
+                callbacks.raised.append(failure)
+            return len(callbacks.raised)
 
         array = (c_char_p * len(paths))(*[library.text(p, "the path of a parameter") for p in paths])
         base = self.copy()  # whatever another thread makes of it meanwhile
-        try:
-            call("batch", base._handle, array, len(paths),
-                 values.ctypes.data_as(POINTER(c_double)), count, threads,
-                 library.TakeFunction(take), None)
-        except Error:
-            if not raised:
-                raise
-        if raised:
-            raise raised[0]
+        callbacks.listen(base)
+        with callbacks:
+            code = lib.impactlab_batch(base._handle, array, len(paths),
+                                       values.ctypes.data_as(POINTER(c_double)), count, threads,
+                                       library.TakeFunction(take), None, byref(error))
+        callbacks.tell()
+        if code != 0:
+            library.raise_error(error)
         return Batch({p: values[:, k] for k, p in enumerate(paths)}, found, words, messages)
 
     def modes(self, hub: str = "free", tip: str = "free") -> Tuple[np.ndarray, np.ndarray]:
