@@ -88,6 +88,7 @@ chain_outcome chain_outcome_of(const chain_start *start)
         }
         const bool waited = isnan(o.first_contact);
         impulses += r.impulse;
+        o.impulses = impulses;
         o.impacts += r.event == MOTION_IMPACT;
         if (r.event == MOTION_IMPACT || (r.event == MOTION_TOUCH && before_contact == 0)) {
             chain_outcome_note(&o, now, speed, parted);

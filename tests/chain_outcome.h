@@ -14,6 +14,7 @@ typedef struct chain_outcome {
     status status;           // of the last step; else as far as it came
     double first_contact;    // [s], NaN without one
     double first_impulse;    // [N s]
+    double impulses;         // of all impacts [N s]
     double motor_work;       // [J]
     double residual, put_in; // the ledger's largest; energy and work that went in [J]
     double peak, peak_time;  // of the force in contact; when, of an arm that it does not hold still

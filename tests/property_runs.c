@@ -5,6 +5,7 @@
 // - it takes less than MOST_SECONDS of a processor for a simulated second;
 // - a tenth of the step gives the same first contact and the same impulse of it;
 // - its events tell what is in contact and what sticks;
+// - no mean of its force is beyond what the force was;
 // - computed again, and resumed from a checkpoint with a change at any instant, it has the same
 // bytes.
 //
@@ -13,6 +14,7 @@
 // Run i is made of its own number, so one that failed is made again by `property_runs 1 i`. The
 // last line says how many runs were made, compared, resumed and found wrong.
 #include "src/run/resume.h"
+#include "tests/force_means.h"
 #include "tests/random_settings.h"
 #include "tests/shipped_scenario.h"
 #include "tests/told_events.h"
@@ -55,6 +57,8 @@ static const struct {
     {"belief.k2_factor", 0.7, 1.4, LOGARITHMIC, 1 << RIG},
     {"sensor.fsr_noise", 1e-3, 0.2, OR_ZERO, 1 << RIG},
     {"sensor.tachometer_noise", 1e-3, 0.2, OR_ZERO, 1 << RIG},
+    {"motor.inductance", 1e-3, 0.3, OR_ZERO, 1 << RIG},
+    {"motor.current_limit", 0.05, 5, OR_ZERO, 1 << RIG},
 };
 enum { RANGES = sizeof ranges / sizeof ranges[0] };
 
@@ -75,7 +79,7 @@ static bool make_run(random_run *r, uint64_t number, run_kind kind, fault *f)
     r->must_fit = true;
     random_generator *g = &r->chance;
 
-    set(r, "run.duration", kind == RIG ? "0.8" : "0.5");
+    set(r, "run.duration", kind == RIG ? "1.5" : "0.5");
     set_number(r, "arm.links",
                kind == CHAIN ? 3 + (double)random_below(g, 14)
                              : 2 + (double)random_below(g, kind == SOFT ? 5 : 3));
@@ -87,6 +91,7 @@ static bool make_run(random_run *r, uint64_t number, run_kind kind, fault *f)
     } else if (kind == RIG) {
         const int law = LAW_NONE + 1 + (int)random_below(g, LAW_PLUGIN - LAW_NONE - 1);
         set(r, "control.law", control_law_table[law].word);
+        set(r, "sensor.ideal", random_uniform(g) < 0.5 ? "true" : "false");
     }
 
     for (int i = 0; i < RANGES; i++) {
@@ -210,6 +215,10 @@ static void run_one(tally *t, uint64_t number, run_kind kind)
         char text[80];
         snprintf(text, sizeof text, "%s at %.9g s", event_name(wrong->kind), wrong->time);
         complain(t, &r, "an event contradicts others", text);
+    }
+    const char *beyond = impossible_mean(&result);
+    if (beyond != NULL) {
+        complain(t, &r, beyond, "");
     }
 
     // the same again, in other ways

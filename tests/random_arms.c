@@ -32,6 +32,7 @@
 
 #include "src/base/clock.h"
 #include "tests/explicit_stepper.h"
+#include "tests/force_means.h"
 #include "tests/random_arm.h"
 #include "tests/reference/implicit_arm.h"
 
@@ -526,6 +527,14 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
                  mine.residual, mine.put_in);
         describe(r, number, what);
         return;
+    }
+    for (int i = 1; i < mine.samples; i++) {
+        const double mean = (mine.momentum[i] - mine.momentum[i - 1]) / REFERENCE_INTERVAL;
+        if (!mean_is_within(mean, fmax(mine.peak, 0), mine.impulses, REFERENCE_INTERVAL)) {
+            describe(r, number, "WRONG: a mean that the force never was");
+            t->wrong++;
+            return;
+        }
     }
     distances d = distances_of(r, &truth, &mine);
     const distances none = {0};

@@ -11,6 +11,7 @@
 // Of a whole run is looked at besides: that it is refused where it starts behind the wall, and only
 // there; that the limit it fails by stands in docs/explanation/trust.md; that no arm is inside a
 // rigid wall.
+#include "tests/force_means.h"
 #include "tests/listed_limits.h"
 #include "tests/random_settings.h"
 
@@ -244,6 +245,10 @@ static const char *complaint(const random_run *made, const run_result *r)
                         isfinite(of->contact_impulse_Ns) == isfinite(of->first_contact_s);
     if (of->status == STATUS_OK && !finite) {
         return "a number is not finite";
+    }
+    const char *beyond = impossible_mean(r);
+    if (beyond != NULL) {
+        return beyond;
     }
     return whole ? complaint_of_whole(made, r) : of->inaccurate ? "inaccurate" : NULL;
 }

@@ -1,7 +1,10 @@
 // When a force has settled, and the largest mean over a window, on forces known in closed form.
 #include "src/run/recording.h"
 #include "src/contact/contact_machine.h"
+#include "src/run/driver.h"
+#include "tests/force_means.h"
 #include "tests/rig_fixture.h"
+#include "tests/shipped_scenario.h"
 
 #define STEP 1e-2 // [s]
 
@@ -286,5 +289,56 @@ TEST(the_force_kept_has_the_impulse_of_decays)
             sum += step->mean * (step->end - step->start);
         }
         check_relative(sum, pressed(&p), 1e-4);
+    }
+}
+
+// Wall and friction hold two links, and only the motor's current goes on: once it has settled the
+// force is that of the last row, and so is its mean, however long the strides are by then.
+TEST(a_held_arm_presses_with_the_mean_of_its_force)
+{
+    static const char *const cases[][2] = {
+        {"compare/open-loop", "motor.inductance=0.02 sensor.ideal=true"},
+        {"compare/hybrid", "motor.current_limit=1 wall.kind=plane sensor.ideal=true"},
+        {"compare/hybrid", "motor.inductance=0.041 sensor.ideal=true"},
+        {"compare/bang-bang", "motor.current_limit=0.5036 sensor.ideal=true"},
+        {"compare/observer", "motor.inductance=0.0201"},
+        {"compare/observer", "motor.inductance=0.0073"}};
+    for (EACH(c, cases)) {
+        KEPT_SCENARIO(s) = shipped_with((*c)[0], (*c)[1]);
+        KEPT_RUN(r) = run_done(&s, true);
+        const sample *last = &r.trace.rows[r.trace.row_count - 1];
+        assert_true(last->contact != 0 && last->sticking != 0);
+        check_close(r.summary.steady_force_N, last->force, 1e-6);
+        assert_null(impossible_mean(&r));
+
+        // what a sensor reads is that force, too, by the digits of its converter
+        check_close(last->force_reading, last->force, 0.05 * last->force);
+    }
+}
+
+// A mean beyond the range of its force is nobody's: it ends the run with a sentence.
+TEST(a_mean_that_the_force_never_was_is_said)
+{
+    for (EACH_OF(double, off, 1, -1)) {
+        KEPT_SCENARIO(s) = shipped("corrected/three-links");
+        const run_options options = {.keep_trace = true};
+        KEPT_RUN(r);
+        run_driver d;
+        bool ended = false;
+        fault f = {.text = ""};
+        assert_int_equal(driver_open(&d, &s, &options, &r, &f), STATUS_OK);
+
+        // into contact
+        motion *m = d.corrected.motion;
+        while (m->state[SLOT_FORCE] == 0 && !ended) {
+            assert_int_equal(driver_advance(&d, driver_time(&d) + 1e-3, &ended, &f), STATUS_OK);
+        }
+        assert_false(ended);
+
+        // the last step's own force, then with more or less in the integral
+        assert_int_equal(corrected_record_forces(&d.corrected), STATUS_OK);
+        state_quadratures(m, m->state)[QUADRATURE_FORCE] += *off;
+        assert_int_equal(corrected_record_forces(&d.corrected), STATUS_IMPOSSIBLE_MEAN);
+        driver_close(&d, STATUS_IMPOSSIBLE_MEAN, &f);
     }
 }

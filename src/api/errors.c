@@ -14,8 +14,8 @@ STATUS_LIST(SAME_CODE)
 
 const char *impactlab_status_text(int code)
 {
-    return code >= STATUS_OK && code <= STATUS_NOT_ALLOWED ? status_text((status)code)
-                                                           : "not a status of impactlab";
+    return code >= STATUS_OK && code <= STATUS_IMPOSSIBLE_MEAN ? status_text((status)code)
+                                                               : "not a status of impactlab";
 }
 
 // Copies a text, cut to fit.

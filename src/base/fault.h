@@ -20,7 +20,8 @@
     X(STOPPED, "stopped before its end")                                                           \
     X(FOLDED, "the arm is folded across the hub's axis on a flat wall")                            \
     X(CONTROLLER_FAILED, "the controller failed")                                                  \
-    X(NOT_ALLOWED, "a program or plug-in was not allowed")
+    X(NOT_ALLOWED, "a program or plug-in was not allowed")                                         \
+    X(IMPOSSIBLE_MEAN, "the mean of the force over a stride lies outside what the force is in it")
 
 typedef enum status {
 #define STATUS_ENUM(name, text) STATUS_##name,

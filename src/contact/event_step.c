@@ -58,14 +58,16 @@ static void accept(motion *m, double step)
 }
 
 // Brings a motion that dies away to rest: what has faded below the limit becomes exactly zero. A
-// faded velocity is the sign of such a motion.
+// faded velocity is the sign of such a motion, or of a body without one a faded acceleration: what
+// is held without a velocity has accelerations that are rounding.
 static void come_to_rest(motion *m)
 {
     const double *w = state_velocities(m, m->state);
     const double *acceleration = state_accelerations(m, m->state);
     bool fading = false;
     for (int i = 0; i < m->dof && !fading; i++) {
-        fading = fabs(w[i]) < FADED && (w[i] != 0 || acceleration[i] != 0);
+        const double sign = w[i] != 0 ? w[i] : acceleration[i];
+        fading = sign != 0 && fabs(sign) < FADED;
     }
     if (fading) {
         motion_end_internal_step(m);

@@ -7,6 +7,10 @@
 
 #define SHORTEST_MEAN 1e-9 // a step shorter than this has the mean of its ends [s]
 
+// By how much a mean may leave the range of its force: a share of it, and of the integral so far.
+#define BEYOND_RANGE    1e-6
+#define INTEGRAL_DIGITS 1e-14
+
 // Largest (fastest rate) x (time) of a piece: over it a parabola is exact to 1e-4 of the fastest
 // mode's force, and to 1e-5 of what sensors with a lag see of it.
 #define FORCE_REACH  0.25
@@ -48,6 +52,17 @@ static force_step force_over_step(const motion *m)
     double ends = (start[SLOT_FORCE] + m->state[SLOT_FORCE]) / 2;
     return (force_step){start[SLOT_TIME], m->state[SLOT_TIME], start[SLOT_FORCE],
                         m->state[SLOT_FORCE], length > SHORTEST_MEAN ? integral / length : ends};
+}
+
+// Whether the mean over the step just made lies within what the force is in it: from zero to the
+// bound that a dense engine has of it.
+static bool mean_is_possible(const motion *m, const force_step *force)
+{
+    const double total = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+    const double most = larger(larger(force->first, force->last), m->most_force);
+    const double slack = BEYOND_RANGE * (1 + most) +
+                         INTEGRAL_DIGITS * total / larger(force->end - force->start, SHORTEST_MEAN);
+    return !engine_is_dense(m->engine) || (force->mean >= -slack && force->mean <= most + slack);
 }
 
 // Number of pieces for a step of large (fastest rate) x (length), so that a parabola is accurate in
@@ -317,6 +332,7 @@ static status follow_bounds(corrected_run *c, const force_step *whole)
 status corrected_record_forces(corrected_run *c)
 {
     const force_step force = force_over_step(c->motion);
+    FAIL_IF(!mean_is_possible(c->motion, &force), STATUS_IMPOSSIBLE_MEAN);
 
     // most under a rig need not be cut in pieces, which are shorter for the force than for the
     // sensors

@@ -7,7 +7,7 @@ TEST_OF_HANDLES(codes_have_texts)
     assert_string_equal(impactlab_status_text(IMPACTLAB_NO_MEMORY), "out of memory");
     assert_string_equal(impactlab_status_text(-1), impactlab_status_text(10000));
     assert_string_not_equal(impactlab_status_text(-1), "");
-    for (int code = IMPACTLAB_OK; code <= IMPACTLAB_NOT_ALLOWED; code++) {
+    for (int code = IMPACTLAB_OK; code <= IMPACTLAB_IMPOSSIBLE_MEAN; code++) {
         for (int other = IMPACTLAB_OK; other < code; other++) {
             assert_string_not_equal(impactlab_status_text(code), impactlab_status_text(other));
         }

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "src/base/words.h"
+#include "tests/force_means.h"
 #include "tests/fuzz/fuzz.h"
 #include "ui/explorer/explorer.h"
 
@@ -21,6 +22,7 @@ static inline void fuzz_draw(explorer *ex, screen *shown)
 {
     FUZZ_CHECK(screen_resize(shown, ex->state.size.width, ex->state.size.height));
     explorer_draw(ex, shown);
+    FUZZ_CHECK(impossible_mean(&ex->state.session.run) == NULL);
     for (long place = 0; place < (long)shown->width * shown->height; place++) {
         FUZZ_CHECK(!is_unprintable(shown->cells[place].glyph));
     }

@@ -4,6 +4,7 @@
 #include "tests/fuzz/fuzz.h"
 
 #include "src/api/impactlab/impactlab.h"
+#include "tests/force_means.h"
 
 enum { MOST_CALLS = 40, MOST_STATE = 1 << 16 };
 
@@ -70,6 +71,10 @@ static void look(hand *h)
         FUZZ_CHECK(isfinite(table.values[i]));
     }
     FUZZ_CHECK(impactlab_loop_run(h->loop, &run, &error) == IMPACTLAB_OK);
+    double steady, peak;
+    FUZZ_CHECK(impactlab_run_quantity(run, "steady_force_N", &steady, &error) == IMPACTLAB_OK);
+    FUZZ_CHECK(impactlab_run_quantity(run, "peak_force_N", &peak, &error) == IMPACTLAB_OK);
+    FUZZ_CHECK(mean_is_within(steady, peak, 0, 1));
     FUZZ_CHECK(impactlab_run_json(run, &text, &error) == IMPACTLAB_OK && text[0] == '{');
     impactlab_text_free(text);
     impactlab_run_destroy(run);

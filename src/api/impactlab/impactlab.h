@@ -57,7 +57,8 @@ typedef enum impactlab_status {
     IMPACTLAB_STOPPED = 12,            // stopped before its end
     IMPACTLAB_FOLDED = 13,             // the arm is folded across the hub's axis on a flat wall
     IMPACTLAB_CONTROLLER_FAILED = 14,  // a controller process died, hung or broke the protocol
-    IMPACTLAB_NOT_ALLOWED = 15         // a program or plug-in was not allowed to run
+    IMPACTLAB_NOT_ALLOWED = 15,        // a program or plug-in was not allowed to run
+    IMPACTLAB_IMPOSSIBLE_MEAN = 16     // a mean of the force lies outside what the force is
 } impactlab_status;
 
 typedef struct impactlab_error {

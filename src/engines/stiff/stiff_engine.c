@@ -30,6 +30,7 @@
 #define LEAST_LEFT   1e-13 // share of a step that is continued
 #define SHORTEST     1e-15 // step that can be made [s]
 #define MOST_GROWTH  10
+#define LONGEST      1     // step; what is read of a part of one rounds as the whole does [s]
 #define LEAST_TURN   1e-2  // what the motor does in this turn is the least energy of a scale [rad]
 #define AT_EVENT     1e-6  // share of a step by which it may miss its event
 #define SAME_INSTANT 1e-14 // [s]
@@ -279,7 +280,7 @@ static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
         const double grow = SAFETY * plain_pow(error + 1e-30, -1.0 / (RADAU_STAGES + 1));
         if (error <= 1) {
             s->kept[STIFF_RATE] = rate;
-            s->kept[STIFF_NEXT] = h * smaller(again ? 1 : MOST_GROWTH, grow);
+            s->kept[STIFF_NEXT] = smaller(h * smaller(again ? 1 : MOST_GROWTH, grow), LONGEST);
             s->kept[STIFF_LEARNED] = begins ? s->kept[STIFF_NEXT] : s->kept[STIFF_LEARNED];
             return true;
         }
