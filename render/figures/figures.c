@@ -1,10 +1,9 @@
+// The catalogue of figures: this file alone knows all of them, and how each is opened.
 #include "render/figures/figures.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
-
-#include "src/base/words.h"
 
 // Panels that several figures have.
 #define FORCE              .signals = {"force"}, .with_zero = true, .inset = true, .weight = 1.6
@@ -61,156 +60,6 @@ const thesis_figure *thesis_figure_find(const char *id)
         }
     }
     return NULL;
-}
-
-// ---- scenarios run for figures
-
-void run_close(void *run)
-{
-    opened_run *r = run;
-    if (r != NULL) {
-        run_finish(&r->result);
-        scenario_finish(&r->scenario);
-        g_free(r);
-    }
-}
-
-opened_run *run_open(const char *name, const char *change, fault *f)
-{
-    return run_open_changed(name, &change, change != NULL ? 1 : 0, NULL, f);
-}
-
-opened_run *run_open_changed(const char *name, const char *const *changes, int count,
-                             run_monitor *monitor, fault *f)
-{
-    const run_options options = {.keep_trace = true, .monitor = monitor};
-    fault first = {STATUS_OK, ""};
-    opened_run *r = g_new0(opened_run, 1);
-    status code = scenario_open(&r->scenario, name, keep_first_fault, &first);
-
-    // changes lie above what the file says
-    if (code == STATUS_OK && count > 0) {
-        code = scenario_override_all(&r->scenario, (char *const *)changes, count, keep_first_fault,
-                                     &first);
-    }
-    if (code != STATUS_OK) {
-        fault_set(f, code, "%s", first.text);
-    } else {
-        code = run_scenario_with(&r->scenario, &options, &r->result);
-        if (code == STATUS_OK) {
-            return r;
-        }
-        fault_set(f, code, "%s: %s", name, r->result.summary.message);
-    }
-    run_close(r);
-    return NULL;
-}
-
-owned_figure *run_plot_create(const figure_order *order, const char *change, int panels,
-                              const opened_run **run, fault *f)
-{
-    opened_run *opened = run_open(order->which->scenario, change, f);
-    FAIL_IF(opened == NULL, NULL);
-    owned_figure *o = owned_figure_create(panels, "%s", order->title);
-    *run = owned_figure_own(o, opened, run_close);
-    o->figure.parameters = owned_figure_keep(o, parameters_line(&opened->scenario));
-    return o;
-}
-
-// ---- the signals asked for
-
-const char *nearest_signal(const char *name)
-{
-    nearest_word near = nearest_begin(name);
-    for (int i = 1; i < signal_count; i++) {
-        nearest_try(&near, signal_table[i].name);
-    }
-    return near.best != NULL ? near.best : "force";
-}
-
-// One panel, "hub_angle+last_angle".
-static status read_panel(const char *text, trace_panel *p, fault *f)
-{
-    g_auto(GStrv) words = g_strsplit(text, "+", -1);
-    for (int i = 0; i == 0 || words[i] != NULL; i++) {
-        const char *name = words[i] != NULL ? g_strstrip(words[i]) : "";
-        int index = signal_find(name);
-
-        // known, with room, and of the panel's one unit
-        FAULT_IF(index <= 0, f, STATUS_BAD_ARGUMENT, "there is no signal '%s', did you mean '%s'?",
-                 name, nearest_signal(name));
-        FAULT_IF(i == TRACE_SIGNALS, f, STATUS_BAD_ARGUMENT,
-                 "'%s': a panel shows at most %d signals", text, TRACE_SIGNALS);
-        p->signals[i] = signal_table[index].name;
-        FAULT_IF(strcmp(signal_table[index].unit, signal_table[signal_index(p->signals[0])].unit) !=
-                     0,
-                 f, STATUS_BAD_ARGUMENT,
-                 "'%s': the signals of a panel have one unit, expected a comma between %s and %s",
-                 text, p->signals[0], name);
-    }
-    return STATUS_OK;
-}
-
-// All panels, "force,hub_angle+last_angle".
-static status read_signals(const char *text, trace_panel *panels, int *count, fault *f)
-{
-    g_auto(GStrv) words = g_strsplit(text, ",", -1);
-    for (*count = 0; *count == 0 || words[*count] != NULL; ++*count) {
-        FAULT_IF(*count == FIGURE_PANELS - 1, f, STATUS_BAD_ARGUMENT,
-                 "'%s': a figure has at most %d panels", text, FIGURE_PANELS - 1);
-        trace_panel *p = &panels[*count];
-        *p = (trace_panel){.weight = 1};
-        TRY(read_panel(words[*count] != NULL ? words[*count] : "", p, f));
-
-        // what goes without saying for a panel of its first signal
-        const signal_info *signal = &signal_table[signal_index(p->signals[0])];
-        p->with_zero = strcmp(signal->unit, "N") == 0 || strcmp(signal->unit, "V") == 0;
-        p->wall = strcmp(signal->unit, "rad") == 0;
-        p->impulses = *count == 0 && strcmp(signal->name, "force") == 0;
-        p->label = p->signals[1] != NULL ? signal->quantity : NULL;
-    }
-    return STATUS_OK;
-}
-
-// ---- figures of runs
-
-owned_figure *run_figure_create(const char *title, const trace_panel *panels, int panel_count,
-                                const trace_run *runs, int run_count, const figure_options *o,
-                                fault *f)
-{
-    assert(run_count >= 1);
-    trace_run all[TRACE_RUNS];
-    trace_panel asked[FIGURE_PANELS];
-    panel_count = panels != NULL ? panel_count : USUAL_PANELS;
-    panels = panels != NULL ? panels : usual_panels;
-    if (o->signals != NULL) {
-        FAIL_IF(read_signals(o->signals, asked, &panel_count, f) != STATUS_OK, NULL);
-        panels = asked;
-    }
-    if (run_count + (o->overlay != NULL) > TRACE_RUNS) {
-        fault_set(f, STATUS_BAD_ARGUMENT, "a figure shows at most %d runs and data", TRACE_RUNS);
-        return NULL;
-    }
-
-    // measured data are one more run, of points
-    g_autofree char *name = NULL;
-    opened_run *overlay = NULL;
-    memcpy(all, runs, (size_t)run_count * sizeof *runs);
-    if (o->overlay != NULL) {
-        overlay = g_new0(opened_run, 1);
-        trace *rows = &overlay->result.trace;
-        if (overlay_read(rows, o->overlay, panels, panel_count, &name, f) != STATUS_OK) {
-            run_close(overlay);
-            return NULL;
-        }
-        all[run_count++] = (trace_run){runs[0].scenario, &overlay->result, name, .points = true};
-    }
-
-    owned_figure *drawn = trace_figure_create(title, panels, panel_count, all, run_count);
-    owned_figure_own(drawn, overlay, run_close);
-    figure_take_look(&drawn->figure, &o->look);
-    figure_take_range(&drawn->figure, o);
-    return drawn;
 }
 
 // ---- recorded signals of the catalogue

@@ -6,7 +6,7 @@
 #include "render/plot/axis.h"
 #include "render/plot/plot.h"
 
-// --- free places in a panel, by a grid of cells with the ink in each: legend.c
+// --- free places in a panel, by a grid of cells with the ink in each: placement.c
 
 enum { PLACEMENT_COLUMNS = 160, PLACEMENT_ROWS = 96 };
 

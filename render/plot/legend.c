@@ -5,60 +5,6 @@
 #include "render/page/picture_file.h"
 #include "render/plot/drawing.h"
 
-// ==== free places: the ink in cells of a panel
-
-static int column_of(const placement *g, double x)
-{
-    return (int)floor((x - g->box.x) / g->box.width * PLACEMENT_COLUMNS);
-}
-
-static int row_of(const placement *g, double y)
-{
-    return (int)floor((y - g->box.y) / g->box.height * PLACEMENT_ROWS);
-}
-
-static void mark(placement *g, int row, int column, int weight)
-{
-    if (row >= 0 && row < PLACEMENT_ROWS && column >= 0 && column < PLACEMENT_COLUMNS) {
-        g->ink[row + 1][column + 1] = fmax(g->ink[row + 1][column + 1], weight);
-    }
-}
-
-void placement_line(placement *g, double x0, double y0, double x1, double y1, int weight)
-{
-    double across = fabs(x1 - x0) / g->box.width * PLACEMENT_COLUMNS;
-    double down = fabs(y1 - y0) / g->box.height * PLACEMENT_ROWS;
-    int steps = 1 + (int)fmin(2 * fmax(across, down), 4 * PLACEMENT_COLUMNS);
-    for (int i = 0; i <= steps; i++) {
-        double t = (double)i / steps;
-        mark(g, row_of(g, y0 + t * (y1 - y0)), column_of(g, x0 + t * (x1 - x0)), weight);
-    }
-}
-
-void placement_block(placement *g, figure_rect r, int weight)
-{
-    int last_row = row_of(g, r.y + r.height), last_column = column_of(g, r.x + r.width);
-    for (int row = row_of(g, r.y); row <= last_row; row++) {
-        for (int column = column_of(g, r.x); column <= last_column; column++) {
-            mark(g, row, column, weight);
-        }
-    }
-}
-
-double placement_ink(const placement *g, figure_rect r)
-{
-    double sum = 0;
-    int last_row = row_of(g, r.y + r.height), last_column = column_of(g, r.x + r.width);
-    for (int row = row_of(g, r.y); row <= last_row; row++) {
-        for (int column = column_of(g, r.x); column <= last_column; column++) {
-            bool inside =
-                row >= 0 && row < PLACEMENT_ROWS && column >= 0 && column < PLACEMENT_COLUMNS;
-            sum += inside ? g->ink[row + 1][column + 1] : 0;
-        }
-    }
-    return sum;
-}
-
 // The small cost of being away from the corners, below one unit of ink.
 static double corner_cost(const placement *g, const figure_rect *r, double margin)
 {
