@@ -238,7 +238,7 @@ expect 0 check "${shipped[@]}"
 # --- run
 cp hit.yaml kept.yaml
 expect 2 run kept.yaml --json kept.yaml
-says err "the scenario itself"
+says err "a result would be written over it"
 cmp -s hit.yaml kept.yaml || fail "results replaced their own scenario"
 expect 0 run hit.yaml --set motor.voltage=12
 says err "motor.voltage_limit"

@@ -92,7 +92,6 @@ TEST_BETWEEN(files_that_cannot_be_read, make_folder, leave_folder)
         status code;
     } cases[] = {{"/nonexistent/x.yaml", "cannot be opened (No such file", STATUS_CANNOT_READ},
                  {test_folder, "it is a folder", STATUS_CANNOT_READ},
-                 {"/dev/zero", "the file is larger", STATUS_BAD_SCENARIO},
                  // one that opens and gives nothing
                  {"/proc/self/mem", "cannot be read (Input/output error)", STATUS_CANNOT_READ}};
     scenario s;
@@ -104,6 +103,12 @@ TEST_BETWEEN(files_that_cannot_be_read, make_folder, leave_folder)
     sentences all;
     assert_int_equal(open_here(&s, test_folder, &all), STATUS_CANNOT_READ);
     assert_int_equal(all.count, 1);
+
+    // what need have no end
+    all = (sentences){0};
+    assert_int_equal(scenario_read(&s, "/dev/zero", NULL, keep_sentence, &all),
+                     STATUS_BAD_ARGUMENT);
+    assert_non_null(strstr(all.text, "'/dev/zero' is a device or a pipe"));
 }
 
 // A link to a folder above would be listed for ever.

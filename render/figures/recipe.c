@@ -4,6 +4,7 @@
 
 #include "render/figures/recipe_parts.h"
 #include "render/plot/study_plot.h"
+#include "src/base/whole_file.h"
 
 // ---- opening what the recipe names
 
@@ -303,21 +304,17 @@ static void describe(recipe *r, const figure_options *o)
 status recipe_open(const char *path, const figure_options *o, fault_handler report, void *context,
                    artwork *out, fault *f)
 {
-    gchar *text = NULL;
-    gsize length = 0;
-    GError *error = NULL;
-    if (!g_file_get_contents(path, &text, &length, &error)) {
-        fault_set(f, STATUS_CANNOT_READ, "%s cannot be read: %s", path, error->message);
-        g_error_free(error);
-        return STATUS_CANNOT_READ;
-    }
+    size_t length;
+    fault why = {0};
+    char *text = whole_file_read(path, TREE_MAX_BYTES + 1, &length, &why);
+    FAIL_IF(text == NULL, whole_file_unread(path, &why, f));
 
     // what it says, and what it names
     recipe *r = g_new0(recipe, 1);
     status code =
         recipe_read(r, path, text, length, report, context) ? STATUS_OK : STATUS_BAD_SCENARIO;
     owned_figure_keep(r->plot, r);
-    g_free(text);
+    free(text);
     for (int i = 0; i < r->source_count && code == STATUS_OK; i++) {
         code = open_source(r, &r->sources[i], path, f);
     }
@@ -334,17 +331,15 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
 
 bool recipe_is(const char *path)
 {
-    gchar *text = NULL;
-    gsize length = 0;
-    if (!g_file_get_contents(path, &text, &length, NULL)) {
-        return false;
-    }
+    size_t length;
+    fault unused = {0};
+    char *text = whole_file_read(path, TREE_MAX_BYTES, &length, &unused);
+    FAIL_IF(text == NULL, false);
 
     // its faults are reported when it is opened
-    fault unused = {0};
     tree_node *root = tree_parse(text, length, &unused);
     bool is = root != NULL && root->kind == TREE_MAP && recipe_child(root, "panels") != NULL;
     tree_free(root);
-    g_free(text);
+    free(text);
     return is;
 }

@@ -1,7 +1,6 @@
 #include "src/base/csv_table.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -20,12 +19,9 @@ enum { MOST_COLUMNS = 4096, SHOWN = 60 };
 static status read_text(const char *path, char **text, fault *f)
 {
     size_t length;
-    const char *failed;
-    *text = whole_file_read(path, SIZE_MAX / 4, &length, &failed);
-    FAIL_IF(*text == NULL, errno == ENOMEM
-                               ? fault_no_memory(f)
-                               : fault_set(f, STATUS_CANNOT_READ, "'%.300s' cannot be %s: %s", path,
-                                           failed, strerror(errno)));
+    fault why = {0};
+    *text = whole_file_read(path, SIZE_MAX / 4, &length, &why);
+    FAIL_IF(*text == NULL, whole_file_unread(path, &why, f));
     return strlen(*text) == length
                ? STATUS_OK
                : fault_set(f, STATUS_BAD_ARGUMENT,

@@ -83,6 +83,11 @@ static size_t folder_length(const char *path)
     return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
+static bool is_same_file(const struct stat *a, const struct stat *b)
+{
+    return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
+}
+
 // The folder of path, "." if it names none.
 static const char *folder_of(const char *path, char folder[PATH_MAX])
 {
@@ -157,17 +162,61 @@ status whole_file_check(const char *path, fault *f)
 bool whole_file_same_place(const char *path, const char *other)
 {
     char places[2][PATH_MAX], folder[PATH_MAX];
-    struct stat around[2];
+    struct stat here[2], around[2];
     if (strcmp(path, other) == 0 || strcmp(path, "-") == 0 || strcmp(other, "-") == 0) {
         return strcmp(path, other) == 0;
     }
+
+    // one file under two names, or two names that lead to one place
+    const bool there = stat(path, &here[0]) == 0 && stat(other, &here[1]) == 0;
+    FAIL_IF(there && is_same_file(&here[0], &here[1]), true);
     for (int i = 0; i < 2; i++) {
         FAIL_IF(follow_links(i == 0 ? path : other, places[i]) != 0 ||
                     stat(folder_of(places[i], folder), &around[i]) != 0,
                 false);
     }
-    return around[0].st_dev == around[1].st_dev && around[0].st_ino == around[1].st_ino &&
+    return is_same_file(&around[0], &around[1]) &&
            strcmp(places[0] + folder_length(places[0]), places[1] + folder_length(places[1])) == 0;
+}
+
+// --- where the results of a command go --------------------------------------------------------
+
+enum { MOST_RESULTS = 16 };
+static char results[MOST_RESULTS][PATH_MAX];
+static int result_count;
+
+const char *whole_file_result_at(const char *path)
+{
+    for (int i = 0; i < result_count; i++) {
+        if (whole_file_same_place(results[i], path)) {
+            return results[i];
+        }
+    }
+    return NULL;
+}
+
+bool whole_file_add_result(const char *path)
+{
+    assert(result_count < MOST_RESULTS);
+    FAIL_IF(whole_file_result_at(path) != NULL, false);
+    snprintf(results[result_count++], PATH_MAX, "%s", path);
+    return true;
+}
+
+void whole_file_forget_results(void)
+{
+    result_count = 0;
+}
+
+status whole_file_keeps(const char *path, fault *why)
+{
+    struct stat about;
+    const bool is_file = stat(path, &about) == 0 && S_ISREG(about.st_mode);
+    const char *result = is_file ? whole_file_result_at(path) : NULL;
+    FAULT_IF(result != NULL, why, STATUS_BAD_ARGUMENT,
+             "is read, and a result would be written over it to '%.300s', expected another file",
+             result);
+    return STATUS_OK;
 }
 
 // --- what killed runs left ------------------------------------------------------------------
@@ -227,7 +276,7 @@ static void clean_folder_of(const char *path)
     char folder[PATH_MAX];
     if (stat(folder_of(path, folder), &about) == 0) {
         pthread_mutex_lock(&looking);
-        const bool known = about.st_dev == last.st_dev && about.st_ino == last.st_ino;
+        const bool known = is_same_file(&about, &last);
         last = about;
         pthread_mutex_unlock(&looking);
         if (!known) {
@@ -420,14 +469,41 @@ void whole_file_abandon(whole_file *w)
 
 // --- reading ----------------------------------------------------------------------------------
 
-char *whole_file_read(const char *path, size_t most, size_t *length, const char **failed)
+FILE *whole_file_open_to_read(const char *path, fault *why)
+{
+    // without waiting for the other end of a pipe
+    FAIL_IF(whole_file_keeps(path, why) != STATUS_OK, NULL);
+    FILE *stream = NULL;
+    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    struct stat about = {.st_mode = 0};
+    if (file < 0) {
+        fault_set(why, STATUS_CANNOT_READ, "cannot be opened (%s)", strerror(errno));
+    } else if (fstat(file, &about) != 0 || S_ISDIR(about.st_mode)) {
+        fault_set(why, STATUS_CANNOT_READ, "cannot be read (%s)", strerror(EISDIR));
+    } else if (!S_ISREG(about.st_mode)) {
+        fault_set(why, STATUS_BAD_ARGUMENT, "is a device or a pipe, expected a plain file");
+    } else if ((stream = fdopen(file, "r")) == NULL) {
+        fault_no_memory(why);
+    }
+    if (stream == NULL && file >= 0) {
+        close(file);
+    }
+    return stream;
+}
+
+status whole_file_unread(const char *path, const fault *why, fault *f)
+{
+    return fault_set(f, why->code, "'%.300s' %.600s", path, why->text);
+}
+
+char *whole_file_read(const char *path, size_t most, size_t *length, fault *why)
 {
     assert(most > 0);
-    const int file = open(path, O_RDONLY | O_CLOEXEC);
+    FILE *file = whole_file_open_to_read(path, why);
     char *bytes = NULL;
-    ssize_t count = file < 0 ? -1 : 1;
+    ssize_t count = 1;
     *length = 0;
-    *failed = file < 0 ? "opened" : "read";
+    FAIL_IF(file == NULL, NULL);
     for (size_t room = 0; count > 0 && *length < most;) {
         if (*length == room) {
             room = room > most / 2 ? most : room + (room > 0 ? room : most < 65536 ? most : 65536);
@@ -438,18 +514,17 @@ char *whole_file_read(const char *path, size_t most, size_t *length, const char 
             }
             bytes = more;
         }
-        count = TEMP_FAILURE_RETRY(read(file, bytes + *length, room - *length));
+        count = TEMP_FAILURE_RETRY(read(fileno(file), bytes + *length, room - *length));
         *length += count > 0 ? (size_t)count : 0;
     }
 
     // what became of it, whatever closing says
     const int reason = errno;
-    if (file >= 0) {
-        close(file);
-    }
+    fclose(file);
     if (count < 0) {
         free(bytes);
-        errno = reason;
+        const status code = reason == ENOMEM ? STATUS_NO_MEMORY : STATUS_CANNOT_READ;
+        fault_set(why, code, "cannot be read (%s)", strerror(reason));
         return NULL;
     }
     bytes[*length] = '\0';

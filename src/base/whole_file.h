@@ -51,10 +51,28 @@ void whole_file_abandon(whole_file *w);
 status whole_file_close(whole_file *w, status written, fault *f)
     __attribute__((warn_unused_result));
 
-// The bytes of a file on the heap, a 0 behind them, or its first `most`; *length is without the 0.
-// NULL where they cannot be had: *failed, "opened" or "read", says what failed, and errno why.
-char *whole_file_read(const char *path, size_t most, size_t *length, const char **failed)
+// The places that the results of a command will go to, named before anything is read, so that no
+// result takes the place of what the command reads. Adding one is false where another one goes
+// there already; it is one at a time, and no thread reads meanwhile.
+bool whole_file_add_result(const char *path);
+const char *whole_file_result_at(const char *path); // the result that goes there, NULL if none does
+void whole_file_forget_results(void);
+
+// STATUS_BAD_ARGUMENT if a result goes to a file that is read; `why` goes on after its name.
+status whole_file_keeps(const char *path, fault *why) __attribute__((warn_unused_result));
+
+// Opens a plain file for reading: no device or pipe, which need have no end, and no place of a
+// result. NULL where that cannot be, and `why` goes on after its name: STATUS_CANNOT_READ,
+// STATUS_BAD_ARGUMENT, STATUS_NO_MEMORY.
+FILE *whole_file_open_to_read(const char *path, fault *why) __attribute__((warn_unused_result));
+
+// The bytes of such a file on the heap, a 0 behind them, or its first `most`; *length is without
+// the 0. NULL where they cannot be had, as above with the same faults.
+char *whole_file_read(const char *path, size_t most, size_t *length, fault *why)
     __attribute__((warn_unused_result));
+
+// What was said of a file that cannot be read, behind its name. Returns the status.
+status whole_file_unread(const char *path, const fault *why, fault *f);
 
 // Removes what runs that were killed left in a folder. Opening a file does so by itself; this is
 // for who asks beforehand what the folder holds. One that cannot be read is left alone.

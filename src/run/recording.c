@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "src/arm/motor.h"
 #include "src/base/clock.h"
@@ -99,10 +100,19 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
 {
     assert(angle_count > 0);
     size_t expected = r->options->rows_expected;
+    const parameters *p = &r->scenario->parameters;
+
+    // a row for each step, and two for an event
+    const double rows = ROWS_OF_EVENTS + p->run.duration / p->method.step;
+    const double bytes = rows * (double)trace_row_bytes(angle_count), gigabyte = 1e9;
+    const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    FAULT_AT_IF((expected > 0 || r->options->keep_trace) && bytes > memory, f, STATUS_BAD_SCENARIO,
+                "method.step",
+                "rows every method.step = %g s over run.duration = %g s take %.3g GB of memory, "
+                "and this machine has %.3g GB",
+                p->method.step, p->run.duration, bytes / gigabyte, memory / gigabyte);
     if (expected == 0) {
-        // a row for each step, and two for an event; where there is no memory, rows will say so
-        const parameters *p = &r->scenario->parameters;
-        const double rows = ROWS_OF_EVENTS + p->run.duration / p->method.step;
+        // where there is no memory, rows will say so
         trace_init(&r->result->trace, angle_count);
         if (r->options->keep_trace && rows < MOST_ROWS_AHEAD) {
             trace_expect(&r->result->trace, (size_t)rows);

@@ -64,6 +64,12 @@ void trace_finish(trace *t);
 // where both are reserved. STATUS_NO_MEMORY if there is no room.
 status trace_share(trace *t, const trace *from, size_t rows, size_t events);
 
+// What a row takes [bytes].
+static inline size_t trace_row_bytes(int angle_count)
+{
+    return sizeof(sample) + 2 * sizeof(double) * (size_t)angle_count;
+}
+
 // Makes room for so many rows in advance. False without memory, then the trace is as it was.
 bool trace_expect(trace *t, size_t rows);
 

@@ -97,21 +97,30 @@ static status report_file(scenario *s, const char *path, const char *what, fault
 status scenario_read(scenario *s, const char *path, const char *name, fault_handler report,
                      void *context)
 {
-    char what[256];
+    fault why = {0};
     FAIL_IF(is_folder(path), report_file(s, path, "it is a folder", report, context));
 
     // one byte more than is allowed, so that the parser sees what is too long
     size_t length;
-    const char *failed;
-    char *text = whole_file_read(path, (size_t)TREE_MAX_BYTES + 1, &length, &failed);
-    FAIL_IF(text == NULL && errno == ENOMEM, report_no_memory(report, context));
-    if (text == NULL) {
-        snprintf(what, sizeof what, "cannot be %s (%s)", failed, strerror(errno));
-        return report_file(s, path, what, report, context);
-    }
+    char *text = whole_file_read(path, (size_t)TREE_MAX_BYTES + 1, &length, &why);
+    FAIL_IF(why.code == STATUS_NO_MEMORY, report_no_memory(report, context));
+    FAIL_IF(why.code == STATUS_BAD_ARGUMENT,
+            tell(report, context, why.code, "'%s' %s", path, why.text));
+    FAIL_IF(text == NULL, report_file(s, path, why.text, report, context));
     const status result = scenario_parse(s, text, length, path, name, report, context);
     free(text);
     return result;
+}
+
+bool scenario_is(const char *path)
+{
+    scenario s;
+    fault unused = {0};
+    const bool is = scenario_read(&s, path, NULL, keep_first_fault, &unused) == STATUS_OK;
+    if (is) {
+        scenario_finish(&s);
+    }
+    return is;
 }
 
 // ---- the folder ---------------------------------------------------------------------------------

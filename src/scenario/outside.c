@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "src/base/whole_file.h"
+
 #define PATH(field) offsetof(parameters, field)
 
 const outside_source outside_table[] = {
@@ -21,7 +23,7 @@ const int outside_count = sizeof outside_table / sizeof outside_table[0];
 // What is taken in of each file: its bytes, or only when and where they were written. Of a small
 // one the bytes in any case: two writes may come at one tick of the clock of files.
 enum { SMALL = 256 << 10 };
-typedef enum reading { CONTENT, STAMP } reading;
+typedef enum reading { CONTENT, STAMP, KEPT } reading; // KEPT: nothing, no result may go there
 
 bool outside_is_read(const outside_source *source, const parameters *p)
 {
@@ -76,6 +78,10 @@ static bool add_file(sha256 *h, const char *path, reading how)
     if (!S_ISREG(what.st_mode)) {
         errno = ENOENT;
         return false;
+    }
+    if (how == KEPT) {
+        errno = EBUSY;
+        return whole_file_result_at(path) == NULL;
     }
     if (how == CONTENT || what.st_size <= SMALL) {
         return add_content(h, path);
@@ -166,6 +172,24 @@ status outside_digest(const outside_source *source, const parameters *p, char di
     return whole ? STATUS_OK
                  : fault_set_at(f, STATUS_CANNOT_READ, path, "%s = '%s' cannot be read: %s", path,
                                 value, strerror(reason));
+}
+
+status outside_keep(const parameters *p, fault *f)
+{
+    for (const outside_source *o = outside_table; o < outside_table + outside_count; o++) {
+        const int parameter = parameter_at(o->parameter);
+        char value[PARAMETER_TEXT_SIZE];
+        sha256 unused;
+        sha256_init(&unused);
+        parameter_format(p, parameter, value, sizeof value);
+        const char *path = parameter_table[parameter].path;
+        const char *result = whole_file_result_at(value);
+        FAULT_AT_IF(!add_source(&unused, o, value, KEPT) && errno == EBUSY, f, STATUS_BAD_ARGUMENT,
+                    path,
+                    "%s = '%s' names a file that %s would be written over, expected another place",
+                    path, value, result != NULL ? result : "a result");
+    }
+    return STATUS_OK;
 }
 
 void outside_digest_all(const parameters *p, char digest[SHA256_TEXT])

@@ -34,6 +34,10 @@ unsigned outside_files(void);
 // shell, nor of a shared object without a slash, which the system would look for.
 bool outside_is_told(const outside_source *source, const parameters *p);
 
+// STATUS_BAD_ARGUMENT if a result of the command would be written over a file that the parameters
+// name, be it read in this run or not.
+status outside_keep(const parameters *p, fault *f);
+
 // The digest of what the parameter's value names, which can be told. STATUS_CANNOT_READ if a file
 // cannot be read.
 status outside_digest(const outside_source *source, const parameters *p, char digest[SHA256_TEXT],

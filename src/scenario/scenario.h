@@ -202,6 +202,9 @@ status scenario_override(scenario *s, const char *assignment, fault *f);
 status scenario_override_all(scenario *s, char *const *assignments, int count, fault_handler report,
                              void *context);
 
+// Whether a file is a scenario without a fault.
+bool scenario_is(const char *path);
+
 // Finds a scenario by the name `list` shows ("thesis/fig-3-4") or by file, as SCENARIO on the
 // command line is meant, and reads it. A file may be given without its ".yaml". STATUS_BAD_ARGUMENT
 // if there is neither; the sentence then names the nearest scenario.

@@ -117,8 +117,7 @@ static double expected_rows(const parameters *p)
 static status check_memory(const parameters *p, fault *f)
 {
     const double rows = expected_rows(p);
-    const double bytes =
-        rows * (double)(sizeof(sample) + 2 * sizeof(double) * (size_t)(p->arm.links + 1));
+    const double bytes = rows * (double)trace_row_bytes(p->arm.links + 1);
     FAULT_IF(bytes > MEMORY_BUDGET, f, STATUS_BAD_ARGUMENT,
              "%g s in steps of %g s would keep %.0f MiB of rows, the lab keeps at most "
              "%.0f: shorten run.duration or lengthen method.step",

@@ -1,13 +1,13 @@
 #include "src/session/session_file.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "src/base/numbers.h"
 #include "src/base/text_stream.h"
+#include "src/base/whole_file.h"
 #include "src/rig/rig.h"
 #include "src/scenario/outside.h"
 
@@ -300,9 +300,9 @@ static status read_lines(session_reader *r, FILE *stream)
 status session_file_read(session_file *file, const char *path, fault *f)
 {
     *file = (session_file){.baseline = -1};
-    FILE *stream = fopen(path, "r");
-    FAULT_IF(stream == NULL, f, STATUS_CANNOT_READ, "%s cannot be opened: %s", path,
-             strerror(errno));
+    fault why = {0};
+    FILE *stream = whole_file_open_to_read(path, &why);
+    FAIL_IF(stream == NULL, whole_file_unread(path, &why, f));
     fault own = {0};
     session_reader r = {.file = file, .path = path, .fault = &own};
     const status code = read_lines(&r, stream);

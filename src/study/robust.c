@@ -1,7 +1,6 @@
 #include "src/study/robust.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,13 +16,9 @@ enum { MOST_SET_BYTES = 65536 };
 static status read_text(const char *path, char **text, fault *f)
 {
     size_t length;
-    const char *failed;
-    *text = whole_file_read(path, MOST_SET_BYTES + 1, &length, &failed);
-    if (*text == NULL) {
-        return errno == ENOMEM ? fault_no_memory(f)
-                               : fault_set(f, STATUS_CANNOT_READ, "the set '%s' cannot be %s: %s",
-                                           path, failed, strerror(errno));
-    }
+    fault why = {0};
+    *text = whole_file_read(path, MOST_SET_BYTES + 1, &length, &why);
+    FAIL_IF(*text == NULL, whole_file_unread(path, &why, f));
     return length <= MOST_SET_BYTES && strlen(*text) == length
                ? STATUS_OK
                : fault_set(

@@ -5,10 +5,13 @@
 #include <ctype.h>
 #include <errno.h>
 #include <getopt.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
+#include "render/figures/artwork.h"
 #include "render/page/picture_file.h"
 #include "src/base/numbers.h"
 #include "src/base/whole_file.h"
@@ -72,7 +75,7 @@ static const option_row page_rows[] = {
     OPTION(FLAG, "bare", NULL, "without title and caption, which go to a .txt beside", PLACE(bare)),
     OPTION(FLAG, "transparent", NULL, "without a ground", PLACE(transparent)),
     OPTION(NUMBER, "dpi", "N", "resolution of a PNG (200)", PLACE(dpi), .low = 30, .high = 1200),
-    OPTION(TEXT, "overlay", "FILE.csv[:COLUMN][@SHIFT]",
+    OPTION(FILE, "overlay", "FILE.csv[:COLUMN][@SHIFT]",
            "points of measured data over recorded signals", PLACE(overlay)),
     OPTION(TEXT, "signals", "A,B+C", "recorded signals to show: panels, joined by +",
            PLACE(signals)),
@@ -356,19 +359,57 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
 
 // --- the whole command line -----------------------------------------------------------------
 
-// Two results must not end in one place.
+// What is read must stay: FILE, or FILE.csv:COLUMN@SHIFT.
+static int check_kept(const char *text)
+{
+    char file[PATH_MAX];
+    fault why = {0};
+    snprintf(file, sizeof file, "%s", text);
+    status code = whole_file_keeps(file, &why);
+    for (const char *mark = "@:"; *mark != '\0' && code == STATUS_OK; mark++) {
+        char *end = strrchr(file, *mark);
+        if (end != NULL) {
+            *end = '\0';
+            code = whole_file_keeps(file, &why);
+        }
+    }
+    COMPLAIN_IF(code != STATUS_OK, "'%s' %s", file, why.text);
+    return EXIT_DONE;
+}
+
+// Two results must not end in one place, nor one in the place of what is read.
 static int check_places(const arguments *a)
 {
     const option_row *o;
-
-    // each path against those of the options before it
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
         const char *path = option_written(a, o);
-        for (int j = 0; path != NULL && j < i; j++) {
-            const char *before = option_written(a, command_option(a->command, j));
-            COMPLAIN_IF(before != NULL && whole_file_same_place(path, before),
-                        "two results cannot both be written to %s",
-                        strcmp(path, "-") == 0 ? "the standard output" : path);
+        struct stat there;
+        COMPLAIN_IF(path != NULL && o->replaces != NULL && stat(path, &there) == 0 &&
+                        S_ISREG(there.st_mode) && there.st_size > 0 && !o->replaces(path),
+                    "--%s %s: a file of another kind is there and is kept, expected another place",
+                    o->name, path);
+        COMPLAIN_IF(path != NULL && !whole_file_add_result(path),
+                    "two results cannot both be written to %s",
+                    strcmp(path, "-") == 0 ? "the standard output" : path);
+    }
+
+    // the text of a picture that has none of its own
+    g_autofree char *text = a->bare && a->plot != NULL ? artwork_beside(a->plot, ".txt") : NULL;
+    COMPLAIN_IF(text != NULL && !whole_file_add_result(text),
+                "two results cannot both be written to %s", text);
+
+    // what the command line names; what that names in its turn is looked at when it is read
+    for (int i = 0; i < a->operand_count; i++) {
+        TRY_EXIT(check_kept(a->operands[i]));
+    }
+    for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
+        const option_list *list = option_place(a, o);
+        for (int k = 0; o->type == OPTION_FILES && k < list->count; k++) {
+            TRY_EXIT(check_kept(list->items[k]));
+        }
+        const char *const *file = option_place(a, o);
+        if (o->type == OPTION_FILE && *file != NULL) {
+            TRY_EXIT(check_kept(*file));
         }
     }
     return EXIT_DONE;
@@ -446,6 +487,7 @@ void arguments_finish(arguments *a)
         }
     }
     free(a->command_line);
+    whole_file_forget_results();
     *a = (arguments){0};
 }
 

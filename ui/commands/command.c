@@ -6,11 +6,11 @@
 #include <math.h>
 #include <stdarg.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "src/base/json.h"
 #include "src/base/text_stream.h"
 #include "src/base/words.h"
+#include "src/scenario/outside.h"
 
 // One line a command: its name as a C word, in the order in which they are listed.
 #define COMMANDS(X)                                                                                \
@@ -195,25 +195,6 @@ int tell_unopened(told_faults *t, status code, const char *name_or_file)
     return code == STATUS_NO_MEMORY ? EXIT_FAILED : EXIT_BAD_ARGUMENTS;
 }
 
-static bool is_same_file(const char *path, const char *other)
-{
-    struct stat a, b;
-    return path != NULL && stat(path, &a) == 0 && stat(other, &b) == 0 && a.st_dev == b.st_dev &&
-           a.st_ino == b.st_ino;
-}
-
-// Results must not replace the scenario they come from.
-static int check_keeps_scenario(const scenario *s, const arguments *a)
-{
-    const option_row *o;
-    for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
-        COMPLAIN_IF(is_same_file(option_written(a, o), s->file),
-                    "'%s' is the scenario itself, expected another file for the results",
-                    option_text(a, o));
-    }
-    return EXIT_DONE;
-}
-
 void complain_sentence(void *context, const char *sentence)
 {
     complain("%s", sentence);
@@ -230,10 +211,13 @@ int open_scenario(scenario *s, const char *name_or_file, const arguments *a)
 
     // what the command line allows and changes
     s->parameters.code_allowed = a->allow_code;
-    int result = check_keeps_scenario(s, a);
-    if (result == EXIT_DONE && scenario_override_all(s, a->sets.items, a->sets.count,
-                                                     complain_sentence, NULL) != STATUS_OK) {
+    int result = EXIT_DONE;
+    fault f = {0};
+    if (scenario_override_all(s, a->sets.items, a->sets.count, complain_sentence, NULL) !=
+        STATUS_OK) {
         result = EXIT_BAD_ARGUMENTS;
+    } else if (outside_keep(&s->parameters, &f) != STATUS_OK) {
+        result = complain_fault(&f);
     }
 
     if (result != EXIT_DONE) {

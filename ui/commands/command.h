@@ -67,6 +67,8 @@ typedef struct option_row {
     double low, high;  // range of numbers [unit]; high of OPTION_SIZE
     double initial;    // of OPTION_NUMBER, if it is not given
     const char *unit;  // of numbers and sizes, NULL if none
+    bool (*replaces)(
+        const char *path); // what else than an empty file a result may replace, or NULL
 } option_row;
 
 typedef struct option_table {
@@ -89,7 +91,8 @@ typedef struct option_table {
     }
 
 // Where a command writes its main result to, -o.
-#define OUTPUT_OPTION(kind, of, text) OPTION(kind, "output", of, text, PLACE(output), .letter = 'o')
+#define OUTPUT_OPTION(kind, of, ...)                                                               \
+    OPTION(kind, "output", of, __VA_ARGS__, PLACE(output), .letter = 'o')
 
 // Tables that several commands share.
 extern const option_table set_options;   // --set

@@ -218,6 +218,13 @@ static int plot(const arguments *a)
     }
     TRY_FAULT(path != NULL ? picture_check_path(path, &f) : fault_no_memory(&f));
 
+    // what the command line does not name: the picture, and what stands beside it
+    g_autofree char *csv = artwork_beside(path, ".csv"), *text = artwork_beside(path, ".txt");
+    const bool named = a->plot != NULL;
+    COMPLAIN_IF((!named && !whole_file_add_result(path)) || !whole_file_add_result(csv) ||
+                    (a->bare && !named && !whole_file_add_result(text)),
+                "two results cannot both be written to %s or beside it", path);
+
     // faults in the recipe are reported as they are found and leave `why` empty
     SCOPED(artwork_finish) artwork art = {0};
     fault why = {0};

@@ -24,19 +24,6 @@ static int read_theme(const arguments *a, figure_theme *theme)
     return EXIT_DONE;
 }
 
-// Whether a result that was asked for by its name goes there.
-static bool is_asked_for(const arguments *a, const char *path)
-{
-    const option_row *o;
-    for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
-        const char *result = option_written(a, o);
-        if (result != NULL && whole_file_same_place(result, path)) {
-            return true;
-        }
-    }
-    return false;
-}
-
 int read_picture_options(const arguments *a, figure_options *o)
 {
     const char *font = a->font != NULL ? a->font : "sans";
@@ -63,11 +50,6 @@ int read_picture_options(const arguments *a, figure_options *o)
         o->to = a->to;
     }
     TRY_FAULT(o->look.font != NULL ? text_check_family(o->look.font, &f) : STATUS_OK);
-
-    // the text of a picture that has none of its own
-    g_autofree char *text = a->bare && a->plot != NULL ? artwork_beside(a->plot, ".txt") : NULL;
-    COMPLAIN_IF(text != NULL && is_asked_for(a, text), "two results cannot both be written to %s",
-                text);
     return EXIT_DONE;
 }
 
@@ -76,7 +58,7 @@ static int publish_figure(const arguments *a, const figure *fig)
     figure_options o;
     TRY_EXIT(read_picture_options(a, &o));
     g_autofree char *csv = artwork_beside(a->plot, ".csv");
-    TRY_FAULT(figure_publish(fig, &o, a->plot, !is_asked_for(a, csv), &f));
+    TRY_FAULT(figure_publish(fig, &o, a->plot, whole_file_result_at(csv) == NULL, &f));
     return EXIT_DONE;
 }
 

@@ -8,6 +8,7 @@
 #include "render/scene/scene.h"
 #include "src/base/whole_file.h"
 #include "src/run/export.h"
+#include "src/scenario/outside.h"
 #include "ui/explorer/panels/panel.h"
 
 static bool ends_with(const char *text, const char *end)
@@ -117,6 +118,21 @@ static void propose_name(explorer_state *st, const char *command, const char *en
 
 // --- the commands -----------------------------------------------------------------------------
 
+// Whether the file is none that the run or the measured data were read from.
+static bool is_free(explorer_state *st, const char *name)
+{
+    const session *s = &st->session;
+    const char *const read[] = {s->base.file,
+                                st->measured.row_count > 0 ? st->measured_file : NULL};
+    whole_file_add_result(name);
+    bool kept = outside_keep(&s->effective.parameters, &st->fault) == STATUS_OK;
+    for (size_t i = 0; i < sizeof read / sizeof read[0]; i++) {
+        kept = kept && (read[i] == NULL || whole_file_keeps(read[i], &st->fault) == STATUS_OK);
+    }
+    whole_file_forget_results();
+    return kept || act_refuse(st, "%.200s is a file that this run reads: another name", name);
+}
+
 // Writes what the name's ending asks for; a file that is there is replaced.
 static bool save_over(explorer_state *st, const char *name)
 {
@@ -127,6 +143,7 @@ static bool save_over(explorer_state *st, const char *name)
     NEED((kind < KINDS && !kinds[kind].needs_whole_run) || act_need_whole_run(st));
     FAIL_IF(kind == KINDS,
             act_refuse(st, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt"));
+    NEED(is_free(st, name));
 
     status code;
     whole_file file;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "src/base/whole_file.h"
 #include "src/tables/summary.h"
 
 // Of a value or a row: what is stored is shorter, what a file may make up on reading need not be.
@@ -271,14 +272,15 @@ status database_open(sweep_database *store, int flags, fault *f)
 {
     // a store is one thread's at a time: no locks round every value
     flags |= SQLITE_OPEN_NOMUTEX;
+    if ((flags & SQLITE_OPEN_READONLY) != 0) {
+        fault why = {0};
+        FILE *file = whole_file_open_to_read(store->path, &why);
+        FAIL_IF(file == NULL, whole_file_unread(store->path, &why, f));
+        fclose(file);
+    }
     if (sqlite3_open_v2(store->path ? store->path : ":memory:", &store->database, flags, NULL) !=
         SQLITE_OK) {
-        const int number = store->database ? sqlite3_system_errno(store->database) : 0;
-        return store->database == NULL ? fault_no_memory(f)
-               : (flags & SQLITE_OPEN_READONLY) != 0 && number != 0
-                   ? fault_set(f, STATUS_CANNOT_READ, "'%s' cannot be read: %s", store->path,
-                               strerror(number))
-                   : database_fault(store, f);
+        return store->database == NULL ? fault_no_memory(f) : database_fault(store, f);
     }
     sqlite3_db_config(store->database, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     sqlite3_db_config(store->database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);

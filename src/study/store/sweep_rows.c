@@ -217,6 +217,16 @@ static status query(sweep_database *store, const char *const *keys, int key_coun
     return database_use(store, sql, rows, f);
 }
 
+bool sweep_store_is(const char *path)
+{
+    sweep_database store = {.path = (char *)path, .lock = -1};
+    bool empty;
+    const bool is = database_open(&store, SQLITE_OPEN_READONLY, NULL) == STATUS_OK &&
+                    database_recognise(&store, &empty, NULL) == STATUS_OK;
+    sqlite3_close(store.database);
+    return is;
+}
+
 status sweep_table_read(const char *path, const char *const *keys, int key_count, double **columns,
                         size_t *count, fault *f)
 {

@@ -43,6 +43,9 @@ status sweep_store_write(sweep_store *store, FILE *stream, bool json, fault *f)
 
 // --- databases of others ---
 
+// Whether a file is the database of a sweep, of this build or another.
+bool sweep_store_is(const char *path);
+
 // What a merged sweep holds.
 typedef struct sweep_merged {
     size_t runs;  // that are there

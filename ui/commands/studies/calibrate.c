@@ -119,7 +119,7 @@ static int press_and_report(const arguments *a, scenario *s)
 static const option_row rows[] = {
     OPTION(RESULT, "csv", "FILE|-", "write a row for each command", PLACE(csv)),
     OPTION(RESULT, "output", "FILE|-", "write the scenario with the table in it", PLACE(output),
-           .letter = 'o'),
+           .letter = 'o', .replaces = scenario_is),
 };
 
 const command calibrate_command = {

@@ -258,7 +258,7 @@ static int merge(const arguments *a)
 }
 
 static const option_row merge_rows[] = {
-    OUTPUT_OPTION(PLACE, "FILE.sqlite", "the database to write"),
+    OUTPUT_OPTION(PLACE, "FILE.sqlite", "the database to write", .replaces = sweep_store_is),
 };
 
 const command merge_command = {

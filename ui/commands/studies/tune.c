@@ -213,7 +213,8 @@ static const option_row rows[] = {
     SEED_OPTION,
     JOBS_OPTION,
     DB_OPTION("keep every run in a database; go on where it ends"),
-    OUTPUT_OPTION(RESULT, "FILE|-", "write the scenario with the best values so far"),
+    OUTPUT_OPTION(RESULT, "FILE|-", "write the scenario with the best values so far",
+                  .replaces = scenario_is),
     PLOT_OPTION("draw what each evaluation came to, and the least so far"),
 };
 
