@@ -178,3 +178,48 @@ TEST(csv_has_columns_of_fitted_sensors_only)
     assert_null(strstr(with, "accelerometer"));
     assert_int_equal(count_of(with, ','), count_of(without, ',') + 1);
 }
+
+// What a scenario's JSON names of values without effect, with a blank behind each.
+static void check_idle(const char *text, const char *expected)
+{
+    char paths[512] = "";
+    KEPT_SCENARIO(s) = parse(text);
+    json_t *all = export_without_effect(&s);
+    for (size_t i = 0; i < json_array_size(all); i++) {
+        const json_t *one = json_array_get(all, i);
+        const char *path = json_string_value(json_object_get(one, "path"));
+        snprintf(paths + strlen(paths), sizeof paths - strlen(paths), "%s ", path);
+        assert_true(strlen(json_string_value(json_object_get(one, "why"))) > 5);
+    }
+    json_decref(all);
+    fail_if(strcmp(paths, expected) != 0, "%s: %s, expected %s", text, paths, expected);
+}
+
+TEST(values_without_effect_are_named)
+{
+    check_idle("motor: {voltage: 2 V}\n", "");
+    check_idle("wall: {stiffness: 1000 N/m}\narm: {k1: 10}\n", "arm.k1 wall.stiffness ");
+    check_idle("wall: {stiffness: 1000 N/m, contact: kelvin-voigt}\n", "");
+    check_idle("control: {law: hybrid}\nmotor: {voltage: 5 V}\n", "motor.voltage ");
+    check_idle("control: {law: open-loop, kp: 5, approach_voltage: 2 V}\nbelief: {k2_factor: 2}\n",
+               "control.kp belief.k2_factor ");
+
+    // a bound is none, reached or not
+    check_idle("motor: {voltage_limit: 9 V, current_limit: 5 A}\n", "");
+
+    // a script can let a value act, take it away before it does, or give one in vain
+    check_idle("control: {law: hybrid}\nsensor: {ideal: true, fsr_noise: 0.1 V}\n",
+               "sensor.fsr_noise ");
+    check_idle("control: {law: hybrid}\nsensor: {ideal: true, fsr_noise: 0.1 V}\n"
+               "script:\n  - {at: 0.5 s, set: {sensor.ideal: false}}\n",
+               "");
+    check_idle("control: {law: hybrid}\nsensor: {ideal: true, fsr_noise: 0.1 V}\n"
+               "script:\n  - {at: 0.4 s, set: {sensor.fsr_noise: 0.2 V}}\n"
+               "  - {at: 0.5 s, set: {sensor.ideal: false}}\n",
+               "sensor.fsr_noise ");
+    check_idle("control: {law: hybrid, force_rate: 5 N/s}\n", "control.force_rate ");
+    check_idle("control: {law: hybrid, force_rate: 5 N/s}\n"
+               "script:\n  - {at: 0.5 s, set: {control.force: 2 N}}\n",
+               "");
+    check_idle("script:\n  - {at: 0.5 s, set: {arm.k1: 20}}\n", "arm.k1 ");
+}

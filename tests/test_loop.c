@@ -126,7 +126,7 @@ TEST(a_state_belongs_to_its_loop)
 // bytes, wherever they lie.
 TEST(a_state_holds_no_addresses)
 {
-#define LAW(name, prefix, word, description) {"arm.model=corrected", "control.law=" word},
+#define LAW(name, prefix, word, ...) {"arm.model=corrected", "control.law=" word},
     static const char *const settings[][2] = {
         CONTROL_LAWS(LAW){"arm.model=corrected", "control.law=none"},
         {"arm.model=printed", "control.law=force-pd"}};

@@ -125,17 +125,16 @@ TEST(conditions_hold_up_to_their_limits)
         {"wall.contact=kelvin-voigt wall.mass=0.999e-9", "wall.mass",
          "expected 0 (none) or at least"},
         {"wall.contact=hunt-crossley wall.mass=0"},
-        {"wall.contact=rigid wall.mass=0.1", "wall.mass", "not rigid"},
-        {"wall.contact=hunt-crossley wall.mass=0.1", "wall.mass", "not hunt-crossley"},
+        {"wall.contact=rigid wall.mass=0.1", "wall.mass", "kelvin-voigt"},
+        {"wall.contact=hunt-crossley wall.mass=0.1", "wall.mass", "kelvin-voigt"},
 
         // restitution is of what has a mass to be thrown back
         {"wall.contact=rigid wall.restitution=0.5"},
         {"wall.contact=kelvin-voigt wall.restitution=0.5", "wall.restitution",
-         "wall.restitution is for"},
+         "is for wall.contact = rigid"},
         {"wall.contact=kelvin-voigt wall.restitution=0.5 wall.mass=0.1"},
         {"wall.contact=rigid method.name=newmark"},
-        {"wall.contact=hunt-crossley method.name=newmark", "wall.contact",
-         "hunt-crossley runs with"},
+        {"wall.contact=hunt-crossley method.name=newmark", "wall.contact", "event only"},
 
         // delays and jitter as long as the periods allow, and beyond
         {"control.rate=100 control.delay=0.05"},
@@ -186,7 +185,7 @@ TEST(conditions_hold_up_to_their_limits)
 
         // walls
         {"wall.contact=hunt-crossley wall.restitution=0.5", "wall.restitution", "rigid"},
-        {"wall.contact=kelvin-voigt method.name=newmark", "wall.contact", "kelvin-voigt runs with"},
+        {"wall.contact=kelvin-voigt method.name=newmark", "wall.contact", "event only"},
         {"control.delay_periods=4.8 control.delay=0.002", "control.delay_periods",
          "periods of 0.005 s"},
 
@@ -234,8 +233,13 @@ TEST(conditions_hold_up_to_their_limits)
         {"arm.model=printed arm.hub_joint=beam", "arm.hub_joint", "hub spring"},
         {"arm.model=printed method.name=event", "method.name", "newmark"},
         {"arm.model=printed wall.kind=plane", "wall.kind", "point or none"},
-        {"arm.model=printed arm.tip_mass=0.02", "arm.tip_mass", "carries nothing"},
-        {"arm.model=printed arm.air_drag=0.1", "arm.air_drag", "printed model has not"},
+        {"arm.model=printed arm.tip_mass=0.02", "arm.tip_mass", "printed model has none"},
+        {"arm.model=printed arm.damping_ratio=0.5", "arm.damping_ratio", "printed model has none"},
+        {"arm.model=printed arm.damping_ratio=0"},
+        {"arm.model=printed wall.restitution=0.5", "wall.restitution", "printed model has none"},
+        {"arm.model=printed method.rest_speed=1e-3", "method.rest_speed"},
+        {"arm.model=printed method.residual_bound=1e-3", "method.residual_bound"},
+        {"arm.model=printed arm.air_drag=0.1", "arm.air_drag", "printed model has none"},
     };
     for (EACH(c, cases)) {
         parameters p = fresh(ARM_CORRECTED);

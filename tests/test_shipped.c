@@ -1,4 +1,5 @@
 // Every shipped scenario runs, meets its own expectations and keeps its ledger.
+#include "src/scenario/effect.h"
 #include "tests/shipped_scenario.h"
 
 static void print_fault(void *context, const char *sentence)
@@ -10,6 +11,10 @@ static void check_scenario(const char *name)
 {
     KEPT_SCENARIO(s) = shipped(name);
     KEPT_RUN(r);
+    idle_value idle;
+    int place = 0;
+    fail_if(effect_next_idle(&s, &place, &idle), "%s: %s has no effect: %s", name, idle.path,
+            idle.why);
     fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s: %s", name, r.summary.message);
     assert_int_equal(run_check_expectations(&s, &r, print_fault, (void *)name), 0);
     if (s.parameters.arm.model == ARM_CORRECTED && s.parameters.method.name == METHOD_EVENT) {

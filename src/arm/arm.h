@@ -11,6 +11,7 @@
 
 #include "src/arm/motor.h"
 #include "src/arm/wall.h"
+#include "src/tables/features.h"
 
 // A link and the joint before it.
 typedef struct arm_link {
@@ -22,6 +23,7 @@ typedef struct arm_link {
 } arm_link;
 
 typedef struct arm {
+    feature_set features;     // of the parameters it is made of
     int links;                // N
     int dof;                  // degrees of freedom n: N, or N + 1 with a hub spring
     int first;                // index of the first link's angle: 0, or 1 with a hub spring

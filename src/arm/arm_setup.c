@@ -206,6 +206,7 @@ void arm_init(arm *a, const parameters *p)
     memset(a, 0, offsetof(arm, each)); // the tables behind it have lengths of their own
 
     // degrees of freedom
+    a->features = features_of(p);
     a->links = p->arm.links;
     a->hub_spring = p->arm.hub_joint != HUB_RIGID;
     a->root_bends = p->arm.hub_joint == HUB_BEAM;

@@ -18,11 +18,13 @@
 // on the time step.
 static const engine *event_engine(const arm *a)
 {
-    const bool gives = wall_stands(&a->wall) && wall_gives(&a->wall);
-    const bool pair = a->links == 2 && !gives && arm_is_plain(a) &&
-                      a->fastest_decay <= FASTEST_OF_PAIR && a->gravity == 0 &&
-                      !wall_moves(&a->wall);
-    return pair ? &taylor_engine : &stiff_engine;
+    return motion_suits_pair(a) ? &taylor_engine : &stiff_engine;
+}
+
+bool motion_suits_pair(const arm *a)
+{
+    return (a->features & HAS(TWO_LINKS)) != 0 && (a->features & NOT_OF_PAIR) == 0 &&
+           a->fastest_decay <= FASTEST_OF_PAIR;
 }
 
 static void choose_engine(const arm *a, motion *m, const method_parameters *method,

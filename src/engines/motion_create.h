@@ -10,6 +10,9 @@ extern const engine generalized_alpha_engine; // the same step with other coeffi
 extern const engine taylor_engine; // power series of the two-link arm; dense
 extern const engine stiff_engine;  // Radau IIA of seven stages for every arm; dense
 
+// Whether the event method left alone integrates the arm with the power series of two links.
+bool motion_suits_pair(const arm *a);
+
 // Prepares a motion of the arm with the given method; all storage is allocated here. NULL if out of
 // memory.
 motion *motion_create(const arm *a, const method_parameters *method);

@@ -16,7 +16,7 @@
 
 const controller *controller_of(int law)
 {
-#define LAW(name, prefix, word, description) [LAW_##name] = &prefix##_law,
+#define LAW(name, prefix, ...) [LAW_##name] = &prefix##_law,
     static const controller *const built_in[LAW_COUNT] = {CONTROL_LAWS(LAW)[LAW_PLAYBACK] =
                                                               &playback_law};
 #undef LAW

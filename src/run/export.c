@@ -6,6 +6,7 @@
 #include "src/base/csv.h"
 #include "src/base/json.h"
 #include "src/base/shipped.h"
+#include "src/scenario/effect.h"
 #include "src/tables/settings.h"
 
 // Only integers and reals are numbers, alone or in lists.
@@ -83,6 +84,16 @@ static json_t *event_object(const scenario *s, const event *e)
     return object;
 }
 
+json_t *export_without_effect(const scenario *s)
+{
+    json_t *array = json_array();
+    idle_value idle;
+    for (int place = 0; effect_next_idle(s, &place, &idle);) {
+        json_add(array, json_of("path:t why:t", idle.path, idle.why));
+    }
+    return array;
+}
+
 json_t *export_run(const scenario *s, const run_result *result)
 {
     const summary *m = &result->summary;
@@ -94,6 +105,7 @@ json_t *export_run(const scenario *s, const run_result *result)
 
     // what went in and what came out
     json_put(object, "parameters", export_parameters(&s->parameters));
+    json_put(object, "without_effect", export_without_effect(s));
     for (int i = 0; i < summary_count; i++) {
         json_put(object, summary_table[i].key, json_number(summary_value(m, i)));
     }

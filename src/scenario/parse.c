@@ -174,6 +174,9 @@ static void complete(reader *r, const char *name)
     scenario *s = r->s;
     const char *called = name != NULL ? name : r->path;
     s->written = s->parameters;
+    for (int i = 0; i < parameter_count; i++) {
+        s->lines[i] = r->given[i].line;
+    }
     s->name = strdup(called);
     s->file = strdup(r->path);
 

@@ -60,7 +60,8 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
 
             // in force from the instant on, or from the start
         } else if (timed) {
-            const action a = action_of(time, &scratch, index, text);
+            action a = action_of(time, &scratch, index, text);
+            a.line = child->line;
             if (index == PARAMETER_INDEX(control.lock)) {
                 reader_check_lock(r, &scratch, (place){child->line, child->column});
             }

@@ -69,6 +69,7 @@ typedef struct action {
     char text[PARAMETER_TEXT_SIZE]; // ACTION_SET of a parameter that is a text: its new value; of
                                     // one of control.settings ".NAME=VALUE", and `value`
     bool added;                     // not of the scenario's file
+    int line;                       // in that file, from 1; 0: none
 } action;
 
 enum { ACTION_PATH = 192 }; // room for the path that an action sets
@@ -99,7 +100,8 @@ typedef struct scenario {
     int pane_count;
     parameters parameters; // resolved
     parameters written;    // those of the file; all zero of a scenario that has none
-    action *actions;       // sorted by time
+    int lines[sizeof(((parameters *)0)->set)]; // of the file that give them, from 1; 0: none
+    action *actions;                           // sorted by time
     int action_count;
     expectation *expectations;
     int expectation_count;

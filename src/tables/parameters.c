@@ -9,6 +9,7 @@
 #include "src/base/plain_math.h"
 #include "src/base/words.h"
 #include "src/tables/control_laws.h"
+#include "src/tables/feature_bits.h"
 
 // What a row of the list comes to: path and place, meaning, type, unit and range, and the rest.
 #define ROW(group, field, meaning, kind, in, from, to, ...)                                        \
@@ -119,11 +120,12 @@ const char *parameter_suggest(const char *path)
 }
 
 const control_law_info control_law_table[LAW_COUNT] = {
-    [LAW_NONE] = {"none", "no rig: the bare arm under motor.voltage"},
-    [LAW_PLUGIN] = {"plugin", "a controller of one's own"},
-    [LAW_PROCESS] = {"process", "a program of one's own, in any language"},
-    [LAW_PLAYBACK] = {"playback", "a recorded command, from a CSV file"},
-#define LAW(name, prefix, word, description) [LAW_##name] = {word, description},
+    [LAW_NONE] = {"none", "no rig: the bare arm under motor.voltage", 0, 0, ""},
+    [LAW_PLUGIN] = {"plugin", "a controller of one's own", TOLD_MODEL, 0, ""},
+    [LAW_PROCESS] = {"process", "a program of one's own, in any language", TOLD_MODEL, 0, ""},
+    [LAW_PLAYBACK] = {"playback", "a recorded command, from a CSV file", 0, 0, ""},
+#define LAW(name, prefix, word, told, moving, ignored, description)                                \
+    [LAW_##name] = {word, description, told, moving, ignored},
     CONTROL_LAWS(LAW)
 #undef LAW
 };

@@ -196,23 +196,9 @@ static status check_damping(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
-// What only the event method takes.
-static status check_beam_method(const parameters *p, fault *f)
+// Each spring of a list is known as it is.
+static status check_stiffening(const parameters *p, fault *f)
 {
-    const int special[] = {PARAMETER_INDEX(arm.joint_stiffness), PARAMETER_INDEX(arm.link_lengths),
-                           PARAMETER_INDEX(arm.modal_ratios), PARAMETER_INDEX(arm.air_drag),
-                           PARAMETER_INDEX(arm.stiffening)};
-    for (size_t i = 0; p->method.name != METHOD_EVENT && i < sizeof special / sizeof *special;
-         i++) {
-        char value[PARAMETER_TEXT_SIZE];
-        const char *path = parameter_table[special[i]].path;
-        parameter_format(p, special[i], value, sizeof value);
-        REFUSE_IF(p->set[special[i]] && value[0] != '\0' && strcmp(value, "0") != 0, path, f,
-                  "%s runs with method.name = event only%s", path,
-                  p->arm.model == ARM_PRINTED ? ", which the printed model has not" : "");
-    }
-
-    // each spring of a list is known as it is
     const bool stiffnesses = p->arm.joint_stiffness[0] != '\0';
     REFUSE_IF(p->arm.stiffening > 0 && (stiffnesses || p->arm.link_lengths[0]),
               BLAME3(p, arm.stiffening, arm.joint_stiffness, arm.link_lengths), f,
@@ -257,12 +243,7 @@ status parameters_resolve_arm(parameters *p, fault *f)
     arm_parameters *a = &p->arm;
     TRY(resolve_lists(p, f));
     TRY(check_damping(p, f));
-    TRY(check_beam_method(p, f));
-    REFUSE_IF(IS_SET(p, arm.link_inertia) && a->links != 2, BLAME2(p, arm.link_inertia, arm.links),
-              f,
-              "arm.link_inertia is for two links only, but arm.links = %d (other N take the "
-              "inertia of a uniform rod)",
-              a->links);
+    TRY(check_stiffening(p, f));
 
     // a uniform rod's moment of inertia about its centre, m l^2 / 12 (errata B3)
     if (isnan(a->link_inertia)) {

@@ -1,41 +1,14 @@
 // What follows from other parameters, and which of them contradict one another.
 #include <math.h>
 
+#include "src/tables/features.h"
 #include "src/tables/k2_table.h"
 #include "src/tables/parameters_parts.h"
 
 // What the ledger may lack under the methods whose steps are the object of study.
 #define STUDY_RESIDUAL_BOUND 1e-2
 
-// Whether the motor's current has an equation of its own.
-static bool is_electric(const motor_parameters *m)
-{
-    return m->inductance > 0 || (m->current_limit > 0 && m->drive == DRIVE_VOLTAGE);
-}
-
-// A current drive has a gain and a limit of its own, a voltage drive has neither.
-static status resolve_motor(parameters *p, fault *f)
-{
-    motor_parameters *m = &p->motor;
-    const bool held = m->drive == DRIVE_CURRENT;
-    if (isnan(m->transconductance)) {
-        m->transconductance = m->amplifier_gain / m->resistance;
-    }
-    REFUSE_IF(is_electric(m) && p->method.name != METHOD_EVENT,
-              BLAME3(p, motor.inductance, motor.current_limit, method.name), f,
-              "%s runs with method.name = event only",
-              m->inductance > 0 ? "motor.inductance" : "motor.current_limit under a voltage");
-    REFUSE_IF(held && m->inductance > 0, BLAME2(p, motor.inductance, motor.drive), f,
-              "motor.inductance is for motor.drive = voltage; an amplifier that holds a current "
-              "overcomes it");
-    REFUSE_IF(!held && IS_SET(p, motor.transconductance),
-              BLAME2(p, motor.transconductance, motor.drive), f,
-              "motor.transconductance is for motor.drive = current; with voltage "
-              "motor.amplifier_gain says what a command gives");
-    return STATUS_OK;
-}
-
-#define LEAST_FACE 1e-9 // mass of a wall's face that is not none [kg]
+#define LEAST_FACE           1e-9 // mass of a wall's face that is not none [kg]
 
 // Walls nobody has measured: docs/explanation/model.md says where these come from.
 #define SOFT_STIFFNESS   75e3 // Kelvin-Voigt [N/m]
@@ -43,16 +16,11 @@ static status resolve_motor(parameters *p, fault *f)
 #define HERTZ_STIFFNESS  1e6  // Hunt-Crossley [N/m^1.5]
 #define RESTITUTION_LOSS 0.2  // restitution lost by speed, Hunt-Crossley's alpha [s/m]
 
-static bool wall_moves(const wall_parameters *w)
-{
-    return w->motion != MOTION_NONE && w->kind != WALL_NONE;
-}
-
 static status resolve_wall(parameters *p, fault *f)
 {
     wall_parameters *w = &p->wall;
     const bool hertz = w->contact == WALL_HUNT_CROSSLEY, gives = w->contact != WALL_RIGID;
-    const bool moves = wall_moves(w), events = p->method.name == METHOD_EVENT;
+    const bool moves = w->motion != MOTION_NONE && w->kind != WALL_NONE;
 
     // defaults that depend on the law
     if (isnan(w->stiffness)) {
@@ -62,11 +30,6 @@ static status resolve_wall(parameters *p, fault *f)
         w->damping = hertz ? 1.5 * RESTITUTION_LOSS * w->stiffness : SOFT_DAMPING;
     }
 
-    // a mass stands on a linear spring, which also holds it back
-    REFUSE_IF(w->mass > 0 && w->contact != WALL_KELVIN_VOIGT, BLAME2(p, wall.mass, wall.contact), f,
-              "wall.mass is for wall.contact = kelvin-voigt, on whose spring and damper the face "
-              "stands, not %s",
-              hertz ? "hunt-crossley" : "rigid");
     REFUSE_IF(w->mass > 0 && w->mass < LEAST_FACE, BLAME1(p, wall.mass), f,
               "wall.mass = %g kg, expected 0 (none) or at least %g kg", w->mass, LEAST_FACE);
 
@@ -74,8 +37,6 @@ static status resolve_wall(parameters *p, fault *f)
     REFUSE_IF(moves && w->motion == MOTION_FILE && w->motion_file[0] == '\0',
               BLAME2(p, wall.motion, wall.motion_file), f,
               "wall.motion = file needs a CSV file in wall.motion_file");
-    REFUSE_IF(moves && !events, BLAME2(p, wall.motion, method.name), f,
-              "a wall that moves (wall.motion) runs with method.name = event only");
     REFUSE_IF(moves && w->mass > 0 && w->kind != WALL_PLANE, BLAME2(p, wall.motion, wall.kind), f,
               "wall.motion shakes along the wall's normal, but the face of a point (wall.mass) "
               "gives across the last link, which turns: expected wall.kind = plane");
@@ -85,31 +46,15 @@ static status resolve_wall(parameters *p, fault *f)
         BLAME2(p, wall.motion, motor.stiction), f,
         "a rigid wall that moves would drive a single link against the hub's stiction, whose force "
         "is not determined: expected motor.stiction = 0, more links or a wall that gives");
-
-    // what a wall that gives cannot be combined with
-    REFUSE_IF(gives && IS_SET(p, wall.restitution) && w->mass == 0, BLAME1(p, wall.restitution), f,
-              "wall.restitution is for wall.contact = rigid or a face with a mass; a wall that "
-              "gives takes its share by wall.damping");
-    REFUSE_IF(gives && !events, BLAME2(p, wall.contact, method.name), f,
-              "wall.contact = %s runs with method.name = event only",
-              hertz ? "hunt-crossley" : "kelvin-voigt");
     return STATUS_OK;
 }
 
 // The engine asked for by name, which must be able to take the arm.
 static status check_engine(const parameters *p, fault *f)
 {
-    const arm_parameters *a = &p->arm;
-    REFUSE_IF(p->method.engine != ENGINE_AUTO && p->method.name != METHOD_EVENT,
-              BLAME2(p, method.engine, method.name), f, "method.engine is for method.name = event");
-    if (p->method.engine != ENGINE_PAIR) {
-        return STATUS_OK;
-    }
-    const bool bare = a->tip_mass == 0 && a->tilt == 0 && a->stiffening == 0 && a->air_drag == 0 &&
-                      a->modal_ratios[0] == '\0' && parameters_even_links(a);
-    const bool still = p->wall.contact == WALL_RIGID && !wall_moves(&p->wall);
-    REFUSE_IF(a->links != 2 || !bare || !still || is_electric(&p->motor), BLAME1(p, method.engine),
-              f,
+    const feature_set features = features_of(p);
+    const bool takes = (features & HAS(TWO_LINKS)) != 0 && (features & NOT_OF_PAIR) == 0;
+    REFUSE_IF(p->method.engine == ENGINE_PAIR && !takes, BLAME1(p, method.engine), f,
               "method.engine = pair takes two equal bare links in a level plane on a rigid wall at "
               "rest, with a motor whose current follows at once; expected auto or stiff");
     return STATUS_OK;
@@ -185,10 +130,6 @@ static status check_printed(const parameters *p, fault *f)
               "the printed model runs with method.name = newmark only");
     REFUSE_IF(p->wall.kind == WALL_PLANE, BLAME1(p, wall.kind), f,
               "the printed model knows wall.kind = point or none, not plane");
-    REFUSE_IF(a->tip_mass != 0, BLAME1(p, arm.tip_mass), f,
-              "the printed model carries nothing, but arm.tip_mass = %g kg", a->tip_mass);
-    REFUSE_IF(a->tilt != 0, BLAME1(p, arm.tilt), f,
-              "the printed model lies level, but arm.tilt = %g rad", a->tilt);
     return STATUS_OK;
 }
 
@@ -199,10 +140,13 @@ status parameters_resolve(parameters *p, fault *f)
         p->method.residual_bound = STUDY_RESIDUAL_BOUND;
     }
     TRY(parameters_resolve_arm(p, f));
-    TRY(resolve_motor(p, f));
+    if (isnan(p->motor.transconductance)) {
+        p->motor.transconductance = p->motor.amplifier_gain / p->motor.resistance;
+    }
     TRY(resolve_wall(p, f));
     TRY(check_engine(p, f));
     TRY(check_control(p, f));
     TRY(resolve_sensors(p, f));
+    TRY(features_check(p, f));
     return p->arm.model == ARM_PRINTED ? check_printed(p, f) : STATUS_OK;
 }

@@ -7,6 +7,7 @@
 
 #include "src/arm/arm.h"
 #include "src/base/words.h"
+#include "src/scenario/effect.h"
 #include "src/tables/parameters.h"
 #include "ui/commands/pictures.h"
 #include "ui/commands/progress.h"
@@ -112,11 +113,16 @@ static void print_run(const scenario *s, const void *found)
     const run_result *result = found;
     char model[128], joint[128], wall[128], method[128];
     const parameters *p = &s->parameters;
+    char drive[64];
+    snprintf(drive, sizeof drive, "%g V", p->motor.voltage);
+    if (p->control.law != LAW_NONE) {
+        snprintf(drive, sizeof drive, "law %s", control_law_table[p->control.law].word);
+    }
     say_title(s);
-    printf("%s model, %d link%s, %s hub, %s wall, %g V, method %s, h = %g s, %g s\n\n",
+    printf("%s model, %d link%s, %s hub, %s wall, %s, method %s, h = %g s, %g s\n\n",
            value_text(p, "arm.model", model), p->arm.links, p->arm.links == 1 ? "" : "s",
            value_text(p, "arm.hub_joint", joint),
-           p->wall.kind == WALL_NONE ? "no" : value_text(p, "wall.kind", wall), p->motor.voltage,
+           p->wall.kind == WALL_NONE ? "no" : value_text(p, "wall.kind", wall), drive,
            value_text(p, "method.name", method), p->method.step, p->run.duration);
 
     // what failed before its first step has no numbers: the sentence that follows says why
@@ -152,6 +158,11 @@ static int run_and_report(const arguments *a, scenario *s)
         exit_status = worse(exit_status, EXIT_FAILED);
     } else if (result.summary.message[0] != '\0') {
         print_printable(stderr, "impactlab: note: %s\n", result.summary.message);
+    }
+
+    idle_value idle;
+    for (int place = 0; effect_next_idle(s, &place, &idle);) {
+        print_printable(stderr, "impactlab: note: %s has no effect: %s\n", idle.path, idle.why);
     }
 
     // what the amplifier makes of a voltage beyond its limit changes the run: say so

@@ -8,9 +8,11 @@
 
 #include "src/base/json.h"
 #include "src/base/numbers.h"
+#include "src/base/words.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
 #include "src/run/export.h"
+#include "src/scenario/effect.h"
 #include "src/tables/settings.h"
 #include "src/tables/summary.h"
 
@@ -309,6 +311,16 @@ static void take_fault(void *context, const char *sentence)
     json_add(c->faults, json_text(sentence));
 }
 
+// Warns of what a file gives without effect.
+static void tell_idle(const scenario *s, const char *file)
+{
+    idle_value idle;
+    for (int place = 0; effect_next_idle(s, &place, &idle);) {
+        print_printable(stderr, "%s:%d: warning: %s has no effect: %s\n", file, idle.line,
+                        idle.path, idle.why);
+    }
+}
+
 // Reads one file (or a scenario by its name). Returns the exit status.
 static int check_one(const char *file, const arguments *a, checking *c)
 {
@@ -320,7 +332,11 @@ static int check_one(const char *file, const arguments *a, checking *c)
     // a file under test, or the name of a scenario
     status code = access(file, F_OK) == 0 ? scenario_read(&s, file, NULL, take_fault, c)
                                           : scenario_open(&s, file, take_fault, c);
+    json_t *idle = json_array();
     if (code == STATUS_OK) {
+        tell_idle(&s, file);
+        json_decref(idle);
+        idle = export_without_effect(&s);
         scenario_finish(&s);
         tell_first_fault(&c->told);
         if (summary_wanted(a)) {
@@ -333,7 +349,7 @@ static int check_one(const char *file, const arguments *a, checking *c)
         result = tell_unopened(&c->told, code, file);
     }
 
-    json_add(c->files, json_of("file:t faults:o", file, c->faults));
+    json_add(c->files, json_of("file:t faults:o without_effect:o", file, c->faults, idle));
     return result;
 }
 
@@ -354,7 +370,9 @@ static int check(const arguments *a)
 const command check_command = {
     CALLED("check", ONE_RUN, "Validate scenario files"),
     SCENARIOS("FILE...", 1, 1 << 20),
-    .help = "Every fault is printed as FILE:LINE:COLUMN: what is wrong and what was expected.\n",
+    .help = "Every fault is printed as FILE:LINE:COLUMN: what is wrong and what was expected. A "
+            "value that has\nno effect is warned of by FILE:LINE, and is no fault (exit status "
+            "0).\n",
     .options = {&json_options},
     .run = check,
 };

@@ -107,6 +107,6 @@ static inline double set_point_torque(const set_point *s, const controller_setup
 }
 
 // hybrid_law and so on, one for each in the list
-#define LAW(name, prefix, word, description) extern const controller prefix##_law;
+#define LAW(name, prefix, ...) extern const controller prefix##_law;
 CONTROL_LAWS(LAW)
 #undef LAW

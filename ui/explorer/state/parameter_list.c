@@ -6,8 +6,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "src/rig/controller.h"
-#include "src/rig/rig.h"
+#include "src/scenario/effect.h"
 #include "ui/explorer/state/view.h"
 
 // Whether a parameter begins another group than the one before it.
@@ -45,7 +44,7 @@ static bool is_among(const char *path, const char *patterns)
     return found;
 }
 
-void parameter_list_arrange(parameter_list *list, const parameters *p, int selected)
+void parameter_list_arrange(parameter_list *list, const scenario *s, int selected)
 {
     assert(selected >= 0 && selected < parameter_count);
 
@@ -54,8 +53,8 @@ void parameter_list_arrange(parameter_list *list, const parameters *p, int selec
     for (int i = 0; i < parameter_count; i++) {
         const int group = parameter_group(i);
         const bool is_long = is_among(parameter_table[i].path, "sensor.* belief.*");
-        shown[group] = shown[group] || inert_reason(p, i) == NULL;
-        given[group] = given[group] || !is_long || p->set[i] != 0;
+        shown[group] = shown[group] || effect_none(s, i) == NULL;
+        given[group] = given[group] || !is_long || s->parameters.set[i] != 0;
         list->folded[group] = !shown[group] || !given[group];
     }
 
@@ -170,82 +169,4 @@ double slider_value(const slider_scale *scale, int parameter, double share, int 
     step = info->type == PARAMETER_INTEGER ? 1 : step;
     value = step * round(value / step);
     return fmax(info->minimum, fmin(info->maximum, value));
-}
-
-// --- parameters without effect ----------------------------------------------------------------
-
-// Whether a control law says that it reads a parameter of its own.
-static bool law_reads(const controller *law, const char *name)
-{
-    bool found = false;
-    for (int i = 0; law != NULL && i < law->parameter_count; i++) {
-        found = found || strcmp(law->parameters[i].name, name) == 0;
-    }
-    return found;
-}
-
-// What means the same under every law.
-#define EVERY_LAW                                                                                  \
-    "control.settings control.rate control.delay control.delay_periods control.jitter "            \
-    "control.seed control.force control.k2_table control.force_rate control.force_amplitude "      \
-    "control.force_frequency"
-
-// What ideal sensors and converters do not have.
-#define IMPERFECTIONS                                                                              \
-    "sensor.piezo_* sensor.film_* sensor.accelerometer_* sensor.*_noise sensor.*_error "           \
-    "sensor.*_offset sensor.*_bits sensor.encoder_counts sensor.tachometer_ripple* "               \
-    "sensor.fsr_rise_time sensor.fsr_hysteresis"
-
-const char *inert_reason(const parameters *p, int parameter)
-{
-    assert(parameter >= 0 && parameter < parameter_count);
-    const char *path = parameter_table[parameter].path;
-    const int law = p->control.law;
-    const controller *own = controller_of(p->control.law);
-    const bool one_link = p->arm.links == 1, fits = law_reads(own, strchr(path, '.') + 1);
-
-    // the first that applies to the parameter counts; without a reason it has an effect
-    const struct {
-        bool applies;
-        const char *paths, *reason;
-    } rules[] = {
-        {true, "control.law wall.kind", NULL},
-        {law == LAW_NONE, "sensor.* control.* belief.*", "no control law is on (control.law)"},
-        {law != LAW_NONE, "motor.voltage", "the control law commands the voltage"},
-        {law != LAW_PLUGIN, "control.plugin", "it belongs to control.law = plugin"},
-        {law != LAW_PROCESS, "control.command control.answer_time",
-         "it belongs to control.law = process"},
-        {law != LAW_PLAYBACK, "control.playback_*", "it belongs to control.law = playback"},
-        {true, "control.playback_*", NULL},
-        {own == NULL || fits, "control.*", NULL},
-        {true, EVERY_LAW, NULL},
-        {own != NULL && own->lockable, "control.lock", NULL},
-        {true, "control.lock", "this law cannot be held in a mode"},
-        {true, "control.*", "the control law does not use it"},
-        {!p->sensor.piezo, "sensor.piezo_*", "no piezo sensor is fitted (sensor.piezo)"},
-        {!p->sensor.film, "sensor.film_*", "no piezo film is fitted (sensor.film)"},
-        {!p->sensor.accelerometer, "sensor.accelerometer_*",
-         "none is fitted (sensor.accelerometer)"},
-        {true, "sensor.piezo_gain sensor.film_gain sensor.accelerometer_gain", NULL},
-        {p->sensor.ideal, IMPERFECTIONS, "the sensors are ideal (sensor.ideal)"},
-        {p->arm.model != ARM_PRINTED, "printed.*", "it belongs to arm.model = printed"},
-        {p->arm.hub_joint != HUB_SPRING, "arm.k1", "the hub joint is rigid (arm.hub_joint)"},
-        {p->arm.links != 2, "arm.link_inertia", "it is for two links"},
-        {one_link && p->arm.hub_joint != HUB_BEAM, "arm.k2 arm.EI arm.stiffening",
-         "one link has no joint"},
-        {one_link && p->arm.hub_joint == HUB_RIGID, "arm.damping_ratio arm.modal_ratios",
-         "one link has no joint"},
-        {p->wall.kind == WALL_NONE, "wall.*", "there is no wall (wall.kind)"},
-        {p->motor.drive != DRIVE_CURRENT, "motor.transconductance",
-         "it belongs to motor.drive = current"},
-        {p->method.name != METHOD_NEWMARK, "method.beta method.gamma",
-         "it belongs to method.name = newmark"},
-        {p->method.name != METHOD_GENERALIZED_ALPHA, "method.spectral_radius",
-         "it belongs to method.name = generalized-alpha"}};
-    enum { RULES = sizeof rules / sizeof rules[0] };
-    int i = 0;
-    while (i < RULES && !(rules[i].applies && is_among(path, rules[i].paths))) {
-        i++;
-    }
-    return i < RULES ? rules[i].reason : NULL;
 }

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "src/tables/parameters.h"
+#include "src/scenario/scenario.h"
 
 enum { PARAMETER_LINES = 256, PARAMETER_NAME = 80 };
 
@@ -26,7 +26,7 @@ void parameter_group_name(int parameter, char *name, size_t size);
 
 // Folds the groups that have no effect on a run of these parameters, and those of sensors and
 // nominal models if none of their values was set; selects a parameter.
-void parameter_list_arrange(parameter_list *list, const parameters *p, int selected);
+void parameter_list_arrange(parameter_list *list, const scenario *s, int selected);
 
 // Fills the lines that are shown and returns how many. With a filter, matching parameters are shown
 // even in folded groups. *selected is the index of the selected line, else of its group's heading,
@@ -70,8 +70,3 @@ double slider_share(const slider_scale *scale, double value);
 // The value at a share of a scale, rounded to the resolution of a scale of `cells` cells and
 // limited to the parameter's range.
 double slider_value(const slider_scale *scale, int parameter, double share, int cells);
-
-// --- parameters without effect ----------------------------------------------------------------
-
-// Why a parameter has no effect on a run of these parameters: half a sentence; NULL if it has one.
-const char *inert_reason(const parameters *p, int parameter);

@@ -7,6 +7,7 @@
 #include "src/base/text_stream.h"
 #include "src/rig/controller.h"
 #include "src/rig/rig.h"
+#include "src/scenario/effect.h"
 
 // --- opening and closing ----------------------------------------------------------------------
 
@@ -63,7 +64,7 @@ static void show_anew(explorer_state *st)
     if (st->side.panel == PANEL_SWEEP) {
         st->side.panel = PANEL_PARAMETERS;
     }
-    parameter_list_arrange(&st->parameters, &st->session.effective.parameters, main_parameter(st));
+    parameter_list_arrange(&st->parameters, &st->session.effective, main_parameter(st));
     st->mark.set = false;
     begin_lesson(st);
     st->window = (time_window){0};
@@ -317,7 +318,7 @@ int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMET
 
 const char *state_inert_reason(const explorer_state *st, int parameter)
 {
-    return inert_reason(&st->session.effective.parameters, parameter);
+    return effect_none(&st->session.effective, parameter);
 }
 
 // --- up to date -------------------------------------------------------------------------------

@@ -1,0 +1,254 @@
+#include "src/tables/features.h"
+
+#include <assert.h>
+#include <fnmatch.h>
+#include <string.h>
+
+#include "src/tables/parameters_parts.h"
+
+static feature_set when(bool condition, feature_set bits)
+{
+    return condition ? bits : 0;
+}
+
+static feature_set arm_features(const parameters *p)
+{
+    const arm_parameters *a = &p->arm;
+    const bool joint = a->links > 1 || a->hub_joint == HUB_BEAM;
+    const bool unlike = !parameters_even_links(a) || a->stiffening != 0 || a->air_drag != 0 ||
+                        a->modal_ratios[0] != '\0';
+    const feature_set method[] = {HAS(EVENT), HAS(NEWMARK), HAS(ALPHA)};
+    return when(a->model == ARM_PRINTED, HAS(PRINTED)) |
+           when(a->model != ARM_PRINTED, HAS(CORRECTED)) | when(a->links == 2, HAS(TWO_LINKS)) |
+           when(joint, HAS(JOINT) | HAS(BENDS)) |
+           when(a->hub_joint == HUB_SPRING, HAS(HUB_SPRING) | HAS(BENDS)) |
+           when(a->tip_mass != 0, HAS(TIP_MASS)) | when(a->tilt != 0, HAS(TILTED)) |
+           when(unlike, HAS(UNLIKE)) |
+           when(p->printed.reevaluation != REEVALUATE_NONE, HAS(REEVALUATED)) |
+           method[p->method.name];
+}
+
+static feature_set motor_features(const parameters *p)
+{
+    const motor_parameters *m = &p->motor;
+    const bool volts = m->drive == DRIVE_VOLTAGE;
+    const bool law = p->control.law != LAW_NONE;
+    return when(volts, HAS(VOLTAGE_DRIVE)) | when(!volts, HAS(CURRENT_DRIVE)) |
+           when(volts || !IS_SET(p, motor.transconductance), HAS(AMPLIFIED)) |
+           when(law || m->voltage != 0, HAS(DRIVEN)) | when(volts && m->back_emf > 0, HAS(BRAKED)) |
+           when(m->inductance > 0, HAS(ELECTRIC)) |
+           when(volts && m->current_limit > 0, HAS(ELECTRIC) | HAS(LIMITED));
+}
+
+static feature_set wall_features(const wall_parameters *w)
+{
+    static const feature_set contact[] = {0, HAS(GIVES) | HAS(KELVIN_VOIGT),
+                                          HAS(GIVES) | HAS(HUNT_CROSSLEY)};
+    static const feature_set motion[] = {0, HAS(MOVES) | HAS(MOVES_BY_FORMULA),
+                                         HAS(MOVES) | HAS(MOVES_BY_FORMULA),
+                                         HAS(MOVES) | HAS(MOVES_BY_FILE)};
+    const bool struck = w->contact == WALL_RIGID || w->mass > 0;
+    return w->kind == WALL_NONE
+               ? 0
+               : HAS(WALL) | motion[w->motion] | contact[w->contact] | when(struck, HAS(STRUCK)) |
+                     when(struck && w->restitution > 0, HAS(BOUNCES));
+}
+
+static feature_set rig_features(const parameters *p)
+{
+    const control_parameters *c = &p->control;
+    const sensor_parameters *s = &p->sensor;
+    const bool noise = s->tachometer_noise > 0 || s->fsr_noise > 0 ||
+                       (s->piezo && s->piezo_noise > 0) || (s->film && s->film_noise > 0) ||
+                       (s->accelerometer && s->accelerometer_noise > 0);
+    return when(c->law == LAW_NONE, HAS(NO_LAW)) | when(c->law != LAW_NONE, HAS(LAW)) |
+           when(c->law == LAW_PLUGIN, HAS(PLUGIN)) | when(c->law == LAW_PROCESS, HAS(PROCESS)) |
+           when(c->law == LAW_PLAYBACK, HAS(PLAYBACK)) |
+           when(c->force_amplitude > 0, HAS(FORCE_WAVES)) | when(s->piezo, HAS(PIEZO)) |
+           when(s->film, HAS(FILM)) | when(s->accelerometer, HAS(ACCELEROMETER)) |
+           when(!s->ideal, HAS(IMPERFECT)) | when(s->tachometer_ripple > 0, HAS(RIPPLE)) |
+           when(c->jitter > 0 || (noise && !s->ideal), HAS(CHANCE));
+}
+
+feature_set features_of(const parameters *p)
+{
+    return arm_features(p) | motor_features(p) | wall_features(&p->wall) | rig_features(p);
+}
+
+// --- which parameters act --------------------------------------------------------------------
+
+// Parameters act where a set of features has one bit at least of each of their rules. The first
+// rule that is not met says why they do not.
+typedef struct rule {
+    const char *paths; // patterns with blanks between them
+    feature_set any;
+    const char *why; // half a sentence
+    bool refused;    // another value than the default may not be given then
+} rule;
+
+#define ONE_LINK "one link has no joint"
+#define NOT_READ "the control law does not use it"
+
+#define OF_LAWS                                                                                    \
+    "control.approach_voltage control.k[pv] control.gains control.coefficients "                   \
+    "control.transition_time control.contact_threshold control.force_gain control.integral_gain "  \
+    "control.speed_limit control.reverse_time control.switch_share control.travel_time "           \
+    "control.arrival_speed"
+
+static const rule rules[] = {
+    // models and methods
+    {"printed.*", HAS(PRINTED), "it belongs to arm.model = printed", false},
+    {"wall.[!ka]* method.rest_speed printed.force_* printed.reevaluation printed.clamp_force "
+     "printed.feed_newmark_acceleration",
+     HAS(WALL), "there is no wall (wall.kind)", false},
+    {"arm.damping_ratio arm.modal_ratios arm.joint_stiffness arm.link_lengths arm.air_drag "
+     "arm.stiffening arm.tip_mass arm.tilt wall.restitution method.rest_speed "
+     "method.residual_bound",
+     HAS(CORRECTED), "the printed model has none", true},
+    {"arm.modal_ratios arm.joint_stiffness arm.link_lengths arm.air_drag arm.stiffening "
+     "motor.inductance wall.contact wall.motion method.engine",
+     HAS(EVENT), "it runs with method.name = event only", true},
+    {"motor.current_limit", HAS(EVENT) | HAS(CURRENT_DRIVE),
+     "under a voltage it runs with method.name = event only", true},
+    {"printed.sign_dead_band", 0, "the last test of sign() overrules it", false},
+    {"printed.energy_cross_term", 0, "it is the energy predictor's, which no run takes", false},
+    {"printed.feed_newmark_acceleration", HAS(REEVALUATED),
+     "nothing is re-evaluated (printed.reevaluation)", false},
+    {"method.beta method.gamma", HAS(NEWMARK), "it belongs to method.name = newmark", false},
+    {"method.spectral_radius", HAS(ALPHA), "it belongs to method.name = generalized-alpha", false},
+    {"method.engine", HAS(PAIR), "the stiff engine alone takes this arm", false},
+    {"method.tolerance", HAS(STIFF), "the stiff engine does not integrate this run", false},
+
+    // arm
+    {"arm.k1", HAS(HUB_SPRING), "there is no hub spring (arm.hub_joint)", false},
+    {"arm.link_inertia", HAS(TWO_LINKS), "it is for two links only", true},
+    {"arm.k2 arm.EI arm.joint_stiffness", HAS(JOINT) | HAS(TOLD_K2), ONE_LINK, false},
+    {"arm.stiffening", HAS(JOINT), ONE_LINK, false},
+    {"arm.damping_ratio", HAS(BENDS) | HAS(TOLD_DAMPING), ONE_LINK, false},
+    {"arm.modal_ratios", HAS(BENDS), ONE_LINK, false},
+
+    // motor
+    {"motor.voltage", HAS(NO_LAW), "the control law commands the voltage", false},
+    {"motor.inductance", HAS(VOLTAGE_DRIVE), "it is for motor.drive = voltage", true},
+    {"motor.transconductance", HAS(CURRENT_DRIVE), "it is for motor.drive = current", true},
+    {"motor.amplifier_gain", HAS(AMPLIFIED), "motor.transconductance says what a command gives",
+     false},
+    {"motor.back_emf", HAS(VOLTAGE_DRIVE) | HAS(LAW), "the amplifier holds a current (motor.drive)",
+     false},
+    {"motor.resistance", HAS(AMPLIFIED) | HAS(LAW),
+     "the amplifier holds a current of motor.transconductance", false},
+    {"motor.amplifier_gain motor.transconductance", HAS(DRIVEN), "the command is 0 V", false},
+    {"motor.torque_constant motor.resistance motor.inductance motor.drive",
+     HAS(DRIVEN) | HAS(BRAKED), "the command is 0 V and there is no back EMF", false},
+
+    // wall
+    {"wall.restitution method.rest_speed", HAS(STRUCK),
+     "it is for wall.contact = rigid or a face with a mass", true},
+    {"method.rest_speed", HAS(BOUNCES), "every impact is plastic (wall.restitution)", false},
+    {"wall.stiffness wall.damping", HAS(GIVES), "the wall does not give (wall.contact)", false},
+    {"wall.exponent", HAS(HUNT_CROSSLEY), "it is for wall.contact = hunt-crossley", false},
+    {"wall.mass", HAS(KELVIN_VOIGT),
+     "it is for wall.contact = kelvin-voigt, on whose spring and damper the face stands", true},
+    {"wall.motion_time", HAS(MOVES), "the wall rests (wall.motion)", false},
+    {"wall.motion_amplitude wall.motion_frequency", HAS(MOVES_BY_FORMULA),
+     "it is for wall.motion = sine or step", false},
+    {"wall.motion_file", HAS(MOVES_BY_FILE), "it is for wall.motion = file", false},
+
+    // rig
+    {"control.[!l]* control.lock sensor.* belief.*", HAS(LAW), "no control law is on (control.law)",
+     false},
+    {"control.plugin", HAS(PLUGIN), "it belongs to control.law = plugin", false},
+    {"control.command control.answer_time", HAS(PROCESS), "it belongs to control.law = process",
+     false},
+    {"control.playback_*", HAS(PLAYBACK), "it belongs to control.law = playback", false},
+    {"control.lock", HAS(LOCKABLE), "this law cannot be held in a mode", false},
+    {OF_LAWS, HAS(READ), NOT_READ, false},
+    {OF_LAWS, HAS(ALONE), "control.settings gives it another value", false},
+    {"control.seed", HAS(CHANCE), "there is neither noise nor jitter", false},
+    {"control.force_rate control.force_amplitude control.force_frequency", HAS(FORCE_READ),
+     "the control law does not use the force", false},
+    {"control.force_rate", HAS(FORCE_STEPS), "control.force does not change", false},
+    {"control.force_frequency", HAS(FORCE_WAVES), "the sine has no control.force_amplitude", false},
+    {"control.k2_table belief.k2_factor", HAS(TOLD_K2), NOT_READ, false},
+    {"belief.mass_factor", HAS(TOLD_MASS), NOT_READ, false},
+    {"belief.inertia_factor", HAS(TOLD_INERTIA), NOT_READ, false},
+    {"belief.friction_factor", HAS(TOLD_FRICTION), NOT_READ, false},
+    {"belief.torque_factor", HAS(TOLD_TORQUE), NOT_READ, false},
+    {"belief.hub_spring_factor", HAS(HUB_SPRING), "there is no hub spring (arm.hub_joint)", false},
+    {"belief.hub_spring_factor", HAS(TOLD_HUB_SPRING), NOT_READ, false},
+    {"belief.wall_error", HAS(TOLD_WALL), NOT_READ, false},
+    {"belief.delay_error", HAS(TOLD_DELAY), NOT_READ, false},
+    {"belief.links", HAS(TOLD_LINKS), NOT_READ, false},
+
+    // sensors
+    {"sensor.piezo_*", HAS(PIEZO), "no piezo sensor is fitted (sensor.piezo)", false},
+    {"sensor.film_*", HAS(FILM), "no piezo film is fitted (sensor.film)", false},
+    {"sensor.accelerometer_*", HAS(ACCELEROMETER), "none is fitted (sensor.accelerometer)", false},
+    {"sensor.*_noise sensor.*_error sensor.*_offset sensor.*_bits sensor.*_range "
+     "sensor.*_rise_time sensor.*_leak_time sensor.encoder_counts sensor.tachometer_ripple* "
+     "sensor.fsr_hysteresis",
+     HAS(IMPERFECT), "the sensors are ideal (sensor.ideal)", false},
+    {"sensor.tachometer_ripple_count", HAS(RIPPLE), "there is no sensor.tachometer_ripple", false},
+};
+
+enum { RULES = sizeof rules / sizeof rules[0], NAME = 64 };
+_Static_assert(RULES <= 64, "a word has a bit for each rule");
+
+// The rules that each parameter has, filled in before the program begins.
+static uint64_t rules_of[sizeof(((parameters *)0)->set)];
+
+static __attribute__((constructor)) void fill_rules(void)
+{
+    for (int r = 0; r < RULES; r++) {
+        const char *rest = rules[r].paths;
+        while (*rest != '\0') {
+            char pattern[NAME];
+            const int length = (int)strcspn(rest, " ");
+            snprintf(pattern, sizeof pattern, "%.*s", length, rest);
+            rest += length + strspn(rest + length, " ");
+            for (int i = 0; i < parameter_count; i++) {
+                const char *path = parameter_table[i].path;
+                const bool fits = path[0] == pattern[0] && fnmatch(pattern, path, 0) == 0;
+                rules_of[i] |= (uint64_t)fits << r;
+            }
+        }
+    }
+}
+
+// The first rule of a parameter that the features do not meet; NULL if they meet all.
+static const rule *rule_not_met(feature_set features, int parameter)
+{
+    for (int i = 0; i < RULES; i++) {
+        if ((rules_of[parameter] >> i & 1) != 0 && (rules[i].any & features) == 0) {
+            return &rules[i];
+        }
+    }
+    return NULL;
+}
+
+const char *features_inert(feature_set features, int parameter)
+{
+    assert(parameter >= 0 && parameter < parameter_count);
+    const rule *broken = rule_not_met(features, parameter);
+    return broken != NULL ? broken->why : NULL;
+}
+
+status features_check(const parameters *p, fault *f)
+{
+    // what the law, the script and the choice of an engine have is refused elsewhere
+    const feature_set features = features_of(p);
+    for (int i = 0; i < parameter_count; i++) {
+        const rule *broken = p->set[i] ? rule_not_met(features, i) : NULL;
+        char value[PARAMETER_TEXT_SIZE], usual[PARAMETER_TEXT_SIZE];
+        if (broken == NULL || !broken->refused) {
+            continue;
+        }
+        parameters other;
+        parameters_defaults(&other, ARM_CORRECTED);
+        parameter_format(p, i, value, sizeof value);
+        parameter_format(&other, i, usual, sizeof usual);
+        REFUSE_IF(strcmp(value, usual) != 0, parameter_table[i].path, f, "%s = %s, but %s",
+                  parameter_table[i].path, value, broken->why);
+    }
+    return STATUS_OK;
+}
