@@ -201,6 +201,45 @@ TEST(errors_of_the_tables)
               "and seven with the factor");
 }
 
+// The listing's slips, one by one and both: one switch stands for two, and what it changes is said.
+TEST(what_equations_and_listing_differ_in)
+{
+    static const struct {
+        const char *name, *sets;
+    } rows[] = {{"equations", "printed.program=equations"},
+                {"C5, `printed.feed_newmark_acceleration=true`",
+                 "printed.program=listing printed.reevaluation=rhs"},
+                {"C3, `printed.reevaluation=listing`",
+                 "printed.program=listing printed.feed_newmark_acceleration=false"},
+                {"listing, both", "printed.program=listing"}};
+    static const struct {
+        int table;
+        double voltage;
+    } cells[] = {{2, 5}, {2, 10}, {1, 10}};
+    for (EACH(row, rows)) {
+        double error[2];
+        errors_of(0, 2, row->sets, 0, error);
+        const char *line = formatted("| %s | %.1f %% | %.1f %% |", row->name, error[0], error[1]);
+        for (EACH(c, cells)) {
+            double peak = 0, delay = 0;
+            run_cell(tables[c->table], row->sets, c->voltage, &peak, &delay);
+            line = formatted("%s %.2f N, %.0f ms |", line, peak, 1e3 * delay);
+        }
+        page_says("%s", line);
+    }
+    page_says(
+        "shows %.0f N in a later bounce",
+        number("thesis/table-4-1", "motor.voltage=5 printed.program=listing", "peak_force_N"));
+
+    // a peak is one of the program's samples
+    SCOPED(forget) computed c = run_of("thesis/table-4-2", "");
+    double most = 0;
+    for (EACH_ROW(row, &c.result.trace)) {
+        most = fmax(most, row->force);
+    }
+    check_close(c.result.summary.peak_force_N, most, 0);
+}
+
 // What was tried to explain the delays of the impact dynamics.
 TEST(what_was_tried_on_the_delays)
 {

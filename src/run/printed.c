@@ -12,23 +12,8 @@ static status record_event(recording *r, double time, event_kind kind, int index
     return trace_add_event(&r->result->trace, (event){.time = time, .kind = kind, .index = index});
 }
 
-// Keeps what lies beside a peak: the row is one (`larger`), comes right after it, or neither.
-static void note_neighbours(const printed_run *p, const printed_row *row, bool larger,
-                            sampled_peak *peak)
-{
-    if (peak->is_last_row) {
-        peak->after = row->force;
-        peak->is_last_row = false;
-    }
-    if (larger) {
-        *peak = (sampled_peak){.before = p->begun ? p->last.last : (double)NAN,
-                               .after = (double)NAN,
-                               .interval = row->time - p->last.end,
-                               .is_last_row = true};
-    }
-}
-
-// The largest forces so far, of the run and of its first pulse.
+// The largest forces so far, of the run and of its first pulse: as the thesis's program has it they
+// are samples, and no parabola runs through their neighbours.
 static void note_peaks(printed_run *p, const printed_row *row)
 {
     summary *s = &p->recording->result->summary;
@@ -36,12 +21,10 @@ static void note_peaks(printed_run *p, const printed_row *row)
     const bool largest = row->force > s->peak_force_N;
     const bool largest_of_first = isnan(s->first_pulse_s) && row->force > s->first_pulse_peak_N;
 
-    note_neighbours(p, row, largest, &p->peak);
     if (largest) {
         s->peak_force_N = row->force;
         s->time_to_peak_s = since;
     }
-    note_neighbours(p, row, largest_of_first, &p->first);
     if (largest_of_first) {
         s->first_pulse_peak_N = row->force;
         s->first_pulse_time_to_peak_s = since;
@@ -236,21 +219,6 @@ status printed_step(printed_run *p, fault *f)
 
 // --- the summary ------------------------------------------------------------------------------
 
-// The printed algorithm knows its force at its rows only: moves a peak that lies at one of them,
-// `*since` after first contact, to the top of the parabola through it and its neighbours.
-static void refine_sampled_peak(const sampled_peak *peak, double *force, double *since)
-{
-    const double before = peak->before, after = peak->after;
-    const double second = before - 2 * *force + after, slope = (after - before) / 2;
-
-    // the top lies between the neighbours where the parabola opens downwards
-    const bool inside = before > 0 && after > 0 && second < 0; // not at the edge of a pulse
-    if (inside && fabs(slope) <= -second) {
-        *since += -slope / second * peak->interval;
-        *force -= slope * slope / (2 * second);
-    }
-}
-
 void printed_sum_up(printed_run *p, status failed)
 {
     assert(p->begun);
@@ -261,10 +229,7 @@ void printed_sum_up(printed_run *p, status failed)
     s->motor_work_J = s->energy_residual_J = (double)NAN; // (2.16) as printed conserves no energy
     s->separations += r->state.separated;
 
-    // peaks between rows
     if (!isnan(s->first_contact_s)) {
-        refine_sampled_peak(&p->first, &s->first_pulse_peak_N, &s->first_pulse_time_to_peak_s);
-        refine_sampled_peak(&p->peak, &s->peak_force_N, &s->time_to_peak_s);
         r->result->landing = (landing){s->first_contact_s,
                                        s->contact_impulse_Ns,
                                        s->first_pulse_peak_N,

@@ -4,13 +4,6 @@
 #include "src/run/recording.h"
 #include "src/thesis/printed_algorithm.h"
 
-// The forces at the rows beside a peak, for the parabola through the three.
-typedef struct sampled_peak {
-    double before, after; // [N], NaN where there is no such row
-    double interval;      // since the row before [s]
-    bool is_last_row;     // the row after it is still to come
-} sampled_peak;
-
 // A run of the printed arm in progress.
 typedef struct printed_run {
     recording *recording;
@@ -19,8 +12,6 @@ typedef struct printed_run {
     bool begun;            // there is a row
     bool ready;            // script and rig have acted at the last row
     force_step last;       // the force over the step to the last row
-    sampled_peak peak;     // of the run
-    sampled_peak first;    // of the first pulse
     double steady_sum;     // of the forces in the window of the steady force [N]
     double steady_rows;    // number of rows in that sum
 } printed_run;

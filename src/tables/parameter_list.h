@@ -126,6 +126,10 @@ REAL(method, tolerance, "error of the stiff engine's steps as its embedded formu
 END_GROUP(method_parameters)
 
 GROUP(printed_parameters)
+CHOICE(printed, program, "printed model: what it follows where the thesis's equations and its "
+    "listing differ; listing stands for printed.reevaluation = listing and "
+    "printed.feed_newmark_acceleration = true unless these are given",
+    1, "equations|listing", DEFAULT(PROGRAM_EQUATIONS))
 BOOLEAN(printed, spring_counted_twice, "printed model: (2.16) carries the spring k2 that belongs "
     "in (2.17) alone", DEFAULT(true))
 BOOLEAN(printed, force_at_link_end, "printed model: the contact force acts at the link's end "

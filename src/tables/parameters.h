@@ -24,6 +24,7 @@ typedef enum wall_motion_kind {
 typedef enum motor_drive { DRIVE_VOLTAGE, DRIVE_CURRENT } motor_drive;
 typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
 typedef enum engine_kind { ENGINE_AUTO, ENGINE_PAIR, ENGINE_STIFF } engine_kind;
+typedef enum printed_program { PROGRAM_EQUATIONS, PROGRAM_LISTING } printed_program;
 typedef enum listing_reevaluation {
     REEVALUATE_RHS,
     REEVALUATE_LISTING,

@@ -133,9 +133,23 @@ static status check_printed(const parameters *p, fault *f)
     return STATUS_OK;
 }
 
+// The listing's habits (errata C3, C5), each of which its own switch overrules.
+static void follow_listing(printed_parameters *printed, const parameters *p)
+{
+    if (!IS_SET(p, printed.reevaluation)) {
+        printed->reevaluation = REEVALUATE_LISTING;
+    }
+    if (!IS_SET(p, printed.feed_newmark_acceleration)) {
+        printed->feed_newmark_acceleration = true;
+    }
+}
+
 status parameters_resolve(parameters *p, fault *f)
 {
     parameters_restore_defaults(p);
+    if (p->printed.program == PROGRAM_LISTING) {
+        follow_listing(&p->printed, p);
+    }
     if (!IS_SET(p, method.residual_bound) && p->method.name != METHOD_EVENT) {
         p->method.residual_bound = STUDY_RESIDUAL_BOUND;
     }
