@@ -256,6 +256,87 @@ TEST(an_impulse_counts_as_long_as_the_window_holds_it)
     shared_array_finish(&r.history.forces);
 }
 
+// The largest value of the lag tau y' + y = 4 t (1 - t) from y(0) = value on: y = f - tau f' +
+// tau^2 f'' + C exp(-t/tau), and where y = f.
+static double parabola_sensed(double tau, double value)
+{
+    const double c = value + 4 * tau + 8 * tau * tau;
+    double early = 0.5, late = 1;
+    for (int i = 0; i < 60; i++) {
+        const double t = (early + late) / 2;
+        const bool rises = c * exp(-t / tau) < tau * (4 - 8 * t) + 8 * tau * tau;
+        early = rises ? t : early;
+        late = rises ? late : t;
+    }
+    return fmax(parabola(early), value);
+}
+
+// Exact, wherever within a step it is; with an impulse at the start, too, whether that is the
+// largest itself, or not; up to an instant, at that.
+TEST(the_largest_reading_of_a_sensor_is_located)
+{
+    const double taus[] = {0.001, 0.03, 0.1, 0.2};
+    run_result r = {.history = {.forces = history_of(parabola)}, .summary = {.peak_force_N = 1}};
+    for (EACH(tau, taus)) {
+        r.trace.event_count = 0;
+        check_relative(force_largest_sensed(&r, *tau, HUGE_VAL), parabola_sensed(*tau, 0), 1e-14);
+        for (double value = 0.1; value < 2; value += 0.3) {
+            event impact = {.kind = EVENT_IMPACT, .impulse = value * *tau, .index = -1};
+            r.trace.events = &impact;
+            r.trace.event_count = 1;
+            check_relative(force_largest_sensed(&r, *tau, HUGE_VAL), parabola_sensed(*tau, value),
+                           1e-14);
+        }
+    }
+
+    // t = 0.123 s lies within a step
+    const double tau = 0.1, t = 0.123, c = 4 * tau + 8 * tau * tau;
+    r.trace.event_count = 0;
+    check_relative(force_largest_sensed(&r, tau, t),
+                   parabola(t) - tau * (4 - 8 * t) - 8 * tau * tau + c * exp(-t / tau), 1e-13);
+
+    // an impact at the very end adds to what is left; one that a step delivers does not count twice
+    event last = {.time = 1, .kind = EVENT_IMPACT, .impulse = 0.5, .index = -1};
+    r.trace.events = &last;
+    r.trace.event_count = 1;
+    const double left = 4 * tau - 8 * tau * tau + c * exp(-1 / tau);
+    check_relative(force_largest_sensed(&r, tau, HUGE_VAL), left + 0.5 / tau, 1e-13);
+    last.delivered_by_step = true;
+    check_relative(force_largest_sensed(&r, tau, HUGE_VAL), parabola_sensed(tau, 0), 1e-14);
+    shared_array_finish(&r.history.forces);
+}
+
+// Of whole runs: a lag of 1 ms that is stepped finely through rows and impacts.
+TEST(a_run_tells_what_a_sensor_of_1_ms_reads)
+{
+    const struct {
+        const char *name, *changes;
+    } runs[] = {{"corrected/first-impact", ""},
+                {"corrected/first-impact", "wall.restitution=0.6"},
+                {"corrected/damped-beam", "arm.links=6"},
+                {"corrected/first-impact", "wall.contact=hunt-crossley"},
+                {"corrected/first-impact", "wall.contact=kelvin-voigt arm.links=4"},
+                {"compare/hybrid", ""}};
+    for (EACH(c, runs)) {
+        KEPT_SCENARIO(s) =
+            shipped_with(c->name, formatted("method.step=1e-5 run.duration=0.7 %s", c->changes));
+        KEPT_RUN(r) = run_done(&s, true);
+        double value = 0, largest = 0;
+        for (size_t k = 1; k < r.trace.row_count; k++) {
+            const sample *a = &r.trace.rows[k - 1], *b = a + 1;
+            const double h = b->time - a->time, mean = (a->force + b->force) / 2;
+            value = mean + (value - mean) * exp(-h / 1e-3) + b->impulse / 1e-3;
+            largest = fmax(largest, value);
+        }
+        check_relative(r.summary.sensor_1ms_peak_N, largest, 1e-4);
+    }
+
+    // none without a contact
+    KEPT_SCENARIO(free) = shipped_with("corrected/first-impact", "wall.kind=none");
+    KEPT_RUN(flight) = run_done(&free, false);
+    assert_true(isnan(flight.summary.sensor_1ms_peak_N));
+}
+
 // Impulse of the force over a run, as the motion itself integrates it [N s].
 static double pressed(const parameters *p)
 {

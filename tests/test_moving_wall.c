@@ -271,6 +271,7 @@ TEST(the_ledger_closes_on_every_wall_that_moves)
         // so fast that the force falls through zero within the last bit of the time
         {"wall.motion=sine", "wall.motion_amplitude=1e-6", "wall.motion_frequency=1e4",
          "arm.links=2", "motor.voltage=2"}};
+    int worked = 0;
     for (EACH(set, sets)) {
         const char *const *more = *set;
         RUN(r, "wall.motion_amplitude=5e-3", "wall.motion_frequency=15", more[0], more[1], more[2],
@@ -282,7 +283,14 @@ TEST(the_ledger_closes_on_every_wall_that_moves)
             done += fabs(is->motor_work - was->motor_work) + fabs(is->wall_work - was->wall_work);
         }
         check_below(fmax(worst, r.summary.energy_residual_J), 1e-10 * done);
+
+        // the summary says what the wall did in all
+        check_close(r.summary.wall_work_J, r.trace.rows[r.trace.row_count - 1].wall_work, 0);
+        worked += r.summary.wall_work_J != 0;
     }
+    assert_true(worked > 1);
+    RUN(still, "run.duration=0.6");
+    assert_true(isnan(still.summary.wall_work_J));
 }
 
 // --- walls that a script moves -------------------------------------------------------------------

@@ -1,6 +1,7 @@
 // Walls that give: closed forms for a single mass, the order of the steps near the touch, and the
 // way to the rigid wall.
 #include "tests/arm_fixture.h"
+#include "tests/shipped_scenario.h"
 #include "tests/explicit_stepper.h"
 
 #define SPEED 0.1 // of the single mass at the wall [m/s]
@@ -576,4 +577,24 @@ TEST(a_mass_at_the_tip_strikes_a_rigid_wall)
     }
     check_close(log10(fabs((impulse[1] - impulse[0]) / (impulse[2] - impulse[0]))), 2, 0.1);
     check_close(log10(fabs((contact[1] - contact[0]) / (contact[2] - contact[0]))), 2, 0.1);
+}
+
+// A flight off a wall with a face is a separation where the gap to the face is above 1 um, wherever
+// the face swings, which the quantity's text says.
+TEST(separations_are_counted_from_the_face)
+{
+    KEPT_SCENARIO(s) = shipped_with("corrected/wall-with-a-face", "method.step=1e-5");
+    KEPT_RUN(r) = run_done(&s, true);
+    int apart = 0;
+    bool counted = false;
+    for (size_t k = 0; k < r.trace.row_count; k++) {
+        const sample *row = &r.trace.rows[k];
+        const bool touches = row->contact != 0 || row->impulse != 0;
+        const bool flies = !touches && row->time > r.summary.first_contact_s;
+        const bool now = flies && row->gap + row->face_depth > 1e-6;
+        apart += now && !counted;
+        counted = flies && (counted || now);
+    }
+    check_close(r.summary.separations, apart, 0);
+    assert_non_null(strstr(summary_table[SUMMARY_INDEX(separations)].description, "face"));
 }

@@ -214,6 +214,9 @@ void corrected_summarise(corrected_run *c, status failed)
     if (!motion_wall_is_rigid(m)) {
         s->wall_loss_J = state_quadratures(m, m->state)[QUADRATURE_WALL];
     }
+    if (wall_moves(&c->arm.wall)) {
+        s->wall_work_J = state_quadratures(m, m->state)[QUADRATURE_PUSHED];
+    }
     s->separations += r->state.separated;
 
     // results of the contact
@@ -233,6 +236,7 @@ void corrected_summarise(corrected_run *c, status failed)
             s->peak_force_N = peak;
             s->time_to_peak_s = when - s->first_contact_s;
         }
+        s->sensor_1ms_peak_N = force_largest_sensed(r->result, 1e-3, HUGE_VAL);
     }
     corrected_tell_bounds(r->state.largest, &s->peak_force_low_N, &s->peak_force_high_N);
 

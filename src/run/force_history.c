@@ -5,13 +5,6 @@
 
 #include "src/base/extremes.h"
 
-// The force goes no further than this beyond the larger, or below the smaller, of the ends of such
-// a step [N]: a parabola bends by a quarter of its curve at most.
-static inline double step_bulge(const force_step *step)
-{
-    return fabs(step_parabola_of(step).curve) / 4;
-}
-
 force_step *force_history_extend(shared_array *h, size_t count)
 {
     FAIL_IF(h->count + count > h->capacity && !shared_array_grow(h, h->count + count), NULL);
@@ -200,8 +193,7 @@ static double holds_no_more(const run_result *r, const window_end *front, const 
     const trace *t = &r->trace;
     const double met = back->event < t->event_count ? t->events[back->event].time : HUGE_VAL;
     size_t i = *bounded > back->step ? *bounded : back->step;
-    while (i < h->count && steps[i].end < met &&
-           (larger(steps[i].first, steps[i].last) + step_bulge(&steps[i])) * window <= largest) {
+    while (i < h->count && steps[i].end < met && step_at_most(&steps[i]) * window <= largest) {
         i++;
     }
     *bounded = i;

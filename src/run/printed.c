@@ -230,6 +230,7 @@ void printed_sum_up(printed_run *p, status failed)
     s->separations += r->state.separated;
 
     if (!isnan(s->first_contact_s)) {
+        s->sensor_1ms_peak_N = force_largest_sensed(r->result, 1e-3, HUGE_VAL);
         r->result->landing = (landing){s->first_contact_s,
                                        s->contact_impulse_Ns,
                                        s->first_pulse_peak_N,

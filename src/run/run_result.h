@@ -4,6 +4,7 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 
+#include "src/base/extremes.h"
 #include "src/base/stop.h"
 #include "src/predict/predict.h"
 #include "src/tables/summary.h"
@@ -93,6 +94,19 @@ static inline step_parabola step_parabola_of(const force_step *step)
     return (step_parabola){step->first, step->last - step->first - curve, curve};
 }
 
+// The force goes no further than this beyond the larger, or below the smaller, of the ends of such
+// a step [N]: a parabola bends by a quarter of its curve at most.
+static inline double step_bulge(const force_step *step)
+{
+    return fabs(step_parabola_of(step).curve) / 4;
+}
+
+// A force that the step's does not exceed [N].
+static inline double step_at_most(const force_step *step)
+{
+    return larger(step->first, step->last) + step_bulge(step);
+}
+
 // The steps, oldest first; good until the next one is added to a plain array.
 static inline const force_step *force_steps(const shared_array *h)
 {
@@ -115,3 +129,9 @@ double force_settled_since(const shared_array *h, double final);
 // parabola through its ends that has its mean, so the extremes are found to rounding. NaN if no
 // such window fits into the run.
 double force_largest_mean(const run_result *result, double from, double window);
+
+// The largest value [N] that a first-order lag of that time constant [s], a force sensor, reads of
+// the force up to an instant [s], HUGE_VAL: to the end; an impulse is a jump by impulse over time
+// constant. The lag is followed exactly through each step's parabola, and its turns are located.
+// The summary has its peak_force_N already.
+double force_largest_sensed(const run_result *result, double time_constant, double until);

@@ -15,6 +15,7 @@
 // Number, key, name, heading and unit of each.
 #define COMPARED(QUANTITY)                                                                         \
     QUANTITY(PEAK, "peak_force_N", "peak_force", "peak", "N")                                      \
+    QUANTITY(SENSED, "sensor_1ms_peak_N", "sensor_1ms_peak", "1 ms peak", "N")                     \
     QUANTITY(BEST_PEAK, "best_peak_N", "best_peak", "best peak", "N")                              \
     QUANTITY(OVERSHOOT, "overshoot_percent", "overshoot", "over", "%")                             \
     QUANTITY(SETTLING, "settling_time_s", "settling_time", "settled", "s")                         \
@@ -83,6 +84,7 @@ compare_row compare_row_of(const scenario *s, const run_result *result)
         .law = control_law_table[s->parameters.control.law].word,
         .ok = m->status == STATUS_OK,
         .values = {[PEAK] = m->peak_force_N,
+                   [SENSED] = m->sensor_1ms_peak_N,
                    [BEST_PEAK] = peak,
                    [OVERSHOOT] = commanded ? 100 * m->force_over_command_N / command
                                            : m->force_overshoot_percent,

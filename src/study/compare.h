@@ -7,7 +7,7 @@
 #include "src/run/run.h"
 #include "src/study/sweep_axis.h"
 
-enum { COMPARE_QUANTITIES = 12, COMPARE_MOST_VARIED = 32 };
+enum { COMPARE_QUANTITIES = 13, COMPARE_MOST_VARIED = 32 };
 
 typedef struct compare_quantity {
     const char *key;     // in JSON, its unit at the end

@@ -5,7 +5,6 @@
 
 #include "src/arm/modes.h"
 #include "src/base/plain_math.h"
-#include "src/rig/sensors.h"
 #include "src/run/run.h"
 #include "src/study/convergence.h"
 
@@ -13,7 +12,7 @@ const int links_numbers[LINKS_LENGTHS] = {2, 4, 8, 16, 32, 64};
 
 #define SENSOR_WINDOW   0.02  // after first contact in which largest values are looked for [s]
 #define MOMENTUM_WINDOW 0.002 // and over which momentum is summed [s]
-#define PIECE           1e-5  // of a step, at whose ends the sensors are looked at [s]
+#define PIECE           1e-5  // of a step, at whose ends the force is looked at [s]
 
 enum { SENSORS = 3 };
 static const double sensor_constants[SENSORS] = {0.5e-3, 1e-3, 2e-3}; // [s]
@@ -53,15 +52,7 @@ typedef struct blow {
     double momentum;        // impulses and forces over MOMENTUM_WINDOW [N s]
     double peak;            // largest force, impulses excluded [N]
     double sensed[SENSORS]; // largest values [N]
-    first_order_lag lags[SENSORS];
 } blow;
-
-static void look_at_sensors(blow *b)
-{
-    for (int k = 0; k < SENSORS; k++) {
-        b->sensed[k] = fmax(b->sensed[k], b->lags[k].value);
-    }
-}
 
 // An impact within the window.
 static void take_impulse(blow *b, const event *e)
@@ -72,10 +63,6 @@ static void take_impulse(blow *b, const event *e)
         b->impulse = e->impulse;
     }
     b->momentum += e->time <= b->touch + MOMENTUM_WINDOW ? impulse : 0;
-    for (int k = 0; k < SENSORS; k++) {
-        lag_strike(&b->lags[k], impulse);
-    }
-    look_at_sensors(b);
 }
 
 // The force over a step, from the touch and up to the window's end, piece by piece.
@@ -94,10 +81,6 @@ static void take_force(blow *b, const force_step *step)
         const double mean = p.first + p.slope * (s + u) / 2 + p.curve * (s * s + s * u + u * u) / 3;
         b->momentum += to <= early ? (to - from) * mean : 0;
         b->peak = fmax(b->peak, fmax(first, last));
-        for (int k = 0; k < SENSORS; k++) {
-            lag_follow(&b->lags[k], &(lag_input){to - from, first, last, mean});
-        }
-        look_at_sensors(b);
     }
 }
 
@@ -109,7 +92,7 @@ static blow blow_of(const run_result *result)
     blow b = {.touch = result->summary.first_contact_s};
     size_t next = 0;
     for (int k = 0; k < SENSORS; k++) {
-        b.lags[k].time_constant = sensor_constants[k];
+        b.sensed[k] = force_largest_sensed(result, sensor_constants[k], b.touch + SENSOR_WINDOW);
     }
     for (size_t i = 0; i < h->count; i++) {
         const force_step *step = &force_steps(h)[i];

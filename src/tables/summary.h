@@ -26,9 +26,12 @@
     FORCE_BOUNDS(NUMBER, peak_force, "peak force", "largest force of the whole run")               \
     NUMBER(time_to_peak_s, "time_to_peak", "time to peak", "s",                                    \
            "from first contact to that force")                                                     \
+    NUMBER(sensor_1ms_peak_N, "sensor_1ms_peak", "sensor 1ms peak", "N",                           \
+           "largest force that a first-order sensor of 1 ms would read, impulses included")        \
     NUMBER(impacts, "impacts", "impacts", "", "impacts of the whole run")                          \
-    NUMBER(separations, "separations", "separations", "",                                          \
-           "times that the arm leaves the wall by more than 1 um")                                 \
+    NUMBER(                                                                                        \
+        separations, "separations", "separations", "",                                             \
+        "flights after first contact with a gap above 1 um, to the face of a wall that has one")   \
     NUMBER(steady_force_N, "steady_force", "steady force", "N", "mean force over the last 0.1 s")  \
     FORCE_BOUNDS(NUMBER, steady_force, "steady force", "mean force over the last 0.1 s")           \
     NUMBER(force_overshoot_percent, "force_overshoot", "force overshoot", "%",                     \
@@ -41,6 +44,8 @@
     NUMBER(energy_residual_J, "energy_residual", "energy residual", "J",                           \
            "largest energy that the ledger does not account for")                                  \
     NUMBER(wall_loss_J, "wall_loss", "wall loss", "J", "energy lost in a wall that gives",         \
+           .special = true)                                                                        \
+    NUMBER(wall_work_J, "wall_work", "wall work", "J", "work of a moving wall on the arm",         \
            .special = true)                                                                        \
     NUMBER(force_command_N, "force_command", "force command", "N",                                 \
            "force that the controller is to hold at the end", .special = true)                     \

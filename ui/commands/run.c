@@ -21,7 +21,17 @@ static const char *value_text(const parameters *p, const char *path, char *text)
     return text;
 }
 
-static void print_quantities(const summary *m)
+// What has to be said of a number: a rigid contact stops the last link at once, the lighter the
+// more links there are, and presses the harder after it.
+static const char *remark_on(const parameters *p, int index)
+{
+    const bool peak =
+        index == SUMMARY_INDEX(peak_force_N) || index == SUMMARY_INDEX(first_pulse_peak_N);
+    const bool chain = p->arm.links > 2 && p->wall.contact == WALL_RIGID;
+    return peak && chain ? ", no limit as the links grow" : "";
+}
+
+static void print_quantities(const parameters *p, const summary *m)
 {
     for (int i = 0; i < summary_count; i++) {
         const char *label = summary_table[i].label, *unit = summary_table[i].unit;
@@ -34,7 +44,7 @@ static void print_quantities(const summary *m)
         } else if (unit[0] == '\0') {
             printf("  %-28s  %10.0f\n", label, value);
         } else {
-            printf("  %-28s  %10.5g %s\n", label, value, unit);
+            printf("  %-28s  %10.5g %s%s\n", label, value, unit, remark_on(p, i));
         }
     }
 }
@@ -129,7 +139,7 @@ static void print_run(const scenario *s, const void *found)
     if (result->summary.status != STATUS_OK && result->summary.steps == 0) {
         return;
     }
-    print_quantities(&result->summary);
+    print_quantities(&s->parameters, &result->summary);
     print_events(s, &result->trace);
     print_expectations(s, &result->summary);
 }
