@@ -278,3 +278,75 @@ TEST(a_link_stops_in_long_steps)
         check_close(row_at(&r, 2)->hub_velocity, 0, 0);
     }
 }
+
+// A link under a torque and nothing else, in front of a flat wall.
+#define BOUNCING                                                                                   \
+    "arm: {links: 1, tilt: %g}\n"                                                                  \
+    "motor: {voltage: %g, stiction: 0, viscous_friction: 0, back_emf: 0}\n"                        \
+    "wall: {kind: plane, angle: %g, restitution: %.17g}\n"                                         \
+    "initial: {angle: %g}\nrun: {duration: %g}\n"
+
+// Under a constant torque each flight lasts e times the one before it: Zeno's series, up to the
+// first impact slower than the rest speed. There is no period that its flights are short against.
+TEST(a_link_bounces_through_zenos_series)
+{
+    for (EACH_OF(double, e, 0.3, 0.9, 0.95, 0.98)) {
+        const double start = 0.1, duration = 30;
+        KEPT_SCENARIO(s) = good(formatted(BOUNCING, 0.0, 1.0, 0.0, *e, -start, duration));
+        KEPT_RUN(r) = run_done(&s, true);
+        const arm_parameters *p = &s.parameters.arm;
+        const double inertia = p->hub_inertia + p->mass * p->length * p->length / 3;
+        const double rate = torque_of(1) / inertia;
+        double speed = sqrt(2 * rate * start), time = speed / rate;
+        int impacts = 0;
+        for (bool rests = false; !rests; impacts++) {
+            const event *impact = find_event(&r, EVENT_IMPACT, impacts);
+            check_close(impact->time, time, 1e-8);
+            check_close(impact->speed, speed * p->length, 1e-8);
+            rests = speed * p->length < s.parameters.method.rest_speed;
+            speed *= *e;
+            time += 2 * speed / rate;
+        }
+        check_close(r.summary.impacts, impacts, 0);
+        check_close(r.summary.steady_force_N, torque_of(1) / p->length, 1e-12);
+    }
+}
+
+// A lossless wall throws a link back as fast as it came, for as long as the run lasts.
+TEST(a_lossless_link_bounces_on)
+{
+    static const struct {
+        double tilt, voltage, angle, start;
+    } cases[] = {{-0.3, 0, 0.2, 0}, {0, 1, 0, -0.01}, {0.5, 6, 0.3, 0.299}};
+    for (EACH(c, cases)) {
+        KEPT_RUN(r) =
+            run_told(formatted(BOUNCING, c->tilt, c->voltage, c->angle, 1.0, c->start, 60.0));
+        const event *first = find_event(&r, EVENT_IMPACT, 0), *last = first;
+        const double flight = 2 * first->time; // it begins at rest, where each flight turns
+        for (int i = 0; i < r.summary.impacts; i++) {
+            last = find_event(&r, EVENT_IMPACT, i);
+            check_close(last->time, first->time + i * flight, 1e-7);
+            check_relative(last->speed, first->speed, 1e-9);
+        }
+        assert_true(r.summary.impacts > 90 && 60 - last->time < flight);
+    }
+}
+
+// Where vibrations take up the bounces' energy they end, by the chatter rule, in an impact that has
+// next to none of it: a lossless wall takes no more.
+TEST(chatter_takes_next_to_nothing)
+{
+    for (EACH_OF(double, volts, 2, 6)) {
+        KEPT_SCENARIO(s) =
+            shipped_with("corrected/first-impact",
+                         formatted("motor.voltage=%g arm.damping_ratio=0.2 wall.restitution=1 "
+                                   "wall.kind=plane run.duration=1.5",
+                                   *volts));
+        KEPT_RUN(r) = run_done(&s, true);
+        const event *chatter = find_event(&r, EVENT_CHATTER, 0);
+        const sample *then = row_at(&r, chatter->time), *last = row_at(&r, 1.5);
+        assert_true(last->impact_loss > 0);
+        check_below(last->impact_loss,
+                    1.01 * MOTION_CHATTER_SHARE * (then->strain_energy + then->kinetic_energy));
+    }
+}

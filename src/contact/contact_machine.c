@@ -90,8 +90,11 @@ static bool face_follows(const arm *a, motion *m)
 // --- the transitions -----------------------------------------------------------------------------
 
 // Counts flights that are too short for arm or face to change in them. Returns whether the chatter
-// rule applies: after more than MOTION_MOST_SHORT_FLIGHTS in a row the arm stays on the wall.
-static bool chatters(const arm *a, motion *m)
+// rule applies to the impact after more than MOTION_MOST_SHORT_FLIGHTS in a row, which has that
+// result with the wall's restitution e: without a rebound it would lose next to nothing of what arm
+// and face hold. A link that nothing bends has no other motion than the bounces, and no period that
+// they are short against: it always would.
+static bool chatters(const arm *a, motion *m, const impact_result *result, double e)
 {
     double *state = m->state;
     double flight = state[SLOT_TIME] - state[SLOT_LAST_IMPACT];
@@ -101,27 +104,31 @@ static bool chatters(const arm *a, motion *m)
     bool is_short = state[SLOT_LAST_IMPACT] >= 0 && flight * fastest < SHORT_FLIGHT * 2 * M_PI;
     state[SLOT_SHORT_FLIGHTS] = is_short ? state[SLOT_SHORT_FLIGHTS] + 1 : 0;
     state[SLOT_LAST_IMPACT] = state[SLOT_TIME];
-    return state[SLOT_SHORT_FLIGHTS] > MOTION_MOST_SHORT_FLIGHTS;
+    if (!(state[SLOT_SHORT_FLIGHTS] > MOTION_MOST_SHORT_FLIGHTS)) {
+        return false;
+    }
+    const state_energy own = motion_energy(a, m, state);
+    const double held = own.kinetic + own.strain + motion_wall_energy(a, m, state);
+    return 0.5 * result->speed * result->impulse / (1 + e) < MOTION_CHATTER_SHARE * held;
 }
 
-// The jump of an impact, and the contact state after it. Slower than the rest speed, or after too
-// many short flights, it is plastic: a sequence of ever smaller bounces ends in contact.
+// The jump of an impact, and the contact state after it. Slower than the rest speed, or by the
+// chatter rule, it is plastic: a sequence of ever smaller bounces ends in contact.
 static void impact(const arm *a, motion *m, motion_report *report)
 {
     double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     double *increment = m->scratch;
     const double face = m->state[SLOT_FACE_VELOCITY];
 
-    // the wall's coefficient of restitution
+    // the jump of an instantaneous impact, with the wall's coefficient of restitution or without
     double e = wall_restitution(&a->wall, chain_penetration(a, q, w).rate - face);
-    if (chatters(a, m)) {
+    impact_result result = impact_velocity_increments(a, m->links, q, w, face, e, increment);
+    if (chatters(a, m, &result, e)) {
         m->state[SLOT_SHORT_FLIGHTS] = 0;
         report->chatter = e > 0;
         e = 0;
+        result = impact_velocity_increments(a, m->links, q, w, face, e, increment);
     }
-
-    // the jump of an instantaneous impact
-    impact_result result = impact_velocity_increments(a, m->links, q, w, face, e, increment);
     report->speed = result.speed;
     report->impulse = result.impulse;
     report->loss = result.loss;

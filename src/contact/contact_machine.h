@@ -14,8 +14,10 @@
 #include "src/contact/contact_state.h"
 
 // Chatter rule: after more than this number of flights in a row, each shorter than a hundredth of
-// the arm's shortest period, the next impact is plastic whatever the coefficient of restitution.
+// the arm's shortest period, an impact that has less than this share of the energy of arm and wall
+// to lose is plastic whatever the coefficient of restitution.
 enum { MOTION_MOST_SHORT_FLIGHTS = 50 };
+#define MOTION_CHATTER_SHARE 1e-5
 
 typedef struct motion_report {
     motion_event event;

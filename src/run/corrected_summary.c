@@ -168,8 +168,9 @@ static void judge(const corrected_run *c)
         remark(s,
                "the wall's restitution would have made the arm bounce without end: %ld times more "
                "than %d flights in a row were shorter than a hundredth of its shortest period, and "
-               "the impact after them took all the approach speed (chatter)",
-               r->state.chatters, MOTION_MOST_SHORT_FLIGHTS);
+               "the impact after them took all the approach speed, less than %g of the energy "
+               "(chatter)",
+               r->state.chatters, MOTION_MOST_SHORT_FLIGHTS, MOTION_CHATTER_SHARE);
     }
 
     if (r->state.from_behind > 0) {
