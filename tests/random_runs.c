@@ -127,6 +127,7 @@ static bool goes_with(const random_run *r, const char *path)
     return strcmp(path, "arm.k1") == 0              ? spring
            : strcmp(path, "arm.damping_ratio") == 0 ? !spring || p->arm.k1 < STIFFEST_DAMPED
            : strcmp(path, "wall.restitution") == 0  ? !gives || p->wall.mass > 0
+           : strcmp(path, "method.rest_speed") == 0 ? !gives || p->wall.mass > 0
                                                     : true;
 }
 
@@ -150,7 +151,8 @@ static void make_whole(random_run *r)
     for (int k = 0; k < WHOLE_RANGES; k++) {
         const double value =
             number_within(g, whole_ranges[k].from, whole_ranges[k].to, whole_ranges[k].spread);
-        const bool fits = (whole_ranges[k].contact >> p->wall.contact & 1) != 0;
+        const bool fits = (whole_ranges[k].contact >> p->wall.contact & 1) != 0 &&
+                          goes_with(r, whole_ranges[k].path);
         const bool always = k == 0 || strstr(whole_ranges[k].path, "angle") != NULL;
         if (fits && (always || random_uniform(g) < 0.3)) {
             set_number(r, whole_ranges[k].path, value);
