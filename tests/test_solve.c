@@ -178,3 +178,12 @@ TEST(one_can_be_stopped)
     atomic_store(&monitor.stop, true);
     REFUSED(STATUS_STOPPED, "", solve(&s, &axis, &c, 5, 1, &monitor, &found, &f));
 }
+
+TEST(a_parameter_that_no_run_takes_has_no_limit)
+{
+    KEPT_SCENARIO(s) = shipped("corrected/first-impact");
+    sweep_axis axis = {0};
+    REFUSED(STATUS_BAD_ARGUMENT, "wall.stiffness has no effect in any run",
+            solve_axis_read(&axis, "wall.stiffness=1000:2000", &s, &f));
+    DONE(solve_axis_read(&axis, "motor.voltage=1:2", &s, &f));
+}

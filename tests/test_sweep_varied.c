@@ -122,6 +122,35 @@ TEST(bad_requests_are_refused_with_a_sentence)
     }
 }
 
+TEST(what_no_run_takes_is_refused_by_its_axis)
+{
+    const struct {
+        const char *a, *b;
+        bool acts; // a, in some run
+    } cases[] = {
+        {"wall.stiffness=1000,2000", NULL, false},
+        {"wall.stiffness=1000,2000", "wall.contact=rigid,kelvin-voigt", true},
+        {"wall.stiffness=1000,2000", "wall.contact=rigid,hunt-crossley", true},
+        {"wall.exponent=1.5,2", "wall.contact=rigid,kelvin-voigt", false},
+        {"arm.k1=10,20", NULL, false},
+        {"arm.k1=10,20", "arm.hub_joint=rigid,spring", true},
+        {"control.kp=10,20", "control.law=none,open-loop", false},
+        {"control.kp=10,20", "control.law=open-loop,hybrid", true},
+    };
+    for (EACH(c, cases)) {
+        SWEPT(s, SWEEP_GRID, 0, c->a, c->b);
+        fault f = {0};
+        const status code = sweep_check_effect(&s, 0, &f);
+        fail_if((code == STATUS_OK) != c->acts, "%s %s: %s", c->a, c->b, f.text);
+        assert_true(c->acts || strstr(f.text, "has no effect in any run: ") != NULL);
+    }
+
+    // a row in which it idles says so, the next one does not
+    SWEPT(s, SWEEP_GRID, 0, "wall.stiffness=1000,2000", "wall.contact=rigid,kelvin-voigt");
+    assert_non_null(sweep_idle(&s, 0, 0));
+    assert_null(sweep_idle(&s, 1, 0));
+}
+
 TEST(a_latin_hypercube_meets_every_part_of_every_range_once)
 {
     enum { RUNS = 1000 };

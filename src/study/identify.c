@@ -7,6 +7,7 @@
 
 #include "src/base/build_config.h"
 #include "src/base/random.h"
+#include "src/scenario/effect.h"
 #include "src/study/pool.h"
 
 #ifdef IMPACTLAB_MINPACK
@@ -398,6 +399,17 @@ status identify_fit(identification *id, fault *f)
 {
     assert(id->trace_count > 0);
     list_unknowns(id);
+
+    // what the runs with the recorded command do not take has no best value
+    scenario made;
+    const bool runs = identify_scenario(id, 0, &made, NULL) == STATUS_OK;
+    for (int i = 0; runs && i < id->count; i++) {
+        const sweep_axis *axis = &id->fit[i].axis;
+        const char *why = effect_none_from(&made, axis->parameter, -1);
+        FAULT_AT_IF(why != NULL, f, STATUS_BAD_ARGUMENT, sweep_axis_parameter(axis)->path,
+                    "%s has no effect in any run: %s", axis->name, why);
+    }
+
     id->residuals = (size_t)id->count;
     for (int k = 0; k < id->trace_count; k++) {
         id->residuals += id->traces[k].residuals;

@@ -7,6 +7,7 @@
 
 #include "src/base/numbers.h"
 #include "src/study/batch.h"
+#include "src/study/sweep.h"
 #include "src/tables/settings.h"
 
 // --- the condition --------------------------------------------------------------------------
@@ -75,8 +76,12 @@ status solve_axis_read(sweep_axis *axis, const char *text, const scenario *s, fa
 {
     const char *range = strchr(text, '=');
     TRY(sweep_axis_find(axis, text, f));
-    return range != NULL ? sweep_axis_parse_range(axis, range + 1, f)
-                         : solve_usual_range(axis, s, f);
+    TRY(range != NULL ? sweep_axis_parse_range(axis, range + 1, f) : solve_usual_range(axis, s, f));
+
+    // a study of one run with any value of the range
+    double any = (double)NAN;
+    const sweep study = {s, {*axis}, 1, SWEEP_RANDOM, .run_count = 1, .drawn = &any};
+    return sweep_check_effect(&study, 0, f);
 }
 
 // --- one run --------------------------------------------------------------------------------

@@ -7,6 +7,9 @@
 #include <string.h>
 
 #include "src/base/random.h"
+#include "src/scenario/effect.h"
+
+#define SOME_SHARE 0.37 // of a range, for a value that is any
 
 static const char *const samplings[] = {"grid", "random", "latin"};
 
@@ -239,6 +242,31 @@ status sweep_init(sweep *s, const scenario *base, const sweep_request *request, 
         sweep_finish(s);
     }
     return code;
+}
+
+const char *sweep_idle(const sweep *s, size_t run, int axis)
+{
+    double values[SWEEP_MOST_AXES];
+    scenario derived;
+    for (int i = 0; i < s->axis_count; i++) {
+        values[i] = sweep_value(s, run, i);
+        values[i] = isnan(values[i]) ? sweep_axis_value_at(&s->axes[i], SOME_SHARE) : values[i];
+    }
+    return sweep_axes_scenario(s->axes, s->axis_count, values, s->base, &derived, NULL) == STATUS_OK
+               ? effect_none_from(&derived, s->axes[axis].parameter, -1)
+               : NULL;
+}
+
+status sweep_check_effect(const sweep *s, int axis, fault *f)
+{
+    const char *why = NULL;
+    size_t run = 0;
+    while (run < s->run_count && (why = sweep_idle(s, run, axis)) != NULL) {
+        run++;
+    }
+    FAULT_AT_IF(why != NULL, f, STATUS_BAD_ARGUMENT, sweep_axis_parameter(&s->axes[axis])->path,
+                "%s has no effect in any run: %s", s->axes[axis].name, why);
+    return STATUS_OK;
 }
 
 void sweep_finish(sweep *s)

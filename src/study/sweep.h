@@ -54,6 +54,13 @@ status sweep_init(sweep *s, const scenario *base, const sweep_request *request, 
 status sweep_plan(sweep *s, const sweep_request *request, fault *f);
 void sweep_finish(sweep *s);
 
+// Why axis number `axis` has no effect in a run of the sweep: half a sentence, NULL if it has one
+// or the run's values do not go together. A value that is free is one within its range.
+const char *sweep_idle(const sweep *s, size_t run, int axis);
+
+// STATUS_BAD_ARGUMENT, with a sentence in f, if it has none in any run.
+status sweep_check_effect(const sweep *s, int axis, fault *f);
+
 // Value of parameter axes[axis] in run `run`.
 double sweep_value(const sweep *s, size_t run, int axis);
 

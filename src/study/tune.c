@@ -214,6 +214,9 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
     }
     t->plan.base = asked->base;
     t->plan.chosen_by = t->chosen_by;
+    for (int i = 0; i < varied; i++) {
+        TRY(sweep_check_effect(&t->plan, i, f));
+    }
     return STATUS_OK;
 }
 

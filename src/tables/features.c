@@ -98,7 +98,8 @@ typedef struct rule {
 static const rule rules[] = {
     // models and methods
     {"printed.*", HAS(PRINTED), "it belongs to arm.model = printed", false},
-    {"wall.[!ka]* method.rest_speed printed.force_* printed.reevaluation printed.clamp_force "
+    {"wall.[!ka]* method.rest_speed printed.force_* printed.program printed.reevaluation "
+     "printed.clamp_force "
      "printed.feed_newmark_acceleration",
      HAS(WALL), "there is no wall (wall.kind)", false},
     {"arm.damping_ratio arm.modal_ratios arm.joint_stiffness arm.link_lengths arm.air_drag "

@@ -61,6 +61,18 @@ static int open_sweep(comparison *c, const arguments *a, const scenario *s)
     return EXIT_DONE;
 }
 
+// Whether a parameter that is varied acts in some run of some scenario.
+static status check_effect(const comparison *c, int axis, fault *f)
+{
+    status code = STATUS_BAD_ARGUMENT;
+    for (int i = 0; i < c->opened && code != STATUS_OK; i++) {
+        sweep own = c->varied;
+        own.base = &c->scenarios[i];
+        code = sweep_check_effect(&own, axis, f);
+    }
+    return code;
+}
+
 static int open_all(comparison *c, const arguments *a)
 {
     const int count = a->operand_count + (a->against != NULL);
@@ -77,6 +89,9 @@ static int open_all(comparison *c, const arguments *a)
         TRY_EXIT(a->varies.count > 0 ? open_sweep(c, a, &c->scenarios[i]) : EXIT_DONE);
     }
 
+    for (int k = 0; k < c->varied.axis_count; k++) {
+        TRY_FAULT(check_effect(c, k, &f));
+    }
     c->rows = calloc((size_t)c->combinations * (size_t)(c->operands + 1), sizeof *c->rows);
     c->against = c->rows + c->combinations * c->operands;
     return c->rows != NULL ? EXIT_DONE : worse(EXIT_FAILED, complain("out of memory"));

@@ -45,8 +45,8 @@ static void print_values(const sweep *s, size_t run)
         const parameter_info *info = sweep_axis_parameter(&s->axes[i]);
         char text[128];
         sweep_value_text(s, run, i, text, sizeof text);
-        say("%s%s = %s%s%s", i > 0 ? ", " : "", s->axes[i].name, text, info->unit[0] ? " " : "",
-            info->unit);
+        say("%s%s = %s%s%s%s", i > 0 ? ", " : "", s->axes[i].name, text, info->unit[0] ? " " : "",
+            info->unit, sweep_idle(s, run, i) != NULL ? " (no effect)" : "");
     }
 }
 
@@ -201,6 +201,9 @@ static int sweep_and_report(const arguments *a, scenario *base)
 
     // the rows, in the file or in memory
     TRY_FAULT(sweep_init(&s, base, &request, &f));
+    for (int i = 0; i < s.axis_count; i++) {
+        TRY_FAULT(sweep_check_effect(&s, i, &f));
+    }
     TRY_FAULT(a->plot != NULL ? sweep_plot_check(&s, a->plot, &f) : STATUS_OK);
     TRY_FAULT(sweep_store_open(&store, a->db, &s, &f));
     return compute(&o, store);
