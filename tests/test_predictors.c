@@ -22,6 +22,40 @@ TEST(every_predictor_answers_for_the_corrected_arm)
     assert_string_equal(answers[PREDICTOR_IMPACT_QUADRATIC].name, "impact_quadratic");
 }
 
+// A wall that throws back takes 1 + e times the plastic impulse, as the run does, and no touch
+// holds; the printed equations know no restitution, nor does an impact below the rest rule's speed.
+TEST(a_rebound_is_no_touch_that_holds)
+{
+    const char *const bounces[] = {"wall.restitution=0.5", "wall.angle=0.1", NULL};
+    parameters p = fixture_parameters(bounces);
+    prediction_answer answers[PREDICTOR_COUNT];
+    predict_all(&(prediction_question){&p, closing, links, rates}, answers);
+    parameters dead = p;
+    dead.wall.restitution = 0;
+    prediction plastic;
+    assert_int_equal(predict_impact_dynamics(&dead, &closing, &plastic, NULL), STATUS_OK);
+    for (int i = 0; i < PREDICTOR_COUNT; i++) {
+        assert_int_equal(answers[i].outcome, PREDICTION_LOST);
+        assert_true(!answers[i].prediction.holds);
+        if (i != PREDICTOR_ENERGY) {
+            check_relative(answers[i].prediction.impulse, 1.5 * plastic.impulse, 1e-7);
+        }
+    }
+
+    // the run's own, at the state before it
+    KEPT_RUN(r) = run_arm(p, true);
+    const sample *row = row_before_landing(&r);
+    const three_body_state before = row_bodies(row);
+    DONE(predict_impact_dynamics(&p, &before, &plastic, &f));
+    check_relative(plastic.impulse, r.summary.contact_impulse_Ns, 1e-6);
+
+    p.method.rest_speed = 1;
+    assert_int_equal(
+        predict_with(PREDICTOR_IMPACT_DYNAMICS, &(prediction_question){&p, closing, links, rates})
+            .outcome,
+        PREDICTION_HOLDS);
+}
+
 TEST(an_arm_that_moves_away_does_not_hold)
 {
     parameters p = fixture_parameters(NULL);

@@ -97,6 +97,28 @@ TEST(a_single_link_is_a_pendulum)
     check_below(0.98 * sqrt(2 * torque * (1 - sin(0.3)) / inertia), fastest);
 }
 
+// No law knows of the weight, which may hold its arm off: a run of one says so, one without does
+// not.
+TEST(a_law_is_not_told_the_weight)
+{
+    static const struct {
+        const char *settings[5], *says;
+    } cases[] = {
+        {{"control.law=hybrid", "arm.tilt=0.2"}, "does not come to the wall"},
+        {{"control.law=hybrid", "arm.tilt=-0.01"}, "not told of the weight"},
+        {{"control.law=hybrid"}, NULL},
+        {{"control.law=none", "arm.tilt=0.2", "motor.voltage=3"}, NULL},
+    };
+    for (EACH(c, cases)) {
+        const char *all[8] = {"wall.angle=0", "initial.angle=-0.1"};
+        memcpy(all + 2, c->settings, sizeof c->settings);
+        KEPT_RUN(r) = run_arm(fixture_parameters(all), false);
+        assert_int_equal(r.summary.status, STATUS_OK);
+        assert_true(c->says == NULL ? strstr(r.summary.message, "weight") == NULL
+                                    : strstr(r.summary.message, c->says) != NULL);
+    }
+}
+
 // What knows no weight says so.
 TEST(what_knows_no_weight_says_so)
 {
@@ -107,6 +129,6 @@ TEST(what_knows_no_weight_says_so)
         if (*c != NULL) {
             give(&p, "method.engine", *c);
         }
-        REFUSED(STATUS_BAD_SCENARIO, "level", parameters_resolve(&p, &f));
+        REFUSED(STATUS_BAD_SCENARIO, *c == NULL ? "arm.tilt" : "level", parameters_resolve(&p, &f));
     }
 }

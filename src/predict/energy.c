@@ -139,7 +139,8 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
     out->holds = force > 0 && two_link_approach_speed(&touch, s) >= 0;
     if (!printed) {
         TRY(two_link_velocity_jump(&touch, s, after, &impulse, f));
-        out->holds = out->holds && two_link_first_force(&touch, p, s, after) >= 0;
+        out->holds = out->holds && two_link_first_force(&touch, p, s, after) >= 0 &&
+                     two_link_restitution(&touch, p, s) == 0;
     }
     return STATUS_OK;
 }

@@ -319,6 +319,13 @@ static status predict(const parameters *p, const three_body_state *s, bool close
     // the jump, and the motion that begins with it
     two_link_at(&t, p, form_of(p), s->angle[1], s->angle[2]);
     TRY(two_link_velocity_jump(&t, s, after, &out->impulse, f));
+
+    // an elastic impact throws the arm back: there is no pulse
+    const double e = two_link_restitution(&t, p, s);
+    if (e > 0) {
+        out->impulse *= 1 + e;
+        return STATUS_OK;
+    }
     integrate_motion(&g, p, &t, s, after);
     if (t.rigid_hub || closed_form) {
         solve_quadratic(&g, t.rigid_hub, s->velocity[0] + after[1] - s->velocity[1], out);

@@ -41,7 +41,8 @@ typedef struct voltage_profile {
 } voltage_profile;
 
 // A touch holds if the contact point approaches (or rests) and force and delay come out positive;
-// in the corrected forms also only if the wall's force just after the impact is not negative.
+// in the corrected forms also only if the wall's force just after the impact is not negative, and
+// its restitution e does not throw the arm back: the impulse is then 1 + e times the plastic one.
 // Where the touch does not hold, `force` and `delay` may be NaN. All predictors fail with
 // STATUS_NOT_FINITE on a state that is not finite and with STATUS_SINGULAR where the equations have
 // no single solution; f then says which. They work on the two-link arm: with another number of

@@ -82,6 +82,14 @@ bool two_link_solve(const two_link *t, double r[3])
     return dense_solve(3, matrix, r);
 }
 
+double two_link_restitution(const two_link *t, const parameters *p, const three_body_state *s)
+{
+    wall_model wall;
+    wall_init(&wall, p);
+    const double e = wall_restitution(&wall, two_link_approach_speed(t, s));
+    return p->arm.model == ARM_PRINTED ? 0 : e;
+}
+
 status two_link_velocity_jump(const two_link *t, const three_body_state *s, double after[3],
                               double *impulse, fault *f)
 {

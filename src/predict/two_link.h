@@ -49,6 +49,10 @@ bool two_link_solve(const two_link *t, double r[3]);
 status two_link_velocity_jump(const two_link *t, const three_body_state *s, double after[3],
                               double *impulse, fault *f);
 
+// Coefficient of restitution of an impact with this approach: of the corrected arm, beside a speed
+// below which it is plastic; the printed equations know none, 0.
+double two_link_restitution(const two_link *t, const parameters *p, const three_body_state *s);
+
 // Contact force just after the impact [N], from (2.16) without the doubled spring, (2.17) and the
 // constraint's second derivative at the velocities after[3]. Corrected form only. Where it is
 // negative the arm leaves the wall at once. NaN if singular.

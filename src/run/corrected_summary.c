@@ -180,6 +180,15 @@ static void judge(const corrected_run *c)
                r->state.from_behind);
     }
 
+    const parameters *p = &r->scenario->parameters;
+    if (p->arm.tilt != 0 && r->rig != NULL && p->control.law != LAW_PLAYBACK) {
+        remark(s, "the law is not told of the weight in the tilted plane (arm.tilt = %g rad)%s",
+               p->arm.tilt,
+               isnan(s->first_contact_s) && wall_stands(&c->arm.wall)
+                   ? ", and its arm does not come to the wall"
+                   : "");
+    }
+
     remark_on_single_link(c);
     s->inaccurate = s->energy_residual_J > bound * energy + rounding;
     if (s->inaccurate) {

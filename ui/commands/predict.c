@@ -117,7 +117,8 @@ static void print_predictions(const scenario *s, const void *found)
         if (answers[i].outcome == PREDICTION_HOLDS) {
             print_line(answers[i].label, p->force, p->delay, p->impulse);
         } else {
-            printf("  %-30s %s\n", answers[i].label, prediction_reason(&answers[i]));
+            say("  %-30s %s", answers[i].label, prediction_reason(&answers[i]));
+            say(isnan(p->impulse) ? "\n" : ", its impulse is %.5g N s\n", p->impulse);
         }
     }
 
