@@ -279,6 +279,8 @@ static void give_command(soak *s)
         "set motor.voltage", "seek", "save", "save a.doc", "save /proc/none/a.csv", "speed 0",
         "zoom sideways", "take 99", "sweep motor.voltage=1:2", "phase force", "answer x",
         "session open broken.session", "session open a.yaml", "trace force - ", "data a.yaml",
+        "mark 1e9", "mark nan", "trace 4294967297", "note @1e300 far", "seek -1e300",
+        "zoom -1e300 1e300", "pan 1e300", "step 1e300", "band gap 1e300", "change 9999999999 1",
         "identify none", "copy none", "note", "band gap 0", "rate 0.1", "set run.duration 1e9",
         "set method.step 1e-9", "trace nonsense", "glyphs %d", "push 1e999",
         "\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80", "\xff\xfe broken"};
@@ -387,6 +389,7 @@ static void start(soak *s)
         setenv("TERM", "xterm-256color", 1);
         setenv("LC_ALL", "C.UTF-8", 1);
         setenv("XDG_CONFIG_HOME", s->folder, 1);
+        setenv("XDG_STATE_HOME", s->folder, 1);
         unsetenv("LINES");
         unsetenv("COLUMNS");
         if (chdir(s->folder) == 0) {

@@ -332,7 +332,6 @@ TEST(test_both_sides_of_an_impact_are_told_apart)
     press_shows(&ex, "<Left>m<Right>", "last_velocity           -0.9056    -1.806 ");
 }
 
-// Numbers far outside of the run are refused or kept within it, and nothing else.
 TEST(test_marks_lie_in_the_run)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -343,4 +342,62 @@ TEST(test_marks_lie_in_the_run)
     }
     press_shows(&ex, ":mark 1<Enter>", "mark set");
     press_draws(&ex, ":zoom 0.1 0.1000001<Enter>");
+}
+
+// Any number typed at the prompt is refused or kept within what there is, and the screen drawn: the
+// sanitizers look on.
+TEST(test_numbers_of_any_size_are_survived)
+{
+    static const char *const lines[] = {"step %s",
+                                        "seek %s",
+                                        "speed %s",
+                                        "slow %s",
+                                        "mark %s",
+                                        "pan %s",
+                                        "drop %s",
+                                        "take %s",
+                                        "hide %s",
+                                        "baseline %s",
+                                        "rename %s a",
+                                        "unpin %s",
+                                        "rate %s",
+                                        "bending %s",
+                                        "trace %s",
+                                        "panes %s",
+                                        "difference %s",
+                                        "difference off",
+                                        "select %s",
+                                        "note @%s far",
+                                        "band force %s",
+                                        "limit force %s",
+                                        "zoom %s 1",
+                                        "zoom 0 %s",
+                                        "axis 0 %s",
+                                        "axis %s 1",
+                                        "axis 0 1 %s",
+                                        "signal force %s",
+                                        "data rows.csv@%s",
+                                        "residual force",
+                                        "statistics",
+                                        "notes",
+                                        "zoom 0.1 0.1000001",
+                                        "zoom all"};
+    OPEN_EXPLORER(ex, "corrected/first-impact");
+    press(&ex, ":save! rows.csv<Enter>");
+    for (EACH_TEXT(number, "1e300", "-1e300", "1e9", "nan", "4294967297", "-9223372036854775809",
+                   "1e-320", "0", "-1")) {
+        press(&ex, ":seek 0.3<Enter>");
+        for (EACH(line, lines)) {
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+            press(&ex, ":");
+            press(&ex, formatted(*line, *number));
+#pragma GCC diagnostic pop
+            press_draws(&ex, "<Enter>");
+            free(picture(&ex, 80, 24, GLYPHS_ASCII));
+            press(&ex, "<Esc>");
+        }
+        press(&ex, "<Esc>:data off<Enter>:forget<Enter>");
+    }
+    unlink("rows.csv");
 }

@@ -91,7 +91,7 @@ start() {
         LIMIT=$patience until_true test -s "$folder/pid" && break
         patience=$((2 * patience))
     done
-    await "Space run/pause"
+    await "${SHOWS:-Space run/pause}"
 }
 
 # suspends the lab; on a busy machine the shell may not have handed the terminal over when the key
@@ -133,6 +133,7 @@ note_settings() {
 }
 stty -g >"$folder/before"
 export XDG_CONFIG_HOME="$folder/config"
+export XDG_STATE_HOME="$folder/state"
 PROFILE
 mux new-session -d -x 120 -y 40 "bash --noprofile --rcfile $folder/profile -i"
 await "ready>"
@@ -156,6 +157,44 @@ mux send-keys C-c
 await "ready>"
 mux send-keys note_settings Enter
 check_given_back INT
+
+# however it ends, what was done is there again; a picture for which there is no memory is one way
+is_kept() {
+    grep -qs "arm.k2 $1" "$folder"/state/impactlab/recovery-*
+}
+offers() {
+    SHOWS="y goes on with it" start
+    mux send-keys y
+    await "1 change, 1 pinned run"
+    mux send-keys q q
+    await "status 0"
+    [ -z "$(ls -A "$folder/state/impactlab")" ] || fail "$1: the recovery file outlives an end that was asked for"
+}
+mux new-window "bash --noprofile --rcfile $folder/profile -i"
+await "ready>"
+for name in KILL HUP ABRT TRAP drawing; do
+    start
+    mux send-keys b ":set arm.k2 5" Enter
+    until_true is_kept 5 || fail "$name: no recovery file"
+    pid=$(cat "$folder/pid")
+    if [ "$name" = drawing ]; then
+        room=$(awk '/^VmSize/ { print $2 + 1000 }' "/proc/$pid/status")
+        prlimit --pid "$pid" --as=$((room * 1024))
+        mux send-keys ":save $folder/none.svg" Enter
+        await "impactlab: "
+        await "status 1"
+        check_given_back "no memory for a picture"
+    else
+        kill -s "$name" "$pid"
+    fi
+    if [ "$name" = KILL ]; then
+        mux kill-window
+    else
+        until_true is_ready
+    fi
+    is_kept 5 || fail "$name: the recovery file is gone"
+    offers "$name"
+done
 
 # suspended and taken up again
 start
@@ -409,7 +448,7 @@ for size in 80x24 100x30 200x60; do
     ask ":copy run" "clipboard"
     until_true copied "impactlab run 'corrected/first-impact' --set 'arm.k2=6'" ||
         fail "nothing is on the clipboard"
-    ask ":session save $folder/$size.session" "goes on with it"
+    ask ":session save $folder/$size.session" "goes on"
     mux send-keys q
     await "status 0"
     check_given_back "tools at $size"

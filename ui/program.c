@@ -123,6 +123,7 @@ static void end_cleanly(int number)
 static void end_without_picture(const char *reason)
 {
     whole_file_remove_unfinished();
+    terminal_give_back();
     complain("a picture cannot be drawn: %s", reason);
     _exit(EXIT_FAILED);
 }

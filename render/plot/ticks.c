@@ -156,10 +156,12 @@ static int decimals_needed(const ticks *t)
     return 15;
 }
 
-// Puts the limits in order and apart; false if they are no numbers.
+#define FARTHEST 1e100 // limit that has labels: steps of ten have their powers without overflow
+
+// Puts the limits in order and apart; false if they are no numbers, or too large ones.
 static bool straighten(wish *w)
 {
-    if (!isfinite(w->low) || !isfinite(w->high)) {
+    if (!(fabs(w->low) <= FARTHEST && fabs(w->high) <= FARTHEST)) {
         return false;
     }
     if (w->low > w->high) {
@@ -177,7 +179,7 @@ static bool straighten(wish *w)
     }
 
     w->count = w->count < 2 ? 2 : w->count > TICKS_MOST / 2 ? TICKS_MOST / 2 : w->count;
-    return isfinite(w->high - w->low);
+    return true;
 }
 
 void ticks_between(ticks *t, double low, double high, int wanted)

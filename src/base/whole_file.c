@@ -231,21 +231,20 @@ static bool lock_temporary(int descriptor)
     return !held && (fstat(descriptor, &about) != 0 || about.st_nlink > 0);
 }
 
-// Removes a temporary of the user's that nobody holds a lock on, if it still has that name: it may
-// have become its file since it was opened, and the name another one's.
-static void remove_if_left(int folder, const char *name)
+int whole_file_lock_left(int folder, const char *name)
 {
     struct stat about, named;
-    int file = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) {
-        return;
+    const int file = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+
+    // it may have become another file since it was opened, and the name another one's
+    const bool left = file >= 0 && fstat(file, &about) == 0 && S_ISREG(about.st_mode) &&
+                      about.st_uid == geteuid() && flock(file, LOCK_EX | LOCK_NB) == 0 &&
+                      fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 &&
+                      named.st_ino == about.st_ino;
+    if (file >= 0 && !left) {
+        close(file);
     }
-    if (fstat(file, &about) == 0 && S_ISREG(about.st_mode) && about.st_uid == geteuid() &&
-        flock(file, LOCK_EX | LOCK_NB) == 0 &&
-        fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 && named.st_ino == about.st_ino) {
-        unlinkat(folder, name, 0);
-    }
-    close(file);
+    return left ? file : -1;
 }
 
 void whole_file_clean_folder(const char *path)
@@ -258,7 +257,11 @@ void whole_file_clean_folder(const char *path)
         int number, length = 0;
         if (sscanf(name, ".impactlab-%ld-%d.part%n", &process, &number, &length) == 2 &&
             length > 0 && name[length] == '\0') {
-            remove_if_left(dirfd(folder), name);
+            const int left = whole_file_lock_left(dirfd(folder), name);
+            if (left >= 0) {
+                unlinkat(dirfd(folder), name, 0);
+                close(left);
+            }
         }
     }
     if (folder != NULL) {

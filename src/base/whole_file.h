@@ -74,6 +74,11 @@ char *whole_file_read(const char *path, size_t most, size_t *length, fault *why)
 // What was said of a file that cannot be read, behind its name. Returns the status.
 status whole_file_unread(const char *path, const fault *why, fault *f);
 
+// Locks a regular file of the user's by its name in a folder, if nobody else has a lock on it: its
+// writer, who held one in a copy of whole_file.descriptor, has ended. Returns what holds the lock,
+// to be closed, or -1.
+int whole_file_lock_left(int folder, const char *name);
+
 // Removes what runs that were killed left in a folder. Opening a file does so by itself; this is
 // for who asks beforehand what the folder holds. One that cannot be read is left alone.
 void whole_file_clean_folder(const char *path);

@@ -100,6 +100,13 @@ const char *name_nearest(const void *table, size_t size, int count, const char *
     return near.best;
 }
 
+size_t text_stem(const char *text, const char *ending)
+{
+    const size_t length = strlen(text), tail = strlen(ending);
+    const bool ends = length > tail && strcmp(text + length - tail, ending) == 0;
+    return ends ? length - tail : length;
+}
+
 bool is_unprintable(uint32_t character)
 {
     const bool control = character < 0x20 || (character >= 0x7f && character < 0xa0);

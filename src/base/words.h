@@ -37,6 +37,9 @@ void nearest_try(nearest_word *n, const char *candidate);
 int name_find(const void *table, size_t size, int count, const char *name);
 const char *name_nearest(const void *table, size_t size, int count, const char *name);
 
+// Length of a text without an ending: of all of it if that is not its end, or nothing is before it.
+size_t text_stem(const char *text, const char *ending);
+
 // Whether a character (Unicode) may not leave the program in a text: a control character (C0 and
 // C1, line ends too), one that turns the direction of what follows it, or a line or paragraph
 // separator.

@@ -224,8 +224,6 @@ static status add_entry(name_list *list, const char *folder, const char *prefix,
     char *path = text_of("%s/%s", folder, entry);
     char *name = text_of("%s%s%s", prefix, prefix[0] != '\0' ? "/" : "", entry);
     status code = path != NULL && name != NULL ? STATUS_OK : fault_no_memory(f);
-    size_t length = code == STATUS_OK ? strlen(name) : 0;
-    const size_t tail = sizeof suffix - 1;
     struct stat about = {0};
     if (code == STATUS_OK && stat(path, &about) != 0 && !is_missing(errno)) {
         code = cannot_list(folder, f);
@@ -234,9 +232,8 @@ static status add_entry(name_list *list, const char *folder, const char *prefix,
     // a folder's scenarios have its name before theirs; other files than .yaml are none
     if (code == STATUS_OK && S_ISDIR(about.st_mode)) {
         code = depth < MAX_FOLDER_DEPTH ? walk(list, path, name, depth + 1, f) : STATUS_OK;
-    } else if (code == STATUS_OK && strlen(entry) > tail &&
-               strcmp(name + length - tail, suffix) == 0) {
-        code = add_name(list, name, length - tail) ? STATUS_OK : fault_no_memory(f);
+    } else if (code == STATUS_OK && entry[text_stem(entry, suffix)] != '\0') {
+        code = add_name(list, name, text_stem(name, suffix)) ? STATUS_OK : fault_no_memory(f);
     }
 
     free(path);
@@ -328,9 +325,7 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
 {
     char **names;
     int count;
-    size_t length = strlen(wanted), tail = sizeof suffix - 1;
-    bool has_suffix = length > tail && strcmp(wanted + length - tail, suffix) == 0;
-    char *stem = strndup(wanted, has_suffix ? length - tail : length);
+    char *stem = strndup(wanted, text_stem(wanted, suffix));
     fault unread = {0};
     if (stem == NULL || scenario_list(&names, &count, &unread) == STATUS_NO_MEMORY) {
         free(stem);

@@ -9,6 +9,7 @@
 
 #include "src/base/clock.h"
 #include "src/base/text_stream.h"
+#include "src/base/words.h"
 #include "ui/explorer/explorer.h"
 #include "ui/terminal/pictures.h"
 #include "ui/terminal/terminal.h"
@@ -135,11 +136,12 @@ static void show(explorer *ex, screen *s, picture_layer *layer)
     loss_forget(); // the next picture shows what this one lacks
 }
 
-static void run_on_terminal(explorer *ex)
+// Returns whether the user ended it.
+static bool run_on_terminal(explorer *ex)
 {
     screen s = {0};
     picture_layer layer = {0};
-    bool dirty = true, leave = false;
+    bool dirty = true, leave = false, taken_any = false;
     double drawn = 0, pause = FRAME, last = clock_seconds(CLOCK_MONOTONIC);
 
     while (!ex->state.quit && !leave) {
@@ -163,7 +165,8 @@ static void run_on_terminal(explorer *ex)
         bool waits = dirty || explorer_is_busy(ex);
         // a picture that took longer than a frame leaves nothing to wait for
         double left = fmax(0, dirty ? pause - (clock_seconds(CLOCK_MONOTONIC) - drawn) : pause);
-        terminal_input in = terminal_wait(waits ? left : -1);
+        left = fmin(waits ? left : HUGE_VAL, recovery_keep(ex, taken_any, now));
+        terminal_input in = terminal_wait(isfinite(left) ? left : -1);
         now = clock_seconds(CLOCK_MONOTONIC);
 
         // what was computed, and time going on
@@ -175,6 +178,7 @@ static void run_on_terminal(explorer *ex)
 
         // all input that has arrived, so that keys never wait for pictures that are out of date
         last = now;
+        taken_any = in.kind != TERMINAL_NONE;
         for (int taken = 0; in.kind != TERMINAL_NONE && !ex->state.quit && !leave; taken++) {
             dirty = true;
             leave = in.kind == TERMINAL_LEAVE;
@@ -193,6 +197,7 @@ static void run_on_terminal(explorer *ex)
 
     screen_finish(&s);
     pictures_finish(&layer);
+    return !leave;
 }
 
 // What the terminal can be expected to show: the console of Linux has no braille in its fonts.
@@ -212,8 +217,7 @@ static int open_explorer(explorer *ex, const arguments *a)
 
     // a session brings its own scenarios: the lab opens, and then it
     const char *named = a->operand_count > 0 ? a->operands[0] : first_scenario;
-    const size_t length = strlen(named), tail = strlen(".session");
-    const bool is_session = length > tail && strcmp(named + length - tail, ".session") == 0;
+    const bool is_session = named[text_stem(named, ".session")] != '\0';
     TRY_EXIT(open_scenario(&s, is_session ? first_scenario : named, a));
 
     bool live = a->keys == NULL && a->script == NULL && a->size.width == 0;
@@ -268,8 +272,9 @@ static int explore(const arguments *a)
     } else if (terminal_open(&f) != STATUS_OK) {
         code = complain_fault(&f);
     } else {
-        ex.state.playback.playing = true;
-        run_on_terminal(&ex);
+        // what is offered is not played over
+        ex.state.playback.playing = !recovery_begin(&ex);
+        recovery_end(&ex, run_on_terminal(&ex));
         terminal_close();
 
         // what is left on the terminal

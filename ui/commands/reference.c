@@ -110,6 +110,8 @@ static const term environment[] = {
     {"COLORTERM", "If truecolor or 24bit, the terminal has colours by red, green and blue."},
     {"XDG_CONFIG_HOME",
      "Where the terminal lab keeps its settings, in impactlab/lab; ~/.config if not set."},
+    {"XDG_STATE_HOME", "Where the terminal lab keeps what is not saved, in impactlab, until it is "
+                       "left; ~/.local/state if not set."},
     {NULL},
 };
 

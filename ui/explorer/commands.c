@@ -203,7 +203,7 @@ void explorer_load_settings(explorer *ex)
     message_line first = {.text = ""};
     size_t room = 0;
     int faults = 0;
-    if (!user_file("lab", path, sizeof path, false)) {
+    if (!user_file(USER_SETTINGS, "lab", path, sizeof path, false)) {
         return;
     }
 
@@ -274,7 +274,7 @@ bool act_remember(explorer_state *st, const char *argument)
 {
     char path[1024];
     whole_file file;
-    FAIL_IF(!user_file("lab", path, sizeof path, true),
+    FAIL_IF(!user_file(USER_SETTINGS, "lab", path, sizeof path, true),
             act_refuse(st, "there is no folder for settings (XDG_CONFIG_HOME or HOME)"));
     FAIL_IF(st->settings_broken,
             act_refuse(st, "%s has faults and is left alone: mend or remove it", path));
@@ -291,7 +291,7 @@ bool act_remember(explorer_state *st, const char *argument)
 void explorer_welcome(explorer *ex)
 {
     char path[1024];
-    if (!user_file("visited", path, sizeof path, true) || access(path, F_OK) == 0) {
+    if (!user_file(USER_SETTINGS, "visited", path, sizeof path, true) || access(path, F_OK) == 0) {
         return;
     }
     FILE *stream = fopen(path, "w");

@@ -6,6 +6,9 @@
 // and write a layout), and in this folder keys, mouse, the table of commands and the settings.
 #pragma once
 
+#include <pthread.h>
+#include <stdatomic.h>
+
 #include "ui/explorer/panels/panel.h"
 #include "ui/terminal/keys.h"
 
@@ -17,10 +20,26 @@ typedef struct pointer_grip {
     int x, y;     // the cell it was at last
 } pointer_grip;
 
+// The file that outlives a lab's end unless its user ends it, and the one that is offered.
+typedef struct recovery {
+    char path[1024], left[1024]; // this lab's, and one that another lab left, "" for none
+    int lock, left_lock;         // descriptors that hold their locks, -1 for none
+    bool changed;                // something may be that was not written
+    double due;                  // when it may be written next [s]
+    bool told;                   // that it cannot be
+    pthread_t writer;            // the thread that writes `text`, if it does
+    bool writes;
+    atomic_bool done;
+    char *text;
+    status code; // what became of it
+    fault fault;
+} recovery;
+
 typedef struct explorer {
     explorer_state state;
     layout layout; // of the picture drawn last
     pointer_grip grip;
+    recovery recovery;
     char first_failure[MESSAGE_TEXT]; // message of the first line that failed, "" if none has
 } explorer;
 
@@ -76,6 +95,26 @@ bool complete_prompt(explorer_state *st);
 // Opens a session's file: its runs are pinned beside those there are. False, with the message why,
 // and nothing changed, if it cannot be.
 bool explorer_open_session(explorer_state *st, const char *path);
+
+// Writes one of what there is. Errors of writing stay in the stream; STATUS_NO_MEMORY, or
+// STATUS_CANNOT_WRITE for a pane that no line can say.
+status explorer_write_session(explorer_state *st, FILE *stream, fault *f);
+
+// --- recovery ---------------------------------------------------------------------------------
+
+// Finds a place for the recovery file, and offers the newest that a lab left, which no other lab
+// offers meanwhile. True if there is one.
+bool recovery_begin(explorer *ex);
+// Takes the answer to that: true if the key was one. Any other ends the offer.
+bool recovery_answer(explorer *ex, int key);
+
+// Writes the file if something may have changed, on a thread of its own and not more than once a
+// second. Returns after how many seconds at most to call again. A file that cannot be written is
+// told once.
+double recovery_keep(explorer *ex, bool changed, double now);
+
+// Removes the file if the user ended the lab; else what was changed last is written.
+void recovery_end(explorer *ex, bool orderly);
 
 // Carries out a line that says how runs are looked at, and none that does anything else.
 bool explorer_look(explorer_state *st, const char *line);

@@ -7,15 +7,10 @@
 #include "render/plot/trace_plot.h"
 #include "render/scene/scene.h"
 #include "src/base/whole_file.h"
+#include "src/base/words.h"
 #include "src/run/export.h"
 #include "src/scenario/outside.h"
 #include "ui/explorer/panels/panel.h"
-
-static bool ends_with(const char *text, const char *end)
-{
-    size_t length = strlen(text), tail = strlen(end);
-    return length > tail && strcmp(text + length - tail, end) == 0;
-}
 
 static status write_figure(const explorer_state *st, const char *path, fault *f)
 {
@@ -137,7 +132,7 @@ static bool is_free(explorer_state *st, const char *name)
 static bool save_over(explorer_state *st, const char *name)
 {
     int kind = 0;
-    while (kind < KINDS && !ends_with(name, kinds[kind].ending)) {
+    while (kind < KINDS && name[text_stem(name, kinds[kind].ending)] == '\0') {
         kind++;
     }
     NEED((kind < KINDS && !kinds[kind].needs_whole_run) || act_need_whole_run(st));
@@ -154,7 +149,9 @@ static bool save_over(explorer_state *st, const char *name)
         code = whole_file_commit(&file, &st->fault);
     }
     NEED(act_worked(st, code));
-    st->saved_version = ends_with(name, ".yaml") ? state_run_id(st) : st->saved_version;
+    if (kinds[kind].write == write_scenario) {
+        st->saved_version = state_run_id(st);
+    }
     return tell_file(st, true, name);
 }
 

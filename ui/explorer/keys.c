@@ -184,6 +184,9 @@ void explorer_key(explorer *ex, int key)
     if (st->page == PANEL_WELCOME) {
         st->page = PANEL_NONE;
     }
+    if (recovery_answer(ex, key)) {
+        return;
+    }
     const bool quits = key == ('c' & 0x1f) && st->page != PANEL_SCENARIOS;
     if (st->prompt.open) {
         key_in_prompt(ex, key);

@@ -7,6 +7,7 @@
 #include "src/base/numbers.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
+#include "src/base/words.h"
 #include "src/session/session_file.h"
 #include "ui/explorer/explorer.h"
 
@@ -98,10 +99,9 @@ static status check_lines(const session_file *file, fault *f)
     return STATUS_OK;
 }
 
-static status write_session(explorer_state *st, const char *path, fault *f)
+status explorer_write_session(explorer_state *st, FILE *stream, fault *f)
 {
     static session_file file;
-    whole_file whole;
     const run_list *pins = &st->pinned;
     file = (session_file){.run_count = 1 + pins->count, .baseline = pins->baseline};
     TRY(run_origin_take(&file.runs[0].from, &st->session, f));
@@ -113,15 +113,20 @@ static status write_session(explorer_state *st, const char *path, fault *f)
         snprintf(k->name, sizeof k->name, "%s", pins->runs[i].name);
     }
     add_looks(st, &file);
-    status code = check_lines(&file, f);
-    code = code == STATUS_OK ? whole_file_open(&whole, path, f) : code;
+    const status code = check_lines(&file, f);
     if (code == STATUS_OK) {
-        session_file_write(whole.stream, &file);
-        code = whole_file_commit(&whole, f);
+        session_file_write(stream, &file);
     }
     file.run_count = 1;
     session_file_finish(&file);
     return code;
+}
+
+static status write_session(explorer_state *st, const char *path, fault *f)
+{
+    whole_file file;
+    TRY(whole_file_open(&file, path, f));
+    return whole_file_close(&file, explorer_write_session(st, file.stream, f), f);
 }
 
 static bool save_session(explorer_state *st, const char *path)
@@ -230,10 +235,8 @@ bool act_session(explorer_state *st, const char *argument)
 
     // a name without the ending by which the lab knows a session gets it
     char whole[LINE_TEXT];
-    const size_t length = strlen(path), tail = strlen(ending);
-    const bool ends = length > tail && strcmp(path + length - tail, ending) == 0;
-    const bool as_it_is = ends || (!saves && access(path, F_OK) == 0);
-    snprintf(whole, sizeof whole, "%.*s%s", (int)(sizeof whole - sizeof ending), path,
-             as_it_is ? "" : ending);
+    const bool there = !saves && access(path, F_OK) == 0;
+    const int stem = (int)(there ? strlen(path) : text_stem(path, ending));
+    snprintf(whole, sizeof whole, "%.*s%s", stem, path, there ? "" : ending);
     return saves ? save_session(st, whole) : explorer_open_session(st, whole);
 }

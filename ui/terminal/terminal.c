@@ -41,12 +41,19 @@ static void on_polite(int number)
     errno = kept;
 }
 
-// Last resort: gives the terminal back by prepared bytes, then lets the signal do what it did.
+void terminal_give_back(void)
+{
+    if (tty.curses != NULL) {
+        ssize_t ignored = write(STDOUT_FILENO, tty.restore, tty.restore_length);
+        (void)ignored;
+        tcsetattr(STDIN_FILENO, TCSANOW, &tty.saved);
+    }
+}
+
+// Last resort: gives the terminal back, then lets the signal do what it did.
 static void on_fatal(int number)
 {
-    ssize_t ignored = write(STDOUT_FILENO, tty.restore, tty.restore_length);
-    (void)ignored;
-    tcsetattr(STDIN_FILENO, TCSANOW, &tty.saved);
+    terminal_give_back();
     for (int i = POLITE; i < SIGNALS; i++) {
         if (signals[i] == number) {
             sigaction(number, &before[i], NULL);

@@ -33,6 +33,10 @@ status terminal_open(fault *f);
 // Restores it. If a signal asked to leave, ends the program by that signal.
 void terminal_close(void);
 
+// Gives it back by prepared bytes, if it is open, where the program ends at once. Safe in a signal
+// handler.
+void terminal_give_back(void);
+
 void terminal_size(int *width, int *height);
 
 // Waits for input: at most `seconds`, without limit if negative.

@@ -79,9 +79,9 @@ bool act_need_short_runs(explorer_state *st, const char *command, int runs);
 // text.
 const char *act_whole_path(const char *word, char *text, size_t size);
 
-// Pins the present run with other values from the start; act_settle_baseline is to follow.
-status act_pin_values(explorer_state *st, const sweep_axis *const *axes, const double *values,
-                      int count, const char *name, fault *f);
+// Pins the present run with another value from the start; act_settle_baseline is to follow.
+status act_pin_value(explorer_state *st, const sweep_axis *axis, double value, const char *name,
+                     fault *f);
 // Compares the present run with the baseline of the pinned ones from now on.
 bool act_settle_baseline(explorer_state *st);
 

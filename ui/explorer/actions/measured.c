@@ -40,15 +40,13 @@ bool act_data(explorer_state *st, const char *argument)
     trace_finish(&st->measured);
     st->measured = fresh;
     st->measured_shift = 0;
-    st->measured_aligned = isnan(shift);
+    st->measured_id++;
     snprintf(st->measured_file, sizeof st->measured_file, "%s", path);
-    state_shift_data(st, isnan(shift) ? state_aligned_shift(st) : shift);
-    st->measured_run = state_run_id(st);
-    return isnan(shift) && isnan(state_aligned_shift(st))
-               ? act_warn(st, "%zu rows, as they are: no force in both that shows a touch",
-                          fresh.row_count)
-               : act_tell(st, "%zu rows, shifted by %.6g s; :data off takes them away",
-                          fresh.row_count, st->measured_shift);
+    return state_lay_data(st, shift)
+               ? act_tell(st, "%zu rows, shifted by %.6g s; :data off takes them away",
+                          fresh.row_count, st->measured_shift)
+               : act_warn(st, "%zu rows, as they are: no force in both that shows a touch",
+                          fresh.row_count);
 }
 
 // --- identification ---------------------------------------------------------------------------
@@ -90,8 +88,7 @@ static status pin_fitted(explorer_state *st, const identification *id, fault *f)
     const status code = run_list_pin(&st->pinned, &other, "identified", f);
     session_finish(&other);
     if (code == STATUS_OK) {
-        state_shift_data(st, -(t->begin + t->own[OWN_SHIFT]));
-        st->measured_aligned = false;
+        state_lay_data(st, -(t->begin + t->own[OWN_SHIFT]));
     }
     return code;
 }

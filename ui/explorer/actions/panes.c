@@ -87,9 +87,10 @@ bool act_trace(explorer_state *st, const char *argument)
 {
     // a pane of the table
     if (argument[0] != '\0' && argument[strspn(argument, "0123456789")] == '\0') {
-        const int index = atoi(argument) - 1;
-        FAIL_IF(index < 0 || index >= PANES,
+        const long number = strtol(argument, NULL, 10);
+        FAIL_IF(number < 1 || number > PANES,
                 act_refuse(st, "panes are numbered from 1 to %d", PANES));
+        const int index = (int)number - 1;
         pane *p = &st->panes.pane[index];
         FAIL_IF(p->count == 0,
                 act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", argument));

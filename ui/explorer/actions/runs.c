@@ -182,27 +182,23 @@ static int signal_of_quantity(int quantity)
     return found;
 }
 
-status act_pin_values(explorer_state *st, const sweep_axis *const *axes, const double *values,
-                      int count, const char *name, fault *f)
+status act_pin_value(explorer_state *st, const sweep_axis *axis, double value, const char *name,
+                     fault *f)
 {
     parameters p = st->session.effective.parameters;
+    char text[PARAMETER_TEXT_SIZE];
     run_origin from;
     session other;
+    TRY(sweep_axis_apply(axis, value, &p, f));
+    parameter_format(&p, axis->parameter, text, sizeof text);
     TRY(run_origin_take(&from, &st->session, f));
 
-    // the present run's changes, and the values from the start
+    // the present run's changes, and the value from the start
     status code = session_reopen(&other, &from, HUGE_VAL, f);
     run_origin_finish(&from);
     TRY(code);
     session_seek(&other, 0);
-    for (int i = 0; i < count && code == STATUS_OK; i++) {
-        char text[PARAMETER_TEXT_SIZE];
-        code = sweep_axis_apply(axes[i], values[i], &p, f);
-        if (code == STATUS_OK) {
-            parameter_format(&p, axes[i]->parameter, text, sizeof text);
-            code = session_change_from_start(&other, axes[i]->parameter, text, f);
-        }
-    }
+    code = session_change_from_start(&other, axis->parameter, text, f);
     code = code == STATUS_OK ? run_list_pin(&st->pinned, &other, name, f) : code;
     session_finish(&other);
     return code;
@@ -285,7 +281,7 @@ bool act_solve(explorer_state *st, const char *argument)
         st->limit = (solved_limit){signal_of_quantity(condition.quantity), condition.bound};
         const double value = found.limits[nearest_limit(st, &axis, &found)].value;
         snprintf(name, sizeof name, "%s %.5g", strchr(axis.name, '.') + 1, value);
-        code = act_pin_values(st, (const sweep_axis *[]){&axis}, &value, 1, name, f);
+        code = act_pin_value(st, &axis, value, name, f);
     }
     const bool done = act_worked(st, code) && tell_limits(st, &axis, &condition, &found);
     sweep_axis_finish(&axis);

@@ -35,8 +35,10 @@ const value_range value_range_empty = {(double)INFINITY, (double)-INFINITY};
 
 value_range value_range_opened(value_range r)
 {
-    const double rounding = 1e-12; // a smaller range is shown as a flat line
-    return r.high - r.low < rounding ? (value_range){r.low - 0.5, r.high + 0.5} : r;
+    // a smaller range than rounding is shown as a flat line
+    const double size = fmax(fabs(r.low), fabs(r.high)), half = fmax(0.5, 1e-12 * size);
+    const bool flat = r.high - r.low < fmax(1e-12, 1e-15 * size);
+    return flat ? (value_range){r.low - half, r.high + half} : r;
 }
 
 // Shows the first pane that has a signal, or the user's own with it if none has.

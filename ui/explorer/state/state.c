@@ -345,26 +345,27 @@ static double first_above(const trace *t, int signal, double level)
     return r < t->row_count ? t->rows[r].time : (double)NAN;
 }
 
-double state_aligned_shift(const explorer_state *st)
+bool state_lay_data(explorer_state *st, double shift)
 {
-    // a tenth of the measured largest force marks the touch in both
     const trace *run = &st->session.run.trace, *data = &st->measured;
     const int force = common_force(data, run);
-    if (force < 0) {
-        return (double)NAN;
-    }
-    const double first = data->rows[0].time, last = data->rows[data->row_count - 1].time;
-    const double level = trace_statistics(data, force, first, last).maximum / 10;
-    return st->measured_shift + first_above(run, force, level) - first_above(data, force, level);
-}
+    st->measured_aligned = isnan(shift);
+    st->measured_run = state_run_id(st);
 
-void state_shift_data(explorer_state *st, double shift)
-{
-    for (size_t r = 0; r < st->measured.row_count && isfinite(shift); r++) {
-        st->measured.rows[r].time += shift - st->measured_shift;
+    // a tenth of the measured largest force marks the touch in both
+    if (isnan(shift) && force >= 0) {
+        const double first = data->rows[0].time, last = data->rows[data->row_count - 1].time;
+        const double level = trace_statistics(data, force, first, last).maximum / 10;
+        shift =
+            st->measured_shift + first_above(run, force, level) - first_above(data, force, level);
     }
-    st->measured_shift = isfinite(shift) ? shift : st->measured_shift;
+    FAIL_IF(!isfinite(shift), false);
+    for (size_t r = 0; r < data->row_count; r++) {
+        data->rows[r].time += shift - st->measured_shift;
+    }
+    st->measured_shift = shift;
     st->measured_id++;
+    return true;
 }
 
 // The measured data minus the run, where a pane shows them.
@@ -398,11 +399,9 @@ void state_update(explorer_state *st)
 
     // what follows the run and its instant
     const session *s = &st->session;
-    const bool realign = st->measured_aligned && st->measured.row_count > 0 &&
-                         s->computing == NULL && st->measured_run != state_run_id(st);
-    if (realign) {
-        state_shift_data(st, state_aligned_shift(st));
-        st->measured_run = state_run_id(st);
+    const bool moved = s->computing == NULL && st->measured_run != state_run_id(st);
+    if (moved && st->measured_aligned && st->measured.row_count > 0) {
+        state_lay_data(st, (double)NAN);
     }
     if (s->has_other) {
         difference_update(&st->difference, state_run_id(st), &s->run.trace, &s->other.trace);

@@ -146,10 +146,9 @@ status state_turn(explorer_state *st, int direction, fault *f);
 // runs.
 void state_update(explorer_state *st);
 
-// The shift with which the measured data touch when the run does [s], NaN if no force of both shows
-// that; and lays them so, which NaN leaves as they are.
-double state_aligned_shift(const explorer_state *st);
-void state_shift_data(explorer_state *st, double shift);
+// Lays the measured data under the run, so much later than in their file [s]; NaN: they touch when
+// the run does, and go with it. False where no force in both shows that: they stay as they are.
+bool state_lay_data(explorer_state *st, double shift);
 
 // A number that identifies the present run among the runs of all sessions opened; never 0.
 unsigned long state_run_id(const explorer_state *st);

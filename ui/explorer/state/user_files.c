@@ -15,25 +15,29 @@
 #include "src/scenario/outside.h"
 #include "ui/explorer/state/command_list.h"
 
-bool user_file(const char *name, char *path, size_t size, bool make)
+bool user_file(user_folder folder, const char *name, char *path, size_t size, bool make)
 {
+    static const struct {
+        const char *variable, *usual;
+    } folders[] = {{"XDG_CONFIG_HOME", ".config"}, {"XDG_STATE_HOME", ".local/state"}};
     assert(size > 0);
-    const char *base = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
+    const char *base = getenv(folders[folder].variable), *home = getenv("HOME");
 
-    // where settings belong, or the usual place below the home folder
+    // where such files belong, or the usual place below the home folder
     const bool given = base != NULL && base[0] == '/', usual = home != NULL && home[0] == '/';
-    snprintf(path, size, given ? "%s" : "%s/.config", given ? base : usual ? home : "");
-    if ((!given && !usual) || strlen(path) + 24 > size) {
+    snprintf(path, size, "%s", given ? base : usual ? home : "~");
+    text_add(path, size, "%s%s/impactlab/%s", given ? "" : "/", given ? "" : folders[folder].usual,
+             name);
+    if ((!given && !usual) || strlen(path) + 1 >= size) {
         return false;
     }
 
-    // the folders above it must exist
-    if (make) {
-        mkdir(path, 0700);
+    // each folder on the way
+    bool there = true;
+    for (char *end = path; make && (end = strchr(end + 1, '/')) != NULL; *end = '/') {
+        *end = '\0';
+        there = mkdir(path, 0700) == 0 || errno == EEXIST;
     }
-    text_add(path, size, "/impactlab");
-    const bool there = !make || mkdir(path, 0700) == 0 || errno == EEXIST;
-    text_add(path, size, "/%s", name);
     return there;
 }
 
@@ -120,15 +124,15 @@ bool consent_remembered(const scenario *s)
     char path[1024], digest[SHA256_TEXT];
 
     // the program is read only if the user has allowed any
-    return user_file("allowed", path, sizeof path, false) && access(path, R_OK) == 0 &&
-           digest_of(s, digest) && look_through(path, digest, NULL);
+    return user_file(USER_SETTINGS, "allowed", path, sizeof path, false) &&
+           access(path, R_OK) == 0 && digest_of(s, digest) && look_through(path, digest, NULL);
 }
 
 status consent_remember(const scenario *s, bool *kept, fault *f)
 {
     char path[1024], digest[SHA256_TEXT], what[2 * PARAMETER_TEXT_SIZE];
     *kept = false;
-    if (!digest_of(s, digest) || !user_file("allowed", path, sizeof path, true)) {
+    if (!digest_of(s, digest) || !user_file(USER_SETTINGS, "allowed", path, sizeof path, true)) {
         return STATUS_OK;
     }
 

@@ -7,10 +7,13 @@
 #include "src/base/fault.h"
 #include "src/scenario/scenario.h"
 
-// The path of a file (a name of a few letters) in the folder of settings,
-// $XDG_CONFIG_HOME/impactlab or ~/.config/impactlab, which is created if `make`. False if there is
-// none or the path is too long.
-bool user_file(const char *name, char *path, size_t size, bool make);
+// The user's folders, which are impactlab in $XDG_CONFIG_HOME or ~/.config, and in $XDG_STATE_HOME
+// or ~/.local/state.
+typedef enum user_folder { USER_SETTINGS, USER_STATE } user_folder;
+
+// The path of a file (a short name) in one of them, which is created for its user alone if `make`.
+// False if there is none or the path is too long.
+bool user_file(user_folder folder, const char *name, char *path, size_t size, bool make);
 
 // --- consent ----------------------------------------------------------------------------------
 // The user's consent to a scenario's program or plug-in, remembered for the content of both.

@@ -1,0 +1,185 @@
+// The recovery file: what would be lost if the lab ended now. It outlives every end of the program
+// but the one that its user asks for, and the next start offers it.
+//
+// It holds what `:session save` writes, and is locked as long as its lab lives.
+#include <dirent.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "src/base/text_stream.h"
+#include "src/base/whole_file.h"
+#include "src/run/background_run.h"
+#include "ui/explorer/explorer.h"
+#include "ui/explorer/state/user_files.h"
+
+#define APART 1.0 // between two times that it is written [s]
+#define LOOK  0.1 // between two looks at whether that is done [s]
+
+// Of as many letters; what begins with the first one is offered.
+static const char offered[] = "recovery", declined[] = "declined";
+
+// --- writing ----------------------------------------------------------------------------------
+
+// On a thread of its own, so that no key waits for a disk.
+static void *write_text(void *context)
+{
+    recovery *r = context;
+    whole_file file;
+    r->code = whole_file_open(&file, r->path, &r->fault);
+    if (r->code == STATUS_OK) {
+        // a copy of the descriptor keeps the lock when the file is closed
+        const int lock = fcntl(file.descriptor, F_DUPFD_CLOEXEC, 0);
+        fputs(r->text, file.stream);
+        r->code = whole_file_commit(&file, &r->fault);
+        close(r->code == STATUS_OK ? r->lock : lock);
+        r->lock = r->code == STATUS_OK ? lock : r->lock;
+    }
+    atomic_store(&r->done, true);
+    return NULL;
+}
+
+// Waits for the end of what is being written; what hinders it is told once.
+static void end_writing(explorer *ex)
+{
+    recovery *r = &ex->recovery;
+    if (r->writes) {
+        pthread_join(r->writer, NULL);
+    }
+    r->writes = false;
+    free(r->text);
+    r->text = NULL;
+    if (r->code != STATUS_OK && !r->told) {
+        const char *why = r->fault.text[0] != '\0' ? r->fault.text : status_text(r->code);
+        r->told = act_warn(&ex->state, "your changes would not outlive a crash: %.400s", why);
+    }
+}
+
+static void begin_writing(explorer *ex)
+{
+    recovery *r = &ex->recovery;
+    explorer_state *st = &ex->state;
+    text_stream text;
+    sigset_t before;
+    r->changed = false;
+    if (st->session.input_count + st->pinned.count + st->note_count == 0) {
+        return;
+    }
+
+    // the text here, the file there
+    r->fault = (fault){0};
+    r->code = STATUS_NO_MEMORY;
+    r->done = false;
+    if (text_stream_open(&text)) {
+        loss_unless(explorer_write_session(st, text.stream, &r->fault) == STATUS_OK);
+        r->text = text_stream_close(&text, NULL);
+    }
+    if (r->text != NULL) {
+        worker_signals_block(&before);
+        r->writes = pthread_create(&r->writer, NULL, write_text, r) == 0;
+        pthread_sigmask(SIG_SETMASK, &before, NULL);
+    }
+    if (r->text != NULL && !r->writes) {
+        write_text(r);
+    }
+    if (!r->writes) {
+        end_writing(ex);
+    }
+}
+
+double recovery_keep(explorer *ex, bool changed, double now)
+{
+    recovery *r = &ex->recovery;
+    r->changed = r->changed || changed;
+    if (r->writes && r->done) {
+        end_writing(ex);
+    }
+    if (r->changed && !r->writes && now >= r->due) {
+        begin_writing(ex);
+        r->due = now + APART;
+    }
+    return r->writes ? LOOK : r->changed ? fmax(0, r->due - now) : HUGE_VAL;
+}
+
+void recovery_end(explorer *ex, bool orderly)
+{
+    recovery *r = &ex->recovery;
+    end_writing(ex);
+    if (!orderly && r->changed) {
+        begin_writing(ex);
+        end_writing(ex);
+    }
+    if (orderly && r->lock >= 0) {
+        unlink(r->path);
+    }
+    close(r->lock);
+}
+
+// --- offering ---------------------------------------------------------------------------------
+
+bool recovery_begin(explorer *ex)
+{
+    recovery *r = &ex->recovery;
+    char name[64];
+    struct stat about;
+    snprintf(name, sizeof name, "%s-%012lld-%d.session", offered, (long long)time(NULL), getpid());
+    user_file(USER_STATE, name, r->path, sizeof r->path, true);
+    r->lock = r->left_lock = -1;
+
+    // the newest of those whose labs have ended
+    const int length = (int)(strrchr(r->path, '/') - r->path) + 1;
+    snprintf(r->left, sizeof r->left, "%.*s", length, r->path);
+    DIR *folder = opendir(r->left);
+    for (struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;) {
+        const char *found = entry->d_name;
+        const bool newer =
+            strncmp(found, offered, strlen(offered)) == 0 && strcmp(found, r->left + length) > 0;
+        const int lock = newer ? whole_file_lock_left(dirfd(folder), found) : -1;
+        if (lock >= 0) {
+            close(r->left_lock);
+            r->left_lock = lock;
+            snprintf(r->left + length, sizeof r->left - (size_t)length, "%s", found);
+        }
+    }
+    if (folder != NULL) {
+        closedir(folder);
+    }
+    if (r->left_lock < 0 || fstat(r->left_lock, &about) != 0) {
+        r->left[0] = '\0';
+        return false;
+    }
+    strftime(name, sizeof name, "%e %b at %H:%M", localtime(&about.st_mtime));
+    return act_warn(&ex->state,
+                    "a lab ended on %s with work that was not saved: y goes on with it, n keeps it "
+                    "as a file, after any other key the next start asks again",
+                    name);
+}
+
+bool recovery_answer(explorer *ex, int key)
+{
+    recovery *r = &ex->recovery;
+    explorer_state *st = &ex->state;
+    char path[sizeof r->left], kept[sizeof r->left];
+    FAIL_IF(r->left[0] == '\0', false);
+    memcpy(path, r->left, sizeof path);
+    memcpy(kept, path, sizeof kept);
+    memcpy(strrchr(kept, '/') + 1, declined, strlen(declined));
+    r->left[0] = '\0';
+    if (key == 'y' && explorer_open_session(st, path)) {
+        // its file is this lab's from here on, and nothing of it is saved
+        memcpy(r->path, path, sizeof path);
+        r->lock = r->left_lock;
+        st->session_path[0] = '\0';
+        st->saved_version = st->kept_pins = 0;
+        return true;
+    }
+    if (key == 'n' && rename(path, kept) == 0) {
+        act_tell(st, "kept: :session open %.900s goes on with it", kept);
+    }
+    close(r->left_lock);
+    return key == 'y' || key == 'n';
+}
