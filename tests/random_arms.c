@@ -20,6 +20,8 @@
 //         moves=0                                1: walls that move, arms in tilted planes, or
 //         both,
 //                                                beside one to three features
+//         tight=0                                1: half of them one link, walls with a restitution
+//                                                up to 1, currents limited down to 1e-4 A, mostly
 //         cost=0                                 1: processor time of both, and their ratio
 //
 // Arm i is made of its own number. A limit is the stated one, or ten times what a mass of 1e-12
@@ -56,7 +58,7 @@ enum { LONGEST_LIST = 20 };
 typedef struct options {
     int count, first, least, most;
     char engine[32], by[32];
-    bool strict, cost, whole, moves;
+    bool strict, cost, whole, moves, tight;
     double damping, tolerance;
 } options;
 
@@ -134,13 +136,14 @@ static void add_feature(random_arm *r, random_generator *g, feature f, int links
         set(r, "motor.inductance=%.17g", between(g, 1e-4, 2));
         break;
     case CURRENT_LIMIT:
-        set(r, "motor.current_limit=%.17g", between(g, 0.1, 5));
+        set(r, "motor.current_limit=%.17g", between(g, o->tight ? 1e-4 : 0.1, 5));
         break;
     case SOFT_WALL:
         set_wall(r, g, o);
         break;
     case RESTITUTION:
-        set(r, "wall.restitution=%.17g", 0.95 * random_uniform(g));
+        set(r, "wall.restitution=%.17g",
+            o->tight && chance(g, 0.3) ? 1 : (o->tight ? 1 : 0.95) * random_uniform(g));
         break;
     case DAMPING:
         set(r, "arm.damping_ratio=%.17g", between(g, 1e-4, o->damping));
@@ -216,7 +219,7 @@ static void make_arm(random_arm *r, int number, const options *o)
     r->count = 0;
     const int drawn =
         o->least + (int)((o->most - o->least + 1) * random_uniform(&g) * random_uniform(&g));
-    const int links = o->whole && chance(&g, 0.5) ? 1 : drawn;
+    const int links = (o->whole || o->tight) && chance(&g, 0.5) ? 1 : drawn;
     const bool rigid = chance(&g, 0.4), beam = !rigid && chance(&g, 0.7);
     set(r, "arm.links=%d", links);
     set(r, "arm.hub_joint=%s", rigid ? "rigid" : beam ? "beam" : "spring");
@@ -233,7 +236,8 @@ static void make_arm(random_arm *r, int number, const options *o)
     }
 
     // two to five different features that go together
-    bool has[FEATURES] = {false};
+    bool has[FEATURES] = {
+        [CURRENT_LIMIT] = o->tight && chance(&g, 0.7), [RESTITUTION] = o->tight && chance(&g, 0.7)};
     const int most = o->moves ? 1 + (int)random_below(&g, 3) : 2 + (int)random_below(&g, 4);
     for (int wanted = most; wanted > 0;) {
         const feature f = (feature)random_below(&g, FEATURES);
@@ -453,6 +457,8 @@ static bool take_option(options *o, const char *text)
         o->whole = strcmp(value, "whole") == 0;
     } else if (strcmp(name, "cost") == 0) {
         o->cost = value[0] == '1';
+    } else if (strcmp(name, "tight") == 0) {
+        o->tight = value[0] == '1';
     } else if (strcmp(name, "moves") == 0) {
         o->moves = value[0] == '1';
     } else if (strcmp(name, "damping") == 0) {
