@@ -329,3 +329,59 @@ TEST(the_approach_speed_is_the_largest_of_the_flight)
         check_relative(r.summary.approach_speed_m_s, fastest, 1e-4);
     }
 }
+
+// What the rig shows never changes between rows of different instants, and times never go back: a
+// sample and a command stand twice, before and after, on the grid of rows or between its rows, with
+// jitter, delays, a current that lags, other methods and the printed model.
+TEST(samples_and_commands_stand_twice)
+{
+    static const char *const kinds[] = {
+        "control.rate=200",
+        "control.rate=333 control.delay=0.0007",
+        "control.rate=500 control.jitter=0.001 control.delay_periods=1.5",
+        "control.rate=700 motor.inductance=0.01",
+        "control.rate=200 method.name=newmark",
+        "control.rate=200 arm.links=4 wall.contact=kelvin-voigt",
+        "control.rate=200 arm.model=printed"};
+    for (EACH(kind, kinds)) {
+        RIG_RUN(r, "control.law=hybrid run.duration=0.5 %s", *kind);
+        int samples = 0, commands = 0;
+        for (size_t k = 1; k < r.trace.row_count; k++) {
+            const sample *was = &r.trace.rows[k - 1], *is = was + 1;
+            const bool reads = was->tachometer != is->tachometer && !isnan(was->tachometer);
+            const bool sends = was->voltage != is->voltage;
+            fail_if(is->time < was->time, "%s: %.17g s after %.17g s", *kind, is->time, was->time);
+            fail_if((reads || sends || was->command != is->command) && !isnan(was->command) &&
+                        is->time != was->time,
+                    "%s: a jump between %.17g and %.17g s", *kind, was->time, is->time);
+            if (is->time == was->time) {
+                check_close(is->hub_angle, was->hub_angle, 1e-12);
+            }
+            samples += reads;
+            commands += sends;
+        }
+        assert_true(samples > 60 && commands > 20);
+    }
+}
+
+// With jitter a delay of periods is one of nominal periods: a command that no sample overtakes
+// takes effect just so long after its sample.
+TEST(delays_are_nominal_periods_with_jitter)
+{
+    RIG_RUN(r, "control.law=hybrid run.duration=0.5 control.rate=200 control.jitter=0.002 "
+               "control.delay_periods=0.5 sensor.dac_bits=0");
+    double sampled = -1, sent = 0;
+    int commands = 0;
+    for (size_t k = 1; k < r.trace.row_count; k++) {
+        const sample *was = &r.trace.rows[k - 1], *is = was + 1;
+        if (was->command != is->command && !isnan(was->command)) {
+            sampled = is->time;
+            sent = is->command;
+        }
+        if (was->voltage != is->voltage && sampled >= 0 && is->voltage == sent) {
+            check_close(is->time - sampled, 0.0025, 1e-9);
+            commands++;
+        }
+    }
+    assert_true(commands > 20);
+}

@@ -70,11 +70,8 @@ static status run_rig(corrected_run *c, fault *f)
     bool changed;
     const sensed_motion sensed = corrected_sensed_now(c);
     TRY(rig_act(on, now, &sensed, &changed, f));
-    if (!changed) {
-        return STATUS_OK;
-    }
-    TRY(corrected_end_step(c, f));
-    return corrected_apply_command(c);
+    TRY(changed ? corrected_end_step(c, f) : STATUS_OK);
+    return corrected_pass_sample(c, changed);
 }
 
 // corrected_approach_step where a stretch is over, or the run is to begin; apart from it, which

@@ -126,9 +126,10 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f);
 // Carries out the script's actions that are due. A failure is explained in f, or has a code only.
 status corrected_run_script(corrected_run *c, fault *f);
 
-// Puts a new command of the rig into effect: the torque jumps, and with it accelerations and force.
-// Records the rows on both sides of the jump.
-status corrected_apply_command(corrected_run *c);
+// What the rig has done at this instant shows from here on: its sample, if it took one, and where
+// the command `changed` the torque, and with it accelerations and force. Records the rows on both
+// sides of the jump; there is none before the start.
+status corrected_pass_sample(corrected_run *c, bool changed);
 
 // --- what is recorded after every step --------------------------------------------------------
 

@@ -375,7 +375,8 @@ status corrected_run_script(corrected_run *c, fault *f)
 
 // --- the rig ----------------------------------------------------------------------------------
 
-status corrected_apply_command(corrected_run *c)
+// Puts the rig's command into effect.
+static status apply_command(corrected_run *c)
 {
     recording *r = c->recording;
     motion *m = c->motion;
@@ -390,6 +391,23 @@ status corrected_apply_command(corrected_run *c)
     // less torque may let the contact go, or hold the hub no more; the first command finds it so
     before.friction = now > 0 ? before.friction : contact_state_of(m->state).friction;
     motion_report done = {.event = MOTION_REACHED};
-    TRY(record_change(c, before, &done));
-    return now > 0 ? corrected_record_row(c, m->state, 0) : STATUS_OK;
+    return record_change(c, before, &done);
+}
+
+status corrected_pass_sample(corrected_run *c, bool changed)
+{
+    recording *r = c->recording;
+    const double now = corrected_now(c);
+    const bool sampled = recording_has_new_sample(r);
+    const bool jumps = r->state.grid_row > 0 && (changed || sampled);
+
+    // before it, unless the grid has a row here, and after it
+    if (jumps && !recording_has_row_at(r, now)) {
+        TRY(corrected_record_row(c, corrected_present(c), 0));
+    }
+    if (sampled) {
+        recording_show_sample(r);
+    }
+    TRY(changed ? apply_command(c) : STATUS_OK);
+    return jumps ? corrected_record_row(c, corrected_present(c), 0) : STATUS_OK;
 }

@@ -121,6 +121,7 @@ typedef struct saved_run {
     size_t rows, events, force_steps;
     recording_state recording;
     recorded_command command;
+    shown_sample shown;
     summary summary;
     parameters now;
     rig rig;
@@ -165,6 +166,7 @@ void driver_save(const run_driver *d, void *bytes)
     head.force_steps = r->result->history.forces.count;
     head.recording = r->state;
     head.command = r->command;
+    head.shown = r->shown;
     head.summary = r->result->summary;
     head.summary.path = NULL;
     head.now = r->now;
@@ -223,6 +225,7 @@ void driver_restore(run_driver *d, const void *bytes)
     keep_at_most(&result->history.forces.count, head.force_steps);
     r->state = head.recording;
     r->command = head.command;
+    r->shown = head.shown;
     result->summary = head.summary;
     result->summary.path = "";
     r->now = head.now;

@@ -110,6 +110,17 @@ static sensed_motion sensed_at(const printed_row *row)
                            .force = row->force};
 }
 
+// Keeps the row that the motion stands at, if the run keeps rows.
+static status keep_row(const printed_run *p)
+{
+    if (!p->recording->options->keep_trace) {
+        return STATUS_OK;
+    }
+    const sample sampled = printed_sample(p);
+    const printed_row *row = &p->motion.row;
+    return recording_add_row(p->recording, &sampled, row->angle, row->velocity);
+}
+
 // Records the row that the motion stands at: contact, what the sensors feel, force, signals.
 static status record_row(printed_run *p, fault *f)
 {
@@ -143,10 +154,7 @@ static status record_row(printed_run *p, fault *f)
     // and is kept
     TRY(failed);
     TRY(force_history_add(&r->result->history.forces, step));
-    if (r->options->keep_trace) {
-        const sample sampled = printed_sample(p);
-        TRY(recording_add_row(r, &sampled, row->angle, row->velocity));
-    }
+    TRY(keep_row(p));
     FAULT_IF(recording_asked_to_stop(r), f, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
              status_text(STATUS_STOPPED));
     return STATUS_OK;
@@ -192,7 +200,14 @@ static status run_rig(printed_run *p, fault *f)
 
     // the controller's command, not motor.voltage
     motor_set_voltage(&p->motion.arm.motor, r->rig->voltage);
-    return failed;
+    TRY(failed);
+
+    // what jumps has a second row here
+    const bool sampled = recording_has_new_sample(r);
+    if (sampled) {
+        recording_show_sample(r);
+    }
+    return sampled || changed ? keep_row(p) : STATUS_OK;
 }
 
 status printed_approach_step(printed_run *p, bool *ended, fault *f)

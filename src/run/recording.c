@@ -7,6 +7,7 @@
 
 #include "src/arm/motor.h"
 #include "src/base/clock.h"
+#include "src/base/instant.h"
 
 // Sets up the rig, if the scenario has a control law; until its first command the motor rests.
 static status start_rig(recording *r, fault *f)
@@ -102,8 +103,9 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
     size_t expected = r->options->rows_expected;
     const parameters *p = &r->scenario->parameters;
 
-    // a row for each step, and two for an event
-    const double rows = ROWS_OF_EVENTS + p->run.duration / p->method.step;
+    // a row for each step, and two for an event or a sample
+    const double samples = r->rig != NULL ? p->run.duration * p->control.rate : 0;
+    const double rows = ROWS_OF_EVENTS + p->run.duration / p->method.step + 2 * samples;
     const double bytes = rows * (double)trace_row_bytes(angle_count), gigabyte = 1e9;
     const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     FAULT_AT_IF((expected > 0 || r->options->keep_trace) && bytes > memory, f, STATUS_BAD_SCENARIO,
@@ -149,10 +151,21 @@ status recording_set(recording *r, const action *todo, double time, fault *f)
     return rig_retune(r->rig, &r->now, time, f);
 }
 
+bool recording_has_row_at(const recording *r, double time)
+{
+    const trace *t = &r->result->trace;
+    return t->row_count > 0 && same_instant(t->rows[t->row_count - 1].time, time);
+}
+
 status recording_add_row(recording *r, const sample *row, const double *angles,
                          const double *velocities)
 {
-    status s = trace_add_row(&r->result->trace, row, angles, velocities);
+    trace *t = &r->result->trace;
+    const bool again = r->rig != NULL && recording_has_row_at(r, row->time);
+    status s = trace_add_row(t, row, angles, velocities);
+    if (s == STATUS_OK && again) {
+        t->rows[t->row_count - 1].time = t->rows[t->row_count - 2].time;
+    }
     recording_publish(r, row->time);
     return s;
 }
@@ -183,24 +196,38 @@ void recording_finish_summary(recording *r, double force_integral)
 
 void recording_add_rig_signals(const recording *r, sample *row)
 {
-    const rig *on = r->rig;
-    bool sampled = on != NULL && on->samples > 0;
+    const shown_sample *s = &r->shown;
 
     // what the sensors read; before their first sample nothing
-    row->encoder = sampled ? on->reading.encoder : (double)NAN;
-    row->tachometer = sampled ? on->reading.tachometer : (double)NAN;
-    row->force_reading = sampled ? on->reading.force_reading : (double)NAN;
-    row->piezo_force = sampled ? on->reading.piezo_force : (double)NAN;
-    row->film = sampled ? on->reading.film : (double)NAN;
-    row->accelerometer = sampled ? on->reading.accelerometer : (double)NAN;
+    row->encoder = s->sampled ? s->reading.encoder : (double)NAN;
+    row->tachometer = s->sampled ? s->reading.tachometer : (double)NAN;
+    row->force_reading = s->sampled ? s->reading.force_reading : (double)NAN;
+    row->piezo_force = s->sampled ? s->reading.piezo_force : (double)NAN;
+    row->film = s->sampled ? s->reading.film : (double)NAN;
+    row->accelerometer = s->sampled ? s->reading.accelerometer : (double)NAN;
 
     // what the controller made of it
-    row->command = sampled ? on->output.command : (double)NAN;
-    row->controller_mode = sampled ? on->output.mode : (double)NAN;
-    row->desired_angle = sampled ? on->output.desired_angle : (double)NAN;
-    row->desired_velocity = sampled ? on->output.desired_velocity : (double)NAN;
-    row->calculated_force = sampled ? on->output.calculated_force : (double)NAN;
-    row->predicted_force = sampled ? on->predicted_force : (double)NAN;
+    row->command = s->sampled ? s->output.command : (double)NAN;
+    row->controller_mode = s->sampled ? s->output.mode : (double)NAN;
+    row->desired_angle = s->sampled ? s->output.desired_angle : (double)NAN;
+    row->desired_velocity = s->sampled ? s->output.desired_velocity : (double)NAN;
+    row->calculated_force = s->sampled ? s->output.calculated_force : (double)NAN;
+    row->predicted_force = s->sampled ? s->predicted_force : (double)NAN;
+}
+
+bool recording_has_new_sample(const recording *r)
+{
+    return r->rig != NULL && r->rig->samples != r->shown.samples;
+}
+
+void recording_show_sample(recording *r)
+{
+    const rig *on = r->rig;
+    r->shown = (shown_sample){.sampled = true,
+                              .samples = on->samples,
+                              .reading = on->reading,
+                              .output = on->output,
+                              .predicted_force = on->predicted_force};
 }
 
 void recording_change_command(recording *r, double time, double hub_angle)

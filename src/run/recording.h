@@ -36,6 +36,15 @@ typedef struct recorded_command {
     double hub_angle; // where it began [rad]
 } recorded_command;
 
+// The sample that rows show, which may be the one before the rig's last.
+typedef struct shown_sample {
+    bool sampled; // there is one
+    long samples; // up to it
+    sensor_reading reading;
+    controller_output output;
+    double predicted_force; // [N]
+} shown_sample;
+
 typedef struct recording {
     const scenario *scenario;
     const run_options *options;
@@ -44,6 +53,7 @@ typedef struct recording {
     recording_state state;
     rig *rig;                   // NULL for the bare arm
     recorded_command command;   // of the rig
+    shown_sample shown;         // of the rig, in rows
     double begun_cpu, begun_at; // by the thread's clock and the machine's [s]
     stop_request stop;          // where the run is to end
 } recording;
@@ -61,6 +71,9 @@ static inline bool recording_asked_to_stop(recording *r)
     return r->options->stepped ? stop_is_set(&r->stop) : stop_requested(&r->stop);
 }
 
+// Whether the last row is one of this instant [s].
+bool recording_has_row_at(const recording *r, double time);
+
 // Publishes how far the run is to observers: all rows and events counted there are complete.
 void recording_publish(const recording *r, double time);
 
@@ -69,7 +82,8 @@ void recording_publish(const recording *r, double time);
 status recording_set(recording *r, const action *todo, double time, fault *f)
     __attribute__((warn_unused_result));
 
-// Adds a row with all angles [rad] and velocities [rad/s] and lets it be seen. STATUS_NO_MEMORY.
+// Adds a row with all angles [rad] and velocities [rad/s] and lets it be seen. On the rig, whose
+// clock and the grid round differently, rows of one instant have one time. STATUS_NO_MEMORY.
 status recording_add_row(recording *r, const sample *row, const double *angles,
                          const double *velocities) __attribute__((warn_unused_result));
 
@@ -93,8 +107,12 @@ void recording_tell_fault(summary *s, status code, const fault *f);
 
 // --- the rig in a run, in every row and in the summary ----------------------------------------
 
-// Copies what the rig knows into a row; NaN without a rig or before its first sample.
+// Copies what rows show of the rig into a row; NaN without a rig or before its first sample.
 void recording_add_rig_signals(const recording *r, sample *row);
+
+// Whether the rig has taken a sample that rows do not show yet; and lets them show it from here on.
+bool recording_has_new_sample(const recording *r);
+void recording_show_sample(recording *r);
 
 // The rig's present command takes effect at `time` [s], with the hub at hub_angle [rad]: what the
 // amplifier fed in under the one before is booked.

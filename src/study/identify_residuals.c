@@ -321,7 +321,8 @@ static double reading_at(const trace *run, sensors *eyes, int channel, double ti
         return channel == CHANNEL_ENCODER ? r.encoder : r.tachometer;
     }
 
-    // a sample's reading stands in the row before the next sample acts
+    // a sample's reading stands in the row before the next sample acts, the earlier one of that
+    // instant
     const double whole = floor(time / period + SAME_INSTANT), share = time / period - whole;
     double value[2];
     for (int i = 0; i < 2; i++) {
