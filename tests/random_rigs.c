@@ -26,10 +26,11 @@
 
 #include "src/base/random.h"
 
-#define INSTANT  1e-9 // two instants nearer than this are one [s]
-#define ROUNDING 1e-9 // of a number or of a row within a step, as a share of the largest
-#define FOLLOWED 2e-3 // how near the rig follows a lag, as a share of the largest
-#define NINE     9.0  // 90 % over 10 %, whose logarithm is a lag's rise time over its constant
+#define INSTANT       1e-9 // two instants nearer than this are one [s]
+#define ROUNDING      1e-9 // of a number or of a row within a step, as a share of the largest
+#define FOLLOWED      2e-3 // how near the rig follows a lag, as a share of the largest
+#define FOLLOWED_PEAK 1e-4 // the same of the slow lag of sensor_1ms_peak_N
+#define NINE          9.0  // 90 % over 10 %, whose logarithm is a lag's rise time over its constant
 
 static double spacing = 1e-5; // of rows [s]
 static char **given;          // settings that replace those drawn
@@ -1508,7 +1509,7 @@ static void check_sensor_peak(rig *r, const motion *m, const pieces *force,
     if (impulses->count == 0 && high < 1e-9) {
         return;
     }
-    const double slack = 1e-9 * fabs(high) + 1e-9;
+    const double slack = FOLLOWED_PEAK * fabs(high) + 1e-9;
     expect(r, key, 0, quantity(m, key), low - slack, high + slack);
 }
 
@@ -1912,6 +1913,10 @@ static void check_one(uint64_t which, tally *t)
     impactlab_scenario_destroy(r.scenario);
 }
 
+// Rigs that were found wrong: a play that forgot impacts, a current beyond its limit, means of a
+// force that were not its own.
+static const uint64_t once_wrong[] = {166, 276, 1238, 1325};
+
 int main(int argc, char **argv)
 {
     const uint64_t count = argc > 1 ? strtoull(argv[1], NULL, 10) : 25;
@@ -1920,6 +1925,9 @@ int main(int argc, char **argv)
     given = argv + 4;
     given_count = argc > 4 ? argc - 4 : 0;
     tally t = {0};
+    for (size_t k = 0; count > 1 && k < sizeof once_wrong / sizeof once_wrong[0]; k++) {
+        check_one(once_wrong[k], &t);
+    }
     for (uint64_t i = first; i < first + count; i++) {
         check_one(i, &t);
         fflush(stdout);
