@@ -14,6 +14,7 @@ motor: {voltage: 0.001 V}
 initial: {velocity: 0.01 rad/s}
 wall: {angle: 3 rad}
 arm: {links: 24, damping_ratio: 0}
+method: {step: 0.1 s}
 run: {duration: 90000 s}
 END
 cat >brief.yaml <<'END'
@@ -117,7 +118,7 @@ interrupted_asleep robust sleeper.yaml
 says err "0 of 200 runs"
 
 # a calibration's table is that of the commands it had; a scenario wants the whole table
-interrupted calibrate compare/hybrid --set run.duration=90000 --csv presses.csv -o calibrated.yaml
+interrupted calibrate compare/hybrid --set run.duration=90000 --set method.step=0.1 --csv presses.csv -o calibrated.yaml
 says err "of 8 presses"
 [ ! -e calibrated.yaml ] || fail "a part of a calibration passes for the whole"
 

@@ -312,6 +312,7 @@ static impactlab_scenario *endless(asked *a)
     set(scenario, "arm.links", "24");
     set(scenario, "arm.damping_ratio", "0");
     set(scenario, "run.duration", "90000");
+    set(scenario, "method.step", "0.1");
     impactlab_scenario_stop_when(scenario, is_enough, a);
     return scenario;
 }

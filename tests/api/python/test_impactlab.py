@@ -113,7 +113,8 @@ def test_what_a_controller_raises_has_its_place():
 def endless():
     """A scenario that would take hours."""
     scenario = Scenario(FIRST)
-    scenario.set({"arm.links": 24, "arm.damping_ratio": 0, "run.duration": 90000})
+    scenario.set({"arm.links": 24, "arm.damping_ratio": 0, "run.duration": 90000,
+                  "method.step": 0.1})
     return scenario
 
 
