@@ -1402,25 +1402,6 @@ static void check_steady(rig *r, const motion *m, const pieces *force, const tou
     }
 }
 
-// The force to be held at an instant, without the sine on it: a ramp from one value to the next.
-static double commanded(const rig *r, double t)
-{
-    const double rate = number(r, "control.force_rate");
-    double force = number(r, "control.force"), target = force, since = 0;
-    for (int k = 0; k <= r->change_count; k++) {
-        const bool last = k == r->change_count;
-        if (!last && (strcmp(r->changes[k].path, "control.force") != 0 || r->changes[k].at > t)) {
-            continue;
-        }
-        const double until = last ? t : r->changes[k].at;
-        const double way = rate > 0 ? rate * (until - since) : (double)INFINITY;
-        force += fmax(-way, fmin(way, target - force));
-        since = until;
-        target = last ? target : r->changes[k].value;
-    }
-    return force;
-}
-
 // Whether the commanded force is the same all the time.
 static bool commands_one_force(const rig *r)
 {
@@ -1549,7 +1530,8 @@ static void check_law(rig *r, const motion *m, const touches *t)
     if (m->sample_count == 0) {
         return;
     }
-    const double wanted = commanded(r, m->ends), peak = quantity(m, "peak_force_N");
+    const double wanted = number_at(r, "control.force", m->ends),
+                 peak = quantity(m, "peak_force_N");
     expect_near(r, "force_command_N", m->ends, quantity(m, "force_command_N"), wanted, 1e-9);
     if (!isnan(peak) && commands_one_force(r)) {
         expect_near(r, "force_over_command_N", 0, quantity(m, "force_over_command_N"),
