@@ -391,4 +391,7 @@ TEST(ideal_sensors_tell_the_truth)
     check_close(r.encoder, 0.1234567, 0);
     check_close(r.tachometer, -1.2345678, 1e-12);
     check_close(r.force_reading, 3.456789, 1e-12);
+
+    // of a force beyond any sensor's scale, too
+    check_relative(read_hub(&s, 0, 0, 321.5).force_reading, 321.5, 1e-12);
 }

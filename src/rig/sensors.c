@@ -76,6 +76,7 @@ static void idealise(sensor_parameters *p)
     p->encoder_gain_error = p->tachometer_gain_error = p->fsr_gain_error = p->piezo_gain_error = 0;
     p->encoder_offset = p->tachometer_offset = p->fsr_offset = p->piezo_offset = 0;
     p->fsr_hysteresis = 0;
+    p->fsr_saturation = HUGE_VAL;
 }
 
 static void set_lag(first_order_lag *y, double time_constant)

@@ -63,9 +63,10 @@
            "energy that the amplifier fed into the motor", .special = true)                        \
     NUMBER(approach_speed_m_s, "approach_speed", "approach speed", "m/s",                          \
            "largest speed of the tip towards the wall before first contact", .special = true)      \
-    NUMBER(return_speed_m_s, "return_speed", "return speed", "m/s",                                \
-           "largest speed of the tip towards the wall without contact, after the first",           \
-           .special = true)                                                                        \
+    NUMBER(                                                                                        \
+        return_speed_m_s, "return_speed", "return speed", "m/s",                                   \
+        "largest speed of the tip towards the wall, or its face, in flights after first contact",  \
+        .special = true)                                                                           \
     NUMBER(steps, "steps", "steps", "", "time steps taken")                                        \
     NUMBER(cpu_time_s, "cpu_time", "cpu time", "s", "processor time of the run", .timing = true)   \
     NUMBER(wall_time_s, "wall_time", "wall time", "s", "time that passed during the run",          \
