@@ -34,11 +34,12 @@ static status commit_rows(sweep_store *store, fault *f)
     return STATUS_OK;
 }
 
-static status tell_quantity(sweep_store *store, const char *key, double *values, size_t *failed,
-                            fault *f)
+static status tell_quantity(sweep_store *store, sweep_share share, const char *key, double *values,
+                            size_t *failed, fault *f)
 {
     const rows *r = (rows *)store;
     (void)f;
+    (void)share;
     for (int q = 0; q < summary_count; q++) {
         for (int i = 0; i < RUNS && strcmp(summary_table[q].key, key) == 0; i++) {
             values[i] = summary_value(&r->results[i], q);

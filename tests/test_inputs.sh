@@ -101,4 +101,15 @@ timeout 20 "$program" run arm.yaml --set run.duration=1e5 --set method.step=1e-5
 [ $? = 2 ] && says err "GB of memory" || fail "1e10 rows are begun"
 [ "$(wc -l <many.csv)" = 1 ] || fail "rows of a run that did not begin"
 
+# what tune found is told in every form, also where a tenth more of it, or less, cannot be
+tuned() {
+    expect 0 tune "$@" --runs 4 --json tuned.json --plot tuned.svg -o tuned.yaml
+    says out "-10 % gives"
+    [ -s tuned.svg ] && grep -q '"tenth_higher"' tuned.json && "$program" check tuned.yaml >out 2>err ||
+        fail "tune $*: a result is missing"
+    rm -f tuned.*
+}
+tuned arm.yaml --set wall.restitution=0.97 --vary wall.restitution=0.95:1 --minimise impacts
+tuned compare/observer --set belief.links=5 --vary belief.links=2:9 --minimise settling_time_s
+
 nothing_failed

@@ -9,8 +9,8 @@ TEST(every_run_is_what_the_scenario_gives_alone)
     KEPT_STORE(store) = must_open(NULL, &s);
     must_run(&s, store, 2);
     double peaks[4], contacts[4];
-    DONE(sweep_store_quantity(store, "peak_force_N", peaks, NULL, &f));
-    DONE(sweep_store_quantity(store, "first_contact_s", contacts, NULL, &f));
+    DONE(sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", peaks, NULL, &f));
+    DONE(sweep_store_quantity(store, (sweep_share){0}, "first_contact_s", contacts, NULL, &f));
     for (int run = 0; run < 4; run++) {
         scenario alone = base;
         alone.parameters.motor.voltage = 0.5 + 0.5 * run;
@@ -232,7 +232,7 @@ TEST(rows_that_are_no_runs_are_refused)
         double values[3];
         size_t failed;
         REFUSED(STATUS_BAD_ARGUMENT, "no run of the sweep",
-                sweep_store_quantity(store, "peak_force_N", values, &failed, &f));
+                sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values, &failed, &f));
         sweep_store_close(store);
         assert_refused("rows.sqlite", &s, STATUS_BAD_ARGUMENT, "of a sweep of 3");
         unlink("rows.sqlite");
@@ -292,7 +292,9 @@ TEST(a_failed_run_is_a_row_with_its_message)
     assert_int_not_equal(sweep_store_put(store, 0, &good, &f), STATUS_OK);
     double values[2];
     size_t failed;
-    assert_int_equal(sweep_store_quantity(store, "peak_force_N", values, &failed, &f), STATUS_OK);
+    assert_int_equal(
+        sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values, &failed, &f),
+        STATUS_OK);
     check_close(values[0], 2, 0);
     assert_true(isnan(values[1]));
     assert_int_equal(failed, 1);

@@ -260,7 +260,9 @@ static status read_all(const char *whole, fault *f)
     KEPT_STORE(store);
     double values[RUNS];
     code = sweep_store_open(&store, file, &swept, f);
-    code = code == STATUS_OK ? sweep_store_quantity(store, "peak_force_N", values, NULL, f) : code;
+    code = code == STATUS_OK
+               ? sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values, NULL, f)
+               : code;
     KEPT_TEXT(rows) = code == STATUS_OK ? rows_of(store, &code, f) : NULL;
     if (code == STATUS_OK) {
         check_close(values[RUNS - 1], RUNS, 0);

@@ -127,6 +127,59 @@ TEST(one_parameter_is_that_of_bisection)
     assert_true(fabs(t.found[0] - high) <= 1e-3 * high);
 }
 
+static int told;           // of best values
+static size_t most_looked; // runs that a quantity was asked of, at most
+
+static status count_told(void *context, const tuning *t, fault *f)
+{
+    (void)context;
+    (void)t;
+    (void)f;
+    told++;
+    return STATUS_OK;
+}
+
+static status count_looked(sweep_store *store, sweep_share share, const char *key, double *values,
+                           size_t *failed, fault *f)
+{
+    const size_t runs = sweep_share_count(share, 40);
+    most_looked = runs > most_looked ? runs : most_looked;
+    return sweep_store_quantity(store, share, key, values, failed, f);
+}
+
+// A search that goes on in its store tells no value before it computes one, as the best of those is
+// told already, and looks at the runs of each evaluation only.
+TEST(a_replay_tells_nothing_and_reads_each_run_once)
+{
+    char *vary[] = {"motor.voltage=0.5:3"};
+    scenario base = {.name = "touch", .parameters = rig_parameters(NULL)};
+    base.parameters.run.duration = 0.3;
+    const tune_request asked = {.base = &base,
+                                .vary = vary,
+                                .vary_count = 1,
+                                .minimise = "max(peak_force_N - 2, 2 - peak_force_N)",
+                                .runs = 40};
+    const sweep_options options = {.jobs = 1};
+    tuning t[2];
+    int before = 0;
+    DONE(tune_init(&t[0], &asked, &f));
+    DONE(tune_init(&t[1], &asked, &f));
+    sweep_store *store;
+    DONE(sweep_store_open(&store, NULL, &t[0].plan, &f));
+    store->quantity = count_looked;
+    for (int i = 0; i < 2; i++) {
+        before = told;
+        t[i].improved = count_told;
+        DONE(tune_run(&t[i], store, &options, &f));
+    }
+    assert_true(before > 0 && told == before);
+    assert_true(t[0].done == t[1].done && t[0].found[0] == t[1].found[0]);
+    sweep_store_close(store);
+    tune_finish(&t[0]);
+    tune_finish(&t[1]);
+    assert_int_equal(most_looked, 1);
+}
+
 // What is not allowed ranks behind all that is.
 TEST(a_condition_binds)
 {

@@ -314,16 +314,12 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sha
     const size_t n = sweep_share_count(share, s->run_count);
     *out = (robust_law){.law = law, .runs = n, .against = (double)NAN};
 
-    // a column of the store for each quantity, and of it the runs of the share
-    SCOPED(free_kept) double *column = calloc(s->run_count, sizeof *column);
+    // each quantity of the runs of the share
     SCOPED(free_kept) double *values = calloc(QUANTITIES * n, sizeof *values);
     out->overshoots = calloc(n, sizeof *out->overshoots);
-    TRY_MEMORY(column != NULL && values != NULL && out->overshoots != NULL, f);
+    TRY_MEMORY(values != NULL && out->overshoots != NULL, f);
     for (int q = 0; q < QUANTITIES; q++) {
-        TRY(store->quantity(store, keys[q], column, NULL, f));
-        for (size_t i = 0; i < n; i++) {
-            values[(size_t)q * n + i] = column[sweep_share_run(share, i)];
-        }
+        TRY(store->quantity(store, share, keys[q], values + (size_t)q * n, NULL, f));
     }
     judge(out, s, share, values);
     return STATUS_OK;

@@ -9,34 +9,6 @@
 
 enum { SWEEP_MOST_JOBS = POOL_MOST_THREADS };
 
-// Where the rows of a sweep are kept, one for each run that was computed: what a store can do. Its
-// functions are given itself; their faults are sentences.
-typedef struct sweep_store {
-    // 1 for every run that the store has, 0 for the others, and how many those are; `put` goes on
-    // with it.
-    unsigned char *present;
-    size_t count;
-
-    // Adds the result of run `run`; `commit` makes permanent what was put since the last one.
-    status (*put)(struct sweep_store *store, size_t run, const summary *result, fault *f);
-    status (*commit)(struct sweep_store *store, fault *f);
-
-    // One quantity of every run, in order: run_count numbers, NaN where a run failed, is missing,
-    // or the quantity did not occur. `failed` (may be NULL) receives the number of failed runs.
-    status (*quantity)(struct sweep_store *store, const char *key, double *values, size_t *failed,
-                       fault *f);
-} sweep_store;
-
-// How far a sweep has come.
-typedef struct sweep_progress {
-    size_t done, total;  // runs in the store, and in all, of this share of the sweep
-    size_t failed;       // of those done now: runs that failed
-    size_t done_now;     // since sweep_run began
-    double elapsed_s;    // since sweep_run began
-    size_t first_failed; // of those failed the run with the lowest number, from 0
-    char first_failure[sizeof(((summary *)0)->message)]; // and what it says
-} sweep_progress;
-
 // Every parts-th run, beginning with number `part` (from 1): what one of several machines computes.
 typedef struct sweep_share {
     int part, parts; // 0, 0: all runs
@@ -52,6 +24,35 @@ static inline size_t sweep_share_count(sweep_share share, size_t total)
     return share.parts > 0 ? (total + (size_t)(share.parts - share.part)) / (size_t)share.parts
                            : total;
 }
+
+// Where the rows of a sweep are kept, one for each run that was computed: what a store can do. Its
+// functions are given itself; their faults are sentences.
+typedef struct sweep_store {
+    // 1 for every run that the store has, 0 for the others, and how many those are; `put` goes on
+    // with it.
+    unsigned char *present;
+    size_t count;
+
+    // Adds the result of run `run`; `commit` makes permanent what was put since the last one.
+    status (*put)(struct sweep_store *store, size_t run, const summary *result, fault *f);
+    status (*commit)(struct sweep_store *store, fault *f);
+
+    // One quantity of every run of a share, in order: NaN where a run failed, is missing, or the
+    // quantity did not occur. `failed` (may be NULL) receives the number of failed runs. It takes
+    // as long as the share is large.
+    status (*quantity)(struct sweep_store *store, sweep_share share, const char *key,
+                       double *values, size_t *failed, fault *f);
+} sweep_store;
+
+// How far a sweep has come.
+typedef struct sweep_progress {
+    size_t done, total;  // runs in the store, and in all, of this share of the sweep
+    size_t failed;       // of those done now: runs that failed
+    size_t done_now;     // since sweep_run began
+    double elapsed_s;    // since sweep_run began
+    size_t first_failed; // of those failed the run with the lowest number, from 0
+    char first_failure[sizeof(((summary *)0)->message)]; // and what it says
+} sweep_progress;
 
 typedef struct sweep_options {
     sweep_share share;

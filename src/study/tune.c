@@ -118,8 +118,8 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
     sweep_options only = *options;
     sweep_progress progress;
     double run[SUMMARY_NUMBERS];
-    SCOPED(free_kept) double *column = calloc(t->plan.run_count, sizeof *column);
-    *out = (tune_result){.rank = (double)INFINITY};
+    SCOPED(free_kept) double *column = calloc(t->each, sizeof *column);
+    *out = (tune_result){.value = (double)NAN, .rank = (double)INFINITY};
     snprintf(word, sizeof word, "%zu of %zu:", evaluation + 1, t->most);
     only.context = word; // of the progress line
     only.share = (sweep_share){(int)evaluation + 1, (int)t->most};
@@ -131,13 +131,14 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
     TRY(sweep_run(&t->plan, store, &only, &progress, f));
     FAULT_IF(progress.done < progress.total, f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
 
+    out->computed = progress.done_now;
+
     // a store that another search has filled
     for (int k = 0; k < asked->vary_count; k++) {
-        TRY(store->quantity(store, t->plan.axes[k].name, column, NULL, f));
-        FAULT_IF(!isnan(column[evaluation]) && column[evaluation] != values[k], f,
-                 STATUS_BAD_ARGUMENT,
+        TRY(store->quantity(store, only.share, t->plan.axes[k].name, column, NULL, f));
+        FAULT_IF(!isnan(column[0]) && column[0] != values[k], f, STATUS_BAD_ARGUMENT,
                  "the database is of another search: run %zu has %s = %g, not %g", evaluation + 1,
-                 t->plan.axes[k].name, column[evaluation], values[k]);
+                 t->plan.axes[k].name, column[0], values[k]);
     }
 
     // what came out
@@ -148,8 +149,8 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
     TRY(of.law != NULL ? robust_law_of(&out->law, name, &t->plan, only.share, store, f)
                        : STATUS_OK);
     for (int q = 0; q < summary_count && of.law == NULL; q++) {
-        TRY(store->quantity(store, summary_table[q].key, column, NULL, f));
-        run[q] = column[evaluation];
+        TRY(store->quantity(store, only.share, summary_table[q].key, column, NULL, f));
+        run[q] = column[0];
     }
     return judge(asked, &of, out, f);
 }
@@ -282,6 +283,7 @@ typedef struct search {
     const sweep_options *options;
     nlopt_opt minimiser;          // the one at work
     double best[SWEEP_MOST_AXES]; // shares of the ranges
+    bool untold;                  // of the best values, which changed in a replay
     status code;
     fault *fault;
 } search;
@@ -312,6 +314,8 @@ static double rank_of(unsigned n, const double *shares, double *gradient, void *
 
     s->code = tune_evaluate(t, t->done, values, "tuned", s->store, s->options, &found, s->fault);
     const bool better = s->code == STATUS_OK && found.rank < t->best.rank;
+    const bool computed = found.computed > 0;
+    s->untold |= better;
     if (better) {
         const tune_result before = t->best;
         t->best = found;
@@ -323,7 +327,8 @@ static double rank_of(unsigned n, const double *shares, double *gradient, void *
     if (s->code == STATUS_OK) {
         t->ranks[t->done++] = better ? t->best.rank : found.rank;
     }
-    if (better && t->improved != NULL) {
+    if (s->untold && computed && s->code == STATUS_OK && t->improved != NULL) {
+        s->untold = false;
         s->code = t->improved(t->context, t, s->fault);
     }
     return t->ranks[t->done > 0 ? t->done - 1 : 0];

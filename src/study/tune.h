@@ -27,9 +27,10 @@ typedef struct tune_request {
 } tune_request;
 
 typedef struct tune_result {
-    double value;   // of the expression; not finite where it cannot be judged
-    double rank;    // less is better: the value, or from TUNE_REFUSED on
-    robust_law law; // of a set; robust_law_finish
+    double value;    // of the expression; not finite where it cannot be judged
+    double rank;     // less is better: the value, or from TUNE_REFUSED on
+    size_t computed; // of its runs, those that the store did not have
+    robust_law law;  // of a set; robust_law_finish
 } tune_result;
 
 typedef struct tuning {
@@ -42,7 +43,8 @@ typedef struct tuning {
     double *ranks;                 // of each
     double found[SWEEP_MOST_AXES]; // the best values so far
     tune_result best;              // and what they came to; its rank infinite before the first
-    // called when values are the best so far; its failure ends the search
+    // called with the best values after an evaluation that was computed, if they changed since the
+    // call before: what the store has is only replayed; its failure ends the search
     status (*improved)(void *context, const struct tuning *t, fault *f);
     void *context;
 } tuning;

@@ -14,7 +14,8 @@ static void read_store(sweep_store *store, const sweep *s)
     fault f = {0};
     FUZZ_CHECK(s->run_count <= 64);
     FUZZ_CHECK(store->count <= s->run_count);
-    fuzz_done(sweep_store_quantity(store, "peak_force_N", values, &failed, &f), &f);
+    fuzz_done(sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values, &failed, &f),
+              &f);
     char *text = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&text, &size);

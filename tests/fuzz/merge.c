@@ -74,7 +74,8 @@ static void check_merged(const sweep *s, const char *path, const sweep_merged *m
     size_t count;
     FUZZ_CHECK(merged->total == RUNS);
     FUZZ_CHECK(store->count == merged->runs);
-    FUZZ_CHECK(sweep_store_quantity(store, "peak_force_N", values, NULL, &f) == STATUS_OK);
+    FUZZ_CHECK(sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values, NULL, &f) ==
+               STATUS_OK);
     for (int i = 0; i < RUNS; i++) {
         FUZZ_CHECK(!isinf(values[i]));
     }

@@ -56,24 +56,35 @@ status sweep_store_put(sweep_store *of, size_t run, const summary *result, fault
     return code;
 }
 
-status sweep_store_quantity(sweep_store *of, const char *key, double *values, size_t *failed,
-                            fault *f)
+status sweep_store_quantity(sweep_store *of, sweep_share share, const char *key, double *values,
+                            size_t *failed, fault *f)
 {
     sweep_database *store = database_of(of);
-    size_t total = store->sweep->run_count, failures = 0;
+    const long long total = (long long)store->sweep->run_count;
+    const long long first = share.parts > 0 ? share.part : 1,
+                    step = share.parts > 0 ? share.parts : 1;
+    size_t failures = 0;
     sqlite3_stmt *rows = NULL;
 
-    for (size_t i = 0; i < total; i++) {
+    for (size_t i = 0; i < sweep_share_count(share, store->sweep->run_count); i++) {
         values[i] = (double)NAN;
     }
 
+    // the rows of a share are looked up one by one
+    char *sql =
+        share.parts == 0
+            ? sqlite3_mprintf("SELECT run, status, \"%w\" FROM run", key)
+            : sqlite3_mprintf("WITH RECURSIVE part(n) AS (SELECT %lld UNION ALL SELECT n + %lld "
+                              "FROM part WHERE n + %lld <= %lld) "
+                              "SELECT run, status, \"%w\" FROM run WHERE run IN part",
+                              first, step, step, total, key);
+
     // a run that failed, or has no such quantity, stays missing
-    char *sql = sqlite3_mprintf("SELECT run, status, \"%w\" FROM run", key);
     status code = sql ? database_prepare(store, &rows, sql, f) : fault_no_memory(f);
     while (database_next(store, rows, &code, f)) {
         long long run = sqlite3_column_int64(rows, 0);
         const char *ended = (const char *)sqlite3_column_text(rows, 1);
-        if (run < 1 || (unsigned long long)run > total || ended == NULL) {
+        if (run < first || run > total || ended == NULL) {
             code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds a row that is no run of the sweep",
                              store->path ? store->path : "memory");
             continue;
@@ -81,7 +92,7 @@ status sweep_store_quantity(sweep_store *of, const char *key, double *values, si
         bool ok = strcmp(ended, "failed") != 0;
         failures += !ok;
         if (ok && sqlite3_column_type(rows, 2) != SQLITE_NULL) {
-            values[run - 1] = sqlite3_column_double(rows, 2);
+            values[(run - first) / step] = sqlite3_column_double(rows, 2);
         }
     }
 

@@ -27,11 +27,11 @@ GIVEN_BACK(sweep_store, sweep_store_close)
 status sweep_store_commit(sweep_store *store, fault *f) __attribute__((warn_unused_result));
 
 // What the store of a sweep does (sweep_run.h): of one more row in the transaction, and of a
-// quantity of all.
+// quantity of a share.
 status sweep_store_put(sweep_store *store, size_t run, const summary *result, fault *f)
     __attribute__((warn_unused_result));
-status sweep_store_quantity(sweep_store *store, const char *key, double *values, size_t *failed,
-                            fault *f) __attribute__((warn_unused_result));
+status sweep_store_quantity(sweep_store *store, sweep_share share, const char *key, double *values,
+                            size_t *failed, fault *f) __attribute__((warn_unused_result));
 
 // Writes all rows in the order of the runs. As CSV: run, varied values, status, message, then the
 // quantities that do not depend on the machine; the header is name[unit]. As JSON: scenario,

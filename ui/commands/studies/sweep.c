@@ -111,8 +111,9 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
     const arguments *a = o->arguments;
     size_t failed = 0;
     SCOPED(free_kept) double *values = malloc(o->sweep->run_count * sizeof *values);
-    TRY_FAULT(values == NULL ? fault_no_memory(&f)
-                             : sweep_store_quantity(store, o->quantity, values, &failed, &f));
+    TRY_FAULT(values == NULL
+                  ? fault_no_memory(&f)
+                  : sweep_store_quantity(store, o->share, o->quantity, values, &failed, &f));
 
     // files first: what is printed may be cut off
     int code = worse(write_rows(store, a->csv, false), write_rows(store, a->json, true));

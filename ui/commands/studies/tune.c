@@ -13,7 +13,8 @@
 #include "ui/commands/progress.h"
 
 // What is judged on draws that the search did not see: the values as given, those found, and these
-// with one number a tenth lower and higher.
+// with one number a tenth lower and higher, a whole one by one at least. What a parameter does not
+// take has no result.
 enum { GIVEN, TUNED, CHANGED, ROWS = CHANGED + 2 * SWEEP_MOST_AXES };
 
 typedef struct tuner {
@@ -22,6 +23,7 @@ typedef struct tuner {
     tuning tuning;
     tune_result rows[ROWS];
     int count; // of rows
+    bool kept; // the best so far, in the file of --output
 } tuner;
 
 static void write_best(FILE *stream, const scenario *s, const void *found)
@@ -36,13 +38,14 @@ static void write_best(FILE *stream, const scenario *s, const void *found)
 // Writes the best so far; the standard output gets it once, at the end.
 static status keep_best(void *context, const tuning *best, fault *f)
 {
-    const tuner *t = context;
+    tuner *t = context;
     const char *path = t->arguments->output;
     whole_file file;
     if (path == NULL || strcmp(path, "-") == 0) {
         return STATUS_OK;
     }
     TRY(whole_file_open(&file, path, f));
+    t->kept = true;
     write_best(file.stream, t->scenario, t);
     return whole_file_commit(&file, f);
 }
@@ -57,6 +60,9 @@ static status judge_rows(tuner *t, const sweep_options *options, fault *f)
     const int varied = t->tuning.asked.vary_count, rows = CHANGED + 2 * varied;
     SCOPED(tune_finish) tuning unseen = {.done = 0};
     SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
+    for (int i = 0; i < rows; i++) {
+        t->rows[i].value = (double)NAN;
+    }
     TRY(tune_unseen(&unseen, &t->tuning, (size_t)rows, f));
     TRY(sweep_store_open(&store, NULL, &unseen.plan, f));
     while (t->count < rows) {
@@ -66,10 +72,21 @@ static status judge_rows(tuner *t, const sweep_options *options, fault *f)
             values[k] = i == GIVEN ? given_value(t, k) : t->tuning.found[k];
         }
         if (i >= CHANGED) {
-            values[(i - CHANGED) / 2] *= i % 2 == CHANGED % 2 ? 0.9 : 1.1;
+            const int k = (i - CHANGED) / 2;
+            const bool lower = i % 2 == CHANGED % 2;
+            const bool whole =
+                sweep_axis_parameter(&unseen.plan.axes[k])->type == PARAMETER_INTEGER;
+            values[k] *= lower ? 0.9 : 1.1;
+            if (whole) {
+                values[k] = lower ? floor(values[k]) : ceil(values[k]);
+            }
         }
-        TRY(tune_evaluate(&unseen, (size_t)i, values, i == GIVEN ? "given" : "tuned", store,
-                          options, &t->rows[i], f));
+        const status code =
+            tune_evaluate(&unseen, (size_t)i, values, i == GIVEN ? "given" : "tuned", store,
+                          options, &t->rows[i], f);
+        if (code == STATUS_STOPPED || code == STATUS_NO_MEMORY) {
+            return code;
+        }
     }
     return STATUS_OK;
 }
@@ -163,12 +180,15 @@ static int search(tuner *t)
 
     status code = sweep_store_open(&store, a->db, &t->tuning.plan, &f);
     code = code == STATUS_OK ? tune_run(&t->tuning, store, &options, &f) : code;
-    code = code == STATUS_OK ? judge_rows(t, &options, &f) : code;
+    const status judged = code == STATUS_OK ? judge_rows(t, &options, &f) : code;
     many_runs_end(&options);
-    if (code != STATUS_STOPPED) {
-        return code == STATUS_OK ? report(t) : complain_fault(&f);
+
+    // what was found is told whatever the judging came to
+    const int result = code == STATUS_OK ? report(t) : EXIT_DONE;
+    if (judged != STATUS_STOPPED) {
+        return judged == STATUS_OK ? result : worse(result, complain_fault(&f));
     }
-    if (a->output != NULL && strcmp(a->output, "-") != 0 && t->tuning.best.rank < TUNE_REFUSED) {
+    if (t->kept && t->tuning.best.rank < TUNE_REFUSED) {
         complain("the best numbers so far are in '%s'", a->output);
     }
     return many_runs_stopped(a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count);
@@ -227,7 +247,8 @@ const command tune_command = {
         "(or a:b:log) says what may be changed within which range. Over a set an\nevaluation is a "
         "batch of runs with the same draws each time, as many runs as there are evaluations.\nWhat "
         "is not allowed or fails ranks last.\n\nThe result is judged on 200 draws that the search "
-        "did not see, also with each number a tenth lower and\nhigher. The file of -o is whole at "
+        "did not see, also with each number a tenth lower and\nhigher (a whole one by one at "
+        "least). The file of -o is whole at "
         "every instant; with --db the same command goes on where a search\nwas stopped. The exit "
         "status is 1 if no values meet --subject.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
