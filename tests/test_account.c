@@ -120,7 +120,7 @@ TEST(test_every_scenario_has_an_account_within_bounds)
     free_names(names, count);
 }
 
-// Arms, walls and drives drawn by fives.
+// Five hundred arms with walls and drives that are drawn.
 TEST(test_random_arms_have_accounts_within_bounds)
 {
     static const char *const joints[] = {"rigid", "spring arm.k1=90", "beam"};
