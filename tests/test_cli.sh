@@ -470,7 +470,7 @@ kill -TERM $interrupted
 code=0
 wait $interrupted || code=$?
 [ "$code" = 143 ] || fail "robust ended by a signal has status $code, expected 143"
-says err "are done and kept in 'long-hybrid.sqlite'"
+says err "kept in 'long-hybrid.sqlite'"
 printf 'belief.k2_factor=0.9:1.1\ncase Thrown: push=1e300@0.1\n' >thrown.set
 expect 1 robust compare/bang-bang-rigid --over thrown.set --runs 2 --quiet
 says err "2 of 2 runs failed; run 1: at t = 0.1 s: a push of 1e+300 N s"

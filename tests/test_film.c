@@ -239,7 +239,7 @@ TEST(test_interrupted)
     options.stop = &stopped;
     ENCODER("#!/bin/sh\ncat >/dev/null\n");
     int before = count_files(test_folder);
-    REFUSED(STATUS_STOPPED, "interrupted after 2 of 5", film_of(&r, &options, "half.mp4", &f));
+    REFUSED(STATUS_STOPPED, "stopped: 2 of 5 frames", film_of(&r, &options, "half.mp4", &f));
     assert_int_equal(count_files(test_folder), before);
 }
 

@@ -35,7 +35,8 @@ TEST(limits_are_those_found_otherwise)
         KEPT_SCENARIO(s) = shipped_with(c->name, c->changes);
         char *vary[] = {(char *)formatted("%s=%g:%g:2", c->path, c->from, c->to)};
         SCOPED(linear_survey_finish) linear_survey found;
-        DONE(linear_survey_make(&found, &s, &(sweep_request){vary, 1}, LINEAR_CONTACT, &f));
+        DONE(linear_survey_begin(&found, &s, &(sweep_request){vary, 1}, &f));
+        DONE(linear_survey_make(&found, LINEAR_CONTACT, NULL, &f));
         assert_false(found.limits[0].by_runs);
         check_relative(found.limits[0].value, c->known, 1e-2);
     }

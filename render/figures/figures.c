@@ -198,6 +198,7 @@ status figure_draw(const char *id, const figure_options *o, const char *folder, 
     }
     g_auto(artwork) drawn = {0};
     TRY(figure_open(which, o, &drawn, f));
+    FAULT_IF(stop_everything, f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
 
     // caption and what LaTeX needs go with the first picture, numbers with them all
     figure_options beside = *o;

@@ -69,7 +69,8 @@ status scenario_figure_open(const char *name, run_monitor *monitor, artwork *out
 // writes FOLDER/fig-3-4.csv; with `tex` (may be NULL) it prints the figure environment of the first
 // format's file there. The folder is created if it does not exist. Options that are all zero: in
 // colour, at its own width, 200 dpi. STATUS_BAD_ARGUMENT for an unknown id or format, otherwise the
-// status of the run or of writing.
+// status of the run or of writing: STATUS_STOPPED, and nothing is written, once stop_everything is
+// set.
 status figure_draw(const char *id, const figure_options *o, const char *folder, const char *formats,
                    FILE *tex, fault *f);
 

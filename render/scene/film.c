@@ -44,7 +44,7 @@ static status add_frames(film_painter *p, film_file *file, fault *f)
 
     for (int i = 0; i < total; i++) {
         FAULT_IF(o->stop != NULL && *o->stop != 0, f, STATUS_STOPPED,
-                 "interrupted after %d of %d frames", i, total);
+                 "stopped: %d of %d frames were painted, no film is left", i, total);
         TRY(film_painter_frame(p, o->seconds * i / (total - 1), frame, f));
         TRY(film_file_add(file, frame, f));
         if (o->progress != NULL) {

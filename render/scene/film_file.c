@@ -345,7 +345,8 @@ bool film_file_wants_palette(const film_file *film)
 
 static status stopped(const film_file *film, fault *f)
 {
-    return fault_set(f, STATUS_STOPPED, "interrupted after %d frames", film->frames);
+    return fault_set(f, STATUS_STOPPED, "stopped: %d frames were painted, no film is left",
+                     film->frames);
 }
 
 static status complain_encoder(const film_file *film, const char *said, fault *f)

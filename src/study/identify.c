@@ -267,11 +267,35 @@ static status jacobian_of(identification *id, const double *x, double *jacobian,
 
 // --- least squares ----------------------------------------------------------------------------
 
+// The unknowns that left the least of all that were evaluated.
+typedef struct best_yet {
+    double x[IDENTIFY_UNKNOWNS], least; // NaN before the first
+} best_yet;
+
 typedef struct least_squares {
     identification *id;
+    best_yet *best;
     status code;
     fault *f;
 } least_squares;
+
+static double sum_of_squares(const double *residual, size_t count)
+{
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        sum += residual[i] * residual[i];
+    }
+    return sum;
+}
+
+// Keeps the unknowns of a set that leaves less than those before, if there were any.
+static void keep_best(best_yet *best, const identification *id, const double *x, double left)
+{
+    if (!(left >= best->least)) {
+        best->least = left;
+        memcpy(best->x, x, (size_t)id->unknowns * sizeof *x);
+    }
+}
 
 #ifdef IMPACTLAB_MINPACK
 static int evaluate(void *context, int m, int n, const double *x, double *residual,
@@ -281,14 +305,18 @@ static int evaluate(void *context, int m, int n, const double *x, double *residu
     (void)m, (void)n, (void)rows;
     l->code = asked == 1 ? residuals_of(l->id, x, 1, NULL, false, residual, NULL, l->f)
                          : jacobian_of(l->id, x, jacobian, l->f);
+    if (l->code == STATUS_OK && asked == 1) {
+        keep_best(l->best, l->id, x, sum_of_squares(residual, l->id->residuals));
+    }
     return l->code == STATUS_OK ? 0 : -1;
 }
 
 // Levenberg and Marquardt's method from x on.
-static status minimise(identification *id, double *x, double *residual, double *jacobian, fault *f)
+static status minimise(identification *id, double *x, double *residual, double *jacobian,
+                       best_yet *best, fault *f)
 {
     const int m = (int)id->residuals, n = id->unknowns;
-    least_squares l = {.id = id, .f = f};
+    least_squares l = {.id = id, .best = best, .f = f};
     double diagonal[IDENTIFY_UNKNOWNS], work[4][IDENTIFY_UNKNOWNS];
     SCOPED(free_kept) double *more = calloc((size_t)m, sizeof *more);
     int pivots[IDENTIFY_UNKNOWNS], evaluations, jacobians;
@@ -299,21 +327,13 @@ static status minimise(identification *id, double *x, double *residual, double *
     return l.code;
 }
 #else
-static status minimise(identification *id, double *x, double *residual, double *jacobian, fault *f)
+static status minimise(identification *id, double *x, double *residual, double *jacobian,
+                       best_yet *best, fault *f)
 {
-    (void)id, (void)x, (void)residual, (void)jacobian;
+    (void)id, (void)x, (void)residual, (void)jacobian, (void)best;
     return identify_available(f);
 }
 #endif
-
-static double sum_of_squares(const double *residual, size_t count)
-{
-    double sum = 0;
-    for (size_t i = 0; i < count; i++) {
-        sum += residual[i] * residual[i];
-    }
-    return sum;
-}
 
 // The scenario's values; where a trace starts is what its encoder says, or, with an encoder that
 // counts from anywhere, what the scenario says.
@@ -335,7 +355,7 @@ static void begin_with(const identification *id, bool counted, double *x)
 
 // The sets of unknowns to begin with, x[starts * unknowns], and what each leaves, rest[starts]: the
 // scenario's, and those drawn from the ranges or from half to twice the scenario's.
-static status draw_beginnings(identification *id, double *x, double *rest, fault *f)
+static status draw_beginnings(identification *id, double *x, double *rest, best_yet *best, fault *f)
 {
     const size_t m = id->residuals;
     random_generator random;
@@ -355,18 +375,17 @@ static status draw_beginnings(identification *id, double *x, double *rest, fault
     TRY(residuals_of(id, x, id->starts, NULL, false, out, NULL, f));
     for (int s = 0; s < id->starts; s++) {
         rest[s] = sum_of_squares(out + (size_t)s * m, m);
+        keep_best(best, id, x + s * id->unknowns, rest[s]);
     }
     return STATUS_OK;
 }
 
-// Fits with room for the beginnings and what they leave, a set of residuals and the Jacobian.
-static status fit_with(identification *id, double *x, fault *f)
+// Searches with room for the beginnings and what they leave, a set of residuals and the Jacobian.
+static status search(identification *id, double *x, best_yet *best, fault *f)
 {
     double *rest = x + id->starts * id->unknowns, *residual = rest + id->starts,
            *jacobian = residual + id->residuals;
-    const double *best = x;
-    double least = HUGE_VAL;
-    TRY(draw_beginnings(id, x, rest, f));
+    TRY(draw_beginnings(id, x, rest, best, f));
 
     // those that leave the least to the end
     for (int tried = 0; tried < REFINED; tried++) {
@@ -375,22 +394,55 @@ static status fit_with(identification *id, double *x, fault *f)
             s = rest[i] < rest[s] ? i : s;
         }
         rest[s] = HUGE_VAL;
-        TRY(minimise(id, x + s * id->unknowns, residual, jacobian, f));
-        const double left = sum_of_squares(residual, id->residuals);
-        best = left < least ? x + s * id->unknowns : best;
-        least = fmin(left, least);
+        TRY(minimise(id, x + s * id->unknowns, residual, jacobian, best, f));
     }
+    return STATUS_OK;
+}
 
-    // the best of them, judged
+// What a search that was stopped leaves: values that nobody has judged.
+static void leave_unjudged(identification *id, double least)
+{
+    id->chi_square = least;
+    id->aic = (double)NAN;
+    for (int i = 0; i < id->count; i++) {
+        id->singular[i] = (double)NAN;
+        id->fit[i].standard_error = id->fit[i].low = id->fit[i].high = (double)NAN;
+    }
+    for (int k = 0; k < id->trace_count; k++) {
+        recorded_trace *t = &id->traces[k];
+        t->contact_error = t->peak_error = (double)NAN;
+        for (int c = 0; c < CHANNELS; c++) {
+            t->rms[c] = t->whiteness[c] = (double)NAN;
+        }
+    }
+}
+
+// Fits with the same room, and judges what came of it.
+static status fit_with(identification *id, double *x, fault *f)
+{
+    double *jacobian = x + id->starts * (id->unknowns + 1) + id->residuals;
+    best_yet best = {.least = (double)NAN};
     fault why = {.code = STATUS_OK};
-    TRY(residuals_of(id, best, 1, NULL, true, id->residual, &why, f));
-    if (why.code != STATUS_OK) {
+    status code = search(id, x, &best, f);
+    if (code == STATUS_OK) {
+        code = residuals_of(id, best.x, 1, NULL, true, id->residual, &why, f);
+    }
+    if (code == STATUS_OK && why.code != STATUS_OK) {
         *f = why;
         return why.code;
     }
-    TRY(jacobian_of(id, best, jacobian, f));
+    if (code == STATUS_OK) {
+        code = jacobian_of(id, best.x, jacobian, f);
+    }
+
+    // the best there is, if there is any
+    FAIL_IF(isnan(best.least) || (code != STATUS_OK && code != STATUS_STOPPED), code);
     for (int n = 0; n < id->unknowns; n++) {
-        *id->unknown[n].value = value_of(id, n, best[n]);
+        *id->unknown[n].value = value_of(id, n, best.x[n]);
+    }
+    if (code == STATUS_STOPPED) {
+        leave_unjudged(id, best.least);
+        return code;
     }
     return identify_judge(id, jacobian, f);
 }

@@ -119,8 +119,9 @@ status identify_add_trace(identification *id, const char *file, char *const *col
 void identify_finish(identification *id);
 
 // Fits parameters and what the traces have of their own. Without parameters only the latter, which
-// is a validation. STATUS_STOPPED where the monitor asks for it; what stopped the run if there is
-// none with the scenario's values; STATUS_NO_MEMORY.
+// is a validation. STATUS_STOPPED where the monitor asks for it: chi_square is 0 if nothing was
+// tried until then, else the values are the best so far, and aic and their errors are NaN; what
+// stopped the run if there is none with the scenario's values; STATUS_NO_MEMORY.
 status identify_fit(identification *id, fault *f);
 
 // The parameters of the scenario with the fitted values, only those that are determined if so

@@ -248,8 +248,8 @@ static void find_quantiles(double *values, size_t count, double *quantiles)
 enum { JUDGED(NUMBER) QUANTITIES };
 static const char *const keys[QUANTITIES] = {JUDGED(KEY)};
 
-// Judges the runs, whose quantities stand one behind the other; what is sorted is overwritten.
-static void judge(robust_law *out, const sweep *s, sweep_share share, double *values)
+// Judges the runs, whose quantities stand `most` behind one another; what is sorted is overwritten.
+static void judge(robust_law *out, const sweep *s, const size_t *runs, size_t most, double *values)
 {
     const size_t n = out->runs;
     double *of[QUANTITIES];
@@ -260,13 +260,13 @@ static void judge(robust_law *out, const sweep *s, sweep_share share, double *va
         pushed = a->kind == ACTION_PUSH ? fmax(pushed, a->time) : pushed;
     }
     for (int q = 0; q < QUANTITIES; q++) {
-        of[q] = values + (size_t)q * n;
+        of[q] = values + (size_t)q * most;
     }
 
     // each run
     for (size_t i = 0; i < n; i++) {
         scenario derived;
-        bool known = sweep_scenario(s, sweep_share_run(share, i), &derived, NULL) == STATUS_OK;
+        bool known = sweep_scenario(s, runs[i], &derived, NULL) == STATUS_OK;
         bool many = known && derived.parameters.arm.links > 2;
         double command = of[COMMAND][i];
         double allowed = known && derived.parameters.control.force_limit > 0
@@ -314,14 +314,24 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sha
     const size_t n = sweep_share_count(share, s->run_count);
     *out = (robust_law){.law = law, .runs = n, .against = (double)NAN};
 
-    // each quantity of the runs of the share
+    // each quantity of the runs of the share that are there
+    SCOPED(free_kept) size_t *runs = calloc(n, sizeof *runs);
+    SCOPED(free_kept) double *column = calloc(n, sizeof *column);
     SCOPED(free_kept) double *values = calloc(QUANTITIES * n, sizeof *values);
     out->overshoots = calloc(n, sizeof *out->overshoots);
-    TRY_MEMORY(values != NULL && out->overshoots != NULL, f);
+    TRY_MEMORY(runs != NULL && column != NULL && values != NULL && out->overshoots != NULL, f);
     for (int q = 0; q < QUANTITIES; q++) {
-        TRY(store->quantity(store, share, keys[q], values + (size_t)q * n, NULL, f));
+        TRY(store->quantity(store, share, keys[q], column, NULL, f));
+        out->runs = 0;
+        for (size_t i = 0; i < n; i++) {
+            const size_t run = sweep_share_run(share, i);
+            if (store->present[run]) {
+                runs[out->runs] = run;
+                values[(size_t)q * n + out->runs++] = column[i];
+            }
+        }
     }
-    judge(out, s, share, values);
+    judge(out, s, runs, n, values);
     return STATUS_OK;
 }
 

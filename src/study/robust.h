@@ -91,7 +91,7 @@ typedef struct robust_law {
     double *overshoots;             // of all runs, ascending, NaN last; owned [%]
 } robust_law;
 
-// Judges a share of the runs of a law in a store of its sweep, all of which are there.
+// Judges a share of the runs of a law in a store of its sweep, those that are there.
 // STATUS_NO_MEMORY or what the store says. robust_law_finish in any case.
 status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_share share,
                      sweep_store *store, fault *f);

@@ -91,6 +91,7 @@ typedef struct trial {
     double value;
     double quantity; // NaN: missing, or unknown
     bool known;      // the run came to its end and is to be relied on
+    bool done;       // it was run
 } trial;
 
 typedef struct search {
@@ -108,7 +109,7 @@ static trial trial_of(const search *s, double value, const summary *m)
 {
     const bool known = m->status == STATUS_OK && !m->inaccurate;
     const double quantity = known ? summary_value(m, s->condition->quantity) : (double)NAN;
-    return (trial){value, quantity, known};
+    return (trial){value, quantity, known, true};
 }
 
 // What ends a search, others are runs that say nothing.
@@ -180,6 +181,7 @@ static status take_point(void *context, size_t i, const summary *m, fault *f)
     found->missing += t.known && isnan(t.quantity);
     found->holding += holds(s, &t);
     found->failing += !isnan(t.quantity) && !holds(s, &t);
+    found->done++;
     run_monitor_count(s->monitor);
     return STATUS_OK;
 }
@@ -234,13 +236,17 @@ static status locate_limits(search *s, fault *f)
     for (int i = 0; i + 1 < found->points; i++) {
         trial a = s->trials[i], b = s->trials[i + 1];
         const bool first = holds(s, &a);
-        if (first == holds(s, &b)) {
+        if (!a.done || !b.done || first == holds(s, &b)) {
             continue;
         }
 
         // where the quantity ceases to be there between them, that is no limit of its value
         trial *in = first ? &a : &b, *out = first ? &b : &a;
-        TRY(locate(s, in, out, f));
+        if (!found->stopped) {
+            const status code = locate(s, in, out, f);
+            FAIL_IF(code == STATUS_NO_MEMORY, code);
+            found->stopped = code == STATUS_STOPPED;
+        }
         if (isnan(out->quantity)) {
             continue;
         }
@@ -250,10 +256,10 @@ static status locate_limits(search *s, fault *f)
             const double size = fmax(fabs(s->condition->bound), fabs(in->quantity));
             const bool jumps = is_whole(s) || fabs(in->quantity - out->quantity) > 1e-6 * size;
             found->limits[found->count++] =
-                (solve_limit){in->value, in->quantity, .holds_below = first, .jumps = jumps};
+                (solve_limit){in->value, in->quantity, first, jumps, out->value};
         }
     }
-    return STATUS_OK;
+    return found->stopped ? STATUS_STOPPED : STATUS_OK;
 }
 
 status solve(const scenario *s, const sweep_axis *axis, const solve_condition *condition,
@@ -280,6 +286,8 @@ status solve(const scenario *s, const sweep_axis *axis, const solve_condition *c
                          .take = take_point,
                          .together = 1,
                          .abandon = monitor != NULL ? &monitor->stop : NULL};
-    TRY(batch_run(&range, jobs, f));
+    const status code = batch_run(&range, jobs, f);
+    FAIL_IF(code != STATUS_OK && code != STATUS_STOPPED, code);
+    found->stopped = code == STATUS_STOPPED;
     return locate_limits(&here, f);
 }

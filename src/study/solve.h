@@ -25,13 +25,16 @@ typedef struct solve_limit {
     double reached;   // the quantity there [its unit]
     bool holds_below; // the condition holds below the limit, else above it
     bool jumps;       // the quantity jumps over the bound there
+    double beyond;    // the nearest value at which it was seen not to hold [parameter's unit]
 } solve_limit;
 
 typedef struct solution {
     solve_limit limits[SOLVE_MOST_LIMITS]; // by value, from low to high of the range
     int count;
     bool more;            // there are more limits than fit
-    int points;           // values of the range that were run
+    int points;           // values of the range
+    int done;             // of them: they were run, all but of a search that was stopped
+    bool stopped;         // then limits are not located, only known to lie before `beyond`
     int holding, failing; // of them: the condition holds, it does not
     int missing;          // of them: the quantity did not occur
     int unknown;          // of them: the run failed or is inaccurate, or cannot be made
@@ -54,6 +57,7 @@ status solve_axis_read(sweep_axis *axis, const char *text, const scenario *s, fa
 
 // Finds the limits of the axis (a range) within which the condition holds, in `points` values (at
 // least 2; fewer where fewer whole numbers lie in the range) on `jobs` threads. STATUS_STOPPED if
-// the monitor (may be NULL) asked for it, STATUS_NO_MEMORY; runs that fail are counted as unknown.
+// the monitor (may be NULL) asked for it, with what was found until then; STATUS_NO_MEMORY. Runs
+// that fail are counted as unknown.
 status solve(const scenario *s, const sweep_axis *axis, const solve_condition *condition,
              int points, int jobs, run_monitor *monitor, solution *found, fault *f);

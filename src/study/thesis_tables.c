@@ -154,6 +154,9 @@ static status compute_table(const parameters *defaults, const thesis_table *sour
                               .model = model,
                               .quantity = quantity_names[i]};
         memcpy(rows[i].printed, source->printed[i], sizeof rows[i].printed);
+        for (int v = 0; v < TABLE_VOLTAGES; v++) {
+            rows[i].computed[v] = (double)NAN;
+        }
     }
 
     // a cell for each voltage
@@ -196,8 +199,9 @@ status tables_compute(thesis_tables *t, fault *f)
         for (int m = 0; m < MODELS; m++) {
             parameters p;
             take_defaults(&p, models[m].kind);
-            TRY(compute_table(&p, &thesis[k], models[m].name, t->rows + t->row_count, f));
             t->row_count += QUANTITIES;
+            TRY(compute_table(&p, &thesis[k], models[m].name, t->rows + t->row_count - QUANTITIES,
+                              f));
         }
     }
     return STATUS_OK;

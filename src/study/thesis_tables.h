@@ -22,7 +22,7 @@ typedef struct thesis_tables {
     int row_count;
 } thesis_tables;
 
-// Computes all rows, for both models.
+// Computes all rows, for both models; on failure there are those until then.
 status tables_compute(thesis_tables *t, fault *f);
 
 // The closest reproduction of the delays in the tables, three rows of the model "fitted" for each

@@ -4,15 +4,9 @@
 
 #include "render/scene/film.h"
 #include "ui/commands/pictures.h"
+#include "ui/commands/progress.h"
 
 enum { BAR_LENGTH = 40 };
-
-static volatile sig_atomic_t signal_caught;
-
-static void catch_signal(int number)
-{
-    signal_caught = number;
-}
 
 // The progress bar: a line on the terminal that is written over.
 static void show_progress(void *context, int done, int total)
@@ -65,17 +59,19 @@ static int open_all(filmed *m, const arguments *a)
 }
 
 // Runs all of them. Returns the exit status.
-static int run_all(filmed *m)
+static int run_all(const arguments *a, filmed *m)
 {
     for (; m->run < m->opened; m->run++) {
         run_result *result = &m->results[m->run];
-        status code = run_scenario(&m->scenarios[m->run], true, result);
+        const scenario *s = &m->scenarios[m->run];
+        status code = run_with_progress(a, s, true, result);
         if (code != STATUS_OK) {
             // the run's own words say more than its status
-            complain("%s failed: %s", m->names[m->run],
-                     result->summary.message[0] ? result->summary.message : status_text(code));
-            m->run++;
-            return EXIT_FAILED;
+            const char *name = m->names[m->run++], *why = result->summary.message;
+            return code == STATUS_STOPPED
+                       ? run_stopped(s, "no film is made")
+                       : worse(EXIT_FAILED,
+                               complain("%s failed: %s", name, why[0] ? why : status_text(code)));
         }
     }
     return EXIT_DONE;
@@ -94,30 +90,19 @@ static int film_runs(const arguments *a, const filmed *m)
                       .frames_per_second = (int)a->fps,
                       .seconds = a->seconds,
                       .slow = a->slow,
-                      .stop = &signal_caught};
-    struct sigaction caught = {.sa_handler = catch_signal}, old[2];
+                      .stop = &interrupted};
     bool bar = isatty(STDERR_FILENO) && !a->quiet;
     o.progress = bar ? show_progress : NULL;
     for (int i = 0; i < m->run; i++) {
         runs[i] = (film_run){&m->scenarios[i], &m->results[i], m->names[i]};
     }
 
-    // a signal ends the film, not the program: no half file stays
-    sigemptyset(&caught.sa_mask);
-    sigaction(SIGINT, &caught, &old[0]);
-    sigaction(SIGTERM, &caught, &old[1]);
     status code = film_write(runs, m->run, &o, a->output, &f);
-    sigaction(SIGINT, &old[0], NULL);
-    sigaction(SIGTERM, &old[1], NULL);
-
     if (bar) {
         fprintf(stderr, "\r%78s\r", "");
     }
 
-    if (code != STATUS_OK) {
-        const int exit_status = complain_fault(&f);
-        return signal_caught != 0 ? 128 + signal_caught : exit_status;
-    }
+    FAIL_IF(code != STATUS_OK, complain_fault(&f));
     if (!a->quiet) {
         say("%s: %s\n", m->names[0], a->output);
     }
@@ -134,7 +119,7 @@ static int animate(const arguments *a)
     TRY_FAULT(film_file_check(a->output, &f));
     SCOPED(finish_filmed) filmed m = {0};
     TRY_EXIT(open_all(&m, a));
-    TRY_EXIT(run_all(&m));
+    TRY_EXIT(run_all(a, &m));
     return film_runs(a, &m);
 }
 

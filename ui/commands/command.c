@@ -11,6 +11,7 @@
 #include "src/base/text_stream.h"
 #include "src/base/words.h"
 #include "src/scenario/outside.h"
+#include "ui/commands/interrupts.h"
 
 // One line a command: its name as a C word, in the order in which they are listed.
 #define COMMANDS(X)                                                                                \
@@ -241,7 +242,7 @@ int with_scenario(const char *name_or_file, const arguments *a,
 int command_run(const arguments *a)
 {
     const command *c = a->command;
-    return c->use != NULL ? with_scenario(a->operands[0], a, c->use) : c->run(a);
+    return interrupts_end(c->use != NULL ? with_scenario(a->operands[0], a, c->use) : c->run(a));
 }
 
 RESULT_WRITER(write_value, json_t, json_write(stream, found))
@@ -277,14 +278,21 @@ int write_results(const arguments *a, const command_results *r, const scenario *
     } files[] = {{a->csv, r->csv},
                  {a->markdown, r->markdown},
                  {a->mat, r->mat},
-                 {a->cases, r->cases},
+                 {whole ? a->cases : NULL, r->cases},
                  {whole ? a->output : NULL, r->output}};
-    const bool has_json = a->json != NULL && r->json != NULL;
-    int result = has_json ? write_json(a->json, r->json(s, found)) : EXIT_DONE;
+    int result = EXIT_DONE;
+    interrupts_catch();
+    if (a->json != NULL && r->json != NULL) {
+        json_t *object = r->json(s, found);
+        if (!whole && object != NULL) {
+            json_put(object, "status", json_string("interrupted"));
+        }
+        result = write_json(a->json, object);
+    }
     for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
         result = worse(result, write_file(files[i].path, files[i].write, s, found));
     }
-    if (a->plot != NULL && r->plot != NULL && whole) {
+    if (a->plot != NULL && r->plot != NULL && (whole || r->draws_part)) {
         result = worse(result, r->plot(a, s, found));
     }
     if (r->text != NULL && summary_wanted(a)) {

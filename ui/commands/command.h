@@ -385,14 +385,17 @@ typedef struct command_results {
     void (*text)(const scenario *s, const void *found); // for people, on the standard output
     int (*plot)(const arguments *a, const scenario *s, const void *found); // gives the exit status
     result_writer *csv, *markdown, *output, *mat, *cases;
+    bool draws_part; // plot draws a result that is not whole, too
     // said after an interrupt: what became of the pieces that were done, NULL: nothing of them is
     // written; the same where none were and nothing is written, NULL: as of some
     const char *kept, *none;
 } command_results;
 
-// Writes every result that was asked for, of one that is not `whole` neither --output nor --plot,
-// and then the text: what is printed may be cut off. One that fails does not keep the others from
-// being written. Returns the exit status.
+// Writes every result that was asked for, and then the text: what is printed may be cut off. One
+// that fails does not keep the others from being written. Of a result that is not `whole`, as an
+// interrupt ended the work, neither --output and --cases nor what `plot` cannot draw of it; its
+// JSON has the status "interrupted". An interrupt on the way waits for the end. Returns the exit
+// status.
 int write_results(const arguments *a, const command_results *r, const scenario *s,
                   const void *found, bool whole) __attribute__((warn_unused_result));
 

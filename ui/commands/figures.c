@@ -51,6 +51,7 @@ typedef struct figure_list {
     asked_figure *figures;
     size_t *order;      // in which they are begun
     size_t count, told; // told: number of those already reported
+    size_t drawn;
     bool quiet;
     const char *folder, *formats;
     figure_options options;
@@ -77,7 +78,11 @@ static status take_one(void *context, size_t i, const void *result, fault *f)
     figure_list *list = context;
     asked_figure *taken = &list->figures[list->order[i]];
     const status code = *(const status *)result;
+    if (code == STATUS_STOPPED) {
+        return STATUS_OK; // as if it had not been begun
+    }
     taken->taken = true;
+    list->drawn += code == STATUS_OK;
     if (code != STATUS_OK && list->failed == NULL) {
         list->failed = &taken->fault;
     }
@@ -103,7 +108,8 @@ static status draw_and_write(figure_list *list, const arguments *a, fault *f)
                             .count = list->count,
                             .result_size = sizeof(status),
                             .compute = draw_one,
-                            .collect = take_one};
+                            .collect = take_one,
+                            .stop = &interrupted};
     for (size_t i = 0; i < list->count; i++) {
         list->figures[i].figure =
             a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : thesis_figure_at((int)i);
@@ -125,7 +131,9 @@ static status draw_and_write(figure_list *list, const arguments *a, fault *f)
     if (code == STATUS_OK && a->latex != NULL &&
         (code = whole_file_open(&out, a->latex, f)) == STATUS_OK) {
         for (size_t i = 0; i < list->count; i++) {
-            fputs(list->figures[i].tex, out.stream);
+            if (list->figures[i].taken) {
+                fputs(list->figures[i].tex, out.stream);
+            }
         }
         code = whole_file_commit(&out, f);
     }
@@ -145,7 +153,8 @@ static int figures(const arguments *a)
     TRY_EXIT(check_ids(a));
     TRY_EXIT(read_picture_options(a, &list.options));
 
-    // lists of figures to be drawn and of their results
+    // lists of figures to be drawn and of their results; an interrupt leaves those that are drawn
+    interrupts_catch();
     list.figures = calloc(count, sizeof *list.figures + sizeof *list.order);
     const status drawn = list.figures != NULL ? draw_and_write(&list, a, &f) : fault_no_memory(&f);
     if (drawn != STATUS_OK) {
@@ -154,7 +163,7 @@ static int figures(const arguments *a)
         json_t *array = json_array();
         for (size_t i = 0; i < count; i++) {
             const thesis_figure *which = list.figures[i].figure;
-            if (list.figures[i].fault.code == STATUS_OK) {
+            if (list.figures[i].taken && list.figures[i].fault.code == STATUS_OK) {
                 json_add(array, json_of("id:t folder:t file:t formats:t caption:t", which->id,
                                         list.folder, which->file, list.formats, which->caption));
             }
@@ -163,6 +172,10 @@ static int figures(const arguments *a)
     }
     if (drawn == STATUS_OK && list.failed != NULL) {
         code = worse(code, complain_fault(list.failed));
+    }
+    if (drawn == STATUS_OK && interrupted != 0 && list.drawn < count) {
+        code = worse(EXIT_FAILED, complain("stopped: %zu of %zu figures were drawn and are kept",
+                                           list.drawn, count));
     }
     for (size_t i = 0; list.figures != NULL && i < count; i++) {
         free(list.figures[i].tex);
@@ -226,6 +239,7 @@ static int plot(const arguments *a)
                 "two results cannot both be written to %s or beside it", path);
 
     // faults in the recipe are reported as they are found and leave `why` empty
+    interrupts_catch();
     SCOPED(artwork_finish) artwork art = {0};
     fault why = {0};
     FAIL_IF(recipe_open(a->operands[0], &o, report_to_stderr, NULL, &art, &why) != STATUS_OK,
@@ -267,7 +281,9 @@ static int report(const arguments *a)
     work_end();
 
     if (code == STATUS_STOPPED) {
-        work_leave(monitor->pieces, steps, "steps", "the report is as it was before");
+        complain("stopped: %d of %d steps were done, the report is as it was before",
+                 monitor->pieces, steps);
+        return EXIT_FAILED;
     }
     FAIL_IF(code != STATUS_OK, complain_fault(&f));
     if (!a->quiet) {

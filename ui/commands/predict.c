@@ -216,14 +216,13 @@ static int predict_and_report(const arguments *a, scenario *s)
     status ran = run_with_progress(a, s, true, &result);
     if (ran == STATUS_OK) {
         code = report(a, s, &result);
+    } else if (ran == STATUS_STOPPED) {
+        code = run_stopped(s, "nothing is predicted");
     } else {
         complain("%s failed: %s", s->name, result.summary.message);
     }
 
     run_finish(&result);
-    if (ran == STATUS_STOPPED) {
-        leave_interrupted();
-    }
     return code;
 }
 

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <pthread.h>
 #include <semaphore.h>
-#include <signal.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -17,8 +15,6 @@
 #define FIRST_NOTE 1.0 // after this work is worth a word [s]
 #define NEXT_NOTE  0.2 // [s]
 
-static run_monitor watched; // one work at a time; the signal handler needs it
-
 // The thread that shows the progress.
 static struct ticker {
     const char *pieces; // of the work; NULL: it is one run
@@ -27,14 +23,7 @@ static struct ticker {
     bool ticks;         // the thread is there
     pthread_t thread;
     sem_t over;
-    struct sigaction before; // what an interrupt did
 } ticker;
-
-static void on_interrupt(int number)
-{
-    (void)number;
-    atomic_store_explicit(&watched.stop, true, memory_order_relaxed);
-}
 
 // Tells now and then how far the work is, and takes its words away at the end.
 static void *tick(void *argument)
@@ -47,11 +36,12 @@ static void *tick(void *argument)
     while (sem_clockwait(&t->over, CLOCK_MONOTONIC, &next) != 0) {
         if (t->pieces != NULL) {
             fprintf(stderr, "\rimpactlab: %d of %d %s (^C stops) ",
-                    atomic_load_explicit(&watched.pieces, memory_order_relaxed), t->total,
-                    t->pieces);
+                    atomic_load_explicit(&interrupts_monitor.pieces, memory_order_relaxed),
+                    t->total, t->pieces);
         } else {
             fprintf(stderr, "\rimpactlab: %.*f of %g s (^C stops) ", t->duration < 10 ? 3 : 1,
-                    atomic_load_explicit(&watched.time, memory_order_relaxed), t->duration);
+                    atomic_load_explicit(&interrupts_monitor.time, memory_order_relaxed),
+                    t->duration);
         }
         fflush(stderr);
         told = true;
@@ -67,15 +57,12 @@ static void *tick(void *argument)
 
 static void begin(const arguments *a)
 {
-    struct sigaction act = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
-    watched = (run_monitor){.stop = false};
+    interrupts_monitor = (run_monitor){.stop = false};
     ticker.ticks = false;
     sem_init(&ticker.over, 0, 0);
-
-    // an interrupt ends the work in order; where it is ignored it stays so
-    sigaction(SIGINT, &act, &ticker.before);
-    if (ticker.before.sa_handler == SIG_IGN) {
-        sigaction(SIGINT, &ticker.before, NULL);
+    interrupts_catch();
+    if (interrupted != 0) {
+        interrupts_monitor.stop = true;
     }
     if (!isatty(STDERR_FILENO) || a->quiet) {
         return;
@@ -96,7 +83,7 @@ run_monitor *work_begin(const arguments *a, const char *pieces, int total)
     ticker.pieces = pieces;
     ticker.total = total;
     begin(a);
-    return &watched;
+    return &interrupts_monitor;
 }
 
 void work_end(void)
@@ -107,7 +94,6 @@ void work_end(void)
         pthread_join(ticker.thread, NULL);
     }
 
-    sigaction(SIGINT, &ticker.before, NULL);
     sem_destroy(&ticker.over);
 }
 
@@ -115,27 +101,25 @@ int work_finish(const arguments *a, status code, const fault *f, const command_r
                 const scenario *s, const void *found)
 {
     work_end();
-    if (code == STATUS_STOPPED && r->kept == NULL) {
-        complain("%s", status_text(code));
-        leave_interrupted();
+    if (code == STATUS_OK) {
+        return write_results(a, r, s, found, true);
     }
-    if (code != STATUS_OK && code != STATUS_STOPPED) {
+    if (code != STATUS_STOPPED) {
         return complain_fault(f);
     }
 
-    // what there is, and then the end if that is not all
-    const bool whole = code == STATUS_OK,
-               nothing = !whole && watched.pieces == 0 && r->none != NULL;
-    const int result = nothing ? EXIT_DONE : write_results(a, r, s, found, whole);
-    if (!whole) {
-        work_leave(watched.pieces, ticker.total, ticker.pieces, nothing ? r->none : r->kept);
-    }
-    return result;
+    // what there is
+    const bool nothing = r->kept == NULL || (interrupts_monitor.pieces == 0 && r->none != NULL);
+    const int result = nothing ? EXIT_DONE : write_results(a, r, s, found, false);
+    const char *none = r->none != NULL ? r->none : "nothing is written";
+    complain("stopped: %d of %d %s were done, %s", interrupts_monitor.pieces, ticker.total,
+             ticker.pieces, nothing ? none : r->kept);
+    return worse(result, EXIT_FAILED);
 }
 
 status run_with_progress(const arguments *a, const scenario *s, bool keep_trace, run_result *result)
 {
-    const run_options options = {.keep_trace = keep_trace, .monitor = &watched};
+    const run_options options = {.keep_trace = keep_trace, .monitor = &interrupts_monitor};
     ticker.pieces = NULL;
     ticker.duration = s->parameters.run.duration;
     begin(a);
@@ -144,50 +128,18 @@ status run_with_progress(const arguments *a, const scenario *s, bool keep_trace,
     return code;
 }
 
-void work_leave(int done, int total, const char *pieces, const char *what_became)
+int run_stopped(const scenario *s, const char *what_became)
 {
-    complain("stopped: %d of %d %s were done, %s", done, total, pieces, what_became);
-    leave_interrupted();
-}
-
-void leave_interrupted(void)
-{
-    fflush(NULL);
-    signal(SIGINT, SIG_DFL);
-    raise(SIGINT);
-    abort(); // not reached: nothing catches it any more
+    complain("stopped: %.6g of %g s were computed, %s", interrupts_monitor.time,
+             s->parameters.run.duration, what_became);
+    return EXIT_FAILED;
 }
 
 // --- sweeps -----------------------------------------------------------------------------------
 
-enum {
-    BAR_LENGTH = 24,
-    MOST_WAITED = 5, // time for runs under way after a signal [s]
-};
+enum { BAR_LENGTH = 24 };
 
 static const char full_bar[BAR_LENGTH + 1] = "========================";
-
-static volatile sig_atomic_t signal_caught;
-static volatile double time_caught; // [s]
-static atomic_bool abandoned;
-
-// The first signal lets the runs under way finish, if they do soon; one that comes a second or more
-// later ends the program. One that follows at once is the same again: timeout and some shells send
-// it both to the program and to its group.
-static void catch_signal(int number)
-{
-    const double now = clock_seconds(CLOCK_MONOTONIC);
-    if (number == SIGALRM) {
-        abandoned = true;
-    } else if (signal_caught == 0) {
-        signal_caught = number;
-        time_caught = now;
-        alarm(MOST_WAITED);
-    } else if (now > time_caught + 1) {
-        signal(number, SIG_DFL);
-        raise(number);
-    }
-}
 
 int many_runs_jobs(const arguments *a)
 {
@@ -229,17 +181,10 @@ static void show_progress(void *context, const sweep_progress *p)
 
 sweep_options many_runs_begin(const arguments *a, const char *word)
 {
-    struct sigaction caught = {.sa_handler = catch_signal};
-    sigemptyset(&caught.sa_mask);
-    sigaction(SIGINT, &caught, NULL);
-    sigaction(SIGTERM, &caught, NULL);
-
-    // the alarm is handled here, so that writing is not interrupted
-    caught.sa_flags = SA_RESTART;
-    sigaction(SIGALRM, &caught, NULL);
+    interrupts_catch();
     return (sweep_options){.jobs = many_runs_jobs(a),
-                           .stop = &signal_caught,
-                           .abandon = &abandoned,
+                           .stop = &interrupted,
+                           .abandon = &interrupts_abandon,
                            .report = isatty(STDERR_FILENO) && !a->quiet ? show_progress : NULL,
                            .context = (void *)word};
 }
@@ -258,16 +203,10 @@ void many_runs_tell_failure(const sweep_progress *p)
              p->first_failure);
 }
 
-int many_runs_stopped(const char *db, size_t done, size_t total)
+int many_runs_stopped(const char *db, size_t done, size_t total, const char *what_became)
 {
-    if (db != NULL) {
-        complain("stopped: %zu of %zu runs are done and kept in '%s'; the same command goes on "
-                 "from there",
-                 done, total, db);
-    } else {
-        complain("stopped: %zu of %zu runs were done and are not kept; with --db FILE.sqlite they "
-                 "can be continued",
-                 done, total);
-    }
-    return 128 + signal_caught;
+    complain("stopped: %zu of %zu runs were done, %s%s%s%s", done, total, what_became,
+             db != NULL ? "; they are kept in '" : "", db != NULL ? db : "",
+             db != NULL ? "', from where the same command goes on" : "");
+    return EXIT_FAILED;
 }

@@ -6,21 +6,21 @@
 
 #include "src/study/sweep_run.h"
 #include "ui/commands/command.h"
+#include "ui/commands/interrupts.h"
 
 // --- runs and pieces --------------------------------------------------------------------------
-// Progress of long work on the terminal, and its orderly end by an interrupt.
+// Progress of long work on the terminal.
 
 // Work of `total` pieces ("runs", "presses") begins. The returned monitor is passed to the runs and
 // counts the pieces that are done (run_monitor_count). If standard error is a terminal and --quiet
 // was not given, work of more than a second shows its progress there. An interrupt (^C) sets
-// `stop`; a second one ends the program. To be ended with work_end or work_finish; only one work at
-// a time.
+// `stop`. To be ended with work_end or work_finish; only one work at a time.
 run_monitor *work_begin(const arguments *a, const char *pieces, int total);
 void work_end(void);
 
 // Ends the work that came to `code`, with f if it failed, and writes the results of what it found:
-// those of a whole one, or, after an interrupt, those of what was done, and then ends the program
-// as work_leave does. Returns the exit status.
+// those of a whole one, or, after an interrupt, those of what was done, and says what these are.
+// Returns the exit status.
 int work_finish(const arguments *a, status code, const fault *f, const command_results *r,
                 const scenario *s, const void *found);
 
@@ -29,13 +29,8 @@ int work_finish(const arguments *a, status code, const fault *f, const command_r
 status run_with_progress(const arguments *a, const scenario *s, bool keep_trace,
                          run_result *result);
 
-// Reports that `done` of `total` pieces were done when the work was stopped, and what happened to
-// them. Then ends the program by the signal itself, after all output is written, so that the
-// calling program sees it (a shell: status 130).
-_Noreturn void work_leave(int done, int total, const char *pieces, const char *what_became);
-
-// Ends the program by the interrupt.
-_Noreturn void leave_interrupted(void);
+// Says how far a run came that was stopped, and what became of it. Returns the exit status.
+int run_stopped(const scenario *s, const char *what_became);
 
 // --- sweeps -----------------------------------------------------------------------------------
 // Shared by the commands that make many runs: options, ^C and the progress line.
@@ -43,19 +38,18 @@ _Noreturn void leave_interrupted(void);
 // The number of threads: --jobs, or the number of processors.
 int many_runs_jobs(const arguments *a);
 
-// The options of many runs that begin: --jobs of them at a time; SIGINT and SIGTERM stop them: the
-// runs under way are finished, or abandoned after five seconds, and a second signal, a second or
-// more later, ends the program. On a terminal, without --quiet, a bar shows their progress, behind
-// `word` (may be NULL). To be ended with many_runs_end.
+// The options of many runs that begin: --jobs of them at a time; an interrupt stops them: the runs
+// under way are finished, or abandoned after five seconds. On a terminal, without --quiet, a bar
+// shows their progress, behind `word` (may be NULL). To be ended with many_runs_end.
 sweep_options many_runs_begin(const arguments *a, const char *word);
 void many_runs_end(const sweep_options *o);
 
 // Prints how many of the newly computed runs failed, and why the first one did.
 void many_runs_tell_failure(const sweep_progress *p);
 
-// After a signal: prints how many runs there are and how to continue. `db`: file in which they are
-// stored, or NULL. Returns the exit status, 130 after ^C.
-int many_runs_stopped(const char *db, size_t done, size_t total);
+// After an interrupt: says how many runs there are, what became of them, and how to continue. `db`:
+// file in which they are stored, or NULL. Returns the exit status.
+int many_runs_stopped(const char *db, size_t done, size_t total, const char *what_became);
 
 // Their common options, each with the command's own help text.
 #define RUNS_OPTION(what)                                                                          \

@@ -154,11 +154,14 @@ static int run_and_report(const arguments *a, scenario *s)
     status code = run_with_progress(a, s, keep_trace, &result);
 
     // results are written of a run that failed, too
-    static const command_results r = {run_json, print_run, plot_signals, write_signals};
+    static const command_results r = {run_json, print_run, plot_signals, write_signals,
+                                      .draws_part = true};
     int exit_status = a->scene != NULL ? write_scene(a, s, &result) : EXIT_DONE;
-    exit_status = worse(exit_status, write_results(a, &r, s, &result, true));
+    exit_status = worse(exit_status, write_results(a, &r, s, &result, code != STATUS_STOPPED));
 
-    if (code != STATUS_OK) {
+    if (code == STATUS_STOPPED) {
+        exit_status = run_stopped(s, "the results are those of this time");
+    } else if (code != STATUS_OK) {
         complain("%s failed: %s", s->name,
                  result.summary.message[0] ? result.summary.message : status_text(code));
         exit_status =
@@ -188,9 +191,6 @@ static int run_and_report(const arguments *a, scenario *s)
     }
 
     run_finish(&result);
-    if (code == STATUS_STOPPED) {
-        leave_interrupted();
-    }
     return exit_status;
 }
 

@@ -1,4 +1,4 @@
-#include "ui/commands/command.h"
+#include "ui/commands/progress.h"
 
 #include <math.h>
 #include <string.h>
@@ -114,12 +114,19 @@ static int tables(const arguments *a)
 {
     static const command_results r = {tables_object, print_tables};
     thesis_tables t;
+    fault f = {0};
+    status code = STATUS_OK;
+    interrupts_catch();
     if (a->fitted) {
         tables_compute_fitted(&t);
     } else {
-        TRY_FAULT(tables_compute(&t, &f));
+        code = tables_compute(&t, &f);
     }
-    return write_results(a, &r, NULL, &t, true);
+    FAIL_IF(code != STATUS_OK && code != STATUS_STOPPED, complain_fault(&f));
+    const int result = write_results(a, &r, NULL, &t, code == STATUS_OK);
+    FAIL_IF(code == STATUS_OK, result);
+    complain("stopped: the cells that were not computed are empty");
+    return worse(result, EXIT_FAILED);
 }
 
 static const option_row rows[] = {

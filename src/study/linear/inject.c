@@ -269,7 +269,8 @@ status linear_contact_margin(const scenario *s, double *impulse, fault *f)
             loop_save(l, kept);
             code = least_push(l, kept, -1, &away, f);
             code = code == STATUS_OK ? least_push(l, kept, 1, &against, f) : code;
-            *impulse = fmin(away, against); // the other one if one is NaN
+            // the other one if one is NaN
+            *impulse = code == STATUS_OK ? fmin(away, against) : (double)NAN;
         }
         free(kept);
     }

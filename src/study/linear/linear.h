@@ -10,6 +10,7 @@
 #include <complex.h>
 #include <math.h>
 
+#include "src/run/run_result.h"
 #include "src/study/sweep.h"
 
 // C11's CMPLX, which not every compiler's library has.
@@ -170,13 +171,18 @@ status linear_growth(const scenario *s, double *growth, fault *f);
 enum { LINEAR_MOST_LIMITS = 32 };
 typedef struct linear_survey {
     sweep sweep;
-    double *numbers[2]; // of each combination: growth [1/s], and by runs the settling time [s]
+    double *numbers[2]; // of each combination: growth [1/s], and by runs the settling time [s]; NaN
+                        // of one that is not done
+    size_t done;        // combinations
     struct {
         double value; // of the axis
         bool by_runs;
     } limits[LINEAR_MOST_LIMITS]; // of a single axis, where stability changes
     int limit_count;
 } linear_survey;
-status linear_survey_make(linear_survey *y, const scenario *s, const sweep_request *request,
-                          linear_place place, fault *f); // to be finished in any case
+status linear_survey_begin(linear_survey *y, const scenario *s, const sweep_request *request,
+                           fault *f);
+// Once it has begun, to be finished in any case. STATUS_STOPPED if `monitor` (NULL: nobody looks
+// on), which counts combinations, or `stop_everything` asked for it.
+status linear_survey_make(linear_survey *y, linear_place place, run_monitor *monitor, fault *f);
 void linear_survey_finish(linear_survey *y);

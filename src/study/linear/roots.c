@@ -301,7 +301,7 @@ status linear_stability(const scenario *s, linear_place place, bool by_runs, dou
     SCOPED(run_finish) run_result result;
     const status code = run_scenario(s, false, &result);
     *number = result.summary.settling_time_s;
-    return code == STATUS_NO_MEMORY || code == STATUS_NOT_ALLOWED
+    return code == STATUS_NO_MEMORY || code == STATUS_NOT_ALLOWED || code == STATUS_STOPPED
                ? summary_fault(&result.summary, f)
                : STATUS_OK;
 }
@@ -340,22 +340,37 @@ static status survey_one(linear_survey *y, size_t i, linear_place place, fault *
         if (y->sweep.axis_count == 1 && i > 0 && y->limit_count < LINEAR_MOST_LIMITS &&
             linear_is_stable(k, number[-1]) != linear_is_stable(k, number[0])) {
             y->limits[y->limit_count].by_runs = k;
-            TRY(find_limit(y, i, place, k, &y->limits[y->limit_count++].value, f));
+            TRY(find_limit(y, i, place, k, &y->limits[y->limit_count].value, f));
+            y->limit_count++;
         }
     }
     return STATUS_OK;
 }
 
-status linear_survey_make(linear_survey *y, const scenario *s, const sweep_request *request,
-                          linear_place place, fault *f)
+status linear_survey_begin(linear_survey *y, const scenario *s, const sweep_request *request,
+                           fault *f)
 {
     *y = (linear_survey){.limit_count = 0};
     TRY(sweep_init(&y->sweep, s, request, f));
-    y->numbers[0] = calloc(2 * y->sweep.run_count, sizeof *y->numbers[0]);
-    TRY_MEMORY(y->numbers[0] != NULL, f);
-    y->numbers[1] = y->numbers[0] + y->sweep.run_count;
-    for (size_t i = 0; i < y->sweep.run_count; i++) {
-        TRY(survey_one(y, i, place, f));
+    const size_t count = y->sweep.run_count;
+    y->numbers[0] = calloc(2 * count, sizeof *y->numbers[0]);
+    if (y->numbers[0] == NULL) {
+        sweep_finish(&y->sweep);
+        return fault_no_memory(f);
+    }
+    y->numbers[1] = y->numbers[0] + count;
+    for (size_t i = 0; i < 2 * count; i++) {
+        y->numbers[0][i] = (double)NAN;
+    }
+    return STATUS_OK;
+}
+
+status linear_survey_make(linear_survey *y, linear_place place, run_monitor *monitor, fault *f)
+{
+    for (; y->done < y->sweep.run_count; y->done++) {
+        TRY(survey_one(y, y->done, place, f));
+        run_monitor_count(monitor);
+        FAULT_IF(run_monitor_stops(monitor), f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
     }
     return STATUS_OK;
 }

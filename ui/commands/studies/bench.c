@@ -1,4 +1,4 @@
-#include "ui/commands/command.h"
+#include "ui/commands/progress.h"
 
 #include <string.h>
 
@@ -29,6 +29,8 @@ static int complain_only(const char *name)
     return complain("there is no benchmark '%s' (see impactlab bench --help)", name);
 }
 
+RESULT_GIVEN(json_t *, results_json, bench_result, return bench_export(found))
+
 // Measures all benchmarks, or the one asked for.
 static int bench(const arguments *a)
 {
@@ -36,6 +38,7 @@ static int bench(const arguments *a)
     double before[BENCHMARKS] = {0};
     int count = 0;
     fault f = {0};
+    interrupts_catch();
     status code = a->baseline != NULL ? bench_read(a->baseline, before, &f) : STATUS_OK;
     for (int i = 0; i < BENCHMARKS && code == STATUS_OK; i++) {
         const benchmark *b = &bench_table[i];
@@ -43,6 +46,10 @@ static int bench(const arguments *a)
             continue;
         }
         code = bench_run(b, &results[i], &f);
+        if (interrupted != 0) {
+            results[i] = (bench_result){.median = 0}; // of work that was cut off
+            code = STATUS_STOPPED;
+        }
         if (code == STATUS_OK && summary_wanted(a)) {
             if (count == 0) {
                 printf("%-28s %10s %10s %10s  %-8s %8s%s\n", "", "median", "min", "max", "unit",
@@ -52,10 +59,14 @@ static int bench(const arguments *a)
         }
         count++;
     }
-    return code != STATUS_OK ? complain_fault(&f)
-           : count == 0      ? complain_only(a->only)
-           : a->json != NULL ? write_json(a->json, bench_export(results))
-                             : EXIT_DONE;
+    const bool stopped = code == STATUS_STOPPED;
+    FAIL_IF(code != STATUS_OK && !stopped, complain_fault(&f));
+    FAIL_IF(count == 0, complain_only(a->only));
+    static const command_results r = {results_json};
+    const int result = write_results(a, &r, NULL, results, !stopped);
+    FAIL_IF(!stopped, result);
+    complain("stopped: the results are those of the benchmarks that were measured");
+    return worse(result, EXIT_FAILED);
 }
 
 static const option_row rows[] = {

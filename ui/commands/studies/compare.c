@@ -194,17 +194,21 @@ static int plot_runs(const arguments *a, const scenario *s, const void *found)
 {
     const comparison *c = found;
     trace_run shown[TRACE_RUNS];
+    int count = 0;
     char *names[TRACE_RUNS], title[64 + SCENARIO_CHANGES];
     COMPLAIN_IF(c->varied.axis_count > 0,
                 "--plot shows the scenarios themselves, not --vary's combinations");
     COMPLAIN_IF(!c->drawn, "--plot shows at most %d runs, %d were given", TRACE_RUNS, c->opened);
 
-    // one that failed shows what it has
+    // one that failed shows what it has, one that was not begun nothing
     const bool named = name_runs(c, names, title, sizeof title);
     for (int i = 0; i < c->opened; i++) {
-        shown[i] = (trace_run){&c->scenarios[i], &c->kept[i], .name = names[i], .rank = i + 1};
+        if (c->kept[i].summary.steps > 0) {
+            shown[count++] =
+                (trace_run){&c->scenarios[i], &c->kept[i], .name = names[i], .rank = i + 1};
+        }
     }
-    const int code = named ? publish_runs(a, title, shown, c->opened)
+    const int code = named ? publish_runs(a, title, shown, count)
                            : worse(EXIT_FAILED, complain("out of memory"));
     for (int i = 0; i < c->opened; i++) {
         free(names[i]);
@@ -219,7 +223,9 @@ static int compare(const arguments *a)
                                       plot_runs,
                                       write_csv,
                                       .markdown = write_markdown,
-                                      .kept = "the table is that of these"};
+                                      .draws_part = true,
+                                      .kept = "the results are those of these",
+                                      .none = "there is nothing to show"};
     SCOPED(finish) comparison c = {.table.tolerance = a->tolerance / 100};
     fault f = {0};
     COMPLAIN_IF(a->columns != NULL && compare_choose(&c.table, a->columns, &f) != STATUS_OK,

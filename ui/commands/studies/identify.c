@@ -41,7 +41,12 @@ static status validate(const arguments *a, outcome *o, fault *f)
     o->validation = (identification){
         .base = &o->written, .jobs = o->fit.jobs, .starts = 1, .monitor = o->fit.monitor};
     TRY(identify_add_trace(&o->validation, a->validate, a->headings.items, a->headings.count, f));
-    return identify_fit(&o->validation, f);
+    const status code = identify_fit(&o->validation, f);
+    if (code == STATUS_STOPPED) {
+        identify_finish(&o->validation);
+        o->validation = (identification){.count = 0};
+    }
+    return code;
 }
 
 // The numbers of --links.
@@ -64,7 +69,9 @@ static status read_links(const char *text, outcome *o, fault *f)
 // The same data with other numbers of links, from the fitted values on.
 static status compare_links(const arguments *a, outcome *o, fault *f)
 {
-    for (int i = 0; i < o->link_count; i++) {
+    const int asked = o->link_count;
+    o->link_count = 0; // of those that are done
+    for (int i = 0; i < asked; i++) {
         scenario other;
         const parameter_change links = {PARAMETER_INDEX(arm.links), o->links[i]};
         TRY(scenario_with(&o->written, &links, 1, &other, f));
@@ -75,6 +82,7 @@ static status compare_links(const arguments *a, outcome *o, fault *f)
         TRY(identify_fit(&id, f));
         o->aic[i] = id.aic;
         o->white[i] = id.white;
+        o->link_count++;
     }
     return STATUS_OK;
 }
@@ -116,6 +124,7 @@ static void print_answer(const scenario *s, const void *found)
 {
     const outcome *o = found;
     const identification *id = &o->fit;
+    const bool judged = !isnan(id->aic);
     say_title(s);
     say("\n  %-26s %12s %12s   %s\n", "parameter", "value", "error", "95 % interval");
     for (int i = 0; i < id->count; i++) {
@@ -125,9 +134,15 @@ static void print_answer(const scenario *s, const void *found)
             say("  %-26s %12.6g %12.3g   %.6g to %.6g %s%s\n", fit->axis.name, fit->value,
                 fit->standard_error, fit->low, fit->high, unit,
                 identify_at_end(fit) ? ", at the end of its range" : "");
-        } else {
+        } else if (judged) {
             say("  %-26s %12s %12s   not determined\n", fit->axis.name, "-", "-");
+        } else {
+            say("  %-26s %12.6g %12s   not known yet\n", fit->axis.name, fit->value, "-");
         }
+    }
+    if (!judged) {
+        say("\n  chi square %.4g\n", id->chi_square);
+        return;
     }
     for (int k = 0; k < id->undetermined; k++) {
         char words[1024];
@@ -198,12 +213,20 @@ static int identify_and_report(const arguments *a, scenario *s)
         code = code == STATUS_OK ? compare_links(a, &o, &f) : code;
         work_end();
     }
-    if (code == STATUS_STOPPED) {
-        complain("%s", status_text(code));
-        leave_interrupted();
-    }
+    const bool stopped = code == STATUS_STOPPED, any = stopped && o.fit.chi_square > 0;
     const bool reliable = code != STATUS_OK || is_reliable(&o.fit);
-    const int written = code == STATUS_OK ? write_results(a, &r, s, &o, true) : complain_fault(&f);
+    int written = EXIT_DONE;
+    if (code == STATUS_OK || any) {
+        written = write_results(a, &r, s, &o, !stopped);
+    } else if (!stopped) {
+        written = complain_fault(&f);
+    }
+    if (stopped) {
+        const char *fit = isnan(o.fit.aic) ? "the values are the best so far, not judged"
+                                           : "the fit is whole, what compares it is missing";
+        complain("stopped: %s", any ? fit : "nothing was tried yet");
+        written = EXIT_FAILED;
+    }
     const int result = reliable ? written : worse(written, EXIT_FAILED);
     identify_finish(&o.fit);
     identify_finish(&o.validation);

@@ -10,6 +10,7 @@
 #include "src/exchange/mat_file.h"
 #include "src/study/result_rows.h"
 #include "ui/commands/pictures.h"
+#include "ui/commands/progress.h"
 
 #define TWO_PI (2 * 3.14159265358979323846)
 
@@ -84,19 +85,25 @@ static status analyse(analysis *x, bool looped, fault *f)
 {
     const linear_system *s = &x->arm.system;
     TRY(linear_arm_init(&x->arm, &x->scenario->parameters, x->place, f));
+    status code = STATUS_OK;
     if (x->place != LINEAR_FREE && x->scenario->parameters.control.law != LAW_NONE) {
-        TRY(linear_contact_margin(x->scenario, &x->least_push, f));
+        code = linear_contact_margin(x->scenario, &x->least_push, f);
     }
-    TRY(looped ? analyse_loop(x, f) : STATUS_OK);
-    if (x->period > 0) {
-        return STATUS_OK;
+    if (code == STATUS_OK && looped) {
+        code = analyse_loop(x, f);
+    }
+
+    // an interrupt leaves what needs no run
+    if (x->period > 0 || (code != STATUS_OK && code != STATUS_STOPPED)) {
+        return code;
     }
 
     // a tip on the wall has no zeros, nor a force without one
     const int hub = LINEAR_HUB_ANGLE, end = x->place == LINEAR_FREE ? LINEAR_TIP : LINEAR_FORCE;
     TRY(find_roots(&x->sets[POLES], s, NULL, 0, f));
     TRY(find_roots(&x->sets[HUB_ZEROS], s, linear_output_names[hub], hub, f));
-    return find_roots(&x->sets[END_ZEROS], s, linear_output_names[end], end, f);
+    TRY(find_roots(&x->sets[END_ZEROS], s, linear_output_names[end], end, f));
+    return code;
 }
 
 // A root as one of s; of a sampled system s = log(z)/period.
@@ -315,7 +322,7 @@ static json_t *survey_json(const scenario *base, const void *found)
     const linear_survey *y = &x->survey;
     const sweep *s = &y->sweep;
     json_t *points = json_array(), *limits = json_array();
-    for (size_t i = 0; i < s->run_count; i++) {
+    for (size_t i = 0; i < y->done; i++) {
         json_t *values = json_object();
         for (int axis = 0; axis < s->axis_count; axis++) {
             json_put(values, s->axes[axis].name, json_number(sweep_value(s, i, axis)));
@@ -342,7 +349,7 @@ static void write_survey(FILE *stream, const scenario *base, const void *found)
     csv_heading(&w, told[0].name, told[0].unit);
     csv_heading(&w, told[1].name, told[1].unit);
     csv_end_row(&w);
-    for (size_t i = 0; i < s->run_count; i++) {
+    for (size_t i = 0; i < y->done; i++) {
         for (int axis = 0; axis < s->axis_count; axis++) {
             csv_number(&w, sweep_value(s, i, axis));
         }
@@ -377,13 +384,13 @@ static void print_survey(const scenario *base, const void *found)
     const linear_survey *y = &((const analysis *)found)->survey;
     const sweep *s = &y->sweep;
     size_t stable = 0, settle = 0;
-    for (size_t i = 0; i < s->run_count; i++) {
+    for (size_t i = 0; i < y->done; i++) {
         stable += linear_is_stable(false, y->numbers[0][i]);
         settle += linear_is_stable(true, y->numbers[1][i]);
     }
     say_title(base);
     printf("%zu of %zu loops are stable without friction, %zu of the runs settle\n", stable,
-           s->run_count, settle);
+           y->done, settle);
     for (int i = 0; i < y->limit_count; i++) {
         say("  limit %s = %.6g %s, %s\n", s->axes[0].name, y->limits[i].value,
             sweep_axis_parameter(&s->axes[0])->unit,
@@ -393,14 +400,21 @@ static void print_survey(const scenario *base, const void *found)
 
 static int look_around(const arguments *a, analysis *x)
 {
-    static const command_results r = {survey_json, print_survey, plot_survey, write_survey};
+    static const command_results r = {survey_json,
+                                      print_survey,
+                                      plot_survey,
+                                      write_survey,
+                                      .draws_part = true,
+                                      .kept = "the results are those of these",
+                                      .none = "there is nothing to show"};
     const sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
-    fault f = {0};
     COMPLAIN_IF(a->plot != NULL && a->varies.count > 2,
                 "--plot shows one or two varied parameters, but %d are varied", a->varies.count);
-    const status code = linear_survey_make(&x->survey, x->scenario, &request, x->place, &f);
-    const int result =
-        code == STATUS_OK ? write_results(a, &r, x->scenario, x, true) : complain_fault(&f);
+    TRY_FAULT(linear_survey_begin(&x->survey, x->scenario, &request, &f));
+    fault f = {0};
+    run_monitor *monitor = work_begin(a, "combinations", (int)x->survey.sweep.run_count);
+    const status code = linear_survey_make(&x->survey, x->place, monitor, &f);
+    const int result = work_finish(a, code, &f, &r, x->scenario, x);
     linear_survey_finish(&x->survey);
     return result;
 }
@@ -440,14 +454,20 @@ static int linear(const arguments *a, scenario *s)
         return look_around(a, &x);
     }
     static const command_results r = {as_json, print_analysis, .csv = write_csv, .mat = write_mat};
-    const bool known = analyse(&x, a->looped, &f) == STATUS_OK;
+    interrupts_catch();
+    const status code = analyse(&x, a->looped, &f);
+    const bool stopped = code == STATUS_STOPPED, known = code == STATUS_OK || stopped;
     int result = !known ? complain_fault(&f) : a->plot != NULL ? plot(a, &x) : EXIT_DONE;
-    if (known && a->nyquist != NULL) {
+    if (known && a->nyquist != NULL && x.response.count > 0) {
         arguments there = *a;
         there.plot = a->nyquist;
         result = worse(result, publish_owned(&there, nyquist_figure_create(s, &x.response)));
     }
-    result = known ? worse(result, write_results(a, &r, s, &x, true)) : result;
+    result = known ? worse(result, write_results(a, &r, s, &x, !stopped)) : result;
+    if (stopped) {
+        result = worse(EXIT_FAILED, complain("stopped: what runs were to measure is missing, the "
+                                             "results are those of the arm alone"));
+    }
     linear_system_finish(&x.arm.system);
     linear_system_finish(&x.loop);
     free(x.response.frequency);

@@ -29,6 +29,7 @@ typedef struct robustness {
     size_t runs;             // of each law, in each case
     robust_law *found;
     int judged;
+    size_t done; // runs of all laws in all cases
 } robustness;
 
 // The law of a word of a certain length; LAW_NONE if there is none.
@@ -160,20 +161,26 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
     code = code == STATUS_OK ? sweep_run(s, store, &options, &progress, &f) : code;
     many_runs_end(&options);
 
-    // all of them are there, or what there is stays in the store
+    // all of them are there, or what there is
     bool stopped = code == STATUS_OK && progress.done < progress.total;
+    r->done += progress.done;
     const bool tell = progress.failed > 0 && (!a->quiet || progress.failed == progress.total);
     if (code == STATUS_OK && tell) {
         many_runs_tell_failure(&progress);
     }
-    if (code == STATUS_OK && !stopped) {
+    if (code == STATUS_OK && progress.done > 0) {
         robust_law *found = &r->found[r->judged++];
         code = robust_law_of(found, law, s, (sweep_share){0}, store, &f);
         found->case_title = k >= 0 ? r->set.cases[k].title : NULL;
     }
-    return code != STATUS_OK ? complain_fault(&f)
-           : stopped         ? many_runs_stopped(db, progress.done, progress.total)
-                             : EXIT_DONE;
+    FAIL_IF(code != STATUS_OK, complain_fault(&f));
+    if (stopped) {
+        const int cases = r->set.case_count > 0 ? r->set.case_count : 1,
+                  laws = r->count + (r->against == r->count);
+        return many_runs_stopped(db, r->done, r->runs * (size_t)(cases * laws),
+                                 r->done > 0 ? "the table is that of these" : "none is shown");
+    }
+    return EXIT_DONE;
 }
 
 // Whether the scenario's own law or one that is judged has a parameter of that name. The parameters
@@ -291,12 +298,12 @@ static int plot(const arguments *a, const scenario *s, const void *table)
     return publish_owned(a, robust_figure_create(table, scenario_changes(s, changes)));
 }
 
-static int report(const robustness *r)
+static int report(const robustness *r, bool whole)
 {
-    static const command_results written = {table_json, print_table, plot, write_csv,
-                                            .markdown = write_markdown};
+    static const command_results written = {
+        table_json, print_table, plot, write_csv, .markdown = write_markdown, .draws_part = true};
     const robust_table table = {r->scenario->name, r->found, r->judged, r->arguments->against};
-    const int code = write_results(r->arguments, &written, r->scenario, &table, true);
+    const int code = write_results(r->arguments, &written, r->scenario, &table, whole);
 
     // nothing to judge is a failure
     bool any = false;
@@ -331,7 +338,8 @@ static int robust(const arguments *a, scenario *s)
     for (int k = begin; k <= last && code == EXIT_DONE; k++) {
         code = run_case(&r, k);
     }
-    return code == EXIT_DONE ? report(&r) : code;
+    const bool part = interrupted != 0 && r.judged > 0;
+    return code == EXIT_DONE || part ? worse(code, report(&r, code == EXIT_DONE)) : code;
 }
 
 static const option_row rows[] = {
@@ -363,8 +371,8 @@ const command robust_command = {
             "the force's mean over\n5 ms, as 'over of' says; --json and --csv have both.\n\n"
             "A set with lines 'case TITLE: PATH=VALUE; ...' gives a table of its cases, with the "
             "worst of the\nruns of each. Of control.settings each law gets those that it has.\n\n"
-            "Ctrl-C finishes the runs in hand, within five seconds (exit status 130); with --db "
-            "they are kept.\n",
+            "^C finishes the runs in hand, within five seconds, and judges what there is (exit "
+            "status 130); with --db it goes on.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
     .use = robust,
 };

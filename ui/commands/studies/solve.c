@@ -19,10 +19,14 @@ static json_t *answer(const scenario *s, const void *asked)
     json_t *limits = json_array();
     for (int i = 0; i < found->count; i++) {
         const solve_limit *limit = &found->limits[i];
-        json_add(limits,
-                 json_of("path:t value:n quantity:t reached:n holds:t jumps:b", q->axis.name,
-                         limit->value, summary_table[q->condition.quantity].key, limit->reached,
-                         limit->holds_below ? "below" : "above", limit->jumps));
+        json_t *line =
+            json_of("path:t value:n quantity:t reached:n holds:t jumps:b", q->axis.name,
+                    limit->value, summary_table[q->condition.quantity].key, limit->reached,
+                    limit->holds_below ? "below" : "above", limit->jumps);
+        if (found->stopped) {
+            json_members(line, "beyond:n", limit->beyond);
+        }
+        json_add(limits, line);
     }
     return json_of("scenario:t solve:o", s->name, limits);
 }
@@ -31,11 +35,11 @@ static json_t *answer(const scenario *s, const void *asked)
 static void say_what_is_unknown(const question *q, const solution *found)
 {
     if (found->missing > 0) {
-        say("  in %d of %d runs there is no %s\n", found->missing, found->points,
+        say("  in %d of %d runs there is no %s\n", found->missing, found->done,
             summary_table[q->condition.quantity].label);
     }
     if (found->unknown > 0) {
-        say("  %d of %d runs say nothing; the first: %s\n", found->unknown, found->points,
+        say("  %d of %d runs say nothing; the first: %s\n", found->unknown, found->done,
             found->reason);
     }
     if (found->more) {
@@ -59,7 +63,7 @@ static void print_answer(const scenario *s, const void *asked)
     say_title(s);
     say("%s %s%s %s%s%s for %s from %s to %s%s%s, %d runs\n", quantity->label, c->below ? "<" : ">",
         c->equal ? "=" : "", bound, quantity->unit[0] ? " " : "", quantity->unit, q->axis.name, low,
-        high, parameter->unit[0] ? " " : "", parameter->unit, found->points);
+        high, parameter->unit[0] ? " " : "", parameter->unit, found->done);
 
     for (int i = 0; i < found->count; i++) {
         const solve_limit *limit = &found->limits[i];
@@ -70,6 +74,10 @@ static void print_answer(const scenario *s, const void *asked)
             q->axis.name, value, parameter->unit[0] ? " " : "", parameter->unit, quantity->label,
             reached, quantity->unit[0] ? " " : "", quantity->unit,
             limit->jumps ? " and jumps" : "");
+        if (found->stopped) {
+            say("; it does not hold at %.7g%s%s", limit->beyond, parameter->unit[0] ? " " : "",
+                parameter->unit);
+        }
     }
     if (found->count == 0) {
         say("\n  no limit: it holds in %d of these runs and does not in %d", found->holding,
@@ -81,7 +89,9 @@ static void print_answer(const scenario *s, const void *asked)
 
 static int find_and_report(const arguments *a, scenario *s)
 {
-    static const command_results r = {answer, print_answer};
+    static const command_results r = {answer, print_answer,
+                                      .kept = "limits are told as near as these come",
+                                      .none = "there is nothing to show"};
     question q = {.points = a->runs > 0 ? (int)a->runs : SOLVE_POINTS};
     fault f = {0};
     run_monitor *monitor = work_begin(a, "runs", q.points);

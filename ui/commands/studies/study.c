@@ -153,7 +153,7 @@ static int plot_methods(const arguments *a, const scenario *s, const void *found
 }
 
 STUDY(methods, method_study, method_study_compute, "runs", STUDY_RUNS, methods_object,
-      print_methods, plot_methods, .kept = "the tables hold these",
+      print_methods, plot_methods, .draws_part = true, .kept = "the results are those of these",
       .none = "there is nothing to show") // without the reference
 
 // --- links ------------------------------------------------------------------------------------
@@ -286,7 +286,8 @@ static int plot_links(const arguments *a, const scenario *s, const void *found)
 }
 
 STUDY(links, links_study, links_study_compute, "numbers of links", LINKS_LENGTHS, links_object,
-      print_links, plot_links, .kept = "the table is that of these")
+      print_links, plot_links, .kept = "the table is that of these",
+      .none = "there is nothing to show")
 
 // --- follow -----------------------------------------------------------------------------------
 
@@ -389,7 +390,8 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
 }
 
 STUDY(follow, follow_study, follow_study_compute, "runs", FOLLOW_RUNS, follow_object, print_follow,
-      plot_follow, .kept = "the tables hold these")
+      plot_follow, .draws_part = true, .kept = "the results are those of these",
+      .none = "there is nothing to show")
 
 // --- the command ------------------------------------------------------------------------------
 

@@ -59,8 +59,8 @@ static void print_extreme(const sweep *s, const char *word, const double *values
     printf("\n");
 }
 
-static void print_summary(const sweep_order *o, const double *values, size_t failed,
-                          const sweep_progress *p)
+static void print_summary(const sweep_order *o, const sweep_store *store, const double *values,
+                          size_t failed, const sweep_progress *p)
 {
     const sweep *s = o->sweep;
     const arguments *a = o->arguments;
@@ -70,10 +70,10 @@ static void print_summary(const sweep_order *o, const double *values, size_t fai
     // how many runs there were
     char changes[SCENARIO_CHANGES];
     say("%s%s: %zu run%s (%s), %zu failed", o->scenario->name,
-        scenario_changes(o->scenario, changes), s->run_count, s->run_count == 1 ? "" : "s",
+        scenario_changes(o->scenario, changes), p->done, p->done == 1 ? "" : "s",
         sweep_sampling_name(s->sampling), failed);
-    if (p->done_now < p->total) {
-        printf(", %zu were there already", p->total - p->done_now);
+    if (p->done_now < p->done) {
+        printf(", %zu were there already", p->done - p->done_now);
     }
     printf("\n%s%s%s%s\n", quantity->label, unit[0] ? " [" : "", unit, unit[0] ? "]" : "");
 
@@ -81,9 +81,11 @@ static void print_summary(const sweep_order *o, const double *values, size_t fai
     const bool listed = a->csv == NULL && a->json == NULL && a->db == NULL && a->plot == NULL;
     const size_t shown = !listed ? 0 : s->run_count < ROWS_SHOWN ? s->run_count : ROWS_SHOWN;
     for (size_t run = 0; run < shown; run++) {
-        printf("  %10.5g  ", values[run]);
-        print_values(s, run);
-        printf("\n");
+        if (store->present[run]) {
+            printf("  %10.5g  ", values[run]);
+            print_values(s, run);
+            printf("\n");
+        }
     }
     if (listed && shown < s->run_count) {
         printf("  ... and %zu more (--csv writes all)\n", s->run_count - shown);
@@ -105,7 +107,8 @@ static void print_summary(const sweep_order *o, const double *values, size_t fai
     print_extreme(s, "largest", values, high, unit);
 }
 
-// Writes the files asked for and prints the summary. If one fails, the others are still written.
+// Writes the files asked for and prints the summary, of the runs that are done. If one fails, the
+// others are still written.
 static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_progress *p)
 {
     const arguments *a = o->arguments;
@@ -122,14 +125,14 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
         code = worse(code, publish_owned(a, sweep_figure_create(&shown)));
     }
     if (summary_wanted(a)) {
-        print_summary(o, values, failed, p);
+        print_summary(o, store, values, failed, p);
     }
-    if (p->failed > 0 && (!a->quiet || failed == o->sweep->run_count)) {
+    if (p->failed > 0 && (!a->quiet || failed == p->done)) {
         many_runs_tell_failure(p);
-    } else if (failed == o->sweep->run_count) {
+    } else if (failed == p->done) {
         complain("all %zu runs failed; the message of each is in its row", failed);
     }
-    return failed == o->sweep->run_count ? worse(code, EXIT_FAILED) : code;
+    return failed == p->done ? worse(code, EXIT_FAILED) : code;
 }
 
 // --- the request ------------------------------------------------------------------------------
@@ -170,11 +173,15 @@ static int compute(const sweep_order *o, sweep_store *store)
 
     // what it came to: an error, a stop, the whole sweep or a part of it
     FAIL_IF(code != STATUS_OK, complain_fault(&f));
-    if (progress.done < progress.total) {
-        return many_runs_stopped(o->arguments->db, progress.done, progress.total);
+    const bool stopped = progress.done < progress.total,
+               shown = o->share.parts == 0 && progress.done > 0;
+    const int result = shown ? report_sweep(o, store, &progress) : EXIT_DONE;
+    if (stopped) {
+        return many_runs_stopped(o->arguments->db, progress.done, progress.total,
+                                 shown ? "the results are those of these" : "none is shown");
     }
     if (o->share.parts == 0) {
-        return report_sweep(o, store, &progress);
+        return result;
     }
     if (!o->arguments->quiet) {
         say("%s: part %d of %d, %zu of %zu runs in '%s'\n", o->scenario->name, o->share.part,
@@ -235,8 +242,10 @@ const command sweep_command = {
         "latin, --runs N values are drawn\nfrom each PATH=a:b or list. LIST[k]=... varies the k-th "
         "number of a list, counted from 1.\n\n"
         "With --db a sweep that was interrupted goes on where it stopped when the same command is "
-        "given again.\nCtrl-C finishes the runs in hand, within five seconds, and keeps them (exit "
-        "status 130). Runs that fail are rows too; the\nexit status is 1 if all of them failed.\n",
+        "given again.\n^C finishes the runs in hand, within five seconds, and writes the rows "
+        "there "
+        "are (exit status 130). Runs that fail are rows too; the\nexit status is 1 if all of them "
+        "failed.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
     .use = sweep_and_report,

@@ -96,7 +96,9 @@ static robust_table compared(const tuner *t, robust_law *laws)
 {
     laws[GIVEN] = t->rows[GIVEN].law;
     laws[TUNED] = t->rows[TUNED].law;
-    return (robust_table){.scenario = t->scenario->name, .laws = laws, .count = CHANGED};
+    const bool judged = t->rows[TUNED].law.runs > 0;
+    return (robust_table){
+        .scenario = t->scenario->name, .laws = laws, .count = judged ? CHANGED : 0};
 }
 
 static json_t *answer(const scenario *s, const void *found_by)
@@ -141,7 +143,7 @@ static void print_answer(const scenario *s, const void *found_by)
     print_cell(12, "%.5g", t->rows[GIVEN].value);
     print_cell(12, "%.5g", t->rows[TUNED].value);
     say("\n");
-    if (found->asked.over != NULL) {
+    if (t->rows[TUNED].law.runs > 0) {
         const robust_table table = compared(t, laws);
         say("\n");
         robust_text(stdout, &table, false);
@@ -155,11 +157,12 @@ static int plot(const arguments *a, const scenario *s, const void *found)
         a, tune_figure_create(&((const tuner *)found)->tuning, scenario_changes(s, changes)));
 }
 
-static int report(const tuner *t)
+static int report(const tuner *t, bool whole)
 {
-    static const command_results r = {answer, print_answer, plot, .output = write_best};
+    static const command_results r = {answer, print_answer, plot, .output = write_best,
+                                      .draws_part = true};
     const tuning *found = &t->tuning;
-    const int code = write_results(t->arguments, &r, t->scenario, t, true);
+    const int code = write_results(t->arguments, &r, t->scenario, t, whole);
     if (found->best.rank < TUNE_REFUSED) {
         return code;
     }
@@ -175,6 +178,9 @@ static int search(tuner *t)
     fault f = {0};
     SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
     const sweep_options options = many_runs_begin(a, NULL);
+    for (int i = 0; i < ROWS; i++) {
+        t->rows[i].value = (double)NAN;
+    }
     t->tuning.improved = keep_best;
     t->tuning.context = t;
 
@@ -184,14 +190,14 @@ static int search(tuner *t)
     many_runs_end(&options);
 
     // what was found is told whatever the judging came to
-    const int result = code == STATUS_OK ? report(t) : EXIT_DONE;
+    const bool any = t->tuning.done > 0 && (code == STATUS_OK || code == STATUS_STOPPED);
+    const int result = any ? report(t, judged != STATUS_STOPPED) : EXIT_DONE;
     if (judged != STATUS_STOPPED) {
         return judged == STATUS_OK ? result : worse(result, complain_fault(&f));
     }
-    if (t->kept && t->tuning.best.rank < TUNE_REFUSED) {
-        complain("the best numbers so far are in '%s'", a->output);
-    }
-    return many_runs_stopped(a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count);
+    return many_runs_stopped(a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count,
+                             any ? "the values are the best of these, not judged on other draws"
+                                 : "none is shown");
 }
 
 static void finish(tuner *t)
