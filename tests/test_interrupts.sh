@@ -179,7 +179,7 @@ there=$(grep -o '[0-9]* of 300000' err | grep -o '^[0-9]*')
 [ "$(wc -l <sweep.csv)" = $((there + 1)) ] && [ -s sweep.json ] && [ -s sweep.svg ] ||
     fail "the rows of a sweep that was stopped are not kept"
 says out ": $there runs (grid)"
-interrupted sweep brief.yaml --vary motor.voltage=1:2:600 --vary control.seed=1:500:500 --plot map.png
+interrupted sweep brief.yaml --vary motor.voltage=1:2:600 --vary arm.k2=3:6:500 --plot map.png
 [ -s map.png ] || fail "the map of a sweep that was stopped is not drawn"
 interrupted compare brief.yaml endless.yaml --plot compare.svg --markdown compare.md
 [ -s compare.svg ] && [ -s compare.md ] || fail "the run that was done is not drawn"

@@ -1,4 +1,4 @@
-// How ^C ends a command.
+// How ^C ends a command; tests/test_interrupts.sh tries it on each.
 //
 // From where long work begins, or results are written, until the command is over, ^C (or SIGTERM)
 // ends no more than the work: what was computed is written (write_results), a sentence says what
