@@ -2,6 +2,8 @@
 
 #include <assert.h>
 #include <fnmatch.h>
+#include <stdatomic.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "src/tables/parameters_parts.h"
@@ -191,34 +193,54 @@ static const rule rules[] = {
 };
 
 enum { RULES = sizeof rules / sizeof rules[0], NAME = 64 };
-_Static_assert(RULES <= 64, "a word has a bit for each rule");
+_Static_assert(RULES < 64, "a word has a bit for each rule, and the last bit");
 
-// The rules that each parameter has, filled in before the program begins.
-static uint64_t rules_of[sizeof(((parameters *)0)->set)];
+#define LOOKED_UP (UINT64_C(1) << 63)
 
-static __attribute__((constructor)) void fill_rules(void)
+// Whether a pattern among several, with blanks between them, fits a path.
+static bool one_fits(const char *patterns, const char *path)
 {
-    for (int r = 0; r < RULES; r++) {
-        const char *rest = rules[r].paths;
-        while (*rest != '\0') {
-            char pattern[NAME];
-            const int length = (int)strcspn(rest, " ");
-            snprintf(pattern, sizeof pattern, "%.*s", length, rest);
-            rest += length + strspn(rest + length, " ");
-            for (int i = 0; i < parameter_count; i++) {
-                const char *path = parameter_table[i].path;
-                const bool fits = path[0] == pattern[0] && fnmatch(pattern, path, 0) == 0;
-                rules_of[i] |= (uint64_t)fits << r;
+    for (const char *rest = patterns; *rest != '\0';) {
+        const size_t length = strcspn(rest, " ");
+        char pattern[NAME] = "";
+
+        // most are of another group, by their first letter
+        if (rest[0] == path[0]) {
+            assert(length < sizeof pattern);
+            memcpy(pattern, rest, length);
+            if (fnmatch(pattern, path, 0) == 0) {
+                return true;
             }
         }
+        rest += length + strspn(rest + length, " ");
     }
+    return false;
+}
+
+// The rules of a parameter, a bit each. They are looked up once; threads that meet here find the
+// same.
+static uint64_t rules_of(int parameter)
+{
+    static _Atomic uint64_t known[sizeof(((parameters *)0)->set)];
+    uint64_t found = atomic_load_explicit(&known[parameter], memory_order_relaxed);
+    if (found != 0) {
+        return found;
+    }
+    for (int i = 0; i < RULES; i++) {
+        if (one_fits(rules[i].paths, parameter_table[parameter].path)) {
+            found |= UINT64_C(1) << i;
+        }
+    }
+    atomic_store_explicit(&known[parameter], found | LOOKED_UP, memory_order_relaxed);
+    return found | LOOKED_UP;
 }
 
 // The first rule of a parameter that the features do not meet; NULL if they meet all.
 static const rule *rule_not_met(feature_set features, int parameter)
 {
+    const uint64_t own = rules_of(parameter);
     for (int i = 0; i < RULES; i++) {
-        if ((rules_of[parameter] >> i & 1) != 0 && (rules[i].any & features) == 0) {
+        if ((own >> i & 1) != 0 && (rules[i].any & features) == 0) {
             return &rules[i];
         }
     }
