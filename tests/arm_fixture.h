@@ -37,7 +37,8 @@ static inline run_result run_arm(parameters p, bool rows)
     return run_done(&s, rows);
 }
 
-// A run of these settings, with its rows; RUN(r, "arm.links=1", ...): until its block is left.
+// A run of these settings, with its rows; RUN(r, "arm.links=1", ...): until its block is
+// left.
 #define RUN_OF(...) run_arm(fixture_parameters(SETTINGS(__VA_ARGS__)), true)
 #define RUN(r, ...) KEPT_RUN(r) = RUN_OF(__VA_ARGS__)
 
@@ -56,12 +57,12 @@ static inline arm arm_with(const char *const *settings)
 
 GIVEN_BACK(motion, motion_destroy)
 
-// An arm `a` of parameters and its motion `m`, by an engine (NULL: the arm's own), started at an
-// angle and a velocity: until their block is left.
-#define STARTED(a, m, p, by, angle, velocity)                                                      \
-    arm a = arm_of(p);                                                                             \
-    KEPT_MOTION(m) = motion_create_by(&a, &(p)->method, by);                                       \
-    assert_non_null(m);                                                                            \
+// An arm `a` of parameters and its motion `m`, by an engine (NULL: the arm's own),
+// started at an angle and a velocity: until their block is left.
+#define STARTED(a, m, p, by, angle, velocity)                                            \
+    arm a = arm_of(p);                                                                   \
+    KEPT_MOTION(m) = motion_create_by(&a, &(p)->method, by);                             \
+    assert_non_null(m);                                                                  \
     motion_start(&a, m, angle, velocity)
 
 // A step of at most `step` [s] towards `until` [s], and the event that ends it.
@@ -79,7 +80,8 @@ static inline status motion_advance(const arm *a, motion *m, double until, doubl
 {
     status s = STATUS_OK;
     *report = (motion_report){.event = MOTION_REACHED};
-    while (s == STATUS_OK && report->event == MOTION_REACHED && m->state[SLOT_TIME] < until) {
+    while (s == STATUS_OK && report->event == MOTION_REACHED &&
+           m->state[SLOT_TIME] < until) {
         s = motion_step(a, m, until, step, report);
     }
     return s;
@@ -89,7 +91,8 @@ static inline status motion_advance(const arm *a, motion *m, double until, doubl
 enum { MODES_MOST = 129 };
 typedef struct arm_modes {
     int count;
-    double w[MODES_MOST], shapes[MODES_MOST * MODES_MOST]; // frequencies [rad/s], a shape a row
+    double w[MODES_MOST],
+        shapes[MODES_MOST * MODES_MOST]; // frequencies [rad/s], a shape a row
 } arm_modes;
 
 static inline arm_modes modes_of(const arm *a, hub_end hub, tip_end tip)

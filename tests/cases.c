@@ -1,4 +1,5 @@
-// The cases of a test program, which TEST adds before main, in the order in which they are written.
+// The cases of a test program, which TEST adds before main, in the order in which they
+// are written.
 #include "tests/check.h"
 
 #include <ftw.h>
@@ -31,8 +32,8 @@ void add_case(struct CMUnitTest added, int line)
 
 int run_cases(CMFixtureFunction set_up, CMFixtureFunction tear_down)
 {
-    return _cmocka_run_group_tests(program_invocation_short_name, cases, (size_t)count, set_up,
-                                   tear_down) != 0;
+    return _cmocka_run_group_tests(program_invocation_short_name, cases, (size_t)count,
+                                   set_up, tear_down) != 0;
 }
 
 char *formatted(const char *format, ...)
@@ -56,7 +57,8 @@ const char *const *words_of(const char *text)
     const char **list = lists[next++ % KEPT];
     char *copy = formatted("%s", text), *rest = NULL;
     int words = 0;
-    for (char *one = strtok_r(copy, " ", &rest); one != NULL; one = strtok_r(NULL, " ", &rest)) {
+    for (char *one = strtok_r(copy, " ", &rest); one != NULL;
+         one = strtok_r(NULL, " ", &rest)) {
         assert_in_range(words, 0, MOST - 2);
         list[words++] = one;
     }
@@ -74,7 +76,8 @@ int enter_folder(void **state)
 }
 
 // Removes a file or an empty folder; a temporary of the program's has no business there.
-static int remove_entry(const char *path, const struct stat *about, int kind, struct FTW *place)
+static int remove_entry(const char *path, const struct stat *about, int kind,
+                        struct FTW *place)
 {
     (void)about;
     (void)kind;
@@ -90,7 +93,8 @@ static int remove_entry(const char *path, const struct stat *about, int kind, st
 int leave_folder(void **state)
 {
     (void)state;
-    return chdir("/") != 0 || nftw(test_folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS) != 0;
+    return chdir("/") != 0 ||
+           nftw(test_folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS) != 0;
 }
 
 void put_bytes(const char *path, const void *bytes, size_t length)

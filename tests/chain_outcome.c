@@ -8,23 +8,26 @@ GIVEN_BACK(motion, motion_destroy)
 
 #define SENSOR 1e-3  // time constant [s]
 #define LOWEST 1e-11 // flight, its time by its speed at the end [m]
-#define SLOWEST                                                                                    \
+#define SLOWEST                                                                          \
     1e-8 // and that speed: of an arm that friction held at the wall it is rounding [m/s]
 #define NOTHING 1e-12 // momentum of a wall that is not pressed on [N s]
 
 enum { MOST_EVENTS = 200000 };
 
 // Looks at the momentum, one an interval from first contact on.
-static void take_samples(const arm *a, motion *m, double before, double impulses, chain_outcome *o)
+static void take_samples(const arm *a, motion *m, double before, double impulses,
+                         chain_outcome *o)
 {
     while (!isnan(o->first_contact) && o->samples < REFERENCE_SAMPLES) {
         double time = o->first_contact + o->samples * REFERENCE_INTERVAL;
         if (time > m->state[SLOT_TIME]) {
             return;
         }
-        double *state = time > before ? motion_between(a, m, time, STATE_WHOLE) : m->trial;
+        double *state =
+            time > before ? motion_between(a, m, time, STATE_WHOLE) : m->trial;
         assert_non_null(state);
-        o->momentum[o->samples++] = impulses + state_quadratures(m, state)[QUADRATURE_FORCE];
+        o->momentum[o->samples++] =
+            impulses + state_quadratures(m, state)[QUADRATURE_FORCE];
     }
 }
 
@@ -71,8 +74,8 @@ chain_outcome chain_outcome_of(const chain_start *start)
         const double before_contact = m->state[SLOT_CONTACT];
         const double before = m->state[SLOT_TIME], work = motion_motor_work(m, m->state);
         const double pushed = state_quadratures(m, m->state)[QUADRATURE_PUSHED];
-        o.status =
-            events < MOST_EVENTS ? motion_step(&a, m, end, p->method.step, &r) : STATUS_NO_PROGRESS;
+        o.status = events < MOST_EVENTS ? motion_step(&a, m, end, p->method.step, &r)
+                                        : STATUS_NO_PROGRESS;
         if (o.status != STATUS_OK) {
             break;
         }
@@ -90,14 +93,18 @@ chain_outcome chain_outcome_of(const chain_start *start)
         impulses += r.impulse;
         o.impulses = impulses;
         o.impacts += r.event == MOTION_IMPACT;
-        if (r.event == MOTION_IMPACT || (r.event == MOTION_TOUCH && before_contact == 0)) {
+        if (r.event == MOTION_IMPACT ||
+            (r.event == MOTION_TOUCH && before_contact == 0)) {
             chain_outcome_note(&o, now, speed, parted);
         }
 
         // where contacts end, and the run
-        if (m->state[SLOT_CONTACT] == 0 && (before_contact != 0 || r.event == MOTION_IMPACT)) {
+        if (m->state[SLOT_CONTACT] == 0 &&
+            (before_contact != 0 || r.event == MOTION_IMPACT)) {
             parted = now;
-            chain_outcome_forget(&o, impulses + state_quadratures(m, m->state)[QUADRATURE_FORCE]);
+            chain_outcome_forget(&o,
+                                 impulses +
+                                     state_quadratures(m, m->state)[QUADRATURE_FORCE]);
         }
         if (waited && !isnan(o.first_contact)) {
             o.first_impulse = r.impulse;
@@ -116,9 +123,12 @@ chain_outcome chain_outcome_of(const chain_start *start)
     o.peak = m->record.pulse_peak;
     o.peak_time = m->dof > 1 ? m->record.pulse_peak_time : 0;
     const double *quadrature = state_quadratures(m, m->state);
-    const double lost[] = {m->state[SLOT_FRICTION_LOSS],   m->state[SLOT_IMPACT_LOSS],
-                           quadrature[QUADRATURE_VISCOUS], quadrature[QUADRATURE_DAMPING],
-                           quadrature[QUADRATURE_WALL],    -quadrature[QUADRATURE_PUSHED]};
+    const double lost[] = {m->state[SLOT_FRICTION_LOSS],
+                           m->state[SLOT_IMPACT_LOSS],
+                           quadrature[QUADRATURE_VISCOUS],
+                           quadrature[QUADRATURE_DAMPING],
+                           quadrature[QUADRATURE_WALL],
+                           -quadrature[QUADRATURE_PUSHED]};
     memcpy(o.lost, lost, sizeof o.lost);
     return o;
 }
@@ -127,7 +137,8 @@ double chain_outcome_sensor_difference(const chain_outcome *a, const chain_outco
 {
     const double keep = exp(-REFERENCE_INTERVAL / SENSOR);
     const int samples = a->samples < b->samples ? a->samples : b->samples;
-    double read[2] = {a->momentum[0] / SENSOR, b->momentum[0] / SENSOR}, square = 0, apart = 0;
+    double read[2] = {a->momentum[0] / SENSOR, b->momentum[0] / SENSOR}, square = 0,
+           apart = 0;
     for (int k = 1; k < samples; k++) {
         for (int i = 0; i < 2; i++) {
             const chain_outcome *o = i == 0 ? a : b;

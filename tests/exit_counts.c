@@ -1,7 +1,8 @@
-// Linked into the programs that tests/coverage counts: a process that ends by _exit, as the
-// children of a fork do, or becomes another program leaves its counts like any other (ld's
-// --wrap=_exit, execv and execl), and so does one in which tests/fail_kth.c lets something fail, or
-// which may write short files only: not while they are written.
+// Linked into the programs that tests/coverage counts: a process that ends by _exit, as
+// the children of a fork do, or becomes another program leaves its counts like any other
+// (ld's
+// --wrap=_exit, execv and execl), and so does one in which tests/fail_kth.c lets
+// something fail, or which may write short files only: not while they are written.
 #include <dlfcn.h>
 #include <stdarg.h>
 #include <stdlib.h>

@@ -1,40 +1,46 @@
-// A Runge-Kutta formula at a fixed step, which the caller keeps well inside their accuracy from the
-// arm's highest frequency: no error estimate is carried.
+// A Runge-Kutta formula at a fixed step, which the caller keeps well inside their
+// accuracy from the arm's highest frequency: no error estimate is carried.
 //
-// Long strides: order 8 with twelve stages (Hairer, Norsett, Wanner: Solving Ordinary Differential
-// Equations I, section II.5; the method of their DOP853). An oscillation of z = rate times stride
-// loses 8e-12 of its amplitude and 5e-11 rad of its phase in one at z = 0.45.
+// Long strides: order 8 with twelve stages (Hairer, Norsett, Wanner: Solving Ordinary
+// Differential Equations I, section II.5; the method of their DOP853). An oscillation of
+// z = rate times stride loses 8e-12 of its amplitude and 5e-11 rad of its phase in one at
+// z = 0.45.
 //
-// It takes the walls that give, with any number of links. Hunt-Crossley's x^n is not analytic at
-// the touch unless n is whole: a step from there is of order n + 1 only, whatever the method. Steps
-// are therefore graded: none is longer than half the time that the wall's face needs to or from the
-// touch, x/|v|, down to a shortest step whose error is below rounding. A step over [t, 3t/2] sees a
-// function that is analytic about t with radius t, and keeps the method's accuracy.
+// It takes the walls that give, with any number of links. Hunt-Crossley's x^n is not
+// analytic at the touch unless n is whole: a step from there is of order n + 1 only,
+// whatever the method. Steps are therefore graded: none is longer than half the time that
+// the wall's face needs to or from the
+// touch, x/|v|, down to a shortest step whose error is below rounding. A step over [t,
+// 3t/2] sees a function that is analytic about t with radius t, and keeps the method's
+// accuracy.
 #include <math.h>
 #include <string.h>
 
 #include "src/contact/motion.h"
 #include "tests/explicit_stepper.h"
 
-// Steps over several time steps, which slow arms take, may go this far in (fastest rate) x (step):
-// they are few, and what they lose in a second is less than the short ones of fast arms do.
+// Steps over several time steps, which slow arms take, may go this far in (fastest rate)
+// x (step): they are few, and what they lose in a second is less than the short ones of
+// fast arms do.
 #define LONG_RESOLUTION 0.45
-// Steps of a fraction of a time step keep (fastest rate) x (step) below this; the method then loses
-// a few parts in 1e12 of the fastest mode's energy in one.
+// Steps of a fraction of a time step keep (fastest rate) x (step) below this; the method
+// then loses a few parts in 1e12 of the fastest mode's energy in one.
 #define EXPLICIT_RESOLUTION 0.36
 // Of the time from or to a touch that is not analytic, one step may take this share ...
 #define GRADING 0.5
-// ... and, next to the touch, this in (fastest rate) x (step): the error of order n + 1 is lost
-// there.
+// ... and, next to the touch, this in (fastest rate) x (step): the error of order n + 1
+// is lost there.
 #define SHORTEST_RESOLUTION 3e-5
-// Rotation counts this many times: no small oscillation, it feeds errors from link to link.
+// Rotation counts this many times: no small oscillation, it feeds errors from link to
+// link.
 #define TURNING 3
 // At most this many time steps are taken at once.
 #define MOST_AT_ONCE 12
 
 enum { LONG_STAGES = 12 };
 
-// Row i: weights of stages 0..i-1 for the argument of stage i; the last row: of the result.
+// Row i: weights of stages 0..i-1 for the argument of stage i; the last row: of the
+// result.
 typedef double weight_row[LONG_STAGES];
 
 static const weight_row long_weights[LONG_STAGES + 1] = {
@@ -46,8 +52,8 @@ static const weight_row long_weights[LONG_STAGES + 1] = {
      9.24834003261792003115737966543e-1},
     {3.7037037037037037037037037037e-2, 0, 0, 1.70828608729473871279604482173e-1,
      1.25467687566822425016691814123e-1},
-    {3.7109375e-2, 0, 0, 1.70252211019544039314978060272e-1, 6.02165389804559606850219397283e-2,
-     -1.7578125e-2},
+    {3.7109375e-2, 0, 0, 1.70252211019544039314978060272e-1,
+     6.02165389804559606850219397283e-2, -1.7578125e-2},
     {3.70920001185047927108779319836e-2, 0, 0, 1.70383925712239993810214054705e-1,
      1.07262030446373284651809199168e-1, -1.53194377486244017527936158236e-2,
      8.27378916381402288758473766002e-3},
@@ -73,8 +79,8 @@ static const weight_row long_weights[LONG_STAGES + 1] = {
      2.01365400804030348374776537501e-1, 4.47106157277725905176885569043e-2},
 };
 
-// Rate of the motor's current where it is a state of its own [A/s], w [rad/s] being the hub's
-// velocity; none at the limit, as long as the voltage would drive it beyond.
+// Rate of the motor's current where it is a state of its own [A/s], w [rad/s] being the
+// hub's velocity; none at the limit, as long as the voltage would drive it beyond.
 static double current_rate(const motor_model *m, double state, double w)
 {
     if (m->inductance == 0) {
@@ -92,12 +98,14 @@ static void explicit_step(const arm *a, motion *m, double h)
     const bool loaded = !arm_is_plain(a) || wall_gives(&a->wall);
     const int n = a->dof, length = 2 * n + QUADRATURE_COUNT;
     const int wanted = loaded ? length : length - (QUADRATURE_COUNT - QUADRATURE_WALL);
-    const int current = 2 * n + QUADRATURE_CURRENT; // the one that enters the accelerations
+    const int current =
+        2 * n + QUADRATURE_CURRENT; // the one that enters the accelerations
     const int moving = loaded && m->electric ? length : 2 * n;
     contact_state mode = contact_state_of(m->state);
     const double *y0 = state_angles(m, m->state);
     double *y = state_angles(m, m->trial);
-    double *rate = m->memory; // rate[i * length]: derivative of the smooth part in stage i
+    double *rate =
+        m->memory; // rate[i * length]: derivative of the smooth part in stage i
     chain_reaction reaction;
 
     // the first stage was evaluated with the state itself
@@ -171,8 +179,8 @@ static status step(const arm *a, motion *m, double h, state_extent extent)
     return STATUS_OK;
 }
 
-// Square of the largest bend of a joint that stiffens, of a root as one of a whole joint [rad2]; it
-// may grow a little within a stride.
+// Square of the largest bend of a joint that stiffens, of a root as one of a whole joint
+// [rad2]; it may grow a little within a stride.
 static double most_bend(const arm *a, const motion *m)
 {
     const double *q = state_angles(m, m->state);
@@ -184,14 +192,16 @@ static double most_bend(const arm *a, const motion *m)
     return 1.5 * most;
 }
 
-// Upper estimate of how fast the state can change [1/s]: by the arm's own rate, and by its
-// rotation, which stretches the chain. A chain that hangs in the field of its own rotation at rate
-// w vibrates in the plane at w sqrt(n (2 n - 1) - 1), n = 1..N, its springs apart; squares of
-// frequencies add. Velocities are taken as they are and as accelerations make them within a stride.
-// `slowest` is the rate of an arm that does not turn.
+// Upper estimate of how fast the state can change [1/s]: by the arm's own rate, and by
+// its rotation, which stretches the chain. A chain that hangs in the field of its own
+// rotation at rate w vibrates in the plane at w sqrt(n (2 n - 1) - 1), n = 1..N, its
+// springs apart; squares of frequencies add. Velocities are taken as they are and as
+// accelerations make them within a stride. `slowest` is the rate of an arm that does not
+// turn.
 static double rate_of_change(const arm *a, const motion *m, double slowest)
 {
-    const double *w = state_velocities(m, m->state), *al = state_accelerations(m, m->state);
+    const double *w = state_velocities(m, m->state),
+                 *al = state_accelerations(m, m->state);
     const double n = a->links, stretched = n * (2 * n - 1);
     double fastest = 0, own = fmax(slowest, 1e-3);
     own *= sqrt(1 + 3 * a->stiffening * most_bend(a, m)); // slope of b + stiffening b^3
@@ -209,14 +219,15 @@ static double rate_within_wall(const arm *a, motion *m, double own)
 {
     double depth = fmax(-m->state[SLOT_GAP], 0), rate = -m->state[SLOT_GAP_VELOCITY];
     const bool locked = contact_state_of(m->state).friction == HUB_STICK && m->dof > 1;
-    double compliance =
-        chain_contact_response(a, m->links, state_angles(m, m->state), locked, m->scratch);
+    double compliance = chain_contact_response(a, m->links, state_angles(m, m->state),
+                                               locked, m->scratch);
     compliance /= 1 + a->wall.face_mass * compliance; // both masses on the spring
     double wall = wall_rate(&a->wall, compliance, depth, rate);
     return sqrt(own * own + wall * wall);
 }
 
-// How long a step may be for the touch's sake, where the law of the wall is not analytic there.
+// How long a step may be for the touch's sake, where the law of the wall is not analytic
+// there.
 static double graded(const arm *a, const motion *m, double rate, double longest)
 {
     if (a->wall.exponent == floor(a->wall.exponent) || m->state[SLOT_GAP_VELOCITY] == 0) {
@@ -226,8 +237,8 @@ static double graded(const arm *a, const motion *m, double rate, double longest)
     return fmin(longest, fmax(GRADING * to_touch, SHORTEST_RESOLUTION / rate));
 }
 
-// How long a step may be for the arm to meet a face that swings on its own where the ends of the
-// step tell of it.
+// How long a step may be for the arm to meet a face that swings on its own where the ends
+// of the step tell of it.
 static double graded_face(const arm *a, const motion *m, double longest)
 {
     const wall_model wall = wall_at(&a->wall, m->state[SLOT_TIME]);
@@ -236,12 +247,13 @@ static double graded_face(const arm *a, const motion *m, double longest)
     return rate > 0 ? fmin(longest, EXPLICIT_RESOLUTION / rate) : longest;
 }
 
-// How long a step may be for the sake of the current's limit, on either side of which the equations
-// are smooth.
+// How long a step may be for the sake of the current's limit, on either side of which the
+// equations are smooth.
 static double graded_current(const arm *a, const motion *m, double rate, double longest)
 {
     const motor_model *motor = &a->motor;
-    const double w = state_velocities(m, m->state)[0], al = state_accelerations(m, m->state)[0];
+    const double w = state_velocities(m, m->state)[0],
+                 al = state_accelerations(m, m->state)[0];
     const double state = state_quadratures(m, m->state)[QUADRATURE_CURRENT];
     const double limit = motor->current_limit,
                  free = motor->gain * motor->voltage - motor->back_emf * w;
@@ -249,11 +261,13 @@ static double graded_current(const arm *a, const motion *m, double rate, double 
         return longest;
     }
 
-    // the current without a limit, and how fast it goes there; at the limit the voltage left over
+    // the current without a limit, and how fast it goes there; at the limit the voltage
+    // left over
     const bool held = motor->inductance > 0 && fabs(state) >= limit;
     const double now = motor->inductance > 0 && !held ? state : free / motor->resistance;
-    const double slope = motor->inductance > 0 && !held ? current_rate(motor, state, w)
-                                                        : -motor->back_emf * al / motor->resistance;
+    const double slope = motor->inductance > 0 && !held
+                             ? current_rate(motor, state, w)
+                             : -motor->back_emf * al / motor->resistance;
     const double to_limit = slope != 0 ? fabs((fabs(now) - limit) / slope) : HUGE_VAL;
     return fmin(longest, fmax(GRADING * to_limit, SHORTEST_RESOLUTION / rate));
 }
@@ -266,8 +280,9 @@ static double longest_step(const arm *a, motion *m, double rate, double remainin
     rate = rate_of_change(a, m, rate);
     rate = pressed ? rate_within_wall(a, m, rate) : rate;
     double steps = floor(LONG_RESOLUTION / (step_length * rate));
-    double longest = steps >= 2 ? fmin(steps, MOST_AT_ONCE) * step_length
-                                : step_length / ceil(step_length * rate / EXPLICIT_RESOLUTION);
+    double longest = steps >= 2
+                         ? fmin(steps, MOST_AT_ONCE) * step_length
+                         : step_length / ceil(step_length * rate / EXPLICIT_RESOLUTION);
     longest = pressed ? graded(a, m, rate, longest) : longest;
     longest = state_face_swings(m, m->state) ? graded_face(a, m, longest) : longest;
     longest = m->electric ? graded_current(a, m, rate, longest) : longest;
@@ -295,7 +310,11 @@ static size_t init(const arm *a, void *memory)
     return (LONG_STAGES + 1) * (size_t)(2 * a->dof + QUADRATURE_COUNT) * sizeof(double);
 }
 
-const engine explicit_engine = {
-    .name = "Runge-Kutta 8", .init = init, .advance = advance, .state_at = step};
-const engine explicit_fine_engine = {
-    .name = "Runge-Kutta 8, fine", .init = init, .advance = advance_fine, .state_at = step};
+const engine explicit_engine = {.name = "Runge-Kutta 8",
+                                .init = init,
+                                .advance = advance,
+                                .state_at = step};
+const engine explicit_fine_engine = {.name = "Runge-Kutta 8, fine",
+                                     .init = init,
+                                     .advance = advance_fine,
+                                     .state_at = step};

@@ -1,4 +1,5 @@
-// An explorer without a terminal, for tests: opened, its keys pressed, its screen as text.
+// An explorer without a terminal, for tests: opened, its keys pressed, its screen as
+// text.
 #pragma once
 
 #include "tests/session_fixture.h"
@@ -7,15 +8,16 @@
 #include "ui/terminal/keys.h"
 
 // Of a shipped scenario with changes, that waits so long for its run.
-static inline void open_changed(explorer *ex, const char *name, const char *changes, double wait)
+static inline void open_changed(explorer *ex, const char *name, const char *changes,
+                                double wait)
 {
     scenario s = shipped_with(name, changes);
     DONE(explorer_init(ex, &s, wait, &f));
 }
 
 // Of one as it is, whose runs are waited for; for as long as its block.
-#define OPEN_EXPLORER(ex, name)                                                                    \
-    SCOPED(explorer_finish) explorer ex;                                                           \
+#define OPEN_EXPLORER(ex, name)                                                          \
+    SCOPED(explorer_finish) explorer ex;                                                 \
     open_changed(&ex, name, "", HUGE_VAL)
 
 static inline void press(explorer *ex, const char *keys)
@@ -44,7 +46,8 @@ static inline void press_warns(explorer *ex, const char *keys, const char *says)
 {
     press(ex, keys);
     fail_if(!ex->state.message.warning || strstr(ex->state.message.text, says) == NULL,
-            "%s leaves '%s', no warning that says '%s'", keys, ex->state.message.text, says);
+            "%s leaves '%s', no warning that says '%s'", keys, ex->state.message.text,
+            says);
 }
 
 // Keys that leave this in the prompt.
@@ -71,12 +74,13 @@ static inline void point(explorer *ex, pointer_kind kind, int x, int y)
     free(picture(ex, 120, 40, GLYPHS_BRAILLE));
 }
 
-static inline void assert_shows_at(explorer *ex, int width, int height, const char *wanted)
+static inline void assert_shows_at(explorer *ex, int width, int height,
+                                   const char *wanted)
 {
     KEPT_TEXT(text) = picture(ex, width, height, GLYPHS_BRAILLE);
     const bool hidden = wanted[0] == '!' && wanted[1] != '\0';
-    fail_if((strstr(text, wanted + hidden) == NULL) != hidden, "'%s' is %son the screen:\n%s",
-            wanted + hidden, hidden ? "" : "not ", text);
+    fail_if((strstr(text, wanted + hidden) == NULL) != hidden,
+            "'%s' is %son the screen:\n%s", wanted + hidden, hidden ? "" : "not ", text);
 }
 
 static inline void all_shown(explorer *ex, const char *const *wanted)

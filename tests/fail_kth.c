@@ -1,5 +1,5 @@
-// Preloaded into the program: makes the FAIL_AT-th call of the function named by FAIL_CALL fail,
-// and writes how many calls there were to the file FAIL_COUNT.
+// Preloaded into the program: makes the FAIL_AT-th call of the function named by
+// FAIL_CALL fail, and writes how many calls there were to the file FAIL_COUNT.
 #undef _FILE_OFFSET_BITS // both names of open are wanted, each as itself
 #include <dlfcn.h>
 #include <errno.h>
@@ -71,10 +71,10 @@ void *realloc(void *memory, size_t size)
 }
 
 // The function that stands behind ours.
-#define REAL(name)                                                                                 \
-    do {                                                                                           \
-        void *found = dlsym(RTLD_NEXT, #name);                                                     \
-        memcpy(&real, &found, sizeof real);                                                        \
+#define REAL(name)                                                                       \
+    do {                                                                                 \
+        void *found = dlsym(RTLD_NEXT, #name);                                           \
+        memcpy(&real, &found, sizeof real);                                              \
     } while (0)
 
 ssize_t write(int file, const void *bytes, size_t size)
@@ -114,16 +114,16 @@ int rename(const char *from, const char *to)
     return fails("rename") ? (errno = EIO, -1) : real(from, to);
 }
 
-#define OPEN(name)                                                                                 \
-    int name(const char *path, int flags, ...)                                                     \
-    {                                                                                              \
-        int (*real)(const char *, int, ...);                                                       \
-        va_list list;                                                                              \
-        va_start(list, flags);                                                                     \
-        mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(list, mode_t) : 0;             \
-        va_end(list);                                                                              \
-        REAL(name);                                                                                \
-        return fails("open") ? (errno = EMFILE, -1) : real(path, flags, mode);                     \
+#define OPEN(name)                                                                       \
+    int name(const char *path, int flags, ...)                                           \
+    {                                                                                    \
+        int (*real)(const char *, int, ...);                                             \
+        va_list list;                                                                    \
+        va_start(list, flags);                                                           \
+        mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(list, mode_t) : 0;   \
+        va_end(list);                                                                    \
+        REAL(name);                                                                      \
+        return fails("open") ? (errno = EMFILE, -1) : real(path, flags, mode);           \
     }
 OPEN(open)
 OPEN(open64)

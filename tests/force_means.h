@@ -8,8 +8,8 @@
 #define MEAN_ROUNDING 1e-6 // by which a mean may be out of its range, a share and [N]
 #define MEAN_WINDOW   5e-3 // [s]
 
-// Whether a force between zero and its peak [N], with impulses [N s], can have that mean [N] over a
-// time [s]. Where a number is NaN nothing is said.
+// Whether a force between zero and its peak [N], with impulses [N s], can have that mean
+// [N] over a time [s]. Where a number is NaN nothing is said.
 static inline bool mean_is_within(double mean, double peak, double impulses, double time)
 {
     const double most = peak + impulses / time, slack = MEAN_ROUNDING * (1 + fabs(most));

@@ -1,10 +1,11 @@
-// Control laws without the lab: this program is made of the laws' files, what they compute with
-// (src/base/plain_math.c, dense.c, src/rig/estimation/estimator.c, riccati.c) and the mathematical
-// library, as a board would have them. It is linked so that a call of the allocator or of a file by
-// any of them does not link.
+// Control laws without the lab: this program is made of the laws' files, what they
+// compute with (src/base/plain_math.c, dense.c, src/rig/estimation/estimator.c,
+// riccati.c) and the mathematical library, as a board would have them. It is linked so
+// that a call of the allocator or of a file by any of them does not link.
 //
-// Every law goes through an approach, a touch and a press, twice: its commands are finite, in modes
-// that it has, and the same both times, as its memory is all that it knows.
+// Every law goes through an approach, a touch and a press, twice: its commands are
+// finite, in modes that it has, and the same both times, as its memory is all that it
+// knows.
 #include <math.h>
 #include <stdalign.h>
 #include <stdio.h>
@@ -14,7 +15,8 @@
 
 enum { SAMPLES = 400, MOST_PARAMETERS = 32, MOST_MEMORY = 1 << 16 };
 
-// Values that a scenario would give; a parameter of another name has the law's own initial value.
+// Values that a scenario would give; a parameter of another name has the law's own
+// initial value.
 static const struct {
     const char *name;
     double value;
@@ -43,16 +45,16 @@ static double value_of(const controller_parameter *p)
     return p->initial;
 }
 
-// What the sensors read of an arm that turns towards the wall, touches after half of the samples
-// and is pressed on.
+// What the sensors read of an arm that turns towards the wall, touches after half of the
+// samples and is pressed on.
 static controller_input reading(int sample, double period, double command)
 {
     const int touch = SAMPLES / 2;
     const double time = sample * period, wall = 0.1, speed = wall / (touch * period);
     const bool pressed = sample >= touch;
     return (controller_input){.time = time,
-                              .encoder =
-                                  pressed ? wall + 1e-3 * (sample - touch) / touch : speed * time,
+                              .encoder = pressed ? wall + 1e-3 * (sample - touch) / touch
+                                                 : speed * time,
                               .tachometer = pressed ? 1e-3 / (touch * period) : speed,
                               .force = pressed ? 0.5 + 0.5 * (sample - touch) / touch : 0,
                               .voltage = command,
@@ -120,11 +122,13 @@ static const char *go_through(const controller *law, double commands[SAMPLES])
 int main(void)
 {
     // all of the list but the one that needs the modes of an arm to start
-    static const controller *const laws[] = {
-        &open_loop_law,      &hybrid_law,      &force_pd_law,   &force_integral_law,
-        &reverse_torque_law, &speed_limit_law, &bang_bang_law,  &discontinuous_law,
-        &recovering_law,     &optimal_law,     &predictive_law, &inverse_dynamics_law,
-        &impedance_law,      &admittance_law};
+    static const controller *const laws[] = {&open_loop_law,      &hybrid_law,
+                                             &force_pd_law,       &force_integral_law,
+                                             &reverse_torque_law, &speed_limit_law,
+                                             &bang_bang_law,      &discontinuous_law,
+                                             &recovering_law,     &optimal_law,
+                                             &predictive_law,     &inverse_dynamics_law,
+                                             &impedance_law,      &admittance_law};
     static double once[SAMPLES], again[SAMPLES];
     int wrong = 0;
     for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {

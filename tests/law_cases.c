@@ -1,23 +1,24 @@
-// A control law on cases that nobody chose: two or three errors at once, drawn from the ranges
-// below, none of which the law is told unless the case says so. Prints every case that is out of
-// bounds and how many are within them.
+// A control law on cases that nobody chose: two or three errors at once, drawn from the
+// ranges below, none of which the law is told unless the case says so. Prints every case
+// that is out of bounds and how many are within them.
 //
 //     law_cases [SEED [COUNT [LAW [LEAST...]]]]
 //
-// Each case is run with commands of 0.5, 1 and 3 N. Within the bounds: 30 % overshoot of the mean
-// over 5 ms, settled in 0.3 s, in 0.6 s where contact is lost, from first contact or a push after
-// it, and 5 % steady error; first contact at most 1.5 times as late as open-loop's. A push p on a
-// tip that presses on a wall is p/5 ms of force whatever a law does, 12 N at 0.06 N s: the
-// overshoot is that of the same case without the push. Exit status 1 if fewer than LEAST cases are
-// within them at a command. Beyond the last ones: over 120 % or 0.8 s.
+// Each case is run with commands of 0.5, 1 and 3 N. Within the bounds: 30 % overshoot of
+// the mean over 5 ms, settled in 0.3 s, in 0.6 s where contact is lost, from first
+// contact or a push after it, and 5 % steady error; first contact at most 1.5 times as
+// late as open-loop's. A push p on a tip that presses on a wall is p/5 ms of force
+// whatever a law does, 12 N at 0.06 N s: the overshoot is that of the same case without
+// the push. Exit status 1 if fewer than LEAST cases are within them at a command. Beyond
+// the last ones: over 120 % or 0.8 s.
 #include "tests/law_cases.h"
 
 typedef struct tally {
     int within[COMMANDS], beyond[COMMANDS];
 } tally;
 
-static void count_case(void *to, int number, const law_case *c, int command, double open_loop,
-                       const verdict *v)
+static void count_case(void *to, int number, const law_case *c, int command,
+                       double open_loop, const verdict *v)
 {
     (void)open_loop;
     tally *t = to;
@@ -26,9 +27,10 @@ static void count_case(void *to, int number, const law_case *c, int command, dou
     if (v->within) {
         return;
     }
-    printf("%s case %d at %g N: over %.3g %%, settled %.3g s, error %.2g %%, lost %g, late %.2f:",
-           v->beyond ? "BEYOND" : "out   ", number, commands[command], v->over, v->settling,
-           v->error, v->lost, v->late);
+    printf("%s case %d at %g N: over %.3g %%, settled %.3g s, error %.2g %%, lost %g, "
+           "late %.2f:",
+           v->beyond ? "BEYOND" : "out   ", number, commands[command], v->over,
+           v->settling, v->error, v->lost, v->late);
     for (int j = 0; j < c->count; j++) {
         printf(" %s", c->settings[j]);
     }
@@ -37,15 +39,16 @@ static void count_case(void *to, int number, const law_case *c, int command, dou
 
 int main(int count, char **words)
 {
-    const int seed = count > 1 ? atoi(words[1]) : 1, cases = count > 2 ? atoi(words[2]) : 40;
+    const int seed = count > 1 ? atoi(words[1]) : 1,
+              cases = count > 2 ? atoi(words[2]) : 40;
     const char *law = count > 3 ? words[3] : "observer";
     tally t = {0};
     judge_cases(seed, cases, law, count_case, &t);
 
     bool failed = false;
     for (int k = 0; k < COMMANDS; k++) {
-        printf("%s, seed %d, %g N: %d of %d within the bounds, %d beyond the last ones\n", law,
-               seed, commands[k], t.within[k], cases, t.beyond[k]);
+        printf("%s, seed %d, %g N: %d of %d within the bounds, %d beyond the last ones\n",
+               law, seed, commands[k], t.within[k], cases, t.beyond[k]);
         failed = failed || t.within[k] < (count > 4 + k ? atoi(words[4 + k]) : 0);
     }
     return failed;

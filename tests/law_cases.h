@@ -1,5 +1,5 @@
-// Cases for a control law that nobody chose, and the judgement of a run of one: for the programs
-// that count them and that ask why they are out of bounds.
+// Cases for a control law that nobody chose, and the judgement of a run of one: for the
+// programs that count them and that ask why they are out of bounds.
 #pragma once
 
 #include <math.h>
@@ -39,7 +39,8 @@ static double logarithmic(double low, double high)
     return low * exp(log(high / low) * random_uniform(&generator));
 }
 
-static __attribute__((format(printf, 2, 3))) void add(law_case *c, const char *format, ...)
+static __attribute__((format(printf, 2, 3))) void add(law_case *c, const char *format,
+                                                      ...)
 {
     va_list list;
     va_start(list, format);
@@ -48,7 +49,7 @@ static __attribute__((format(printf, 2, 3))) void add(law_case *c, const char *f
     va_end(list);
 }
 
-// --- the errors -------------------------------------------------------------------------------
+// --- the errors ------------------------------------------------------------------------
 
 static void giving_wall(law_case *c)
 {
@@ -110,7 +111,8 @@ static void hub_sensors(law_case *c)
 static void scattered_samples(law_case *c)
 {
     add(c, "control.jitter=%.6g", even(0, 1) * 1e-3); // a period of the fastest rate
-    add(c, "sensor.accelerometer=%s", random_below(&generator, 2) == 1 ? "true" : "false");
+    add(c, "sensor.accelerometer=%s",
+        random_below(&generator, 2) == 1 ? "true" : "false");
 }
 
 static void links(law_case *c)
@@ -170,7 +172,7 @@ static law_case draw_case(int seed)
     return c;
 }
 
-// --- a run ------------------------------------------------------------------------------------
+// --- a run -----------------------------------------------------------------------------
 
 // The scenario of a case under a law; `pushed` is where its push is kept, NULL for none.
 static void case_scenario(scenario *s, action *pushed, const law_case *c, const char *law,
@@ -179,7 +181,8 @@ static void case_scenario(scenario *s, action *pushed, const law_case *c, const 
     char force[32], of_law[48];
     snprintf(force, sizeof force, "control.force=%g", command);
     snprintf(of_law, sizeof of_law, "control.law=%s", law);
-    char *all[MOST_SETTINGS + 8] = {(char[]){"wall.angle=0"}, (char[]){"initial.angle=-0.1"},
+    char *all[MOST_SETTINGS + 8] = {(char[]){"wall.angle=0"},
+                                    (char[]){"initial.angle=-0.1"},
                                     (char[]){"run.duration=2"}, force, of_law};
     int count = 5;
     for (int i = 0; i < c->count; i++) {
@@ -209,7 +212,8 @@ static void case_scenario(scenario *s, action *pushed, const law_case *c, const 
 }
 
 // Under `given` in the place of the law, if it is not NULL.
-static summary run_case(const law_case *c, const char *law, const given_law *given, double command)
+static summary run_case(const law_case *c, const char *law, const given_law *given,
+                        double command)
 {
     scenario s;
     action pushed;
@@ -228,19 +232,20 @@ typedef struct verdict {
 } verdict;
 
 // Of a run, and the same without the push.
-static verdict judge_runs(const law_case *c, double command, double open_loop, const summary *s,
-                          const summary *calm)
+static verdict judge_runs(const law_case *c, double command, double open_loop,
+                          const summary *s, const summary *calm)
 {
     const double end = s->first_contact_s + s->settling_time_s;
-    const double begin = c->push != 0 ? fmax(s->first_contact_s, c->push_time) : s->first_contact_s;
+    const double begin =
+        c->push != 0 ? fmax(s->first_contact_s, c->push_time) : s->first_contact_s;
     verdict v = {.over = 100 * calm->smoothed_over_command_N / command,
                  .settling = isnan(end) ? end : fmax(0, end - begin),
                  .error = 100 * s->steady_error_N / command,
                  .lost = s->separations,
                  .late = s->first_contact_s / open_loop};
     const bool ok = s->status == STATUS_OK && !s->inaccurate;
-    v.within = ok && v.over <= 30 && v.settling <= (v.lost > 0 ? 0.6 : 0.3) && fabs(v.error) <= 5 &&
-               v.late <= 1.5;
+    v.within = ok && v.over <= 30 && v.settling <= (v.lost > 0 ? 0.6 : 0.3) &&
+               fabs(v.error) <= 5 && v.late <= 1.5;
     v.beyond = !(ok && v.over <= 120 && v.settling <= 0.8);
     return v;
 }
@@ -254,10 +259,12 @@ static verdict judge(const law_case *c, const char *law, double command, double 
     return judge_runs(c, command, open_loop, &s, &undisturbed);
 }
 
-// Draws that many cases and judges each at every command; `each` is told of them in order.
-typedef void judged_case(void *tally, int number, const law_case *c, int command, double open_loop,
-                         const verdict *v);
-static void judge_cases(int seed, int count, const char *law, judged_case *each, void *tally)
+// Draws that many cases and judges each at every command; `each` is told of them in
+// order.
+typedef void judged_case(void *tally, int number, const law_case *c, int command,
+                         double open_loop, const verdict *v);
+static void judge_cases(int seed, int count, const char *law, judged_case *each,
+                        void *tally)
 {
     random_seed(&generator, (uint64_t)seed);
     for (int i = 0; i < count; i++) {

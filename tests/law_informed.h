@@ -1,18 +1,20 @@
 // What physics allows in a drawn case (law_cases.h): a law that sees the whole arm.
 //
-// It is told arm, wall, delay and clock, and sees the angles and rates of all links as they will be
-// when its command takes effect, which follow from those at the sample; a push it sees when it has
-// happened. On the linear arm, free up to a planned touch and on the wall's spring from there, it
-// minimises the sum over samples of
+// It is told arm, wall, delay and clock, and sees the angles and rates of all links as
+// they will be when its command takes effect, which follow from those at the sample; a
+// push it sees when it has happened. On the linear arm, free up to a planned touch and on
+// the wall's spring from there, it minimises the sum over samples of
 //
-//     ((f - f_d)/F)^2 + weight ((T - T_d)/(1 N m))^2,      f_d = F (1 - (1 - first) exp(-t/rise)),
+//     ((f - f_d)/F)^2 + weight ((T - T_d)/(1 N m))^2,      f_d = F (1 - (1 - first)
+//     exp(-t/rise)),
 //
-// T_d what holds F. A touch with speed makes a force that is not f_d, so it comes without. Where a
-// landing speed is given, it costs to be off that speed's line to the wall in the last 0.06 s.
-// Friction's torque is added in the direction in which the hub is to move.
+// T_d what holds F. A touch with speed makes a force that is not f_d, so it comes
+// without. Where a landing speed is given, it costs to be off that speed's line to the
+// wall in the last 0.06 s. Friction's torque is added in the direction in which the hub
+// is to move.
 //
-// To say what knowledge is worth it may also be told less: the nearest of 0, 40 and 80 g for the
-// mass at the tip, and a rigid wall for one that gives.
+// To say what knowledge is worth it may also be told less: the nearest of 0, 40 and 80 g
+// for the mass at the tip, and a rigid wall for one that gives.
 #pragma once
 
 #include "src/arm/modes.h"
@@ -20,8 +22,15 @@
 #include "src/run/loop.h"
 #include "tests/law_cases.h"
 
-// Sizes: bodies; their angles, rates and a one; these and the torque; samples; parts of a period.
-enum { BODIES = 9, STATE = 2 * BODIES + 1, WITH_TORQUE = STATE + 1, SAMPLES = 4096, PARTS = 4 };
+// Sizes: bodies; their angles, rates and a one; these and the torque; samples; parts of a
+// period.
+enum {
+    BODIES = 9,
+    STATE = 2 * BODIES + 1,
+    WITH_TORQUE = STATE + 1,
+    SAMPLES = 4096,
+    PARTS = 4
+};
 
 #define PRESSING   0.6   // of the plan, from the touch on [s]
 #define HOLDING    0.3   // from then on as at this time after it [s]
@@ -36,10 +45,11 @@ enum { BODIES = 9, STATE = 2 * BODIES + 1, WITH_TORQUE = STATE + 1, SAMPLES = 40
 typedef struct informed_arm {
     int bodies, state;
     double mass[BODIES * BODIES], stiffness[BODIES * BODIES], damping[BODIES * BODIES];
-    double reach[BODIES];          // the tip's place is its product with the angles [m]
-    double spring, damper, offset; // force at the tip's place y: spring y + damper y' + it
-    double face;                   // mass that moves with the tip in contact [kg]
-    double period, delay, force;   // F
+    double reach[BODIES]; // the tip's place is its product with the angles [m]
+    double spring, damper,
+        offset;                  // force at the tip's place y: spring y + damper y' + it
+    double face;                 // mass that moves with the tip in contact [kg]
+    double period, delay, force; // F
     arm arm;
 } informed_arm;
 
@@ -61,7 +71,8 @@ static void forget(parameters *p, int knowledge)
 }
 
 typedef struct informed_tuning {
-    double touch, rise, first, weight, speed; // [s], [s], share of F, -, landing speed [m/s] or 0
+    double touch, rise, first, weight,
+        speed; // [s], [s], share of F, -, landing speed [m/s] or 0
 } informed_tuning;
 
 typedef struct informed_plan {
@@ -78,7 +89,8 @@ static informed_arm informed_arm_of(const parameters *p, double force)
 {
     informed_arm m = {.force = force,
                       .period = 1 / p->control.rate,
-                      .delay = p->control.delay + p->control.delay_periods / p->control.rate};
+                      .delay =
+                          p->control.delay + p->control.delay_periods / p->control.rate};
     arm_init(&m.arm, p);
     const int n = m.bodies = m.arm.dof;
     m.state = 2 * n + 1;
@@ -99,8 +111,12 @@ static informed_arm informed_arm_of(const parameters *p, double force)
     const wall_model *w = &m.arm.wall;
     const bool hertz = w->law == WALL_HUNT_CROSSLEY;
     const double depth = hertz ? pow(force / w->stiffness, 1 / w->exponent) : 0;
-    m.spring = !wall_gives(w) ? RIGID : hertz ? w->exponent * force / depth : w->stiffness;
-    m.damper = !wall_gives(w) ? RIGID_LOSS : hertz ? w->damping * wall_power(w, depth) : w->damping;
+    m.spring = !wall_gives(w) ? RIGID
+               : hertz        ? w->exponent * force / depth
+                              : w->stiffness;
+    m.damper = !wall_gives(w) ? RIGID_LOSS
+               : hertz        ? w->damping * wall_power(w, depth)
+                              : w->damping;
     m.offset = hertz ? force - m.spring * depth : 0;
     m.face = w->face_mass;
     return m;
@@ -126,15 +142,18 @@ static void informed_steps(const informed_arm *m, bool contact,
     dense_solve_columns(n, columns, mass, right);
     for (int i = 0; i < n; i++) {
         rate[i * size + n + i] = 1;
-        memcpy(rate + (n + i) * size, right + i * columns, (size_t)columns * sizeof *rate);
+        memcpy(rate + (n + i) * size, right + i * columns,
+               (size_t)columns * sizeof *rate);
     }
     for (int i = 0; i < PARTS; i++) {
         double power[WITH_TORQUE * WITH_TORQUE], product[WITH_TORQUE * WITH_TORQUE];
-        matrix_exponential(rate, size, m->period * (i + 1) / PARTS, step[i], power, product);
+        matrix_exponential(rate, size, m->period * (i + 1) / PARTS, step[i], power,
+                           product);
     }
 }
 
-// Adds weight (row step - wanted)^2, a cost of the state after a step, to that of the one before.
+// Adds weight (row step - wanted)^2, a cost of the state after a step, to that of the one
+// before.
 static void informed_cost(const informed_arm *m, const double *row, const double *step,
                           double wanted, double weight, double *cost)
 {
@@ -154,7 +173,8 @@ static void informed_cost(const informed_arm *m, const double *row, const double
 }
 
 // The gains, from the last sample back to the first by Riccati's equation.
-static void informed_design(const informed_arm *m, const informed_tuning *t, informed_plan *plan)
+static void informed_design(const informed_arm *m, const informed_tuning *t,
+                            informed_plan *plan)
 {
     static double steps[2][PARTS][WITH_TORQUE * WITH_TORQUE];
     const int n = m->bodies, size = m->state + 1, last = m->state, one = last - 1;
@@ -192,17 +212,21 @@ static void informed_design(const informed_arm *m, const informed_tuning *t, inf
         }
 
         // and that of this period
-        const double holding = contact ? m->force * length : 0, weight = t->weight * m->period;
+        const double holding = contact ? m->force * length : 0,
+                     weight = t->weight * m->period;
         cost[last * size + last] += weight;
         cost[last * size + one] -= weight * holding;
         cost[one * size + last] -= weight * holding;
         for (int i = 0; i < PARTS; i++) {
             const double time = since + part * (i + 1);
             if (contact) {
-                const double wanted = m->force * (1 - (1 - t->first) * exp(-time / t->rise));
-                informed_cost(m, force, steps[1][i], wanted, part / (m->force * m->force), cost);
+                const double wanted =
+                    m->force * (1 - (1 - t->first) * exp(-time / t->rise));
+                informed_cost(m, force, steps[1][i], wanted, part / (m->force * m->force),
+                              cost);
             } else if (t->speed > 0 && since > -LANDING) {
-                informed_cost(m, tip, steps[0][i], t->speed * time, part * LINE_COST, cost);
+                informed_cost(m, tip, steps[0][i], t->speed * time, part * LINE_COST,
+                              cost);
             }
         }
         for (int i = 0; i < last; i++) {
@@ -225,22 +249,25 @@ typedef struct informed_progress {
 
 // The next command [V] from the state when it takes effect.
 static double informed_command(const informed_arm *m, const informed_plan *plan,
-                               informed_progress *on, const sample *row, const double *state)
+                               informed_progress *on, const sample *row,
+                               const double *state)
 {
     const int n = m->bodies, again = (int)(AGAIN / m->period);
     const bool rigid = !wall_gives(&m->arm.wall), contact = row->contact > 0.5;
-    const bool bounces =
-        rigid && row->gap < LOST_GAP && !on->touched &&
-        (on->at >= plan->touch - 1 || (row->gap_velocity > 0 && on->at > plan->touch / 2));
+    const bool bounces = rigid && row->gap < LOST_GAP && !on->touched &&
+                         (on->at >= plan->touch - 1 ||
+                          (row->gap_velocity > 0 && on->at > plan->touch / 2));
     if (contact || bounces) {
         on->at = on->touched ? on->at : plan->touch;
         on->touched = true;
         on->touched_last = row->time;
-    } else if (on->touched && row->gap > LOST_GAP && row->time - on->touched_last > LOST_TIME) {
+    } else if (on->touched && row->gap > LOST_GAP &&
+               row->time - on->touched_last > LOST_TIME) {
         on->touched = false;
         on->at = plan->touch > again ? plan->touch - again : 0;
     }
-    const int most = on->touched ? plan->touch + (int)(HOLDING / m->period) : plan->touch - 1;
+    const int most =
+        on->touched ? plan->touch + (int)(HOLDING / m->period) : plan->touch - 1;
     on->at = on->at < most ? on->at : most;
 
     // tip's place and rate from the gap, which is not quite linear, and from the force
@@ -320,7 +347,8 @@ typedef struct informed_player {
     int at;
 } informed_player;
 
-static void informed_play(void *memory, const controller_input *in, controller_output *out)
+static void informed_play(void *memory, const controller_input *in,
+                          controller_output *out)
 {
     (void)in;
     informed_player *p = memory;
@@ -334,7 +362,8 @@ static const controller informed_law = {.interface = CONTROLLER_INTERFACE,
                                         .memory_size = sizeof(informed_player),
                                         .sample = informed_play};
 
-// The verdict on the law with a tuning: of a run of its own under the commands that it gave.
+// The verdict on the law with a tuning: of a run of its own under the commands that it
+// gave.
 static verdict informed_verdict(const law_case *c, double command, double open_loop,
                                 const informed_arm *m, const informed_tuning *t)
 {
@@ -349,12 +378,14 @@ static verdict informed_verdict(const law_case *c, double command, double open_l
     }
     const summary undisturbed =
         run_case(&calm, "open-loop", &(given_law){&informed_law, &quiet}, command);
-    const summary s = run_case(c, "open-loop", &(given_law){&informed_law, &given}, command);
+    const summary s =
+        run_case(c, "open-loop", &(given_law){&informed_law, &given}, command);
     return judge_runs(c, command, open_loop, &s, &undisturbed);
 }
 
 // With one tuning for all cases.
-static verdict informed_once(const law_case *c, double command, double open_loop, int knowledge)
+static verdict informed_once(const law_case *c, double command, double open_loop,
+                             int knowledge)
 {
     scenario s;
     case_scenario(&s, NULL, c, "open-loop", command);
@@ -369,7 +400,8 @@ static verdict informed_once(const law_case *c, double command, double open_loop
 static verdict informed_search(const law_case *c, double command, double open_loop)
 {
     static const double speeds[] = {0, 0.02, 0.05, 0.01}, weights[] = {1e-3, 1e-2, 1e-4};
-    static const double touches[] = {1.2, 1.35, 0.9}, rises[] = {0.03, 0.06}, firsts[] = {0.1, 0.4};
+    static const double touches[] = {1.2, 1.35, 0.9}, rises[] = {0.03, 0.06},
+                        firsts[] = {0.1, 0.4};
     scenario s;
     case_scenario(&s, NULL, c, "open-loop", command);
     const informed_arm m = informed_arm_of(&s.parameters, command);

@@ -1,6 +1,6 @@
-// The limits at which a run may end, as docs/explanation/trust.md lists them: each row of its
-// section "Where a run ends" begins with the words by which the run's message tells it. LIMITS is
-// that file.
+// The limits at which a run may end, as docs/explanation/trust.md lists them: each row of
+// its section "Where a run ends" begins with the words by which the run's message tells
+// it. LIMITS is that file.
 #pragma once
 
 #include <stdbool.h>

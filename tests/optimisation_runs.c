@@ -1,6 +1,7 @@
-// Runs of many kinds written as JSON and CSV to the standard output, without what depends on the
-// machine's speed; tests/optimisation_levels.sh compares it over the compiler's optimisation
-// levels. With names of scenarios: their runs instead (tests/second_architecture compares those).
+// Runs of many kinds written as JSON and CSV to the standard output, without what depends
+// on the machine's speed; tests/optimisation_levels.sh compares it over the compiler's
+// optimisation levels. With names of scenarios: their runs instead
+// (tests/second_architecture compares those).
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
-// Motions followed to an instant: how many steps and events they took, what the wall took, and how
-// well the energy ledger closes.
+// Motions followed to an instant: how many steps and events they took, what the wall
+// took, and how well the energy ledger closes.
 #pragma once
 
 #include "tests/arm_fixture.h"
@@ -19,7 +19,8 @@ static inline passage move_on(const arm *a, motion *m, double until, int most_st
     const double force = state_quadratures(m, m->state)[QUADRATURE_FORCE];
     while (m->state[SLOT_TIME] < until) {
         motion_report r;
-        const double work = m->state[SLOT_MOTOR_WORK], pushed = m->state[SLOT_EXTERNAL_WORK];
+        const double work = m->state[SLOT_MOTOR_WORK],
+                     pushed = m->state[SLOT_EXTERNAL_WORK];
         const double moved = state_quadratures(m, m->state)[QUADRATURE_PUSHED];
         assert_int_equal(motion_step(a, m, until, 1e-3, &r), STATUS_OK);
         assert_true(++p.steps <= most_steps);
@@ -47,8 +48,8 @@ static inline passage passage_by(const parameters *p, const engine *by, double a
     return move_on(&a, m, until, most_steps);
 }
 
-static inline passage passage_of(const parameters *p, double angle, double velocity, double until,
-                                 int most_steps)
+static inline passage passage_of(const parameters *p, double angle, double velocity,
+                                 double until, int most_steps)
 {
     return passage_by(p, NULL, angle, velocity, until, most_steps);
 }

@@ -18,7 +18,8 @@ static const double first_contact = 0.31, first_release = 0.38;
 
 static inline double force_at(double t)
 {
-    const double begins[] = {first_contact, 0.45, 0.52}, ends[] = {first_release, 0.49, 0.545};
+    const double begins[] = {first_contact, 0.45, 0.52},
+                 ends[] = {first_release, 0.49, 0.545};
     const double peaks[] = {2.1, 0.9, 0.5};
     for (int i = 0; i < 3; i++) {
         if (t >= begins[i] && t <= ends[i]) {
@@ -31,8 +32,9 @@ static inline double force_at(double t)
 static inline double angle_at(double t, double phase)
 {
     double settled = 0.1 + 0.02 * phase * exp(-3 * fabs(t - first_contact)) * cos(25 * t);
-    return t < first_contact ? 0.1 * pow(t / first_contact, 2) + 0.003 * phase * sin(40 * t)
-                             : settled;
+    return t < first_contact
+               ? 0.1 * pow(t / first_contact, 2) + 0.003 * phase * sin(40 * t)
+               : settled;
 }
 
 typedef struct synthetic {
@@ -63,10 +65,14 @@ static inline void synthetic_init(synthetic *s, const trace_panel *panels, int c
                       .force = force_at(t),
                       .contact = force_at(t) > 0,
                       .voltage = 1};
-        assert_int_equal(trace_add_row(&s->result.trace, &row, angles, angles), STATUS_OK);
+        assert_int_equal(trace_add_row(&s->result.trace, &row, angles, angles),
+                         STATUS_OK);
     }
     for (int i = 0; i < 3; i++) {
-        event e = {.time = times[i], .kind = EVENT_IMPACT, .impulse = impulses[i], .index = -1};
+        event e = {.time = times[i],
+                   .kind = EVENT_IMPACT,
+                   .impulse = impulses[i],
+                   .index = -1};
         assert_int_equal(trace_add_event(&s->result.trace, e), STATUS_OK);
     }
     s->result.summary.first_contact_s = first_contact;
@@ -84,14 +90,17 @@ static inline void synthetic_finish(synthetic *s)
 }
 
 // A synthetic run that goes when its block is left.
-#define SYNTHETIC(s, panels, count)                                                                \
-    SCOPED(synthetic_finish) synthetic s;                                                          \
+#define SYNTHETIC(s, panels, count)                                                      \
+    SCOPED(synthetic_finish) synthetic s;                                                \
     synthetic_init(&s, panels, count)
 
 static const trace_panel run_panels[] = {
     {.signals = {"force"}, .with_zero = true, .impulses = true, .inset = true},
-    {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},
-    {.label = "Angular velocity", .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
+    {.label = "Angle",
+     .signals = {"hub_angle", "first_angle", "last_angle"},
+     .wall = true},
+    {.label = "Angular velocity",
+     .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
     {.label = "Voltage", .signals = {"voltage"}, .with_zero = true, .weight = 0.5},
 };
 enum { RUN_PANELS = 4 };
@@ -117,7 +126,8 @@ static inline artwork open_figure(const char *id, figure_options o)
 static inline figure_rect record_page(const artwork *a, figure_report *report)
 {
     figure_rect ink;
-    cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
+    cairo_surface_t *surface =
+        cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
     cairo_t *cr = cairo_create(surface);
     DONE(artwork_paint(a, cr, report, &f));
     assert_int_equal(cairo_status(cr), CAIRO_STATUS_SUCCESS);
@@ -134,10 +144,12 @@ static inline figure_rect record(const figure *fig, figure_report *report)
 }
 
 // The whole page as pixels, `scale` to a point.
-static inline cairo_surface_t *page_pixels(const artwork *a, double scale, figure_report *report)
+static inline cairo_surface_t *page_pixels(const artwork *a, double scale,
+                                           figure_report *report)
 {
-    cairo_surface_t *surface = cairo_image_surface_create(
-        CAIRO_FORMAT_RGB24, (int)ceil(a->width * scale), (int)ceil(a->height * scale));
+    cairo_surface_t *surface =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(a->width * scale),
+                                   (int)ceil(a->height * scale));
     cairo_surface_set_device_scale(surface, scale, scale);
     cairo_t *cr = cairo_create(surface);
     DONE(artwork_paint(a, cr, report, &f));
@@ -146,7 +158,8 @@ static inline cairo_surface_t *page_pixels(const artwork *a, double scale, figur
     return surface;
 }
 
-static inline cairo_surface_t *paint_pixels(const figure *fig, double scale, figure_report *report)
+static inline cairo_surface_t *paint_pixels(const figure *fig, double scale,
+                                            figure_report *report)
 {
     SCOPED(artwork_finish) artwork a = artwork_of_figure(fig);
     return page_pixels(&a, scale, report);
@@ -180,18 +193,20 @@ static inline double bottom_of(const figure_rect *r)
 }
 
 // Whether r lies within `outer`, to a slack [pt].
-static inline bool rect_is_within(const figure_rect *r, const figure_rect *outer, double slack)
+static inline bool rect_is_within(const figure_rect *r, const figure_rect *outer,
+                                  double slack)
 {
     return r->x >= outer->x - slack && r->y >= outer->y - slack &&
            r->x + r->width <= outer->x + outer->width + slack &&
            r->y + r->height <= outer->y + outer->height + slack;
 }
 
-static inline void expect_inside(const figure_rect *r, const figure_rect *outer, const char *what)
+static inline void expect_inside(const figure_rect *r, const figure_rect *outer,
+                                 const char *what)
 {
     fail_if(!rect_is_within(r, outer, 0.5),
-            "%s at %g, %g of %g x %g is not within %g, %g of %g x %g", what, r->x, r->y, r->width,
-            r->height, outer->x, outer->y, outer->width, outer->height);
+            "%s at %g, %g of %g x %g is not within %g, %g of %g x %g", what, r->x, r->y,
+            r->width, r->height, outer->x, outer->y, outer->width, outer->height);
 }
 
 // Whether the letters of two texts overlap; their line boxes are taller than the letters.
@@ -211,8 +226,8 @@ static inline void expect_tidy_page(const artwork *a, figure_report *r)
     for (int i = 0; i < r->text_count; i++) {
         expect_inside(&r->texts[i].place, &page, r->texts[i].text);
         for (int k = 0; k < i; k++) {
-            fail_if(overlap(&r->texts[i].place, &r->texts[k].place), "%s: '%s' covers '%s'",
-                    a->title, r->texts[i].text, r->texts[k].text);
+            fail_if(overlap(&r->texts[i].place, &r->texts[k].place),
+                    "%s: '%s' covers '%s'", a->title, r->texts[i].text, r->texts[k].text);
         }
     }
 }
@@ -254,7 +269,8 @@ static inline pixel pixel_at(cairo_surface_t *surface, int x, int y)
 
 static inline int saturation(pixel p)
 {
-    int most = p.red > p.green ? p.red : p.green, least = p.red < p.green ? p.red : p.green;
+    int most = p.red > p.green ? p.red : p.green,
+        least = p.red < p.green ? p.red : p.green;
     most = most > p.blue ? most : p.blue;
     least = least < p.blue ? least : p.blue;
     return most - least;
@@ -265,7 +281,8 @@ static inline int coloured_pixels(cairo_surface_t *surface, double scale, figure
 {
     int count = 0;
     for (int y = (int)ceil(r.y * scale); y < (int)floor((r.y + r.height) * scale); y++) {
-        for (int x = (int)ceil(r.x * scale); x < (int)floor((r.x + r.width) * scale); x++) {
+        for (int x = (int)ceil(r.x * scale); x < (int)floor((r.x + r.width) * scale);
+             x++) {
             count += saturation(pixel_at(surface, x, y)) > 60;
         }
     }

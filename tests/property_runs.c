@@ -1,18 +1,18 @@
-// Random runs beyond the two-link arm of random_runs.c: chains of 3 to 16 links, the rig under
-// every built-in law, walls that give. What must hold of each:
+// Random runs beyond the two-link arm of random_runs.c: chains of 3 to 16 links, the rig
+// under every built-in law, walls that give. What must hold of each:
 //
 // - it comes to its end with a closed ledger, or says in a sentence why it did not;
 // - it takes less than MOST_SECONDS of a processor for a simulated second;
 // - a tenth of the step gives the same first contact and the same impulse of it;
 // - its events tell what is in contact and what sticks;
 // - no mean of its force is beyond what the force was;
-// - computed again, and resumed from a checkpoint with a change at any instant, it has the same
-// bytes.
+// - computed again, and resumed from a checkpoint with a change at any instant, it has
+// the same bytes.
 //
 //     property_runs [COUNT [FIRST [chain|rig|soft]]]
 //
-// Run i is made of its own number, so one that failed is made again by `property_runs 1 i`. The
-// last line says how many runs were made, compared, resumed and found wrong.
+// Run i is made of its own number, so one that failed is made again by `property_runs 1
+// i`. The last line says how many runs were made, compared, resumed and found wrong.
 #include "src/run/resume.h"
 #include "tests/force_means.h"
 #include "tests/random_settings.h"
@@ -68,9 +68,10 @@ typedef struct tally {
     double contact, impulse; // largest differences between the steps
 } tally;
 
-// --- what is run ------------------------------------------------------------------------------
+// --- what is run -----------------------------------------------------------------------
 
-// Kinds of wall, joint and law, then the numbers; the arm starts on this side of the wall.
+// Kinds of wall, joint and law, then the numbers; the arm starts on this side of the
+// wall.
 static bool make_run(random_run *r, uint64_t number, run_kind kind, fault *f)
 {
     static const char *const walls[] = {"point", "plane"};
@@ -95,17 +96,19 @@ static bool make_run(random_run *r, uint64_t number, run_kind kind, fault *f)
     }
 
     for (int i = 0; i < RANGES; i++) {
-        const double value = number_within(g, ranges[i].from, ranges[i].to, ranges[i].spread);
+        const double value =
+            number_within(g, ranges[i].from, ranges[i].to, ranges[i].spread);
         if ((ranges[i].kinds >> kind & 1) != 0 && random_uniform(g) < 0.5) {
             set_number(r, ranges[i].path, value);
         }
     }
     set_number(r, "initial.angle",
-               r->scenario.parameters.wall.angle - number_within(g, 0.01, 0.5, LOGARITHMIC));
+               r->scenario.parameters.wall.angle -
+                   number_within(g, 0.01, 0.5, LOGARITHMIC));
     return parameters_resolve(&r->scenario.parameters, f) == STATUS_OK;
 }
 
-// --- what is looked at ------------------------------------------------------------------------
+// --- what is looked at -----------------------------------------------------------------
 
 static void complain(tally *t, const random_run *r, const char *what, const char *more)
 {
@@ -138,7 +141,8 @@ static void check_step(tally *t, const random_run *r, const summary *of)
         t->compared++;
         t->contact = fmax(t->contact, late);
         t->impulse = fmax(t->impulse, isnan(off) ? 0 : off);
-        snprintf(text, sizeof text, "first contact %.3g s off, impulse %.3g of it", late, off);
+        snprintf(text, sizeof text, "first contact %.3g s off, impulse %.3g of it", late,
+                 off);
         if (!(late <= SAME_CONTACT) || off > SAME_IMPULSE) {
             complain(t, r, "another step, another result", text);
         }
@@ -250,9 +254,10 @@ int main(int argc, char **argv)
         }
         run_one(&t, i, kind);
     }
-    printf("%ld runs, %ld ended by the model or refused, %ld compared with a tenth of the step "
-           "(contact within %.2g s, impulse %.2g), %ld resumed, slowest %.3g s a second, %ld "
-           "wrong\n",
-           t.made, t.refused, t.compared, t.contact, t.impulse, t.resumed, t.slowest, t.wrong);
+    printf("%ld runs, %ld ended by the model or refused, %ld compared with a "
+           "tenth of the step (contact within %.2g s, impulse %.2g), %ld "
+           "resumed, slowest %.3g s a second, %ld wrong\n",
+           t.made, t.refused, t.compared, t.contact, t.impulse, t.resumed, t.slowest,
+           t.wrong);
     return t.wrong > 0;
 }

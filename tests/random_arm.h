@@ -1,5 +1,6 @@
-// Arms drawn at random, for the programs that compare engines on them: settings as "path=value",
-// kept as text so that an arm that was found wrong can be made again by hand.
+// Arms drawn at random, for the programs that compare engines on them: settings as
+// "path=value", kept as text so that an arm that was found wrong can be made again by
+// hand.
 #pragma once
 
 #include "tests/arm_fixture.h"
@@ -20,7 +21,8 @@ static double between(random_generator *g, double from, double to)
     return from * exp(random_uniform(g) * log(to / from));
 }
 
-static __attribute__((format(printf, 2, 3))) void set(random_arm *r, const char *format, ...)
+static __attribute__((format(printf, 2, 3))) void set(random_arm *r, const char *format,
+                                                      ...)
 {
     va_list values;
     va_start(values, format);
@@ -30,8 +32,8 @@ static __attribute__((format(printf, 2, 3))) void set(random_arm *r, const char 
 }
 
 // A list of numbers of one beam in pieces: `mean` times or over so much.
-static void set_list(random_arm *r, random_generator *g, const char *path, int count, double mean,
-                     double share)
+static void set_list(random_arm *r, random_generator *g, const char *path, int count,
+                     double mean, double share)
 {
     char list[LONGEST_SETTING - 32];
     int at = 0;

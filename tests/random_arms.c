@@ -1,35 +1,43 @@
-// Random arms with two to five features at once, by an engine, and by a reference: the same
-// contacts at the same instants with the same momenta, forces and losses, or the engine is wrong.
+// Random arms with two to five features at once, by an engine, and by a reference: the
+// same contacts at the same instants with the same momenta, forces and losses, or the
+// engine is wrong.
 //
 //     random_arms [NAME=VALUE]...
-//         count=200 first=0 least=1 most=8       arms FIRST to FIRST + COUNT - 1 of so many links
-//         engine=auto                            or a value of method.engine
-//         by=explicit                            implicit (to 24 links, which knows no moving walls
-//                                                and no tilt), fine (the same engine at a hundredth
-//                                                of its tolerance), or a value of method.engine
-//         gate=a                                 limits: a 1e-9 s, 1e-7 of momentum, 1e-6 of the
-//         peak;
+//         count=200 first=0 least=1 most=8       arms FIRST to FIRST + COUNT - 1 of so
+//         many links engine=auto                            or a value of method.engine
+//         by=explicit                            implicit (to 24 links, which knows no
+//         moving walls
+//                                                and no tilt), fine (the same engine at a
+//                                                hundredth of its tolerance), or a value
+//                                                of method.engine
+//         gate=a                                 limits: a 1e-9 s, 1e-7 of momentum, 1e-6
+//         of the peak;
 //                                                b 1e-11 s, 1e-9, 1e-8
 //         damping=1                              largest damping ratio
-//         tolerance=0                            or one of the engine's steps, with which the
-//         ledgers
+//         tolerance=0                            or one of the engine's steps, with which
+//         the ledgers
 //                                                close to 1e-10 of what was put in
-//         place=near                             near: links soon meet a wall at 0.1 rad; whole:
-//                                                half of them one link, walls by decades and at any
-//                                                angle, starts to both of their sides
-//         moves=0                                1: walls that move, arms in tilted planes, or
-//         both,
+//         place=near                             near: links soon meet a wall at 0.1 rad;
+//         whole:
+//                                                half of them one link, walls by decades
+//                                                and at any angle, starts to both of
+//                                                their sides
+//         moves=0                                1: walls that move, arms in tilted
+//         planes, or both,
 //                                                beside one to three features
-//         tight=0                                1: half of them one link, walls with a restitution
-//                                                up to 1, currents limited down to 1e-4 A, mostly
-//         cost=0                                 1: processor time of both, and their ratio
+//         tight=0                                1: half of them one link, walls with a
+//         restitution
+//                                                up to 1, currents limited down to 1e-4
+//                                                A, mostly
+//         cost=0                                 1: processor time of both, and their
+//         ratio
 //
-// Arm i is made of its own number. A limit is the stated one, or ten times what a mass of 1e-12
-// more, in a place a few roundings away, changes in the reference, whichever is larger: bounces
-// amplify. Limits of momentum are shares of what the wall took, and at least of a thousandth of
-// what the arm can have. Where the reference does not
-// agree with itself at another tolerance nothing is said. An arm that starts behind its wall must
-// be refused, and no other for where it starts.
+// Arm i is made of its own number. A limit is the stated one, or ten times what a mass of
+// 1e-12 more, in a place a few roundings away, changes in the reference, whichever is
+// larger: bounces amplify. Limits of momentum are shares of what the wall took, and at
+// least of a thousandth of what the arm can have. Where the reference does not agree with
+// itself at another tolerance nothing is said. An arm that starts behind its wall must be
+// refused, and no other for where it starts.
 #include <time.h>
 
 #include "src/base/clock.h"
@@ -40,7 +48,8 @@
 
 #define AFTER_CONTACT 0.0501
 #define DURATION      0.15
-#define SUBSTEPS      20    // of the explicit formula: its fastest rate times its time step
+// of the explicit formula: its fastest rate times its time step
+#define SUBSTEPS      20
 #define FASTEST       3e6   // beyond which the explicit formula takes too long [1/s]
 #define FASTEST_WHOLE 1e6   // the same with wall and motor
 #define LOSSES        1e-5  // what may be of each loss, as a share of what was put in
@@ -93,10 +102,13 @@ static void set_wall(random_arm *r, random_generator *g, const options *o)
     const bool hertz = which<0.35, face = which> 0.75;
     const double least = o->whole ? 1e-3 : hertz ? 1e2 : 1, most = hertz ? 1e6 : 300;
     set(r, "wall.contact=%s", hertz ? "hunt-crossley" : "kelvin-voigt");
-    set(r, "wall.stiffness=%.17g", between(g, o->whole ? 1 : 1e2, hertz || o->whole ? 1e8 : 1e6));
-    set(r, "wall.damping=%.17g", chance(g, 0.3) ? 0 : between(g, least, o->whole ? 1e6 : most));
+    set(r, "wall.stiffness=%.17g",
+        between(g, o->whole ? 1 : 1e2, hertz || o->whole ? 1e8 : 1e6));
+    set(r, "wall.damping=%.17g",
+        chance(g, 0.3) ? 0 : between(g, least, o->whole ? 1e6 : most));
     if (hertz) {
-        set(r, "wall.exponent=%.17g", chance(g, 0.7) ? 1.5 : between(g, 1, o->whole ? 5 : 3));
+        set(r, "wall.exponent=%.17g",
+            chance(g, 0.7) ? 1.5 : between(g, 1, o->whole ? 5 : 3));
     }
     if (face) { // which is met by an impact
         set(r, "wall.mass=%.17g", between(g, o->whole ? 1e-6 : 1e-3, o->whole ? 1e3 : 1));
@@ -105,8 +117,8 @@ static void set_wall(random_arm *r, random_generator *g, const options *o)
 }
 
 // One feature of the arm.
-static void add_feature(random_arm *r, random_generator *g, feature f, int links, bool rigid,
-                        double k2, const options *o)
+static void add_feature(random_arm *r, random_generator *g, feature f, int links,
+                        bool rigid, double k2, const options *o)
 {
     const int joints = links - (rigid ? 1 : 0);
     switch (f) {
@@ -153,8 +165,8 @@ static void add_feature(random_arm *r, random_generator *g, feature f, int links
     }
 }
 
-// Puts the arm in front of a wall at any angle, soon to meet it from one side or the other, on it,
-// or anywhere, which may be behind it.
+// Puts the arm in front of a wall at any angle, soon to meet it from one side or the
+// other, on it, or anywhere, which may be behind it.
 static void place_anywhere(random_arm *r, random_generator *g)
 {
     const double wall = 6 * random_uniform(g) - 3, where = random_uniform(g);
@@ -174,7 +186,8 @@ static void place_anywhere(random_arm *r, random_generator *g)
     set(r, "initial.angle=%.17g", r->angle);
 }
 
-// A wall that moves, from which the arm starts as far as from its place, a tilted plane, or both.
+// A wall that moves, from which the arm starts as far as from its place, a tilted plane,
+// or both.
 static void set_moving(random_arm *r, random_generator *g)
 {
     for (int i = 0; i < r->count; i++) {
@@ -189,14 +202,16 @@ static void set_moving(random_arm *r, random_generator *g)
         set(r, "wall.motion_amplitude=%.17g", amplitude);
         set(r, "wall.motion_frequency=%.17g", between(g, 1, 300));
         set(r, "wall.motion_time=%.17g", 0.1 * random_uniform(g));
-        r->angle -= copysign(1.01 * amplitude, r->velocity); // away from the side it comes to
+        r->angle -=
+            copysign(1.01 * amplitude, r->velocity); // away from the side it comes to
     }
     if (!moves || chance(g, 0.5)) {
         set(r, "arm.tilt=%.17g", (chance(g, 0.5) ? 1 : -1) * between(g, 1e-3, 1.5));
     }
 }
 
-// Whether a feature can be had beside those that there are, with so many links and joints.
+// Whether a feature can be had beside those that there are, with so many links and
+// joints.
 static bool goes_with(const bool *has, feature f, int links, int joints)
 {
     static const feature clashes[][2] = {{MODAL_DAMPING, DAMPING},
@@ -217,8 +232,8 @@ static void make_arm(random_arm *r, int number, const options *o)
 {
     random_generator g = seeded((uint64_t)number * 7919 + 17);
     r->count = 0;
-    const int drawn =
-        o->least + (int)((o->most - o->least + 1) * random_uniform(&g) * random_uniform(&g));
+    const int drawn = o->least + (int)((o->most - o->least + 1) * random_uniform(&g) *
+                                       random_uniform(&g));
     const int links = (o->whole || o->tight) && chance(&g, 0.5) ? 1 : drawn;
     const bool rigid = chance(&g, 0.4), beam = !rigid && chance(&g, 0.7);
     set(r, "arm.links=%d", links);
@@ -236,9 +251,10 @@ static void make_arm(random_arm *r, int number, const options *o)
     }
 
     // two to five different features that go together
-    bool has[FEATURES] = {
-        [CURRENT_LIMIT] = o->tight && chance(&g, 0.7), [RESTITUTION] = o->tight && chance(&g, 0.7)};
-    const int most = o->moves ? 1 + (int)random_below(&g, 3) : 2 + (int)random_below(&g, 4);
+    bool has[FEATURES] = {[CURRENT_LIMIT] = o->tight && chance(&g, 0.7),
+                          [RESTITUTION] = o->tight && chance(&g, 0.7)};
+    const int most =
+        o->moves ? 1 + (int)random_below(&g, 3) : 2 + (int)random_below(&g, 4);
     for (int wanted = most; wanted > 0;) {
         const feature f = (feature)random_below(&g, FEATURES);
         if (!has[f]) {
@@ -269,8 +285,10 @@ static bool resolve_arm(random_arm *r)
     parameters_defaults(&r->parameters, ARM_CORRECTED);
     for (int i = 0; i < r->count; i++) {
         const char *equals = strchr(r->settings[i], '=');
-        const char *path = formatted("%.*s", (int)(equals - r->settings[i]), r->settings[i]);
-        if (parameter_set_text(&r->parameters, parameter_find(path), equals + 1, &f) != STATUS_OK) {
+        const char *path =
+            formatted("%.*s", (int)(equals - r->settings[i]), r->settings[i]);
+        if (parameter_set_text(&r->parameters, parameter_find(path), equals + 1, &f) !=
+            STATUS_OK) {
             return false;
         }
     }
@@ -278,8 +296,8 @@ static bool resolve_arm(random_arm *r)
 }
 
 // A run by the method's own engine, with what `setting` says of it.
-static chain_outcome by_setting(const random_arm *r, const parameters *p, const char *path,
-                                const char *value)
+static chain_outcome by_setting(const random_arm *r, const parameters *p,
+                                const char *path, const char *value)
 {
     parameters with = *p;
     fault f;
@@ -289,8 +307,8 @@ static chain_outcome by_setting(const random_arm *r, const parameters *p, const 
         fprintf(stderr, "random_arms: %s\n", f.text);
         exit(2);
     }
-    return chain_outcome_of(&(chain_start){&with, r->angle, r->velocity, DURATION, AFTER_CONTACT,
-                                           NULL, OUTCOME_CONTACTS});
+    return chain_outcome_of(&(chain_start){&with, r->angle, r->velocity, DURATION,
+                                           AFTER_CONTACT, NULL, OUTCOME_CONTACTS});
 }
 
 // What is taken for right, coarser or finer, of an arm heavier by a share.
@@ -349,7 +367,8 @@ static double rate_of(const random_arm *r)
     double compliance = chain_contact_response(&a, work, q, false, response);
     compliance /= 1 + a.wall.face_mass * compliance;
     rate = fmax(rate, wall_rate(&a.wall, compliance, 0, speed));
-    return wall_has_face(&a.wall) ? fmax(rate, wall_face_rate(&a.wall, (wall_face){0, 1})) : rate;
+    return wall_has_face(&a.wall) ? fmax(rate, wall_face_rate(&a.wall, (wall_face){0, 1}))
+                                  : rate;
 }
 
 static bool can_follow(const random_arm *r, const options *o)
@@ -366,39 +385,42 @@ static bool can_follow(const random_arm *r, const options *o)
            (!o->moves && r->parameters.arm.links <= IMPLICIT_MOST);
 }
 
-// Distances of two outcomes: contacts as instants times their share of the first speed of approach,
-// momentum and peak as shares.
+// Distances of two outcomes: contacts as instants times their share of the first speed of
+// approach, momentum and peak as shares.
 typedef struct distances {
     double time[OUTCOME_CONTACTS], momentum, peak, peak_time, lost;
     int contacts; // in common
     bool same;    // as many contacts
 } distances;
 
-// Width of the interval in which the model determines the force on a wall that holds the whole arm
-// together with stiction [N].
+// Width of the interval in which the model determines the force on a wall that holds the
+// whole arm together with stiction [N].
 static double undetermined_force(const parameters *p)
 {
-    const bool held =
-        p->arm.links == 1 && p->arm.hub_joint == HUB_RIGID && p->wall.contact == WALL_RIGID;
+    const bool held = p->arm.links == 1 && p->arm.hub_joint == HUB_RIGID &&
+                      p->wall.contact == WALL_RIGID;
     return held ? 2 * p->motor.stiction / p->arm.length : 0;
 }
 
-static distances distances_of(const random_arm *r, const chain_outcome *a, const chain_outcome *b)
+static distances distances_of(const random_arm *r, const chain_outcome *a,
+                              const chain_outcome *b)
 {
     distances d = {.same = a->contacts == b->contacts};
     d.contacts = a->contacts < b->contacts ? a->contacts : b->contacts;
     d.contacts = d.contacts < OUTCOME_CONTACTS ? d.contacts : OUTCOME_CONTACTS;
     for (int i = 0; i < d.contacts; i++) {
-        // a contact that grazes the wall has an instant as uncertain as its speed is small
-        const double graze = fmin(1, a->contact_speeds[i] / fmax(a->contact_speeds[0], 1e-300));
+        // a contact that grazes the wall has an instant as uncertain as its speed is
+        // small
+        const double graze =
+            fmin(1, a->contact_speeds[i] / fmax(a->contact_speeds[0], 1e-300));
         const double apart = fabs(a->contact_times[i] - b->contact_times[i]);
         d.time[i] = apart * a->contact_speeds[i] < LEAST_GAP ? 0 : apart * graze;
     }
     const int samples = a->samples < b->samples ? a->samples : b->samples;
     for (int i = 0; i < samples; i++) {
         const double apart = fabs(a->momentum[i] - b->momentum[i]);
-        d.momentum =
-            fmax(d.momentum, apart - i * REFERENCE_INTERVAL * undetermined_force(&r->parameters));
+        d.momentum = fmax(d.momentum, apart - i * REFERENCE_INTERVAL *
+                                                  undetermined_force(&r->parameters));
     }
     if (samples > 0) {
         const double mass = r->parameters.arm.mass + r->parameters.arm.tip_mass;
@@ -408,7 +430,8 @@ static distances distances_of(const random_arm *r, const chain_outcome *a, const
     if (a->peak > 0) {
         d.peak = fabs(a->peak - fmax(b->peak, 0)) / fmax(a->peak, LEAST_FORCE);
     }
-    if (r->parameters.wall.motion == MOTION_NONE) { // a wall that swings makes equal peaks
+    if (r->parameters.wall.motion ==
+        MOTION_NONE) { // a wall that swings makes equal peaks
         d.peak_time = fabs(a->peak_time - b->peak_time);
     }
     const double put_in = fmax(fmax(a->put_in, b->put_in), LEAST_WORK);
@@ -419,7 +442,8 @@ static distances distances_of(const random_arm *r, const chain_outcome *a, const
     return d;
 }
 
-// The largest of the distances as a multiple of what may be; `change` is what next to nothing does.
+// The largest of the distances as a multiple of what may be; `change` is what next to
+// nothing does.
 static double worst_of(const distances *d, const distances *change, const limits *may)
 {
     double worst = 0;
@@ -441,8 +465,10 @@ static bool take_option(options *o, const char *text)
     const struct {
         const char *name;
         int *number;
-    } numbers[] = {
-        {"count", &o->count}, {"first", &o->first}, {"least", &o->least}, {"most", &o->most}};
+    } numbers[] = {{"count", &o->count},
+                   {"first", &o->first},
+                   {"least", &o->least},
+                   {"most", &o->most}};
     for (EACH(c, numbers)) {
         if (strcmp(name, c->name) == 0) {
             *c->number = atoi(value);
@@ -477,10 +503,10 @@ typedef struct tally {
     double largest, most_cost, open;
 } tally;
 
-// Whether the implicit reference finds what the run did: the explicit one takes a touch to 1e-12 m,
-// which is much on a stiff wall, and may miss a bounce of that height.
-static bool implicit_agrees(const random_arm *r, const options *o, const chain_outcome *mine,
-                            const limits *may)
+// Whether the implicit reference finds what the run did: the explicit one takes a touch
+// to 1e-12 m, which is much on a stiff wall, and may miss a bounce of that height.
+static bool implicit_agrees(const random_arm *r, const options *o,
+                            const chain_outcome *mine, const limits *may)
 {
     options other = *o;
     strcpy(other.by, "implicit");
@@ -489,16 +515,19 @@ static bool implicit_agrees(const random_arm *r, const options *o, const chain_o
     }
     const chain_outcome finer = by_reference(r, &other, 0, 2);
     const chain_outcome heavier = by_reference(r, &other, NEXT_TO_NONE, 2);
-    const distances d = distances_of(r, &finer, mine), change = distances_of(r, &finer, &heavier);
+    const distances d = distances_of(r, &finer, mine),
+                    change = distances_of(r, &finer, &heavier);
     return finer.status == STATUS_OK && d.same && worst_of(&d, &change, may) <= 1;
 }
 
 static void try_arm(random_arm *r, int number, const options *o, tally *t)
 {
-    const limits may = o->strict ? (limits){1e-11, 1e-9, 1e-8} : (limits){1e-9, 1e-7, 1e-6};
+    const limits may =
+        o->strict ? (limits){1e-11, 1e-9, 1e-8} : (limits){1e-9, 1e-7, 1e-6};
     const bool resolved = resolve_arm(r);
     const parameters *p = &r->parameters;
-    const bool behind = p->initial.angle > p->wall.angle || p->initial.angle < p->wall.angle - M_PI;
+    const bool behind =
+        p->initial.angle > p->wall.angle || p->initial.angle < p->wall.angle - M_PI;
     if (behind) {
         t->behind++;
         t->wrong += resolved;
@@ -525,8 +554,8 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
     t->compared++;
     const double least = o->tolerance > 0 ? 1e-10 : o->strict ? 1e-9 : 1e-7;
     const bool closes = mine.residual <= least * fmax(mine.put_in, LEAST_WORK);
-    if (mine.status != STATUS_OK ||
-        mine.residual > r->parameters.method.residual_bound * fmax(mine.put_in, LEAST_WORK)) {
+    if (mine.status != STATUS_OK || mine.residual > r->parameters.method.residual_bound *
+                                                        fmax(mine.put_in, LEAST_WORK)) {
         t->said++;
         t->wrong += mine.status == STATUS_NO_PROGRESS; // which is no limit of these arms
         snprintf(what, sizeof what, "%s, ledger %.3g of %.3g J", status_text(mine.status),
@@ -535,8 +564,10 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
         return;
     }
     for (int i = 1; i < mine.samples; i++) {
-        const double mean = (mine.momentum[i] - mine.momentum[i - 1]) / REFERENCE_INTERVAL;
-        if (!mean_is_within(mean, fmax(mine.peak, 0), mine.impulses, REFERENCE_INTERVAL)) {
+        const double mean =
+            (mine.momentum[i] - mine.momentum[i - 1]) / REFERENCE_INTERVAL;
+        if (!mean_is_within(mean, fmax(mine.peak, 0), mine.impulses,
+                            REFERENCE_INTERVAL)) {
             describe(r, number, "WRONG: a mean that the force never was");
             t->wrong++;
             return;
@@ -556,7 +587,8 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
         const bool ends = again.status == STATUS_OK;
         d = ends ? distances_of(r, &again, &mine) : d;
         worst = worst_of(&d, &change, &may);
-        bool sure = ends && own.same && change.same && worst_of(&own, &change, &may) < 0.3;
+        bool sure =
+            ends && own.same && change.same && worst_of(&own, &change, &may) < 0.3;
         if (sure && strcmp(o->by, "explicit") == 0) {
             sure = !implicit_agrees(r, o, &mine, &may);
         }
@@ -566,11 +598,10 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
                 at++;
             }
             snprintf(what, sizeof what,
-                     "%s (%.2g times what may be; contacts %d for %d, the %d-th %.1e s, momentum "
-                     "%.1e, peak "
-                     "%.1e, losses %.1e, ledger %.1e)",
-                     sure ? "WRONG" : "unsure", worst, mine.contacts, truth.contacts, at + 1,
-                     d.contacts > 0 ? d.time[at] : 0, d.momentum, d.peak, d.lost,
+                     "%s (%.2g times what may be; contacts %d for %d, the %d-th %.1e s, "
+                     "momentum %.1e, peak %.1e, losses %.1e, ledger %.1e)",
+                     sure ? "WRONG" : "unsure", worst, mine.contacts, truth.contacts,
+                     at + 1, d.contacts > 0 ? d.time[at] : 0, d.momentum, d.peak, d.lost,
                      mine.residual / mine.put_in);
             describe(r, number, what);
             *(sure ? &t->wrong : &t->unsure) += 1;
@@ -580,8 +611,9 @@ static void try_arm(random_arm *r, int number, const options *o, tally *t)
     t->largest = fmax(t->largest, worst);
     t->open = fmax(t->open, mine.residual / fmax(mine.put_in, LEAST_WORK));
     if (o->cost) {
-        printf("%d: %d links, %.1f us, %.1f us, ratio %.3g\n", number, r->parameters.arm.links,
-               1e6 * cost, 1e6 * reference_cost, cost / reference_cost);
+        printf("%d: %d links, %.1f us, %.1f us, ratio %.3g\n", number,
+               r->parameters.arm.links, 1e6 * cost, 1e6 * reference_cost,
+               cost / reference_cost);
     }
 }
 
@@ -600,10 +632,9 @@ int main(int argc, char **argv)
         make_arm(&r, i, &o);
         try_arm(&r, i, &o, &t);
     }
-    printf("%d compared, %d wrong, %d with an open ledger or failed, %d of which the reference is "
-           "not sure, "
-           "%d not tried, %d refused behind their wall; of the rest at most %.2g of what may be, "
-           "ledgers to %.1e\n",
+    printf("%d compared, %d wrong, %d with an open ledger or failed, %d of which the "
+           "reference is not sure, %d not tried, %d refused behind their wall; of the "
+           "rest at most %.2g of what may be, ledgers to %.1e\n",
            t.compared, t.wrong, t.said, t.unsure, t.refused, t.behind, t.largest, t.open);
     return t.wrong > 0 || t.compared == 0 || (o.whole && t.compared < t.refused);
 }

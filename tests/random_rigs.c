@@ -2,17 +2,17 @@
 //
 //     random_rigs [COUNT [FIRST [SPACING [PATH=VALUE]...]]]
 //
-// Each rig is an arm, a motor, a wall, a law and sensors, drawn at random. It is run through the
-// library with rows SPACING apart, 10 us. Readings at every sampling instant, the rows between
-// them, the commands that reach the motor and the numbers of the summary are computed again from
-// angles, velocities, accelerations, force and events, by filters written from the manual. Nothing
-// of the lab's own rig is used.
+// Each rig is an arm, a motor, a wall, a law and sensors, drawn at random. It is run
+// through the library with rows SPACING apart, 10 us. Readings at every sampling instant,
+// the rows between them, the commands that reach the motor and the numbers of the summary
+// are computed again from angles, velocities, accelerations, force and events, by filters
+// written from the manual. Nothing of the lab's own rig is used.
 //
-// How near they have to be follows from the rows: a function whose second derivative is at most D
-// differs from the straight line between two rows h apart by at most D h^2/8, and by D h^2 from one
-// that is drawn on for h; what a first-order lag makes of it differs by no more. D is taken from
-// the divided differences of neighbouring rows, twice. A converter's reading may be that of any
-// value within this error.
+// How near they have to be follows from the rows: a function whose second derivative is
+// at most D differs from the straight line between two rows h apart by at most D h^2/8,
+// and by D h^2 from one that is drawn on for h; what a first-order lag makes of it
+// differs by no more. D is taken from the divided differences of neighbouring rows,
+// twice. A converter's reading may be that of any value within this error.
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
@@ -26,11 +26,13 @@
 
 #include "src/base/random.h"
 
-#define INSTANT       1e-9 // two instants nearer than this are one [s]
-#define ROUNDING      1e-9 // of a number or of a row within a step, as a share of the largest
+#define INSTANT 1e-9 // two instants nearer than this are one [s]
+// of a number or of a row within a step, as a share of the largest
+#define ROUNDING      1e-9
 #define FOLLOWED      2e-3 // how near the rig follows a lag, as a share of the largest
 #define FOLLOWED_PEAK 1e-4 // the same of the slow lag of sensor_1ms_peak_N
-#define NINE          9.0  // 90 % over 10 %, whose logarithm is a lag's rise time over its constant
+// 90 % over 10 %, whose logarithm is a lag's rise time over its constant
+#define NINE 9.0
 
 static double spacing = 1e-5; // of rows [s]
 static char **given;          // settings that replace those drawn
@@ -38,7 +40,7 @@ static int given_count;
 
 enum { MOST_SETTINGS = 96, LONGEST_SETTING = 96, MOST_SAMPLES = 8192, MOST_CHANGES = 3 };
 
-// --- a rig that is drawn ----------------------------------------------------------------------
+// --- a rig that is drawn ---------------------------------------------------------------
 
 typedef struct rig {
     uint64_t number;
@@ -142,7 +144,8 @@ static void draw_motor(rig *r)
 static void draw_wall(rig *r)
 {
     static const char *const kinds[] = {"point", "plane"};
-    static const char *const contacts[] = {"rigid", "rigid", "kelvin-voigt", "hunt-crossley"};
+    static const char *const contacts[] = {"rigid", "rigid", "kelvin-voigt",
+                                           "hunt-crossley"};
     const char *contact = ONE_OF(r, contacts);
     const double angle = evenly(r, -0.5, 0.5), way = between(r, 0.005, 0.1);
     set(r, "wall.kind=%s", ONE_OF(r, kinds));
@@ -168,11 +171,13 @@ static void draw_wall(rig *r)
 
 static void draw_law(rig *r)
 {
-    static const char *const laws[] = {
-        "none",           "open-loop",     "hybrid",    "force-pd",  "force-integral",
-        "reverse-torque", "speed-limit",   "bang-bang", "impedance", "admittance",
-        "recovering",     "discontinuous", "open-loop", "observer"};
-    static const char *const rates[] = {"100", "200", "200", "500", "1000", "2000", "3000"};
+    static const char *const laws[] = {"none",        "open-loop",      "hybrid",
+                                       "force-pd",    "force-integral", "reverse-torque",
+                                       "speed-limit", "bang-bang",      "impedance",
+                                       "admittance",  "recovering",     "discontinuous",
+                                       "open-loop",   "observer"};
+    static const char *const rates[] = {"100",  "200",  "200", "500",
+                                        "1000", "2000", "3000"};
     const char *law = ONE_OF(r, laws), *rate = ONE_OF(r, rates);
     const double period = 1 / atof(rate);
     set(r, "control.law=%s", law);
@@ -196,7 +201,8 @@ static void draw_sensors(rig *r)
 {
     static const char *const bits[] = {"0", "0", "6", "8", "12", "16"};
     static const char *const counts[] = {"0", "500", "8000", "100000"};
-    static const char *const fits[] = {"sensor.piezo", "sensor.film", "sensor.accelerometer"};
+    static const char *const fits[] = {"sensor.piezo", "sensor.film",
+                                       "sensor.accelerometer"};
     static const char *const noises[] = {"sensor.fsr_noise", "sensor.tachometer_noise",
                                          "sensor.piezo_noise", "sensor.film_noise",
                                          "sensor.accelerometer_noise"};
@@ -266,7 +272,8 @@ static bool is(const rig *r, const char *path, const char *word)
 {
     char text[64];
     impactlab_error error;
-    if (impactlab_scenario_text(r->scenario, path, text, sizeof text, &error) != IMPACTLAB_OK) {
+    if (impactlab_scenario_text(r->scenario, path, text, sizeof text, &error) !=
+        IMPACTLAB_OK) {
         fail(path, &error);
     }
     return strcmp(text, word) == 0;
@@ -275,11 +282,18 @@ static bool is(const rig *r, const char *path, const char *word)
 // What changes during the run: errors of sensors, and pushes.
 static void draw_changes(rig *r)
 {
-    static const char *const paths[] = {
-        "sensor.encoder_gain_error", "sensor.encoder_offset", "sensor.tachometer_gain_error",
-        "sensor.tachometer_offset",  "sensor.fsr_gain_error", "sensor.fsr_offset",
-        "sensor.piezo_gain_error",   "sensor.piezo_offset",   "",
-        "sensor.tachometer_ripple",  "control.force",         "sensor.fsr_rise_time"};
+    static const char *const paths[] = {"sensor.encoder_gain_error",
+                                        "sensor.encoder_offset",
+                                        "sensor.tachometer_gain_error",
+                                        "sensor.tachometer_offset",
+                                        "sensor.fsr_gain_error",
+                                        "sensor.fsr_offset",
+                                        "sensor.piezo_gain_error",
+                                        "sensor.piezo_offset",
+                                        "",
+                                        "sensor.tachometer_ripple",
+                                        "control.force",
+                                        "sensor.fsr_rise_time"};
     impactlab_error error;
     const double duration = number(r, "run.duration");
     double at = 0;
@@ -297,8 +311,9 @@ static void draw_changes(rig *r)
         char text[32];
         snprintf(text, sizeof text, "%.17g", c->value);
         const int status =
-            *c->path != '\0' ? impactlab_scenario_add_change(r->scenario, at, c->path, text, &error)
-                             : impactlab_scenario_add_push(r->scenario, at, c->value, &error);
+            *c->path != '\0'
+                ? impactlab_scenario_add_change(r->scenario, at, c->path, text, &error)
+                : impactlab_scenario_add_push(r->scenario, at, c->value, &error);
         if (status != IMPACTLAB_OK) {
             fail("change", &error);
         }
@@ -344,7 +359,8 @@ static bool draw(rig *r, uint64_t which)
     if (impactlab_scenario_create(&r->scenario, &error) != IMPACTLAB_OK) {
         fail("create", &error);
     }
-    const int status = impactlab_scenario_set_all(r->scenario, all, (size_t)r->count, &error);
+    const int status =
+        impactlab_scenario_set_all(r->scenario, all, (size_t)r->count, &error);
     if (status != IMPACTLAB_OK) {
         printf("%" PRIu64 ": refused: %s\n", which, error.sentence);
     }
@@ -354,12 +370,12 @@ static bool draw(rig *r, uint64_t which)
     return status == IMPACTLAB_OK;
 }
 
-// --- what is said of it -----------------------------------------------------------------------
+// --- what is said of it ----------------------------------------------------------------
 
 enum { MOST_KINDS = 64, MOST_SAID = 8 };
 
-// Where the lab does not agree yet, by how much at most, and why. These count apart; a line goes
-// with what it is about.
+// Where the lab does not agree yet, by how much at most, and why. These count apart; a
+// line goes with what it is about.
 static const struct known {
     const char *what;
     double most;
@@ -408,7 +424,8 @@ static struct kind *kind_of(const char *what)
 }
 
 // A value that is to lie between two others; `at` [s] says where it belongs.
-static void expect(rig *r, const char *what, double at, double got, double low, double high)
+static void expect(rig *r, const char *what, double at, double got, double low,
+                   double high)
 {
     checked++;
     if (got >= low && got <= high) {
@@ -422,8 +439,8 @@ static void expect(rig *r, const char *what, double at, double got, double low, 
         k->rigs++;
     }
     if (counts && r->wrong < MOST_SAID) {
-        printf("%" PRIu64 ": %s at %.9g s is %.10g, expected %.10g to %.10g\n", r->number, what, at,
-               got, low, high);
+        printf("%" PRIu64 ": %s at %.9g s is %.10g, expected %.10g to %.10g\n", r->number,
+               what, at, got, low, high);
     }
     if (!(off <= k->worst)) {
         k->worst = off;
@@ -442,7 +459,7 @@ static void expect_near(rig *r, const char *what, double at, double got, double 
     expect(r, what, at, got, wanted - error, wanted + error);
 }
 
-// --- the motion -------------------------------------------------------------------------------
+// --- the motion ------------------------------------------------------------------------
 
 enum column {
     TIME,
@@ -484,15 +501,42 @@ enum column {
     COLUMNS
 };
 
-static const char *const column_names[COLUMNS] = {
-    "time",           "hub_angle",      "first_angle",      "last_angle",    "hub_velocity",
-    "first_velocity", "last_velocity",  "hub_acceleration", "gap",           "gap_velocity",
-    "force",          "impulse",        "contact",          "sticking",      "voltage",
-    "motor_torque",   "kinetic_energy", "strain_energy",    "motor_work",    "external_work",
-    "viscous_loss",   "friction_loss",  "damping_loss",     "impact_loss",   "energy_residual",
-    "wall_energy",    "wall_loss",      "wall_work",        "weight_energy", "command",
-    "encoder",        "tachometer",     "force_reading",    "piezo_force",   "film",
-    "accelerometer"};
+static const char *const column_names[COLUMNS] = {"time",
+                                                  "hub_angle",
+                                                  "first_angle",
+                                                  "last_angle",
+                                                  "hub_velocity",
+                                                  "first_velocity",
+                                                  "last_velocity",
+                                                  "hub_acceleration",
+                                                  "gap",
+                                                  "gap_velocity",
+                                                  "force",
+                                                  "impulse",
+                                                  "contact",
+                                                  "sticking",
+                                                  "voltage",
+                                                  "motor_torque",
+                                                  "kinetic_energy",
+                                                  "strain_energy",
+                                                  "motor_work",
+                                                  "external_work",
+                                                  "viscous_loss",
+                                                  "friction_loss",
+                                                  "damping_loss",
+                                                  "impact_loss",
+                                                  "energy_residual",
+                                                  "wall_energy",
+                                                  "wall_loss",
+                                                  "wall_work",
+                                                  "weight_energy",
+                                                  "command",
+                                                  "encoder",
+                                                  "tachometer",
+                                                  "force_reading",
+                                                  "piezo_force",
+                                                  "film",
+                                                  "accelerometer"};
 
 // An instant at which the rig samples, and what it reads there.
 typedef struct sample {
@@ -567,7 +611,8 @@ static void read_samples(const rig *r, motion *m)
         m->samples[m->sample_count++] =
             (sample){.time = impactlab_loop_time(loop),
                      .reading = {reading.encoder, reading.tachometer, reading.force,
-                                 reading.piezo_force, reading.film, reading.accelerometer}};
+                                 reading.piezo_force, reading.film,
+                                 reading.accelerometer}};
         if (impactlab_loop_step(loop, &error) != IMPACTLAB_OK) {
             break;
         }
@@ -583,9 +628,10 @@ static void forget(motion *m)
     impactlab_run_destroy(m->run);
 }
 
-// --- converters -------------------------------------------------------------------------------
+// --- converters ------------------------------------------------------------------------
 
-// A value as a converter of so many bits has it: whole steps, the largest one below its range.
+// A value as a converter of so many bits has it: whole steps, the largest one below its
+// range.
 static double converted(double value, double bits, double range)
 {
     if (bits == 0) {
@@ -595,7 +641,7 @@ static double converted(double value, double bits, double range)
     return fmax(-range, fmin(range - step, round(value / step) * step));
 }
 
-// --- commands ---------------------------------------------------------------------------------
+// --- commands --------------------------------------------------------------------------
 
 // The row of an instant's first one, or the first one after it.
 static size_t row_at(const motion *m, double t)
@@ -616,13 +662,13 @@ static size_t row_at(const motion *m, double t)
 static void follow_commands(const rig *r, motion *m)
 {
     const double most = number(r, "motor.current_limit");
-    const double limit =
-        is(r, "motor.drive", "current") && most > 0
-            ? fmin(number(r, "motor.voltage_limit"), most / number(r, "motor.transconductance"))
-            : number(r, "motor.voltage_limit");
+    const double limit = is(r, "motor.drive", "current") && most > 0
+                             ? fmin(number(r, "motor.voltage_limit"),
+                                    most / number(r, "motor.transconductance"))
+                             : number(r, "motor.voltage_limit");
     const double bits = is(r, "sensor.ideal", "true") ? 0 : number(r, "sensor.dac_bits");
-    const double delay =
-        number(r, "control.delay") + number(r, "control.delay_periods") / number(r, "control.rate");
+    const double delay = number(r, "control.delay") +
+                         number(r, "control.delay_periods") / number(r, "control.rate");
     for (int k = 0; k < m->sample_count; k++) {
         sample *s = &m->samples[k];
         const size_t row = row_at(m, s->time + INSTANT);
@@ -668,18 +714,21 @@ static void check_rows(rig *r, motion *m)
         if (held >= 0 && !(on_sample && !last_there)) {
             for (int c = 0; c < 6; c++) {
                 const double wanted = m->samples[held].reading[c];
-                expect_near(r, on_sample ? "row on a sampling instant" : "row between two samples",
+                expect_near(r,
+                            on_sample ? "row on a sampling instant"
+                                      : "row between two samples",
                             t, m->of[ENCODER + c][i], wanted, 1e-12 * (1 + fabs(wanted)));
             }
         }
 
         // what acts on the motor
-        while (applied + 1 < m->sample_count && m->samples[applied + 1].applied <= t - INSTANT) {
+        while (applied + 1 < m->sample_count &&
+               m->samples[applied + 1].applied <= t - INSTANT) {
             applied++;
         }
         const double before = applied >= 0 ? m->samples[applied].voltage : 0;
-        const bool on_change =
-            applied + 1 < m->sample_count && fabs(m->samples[applied + 1].applied - t) < INSTANT;
+        const bool on_change = applied + 1 < m->sample_count &&
+                               fabs(m->samples[applied + 1].applied - t) < INSTANT;
         const double after = on_change ? m->samples[applied + 1].voltage : before;
         if (!isnan(before) && !isnan(after)) {
             const double v = m->of[VOLTAGE][i];
@@ -691,7 +740,8 @@ static void check_rows(rig *r, motion *m)
 
 static void check_instants(rig *r, const motion *m)
 {
-    const double period = 1 / number(r, "control.rate"), width = number(r, "control.jitter");
+    const double period = 1 / number(r, "control.rate"),
+                 width = number(r, "control.jitter");
     double first = INFINITY, last = -INFINITY;
     for (int k = 0; k < m->sample_count; k++) {
         const double late = m->samples[k].time - k * period;
@@ -704,7 +754,7 @@ static void check_instants(rig *r, const motion *m)
     }
 }
 
-// --- a function between the rows --------------------------------------------------------------
+// --- a function between the rows -------------------------------------------------------
 
 // A straight line between two instants, and by how much the function may differ from it.
 typedef struct piece {
@@ -717,13 +767,15 @@ typedef struct pieces {
     size_t count;
 } pieces;
 
-// The instant of a change of the voltage in or at the ends of (from, to); NAN if there is none.
+// The instant of a change of the voltage in or at the ends of (from, to); NAN if there is
+// none.
 static double change_within(const motion *m, int *next, double from, double to)
 {
     while (*next < m->sample_count && m->samples[*next].applied < from - INSTANT) {
         ++*next;
     }
-    for (int k = *next; k < m->sample_count && m->samples[k].applied < to + INSTANT; k++) {
+    for (int k = *next; k < m->sample_count && m->samples[k].applied < to + INSTANT;
+         k++) {
         const double before = k > 0 ? m->samples[k - 1].voltage : 0;
         if (m->samples[k].voltage != before) {
             return fmax(from, fmin(to, m->samples[k].applied));
@@ -745,8 +797,8 @@ static double bend(const piece *p, const piece *q)
     return joined && wide ? 2 * fabs(slope(q) - slope(p)) / (q->to - p->from) : 0;
 }
 
-// The pieces of a column. Where the voltage changes between two rows, which makes it jump, the
-// lines beyond both are drawn on to that instant.
+// The pieces of a column. Where the voltage changes between two rows, which makes it
+// jump, the lines beyond both are drawn on to that instant.
 static pieces pieces_of(const motion *m, const double *column)
 {
     const double *t = m->of[TIME];
@@ -760,7 +812,8 @@ static pieces pieces_of(const motion *m, const double *column)
                               ? change_within(m, &next, t[i], t[i + 1])
                               : (double)NAN;
         if (isnan(at)) {
-            made.of[made.count++] = (piece){t[i], t[i + 1], column[i], column[i + 1], 0, false};
+            made.of[made.count++] =
+                (piece){t[i], t[i + 1], column[i], column[i + 1], 0, false};
             continue;
         }
 
@@ -770,7 +823,8 @@ static pieces pieces_of(const motion *m, const double *column)
             before += (column[i] - column[i - 1]) / (t[i] - t[i - 1]) * (at - t[i]);
         }
         if (i + 2 < m->count && t[i + 2] - t[i + 1] > INSTANT) {
-            after += (column[i + 2] - column[i + 1]) / (t[i + 2] - t[i + 1]) * (at - t[i + 1]);
+            after +=
+                (column[i + 2] - column[i + 1]) / (t[i + 2] - t[i + 1]) * (at - t[i + 1]);
         }
         made.of[made.count++] = (piece){t[i], at, column[i], before, 0, true};
         made.of[made.count++] = (piece){at, t[i + 1], after, column[i + 1], 0, true};
@@ -784,7 +838,8 @@ static pieces pieces_of(const motion *m, const double *column)
         }
         piece *p = &made.of[i];
         const double h = p->drawn ? spacing : p->to - p->from;
-        p->error = 2 * most * h * h / (p->drawn ? 1 : 8) + 1e-12 * (fabs(p->begin) + fabs(p->end));
+        p->error = 2 * most * h * h / (p->drawn ? 1 : 8) +
+                   1e-12 * (fabs(p->begin) + fabs(p->end));
     }
     return made;
 }
@@ -812,7 +867,7 @@ static double integral(const pieces *f, double from, double to, double *error)
     return sum;
 }
 
-// --- jumps ------------------------------------------------------------------------------------
+// --- jumps -----------------------------------------------------------------------------
 
 // What acts in an instant: the impulse of an impact, or a change of the hub's velocity.
 typedef struct blow {
@@ -850,7 +905,7 @@ static blow_list jumps_of(const motion *m, const double *column)
     return made;
 }
 
-// --- filters ----------------------------------------------------------------------------------
+// --- filters ---------------------------------------------------------------------------
 
 // A first-order lag, T y' + y = f, and behind it what a leak takes off, S w' + w = y.
 typedef struct lag {
@@ -946,7 +1001,8 @@ static void follower_reach(follower *f, double t)
         const piece *p = &f->of->of[f->piece];
 
         // blows at the beginning of the piece
-        while (f->blow < f->blows->count && f->blows->of[f->blow].time <= f->now + 1e-13 &&
+        while (f->blow < f->blows->count &&
+               f->blows->of[f->blow].time <= f->now + 1e-13 &&
                f->blows->of[f->blow].time < t - INSTANT) {
             follower_strike(f, f->blows->of[f->blow].size);
             f->blow++;
@@ -967,7 +1023,8 @@ static void follower_reach(follower *f, double t)
     }
 }
 
-static follower follower_of(const pieces *of, const blow_list *blows, double rise, double leak)
+static follower follower_of(const pieces *of, const blow_list *blows, double rise,
+                            double leak)
 {
     const double begin = rise == 0 && of->count > 0 ? of->of[0].begin : 0;
     double largest = 0;
@@ -999,7 +1056,7 @@ static bool is_unclear(const motion *m, int k)
     return false;
 }
 
-// --- sensors ----------------------------------------------------------------------------------
+// --- sensors ---------------------------------------------------------------------------
 
 typedef struct channel {
     double gain_error, offset; // of what is shown
@@ -1022,8 +1079,8 @@ static double shown(const channel *c, double value)
     return converted(c->volts * value, c->bits, c->adc_range) / c->volts;
 }
 
-static channel channel_of(const rig *r, const char *sensor, const char *volts, bool has_range,
-                          double t)
+static channel channel_of(const rig *r, const char *sensor, const char *volts,
+                          bool has_range, double t)
 {
     char path[64];
     channel c = {.volts = number(r, volts),
@@ -1044,9 +1101,11 @@ static channel channel_of(const rig *r, const char *sensor, const char *volts, b
 // What the FSR's gain stage gives for a force above zero [V].
 static double fsr_volts(const rig *r, double x)
 {
-    const double R = number(r, "sensor.fsr_resistance") * pow(x, -number(r, "sensor.fsr_exponent"));
+    const double R =
+        number(r, "sensor.fsr_resistance") * pow(x, -number(r, "sensor.fsr_exponent"));
     const double divider = number(r, "sensor.fsr_divider");
-    return number(r, "sensor.fsr_supply") * number(r, "sensor.fsr_gain") * divider / (divider + R);
+    return number(r, "sensor.fsr_supply") * number(r, "sensor.fsr_gain") * divider /
+           (divider + R);
 }
 
 // The FSR's circuit: resistance by a power law, divider, gain stage, converter, and back.
@@ -1056,16 +1115,18 @@ static double fsr_shown(const rig *r, double x, double t)
         return x;
     }
     const double saturation = number(r, "sensor.fsr_saturation");
-    x = (1 + number_at(r, "sensor.fsr_gain_error", t)) * x + number_at(r, "sensor.fsr_offset", t);
+    x = (1 + number_at(r, "sensor.fsr_gain_error", t)) * x +
+        number_at(r, "sensor.fsr_offset", t);
     x = fmin(x, saturation);
     if (!(x > 0)) {
         return 0;
     }
-    const double R1 = number(r, "sensor.fsr_resistance"), p = number(r, "sensor.fsr_exponent");
+    const double R1 = number(r, "sensor.fsr_resistance"),
+                 p = number(r, "sensor.fsr_exponent");
     const double divider = number(r, "sensor.fsr_divider");
     const double full = number(r, "sensor.fsr_supply") * number(r, "sensor.fsr_gain");
-    const double volts =
-        converted(fsr_volts(r, x), number(r, "sensor.adc_bits"), number(r, "sensor.adc_range"));
+    const double volts = converted(fsr_volts(r, x), number(r, "sensor.adc_bits"),
+                                   number(r, "sensor.adc_range"));
     if (volts <= 0) {
         return 0;
     }
@@ -1084,7 +1145,8 @@ static void expect_reading(rig *r, const char *what, const sample *s, int c, dou
 
 static void check_angles(rig *r, const motion *m)
 {
-    pieces angle = pieces_of(m, m->of[HUB_ANGLE]), rate = pieces_of(m, m->of[HUB_VELOCITY]);
+    pieces angle = pieces_of(m, m->of[HUB_ANGLE]),
+           rate = pieces_of(m, m->of[HUB_VELOCITY]);
     const bool ideal = is(r, "sensor.ideal", "true");
     const double counts = number(r, "sensor.encoder_counts");
     const double ripples = number(r, "sensor.tachometer_ripple_count");
@@ -1121,7 +1183,8 @@ static void check_angles(rig *r, const motion *m)
         expect_reading(r, "encoder", s, 0, low, high);
 
         // tachometer
-        const double tacho_gain = 1 + number_at(r, "sensor.tachometer_gain_error", s->time);
+        const double tacho_gain =
+            1 + number_at(r, "sensor.tachometer_gain_error", s->time);
         const double tacho_offset = number_at(r, "sensor.tachometer_offset", s->time);
         const double ripple = number_at(r, "sensor.tachometer_ripple", s->time);
         low = w_low;
@@ -1138,7 +1201,8 @@ static void check_angles(rig *r, const motion *m)
     free(rate.of);
 }
 
-// The bounds of what goes into the converter at a sample, of a sensor that a lag stands for.
+// The bounds of what goes into the converter at a sample, of a sensor that a lag stands
+// for.
 static void bounds_at(const motion *m, int k, follower *f, double *low, double *high)
 {
     follower_reach(f, m->samples[k].time);
@@ -1183,11 +1247,13 @@ static void follow_rise_time(const rig *r, follower *f, double t)
     }
 }
 
-static void check_fsr(rig *r, const motion *m, const pieces *force, const blow_list *impulses)
+static void check_fsr(rig *r, const motion *m, const pieces *force,
+                      const blow_list *impulses)
 {
     const bool ideal = is(r, "sensor.ideal", "true");
     const double share = ideal ? 0 : number(r, "sensor.fsr_hysteresis");
-    follower f = follower_of(force, impulses, ideal ? 0 : number(r, "sensor.fsr_rise_time"), 0);
+    follower f =
+        follower_of(force, impulses, ideal ? 0 : number(r, "sensor.fsr_rise_time"), 0);
     f.share = share;
     for (int k = 0; k < m->sample_count; k++) {
         double low, high;
@@ -1196,8 +1262,10 @@ static void check_fsr(rig *r, const motion *m, const pieces *force, const blow_l
         }
         bounds_at(m, k, &f, &low, &high);
         if (share > 0) {
-            const double up = fmax((1 - share) * high, fmin(f.play_high, (1 + share) * high));
-            const double down = fmax((1 - share) * low, fmin(f.play_low, (1 + share) * low));
+            const double up =
+                fmax((1 - share) * high, fmin(f.play_high, (1 + share) * high));
+            const double down =
+                fmax((1 - share) * low, fmin(f.play_low, (1 + share) * low));
             low = fmin(down, up);
             high = fmax(down, up);
         }
@@ -1207,7 +1275,8 @@ static void check_fsr(rig *r, const motion *m, const pieces *force, const blow_l
     }
 }
 
-static void check_optional(rig *r, const motion *m, const pieces *force, const blow_list *impulses)
+static void check_optional(rig *r, const motion *m, const pieces *force,
+                           const blow_list *impulses)
 {
     const bool ideal = is(r, "sensor.ideal", "true"), law = m->sample_count > 0;
     const bool piezo = is(r, "sensor.piezo", "true") || is(r, "sensor.force", "piezo");
@@ -1222,9 +1291,11 @@ static void check_optional(rig *r, const motion *m, const pieces *force, const b
     const channel hub_channel =
         channel_of(r, "accelerometer", "sensor.accelerometer_gain", true, 0);
 
-    follower p = follower_of(force, impulses, ideal ? 0 : number(r, "sensor.piezo_rise_time"),
-                             ideal ? 0 : number(r, "sensor.piezo_leak_time"));
-    follower b = follower_of(&bend, &none, 0, ideal ? 0 : number(r, "sensor.film_leak_time"));
+    follower p =
+        follower_of(force, impulses, ideal ? 0 : number(r, "sensor.piezo_rise_time"),
+                    ideal ? 0 : number(r, "sensor.piezo_leak_time"));
+    follower b =
+        follower_of(&bend, &none, 0, ideal ? 0 : number(r, "sensor.film_leak_time"));
     follower a = follower_of(&acceleration, &jerks,
                              ideal ? 0 : number(r, "sensor.accelerometer_rise_time"), 0);
     for (int k = 0; law && k < m->sample_count; k++) {
@@ -1239,7 +1310,8 @@ static void check_optional(rig *r, const motion *m, const pieces *force, const b
         }
         if (is(r, "sensor.film", "true")) {
             bounds_at(m, k, &b, &low, &high);
-            expect_reading(r, "film", s, 4, shown(&film_channel, low), shown(&film_channel, high));
+            expect_reading(r, "film", s, 4, shown(&film_channel, low),
+                           shown(&film_channel, high));
         }
         // the command of the first sample may act at once, before the first row
         if (is(r, "sensor.accelerometer", "true") && (k > 0 || a.state.T > 0)) {
@@ -1254,7 +1326,7 @@ static void check_optional(rig *r, const motion *m, const pieces *force, const b
     free(jerks.of);
 }
 
-// --- the summary ------------------------------------------------------------------------------
+// --- the summary -----------------------------------------------------------------------
 
 typedef struct touches {
     double first, release; // first contact, first release [s], NAN if there is none
@@ -1325,7 +1397,8 @@ static void check_peak(rig *r, const motion *m, const pieces *force, const char 
     const double slack = 1e-9 * fabs(l.high) + 1e-9;
     expect(r, what, first, peak, l.low - slack, l.high + slack);
     if (l.high > 1e-6 && !isnan(at)) {
-        const largest there = largest_within(force, first + at - spacing, first + at + spacing);
+        const largest there =
+            largest_within(force, first + at - spacing, first + at + spacing);
         expect(r, when, first + at, peak, -INFINITY, there.high + slack);
     }
 }
@@ -1370,11 +1443,13 @@ static void check_steady(rig *r, const motion *m, const pieces *force, const tou
     // overshoot
     if (steady > 1e-3) {
         const double over = 100 * (peak - steady) / steady;
-        expect_near(r, "force_overshoot_percent", m->ends, quantity(m, "force_overshoot_percent"),
-                    over, 100 * peak / steady * (error / steady + 1e-9));
+        expect_near(r, "force_overshoot_percent", m->ends,
+                    quantity(m, "force_overshoot_percent"), over,
+                    100 * peak / steady * (error / steady + 1e-9));
     }
 
-    // settled once the force stays within 5 % of its final value: with a wider and a narrower band
+    // settled once the force stays within 5 % of its final value: with a wider and a
+    // narrower band
     if (steady > 1e-3) {
         double earliest = t->first, latest = t->first;
         for (size_t i = 0; i < force->count; i++) {
@@ -1384,8 +1459,9 @@ static void check_steady(rig *r, const motion *m, const pieces *force, const tou
                 continue;
             }
             if (off - p->error > 0.05 * steady + error) {
-                earliest =
-                    fabs(p->end - steady) > 0.05 * steady + error + p->error ? p->to : p->from;
+                earliest = fabs(p->end - steady) > 0.05 * steady + error + p->error
+                               ? p->to
+                               : p->from;
             }
             if (off + p->error > 0.05 * steady - error) {
                 latest = p->to;
@@ -1393,8 +1469,8 @@ static void check_steady(rig *r, const motion *m, const pieces *force, const tou
         }
         const double settled = quantity(m, "settling_time_s");
         if (isnan(settled)) {
-            expect(r, "settling_time_s is null, settled", m->ends, latest, m->ends - 2 * spacing,
-                   INFINITY);
+            expect(r, "settling_time_s is null, settled", m->ends, latest,
+                   m->ends - 2 * spacing, INFINITY);
         } else {
             expect(r, "settling_time_s", m->ends, settled, earliest - t->first - INSTANT,
                    latest - t->first + INSTANT);
@@ -1412,10 +1488,10 @@ static bool commands_one_force(const rig *r)
     return one;
 }
 
-// The largest mean of the force over 5 ms, impulses included, with windows from 20 ms after first
-// contact on: bounds of it.
-static void check_smoothed(rig *r, const motion *m, const pieces *force, const blow_list *impulses,
-                           const touches *t)
+// The largest mean of the force over 5 ms, impulses included, with windows from 20 ms
+// after first contact on: bounds of it.
+static void check_smoothed(rig *r, const motion *m, const pieces *force,
+                           const blow_list *impulses, const touches *t)
 {
     const double window = 0.005, from = t->first + 0.02;
     const double said = quantity(m, "smoothed_over_command_N");
@@ -1425,7 +1501,8 @@ static void check_smoothed(rig *r, const motion *m, const pieces *force, const b
     }
 
     // running integral at the ends of pieces
-    double *sum = malloc((force->count + 1) * sizeof(double)), low = -INFINITY, high = -INFINITY;
+    double *sum = malloc((force->count + 1) * sizeof(double)), low = -INFINITY,
+           high = -INFINITY;
     double error = 0;
     sum[0] = 0;
     for (size_t i = 0; i < force->count; i++) {
@@ -1445,13 +1522,14 @@ static void check_smoothed(rig *r, const motion *m, const pieces *force, const b
             tail++;
         }
         const piece *p = &force->of[tail];
-        const double part =
-            (p->to - begin) * (value_within(p, begin) + p->end) / 2 + sum[i + 1] - sum[tail + 1];
+        const double part = (p->to - begin) * (value_within(p, begin) + p->end) / 2 +
+                            sum[i + 1] - sum[tail + 1];
         double struck = 0, perhaps = 0;
         for (size_t k = 0; k < impulses->count; k++) {
             const double at = impulses->of[k].time;
             struck += at > begin + 1e-12 && at < end + 1e-12 ? impulses->of[k].size : 0;
-            perhaps += at > begin - spacing && at < end + spacing ? impulses->of[k].size : 0;
+            perhaps +=
+                at > begin - spacing && at < end + spacing ? impulses->of[k].size : 0;
         }
         if (begin >= from) {
             low = fmax(low, (part + struck) / window);
@@ -1480,10 +1558,12 @@ static void check_sensor_peak(rig *r, const motion *m, const pieces *force,
         const double end = force->of[i].to;
         follower_reach(&f, end);
         lag after = f.state;
-        for (size_t k = f.blow; k < impulses->count && impulses->of[k].time <= end + 1e-13; k++) {
+        for (size_t k = f.blow;
+             k < impulses->count && impulses->of[k].time <= end + 1e-13; k++) {
             lag_strike(&after, impulses->of[k].size);
         }
-        const double above = turning(&f.state, &force->of[i], force->of[i].to - force->of[i].from);
+        const double above =
+            turning(&f.state, &force->of[i], force->of[i].to - force->of[i].from);
         low = fmax(low, after.y - after.y_error);
         high = fmax(high, fmax(after.y, f.state.y + above) + after.y_error);
     }
@@ -1510,7 +1590,8 @@ static largest speed_towards(const motion *m, bool before, double t)
     pieces gap_rate = pieces_of(m, m->of[GAP_VELOCITY]);
     for (size_t i = 0; i < m->count; i++) {
         const double at = m->of[TIME][i];
-        if (before ? at <= t && m->of[CONTACT][i] == 0 : at > t && m->of[CONTACT][i] == 0) {
+        if (before ? at <= t && m->of[CONTACT][i] == 0
+                   : at > t && m->of[CONTACT][i] == 0) {
             l.low = fmax(l.low, -m->of[GAP_VELOCITY][i]);
         }
     }
@@ -1532,7 +1613,8 @@ static void check_law(rig *r, const motion *m, const touches *t)
     }
     const double wanted = number_at(r, "control.force", m->ends),
                  peak = quantity(m, "peak_force_N");
-    expect_near(r, "force_command_N", m->ends, quantity(m, "force_command_N"), wanted, 1e-9);
+    expect_near(r, "force_command_N", m->ends, quantity(m, "force_command_N"), wanted,
+                1e-9);
     if (!isnan(peak) && commands_one_force(r)) {
         expect_near(r, "force_over_command_N", 0, quantity(m, "force_over_command_N"),
                     peak - wanted, 1e-9);
@@ -1543,7 +1625,8 @@ static void check_law(rig *r, const motion *m, const touches *t)
     }
     const double command =
         fmax(largest_of(m, m->of[VOLTAGE], 1), largest_of(m, m->of[VOLTAGE], -1));
-    expect_near(r, "largest_command_V", 0, quantity(m, "largest_command_V"), command, 1e-9);
+    expect_near(r, "largest_command_V", 0, quantity(m, "largest_command_V"), command,
+                1e-9);
 
     // speeds
     largest l = speed_towards(m, true, isnan(t->first) ? m->ends : t->first);
@@ -1552,7 +1635,8 @@ static void check_law(rig *r, const motion *m, const touches *t)
     if (!isnan(t->first)) {
         l = speed_towards(m, false, t->first);
         const double said = or_zero(quantity(m, "return_speed_m_s"));
-        expect(r, "return_speed_m_s", 0, said, fmax(0, l.low) - 1e-9, fmax(0, l.high) + 1e-9);
+        expect(r, "return_speed_m_s", 0, said, fmax(0, l.low) - 1e-9,
+               fmax(0, l.high) + 1e-9);
     }
 }
 
@@ -1570,11 +1654,13 @@ static void check_depth(rig *r, const motion *m)
            rigid ? 1e-9 : deepest + error);
     const double loss = quantity(m, "wall_loss_J");
     if (!isnan(loss)) {
-        expect_near(r, "wall_loss_J", m->ends, loss, m->of[WALL_LOSS][m->count - 1], 1e-15);
+        expect_near(r, "wall_loss_J", m->ends, loss, m->of[WALL_LOSS][m->count - 1],
+                    1e-15);
     }
 }
 
-// Impulses and losses of impacts on a wall at rest: those of events, of rows, and by the formula.
+// Impulses and losses of impacts on a wall at rest: those of events, of rows, and by the
+// formula.
 static void check_impacts(rig *r, const motion *m)
 {
     double impulses = 0, losses = 0, of_rows = 0, heaviest = 0;
@@ -1596,15 +1682,18 @@ static void check_impacts(rig *r, const motion *m)
         losses += e.loss;
         heaviest = fmax(heaviest, e.impulse);
         if (at_rest && !chatter) {
-            const double restitution = e.speed < rest_speed ? 0 : number(r, "wall.restitution");
+            const double restitution =
+                e.speed < rest_speed ? 0 : number(r, "wall.restitution");
             const double loss = e.impulse * (1 - restitution) * e.speed / 2;
-            expect_near(r, "loss of an impact", e.time, e.loss, loss, 1e-9 * loss + 1e-15);
+            expect_near(r, "loss of an impact", e.time, e.loss, loss,
+                        1e-9 * loss + 1e-15);
         }
     }
     for (size_t i = 0; i < m->count; i++) {
         of_rows += or_zero(m->of[IMPULSE][i]);
     }
-    expect_near(r, "impulses of the rows", m->ends, of_rows, impulses, 1e-12 * (1 + impulses));
+    expect_near(r, "impulses of the rows", m->ends, of_rows, impulses,
+                1e-12 * (1 + impulses));
     expect_near(r, "impact_loss", m->ends, m->of[IMPACT_LOSS][m->count - 1], losses,
                 1e-12 * (1 + losses));
 }
@@ -1630,7 +1719,8 @@ static void check_contact_law(rig *r, const motion *m)
     }
 }
 
-static void check_summary(rig *r, const motion *m, const pieces *force, const blow_list *impulses)
+static void check_summary(rig *r, const motion *m, const pieces *force,
+                          const blow_list *impulses)
 {
     const touches t = touches_of(m);
     expect_near(r, "first_contact_s", 0, quantity(m, "first_contact_s"), t.first, 1e-12);
@@ -1646,16 +1736,18 @@ static void check_summary(rig *r, const motion *m, const pieces *force, const bl
     const double until = isnan(t.release) ? m->ends : t.release;
     check_peak(r, m, force, "peak_force_N", "time_to_peak_s", t.first, m->ends);
     if (quantity(m, "first_pulse_peak_N") > 0) {
-        check_peak(r, m, force, "first_pulse_peak_N", "first_pulse_time_to_peak_s", t.first, until);
+        check_peak(r, m, force, "first_pulse_peak_N", "first_pulse_time_to_peak_s",
+                   t.first, until);
     }
-    expect_near(r, "first_pulse_s", 0, quantity(m, "first_pulse_s"), t.release - t.first, 1e-12);
+    expect_near(r, "first_pulse_s", 0, quantity(m, "first_pulse_s"), t.release - t.first,
+                1e-12);
     check_separations(r, m, t.first);
     check_steady(r, m, force, &t);
     check_smoothed(r, m, force, impulses, &t);
     check_sensor_peak(r, m, force, impulses);
 }
 
-// --- energy -----------------------------------------------------------------------------------
+// --- energy ----------------------------------------------------------------------------
 
 // The ledger row by row; returns the largest sum of energies.
 static double check_ledger(rig *r, const motion *m)
@@ -1665,30 +1757,35 @@ static double check_ledger(rig *r, const motion *m)
     for (size_t i = 0; i < m->count; i++) {
         const double stored = c[KINETIC][i] + c[STRAIN][i] + or_zero(c[WALL_ENERGY][i]) +
                               or_zero(c[WEIGHT_ENERGY][i]);
-        const double lost = c[VISCOUS_LOSS][i] + c[FRICTION_LOSS][i] + c[DAMPING_LOSS][i] +
-                            c[IMPACT_LOSS][i] + or_zero(c[WALL_LOSS][i]);
-        const double given_in = c[MOTOR_WORK][i] + c[EXTERNAL_WORK][i] + or_zero(c[WALL_WORK][i]);
+        const double lost = c[VISCOUS_LOSS][i] + c[FRICTION_LOSS][i] +
+                            c[DAMPING_LOSS][i] + c[IMPACT_LOSS][i] +
+                            or_zero(c[WALL_LOSS][i]);
+        const double given_in =
+            c[MOTOR_WORK][i] + c[EXTERNAL_WORK][i] + or_zero(c[WALL_WORK][i]);
         first = i == 0 ? stored - given_in + lost : first;
         scale = fmax(scale, fabs(stored) + fabs(lost) + fabs(given_in));
         expect_near(r, "energy_residual", c[TIME][i], c[RESIDUAL][i],
                     stored + lost - given_in - first, 1e-12 * scale + 1e-15);
     }
-    const double open = fmax(largest_of(m, c[RESIDUAL], 1), largest_of(m, c[RESIDUAL], -1));
-    expect(r, "energy_residual_J", 0, quantity(m, "energy_residual_J"), open - ROUNDING * scale,
-           INFINITY);
-    expect_near(r, "motor_work_J", 0, quantity(m, "motor_work_J"), c[MOTOR_WORK][m->count - 1],
-                1e-12 * scale);
+    const double open =
+        fmax(largest_of(m, c[RESIDUAL], 1), largest_of(m, c[RESIDUAL], -1));
+    expect(r, "energy_residual_J", 0, quantity(m, "energy_residual_J"),
+           open - ROUNDING * scale, INFINITY);
+    expect_near(r, "motor_work_J", 0, quantity(m, "motor_work_J"),
+                c[MOTOR_WORK][m->count - 1], 1e-12 * scale);
     return scale;
 }
 
 // A power of each row [W].
 typedef double (*power_of)(const rig *r, const motion *m, size_t row);
 
-// The current without that of the back EMF, which flows where no inductance delays it [A].
+// The current without that of the back EMF, which flows where no inductance delays it
+// [A].
 static double current_at(const rig *r, const motion *m, size_t i)
 {
     const double stalled = m->of[MOTOR_TORQUE][i] / number(r, "motor.torque_constant");
-    const bool at_once = is(r, "motor.drive", "voltage") && number(r, "motor.inductance") == 0;
+    const bool at_once =
+        is(r, "motor.drive", "voltage") && number(r, "motor.inductance") == 0;
     const double EMF = number(r, "motor.back_emf") * m->of[HUB_VELOCITY][i];
     return at_once ? stalled - EMF / number(r, "motor.resistance") : stalled;
 }
@@ -1717,7 +1814,8 @@ static double friction_power(const rig *r, const motion *m, size_t i)
 // Back EMF counts with the friction where the current follows at once.
 static double viscous_power(const rig *r, const motion *m, size_t i)
 {
-    const bool at_once = is(r, "motor.drive", "voltage") && number(r, "motor.inductance") == 0;
+    const bool at_once =
+        is(r, "motor.drive", "voltage") && number(r, "motor.inductance") == 0;
     double kv = number(r, "motor.viscous_friction");
     if (at_once) {
         kv += number(r, "motor.torque_constant") * number(r, "motor.back_emf") /
@@ -1727,8 +1825,8 @@ static double viscous_power(const rig *r, const motion *m, size_t i)
 }
 
 // An energy that is to be the integral of a power.
-static void expect_energy(rig *r, const motion *m, const char *what, double got, power_of power,
-                          double scale)
+static void expect_energy(rig *r, const motion *m, const char *what, double got,
+                          power_of power, double scale)
 {
     double *values = malloc(m->count * sizeof(double)), error;
     for (size_t i = 0; i < m->count; i++) {
@@ -1746,27 +1844,37 @@ static void check_energy(rig *r, const motion *m)
     const double scale = check_ledger(r, m), fed = quantity(m, "electrical_energy_J");
     const size_t last = m->count - 1;
     expect_energy(r, m, "motor_work", m->of[MOTOR_WORK][last], motor_power, scale);
-    expect_energy(r, m, "friction_loss", m->of[FRICTION_LOSS][last], friction_power, scale);
+    expect_energy(r, m, "friction_loss", m->of[FRICTION_LOSS][last], friction_power,
+                  scale);
     if (number(r, "motor.current_limit") == 0) {
-        expect_energy(r, m, "viscous_loss", m->of[VISCOUS_LOSS][last], viscous_power, scale);
+        expect_energy(r, m, "viscous_loss", m->of[VISCOUS_LOSS][last], viscous_power,
+                      scale);
     }
     if (!isnan(fed) && number(r, "motor.current_limit") == 0) {
         expect_energy(r, m, "electrical_energy_J", fed, fed_power, scale);
     }
 }
 
-// --- noise ------------------------------------------------------------------------------------
+// --- noise -----------------------------------------------------------------------------
 
-// Each sensor's noise [V] at its converter: what readings with it differ by from those without, on
-// a motion that no reading changes.
+// Each sensor's noise [V] at its converter: what readings with it differ by from those
+// without, on a motion that no reading changes.
 static void check_noise(rig *r)
 {
-    static const char *const common[] = {
-        "control.law=open-loop",      "control.rate=1000",    "control.approach_voltage=2",
-        "wall.contact=kelvin-voigt",  "wall.angle=0.02",      "sensor.adc_bits=0",
-        "sensor.adc_range=100",       "sensor.piezo=true",    "sensor.film=true",
-        "sensor.accelerometer=true",  "sensor.piezo_range=0", "sensor.accelerometer_range=0",
-        "sensor.fsr_saturation=1000", "run.duration=3"};
+    static const char *const common[] = {"control.law=open-loop",
+                                         "control.rate=1000",
+                                         "control.approach_voltage=2",
+                                         "wall.contact=kelvin-voigt",
+                                         "wall.angle=0.02",
+                                         "sensor.adc_bits=0",
+                                         "sensor.adc_range=100",
+                                         "sensor.piezo=true",
+                                         "sensor.film=true",
+                                         "sensor.accelerometer=true",
+                                         "sensor.piezo_range=0",
+                                         "sensor.accelerometer_range=0",
+                                         "sensor.fsr_saturation=1000",
+                                         "run.duration=3"};
     static const struct {
         const char *path, *volts;
         double deviation;
@@ -1831,7 +1939,7 @@ static void check_noise(rig *r)
     impactlab_scenario_destroy(r->scenario);
 }
 
-// --- all of it --------------------------------------------------------------------------------
+// --- all of it -------------------------------------------------------------------------
 
 typedef struct tally {
     long runs, wrong, refused, failed, inaccurate, samples, contacts;
@@ -1850,7 +1958,8 @@ static void check_one(uint64_t which, tally *t)
         return;
     }
     m = (motion){0};
-    const int status = impactlab_run_create(&m.run, r.scenario, IMPACTLAB_KEEP_ROWS, &error);
+    const int status =
+        impactlab_run_create(&m.run, r.scenario, IMPACTLAB_KEEP_ROWS, &error);
     if (m.run == NULL || status != IMPACTLAB_OK) {
         t->failed++;
         printf("%" PRIu64 ": failed: %s\n", which, error.sentence);
@@ -1884,7 +1993,8 @@ static void check_one(uint64_t which, tally *t)
             printf(" --set %s", r.settings[k]);
         }
         for (int k = 0; k < r.change_count; k++) {
-            printf(" # at %.9g s %s=%.9g", r.changes[k].at, r.changes[k].path, r.changes[k].value);
+            printf(" # at %.9g s %s=%.9g", r.changes[k].at, r.changes[k].path,
+                   r.changes[k].value);
         }
         printf("\n");
     }
@@ -1895,8 +2005,8 @@ static void check_one(uint64_t which, tally *t)
     impactlab_scenario_destroy(r.scenario);
 }
 
-// Rigs that were found wrong: a play that forgot impacts, a current beyond its limit, means of a
-// force that were not its own.
+// Rigs that were found wrong: a play that forgot impacts, a current beyond its limit,
+// means of a force that were not its own.
 static const uint64_t once_wrong[] = {166, 276, 1238, 1325};
 
 int main(int argc, char **argv)
@@ -1918,11 +2028,13 @@ int main(int argc, char **argv)
     check_noise(&noisy);
     t.wrong += noisy.wrong > 0;
     for (int k = 0; k < kind_count; k++) {
-        printf("    %s: %ld rigs, %ld values, off by up to %.3g (rig %" PRIu64 ")\n", kinds[k].what,
-               kinds[k].rigs, kinds[k].values, kinds[k].worst, kinds[k].worst_rig);
+        printf("    %s: %ld rigs, %ld values, off by up to %.3g (rig %" PRIu64 ")\n",
+               kinds[k].what, kinds[k].rigs, kinds[k].values, kinds[k].worst,
+               kinds[k].worst_rig);
     }
-    printf("%ld rigs, %ld wrong; %ld refused, %ld failed, %ld inaccurate, %ld touched a wall; %ld "
-           "samples, %ld values compared\n",
-           t.runs, t.wrong, t.refused, t.failed, t.inaccurate, t.contacts, t.samples, checked);
+    printf("%ld rigs, %ld wrong; %ld refused, %ld failed, %ld inaccurate, %ld "
+           "touched a wall; %ld samples, %ld values compared\n",
+           t.runs, t.wrong, t.refused, t.failed, t.inaccurate, t.contacts, t.samples,
+           checked);
     return t.wrong > 0 || t.runs == 0;
 }

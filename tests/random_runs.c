@@ -1,16 +1,17 @@
-// Random runs over declared ranges of motor, wall, arm and restitution: each comes to its end with
-// a closed ledger, or says in a sentence why it did not.
+// Random runs over declared ranges of motor, wall, arm and restitution: each comes to its
+// end with a closed ledger, or says in a sentence why it did not.
 //
 //     random_runs [COUNT [FIRST [KIND]]]
 //
-// Run i is made of its own number, so one that failed is made again by `random_runs 1 i KIND`. KIND
-// is "wide" (two links, all ranges at once), "near" (two links, the defaults with some of them
-// changed) or "whole": one link and more, walls of all kinds by decades, starts at any angle on
-// both sides of the wall. By default each number is a wide or near run, in turns, and a whole one.
+// Run i is made of its own number, so one that failed is made again by `random_runs 1 i
+// KIND`. KIND is "wide" (two links, all ranges at once), "near" (two links, the defaults
+// with some of them changed) or "whole": one link and more, walls of all kinds by
+// decades, starts at any angle on both sides of the wall. By default each number is a
+// wide or near run, in turns, and a whole one.
 //
-// Of a whole run is looked at besides: that it is refused where it starts behind the wall, and only
-// there; that the limit it fails by stands in docs/explanation/trust.md; that no arm is inside a
-// rigid wall.
+// Of a whole run is looked at besides: that it is refused where it starts behind the
+// wall, and only there; that the limit it fails by stands in docs/explanation/trust.md;
+// that no arm is inside a rigid wall.
 #include "tests/force_means.h"
 #include "tests/listed_limits.h"
 #include "tests/random_settings.h"
@@ -23,8 +24,9 @@
 typedef enum run_kind { NEAR, WIDE, WHOLE, KINDS } run_kind;
 static const char *const kind_names[KINDS] = {"near", "wide", "whole"};
 
-// The hub's own spring is damped where it is soft, and less than the rest: the creep of a stiff one
-// that is overdamped is followed in strides as brief as it is, for seconds of computing time.
+// The hub's own spring is damped where it is soft, and less than the rest: the creep of a
+// stiff one that is overdamped is followed in strides as brief as it is, for seconds of
+// computing time.
 #define STIFFEST_DAMPED 500.0 // [N m/rad]
 #define SPRING_DAMPING  0.1   // share of the range of arm.damping_ratio
 
@@ -55,8 +57,13 @@ static const struct {
 
 enum { RANGES = sizeof ranges / sizeof ranges[0] };
 
-// Further ranges of whole runs, and the walls for whose contact they are: one bit for each.
-enum { RIGID = 1 << WALL_RIGID, SPRING = 1 << WALL_KELVIN_VOIGT, HERTZ = 1 << WALL_HUNT_CROSSLEY };
+// Further ranges of whole runs, and the walls for whose contact they are: one bit for
+// each.
+enum {
+    RIGID = 1 << WALL_RIGID,
+    SPRING = 1 << WALL_KELVIN_VOIGT,
+    HERTZ = 1 << WALL_HUNT_CROSSLEY
+};
 static const struct {
     const char *path;
     double from, to;
@@ -80,7 +87,8 @@ static const struct {
 
 enum { WHOLE_RANGES = sizeof whole_ranges / sizeof whole_ranges[0] };
 
-// Wide and whole runs differ from the defaults in nearly everything, near ones in a few numbers.
+// Wide and whole runs differ from the defaults in nearly everything, near ones in a few
+// numbers.
 
 // Two links on a rigid wall, in front of it.
 static void make_two_links(random_run *r)
@@ -96,7 +104,8 @@ static void make_two_links(random_run *r)
     set(r, "wall.kind", wall);
     set(r, "arm.hub_joint", hub);
 
-    // numbers, some of which go with a kind only; an arm with a wall starts on this side of it
+    // numbers, some of which go with a kind only; an arm with a wall starts on this side
+    // of it
     for (int k = 0; k < RANGES; k++) {
         const char *path = ranges[k].path;
         bool taken = random_uniform(g) < (wide ? 0.9 : 0.25);
@@ -118,14 +127,16 @@ static void make_two_links(random_run *r)
     }
 }
 
-// Whether a number goes with the hub and wall that were drawn. Many strides are left out: those of
-// a damped hub spring that is stiff.
+// Whether a number goes with the hub and wall that were drawn. Many strides are left out:
+// those of a damped hub spring that is stiff.
 static bool goes_with(const random_run *r, const char *path)
 {
     const parameters *p = &r->scenario.parameters;
-    const bool gives = p->wall.contact != WALL_RIGID, spring = p->arm.hub_joint == HUB_SPRING;
-    return strcmp(path, "arm.k1") == 0              ? spring
-           : strcmp(path, "arm.damping_ratio") == 0 ? !spring || p->arm.k1 < STIFFEST_DAMPED
+    const bool gives = p->wall.contact != WALL_RIGID,
+               spring = p->arm.hub_joint == HUB_SPRING;
+    return strcmp(path, "arm.k1") == 0 ? spring
+           : strcmp(path, "arm.damping_ratio") == 0
+               ? !spring || p->arm.k1 < STIFFEST_DAMPED
            : strcmp(path, "wall.restitution") == 0  ? !gives || p->wall.mass > 0
            : strcmp(path, "method.rest_speed") == 0 ? !gives || p->wall.mass > 0
                                                     : true;
@@ -142,15 +153,16 @@ static void make_whole(random_run *r)
 
     // kinds
     const double much = random_uniform(g);
-    set_number(r, "arm.links", much < 0.5 ? 1 : (double)(1 + random_below(g, much < 0.9 ? 4 : 16)));
+    set_number(r, "arm.links",
+               much < 0.5 ? 1 : (double)(1 + random_below(g, much < 0.9 ? 4 : 16)));
     set(r, "arm.hub_joint", hubs[random_below(g, 4)]);
     set(r, "wall.kind", walls[random_uniform(g) < 0.03 ? 2 : random_below(g, 2)]);
     set(r, "wall.contact", contacts[random_below(g, 3)]);
 
     // numbers
     for (int k = 0; k < WHOLE_RANGES; k++) {
-        const double value =
-            number_within(g, whole_ranges[k].from, whole_ranges[k].to, whole_ranges[k].spread);
+        const double value = number_within(g, whole_ranges[k].from, whole_ranges[k].to,
+                                           whole_ranges[k].spread);
         const bool fits = (whole_ranges[k].contact >> p->wall.contact & 1) != 0 &&
                           goes_with(r, whole_ranges[k].path);
         const bool always = k == 0 || strstr(whole_ranges[k].path, "angle") != NULL;
@@ -160,7 +172,8 @@ static void make_whole(random_run *r)
     }
     for (int k = 0; k < RANGES; k++) {
         double value = number_within(g, ranges[k].from, ranges[k].to, ranges[k].spread);
-        const bool taken = random_uniform(g) < 0.5 && strstr(ranges[k].path, "angle") == NULL;
+        const bool taken =
+            random_uniform(g) < 0.5 && strstr(ranges[k].path, "angle") == NULL;
         if (strcmp(ranges[k].path, "arm.damping_ratio") == 0 && p->arm.links > 2) {
             value *= SPRING_DAMPING; // whose decays are no faster than its vibrations
         }
@@ -185,7 +198,7 @@ static void make_run(random_run *r, uint64_t i, run_kind kind)
     (kind == WHOLE ? make_whole : make_two_links)(r);
 }
 
-// --- a run that takes too long ----------------------------------------------------------------
+// --- a run that takes too long ---------------------------------------------------------
 
 static run_monitor monitor;
 
@@ -201,7 +214,8 @@ static void time_is_up(int signal_number)
 static void set_alarm(double seconds)
 {
     const struct timeval after = {.tv_sec = (time_t)seconds};
-    setitimer(ITIMER_PROF, &(struct itimerval){.it_interval = after, .it_value = after}, NULL);
+    setitimer(ITIMER_PROF, &(struct itimerval){.it_interval = after, .it_value = after},
+              NULL);
 }
 
 // Whether a row that was recorded shows the arm inside a rigid wall.
@@ -222,7 +236,9 @@ static const char *complaint_of_whole(const random_run *made, const run_result *
     const summary *of = &r->summary;
     const wall_parameters *wall = &made->scenario.parameters.wall;
     if (of->status != STATUS_OK) {
-        return listed_limits_find(&limits, of->message) >= 0 ? NULL : "failed by no listed limit";
+        return listed_limits_find(&limits, of->message) >= 0
+                   ? NULL
+                   : "failed by no listed limit";
     }
     const bool rigid = wall->kind != WALL_NONE && wall->contact == WALL_RIGID;
     return rigid && !of->inaccurate && is_inside(r) ? "is inside the wall" : NULL;
@@ -280,24 +296,27 @@ static void count_in(tally *t, const summary *of)
     }
 }
 
-static void report(uint64_t i, const char *what, const summary *of, const random_run *made)
+static void report(uint64_t i, const char *what, const summary *of,
+                   const random_run *made)
 {
     printf("%s %" PRIu64 ": %s: %s (residual %.3g J, peak %.4g N, %.3g s)\n",
-           kind_names[made->kind], i, what, of->message, of->energy_residual_J, of->peak_force_N,
-           of->cpu_time_s);
+           kind_names[made->kind], i, what, of->message, of->energy_residual_J,
+           of->peak_force_N, of->cpu_time_s);
     printf("    impactlab run corrected/first-impact%s\n", made->options);
     fflush(stdout);
 }
 
-// Whether a whole arm starts where it may not: on the far side of the wall, or a turn further.
+// Whether a whole arm starts where it may not: on the far side of the wall, or a turn
+// further.
 static bool starts_behind(const parameters *p)
 {
     const double ahead = sin(p->wall.angle - p->initial.angle);
-    return p->wall.kind != WALL_NONE && (ahead < -IN_FRONT || p->initial.angle > p->wall.angle);
+    return p->wall.kind != WALL_NONE &&
+           (ahead < -IN_FRONT || p->initial.angle > p->wall.angle);
 }
 
-// Whether a run's settings are taken; counts a start that is refused as it should be, and complains
-// of others.
+// Whether a run's settings are taken; counts a start that is refused as it should be, and
+// complains of others.
 static bool is_taken(uint64_t i, random_run *made, parameters *resolved, tally *t)
 {
     fault f = {.text = "", .path = ""};
@@ -341,10 +360,12 @@ static void run_one(uint64_t i, run_kind kind, bool always_said, tally *t)
 }
 
 // Wide runs that were found wrong.
-static const uint64_t once_wrong[] = {46,     57,     63,     321,    446,    523,    862,   1524,
-                                      1726,   2011,   2404,   2949,   10962,  12852,  17099, 17671,
-                                      33177,  48363,  52431,  56521,  57075,  76751,  94705, 97571,
-                                      114341, 179733, 225449, 270765, 742155, 273903, 423927};
+static const uint64_t once_wrong[] = {46,     57,     63,     321,    446,    523,
+                                      862,    1524,   1726,   2011,   2404,   2949,
+                                      10962,  12852,  17099,  17671,  33177,  48363,
+                                      52431,  56521,  57075,  76751,  94705,  97571,
+                                      114341, 179733, 225449, 270765, 742155, 273903,
+                                      423927};
 
 int main(int argc, char **argv)
 {
@@ -368,9 +389,9 @@ int main(int argc, char **argv)
         }
     }
 
-    printf("%ld runs, %ld wrong, %ld folded over the hub, %ld inaccurate, %ld more refused for "
-           "where they start; longest %.3g s, mean %.3g us, largest residual %.3g J, largest force "
-           "%.4g N\n",
+    printf("%ld runs, %ld wrong, %ld folded over the hub, %ld inaccurate, %ld "
+           "more refused for where they start; longest %.3g s, mean %.3g us, "
+           "largest residual %.3g J, largest force %.4g N\n",
            t.runs, t.wrong, t.folded, t.inaccurate, t.refused, t.longest,
            1e6 * t.total / (double)t.runs, t.residual, t.force);
     for (int k = 0; k < limits.count; k++) {

@@ -52,7 +52,8 @@ static void begin_run(random_run *r, int kind, uint64_t number, uint64_t seed)
 {
     static char name[] = "random", none[] = "";
     *r = (random_run){.kind = kind, .number = number};
-    r->scenario = (scenario){.name = name, .file = none, .title = none, .description = none};
+    r->scenario =
+        (scenario){.name = name, .file = none, .title = none, .description = none};
     parameters_defaults(&r->scenario.parameters, ARM_CORRECTED);
     random_seed(&r->chance, seed);
 }
@@ -64,7 +65,8 @@ static void set(random_run *r, const char *path, const char *value)
     fault f = {0};
     if (parameter_set_text(&r->scenario.parameters, parameter_index(path), value, &f) ==
         STATUS_OK) {
-        snprintf(r->options + length, sizeof r->options - length, " --set %s=%s", path, value);
+        snprintf(r->options + length, sizeof r->options - length, " --set %s=%s", path,
+                 value);
     } else if (r->must_fit) {
         fprintf(stderr, "%s=%s: %s\n", path, value, f.text);
         exit(2);

@@ -1,5 +1,5 @@
-// Calls of the system for files and processes that may be refused like requests for memory (see
-// refused_requests.h). Included by one file of a test.
+// Calls of the system for files and processes that may be refused like requests for
+// memory (see refused_requests.h). Included by one file of a test.
 #pragma once
 
 #include <dirent.h>
@@ -10,7 +10,7 @@
 
 #include "tests/refused_requests.h"
 
-// --- files --------------------------------------------------------------------------------------
+// --- files -----------------------------------------------------------------------------
 
 int __real_open64(const char *path, int flags, ...);
 int __wrap_open64(const char *path, int flags, ...);
@@ -51,16 +51,19 @@ REFUSABLE(refuses(), FILE *, tmpfile64, NULL, ENOSPC, (void), ())
 REFUSABLE(refuses(), int, mkstemp64, -1, ENOSPC, (char *path), (path))
 REFUSABLE(refuses(), int, flock, -1, ENOLCK, (int fd, int how), (fd, how))
 REFUSABLE(refuses(), int, fsync, -1, EIO, (int fd), (fd))
-REFUSABLE(refuses(), int, rename, -1, EPERM, (const char *from, const char *to), (from, to))
+REFUSABLE(refuses(), int, rename, -1, EPERM, (const char *from, const char *to),
+          (from, to))
 REFUSABLE(refuses(), int, access, -1, EACCES, (const char *path, int how), (path, how))
-REFUSABLE(refuses(), int, stat64, -1, EACCES, (const char *path, struct stat *about), (path, about))
+REFUSABLE(refuses(), int, stat64, -1, EACCES, (const char *path, struct stat *about),
+          (path, about))
 REFUSABLE(refuses(), int, lstat64, -1, EACCES, (const char *path, struct stat *about),
           (path, about))
 REFUSABLE(refuses(), int, fstat64, -1, EIO, (int fd, struct stat *about), (fd, about))
 REFUSABLE(refuses(), ssize_t, write, -1, ENOSPC, (int fd, const void *bytes, size_t size),
           (fd, bytes, size))
 
-// Data that could not be written are reported when the file is closed; it is closed in any case.
+// Data that could not be written are reported when the file is closed; it is closed in
+// any case.
 int __real_close(int fd);
 int __wrap_close(int fd);
 int __wrap_close(int fd)
@@ -71,10 +74,10 @@ int __wrap_close(int fd)
     return refused ? -1 : result;
 }
 
-// --- processes ----------------------------------------------------------------------------------
+// --- processes -------------------------------------------------------------------------
 
-REFUSABLE(refuses(), int, socketpair, -1, EMFILE, (int domain, int type, int protocol, int *ends),
-          (domain, type, protocol, ends))
+REFUSABLE(refuses(), int, socketpair, -1, EMFILE,
+          (int domain, int type, int protocol, int *ends), (domain, type, protocol, ends))
 REFUSABLE(refuses(), int, pipe2, -1, EMFILE, (int *ends, int flags), (ends, flags))
 REFUSABLE(refuses(), int, dup2, -1, EMFILE, (int from, int to), (from, to))
 REFUSABLE(refuses(), pid_t, fork, -1, EAGAIN, (void), ())
@@ -131,8 +134,8 @@ ssize_t __wrap_read(int fd, void *bytes, size_t size)
     }
     return __real_read(fd, bytes, size);
 }
-REFUSABLE(interrupts(), int, poll, -1, EINTR, (struct pollfd * ends, nfds_t count, int ms),
-          (ends, count, ms))
+REFUSABLE(interrupts(), int, poll, -1, EINTR,
+          (struct pollfd * ends, nfds_t count, int ms), (ends, count, ms))
 REFUSABLE(interrupts(), ssize_t, send, -1, EINTR,
           (int fd, const void *bytes, size_t size, int flags), (fd, bytes, size, flags))
 REFUSABLE(interrupts(), pid_t, waitpid, -1, EINTR, (pid_t which, int *ended, int how),

@@ -1,8 +1,8 @@
-// Every request for memory, descriptors and threads refused in turn: what the library computes is
-// then whole and right, or it says that there is no memory. The linker puts the functions below in
-// the place of the C library's (-Wl,--wrap=malloc and so on, see meson.build), so that requests of
-// this project are counted and refused, of jansson and SQLite too, and of nobody else's. Included
-// by one file of a test.
+// Every request for memory, descriptors and threads refused in turn: what the library
+// computes is then whole and right, or it says that there is no memory. The linker puts
+// the functions below in the place of the C library's (-Wl,--wrap=malloc and so on, see
+// meson.build), so that requests of this project are counted and refused, of jansson and
+// SQLite too, and of nobody else's. Included by one file of a test.
 #pragma once
 
 #include <errno.h>
@@ -16,7 +16,7 @@
 #include "src/base/text_stream.h"
 #include "tests/shipped_scenario.h"
 
-// --- who refuses --------------------------------------------------------------------------------
+// --- who refuses -----------------------------------------------------------------------
 
 static atomic_long requests;
 static long refused_at;      // the request that is refused; 0: none
@@ -46,7 +46,8 @@ static bool refuses(void)
     if (notes_places && number < MOST_REQUESTS) {
         note_place(number);
     }
-    return refused_at > 0 && (number == refused_at || (refused_later && number > refused_at));
+    return refused_at > 0 &&
+           (number == refused_at || (refused_later && number > refused_at));
 }
 
 static bool refuses_memory(void)
@@ -55,26 +56,27 @@ static bool refuses_memory(void)
 }
 
 // A function of the C library that gives `none` with a reason where it is refused.
-#define REFUSABLE(refused, type, name, none, reason, parameters, arguments)                        \
-    type __real_##name parameters;                                                                 \
-    type __wrap_##name parameters;                                                                 \
-    type __wrap_##name parameters                                                                  \
-    {                                                                                              \
-        if (refused) {                                                                             \
-            errno = reason;                                                                        \
-            return none;                                                                           \
-        }                                                                                          \
-        return __real_##name arguments;                                                            \
+#define REFUSABLE(refused, type, name, none, reason, parameters, arguments)              \
+    type __real_##name parameters;                                                       \
+    type __wrap_##name parameters;                                                       \
+    type __wrap_##name parameters                                                        \
+    {                                                                                    \
+        if (refused) {                                                                   \
+            errno = reason;                                                              \
+            return none;                                                                 \
+        }                                                                                \
+        return __real_##name arguments;                                                  \
     }
 REFUSABLE(refuses_memory(), void *, malloc, NULL, ENOMEM, (size_t size), (size))
 REFUSABLE(refuses_memory(), void *, calloc, NULL, ENOMEM, (size_t count, size_t size),
           (count, size))
-REFUSABLE(refuses_memory(), void *, realloc, NULL, ENOMEM, (void *old, size_t size), (old, size))
-REFUSABLE(refuses_memory(), void *, aligned_alloc, NULL, ENOMEM, (size_t alignment, size_t size),
-          (alignment, size))
+REFUSABLE(refuses_memory(), void *, realloc, NULL, ENOMEM, (void *old, size_t size),
+          (old, size))
+REFUSABLE(refuses_memory(), void *, aligned_alloc, NULL, ENOMEM,
+          (size_t alignment, size_t size), (alignment, size))
 REFUSABLE(refuses_memory(), char *, strdup, NULL, ENOMEM, (const char *text), (text))
-REFUSABLE(refuses_memory(), char *, strndup, NULL, ENOMEM, (const char *text, size_t most),
-          (text, most))
+REFUSABLE(refuses_memory(), char *, strndup, NULL, ENOMEM,
+          (const char *text, size_t most), (text, most))
 REFUSABLE(refuses_memory(), int, vasprintf, -1, ENOMEM,
           (char **text, const char *format, va_list list), (text, format, list))
 
@@ -88,9 +90,10 @@ int __wrap_asprintf(char **text, const char *format, ...)
     return length;
 }
 
-REFUSABLE(refuses_memory(), int, memfd_create, -1, EMFILE, (const char *name, unsigned flags),
-          (name, flags))
-REFUSABLE(refuses_memory(), int, ftruncate64, -1, ENOSPC, (int fd, off_t size), (fd, size))
+REFUSABLE(refuses_memory(), int, memfd_create, -1, EMFILE,
+          (const char *name, unsigned flags), (name, flags))
+REFUSABLE(refuses_memory(), int, ftruncate64, -1, ENOSPC, (int fd, off_t size),
+          (fd, size))
 REFUSABLE(refuses_memory(), int, fallocate64, -1, ENOSPC,
           (int fd, int mode, off_t from, off_t length), (fd, mode, from, length))
 REFUSABLE(refuses_memory(), void *, mmap64, MAP_FAILED, ENOMEM,
@@ -100,8 +103,8 @@ REFUSABLE(refuses_memory(), FILE *, fopencookie, NULL, ENOMEM,
           (void *cookie, const char *mode, cookie_io_functions_t functions),
           (cookie, mode, functions))
 REFUSABLE(refuses_memory(), int, pthread_create, EAGAIN, EAGAIN,
-          (pthread_t * thread, const pthread_attr_t *attributes, void *(*function)(void *),
-           void *argument),
+          (pthread_t * thread, const pthread_attr_t *attributes,
+           void *(*function)(void *), void *argument),
           (thread, attributes, function, argument))
 
 static sqlite3_mem_methods sqlite_memory;
@@ -127,10 +130,10 @@ static int use_refusing_allocators(void **state)
     return sqlite3_config(SQLITE_CONFIG_MALLOC, &refusing) != SQLITE_OK;
 }
 
-// --- what is tried ------------------------------------------------------------------------------
+// --- what is tried ---------------------------------------------------------------------
 
-// Some work of the library, on something of which `about` tells, or on a scenario that is made for
-// it: writes what came of it to `out`. The status is the library's.
+// Some work of the library, on something of which `about` tells, or on a scenario that is
+// made for it: writes what came of it to `out`. The status is the library's.
 typedef status work(const char *about, FILE *out);
 typedef status scenario_work(scenario *s, FILE *out);
 
@@ -140,8 +143,8 @@ static bool tells_of_refusal(status code)
     return code == STATUS_OK || code == STATUS_NO_MEMORY || code == STATUS_CANNOT_WRITE;
 }
 
-// Requests that are refused of a piece of work: of so few each is, of more so many, evenly, and if
-// `everywhere` the first one that each place makes, too.
+// Requests that are refused of a piece of work: of so few each is, of more so many,
+// evenly, and if `everywhere` the first one that each place makes, too.
 enum { FEW_REQUESTS = 80, TRIES = 12 };
 static bool everywhere;
 
@@ -169,9 +172,10 @@ static const char *scenario_text = "{}"; // of which the scenarios of a test are
 // The test's scenario with settings, separated by blanks.
 static status make_scenario(scenario *s, const char *settings)
 {
-    status code =
-        scenario_parse(s, scenario_text, strlen(scenario_text), "t.yaml", NULL, keep_nothing, NULL);
-    for (const char *const *one = words_of(settings); code == STATUS_OK && *one != NULL; one++) {
+    status code = scenario_parse(s, scenario_text, strlen(scenario_text), "t.yaml", NULL,
+                                 keep_nothing, NULL);
+    for (const char *const *one = words_of(settings); code == STATUS_OK && *one != NULL;
+         one++) {
         fault f = {0};
         code = scenario_override(s, *one, &f);
         if (code != STATUS_OK) {
@@ -203,8 +207,8 @@ static status carry_out(const attempt *a, FILE *out)
     return code;
 }
 
-// What came of the work with the k-th request refused, and all after it if `later`; 0: none. The
-// text is to be freed.
+// What came of the work with the k-th request refused, and all after it if `later`; 0:
+// none. The text is to be freed.
 static status carry_out_refused(const attempt *a, long k, bool later, char **text)
 {
     size_t size;
@@ -221,12 +225,13 @@ static status carry_out_refused(const attempt *a, long k, bool later, char **tex
     return code == STATUS_OK && lost ? STATUS_NO_MEMORY : code;
 }
 
-// The work with no request refused is the measure; then one after the other is, alone and with all
-// that follow.
+// The work with no request refused is the measure; then one after the other is, alone and
+// with all that follow.
 static void try_each(const attempt *a)
 {
     char *expected = NULL, *found = NULL;
-    for (int i = 0; i < 2; i++) { // what is asked for once in a program's life is there then
+    for (int i = 0; i < 2;
+         i++) { // what is asked for once in a program's life is there then
         free(expected);
         notes_places = everywhere && i > 0;
         assert_int_equal(carry_out_refused(a, 0, false, &expected), STATUS_OK);
@@ -243,8 +248,9 @@ static void try_each(const attempt *a)
             const status code = carry_out_refused(a, k, later, &found);
             const char *also = later ? ", and all after it" : "";
             if (code == STATUS_OK && strcmp(found, expected) != 0) {
-                fail_msg("%s: request %ld of %ld refused%s: another result, and no failure",
-                         a->about, k, all, also);
+                fail_msg(
+                    "%s: request %ld of %ld refused%s: another result, and no failure",
+                    a->about, k, all, also);
             } else if (!tells_of_refusal(code)) {
                 fail_msg("%s: request %ld of %ld refused%s: '%s'", a->about, k, all, also,
                          status_text(code));
@@ -265,15 +271,15 @@ static inline void try_with_scenario(scenario_work *does, const char *settings)
     try_each(&(attempt){.on_scenario = does, .about = settings});
 }
 
-// The main of a test: its cases on scenarios of this text. With an argument the first request of
-// each place is refused, not only some of all.
-#define REFUSING_MAIN(text, set_up, tear_down)                                                     \
-    int main(int count, char **arguments)                                                          \
-    {                                                                                              \
-        (void)arguments;                                                                           \
-        everywhere = count > 1;                                                                    \
-        scenario_text = text;                                                                      \
-        return run_cases(set_up, tear_down);                                                       \
+// The main of a test: its cases on scenarios of this text. With an argument the first
+// request of each place is refused, not only some of all.
+#define REFUSING_MAIN(text, set_up, tear_down)                                           \
+    int main(int count, char **arguments)                                                \
+    {                                                                                    \
+        (void)arguments;                                                                 \
+        everywhere = count > 1;                                                          \
+        scenario_text = text;                                                            \
+        return run_cases(set_up, tear_down);                                             \
     }
 
 static inline int refuse_in_folder(void **state)

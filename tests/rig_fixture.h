@@ -1,9 +1,11 @@
-// Runs on the rig for tests: the impact of the thesis's 5.4 with settings as "path=value" strings.
+// Runs on the rig for tests: the impact of the thesis's 5.4 with settings as "path=value"
+// strings.
 #pragma once
 
 #include "tests/arm_fixture.h"
 
-// Resolved parameters: wall at 0, start at rest 0.1 rad before it, 1.5 s, then the settings.
+// Resolved parameters: wall at 0, start at rest 0.1 rad before it, 1.5 s, then the
+// settings.
 static inline parameters rig_parameters(const char *const *settings)
 {
     const char *all[32] = {"wall.angle=0", "initial.angle=-0.1", "run.duration=1.5"};
@@ -29,8 +31,8 @@ static inline summary rig_summary(const char *const *settings)
     return result.summary;
 }
 
-// The same of settings as given() takes them; the run is kept with its rows until its block is
-// left.
+// The same of settings as given() takes them; the run is kept with its rows until its
+// block is left.
 #define RIG_RUN(r, ...)          KEPT_RUN(r) = rig_run(given(__VA_ARGS__), true)
 #define rig_parameters_with(...) rig_parameters(given(__VA_ARGS__))
 #define rig_summary_with(...)    rig_summary(given(__VA_ARGS__))

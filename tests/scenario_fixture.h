@@ -14,14 +14,16 @@ static inline void keep_sentence(void *context, const char *sentence)
 {
     sentences *all = context;
     assert_null(strchr(sentence, '\n'));
-    int length = snprintf(all->text + all->used, sizeof all->text - all->used, "%s\n", sentence);
+    int length =
+        snprintf(all->text + all->used, sizeof all->text - all->used, "%s\n", sentence);
     all->used += (size_t)length < sizeof all->text - all->used ? (size_t)length : 0;
     all->count++;
 }
 
 static inline status parse(scenario *s, const char *text, sentences *all)
 {
-    // a text of so many bytes, behind which there is none: a sanitizer sees who looks there
+    // a text of so many bytes, behind which there is none: a sanitizer sees who looks
+    // there
     const size_t size = strlen(text);
     KEPT_TEXT(bytes) = malloc(size + (size == 0));
     assert_non_null(bytes);
@@ -35,7 +37,8 @@ static inline scenario good(const char *text)
 {
     scenario s;
     sentences all;
-    fail_if(parse(&s, text, &all) != STATUS_OK || all.count != 0, "refused:\n%s", all.text);
+    fail_if(parse(&s, text, &all) != STATUS_OK || all.count != 0, "refused:\n%s",
+            all.text);
     return s;
 }
 
@@ -55,18 +58,21 @@ static inline void check_fault(const char *text, int line, int column, const cha
     const char *place = formatted("f.yaml:%d:%d: ", line, column);
     bool there = strncmp(all.text, place, strlen(place)) == 0;
     fail_if(all.count != 1 || !there || strstr(all.text, what) == NULL,
-            "%d faults, expected one at %d:%d about '%s':\n%s", all.count, line, column, what,
-            all.text);
+            "%d faults, expected one at %d:%d about '%s':\n%s", all.count, line, column,
+            what, all.text);
 }
 
-// The text has exactly `count` faults, and each of the sentences' beginnings is among them.
-static inline void check_faults(const char *text, int count, const char *const *beginnings)
+// The text has exactly `count` faults, and each of the sentences' beginnings is among
+// them.
+static inline void check_faults(const char *text, int count,
+                                const char *const *beginnings)
 {
     scenario s;
     sentences all;
     status result = parse(&s, text, &all);
     assert_int_equal(result, STATUS_BAD_SCENARIO);
-    fail_if(all.count != count, "%d faults, expected %d:\n%s", all.count, count, all.text);
+    fail_if(all.count != count, "%d faults, expected %d:\n%s", all.count, count,
+            all.text);
     for (int i = 0; i < count; i++) {
         bool first = strncmp(all.text, beginnings[i], strlen(beginnings[i])) == 0;
         fail_if(!first && strstr(all.text, formatted("\n%s", beginnings[i])) == NULL,

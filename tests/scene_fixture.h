@@ -61,7 +61,8 @@ static inline unsigned pixel_at(cairo_surface_t *s, int x, int y)
 {
     const unsigned char *data = cairo_image_surface_get_data(s);
     unsigned pixel;
-    memcpy(&pixel, data + (ptrdiff_t)y * cairo_image_surface_get_stride(s) + 4 * x, sizeof pixel);
+    memcpy(&pixel, data + (ptrdiff_t)y * cairo_image_surface_get_stride(s) + 4 * x,
+           sizeof pixel);
     return pixel & 0xFFFFFF;
 }
 
@@ -106,7 +107,8 @@ static inline int count_different(cairo_surface_t *a, cairo_surface_t *b, int to
 {
     int count = 0;
     assert_int_equal(cairo_image_surface_get_width(a), cairo_image_surface_get_width(b));
-    assert_int_equal(cairo_image_surface_get_height(a), cairo_image_surface_get_height(b));
+    assert_int_equal(cairo_image_surface_get_height(a),
+                     cairo_image_surface_get_height(b));
     for (int y = 0; y < cairo_image_surface_get_height(a); y++) {
         for (int x = 0; x < cairo_image_surface_get_width(a); x++) {
             unsigned p = pixel_at(a, x, y), q = pixel_at(b, x, y);

@@ -11,16 +11,16 @@ static inline void open_session(session *s, const char *name)
 }
 
 // The same for as long as its block.
-#define OPEN_SESSION(s, name)                                                                      \
-    KEPT_SESSION(s);                                                                               \
+#define OPEN_SESSION(s, name)                                                            \
+    KEPT_SESSION(s);                                                                     \
     open_session(&s, name)
 
 // A change that the session takes, and whose run ends well.
 static inline void change(session *s, const char *path, const char *value)
 {
     fault f = {0};
-    fail_if(session_change(s, parameter_find(path), value, &f) != STATUS_OK, "%s: %s", path,
-            f.text);
+    fail_if(session_change(s, parameter_find(path), value, &f) != STATUS_OK, "%s: %s",
+            path, f.text);
     fail_if(s->computing == NULL && s->run.summary.status != STATUS_OK, "%s: %s", path,
             s->run.summary.message);
 }
@@ -34,7 +34,8 @@ static inline void assert_same_trace(const trace *a, const trace *b)
                         a->row_count * (size_t)a->angle_count * sizeof *a->angles);
 }
 
-// What was done is saved as a scenario, which gives the same run. Returns its text, to be freed.
+// What was done is saved as a scenario, which gives the same run. Returns its text, to be
+// freed.
 static inline char *save_and_compare(const session *s)
 {
     WRITTEN(text, scenario_write(stream, &s->effective));

@@ -1,4 +1,5 @@
-// The memory behind all shared arrays of the program, by what the kernel says of its mappings.
+// The memory behind all shared arrays of the program, by what the kernel says of its
+// mappings.
 #pragma once
 
 #include <fcntl.h>
@@ -10,8 +11,8 @@
 
 #include "src/base/shared_array.h"
 
-// Chunks that several arrays have are counted once [bytes]. Asks for no memory, and calls nothing
-// that a test may refuse.
+// Chunks that several arrays have are counted once [bytes]. Asks for no memory, and calls
+// nothing that a test may refuse.
 static inline size_t shared_array_memory(void)
 {
     enum { MOST = 1 << 22, CHUNKS = 1 << 14 };
@@ -19,7 +20,8 @@ static inline size_t shared_array_memory(void)
     static unsigned long seen[CHUNKS];
     size_t length = 0, different = 0;
     const long file = syscall(SYS_openat, AT_FDCWD, "/proc/self/maps", O_RDONLY);
-    for (long count = 1; count > 0 && length<MOST - 1; length += count> 0 ? (size_t)count : 0) {
+    for (long count = 1;
+         count > 0 && length<MOST - 1; length += count> 0 ? (size_t)count : 0) {
         count = syscall(SYS_read, file, text + length, MOST - 1 - length);
     }
     syscall(SYS_close, file);

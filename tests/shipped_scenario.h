@@ -1,4 +1,5 @@
-// Scenarios for tests: those that ship, with changes, and read again from what they write.
+// Scenarios for tests: those that ship, with changes, and read again from what they
+// write.
 #pragma once
 
 #include "src/run/loop.h"
@@ -31,7 +32,8 @@ static inline scenario shipped_with(const char *name, const char *changes)
         count++;
     }
     scenario s = shipped(name);
-    assert_int_equal(scenario_override_all(&s, all, count, fail_on_fault, NULL), STATUS_OK);
+    assert_int_equal(scenario_override_all(&s, all, count, fail_on_fault, NULL),
+                     STATUS_OK);
     return s;
 }
 
@@ -40,7 +42,8 @@ static inline scenario read_again(const scenario *s)
 {
     scenario again;
     SCOPED(free_kept) WRITTEN(text, scenario_write(stream, s));
-    assert_int_equal(scenario_parse(&again, text, strlen(text), "saved", NULL, fail_on_fault, NULL),
+    assert_int_equal(scenario_parse(&again, text, strlen(text), "saved", NULL,
+                                    fail_on_fault, NULL),
                      STATUS_OK);
     return again;
 }
@@ -75,11 +78,15 @@ static inline const event *find_event(const run_result *r, event_kind kind, int 
 }
 
 // What a script does at an instant, and a scenario of parameters and a script.
-#define SETS(at, path, to)                                                                         \
-    ((action){.time = at, .kind = ACTION_SET, .parameter = PARAMETER_INDEX(path), .value = to})
-#define PUSHES(at, by) ((action){.time = at, .kind = ACTION_PUSH, .parameter = -1, .value = by})
-#define SCRIPTED(given, ...)                                                                       \
-    {                                                                                              \
-        .parameters = given, .actions = (action[]){__VA_ARGS__},                                   \
-        .action_count = sizeof((action[]){__VA_ARGS__}) / sizeof(action)                           \
+#define SETS(at, path, to)                                                               \
+    ((action){.time = at,                                                                \
+              .kind = ACTION_SET,                                                        \
+              .parameter = PARAMETER_INDEX(path),                                        \
+              .value = to})
+#define PUSHES(at, by)                                                                   \
+    ((action){.time = at, .kind = ACTION_PUSH, .parameter = -1, .value = by})
+#define SCRIPTED(given, ...)                                                             \
+    {                                                                                    \
+        .parameters = given, .actions = (action[]){__VA_ARGS__},                         \
+        .action_count = sizeof((action[]){__VA_ARGS__}) / sizeof(action)                 \
     }

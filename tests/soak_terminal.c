@@ -1,7 +1,8 @@
-// The terminal lab in a pseudo-terminal under random keys, mouse reports, commands and sizes, on
-// terminals with sixels, with kitty's protocol, without pictures and with nonsense for answers. It
-// must answer all along; at the end what it saves must reproduce its run, and the terminal must be
-// as it was. One session after the other until the time is over, each with a seed of its own.
+// The terminal lab in a pseudo-terminal under random keys, mouse reports, commands and
+// sizes, on terminals with sixels, with kitty's protocol, without pictures and with
+// nonsense for answers. It must answer all along; at the end what it saves must reproduce
+// its run, and the terminal must be as it was. One session after the other until the time
+// is over, each with a seed of its own.
 //
 // soak_terminal PROGRAM SECONDS [FIRST-SEED]
 #include <errno.h>
@@ -24,7 +25,8 @@
 #include "tests/terminal_tracker.h"
 
 #define SESSION_TIME 20.0 // [s]
-// These only catch a lab that hangs: hundreds of times what anything takes on an idle machine.
+// These only catch a lab that hangs: hundreds of times what anything takes on an idle
+// machine.
 #define ANSWER_TIME   120.0 // longest until an answer [s]
 #define COMPUTE_TIME  600.0 // longest until the last run is complete [s]
 #define ESCAPE_PAUSE  0.08  // after an escape that stands alone [s]
@@ -61,13 +63,13 @@ static int chance(soak *s, int bound)
     return (int)random_below(&s->random, (uint64_t)bound);
 }
 
-// --- the terminal's side ----------------------------------------------------------------------
+// --- the terminal's side ---------------------------------------------------------------
 
 // What was sent lately, on one line.
 static void tell_keys(const soak *s)
 {
-    for (size_t i = s->sent > sizeof s->last_keys ? s->sent - sizeof s->last_keys : 0; i < s->sent;
-         i++) {
+    for (size_t i = s->sent > sizeof s->last_keys ? s->sent - sizeof s->last_keys : 0;
+         i < s->sent; i++) {
         const unsigned char c = (unsigned char)s->last_keys[i % sizeof s->last_keys];
         fprintf(stderr, c >= ' ' && c < 127 ? "%c" : "\\x%02x", c);
     }
@@ -75,7 +77,8 @@ static void tell_keys(const soak *s)
 }
 
 // Ends the test with what is wrong, how to get there again and what was seen last.
-static void __attribute__((format(printf, 2, 3), noreturn)) fail(soak *s, const char *format, ...)
+static void __attribute__((format(printf, 2, 3), noreturn))
+fail(soak *s, const char *format, ...)
 {
     va_list list;
     va_start(list, format);
@@ -85,7 +88,8 @@ static void __attribute__((format(printf, 2, 3), noreturn)) fail(soak *s, const 
     fprintf(stderr, "\nsent last: ");
     tell_keys(s);
     fprintf(stderr, "seen last: ");
-    for (size_t i = s->seen.bytes > TAIL ? s->seen.bytes - TAIL : 0; i < s->seen.bytes; i++) {
+    for (size_t i = s->seen.bytes > TAIL ? s->seen.bytes - TAIL : 0; i < s->seen.bytes;
+         i++) {
         char c = s->seen.tail[i % TAIL];
         fputc(c == '\033' ? '~' : c, stderr);
     }
@@ -99,10 +103,13 @@ static void __attribute__((format(printf, 2, 3), noreturn)) fail(soak *s, const 
 // Answers what the program asked, as this session's terminal does.
 static void answer(soak *s)
 {
-    static const char *const kitty[] = {NULL, NULL, "\033_Gi=31;OK\033\\", "\033_Gi=31;OKOK;OK"};
-    static const char *const cell[] = {NULL, "\033[6;16;8t", "\033[6;20;10t", "\033[6;0;999999t"};
-    static const char *const attributes[] = {NULL, "\033[?62;4;22c", "\033[?62c",
-                                             "\033]11;rgb:zz\a\033[?2;0;0;0S\033[?4;4;4;4c"};
+    static const char *const kitty[] = {NULL, NULL, "\033_Gi=31;OK\033\\",
+                                        "\033_Gi=31;OKOK;OK"};
+    static const char *const cell[] = {NULL, "\033[6;16;8t", "\033[6;20;10t",
+                                       "\033[6;0;999999t"};
+    static const char *const attributes[] = {
+        NULL, "\033[?62;4;22c", "\033[?62c",
+        "\033]11;rgb:zz\a\033[?2;0;0;0S\033[?4;4;4;4c"};
     tracker *t = &s->seen;
     const char *texts[] = {t->asks_kitty ? kitty[s->kind] : NULL,
                            t->asks_cell ? cell[s->kind] : NULL,
@@ -135,13 +142,14 @@ static void watch(soak *s, double seconds)
     } while (clock_seconds(CLOCK_MONOTONIC) < until);
 }
 
-// Takes what the program shows until something is so, or fails with a sentence after a time [s].
-#define AWAIT(s, condition, seconds, ...)                                                          \
-    for (double until = clock_seconds(CLOCK_MONOTONIC) + (seconds); !(condition);) {               \
-        watch(s, 0.01);                                                                            \
-        if (clock_seconds(CLOCK_MONOTONIC) > until) {                                              \
-            fail(s, __VA_ARGS__);                                                                  \
-        }                                                                                          \
+// Takes what the program shows until something is so, or fails with a sentence after a
+// time [s].
+#define AWAIT(s, condition, seconds, ...)                                                \
+    for (double until = clock_seconds(CLOCK_MONOTONIC) + (seconds); !(condition);) {     \
+        watch(s, 0.01);                                                                  \
+        if (clock_seconds(CLOCK_MONOTONIC) > until) {                                    \
+            fail(s, __VA_ARGS__);                                                        \
+        }                                                                                \
     }
 
 static void send_bytes(soak *s, const char *bytes, size_t count)
@@ -170,7 +178,8 @@ static void send_text(soak *s, const char *text)
 
 static void resize(soak *s, int width, int height)
 {
-    struct winsize size = {.ws_col = (unsigned short)width, .ws_row = (unsigned short)height};
+    struct winsize size = {.ws_col = (unsigned short)width,
+                           .ws_row = (unsigned short)height};
     ioctl(s->master, TIOCSWINSZ, &size);
     s->width = width;
     s->height = height;
@@ -183,12 +192,14 @@ static bool has_ended(soak *s, int *status)
     return ended > 0;
 }
 
-// Processor time of the lab's first thread, which answers [s]; 0 where the system does not tell.
+// Processor time of the lab's first thread, which answers [s]; 0 where the system does
+// not tell.
 static double processor_time(const soak *s)
 {
     char path[64];
     unsigned long long nanoseconds = 0;
-    snprintf(path, sizeof path, "/proc/%d/task/%d/schedstat", (int)s->child, (int)s->child);
+    snprintf(path, sizeof path, "/proc/%d/task/%d/schedstat", (int)s->child,
+             (int)s->child);
     FILE *stream = fopen(path, "r");
     if (stream != NULL) {
         if (fscanf(stream, "%llu", &nanoseconds) != 1) {
@@ -199,7 +210,8 @@ static double processor_time(const soak *s)
     return 1e-9 * (double)nanoseconds;
 }
 
-// After a change of size the lab clears the screen in any state: measures how long that takes.
+// After a change of size the lab clears the screen in any state: measures how long that
+// takes.
 static void probe(soak *s)
 {
     int status;
@@ -223,31 +235,43 @@ static void probe(soak *s)
         s->answers[s->answer_count++] = took;
     }
     if (took > SLOW_ANSWER) {
-        fprintf(stderr, "%.2f s, %.3f of its processor, with seed %llu after ", took, spent,
-                (unsigned long long)s->seed);
+        fprintf(stderr, "%.2f s, %.3f of its processor, with seed %llu after ", took,
+                spent, (unsigned long long)s->seed);
         tell_keys(s);
     }
 }
 
-// --- the user's side --------------------------------------------------------------------------
+// --- the user's side -------------------------------------------------------------------
 
 static void press_something(soak *s)
 {
     // all keys but those that end or suspend the lab, or hold the terminal's output
-    static const char *const keys[] = {
-        " ",      " ",      "h",         "l",       "n",       "N",
-        "g",      "G",      "+",         "-",       "\177",    "r",
-        "j",      "k",      "\r",        ">",       "<",       "p",
-        "P",      "t",      "x",         "b",       "B",       "c",
-        "u",      "U",      "\022",      "m",       "\t",      "z",
-        "Z",      "0",      "1",         "5",       "9",       "o",
-        "]",      "[",      "s",         "\014",    "?",       "/",
-        ":",      "\033[A", "\033[B",    "\033[C",  "\033[D",  "\033[H",
-        "\033[F", "\033OA", "\033OP",    "\033[5~", "\033[6~", "\033[3~",
-        "\025",   "\b",     "\033[1~",   "\033[Z",  "=",       "2",
-        "3",      "8",      "\033[M !!", "R",       "D",       "M",
-        "T",      "X",      "A",         "y",       "\020",    "L",
-        "F",      "C",      "H",         "e",       "w",       "\033[200~qy\rqq\033[201~"};
+    static const char *const keys[] = {" ",       " ",       "h",
+                                       "l",       "n",       "N",
+                                       "g",       "G",       "+",
+                                       "-",       "\177",    "r",
+                                       "j",       "k",       "\r",
+                                       ">",       "<",       "p",
+                                       "P",       "t",       "x",
+                                       "b",       "B",       "c",
+                                       "u",       "U",       "\022",
+                                       "m",       "\t",      "z",
+                                       "Z",       "0",       "1",
+                                       "5",       "9",       "o",
+                                       "]",       "[",       "s",
+                                       "\014",    "?",       "/",
+                                       ":",       "\033[A",  "\033[B",
+                                       "\033[C",  "\033[D",  "\033[H",
+                                       "\033[F",  "\033OA",  "\033OP",
+                                       "\033[5~", "\033[6~", "\033[3~",
+                                       "\025",    "\b",      "\033[1~",
+                                       "\033[Z",  "=",       "2",
+                                       "3",       "8",       "\033[M !!",
+                                       "R",       "D",       "M",
+                                       "T",       "X",       "A",
+                                       "y",       "\020",    "L",
+                                       "F",       "C",       "H",
+                                       "e",       "w",       "\033[200~qy\rqq\033[201~"};
     send_text(s, keys[chance(s, sizeof keys / sizeof keys[0])]);
 }
 
@@ -256,33 +280,37 @@ static void give_command(soak *s)
     static const char *const commands[] = {
         "set motor.voltage %d.5", "set run.duration %d", "set arm.links %d",
         "open corrected/twenty-links", "open compare/hybrid", "open thesis/fig-3-4",
-        "open corrected/first-impact", "open compare/optimal", "seek 0.%d", "seek end", "speed %d",
-        "push 0.0%d", "push -0.%d", "set method.step 0.000%d", "set arm.k2 %d",
-        "set wall.angle 0.0%d", "zoom in", "zoom out", "trace force gap", "panes 1%d",
-        "glyphs ascii", "glyphs braille", "glyphs blocks", "theme mono", "theme light", "mouse off",
-        "mouse on", "save a.csv", "save a.yaml", "save a.txt", "stop", "undo", "redo", "branch",
-        "forget", "compare", "remember", "wait 0.%d", "set method.name newmark", "extend %d",
-        "restart", "model", "pin run %d", "take %d", "hide %d", "baseline %d", "unpin %d",
-        "rename %d other", "difference 0.0%d", "difference off", "sweep motor.voltage=1:%d:4",
-        "sweep arm.k2=4,5,6", "sweep off", "metric", "lanes all", "lanes off", "lanes auto",
-        "phase force gap", "spectrum force", "statistics", "lesson hybrid-law", "lesson step-size",
-        "answer %d", "continue", "lesson off", "palette volt", "pixels off", "pixels auto",
-        "closeup", "bending %d", "slow %d", "slow off", "trace force - force_reading, gap*2",
-        "axis calm %d", "band force 0.%d", "colourby", "note %d says", "note @0.%d here", "notes",
+        "open corrected/first-impact", "open compare/optimal", "seek 0.%d", "seek end",
+        "speed %d", "push 0.0%d", "push -0.%d", "set method.step 0.000%d",
+        "set arm.k2 %d", "set wall.angle 0.0%d", "zoom in", "zoom out", "trace force gap",
+        "panes 1%d", "glyphs ascii", "glyphs braille", "glyphs blocks", "theme mono",
+        "theme light", "mouse off", "mouse on", "save a.csv", "save a.yaml", "save a.txt",
+        "stop", "undo", "redo", "branch", "forget", "compare", "remember", "wait 0.%d",
+        "set method.name newmark", "extend %d", "restart", "model", "pin run %d",
+        "take %d", "hide %d", "baseline %d", "unpin %d", "rename %d other",
+        "difference 0.0%d", "difference off", "sweep motor.voltage=1:%d:4",
+        "sweep arm.k2=4,5,6", "sweep off", "metric", "lanes all", "lanes off",
+        "lanes auto", "phase force gap", "spectrum force", "statistics",
+        "lesson hybrid-law", "lesson step-size", "answer %d", "continue", "lesson off",
+        "palette volt", "pixels off", "pixels auto", "closeup", "bending %d", "slow %d",
+        "slow off", "trace force - force_reading, gap*2", "axis calm %d",
+        "band force 0.%d", "colourby", "note %d says", "note @0.%d here", "notes",
         "save! a.csv", "data a.csv", "data a.csv@0.%d", "data off", "residual force gap",
-        "identify k2", "sweep arm.k2=4:8:%d motor.voltage=1:3:4", "solve voltage peak_force_N<2",
-        "copy run", "copy screen", "why", "poles", "rate %d", "rate off", "explain",
-        "session save a.session", "session open a.session", "session save b%d.session",
-        "session open b%d.session", "limit force %d", "signal all",
+        "identify k2", "sweep arm.k2=4:8:%d motor.voltage=1:3:4",
+        "solve voltage peak_force_N<2", "copy run", "copy screen", "why", "poles",
+        "rate %d", "rate off", "explain", "session save a.session",
+        "session open a.session", "session save b%d.session", "session open b%d.session",
+        "limit force %d", "signal all",
         // none of these can be done
-        "frobnicate %d", "set arm.k2 NaN", "set arm.links -%d", "open nothing/such", "set",
-        "set motor.voltage", "seek", "save", "save a.doc", "save /proc/none/a.csv", "speed 0",
-        "zoom sideways", "take 99", "sweep motor.voltage=1:2", "phase force", "answer x",
-        "session open broken.session", "session open a.yaml", "trace force - ", "data a.yaml",
-        "mark 1e9", "mark nan", "trace 4294967297", "note @1e300 far", "seek -1e300",
-        "zoom -1e300 1e300", "pan 1e300", "step 1e300", "band gap 1e300", "change 9999999999 1",
-        "identify none", "copy none", "note", "band gap 0", "rate 0.1", "set run.duration 1e9",
-        "set method.step 1e-9", "trace nonsense", "glyphs %d", "push 1e999",
+        "frobnicate %d", "set arm.k2 NaN", "set arm.links -%d", "open nothing/such",
+        "set", "set motor.voltage", "seek", "save", "save a.doc", "save /proc/none/a.csv",
+        "speed 0", "zoom sideways", "take 99", "sweep motor.voltage=1:2", "phase force",
+        "answer x", "session open broken.session", "session open a.yaml",
+        "trace force - ", "data a.yaml", "mark 1e9", "mark nan", "trace 4294967297",
+        "note @1e300 far", "seek -1e300", "zoom -1e300 1e300", "pan 1e300", "step 1e300",
+        "band gap 1e300", "change 9999999999 1", "identify none", "copy none", "note",
+        "band gap 0", "rate 0.1", "set run.duration 1e9", "set method.step 1e-9",
+        "trace nonsense", "glyphs %d", "push 1e999",
         "\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80", "\xff\xfe broken"};
     char line[200];
     const char *form = commands[chance(s, sizeof commands / sizeof commands[0])];
@@ -341,7 +369,8 @@ static void do_something(soak *s)
     } else if (what < 90) {
         send_oddities(s);
     } else if (what < 94) {
-        resize(s, 1 + chance(s, chance(s, 3) ? 160 : 300), 1 + chance(s, chance(s, 3) ? 50 : 100));
+        resize(s, 1 + chance(s, chance(s, 3) ? 160 : 300),
+               1 + chance(s, chance(s, 3) ? 50 : 100));
     } else if (what < 97) {
         send_text(s, "\033");
         watch(s, ESCAPE_PAUSE);
@@ -354,7 +383,7 @@ static void do_something(soak *s)
     }
 }
 
-// --- a session --------------------------------------------------------------------------------
+// --- a session -------------------------------------------------------------------------
 
 static void start(soak *s)
 {
@@ -375,7 +404,8 @@ static void start(soak *s)
     snprintf(path, sizeof path, "%s/broken.session", s->folder);
     FILE *broken = fopen(path, "w");
     if (broken != NULL) {
-        fputs("impactlab session 1\nscenario: x\n| motor: {voltage: 1 V}\nstart: 0 nothing\n",
+        fputs("impactlab session 1\nscenario: x\n| motor: {voltage: 1 V}\nstart: 0 "
+              "nothing\n",
               broken);
         fclose(broken);
     }
@@ -448,8 +478,8 @@ static void check_record(soak *s)
 {
     char line[600];
     snprintf(line, sizeof line,
-             "cd %s && { '%s' run last.yaml --csv again.csv --quiet >run.out 2>&1; "
-             "cmp last.csv again.csv; }",
+             "cd %s && { '%s' run last.yaml --csv again.csv --quiet >run.out "
+             "2>&1; cmp last.csv again.csv; }",
              s->folder, s->program);
     if (system(line) != 0) {
         fail(s, "the saved scenario gives other rows");
@@ -461,9 +491,10 @@ static void check_terminal(soak *s)
     static const int off[] = {1, 1000, 1002, 1003, 1006, 1015, 1047, 1049, 2004, 2026};
     struct termios after;
     tcgetattr(s->slave, &after);
-    bool same = after.c_iflag == s->before.c_iflag && after.c_oflag == s->before.c_oflag &&
-                after.c_cflag == s->before.c_cflag && after.c_lflag == s->before.c_lflag &&
-                memcmp(after.c_cc, s->before.c_cc, sizeof after.c_cc) == 0;
+    bool same =
+        after.c_iflag == s->before.c_iflag && after.c_oflag == s->before.c_oflag &&
+        after.c_cflag == s->before.c_cflag && after.c_lflag == s->before.c_lflag &&
+        memcmp(after.c_cc, s->before.c_cc, sizeof after.c_cc) == 0;
     if (!same) {
         fail(s, "the terminal's settings are not those from before");
     }
@@ -554,7 +585,8 @@ int main(int count, char **arguments)
         fprintf(stderr, "soak_terminal PROGRAM SECONDS [FIRST-SEED]\n");
         return 2;
     }
-    double seconds = strtod(arguments[2], NULL), until = clock_seconds(CLOCK_MONOTONIC) + seconds;
+    double seconds = strtod(arguments[2], NULL),
+           until = clock_seconds(CLOCK_MONOTONIC) + seconds;
     uint64_t seed = count > 3 ? strtoull(arguments[3], NULL, 10) : 1, first = seed;
     s.program = realpath(arguments[1], NULL);
     s.answers = answers;
@@ -563,11 +595,12 @@ int main(int count, char **arguments)
         run_session(&s, seed++, left < SESSION_TIME ? left : SESSION_TIME);
     } while (clock_seconds(CLOCK_MONOTONIC) < until - 1);
     qsort(answers, s.answer_count, sizeof answers[0], by_size);
-    printf("%ld pictures, at most %.3f s of the processor for an answer, ", s.drawn, s.longest);
-    printf("seeds %llu to %llu, %zu keys, %zu answers: median %.1f ms, 99 %% within %.1f ms, all "
-           "within %.1f ms\n",
-           (unsigned long long)first, (unsigned long long)seed - 1, s.keys, s.answer_count,
-           1e3 * answers[s.answer_count / 2], 1e3 * answers[s.answer_count * 99 / 100],
-           1e3 * answers[s.answer_count - 1]);
+    printf("%ld pictures, at most %.3f s of the processor for an answer, ", s.drawn,
+           s.longest);
+    printf("seeds %llu to %llu, %zu keys, %zu answers: median %.1f ms, 99 %% "
+           "within %.1f ms, all within %.1f ms\n",
+           (unsigned long long)first, (unsigned long long)seed - 1, s.keys,
+           s.answer_count, 1e3 * answers[s.answer_count / 2],
+           1e3 * answers[s.answer_count * 99 / 100], 1e3 * answers[s.answer_count - 1]);
     return 0;
 }

@@ -14,9 +14,11 @@ void print_sentence(void *context, const char *sentence)
 
 int sweep_fixture_open(void **state)
 {
-    static const char text[] = "title: Hit\nmotor: {voltage: 1 V}\nrun: {duration: 0.6 s}\n";
-    return enter_folder(state) || scenario_parse(&base, text, strlen(text), "hit.yaml", "hit",
-                                                 print_sentence, NULL) != STATUS_OK;
+    static const char text[] =
+        "title: Hit\nmotor: {voltage: 1 V}\nrun: {duration: 0.6 s}\n";
+    return enter_folder(state) ||
+           scenario_parse(&base, text, strlen(text), "hit.yaml", "hit", print_sentence,
+                          NULL) != STATUS_OK;
 }
 
 int sweep_fixture_close(void **state)
@@ -37,7 +39,8 @@ status sweep_of(sweep *s, sweep_sampling sampling, size_t runs, uint64_t seed, f
     return sweep_init(s, &base, &request, f);
 }
 
-void must_sweep(sweep *s, sweep_sampling sampling, size_t runs, const char *a, const char *b)
+void must_sweep(sweep *s, sweep_sampling sampling, size_t runs, const char *a,
+                const char *b)
 {
     DONE(sweep_of(s, sampling, runs, 1, &f, a, b));
 }

@@ -10,7 +10,8 @@ extern scenario base;
 // A fault_handler that shows what should not be.
 void print_sentence(void *context, const char *sentence);
 
-// Set-up and tear-down of a test or of all: reads `base` and works in a folder of its own.
+// Set-up and tear-down of a test or of all: reads `base` and works in a folder of its
+// own.
 int sweep_fixture_open(void **state);
 int sweep_fixture_close(void **state);
 
@@ -22,11 +23,12 @@ status sweep_of(sweep *s, sweep_sampling sampling, size_t runs, uint64_t seed, f
                 const char *a, const char *b);
 
 // The same, which has to be one.
-void must_sweep(sweep *s, sweep_sampling sampling, size_t runs, const char *a, const char *b);
+void must_sweep(sweep *s, sweep_sampling sampling, size_t runs, const char *a,
+                const char *b);
 
 // The same until its block is left.
-#define SWEPT(s, ...)                                                                              \
-    KEPT_SWEEP(s);                                                                                 \
+#define SWEPT(s, ...)                                                                    \
+    KEPT_SWEEP(s);                                                                       \
     must_sweep(&s, __VA_ARGS__)
 
 // The store of a sweep in a file, or in memory without a path, that has to open.

@@ -1,4 +1,5 @@
-// Follows the bytes that a program writes to a terminal: modes that are set, queries and pictures.
+// Follows the bytes that a program writes to a terminal: modes that are set, queries and
+// pictures.
 #pragma once
 
 #include <stdbool.h>
@@ -11,7 +12,7 @@ enum { PRIVATE_MODES = 3000, TAIL = 4000 };
 typedef struct tracker {
     enum { PLAIN, ESCAPED, SEQUENCE, STRING, STRING_ENDS } state;
     bool asks_attributes, asks_cell, asks_kitty; // a query came
-    long pictures;                               // strings of sixels or kitty's that were drawn
+    long pictures; // strings of sixels or kitty's that were drawn
     char sequence[64];
     size_t length;
     bool mode[PRIVATE_MODES]; // set by CSI ? NUMBER h
@@ -24,7 +25,8 @@ static inline void end_sequence(tracker *t, char last)
 {
     t->sequence[t->length] = '\0';
     if (t->sequence[0] == '?' && (last == 'h' || last == 'l')) {
-        for (char *word = strtok(t->sequence + 1, ";"); word != NULL; word = strtok(NULL, ";")) {
+        for (char *word = strtok(t->sequence + 1, ";"); word != NULL;
+             word = strtok(NULL, ";")) {
             long mode = strtol(word, NULL, 10);
             if (mode >= 0 && mode < PRIVATE_MODES) {
                 t->mode[mode] = last == 'h';
@@ -64,7 +66,9 @@ static inline void track(tracker *t, char c)
     } else if (c == '\033') {
         t->state = ESCAPED;
     } else if (t->state == ESCAPED) {
-        t->state = c == '[' ? SEQUENCE : c == 'P' || c == '_' || c == ']' ? STRING : PLAIN;
+        t->state = c == '['                           ? SEQUENCE
+                   : c == 'P' || c == '_' || c == ']' ? STRING
+                                                      : PLAIN;
         t->length = 0;
     } else if (t->state == SEQUENCE && c >= 0x40 && c <= 0x7e) {
         end_sequence(t, c);

@@ -13,11 +13,12 @@ static void check_says(const char *wanted)
             return;
         }
     }
-    fail_msg("no sentence says '%s': '%s' '%s' '%s' '%s' '%s'", wanted, sentences[0], sentences[1],
-             sentences[2], sentences[3], sentences[4]);
+    fail_msg("no sentence says '%s': '%s' '%s' '%s' '%s' '%s'", wanted, sentences[0],
+             sentences[1], sentences[2], sentences[3], sentences[4]);
 }
 
-// Numbers found independently: touch and release from the summary, energies from the rows.
+// Numbers found independently: touch and release from the summary, energies from the
+// rows.
 TEST(test_a_first_impact_is_told_in_five_sentences)
 {
     OPEN_SESSION(s, "corrected/first-impact");
@@ -39,7 +40,8 @@ TEST(test_a_first_impact_is_told_in_five_sentences)
     const sample *high =
         &t->rows[trace_row_at(t, m->first_contact_s + m->first_pulse_time_to_peak_s)];
     const sample *free = &t->rows[trace_row_at(t, m->first_contact_s + m->first_pulse_s)];
-    check_says(formatted("given by springs %.3g J", high->strain_energy - free->strain_energy));
+    check_says(
+        formatted("given by springs %.3g J", high->strain_energy - free->strain_energy));
     check_says(formatted("motor %.3g J", high->motor_work - free->motor_work));
 }
 
@@ -68,20 +70,22 @@ static double sum_of_energies(const char *from, const char *to)
     return sum;
 }
 
-// No share is above all or below nothing, no energy above what the arm began with, was given and
-// fell through; and what is given is taken.
+// No share is above all or below nothing, no energy above what the arm began with, was
+// given and fell through; and what is given is taken.
 static void check_account(const scenario *s, const run_result *run, const char *of)
 {
     const int count = run_account(s, run, sentences);
     const trace *t = &run->trace;
     const sample *row = t->rows;
-    double there = row->kinetic_energy + row->strain_energy, high = -HUGE_VAL, low = HUGE_VAL;
+    double there = row->kinetic_energy + row->strain_energy, high = -HUGE_VAL,
+           low = HUGE_VAL;
     there += isnan(row->wall_energy) ? 0 : row->wall_energy;
     for (size_t r = 0; r < t->row_count; r++) {
         const sample *now = row + r, *before = row + (r > 0 ? r - 1 : 0);
         const double wall = now->wall_work - before->wall_work;
         there += fabs(now->motor_work - before->motor_work) +
-                 fabs(now->external_work - before->external_work) + (isnan(wall) ? 0 : fabs(wall));
+                 fabs(now->external_work - before->external_work) +
+                 (isnan(wall) ? 0 : fabs(wall));
         high = fmax(high, now->weight_energy);
         low = fmin(low, now->weight_energy);
     }
@@ -89,19 +93,25 @@ static void check_account(const scenario *s, const run_result *run, const char *
     assert_true(count >= 1 && count <= ACCOUNT_SENTENCES);
     for (int k = 0; k < count; k++) {
         const char *text = sentences[k], *end = text + strlen(text);
-        fail_if(end[-1] != '.' || strstr(text, "nan") != NULL || strstr(text, "inf") != NULL,
+        fail_if(end[-1] != '.' || strstr(text, "nan") != NULL ||
+                    strstr(text, "inf") != NULL,
                 "%s: %s", of, text);
-        const double share = number_before(text, " %"), lasts = number_before(text, " s,");
+        const double share = number_before(text, " %"),
+                     lasts = number_before(text, " s,");
         fail_if(share < 0 || share > 100, "%s: %s", of, text);
-        fail_if(lasts < 0 || lasts > t->rows[t->row_count - 1].time * 1.001, "%s: %s", of, text);
+        fail_if(lasts < 0 || lasts > t->rows[t->row_count - 1].time * 1.001, "%s: %s", of,
+                text);
         for (const char *at = text; (at = strstr(at, " J")) != NULL; at++) {
             const double energy = number_before(at - 12 > text ? at - 12 : text, " J");
-            fail_if(energy < 0 || energy > 1.006 * there, "%s: %g J: %s", of, there, text);
+            fail_if(energy < 0 || energy > 1.006 * there, "%s: %g J: %s", of, there,
+                    text);
         }
         const char *given = strstr(text, "given by"), *taken = strstr(text, "taken by");
         if (given != NULL && taken != NULL) {
-            const double gives = sum_of_energies(given, taken), takes = sum_of_energies(taken, end);
-            fail_if(fabs(gives - takes) > 0.01 * (gives + takes) + 1e-9, "%s: %s", of, text);
+            const double gives = sum_of_energies(given, taken),
+                         takes = sum_of_energies(taken, end);
+            fail_if(fabs(gives - takes) > 0.01 * (gives + takes) + 1e-9, "%s: %s", of,
+                    text);
         }
     }
 }
@@ -140,13 +150,15 @@ TEST(test_random_arms_have_accounts_within_bounds)
     random_generator g;
     random_seed(&g, 2);
     for (int i = 0; i < 500; i++) {
-        const char *changes = formatted(
-            "arm.links=%d arm.hub_joint=%s arm.damping_ratio=%g arm.tilt=%g arm.tip_mass=%g "
-            "wall.angle=0 initial.angle=-0.05 initial.velocity=%g run.duration=0.3 %s %s",
-            2 + (int)random_below(&g, 5), joints[random_below(&g, 3)],
-            0.04 * (double)random_below(&g, 2), 0.3 * (double)random_below(&g, 3) - 0.3,
-            0.02 * (double)random_below(&g, 2), 3 * random_uniform(&g), walls[random_below(&g, 7)],
-            drives[random_below(&g, 6)]);
+        const char *changes =
+            formatted("arm.links=%d arm.hub_joint=%s arm.damping_ratio=%g arm.tilt=%g "
+                      "arm.tip_mass=%g wall.angle=0 initial.angle=-0.05 "
+                      "initial.velocity=%g run.duration=0.3 %s %s",
+                      2 + (int)random_below(&g, 5), joints[random_below(&g, 3)],
+                      0.04 * (double)random_below(&g, 2),
+                      0.3 * (double)random_below(&g, 3) - 0.3,
+                      0.02 * (double)random_below(&g, 2), 3 * random_uniform(&g),
+                      walls[random_below(&g, 7)], drives[random_below(&g, 6)]);
         KEPT_SCENARIO(s) = shipped_with("corrected/first-impact", changes);
         KEPT_RUN(result);
         run_scenario(&s, true, &result);

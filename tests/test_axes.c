@@ -43,11 +43,13 @@ TEST(test_a_growing_axis_never_shrinks)
         session_seek(&ex.state.session, t);
         free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
         assert_true(ex.layout.axes[0].high >= highest);
-        highest = ex.state.panes.pane[0].grown.high > highest ? ex.state.panes.pane[0].grown.high
-                                                              : highest;
+        highest = ex.state.panes.pane[0].grown.high > highest
+                      ? ex.state.panes.pane[0].grown.high
+                      : highest;
         // what is still to come does not count
-        assert_true(t > 0.36 || ex.state.panes.pane[0].grown.high <
-                                    ex.state.session.run.summary.first_pulse_peak_N * 0.999);
+        assert_true(t > 0.36 ||
+                    ex.state.panes.pane[0].grown.high <
+                        ex.state.session.run.summary.first_pulse_peak_N * 0.999);
     }
     check_relative(highest, ex.state.session.run.summary.first_pulse_peak_N, 1e-3);
     // neither going back nor a weaker run makes it shrink
@@ -101,10 +103,10 @@ TEST(test_keys_change_the_axis_of_the_pane_in_focus)
 TEST(test_wrong_axes_are_told)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    for (EACH_TEXT(c, "axis", "axis 2 1", "axis 1 1", "axis 1", "axis nan 2", "axis 0 x 1",
-                   "axis purple", "axis auto 25", "axis auto 0", "axis 0 2 all more",
-                   "axis auto 1 2", "axis auto -1", "zoom", "zoom 1", "zoom 2 1", "zoom 1 2 3",
-                   "pan", "pan nowhere", "pan left")) {
+    for (EACH_TEXT(c, "axis", "axis 2 1", "axis 1 1", "axis 1", "axis nan 2",
+                   "axis 0 x 1", "axis purple", "axis auto 25", "axis auto 0",
+                   "axis 0 2 all more", "axis auto 1 2", "axis auto -1", "zoom", "zoom 1",
+                   "zoom 2 1", "zoom 1 2 3", "pan", "pan nowhere", "pan left")) {
         refuse(&ex, *c);
     }
     assert_int_equal(ex.state.panes.pane[0].scaling, AXIS_AUTO);
@@ -120,8 +122,8 @@ TEST(test_wrong_axes_are_told)
 TEST(test_ticks_are_round)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press_shows(&ex, ":seek 0.35<Enter>", "1.2\u2524", "0.0\u2524", "0.05\u2524", "0.5      ",
-                "1.0 s");
+    press_shows(&ex, ":seek 0.35<Enter>", "1.2\u2524", "0.0\u2524", "0.05\u2524",
+                "0.5      ", "1.0 s");
     // the unit is next to the pane's number
     assert_shows(&ex, "\u25b81      N", " 3  rad/s");
     carry_out(&ex, "zoom 0.293 0.294");
@@ -168,8 +170,8 @@ TEST(test_a_controlled_run_shows_readings_and_commands)
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.65<Enter>28");
     KEPT_TEXT(text) = picture(&ex, 160, 60, GLYPHS_BRAILLE);
-    for (EACH_TEXT(c, "force_reading", "calculated_force", "encoder", "desired_angle", "tachometer",
-                   "command 2.284", "controller_mode force")) {
+    for (EACH_TEXT(c, "force_reading", "calculated_force", "encoder", "desired_angle",
+                   "tachometer", "command 2.284", "controller_mode force")) {
         fail_if(strstr(text, *c) == NULL, "'%s' is not on the screen:\n%s", *c, text);
     }
     // the same panes as before where the user chose them
@@ -267,5 +269,6 @@ TEST(test_brief_touches_are_on_the_axis)
     assert_true(screen_resize(&s, 80, 24));
     explorer_draw(&ex, &s);
     assert_true(ex.state.session.run.summary.separations >= 5);
-    assert_int_equal(columns_in_contact(&s), (int)ex.state.session.run.summary.separations);
+    assert_int_equal(columns_in_contact(&s),
+                     (int)ex.state.session.run.summary.separations);
 }

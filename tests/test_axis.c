@@ -1,12 +1,13 @@
-// Axes: ticks by a published example and by what must hold for any axis, logarithmic ones by the
-// pixels of an image; contour lines and the colour scale of maps.
+// Axes: ticks by a published example and by what must hold for any axis, logarithmic ones
+// by the pixels of an image; contour lines and the colour scale of maps.
 #include "tests/plot_fixture.h"
 
 #include "render/page/page.h"
 #include "render/plot/drawing.h"
 
 // Middle of the pixels of a series' colour between two columns; false if there is none.
-static bool middle_of(cairo_surface_t *image, int slot, int from, int to, double *x, double *y)
+static bool middle_of(cairo_surface_t *image, int slot, int from, int to, double *x,
+                      double *y)
 {
     const unsigned char *data = cairo_image_surface_get_data(image);
     int stride = cairo_image_surface_get_stride(image), count = 0;
@@ -33,11 +34,12 @@ static bool middle_of(cairo_surface_t *image, int slot, int from, int to, double
 
 static figure figure_of(const figure_panel *panel)
 {
-    return (figure){.x = {.name = "n", .label = "number", .scale = SCALE_LOGARITHMIC, .room = 0.04},
-                    .panels = panel,
-                    .panel_count = 1,
-                    .width = 100,
-                    .height = 80};
+    return (figure){
+        .x = {.name = "n", .label = "number", .scale = SCALE_LOGARITHMIC, .room = 0.04},
+        .panels = panel,
+        .panel_count = 1,
+        .width = 100,
+        .height = 80};
 }
 
 // Three markers at 1, 10, 100: evenly spaced for any values between.
@@ -56,14 +58,16 @@ TEST(decades_are_evenly_spaced)
                                     .marker = MARKER_CIRCLE,
                                     .no_line = true};
     }
-    const figure_panel panel = {.y = {.name = "p", .label = "p", .scale = SCALE_LOGARITHMIC},
+    const figure_panel panel = {.y = {.name = "p",
+                                      .label = "p",
+                                      .scale = SCALE_LOGARITHMIC},
                                 .series = series,
                                 .series_count = 3};
     figure fig = figure_of(&panel);
     PIXELS(image) = paint_pixels(&fig, 2, NULL);
     for (int i = 0; i < 3; i++) {
-        assert_true(middle_of(image, slots[i], 0, cairo_image_surface_get_width(image), &at_x[i],
-                              &at_y[i]));
+        assert_true(middle_of(image, slots[i], 0, cairo_image_surface_get_width(image),
+                              &at_x[i], &at_y[i]));
     }
     check_close(at_x[2] - at_x[1], at_x[1] - at_x[0], 1);
     check_close(at_y[2] - at_y[1], at_y[1] - at_y[0], 1);
@@ -76,10 +80,12 @@ TEST(points_at_or_below_zero_are_left_out)
     static const double x[] = {1, 10, 100}, y[] = {1, 0, 3}, none[] = {0, -1, 0};
     const figure_series some = {.name = "s", .x = x, .y = y, .count = 3};
     const figure_series nothing = {.name = "s", .x = x, .y = none, .count = 3};
-    const figure_panel panel = {
-        .y = {.name = "p", .scale = SCALE_LOGARITHMIC}, .series = &some, .series_count = 1};
-    const figure_panel empty = {
-        .y = {.name = "empty", .scale = SCALE_LOGARITHMIC}, .series = &nothing, .series_count = 1};
+    const figure_panel panel = {.y = {.name = "p", .scale = SCALE_LOGARITHMIC},
+                                .series = &some,
+                                .series_count = 1};
+    const figure_panel empty = {.y = {.name = "empty", .scale = SCALE_LOGARITHMIC},
+                                .series = &nothing,
+                                .series_count = 1};
     figure fig = figure_of(&panel);
     cairo_surface_destroy(paint_pixels(&fig, 2, NULL));
     PIXELS(image) = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 300, 300);
@@ -89,7 +95,8 @@ TEST(points_at_or_below_zero_are_left_out)
     cairo_destroy(cr);
 }
 
-// However narrow, an axis of two decades or more has two labels: one alone gives no scale.
+// However narrow, an axis of two decades or more has two labels: one alone gives no
+// scale.
 TEST(a_narrow_axis_has_two_labels)
 {
     const figure_axis from = {.scale = SCALE_LOGARITHMIC};
@@ -117,8 +124,8 @@ static const figure_text *text_of_mark(const figure_report *r, const figure_mark
     return found;
 }
 
-// What begins at a line stands on that side of it, or points there where the page ends; the label
-// of a peak stands at its point. Returns the number of labels that point.
+// What begins at a line stands on that side of it, or points there where the page ends;
+// the label of a peak stands at its point. Returns the number of labels that point.
 static int check_labels(const figure *fig)
 {
     static figure_report r;
@@ -135,8 +142,10 @@ static int check_labels(const figure *fig)
         }
         const figure_text *t = text_of_mark(&r, m);
         const figure_rect *at = &t->place;
-        double x = box->x + box->width * (m->x - range->x_low) / (range->x_high - range->x_low);
-        double y = box->y + box->height * (range->y_high - m->y) / (range->y_high - range->y_low);
+        double x =
+            box->x + box->width * (m->x - range->x_low) / (range->x_high - range->x_low);
+        double y = box->y +
+                   box->height * (range->y_high - m->y) / (range->y_high - range->y_low);
         if (m->onwards) {
             const bool arrow = g_str_has_suffix(t->text, "\u2192");
             arrows += arrow;
@@ -150,8 +159,8 @@ static int check_labels(const figure *fig)
     return arrows;
 }
 
-// Wherever there is room for a word; no text meets another, not in the insets of short pulses
-// either.
+// Wherever there is room for a word; no text meets another, not in the insets of short
+// pulses either.
 TEST(labels_stand_where_they_belong)
 {
     static const struct {
@@ -171,7 +180,8 @@ TEST(labels_stand_where_they_belong)
         const trace_run run = {&s, &result, NULL};
         int arrows = 0;
         for (EACH_OF(double, width, 85, 170)) {
-            owned_figure *t = trace_figure_create(NULL, usual_panels, USUAL_PANELS, &run, 1);
+            owned_figure *t =
+                trace_figure_create(NULL, usual_panels, USUAL_PANELS, &run, 1);
             t->figure.width = *width;
             t->figure.x.low = c->from;
             t->figure.x.high = c->to;
@@ -202,8 +212,8 @@ static void expect_labels(const ticks *t, int count, const char *const *expected
     }
 }
 
-// 8, 10, 12, 14 are the ticks of extended(8.1, 14.1, 4) of the R package labeling; on an axis that
-// ends at the outermost of them none is left out
+// 8, 10, 12, 14 are the ticks of extended(8.1, 14.1, 4) of the R package labeling; on an
+// axis that ends at the outermost of them none is left out
 TEST(published_example)
 {
     ticks t;
@@ -270,7 +280,8 @@ TEST(between_stays_inside_and_misses_none)
         assert_true(t.value[0] - t.step < low + 1e-8 * width);
         assert_true(t.value[t.count - 1] + t.step > high - 1e-8 * width);
         for (int i = 1; i < t.count; i++) {
-            check_close(t.value[i] - t.value[i - 1], t.step, 1e-9 * fmax(fabs(centre), width));
+            check_close(t.value[i] - t.value[i - 1], t.step,
+                        1e-9 * fmax(fabs(centre), width));
         }
     }
 }
@@ -316,8 +327,9 @@ TEST(small_and_large_numbers_get_a_factor)
         double high;
         int wanted;
         const char *factor;
-    } cases[] = {
-        {2e6, 3, "\u00d710<sup>6</sup>"}, {1, 5, ""}, {4e-6, 5, "\u00d710<sup>\u22126</sup>"}};
+    } cases[] = {{2e6, 3, "\u00d710<sup>6</sup>"},
+                 {1, 5, ""},
+                 {4e-6, 5, "\u00d710<sup>\u22126</sup>"}};
     for (EACH(c, cases)) {
         ticks_between(&t, 0, c->high, c->wanted);
         tick_factor(&t, factor, sizeof factor);
@@ -364,8 +376,10 @@ TEST(minor_ticks_are_round)
         ticks t;
         ticks_between(&t, 0, pow(10, 4 * random_uniform(&g)), 5);
         // a minor step has one digit, or is 25, or is no minor step at all
-        double part = t.step / t.minor, digits = part / pow(10, floor(log10(part * (1 + 1e-12))));
-        bool round_number = fabs(digits - round(digits)) < 1e-9 || fabs(digits - 2.5) < 1e-9;
+        double part = t.step / t.minor,
+               digits = part / pow(10, floor(log10(part * (1 + 1e-12))));
+        bool round_number =
+            fabs(digits - round(digits)) < 1e-9 || fabs(digits - 2.5) < 1e-9;
         assert_true(round_number || t.minor == 1);
     }
 }
@@ -396,9 +410,10 @@ TEST(a_saddle_is_cut_by_its_middle)
     for (double level = 4; level < 7; level += 2) {
         assert_int_equal(contour_square(saddle, level, pieces), 2);
         for (int i = 0; i < 2; i++) {
-            // below the middle the low corners are cut off, where x - y is far from 0; above it the
-            // high ones, where x + y is far from 1
-            double x = (pieces[i].x0 + pieces[i].x1) / 2, y = (pieces[i].y0 + pieces[i].y1) / 2;
+            // below the middle the low corners are cut off, where x - y is far from 0;
+            // above it the high ones, where x + y is far from 1
+            double x = (pieces[i].x0 + pieces[i].x1) / 2,
+                   y = (pieces[i].y0 + pieces[i].y1) / 2;
             check_close(level < 5 ? x + y : x - y, level < 5 ? 1 : 0, 1e-14);
         }
     }
@@ -409,8 +424,8 @@ TEST(the_colour_scale_grows_lighter_all_the_way)
     double before = -1;
     for (int i = 0; i <= 100; i++) {
         colour c = palette_shade(THEME_COLOUR, i / 100.0);
-        double light =
-            0.2126 * pow(c.red, 2.2) + 0.7152 * pow(c.green, 2.2) + 0.0722 * pow(c.blue, 2.2);
+        double light = 0.2126 * pow(c.red, 2.2) + 0.7152 * pow(c.green, 2.2) +
+                       0.0722 * pow(c.blue, 2.2);
         check_below(before, light);
         before = light;
     }

@@ -19,7 +19,10 @@ static status make(void *context, size_t i, scenario *made, fault *f)
 static void run_all(status (*maker)(void *, size_t, scenario *, fault *), void *context,
                     size_t count, int jobs, summary *summaries)
 {
-    const batch all = {.context = context, .count = count, .make = maker, .summaries = summaries};
+    const batch all = {.context = context,
+                       .count = count,
+                       .make = maker,
+                       .summaries = summaries};
     DONE(batch_run(&all, jobs, &f));
 }
 
@@ -100,13 +103,14 @@ static status make_random(void *context, size_t i, scenario *made, fault *f)
     return STATUS_OK;
 }
 
-// Runs from a number on with vectors of each width: none differs in a bit from one by itself, and
-// none fails. Returns their impacts.
+// Runs from a number on with vectors of each width: none differs in a bit from one by
+// itself, and none fails. Returns their impacts.
 static double compare_widths(size_t first, size_t runs)
 {
     char name[] = "random", none[] = "";
     random_base from = {.first = first};
-    from.scenario = (scenario){.name = name, .file = none, .title = none, .description = none};
+    from.scenario =
+        (scenario){.name = name, .file = none, .title = none, .description = none};
     from.scenario.parameters = fixture_parameters(NULL);
     SCOPED(free_kept)
     summary *scalar = calloc(runs, sizeof *scalar), *wide = calloc(runs, sizeof *wide);
@@ -133,7 +137,8 @@ static double compare_widths(size_t first, size_t runs)
     return impacts;
 }
 
-// As many runs as the environment's IMPACTLAB_RANDOM_RUNS says, or 1000; 100 000 take a minute.
+// As many runs as the environment's IMPACTLAB_RANDOM_RUNS says, or 1000; 100 000 take a
+// minute.
 TEST(every_width_of_vectors_gives_the_same_bits)
 {
     const char *asked = getenv("IMPACTLAB_RANDOM_RUNS");

@@ -1,4 +1,5 @@
-// The parameters that a controller is told: the true ones, changed by belief.* of the scenario.
+// The parameters that a controller is told: the true ones, changed by belief.* of the
+// scenario.
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 
@@ -31,8 +32,9 @@ TEST(each_belief_changes_what_it_names)
     controller_setup truth = told(given("control.delay=2e-3"));
     controller_setup s =
         told(given("control.delay=2e-3 belief.mass_factor=1.5 belief.inertia_factor=0.5 "
-                   "belief.friction_factor=2 belief.torque_factor=1.2 belief.k2_factor=0.8 "
-                   "belief.wall_error=0.03 belief.delay_error=-1e-3 belief.links=5"));
+                   "belief.friction_factor=2 belief.torque_factor=1.2 "
+                   "belief.k2_factor=0.8 belief.wall_error=0.03 "
+                   "belief.delay_error=-1e-3 belief.links=5"));
     check_relative(s.link_mass, 1.5 * truth.link_mass, 1e-15);
     check_relative(s.link_inertia, 1.5 * truth.link_inertia, 1e-15);
     check_relative(s.hub_inertia, 0.5 * truth.hub_inertia, 1e-15);
@@ -46,25 +48,28 @@ TEST(each_belief_changes_what_it_names)
     // viscous friction counts as friction, back EMF goes with kT
     parameters p = rig_parameters(NULL);
     check_relative(s.hub_damping,
-                   2 * p.motor.viscous_friction +
-                       1.2 * p.motor.torque_constant * p.motor.back_emf / p.motor.resistance,
+                   2 * p.motor.viscous_friction + 1.2 * p.motor.torque_constant *
+                                                      p.motor.back_emf /
+                                                      p.motor.resistance,
                    1e-15);
 }
 
 TEST(a_spring_at_the_hub_is_told)
 {
-    controller_setup s = told(given("arm.hub_joint=spring arm.k1=90 belief.hub_spring_factor=1.1"));
+    controller_setup s =
+        told(given("arm.hub_joint=spring arm.k1=90 belief.hub_spring_factor=1.1"));
     check_relative(s.hub_spring, 99.0, 1e-15);
 }
 
-// A belief changes the command and nothing of the arm: the same command moves it the same.
+// A belief changes the command and nothing of the arm: the same command moves it the
+// same.
 TEST(the_arm_has_no_beliefs)
 {
     summary truth = rig_summary_with("control.law=open-loop");
-    summary doubted =
-        rig_summary_with("control.law=open-loop belief.mass_factor=2 belief.inertia_factor=2 "
-                         "belief.friction_factor=2 belief.torque_factor=2 belief.k2_factor=2 "
-                         "belief.wall_error=0.1 belief.delay_error=1e-3 belief.links=7");
+    summary doubted = rig_summary_with(
+        "control.law=open-loop belief.mass_factor=2 belief.inertia_factor=2 "
+        "belief.friction_factor=2 belief.torque_factor=2 belief.k2_factor=2 "
+        "belief.wall_error=0.1 belief.delay_error=1e-3 belief.links=7");
     check_close(doubted.peak_force_N, truth.peak_force_N, 0);
     check_close(doubted.first_contact_s, truth.first_contact_s, 0);
 }

@@ -44,7 +44,8 @@ TEST(a_measurement_that_fails_is_passed_on)
 
 TEST(slower_is_said_of_times_and_rates)
 {
-    const benchmark time = {"t", "us", false, NULL, "", 0}, rate = {"r", "1/s", true, NULL, "", 0};
+    const benchmark time = {"t", "us", false, NULL, "", 0},
+                    rate = {"r", "1/s", true, NULL, "", 0};
     const bench_result half = {10, 9, 11}, twice = {20, 19, 21}, noisy = {20, 9.5, 30},
                        little = {11, 10.5, 12};
     assert_true(bench_is_slower(&time, &twice, 10));
@@ -79,7 +80,8 @@ TEST_IN_FOLDER(a_file_that_is_no_baseline_is_refused)
         put_file("times", *c);
         REFUSED(STATUS_CANNOT_READ, "times:", bench_read("times", read, &f));
     }
-    REFUSED(STATUS_CANNOT_READ, "/nowhere/x.json", bench_read("/nowhere/x.json", read, &f));
+    REFUSED(STATUS_CANNOT_READ, "/nowhere/x.json",
+            bench_read("/nowhere/x.json", read, &f));
 }
 
 static void every_benchmark_of_the_library_gives_a_number(void **state)
@@ -101,5 +103,6 @@ int main(int count, char **arguments)
     const struct CMUnitTest measuring[] = {
         cmocka_unit_test(every_benchmark_of_the_library_gives_a_number),
     };
-    return (count > 1 ? cmocka_run_group_tests(measuring, NULL, NULL) : run_cases(NULL, NULL)) != 0;
+    return (count > 1 ? cmocka_run_group_tests(measuring, NULL, NULL)
+                      : run_cases(NULL, NULL)) != 0;
 }

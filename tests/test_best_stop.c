@@ -1,4 +1,5 @@
-// The best possible result after an impact: closed forms, and controllers tried at random.
+// The best possible result after an impact: closed forms, and controllers tried at
+// random.
 #include "src/predict/best_stop.h"
 #include "tests/arm_fixture.h"
 
@@ -24,15 +25,17 @@ TEST(the_model_has_the_numbers_of_the_arm)
     check_close(m.mass_force, 0.0167, 1e-4);
     check_close(m.torque_limit, 4.377, 1e-3);
     for (EACH_TEXT(c, "arm.links=1", "arm.hub_joint=spring", "arm.damping_ratio=0.1",
-                   "wall.kind=none", "arm.model=printed", "arm.tilt=0.3", "arm.tip_mass=0.1",
-                   "arm.air_drag=0.1", "arm.stiffening=1", "wall.motion=sine",
-                   "wall.contact=kelvin-voigt")) {
+                   "wall.kind=none", "arm.model=printed", "arm.tilt=0.3",
+                   "arm.tip_mass=0.1", "arm.air_drag=0.1", "arm.stiffening=1",
+                   "wall.motion=sine", "wall.contact=kelvin-voigt")) {
         parameters p = fixture_parameters(SETTINGS(*c));
         assert_false(pressed_arm_model_of(&p, &m));
     }
 
-    // links with the inertia of their mass at half their length: the force needs no motion
-    parameters p = fixture_parameters(SETTINGS("arm.mass=0.4", "arm.link_inertia=0.0125"));
+    // links with the inertia of their mass at half their length: the force needs no
+    // motion
+    parameters p =
+        fixture_parameters(SETTINGS("arm.mass=0.4", "arm.link_inertia=0.0125"));
     assert_false(pressed_arm_model_of(&p, &m));
 }
 
@@ -47,7 +50,8 @@ TEST(an_impact_throws_both_links_onto_one_motion)
            m12 = 0.5 * ml2, m22 = i + 0.25 * ml2;
     three_body_state before = {{0.001, 0.001, -0.001}, {0.5, 0.5, 0.9}};
     assert_true(pressed_after_impact(&p, &before, &after));
-    check_relative(after.velocity, ((m11 - m12) * 0.5 + (m12 - m22) * 0.9) / m.inertia, 1e-4);
+    check_relative(after.velocity, ((m11 - m12) * 0.5 + (m12 - m22) * 0.9) / m.inertia,
+                   1e-4);
     check_close(after.x, 0.001, 1e-15);
 
     // one that is no number throws them nowhere
@@ -68,24 +72,26 @@ TEST(a_strong_motor_leaves_the_closed_forms)
         const double peak = 1.4 * xi, low = 0.6 * xi, high = 1.9 * xi;
         check_close(best_settling(&m, at, low, 0.05, peak),
                     log((peak - 1.05 * low) / (peak - xi)) / s, 3e-6);
-        check_close(best_settling(&m, at, high, 0.05, 1.05 * high), log(0.95 * high / xi) / s,
-                    3e-6);
+        check_close(best_settling(&m, at, high, 0.05, 1.05 * high),
+                    log(0.95 * high / xi) / s, 3e-6);
         check_close(best_settling(&m, at, xi, 0.05, peak), 0, 0);
     }
 }
 
-// The model is linear where friction is small: a touch a thousand times as gentle has a force a
-// thousand times as small.
+// The model is linear where friction is small: a touch a thousand times as gentle has a
+// force a thousand times as small.
 TEST(the_gentlest_touch_has_a_best_force_too)
 {
     pressed_arm_model m = model_of(SETTINGS("motor.voltage_limit=1000"));
     for (double velocity = 1e-6; velocity < 10; velocity *= 7) {
         const pressed_state at = {0, velocity};
-        check_relative(best_peak(&m, at), m.spring_force * velocity / divergence(&m), 1e-4);
+        check_relative(best_peak(&m, at), m.spring_force * velocity / divergence(&m),
+                       1e-4);
     }
 }
 
-// A hub that is braked hard presses at once, whatever the motor does: no peak is below that.
+// A hub that is braked hard presses at once, whatever the motor does: no peak is below
+// that.
 TEST(no_peak_is_below_the_force_of_the_damping)
 {
     pressed_arm_model m = model_of(NULL);
@@ -112,18 +118,20 @@ TEST(stiction_helps_to_hold)
         check_close(best_settling(&m, there, force, 0.05, 1.06 * force), 0, 1e-3);
     }
     const double more = 1.01 * most;
-    assert_true(isnan(
-        best_settling(&m, (pressed_state){more / m.spring_force, 0}, more, 0.05, 1.06 * more)));
+    assert_true(isnan(best_settling(&m, (pressed_state){more / m.spring_force, 0}, more,
+                                    0.05, 1.06 * more)));
 }
 
 // A limited current brakes less, and what it cannot hold is not settled on.
 TEST(a_limited_current_stops_later)
 {
-    pressed_arm_model any = model_of(NULL), much = model_of(SETTINGS("motor.current_limit=10"));
+    pressed_arm_model any = model_of(NULL),
+                      much = model_of(SETTINGS("motor.current_limit=10"));
     pressed_arm_model some = model_of(SETTINGS("motor.current_limit=0.4"));
     pressed_arm_model little = model_of(SETTINGS("motor.current_limit=0.1"));
     const pressed_state at = {0, 1.37};
-    const double peak = best_peak(&any, at), settling = best_settling(&any, at, 1, 0.05, 9);
+    const double peak = best_peak(&any, at),
+                 settling = best_settling(&any, at, 1, 0.05, 9);
     check_close(best_peak(&much, at), peak, 0);
     check_close(best_settling(&much, at, 1, 0.05, 9), settling, 0);
     check_below(peak * 1.01, best_peak(&some, at));
@@ -136,10 +144,12 @@ TEST(what_cannot_be_is_said)
 {
     pressed_arm_model m = model_of(NULL);
     assert_true(isnan(best_peak(&m, (pressed_state){0.01, -0.1})));
-    assert_true(isnan(best_peak(&m, (pressed_state){-0.05, 1}))); // thrown back by its own bend
-    assert_true(isnan(best_settling(&m, (pressed_state){0, -1}, 1, 0.05, 2))); // it leaves the wall
     assert_true(
-        isnan(best_settling(&m, (pressed_state){0, 1}, 6, 0.05, 9))); // the motor is too weak
+        isnan(best_peak(&m, (pressed_state){-0.05, 1}))); // thrown back by its own bend
+    assert_true(isnan(
+        best_settling(&m, (pressed_state){0, -1}, 1, 0.05, 2))); // it leaves the wall
+    assert_true(isnan(
+        best_settling(&m, (pressed_state){0, 1}, 6, 0.05, 9))); // the motor is too weak
     // 0.58 N are needed to stop, so no less can lead down
     assert_true(isnan(best_settling(&m, (pressed_state){0, 1}, 0.4, 0.05, 0.5)));
     // no force is none to be settled on
@@ -149,18 +159,21 @@ TEST(what_cannot_be_is_said)
                 best_peak(&weak, (pressed_state){0, 1.37}));
 }
 
-// --- controllers tried at random --------------------------------------------------------------
+// --- controllers tried at random -------------------------------------------------------
 
-// A way of its own through the equation of motion: torques on a grid of times, small steps of the
-// midpoint rule. After the pieces the force is kept at that of the runaway mode, within the band.
+// A way of its own through the equation of motion: torques on a grid of times, small
+// steps of the midpoint rule. After the pieces the force is kept at that of the runaway
+// mode, within the band.
 enum { PIECES = 18 };
 #define PIECE     4e-3 // [s]
 #define FINE_STEP 5e-5 // [s]
 
-static double force_of(const pressed_arm_model *m, pressed_state s, double torque, double *rate)
+static double force_of(const pressed_arm_model *m, pressed_state s, double torque,
+                       double *rate)
 {
     double friction = s.velocity > 0 ? m->stiction : s.velocity < 0 ? -m->stiction : 0;
-    *rate = (torque - m->damping * s.velocity - friction - m->stiffness * s.x) / m->inertia;
+    *rate =
+        (torque - m->damping * s.velocity - friction - m->stiffness * s.x) / m->inertia;
     return m->spring_force * s.x - m->mass_force * *rate;
 }
 
@@ -172,18 +185,19 @@ static double torque_for(const pressed_arm_model *m, pressed_state s, double wan
     return fmax(-m->torque_limit, fmin(torque, m->torque_limit));
 }
 
-// What is played: a band about a force, below a peak [N], and what would be news of a try.
+// What is played: a band about a force, below a peak [N], and what would be news of a
+// try.
 typedef struct stop_game {
     double force, peak;
     double large;   // a force that every try must reach [N]
     double soonest; // of the tries before [s]
 } stop_game;
 
-// When the force of a try is in the band for good; HUGE_VAL where it is not, leaves the wall or
-// exceeds the peak, or where it is no news: later than a try before, with a force that is large
-// enough. *largest: the largest force.
-static double try_out(const pressed_arm_model *m, pressed_state s, const double *pieces, int count,
-                      const stop_game *game, double *largest)
+// When the force of a try is in the band for good; HUGE_VAL where it is not, leaves the
+// wall or exceeds the peak, or where it is no news: later than a try before, with a force
+// that is large enough. *largest: the largest force.
+static double try_out(const pressed_arm_model *m, pressed_state s, const double *pieces,
+                      int count, const stop_game *game, double *largest)
 {
     double settled = HUGE_VAL, xi_factor = m->spring_force / divergence(m);
     *largest = 0;
@@ -192,9 +206,11 @@ static double try_out(const pressed_arm_model *m, pressed_state s, const double 
         int piece = (int)(i * FINE_STEP / PIECE);
         double keep = m->spring_force * s.x + xi_factor * s.velocity;
         keep = fmax(0.95 * game->force, fmin(keep, 1.05 * game->force));
-        double torque = torque_for(m, s, piece < count ? pieces[piece] : keep), rate, half_rate;
+        double torque = torque_for(m, s, piece < count ? pieces[piece] : keep), rate,
+               half_rate;
         double f = force_of(m, s, torque, &rate);
-        pressed_state half = {s.x + FINE_STEP / 2 * s.velocity, s.velocity + FINE_STEP / 2 * rate};
+        pressed_state half = {s.x + FINE_STEP / 2 * s.velocity,
+                              s.velocity + FINE_STEP / 2 * rate};
         force_of(m, half, torque, &half_rate);
         if (f < -1e-9 || f > game->peak * 1.0001) {
             return HUGE_VAL;
@@ -217,12 +233,14 @@ TEST(no_controller_tried_is_better)
 {
     const struct {
         double velocity, force, peak, limit;
-    } cases[] = {{1.37, 0.5, 1, 10},  {1.37, 0.5, 1.6, 10}, {1.37, 1, 1.05, 10}, {1.37, 2, 2.1, 10},
-                 {1.37, 3, 3.15, 10}, {1.37, 4, 4.2, 10},   {3, 1, 3, 10},       {3, 2, 2.6, 6},
-                 {1.37, 1.5, 1.6, 4}, {0.8, 2, 2.1, 5},     {4, 1, 3.5, 5},      {3, 1.9, 2.2, 8}};
+    } cases[] = {{1.37, 0.5, 1, 10}, {1.37, 0.5, 1.6, 10}, {1.37, 1, 1.05, 10},
+                 {1.37, 2, 2.1, 10}, {1.37, 3, 3.15, 10},  {1.37, 4, 4.2, 10},
+                 {3, 1, 3, 10},      {3, 2, 2.6, 6},       {1.37, 1.5, 1.6, 4},
+                 {0.8, 2, 2.1, 5},   {4, 1, 3.5, 5},       {3, 1.9, 2.2, 8}};
     random_generator g = seeded(7);
     for (EACH(c, cases)) {
-        pressed_arm_model m = model_of(SETTINGS(formatted("motor.voltage_limit=%g", c->limit)));
+        pressed_arm_model m =
+            model_of(SETTINGS(formatted("motor.voltage_limit=%g", c->limit)));
         pressed_state start = {0.002, c->velocity};
         double best = best_settling(&m, start, c->force, 0.05, c->peak);
         double least = best_peak(&m, start);

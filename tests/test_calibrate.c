@@ -23,7 +23,7 @@ static void table_setting(const calibration *c, char *text, size_t size)
     assert_true(k2_table_write(&t, text + length, size - length));
 }
 
-// --- the table ------------------------------------------------------------------------------
+// --- the table -------------------------------------------------------------------------
 
 TEST(wrong_tables_are_refused)
 {
@@ -49,20 +49,22 @@ TEST(the_commanded_force_chooses_the_entry)
 {
     // (5.23) with the K2 of the table: the angle that the hybrid law goes to
     const char *const table = "control.k2_table=0.5:2 1.5:4";
-    const char *const forces[] = {"control.force=0.25", "control.force=1", "control.force=2"};
+    const char *const forces[] = {"control.force=0.25", "control.force=1",
+                                  "control.force=2"};
     const double wanted[] = {0.25 * 0.5 / (2 * 2), 0.5 / (2 * 3), 2 * 0.5 / (2 * 4)};
     for (int i = 0; i < 3; i++) {
         for (int doubted = 0; doubted < 2; doubted++) {
-            KEPT_RUN(r) = rig_run(SETTINGS("control.law=hybrid", table, forces[i],
-                                           doubted ? "belief.k2_factor=2" : "belief.k2_factor=1"),
-                                  true);
+            KEPT_RUN(r) =
+                rig_run(SETTINGS("control.law=hybrid", table, forces[i],
+                                 doubted ? "belief.k2_factor=2" : "belief.k2_factor=1"),
+                        true);
             double angle = LAST_ROW(&r.trace)->desired_angle;
             check_close(angle, wanted[i] / (doubted ? 2 : 1), 1e-12);
         }
     }
 }
 
-// --- measuring ------------------------------------------------------------------------------
+// --- measuring -------------------------------------------------------------------------
 
 TEST(two_links_have_the_stiffness_of_their_joint)
 {
@@ -70,11 +72,14 @@ TEST(two_links_have_the_stiffness_of_their_joint)
     calibration noisy = calibrated(SETTINGS("control.law=hybrid"));
     for (int i = 0; i < COMMANDS; i++) {
         const calibration_point *p = &ideal.points[i], *n = &noisy.points[i];
-        // the joint's moment k2 (x - y) is that of the force at the contact point, d from the joint
-        double x = p->angle, y = -atan2(sin(x), 2 - cos(x)), d = 0.5 * sqrt(5 - 4 * cos(x));
+        // the joint's moment k2 (x - y) is that of the force at the contact point, d from
+        // the joint
+        double x = p->angle, y = -atan2(sin(x), 2 - cos(x)),
+               d = 0.5 * sqrt(5 - 4 * cos(x));
         check_relative(p->k2, 4.92 * (x - y) / d * 0.5 / (2 * x), 1e-6);
         // half a count of the encoder, and the mean of 400 readings of the force
-        double count = 3.1416 / 8000 / p->angle, noise = 3 * n->force_spread / sqrt(400) / n->force;
+        double count = 3.1416 / 8000 / p->angle,
+               noise = 3 * n->force_spread / sqrt(400) / n->force;
         check_relative(n->k2, p->k2, count + noise + 1e-3);
         check_below(fabs(p->drift), 1e-5);
         // the motor's torque over two levers, but for what friction holds
@@ -85,21 +90,23 @@ TEST(two_links_have_the_stiffness_of_their_joint)
 TEST(a_spring_at_the_hub_is_measured_with_the_beam)
 {
     // the encoder sits before it: 1/K2 = 1/k2 + 4/k1
-    calibration c = calibrated(
-        SETTINGS("sensor.ideal=true", "arm.hub_joint=spring", "arm.k1=90", "control.law=hybrid"));
+    calibration c = calibrated(SETTINGS("sensor.ideal=true", "arm.hub_joint=spring",
+                                        "arm.k1=90", "control.law=hybrid"));
     check_relative(c.points[0].k2, 1 / (1 / 4.92 + 4.0 / 90), 0.005);
 }
 
-// Where friction holds the hub is one thing under a press that comes gently and another one behind
-// an impact; force and angle then differ together, their ratio does not.
+// Where friction holds the hub is one thing under a press that comes gently and another
+// one behind an impact; force and angle then differ together, their ratio does not.
 TEST(stiction_does_not_spoil_the_ratio)
 {
     double force[3], k2[3];
-    const char *const starts[] = {"initial.angle=0", "initial.angle=-0.1", "initial.angle=-0.3"};
+    const char *const starts[] = {"initial.angle=0", "initial.angle=-0.1",
+                                  "initial.angle=-0.3"};
     for (int i = 0; i < 3; i++) {
-        KEPT_RUN(r) = rig_run(SETTINGS("control.law=open-loop", "sensor.ideal=true", starts[i],
-                                       "control.approach_voltage=2.25", "run.duration=6"),
-                              true);
+        KEPT_RUN(r) =
+            rig_run(SETTINGS("control.law=open-loop", "sensor.ideal=true", starts[i],
+                             "control.approach_voltage=2.25", "run.duration=6"),
+                    true);
         const sample *last = LAST_ROW(&r.trace);
         force[i] = last->force_reading;
         k2[i] = last->force_reading * 0.5 / (2 * last->encoder);
@@ -111,8 +118,8 @@ TEST(stiction_does_not_spoil_the_ratio)
     check_relative(k2[2], k2[0], 2e-3);
 }
 
-// Where the calibrated table is believed, the force at rest is the commanded one but for what
-// friction holds; without it the arm of twelve links presses a third too softly.
+// Where the calibrated table is believed, the force at rest is the commanded one but for
+// what friction holds; without it the arm of twelve links presses a third too softly.
 static void many_links_press_as_commanded_with_their_table(void **state)
 {
     (void)state;
@@ -125,14 +132,14 @@ static void many_links_press_as_commanded_with_their_table(void **state)
         table_setting(&c, table, sizeof table);
         for (int k = 0; k < 4; k++) {
             for (int force = k == 0 ? 1 : 2; force <= (k == 0 ? 3 : 2); force++) {
-                summary with =
-                    rig_summary(SETTINGS("arm.links=12", *each, laws[k], table,
-                                         formatted("control.force=%d", force), "run.duration=5"));
+                summary with = rig_summary(SETTINGS("arm.links=12", *each, laws[k], table,
+                                                    formatted("control.force=%d", force),
+                                                    "run.duration=5"));
                 check_close(with.steady_force_N, force, 0.03 * force);
             }
         }
-        summary without =
-            rig_summary(SETTINGS("arm.links=12", *each, "control.law=hybrid", "run.duration=5"));
+        summary without = rig_summary(
+            SETTINGS("arm.links=12", *each, "control.law=hybrid", "run.duration=5"));
         check_below(without.steady_force_N, 0.75);
     }
 }
@@ -152,7 +159,8 @@ TEST(what_does_not_press_is_said)
         assert_non_null(strstr(f.text, cases[i].sentence));
     }
     k2_table t;
-    calibration alike = {.count = 2, .points = {{.force = 1, .k2 = 5}, {.force = 1.001, .k2 = 5}}};
+    calibration alike = {.count = 2,
+                         .points = {{.force = 1, .k2 = 5}, {.force = 1.001, .k2 = 5}}};
     REFUSED(STATUS_BAD_ARGUMENT, "press alike", calibration_table(&alike, &t, &f));
 }
 
@@ -160,27 +168,31 @@ TEST(results_reach_every_form)
 {
     calibration c = {
         .count = 2,
-        .points = {{.command = 2, .force = 1.5, .angle = 0.05, .k2 = 4.5},
-                   {.command = 1, .force = 0.5, .angle = 0.02, .k2 = 4.92, .k2_over_arm = 1}}};
+        .points = {
+            {.command = 2, .force = 1.5, .angle = 0.05, .k2 = 4.5},
+            {.command = 1, .force = 0.5, .angle = 0.02, .k2 = 4.92, .k2_over_arm = 1}}};
     char setting[PARAMETER_TEXT_SIZE + 32];
     table_setting(&c, setting, sizeof setting);
     assert_string_equal(setting, "control.k2_table=0.5:4.92 1.5:4.5");
     SCOPED(free_kept) WRITTEN(csv, calibration_csv(stream, &c));
-    assert_non_null(strstr(csv, "command[V],force[N],hub_angle[rad],k2[N m/rad],k2_over_arm[],"));
+    assert_non_null(
+        strstr(csv, "command[V],force[N],hub_angle[rad],k2[N m/rad],k2_over_arm[],"));
     assert_non_null(strstr(csv, "\n1,0.5,0.02,4.92,1,"));
     json_t *whole = calibration_json(&c, "arm", "0.5:4.92 1.5:4.5");
     json_t *first = json_array_get(json_object_get(whole, "points"), 0);
     check_close(json_number_value(json_object_get(first, "k2_Nm_per_rad")), 4.5, 0);
-    assert_string_equal(json_string_value(json_object_get(whole, "k2_table")), "0.5:4.92 1.5:4.5");
+    assert_string_equal(json_string_value(json_object_get(whole, "k2_table")),
+                        "0.5:4.92 1.5:4.5");
     json_decref(whole);
 }
 
-// With an argument the case that takes most of the time, without one the others. The arm is pressed
-// with a voltage: the settings of the scenario for its own law, and the mode that it holds it in,
-// are none of that.
+// With an argument the case that takes most of the time, without one the others. The arm
+// is pressed with a voltage: the settings of the scenario for its own law, and the mode
+// that it holds it in, are none of that.
 TEST(what_another_law_is_told_changes_nothing)
 {
-    static const char *const told[][2] = {{"control.law=observer", "control.settings=wall_doubt=0"},
+    static const char *const told[][2] = {{"control.law=observer",
+                                           "control.settings=wall_doubt=0"},
                                           {"control.law=hybrid", "control.lock=force"}};
     const calibration plain = calibrated(SETTINGS("control.law=hybrid"));
     for (int i = 0; i < 2; i++) {
@@ -197,5 +209,6 @@ int main(int argc, char **argv)
     const struct CMUnitTest longest[] = {
         cmocka_unit_test(many_links_press_as_commanded_with_their_table),
     };
-    return (argc > 1 ? cmocka_run_group_tests(longest, NULL, NULL) : run_cases(NULL, NULL)) != 0;
+    return (argc > 1 ? cmocka_run_group_tests(longest, NULL, NULL)
+                     : run_cases(NULL, NULL)) != 0;
 }

@@ -24,8 +24,8 @@ static double dense_inertia(int k)
 static arm make_arm(int links, const char *hub, const char *wall)
 {
     parameters p = parameters_with(
-        "arm.links=%d arm.hub_joint=%s wall.kind=%s arm.k1=90 arm.damping_ratio=0.02", links, hub,
-        wall);
+        "arm.links=%d arm.hub_joint=%s wall.kind=%s arm.k1=90 arm.damping_ratio=0.02",
+        links, hub, wall);
     beam = (dense_beam){.length[LARGEST - 1] = 1};
     for (int k = 0; k < links; k++) {
         beam.length[k] = 1.0 / links;
@@ -45,19 +45,21 @@ static arm make_uneven_arm(int links, const char *wall, bool rooted)
         beam.stiffness[k] = 8 + (k * 5) % 7 + 0.5 * k;
         lengths = formatted("%s%s%g", lengths, k > 0 ? "," : "", beam.length[k]);
         if (k > 0 || rooted) {
-            springs = formatted("%s%s%g", springs, k > !rooted ? "," : "", beam.stiffness[k]);
+            springs =
+                formatted("%s%s%g", springs, k > !rooted ? "," : "", beam.stiffness[k]);
         }
     }
-    parameters p =
-        parameters_with("arm.links=%d wall.kind=%s %s %s arm.air_drag=0.3 %s", links, wall, lengths,
-                        springs, rooted ? "arm.hub_joint=beam" : "run.duration=1");
+    parameters p = parameters_with("arm.links=%d wall.kind=%s %s %s arm.air_drag=0.3 %s",
+                                   links, wall, lengths, springs,
+                                   rooted ? "arm.hub_joint=beam" : "run.duration=1");
     return arm_of(&p);
 }
 
 // Equal joints that stiffen with their bend.
 static arm make_stiffening_arm(int links, const char *wall)
 {
-    parameters p = parameters_with("arm.links=%d wall.kind=%s arm.stiffening=2.5", links, wall);
+    parameters p =
+        parameters_with("arm.links=%d wall.kind=%s arm.stiffening=2.5", links, wall);
     beam = (dense_beam){.length[LARGEST - 1] = 1, .stiffening = 2.5 * links * links / 4};
     for (int k = 0; k < links; k++) {
         beam.length[k] = 1.0 / links;
@@ -126,14 +128,15 @@ static double spring_torque(const arm *a, const double *q, const double *w, int 
     for (int k = 1; k < a->dof; k++) {
         double s = beam.stiffness[k - a->first], bend = q[k] - q[k - 1];
         double c = k == a->first ? a->hub_joint_damping : a->joint_damping;
-        double torque = s * (bend + beam.stiffening * bend * bend * bend) + c * (w[k] - w[k - 1]);
+        double torque =
+            s * (bend + beam.stiffening * bend * bend * bend) + c * (w[k] - w[k - 1]);
         sum += i == k - 1 ? torque : i == k ? -torque : 0;
     }
     return sum;
 }
 
-// Generalised force of the air, its drag summed over points of Gauss's rule along each link, of
-// which two are exact.
+// Generalised force of the air, its drag summed over points of Gauss's rule along each
+// link, of which two are exact.
 static double drag(const arm *a, const double *q, const double *w, int i)
 {
     double sum = 0;
@@ -155,8 +158,8 @@ static double drag(const arm *a, const double *q, const double *w, int i)
 }
 
 // Residual of the Lagrangian's equations with what the chain returned.
-static double largest_residual(const arm *a, double *q, const double *w, const double *alpha,
-                               const chain_reaction *r)
+static double largest_residual(const arm *a, double *q, const double *w,
+                               const double *alpha, const chain_reaction *r)
 {
     double jacobian[LARGEST] = {0}, largest = 0;
     if (wall_stands(&a->wall)) {
@@ -194,7 +197,8 @@ static double numeric_second_rate(const arm *a, const double *q, const double *w
 
 TEST(satisfies_the_lagrangian)
 {
-    static const char *const hubs[] = {"rigid", "spring"}, *const walls[] = {"point", "plane",
+    static const char *const hubs[] = {"rigid", "spring"}, *const walls[] = {"point",
+                                                                             "plane",
                                                                              "none"};
     static const hub_friction frictions[] = {HUB_FORWARD, HUB_BACKWARD, HUB_STICK};
     int cases = 0;
@@ -220,7 +224,8 @@ TEST(satisfies_the_lagrangian)
             }
             if (wall_stands(&a.wall)) {
                 double second = numeric_second_rate(&a, q, w, alpha);
-                // differences of rates of order 10 over 2e-6 s carry rounding of order 1e-9 / 1e-6
+                // differences of rates of order 10 over 2e-6 s carry rounding of order
+                // 1e-9 / 1e-6
                 check_close(-r.gap_acceleration, second, 1e-3 + 1e-5 * fabs(second));
             }
             assert_true(mode.contact || r.force == 0);
@@ -230,8 +235,8 @@ TEST(satisfies_the_lagrangian)
     assert_int_equal(cases, 10 * 36 - 6);
 }
 
-// Links and joints that differ, air, joints that stiffen: the same equations; what damping takes is
-// the power of its forces.
+// Links and joints that differ, air, joints that stiffen: the same equations; what
+// damping takes is the power of its forces.
 TEST(satisfies_it_with_any_links_and_joints)
 {
     static const char *const walls[] = {"point", "plane", "none"};
@@ -326,7 +331,8 @@ TEST(energies_match_the_dense_form)
     }
 }
 
-// The same of links and joints that differ, and of joints whose torque is the energy's slope.
+// The same of links and joints that differ, and of joints whose torque is the energy's
+// slope.
 TEST(energies_match_with_any_links_and_joints)
 {
     for (int links = 2; links <= 6; links++) {
@@ -350,8 +356,9 @@ TEST(energies_match_with_any_links_and_joints)
     }
 }
 
-// A joint that stiffens vibrates as much faster as half as much again of its own stiffness, which
-// is 1 + 3 s b^2 at the bend b of the joint that is bent most; a root stands for twice its bend.
+// A joint that stiffens vibrates as much faster as half as much again of its own
+// stiffness, which is 1 + 3 s b^2 at the bend b of the joint that is bent most; a root
+// stands for twice its bend.
 TEST(bends_make_it_vibrate_faster)
 {
     arm a = make_stiffening_arm(4, "none"), even = make_arm(4, "rigid", "none");
@@ -378,16 +385,18 @@ TEST(a_mass_at_the_tip_adds_its_own_energy)
             vy += cos(q[k]) * w[k] / links;
         }
         a.tip_mass = 0.3;
-        check_relative(chain_kinetic_energy(&a, q, w), before + 0.15 * (vx * vx + vy * vy), 1e-13);
+        check_relative(chain_kinetic_energy(&a, q, w),
+                       before + 0.15 * (vx * vx + vy * vy), 1e-13);
     }
 }
 
-// Folded over the hub's axis the tip stands on a flat wall that cannot move it: no link's velocity
-// changes the penetration. A point, or an arm that cannot fold, is no such wall.
+// Folded over the hub's axis the tip stands on a flat wall that cannot move it: no link's
+// velocity changes the penetration. A point, or an arm that cannot fold, is no such wall.
 TEST(an_arm_is_folded_where_a_flat_wall_moves_no_link)
 {
     for (int links = 2; links <= 6; links += 2) {
-        arm flat = make_arm(links, "spring", "plane"), point = make_arm(links, "spring", "point");
+        arm flat = make_arm(links, "spring", "plane"),
+            point = make_arm(links, "spring", "point");
         double q[LARGEST], jacobian[LARGEST], largest = 0;
         q[0] = 0.7; // a hub behind a spring may stand anywhere
         for (int k = flat.first; k < flat.dof; k++) {
@@ -419,8 +428,8 @@ TEST(an_arm_is_folded_where_a_flat_wall_moves_no_link)
     assert_false(chain_is_folded(&rod, (double[]){0.1 + M_PI / 2}));
 }
 
-// Nodes lie a link apart from one another, each in the direction of its link; and the strain is the
-// work that it takes to bend the joints.
+// Nodes lie a link apart from one another, each in the direction of its link; and the
+// strain is the work that it takes to bend the joints.
 TEST(nodes_follow_the_links)
 {
     for (int kind = 0; kind < 3; kind++) {
@@ -438,7 +447,8 @@ TEST(nodes_follow_the_links)
                 check_close(y - before_y, beam.length[k] * sin(q[a.first + k]), 1e-15);
             }
 
-            // a push on the tip turns it the way that it pushes, by the force over the compliance
+            // a push on the tip turns it the way that it pushes, by the force over the
+            // compliance
             double response[LARGEST], moved[LARGEST], ahead_x, ahead_y;
             chain_link work[LARGEST];
             chain_tip_response(&a, work, q, response);
@@ -447,7 +457,8 @@ TEST(nodes_follow_the_links)
                 moved[k] = q[k] + 1e-6 * response[k];
             }
             chain_node(&a, moved, links, &ahead_x, &ahead_y);
-            const double across = -(ahead_x - x) * sin(q[last]) + (ahead_y - y) * cos(q[last]);
+            const double across =
+                -(ahead_x - x) * sin(q[last]) + (ahead_y - y) * cos(q[last]);
 
             // what the push gives in energy is half its way
             check_relative(across * 1e6 / 2, chain_kinetic_energy(&a, q, response), 1e-4);

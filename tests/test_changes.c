@@ -1,5 +1,5 @@
-// What the explorer must never do: change something that was not requested, lose something, or
-// leave one in the dark about what has an effect and when.
+// What the explorer must never do: change something that was not requested, lose
+// something, or leave one in the dark about what has an effect and when.
 #include "tests/explorer_on_screen.h"
 
 TEST(test_typing_replaces_the_value)
@@ -81,38 +81,42 @@ TEST(test_what_has_no_effect_says_why)
     press_shows(&ex, ":set motor.voltage 2<Enter>",
                 "without effect: the control law commands the voltage");
     assert_true(ex.state.message.warning);
-    press_shows(&ex, ":set<Enter>", "set takes a parameter and a value, such as arm.k2 10");
-    press_shows(&ex, ":set sensor.film_gain<Enter>", "no piezo film is fitted (sensor.film)");
+    press_shows(&ex, ":set<Enter>",
+                "set takes a parameter and a value, such as arm.k2 10");
+    press_shows(&ex, ":set sensor.film_gain<Enter>",
+                "no piezo film is fitted (sensor.film)");
     press(&ex, ":open corrected/first-impact<Enter>");
     assert_int_equal(ex.state.parameters.parameter, PARAMETER_INDEX(motor.voltage));
     assert_null(state_inert_reason(&ex.state, PARAMETER_INDEX(motor.voltage)));
-    press_shows(&ex, ":set printed.newton_iterations<Enter>", "it belongs to arm.model = printed");
+    press_shows(&ex, ":set printed.newton_iterations<Enter>",
+                "it belongs to arm.model = printed");
 
     // a parameter that is called inert is: the run is the same to the last bit
     press(&ex, ":seek end<Enter>");
     const double end = session_sample(&ex.state.session)->hub_angle;
-    press(&ex, ":set printed.newton_iterations 5<Enter>:set control.kp 3<Enter>:set arm.k1 "
-               "100<Enter>:seek end<Enter>");
+    press(&ex, ":set printed.newton_iterations 5<Enter>:set control.kp 3<Enter>:set "
+               "arm.k1 100<Enter>:seek end<Enter>");
     check_close(session_sample(&ex.state.session)->hub_angle, end, 0);
 }
 
-// What one link's springs and a limited current do is not called without effect, and the other way
-// round.
+// What one link's springs and a limited current do is not called without effect, and the
+// other way round.
 TEST(test_inert_is_what_has_no_effect)
 {
     const struct {
         const char *lines;
         int parameter;
         bool inert;
-    } cases[] = {
-        {":set arm.links 1<Enter>", PARAMETER_INDEX(arm.k2), true},
-        {":set arm.links 1<Enter>", PARAMETER_INDEX(arm.damping_ratio), true},
-        {":set arm.links 1<Enter>:set arm.hub_joint spring<Enter>", PARAMETER_INDEX(arm.k2), true},
-        {":set arm.links 1<Enter>:set arm.hub_joint spring<Enter>",
-         PARAMETER_INDEX(arm.damping_ratio), false},
-        {":set arm.links 1<Enter>:set arm.hub_joint beam<Enter>", PARAMETER_INDEX(arm.k2), false},
-        {"", PARAMETER_INDEX(motor.current_limit), false},
-        {"", PARAMETER_INDEX(motor.transconductance), true}};
+    } cases[] = {{":set arm.links 1<Enter>", PARAMETER_INDEX(arm.k2), true},
+                 {":set arm.links 1<Enter>", PARAMETER_INDEX(arm.damping_ratio), true},
+                 {":set arm.links 1<Enter>:set arm.hub_joint spring<Enter>",
+                  PARAMETER_INDEX(arm.k2), true},
+                 {":set arm.links 1<Enter>:set arm.hub_joint spring<Enter>",
+                  PARAMETER_INDEX(arm.damping_ratio), false},
+                 {":set arm.links 1<Enter>:set arm.hub_joint beam<Enter>",
+                  PARAMETER_INDEX(arm.k2), false},
+                 {"", PARAMETER_INDEX(motor.current_limit), false},
+                 {"", PARAMETER_INDEX(motor.transconductance), true}};
     for (EACH(c, cases)) {
         OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, c->lines);
@@ -130,12 +134,13 @@ TEST(test_predictors_take_the_voltage_in_force)
     check_close(row->voltage, 1, 0.01);
     p.motor.voltage = row->voltage;
     const three_body_state bodies = {{row->hub_angle, row->first_angle, row->last_angle},
-                                     {row->hub_velocity, row->first_velocity, row->last_velocity}};
+                                     {row->hub_velocity, row->first_velocity,
+                                      row->last_velocity}};
     const prediction_question question = {.parameters = &p, .bodies = bodies};
     const prediction_answer answer = predict_with(PREDICTOR_IMPACT_DYNAMICS, &question);
     assert_true(answer.prediction.holds);
-    assert_shows(&ex, formatted("impact dynamics %.3f N in %.0f ms", answer.prediction.force,
-                                1e3 * answer.prediction.delay));
+    assert_shows(&ex, formatted("impact dynamics %.3f N in %.0f ms",
+                                answer.prediction.force, 1e3 * answer.prediction.delay));
 }
 
 TEST(test_predictors_say_that_they_know_two_links)
@@ -172,7 +177,8 @@ TEST(test_changes_to_come_are_seen_edited_and_dropped)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press_shows(&ex, ":seek 0.5<Enter>:set motor.voltage 2<Enter>:seek 0.7<Enter>p<Home>",
-                "\u25cf 2 changes, \u25cb 2 later", "0.50000 s  change motor.voltage = 2");
+                "\u25cf 2 changes, \u25cb 2 later",
+                "0.50000 s  change motor.voltage = 2");
     press_shows(&ex, ":changes<Enter>", "1 \u25cb   0.50000 s     motor.voltage = 2 V",
                 "2 \u25cb   0.70000 s     push 0.01 N s");
 
@@ -220,8 +226,8 @@ TEST(test_nudges_are_one_change_and_reversible)
         }
         parameter_list_select(&ex.state.parameters, (parameter_line){i, false});
         press(&ex, "<lt><lt><lt>>>>");
-        fail_if(fabs(value_of(&ex, i) - before) > 1e-5 * fabs(before), "%s: %.17g and then %.17g",
-                info->path, before, value_of(&ex, i));
+        fail_if(fabs(value_of(&ex, i) - before) > 1e-5 * fabs(before),
+                "%s: %.17g and then %.17g", info->path, before, value_of(&ex, i));
     }
 }
 
@@ -238,7 +244,8 @@ TEST_IN_FOLDER(test_saving_never_replaces_a_file_unasked)
                   "save first-impact-voltage-0.5.png");
     press_prompts(&ex, "<Enter>s", "save first-impact-voltage-0.5-2.png");
     press(&ex, "<Esc>");
-    assert_true(access("run.csv", F_OK) == 0 && access("first-impact-voltage-0.5.png", F_OK) == 0);
+    assert_true(access("run.csv", F_OK) == 0 &&
+                access("first-impact-voltage-0.5.png", F_OK) == 0);
 }
 
 TEST(test_everything_that_is_listed_can_be_filtered)
@@ -353,7 +360,8 @@ TEST(test_setpoints_and_limits_are_lines)
     OPEN_EXPLORER(ex, "compare/hybrid");
     assert_shows(&ex, "\u2508force");
     press_shows(&ex, ":axis -12 12 5<Enter>", "\u2508voltage_limit");
-    press_shows(&ex, ":open corrected/first-impact<Enter>2", "\u2508angle", "!\u2508force");
+    press_shows(&ex, ":open corrected/first-impact<Enter>2", "\u2508angle",
+                "!\u2508force");
 }
 
 TEST(test_ticks_are_even_and_names_whole)
@@ -401,6 +409,7 @@ TEST(test_the_arrow_has_its_head_on)
 TEST(test_a_filter_selects_what_has_an_effect)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
-    // motor.transconductance stands before control.transition_time, but the drive has none
+    // motor.transconductance stands before control.transition_time, but the drive has
+    // none
     press_shows(&ex, "/trans<Enter>", ":set control.transition_time");
 }

@@ -1,15 +1,16 @@
-// Every command of the command table with its requests for memory refused one after the other: if
-// it then says that all went well, its standard output and its files are those of an undisturbed
-// call; else it says a sentence, and it neither crashes nor leaves a temporary. The calls follow
-// from the table: a command plainly, with each result on the standard output, and with all results
-// in files; a new command joins by itself, and fails here until `helped` knows what it needs.
+// Every command of the command table with its requests for memory refused one after the
+// other: if it then says that all went well, its standard output and its files are those
+// of an undisturbed call; else it says a sentence, and it neither crashes nor leaves a
+// temporary. The calls follow from the table: a command plainly, with each result on the
+// standard output, and with all results in files; a new command joins by itself, and
+// fails here until `helped` knows what it needs.
 //
 //   test_command_faults MOST [COMMAND [CALL [REQUEST]]]
 //
-// MOST requests of a call are refused, evenly, or all if there are not more; of a single one it is
-// told where it was made. Each call is a process
-// of its own (fork). Without a sanitizer all allocations of the process count, libraries' too; with
-// one, whose allocator takes no other's place, those of this project (the linker's --wrap).
+// MOST requests of a call are refused, evenly, or all if there are not more; of a single
+// one it is told where it was made. Each call is a process of its own (fork). Without a
+// sanitizer all allocations of the process count, libraries' too; with one, whose
+// allocator takes no other's place, those of this project (the linker's --wrap).
 #include <assert.h>
 #include <dirent.h>
 #include <errno.h>
@@ -29,7 +30,7 @@
 
 #include "ui/commands/command.h"
 
-// --- who refuses --------------------------------------------------------------------------------
+// --- who refuses -----------------------------------------------------------------------
 
 static atomic_long *requests; // made by the process under test, shared with it
 static bool tested;           // this is that process
@@ -60,16 +61,18 @@ static bool refused(void)
 #endif
 
 // A function of the C library that gives `none` where it is refused.
-#define REFUSABLE(here, there, type, none, parameters, arguments)                                  \
-    type here parameters;                                                                          \
-    type there parameters;                                                                         \
-    type here parameters                                                                           \
-    {                                                                                              \
-        return refused() ? (errno = ENOMEM, none) : there arguments;                               \
+#define REFUSABLE(here, there, type, none, parameters, arguments)                        \
+    type here parameters;                                                                \
+    type there parameters;                                                               \
+    type here parameters                                                                 \
+    {                                                                                    \
+        return refused() ? (errno = ENOMEM, none) : there arguments;                     \
     }
 REFUSABLE(HERE(malloc), THERE(malloc), void *, NULL, (size_t size), (size))
-REFUSABLE(HERE(calloc), THERE(calloc), void *, NULL, (size_t count, size_t size), (count, size))
-REFUSABLE(HERE(realloc), THERE(realloc), void *, NULL, (void *memory, size_t size), (memory, size))
+REFUSABLE(HERE(calloc), THERE(calloc), void *, NULL, (size_t count, size_t size),
+          (count, size))
+REFUSABLE(HERE(realloc), THERE(realloc), void *, NULL, (void *memory, size_t size),
+          (memory, size))
 
 #ifdef REFUSES_OWN
 // What asks for memory on this project's behalf.
@@ -90,7 +93,7 @@ int __wrap_asprintf(char **text, const char *format, ...)
 }
 #endif
 
-// --- the calls ----------------------------------------------------------------------------------
+// --- the calls -------------------------------------------------------------------------
 
 enum { MOST_WORDS = 48, MOST_CALLS = 16, WORD = 96 };
 
@@ -134,7 +137,8 @@ static const struct {
     const char *words; // operands and options
     call_kind kind;
 } helped[] = {
-    {"lab", "touch.yaml --size 80x24 --keys :theme<Space>dark<Enter>:remember<Enter>", USUAL},
+    {"lab", "touch.yaml --size 80x24 --keys :theme<Space>dark<Enter>:remember<Enter>",
+     USUAL},
     {"lab", "touch.yaml --script steps", USUAL},
     {"lab", "touch.yaml --size 120x40 --keys :open<Enter>", USUAL},
     {"lab", "touch.yaml --script much", USUAL},
@@ -142,27 +146,33 @@ static const struct {
     {"lesson", "two-predictors --size 80x24", ALONE},
     {"show", "acted.yaml", USUAL},
     {"predict", "touch.yaml", USUAL},
-    {"sweep", "touch.yaml --vary motor.voltage=1:2:2 --vary method.name=event,newmark --jobs 1",
+    {"sweep",
+     "touch.yaml --vary motor.voltage=1:2:2 --vary method.name=event,newmark --jobs 1",
      USUAL},
-    {"sweep", "touch.yaml --vary motor.voltage=1:2 --sample latin --runs 3 --db results/s.sqlite",
+    {"sweep",
+     "touch.yaml --vary motor.voltage=1:2 --sample latin --runs 3 --db results/s.sqlite",
      USUAL},
     {"merge", "part1.sqlite part2.sqlite -o results/all.sqlite", USUAL},
     {"compare", "hit.yaml touch.yaml --against hit.yaml", USUAL},
-    {"compare", "touch.yaml --vary motor.voltage=1,2 --columns peak_force_N --csv -", ALONE},
+    {"compare", "touch.yaml --vary motor.voltage=1,2 --columns peak_force_N --csv -",
+     ALONE},
     {"solve", "touch.yaml motor.voltage=1:2 peak_force_N<1 --runs 3 --jobs 1", USUAL},
     {"study", "links touch.yaml", USUAL},
     {"study", "methods hit.yaml", TIMED},
     {"calibrate", "touch.yaml --vary control.approach_voltage=1:2:2", USUAL},
     {"robust", "law.yaml --over over.set --runs 2 --jobs 1", USUAL},
     {"tune", "law.yaml --vary control.kp=5:9 --minimise steps --runs 4 --jobs 1", USUAL},
-    {"robust", "law.yaml --over cases.set --runs 2 --jobs 1 --laws force-pd,hybrid --markdown -",
+    {"robust",
+     "law.yaml --over cases.set --runs 2 --jobs 1 --laws force-pd,hybrid --markdown -",
      ALONE},
-    {"identify", "touch.yaml --data recorded.csv --fit motor.resistance --starts 1 --jobs 1",
-     USUAL},
+    {"identify",
+     "touch.yaml --data recorded.csv --fit motor.resistance --starts 1 --jobs 1", USUAL},
     {"linear", "law.yaml --law", USUAL},
     {"linear", "touch.yaml --at free", ALONE},
     {"animate",
-     "hit.yaml --size 320x240 --fps 4 --seconds 0.5 --slow 1 --gl cairo -o results/frames", USUAL},
+     "hit.yaml --size 320x240 --fps 4 --seconds 0.5 --slow 1 --gl cairo -o "
+     "results/frames",
+     USUAL},
     {"plot", "recipe.yaml -o results/drawn.svg", USUAL},
     {"figures", "T3.1 --format svg -o results/figures", USUAL},
     {"report", "hit.yaml -o results/report", USUAL},
@@ -175,8 +185,8 @@ static const struct {
 };
 enum { HELPED = (int)(sizeof helped / sizeof helped[0]) };
 
-// The n-th call of a command without results: as helped, else as short as its table allows. False
-// behind the last.
+// The n-th call of a command without results: as helped, else as short as its table
+// allows. False behind the last.
 static bool plain_call(const command *c, int n, call *made, call_kind *kind)
 {
     int known = 0;
@@ -197,8 +207,8 @@ static bool plain_call(const command *c, int n, call *made, call_kind *kind)
     return known == 0 && n == 0;
 }
 
-// Whether an option asks for results that a call does not ask for yet. Those of pictures' own
-// options need a picture.
+// Whether an option asks for results that a call does not ask for yet. Those of pictures'
+// own options need a picture.
 static bool is_result(const call *plain, call_kind kind, const option_row *o)
 {
     const bool drawn = o->type == OPTION_PICTURE && kind != TIMED;
@@ -239,7 +249,7 @@ static int calls_of(const command *c, const call *plain, call_kind kind, call *c
     return count;
 }
 
-// --- what came of one ---------------------------------------------------------------------------
+// --- what came of one ------------------------------------------------------------------
 
 static int failures;
 static long refusals;
@@ -272,7 +282,8 @@ static char *content_of(const char *path, size_t *length)
     return text;
 }
 
-// Leaves out lines with times of the machine and, if `timed`, makes every number the same one.
+// Leaves out lines with times of the machine and, if `timed`, makes every number the same
+// one.
 static void write_essence(FILE *out, char *text, size_t length, bool timed)
 {
     if (memchr(text, '\0', length) != NULL) {
@@ -281,7 +292,8 @@ static void write_essence(FILE *out, char *text, size_t length, bool timed)
     }
     for (char *line, *rest = text; (line = strsep(&rest, "\n")) != NULL;) {
         if (strstr(line, "wall_time_s") != NULL || strstr(line, "cpu_time_s") != NULL ||
-            strstr(line, "  wall time  ") != NULL || strstr(line, "  cpu time  ") != NULL) {
+            strstr(line, "  wall time  ") != NULL ||
+            strstr(line, "  cpu time  ") != NULL) {
             continue;
         }
         for (char *c = line; *c != '\0'; c++) {
@@ -328,7 +340,8 @@ static void take_files(FILE *out, const char *folder, bool timed)
     }
 }
 
-// Carries out a call with a request refused, in a process of its own. Returns how it ended.
+// Carries out a call with a request refused, in a process of its own. Returns how it
+// ended.
 static int carry_out(const call *c, long k)
 {
     char *words[MOST_WORDS + 1];
@@ -375,7 +388,8 @@ static char *essence(bool timed, size_t *length)
 }
 
 // One refusal: with status 0 all is as expected, else there is a sentence that is true.
-static void attempt(const call *c, bool timed, long k, const char *expected, size_t expected_length)
+static void attempt(const call *c, bool timed, long k, const char *expected,
+                    size_t expected_length)
 {
     size_t length, said;
     const int ended = carry_out(c, k);
@@ -439,7 +453,7 @@ static void attempt_all(const call *c, bool timed, long most, long only)
     free(expected[1]);
 }
 
-// --- what the calls are about -------------------------------------------------------------------
+// --- what the calls are about ----------------------------------------------------------
 
 static void write_text(const char *path, const char *text)
 {
@@ -452,22 +466,27 @@ static void write_text(const char *path, const char *text)
 
 static void prepare(void)
 {
-    write_text("hit.yaml", "title: An impact\nmotor: {voltage: 2 V}\nrun: {duration: 0.05 s}\n");
-    write_text("recorded.csv", "time[s],command[V],encoder[rad]\n0,1,0\n0.005,1,0\n0.01,1,0\n"
-                               "0.015,1,0\n0.02,1,0.001\n0.025,1,0.002\n");
-    write_text("touch.yaml", "title: A touch\nmotor: {voltage: 2 V}\nwall: {angle: 0.01}\n"
-                             "run: {duration: 0.12 s}\n");
-    write_text("acted.yaml", "title: Much happens\ndescription: Of all that may be shown.\n"
-                             "motor: {voltage: 2 V}\nwall: {angle: 0.01}\n"
-                             "run: {duration: 0.12 s}\nscript:\n"
-                             "  - {at: 0.05, set: {motor.voltage: 1 V}}\n"
-                             "  - {at: 0.06, push: -0.01 N s}\n"
-                             "expect: {impacts: {value: 3, tolerance: 9}}\n");
+    write_text("hit.yaml",
+               "title: An impact\nmotor: {voltage: 2 V}\nrun: {duration: 0.05 s}\n");
+    write_text("recorded.csv",
+               "time[s],command[V],encoder[rad]\n0,1,0\n0.005,1,0\n0.01,1,0\n"
+               "0.015,1,0\n0.02,1,0.001\n0.025,1,0.002\n");
+    write_text("touch.yaml",
+               "title: A touch\nmotor: {voltage: 2 V}\nwall: {angle: 0.01}\n"
+               "run: {duration: 0.12 s}\n");
+    write_text("acted.yaml",
+               "title: Much happens\ndescription: Of all that may be shown.\n"
+               "motor: {voltage: 2 V}\nwall: {angle: 0.01}\n"
+               "run: {duration: 0.12 s}\nscript:\n"
+               "  - {at: 0.05, set: {motor.voltage: 1 V}}\n"
+               "  - {at: 0.06, push: -0.01 N s}\n"
+               "expect: {impacts: {value: 3, tolerance: 9}}\n");
     write_text("steps", "set motor.voltage 3\nseek 0.05\n");
-    write_text("much",
-               "seek 0.05\npin one\nset motor.voltage 3\nundo\nset arm.k2 6\nphase gap force\n"
-               "spectrum force\nsweep motor.voltage=2:3:2\ndifference\nsave results/s.csv\n"
-               "save results/s.yaml\nsave results/s.txt\n");
+    write_text(
+        "much",
+        "seek 0.05\npin one\nset motor.voltage 3\nundo\nset arm.k2 6\nphase gap force\n"
+        "spectrum force\nsweep motor.voltage=2:3:2\ndifference\nsave results/s.csv\n"
+        "save results/s.yaml\nsave results/s.txt\n");
     write_text("law.yaml", "title: A law\ncontrol: {law: force-pd, force: 1}\n"
                            "run: {duration: 0.1 s}\n");
     write_text("over.set", "belief.k2_factor=0.9:1.1\n");
@@ -476,7 +495,8 @@ static void prepare(void)
                               "panels:\n  - signals: [hub_angle]\n");
     for (int part = 1; part <= 2; part++) {
         call c = {.count = 0};
-        add_all(&c, "impactlab sweep hit.yaml --vary motor.voltage=1:2:4 --jobs 1 --quiet");
+        add_all(&c,
+                "impactlab sweep hit.yaml --vary motor.voltage=1:2:4 --jobs 1 --quiet");
         add(&c, "--part");
         add(&c, "%d/2", part);
         add(&c, "--db");
@@ -493,8 +513,8 @@ int main(int count, char **words)
     const char *only = count > 2 ? words[2] : NULL;
     const int only_call = count > 3 ? atoi(words[3]) : -1;
     char folder[] = "/tmp/command_faults_XXXXXX";
-    requests =
-        mmap(NULL, sizeof *requests, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    requests = mmap(NULL, sizeof *requests, PROT_READ | PROT_WRITE,
+                    MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (requests == MAP_FAILED || mkdtemp(folder) == NULL || chdir(folder) != 0) {
         perror("test_command_faults");
         return EXIT_FAILURE;
@@ -503,8 +523,8 @@ int main(int count, char **words)
     setenv("XDG_CONFIG_HOME", folder, 1);
     prepare();
 
-    // fontconfig keeps a lock of its own where memory is refused while it reads its caches, and
-    // hangs at the next one: it has read them before
+    // fontconfig keeps a lock of its own where memory is refused while it reads its
+    // caches, and hangs at the next one: it has read them before
     FcInit();
 
     for (int i = 0; i < command_count; i++) {
@@ -517,7 +537,8 @@ int main(int count, char **words)
             for (int k = 0; k < made; k++, number++) {
                 if ((only == NULL || strcmp(only, c->name) == 0) &&
                     (only_call < 0 || number == only_call)) {
-                    attempt_all(&calls[k], kind == TIMED, most, count > 4 ? atol(words[4]) : 0);
+                    attempt_all(&calls[k], kind == TIMED, most,
+                                count > 4 ? atol(words[4]) : 0);
                 }
             }
         }

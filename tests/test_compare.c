@@ -68,11 +68,13 @@ TEST(rows_reach_every_form)
     assert_null(memchr(second, '*', (size_t)(third - second)));
     assert_non_null(strchr(third, '*'));
     assert_non_null(strstr(of.csv, "\n\"a \"\"b\"\"\",hybrid,ok,"));
-    assert_non_null(strstr(of.csv, ",,,\n")); // no error, command and energy without a rig
+    assert_non_null(
+        strstr(of.csv, ",,,\n")); // no error, command and energy without a rig
     const char *run = strstr(of.json, "\"runs\":[{"), *next = strstr(run, "},{");
     assert_non_null(strstr(next, "\"steady_error_N\":null"));
     assert_null(strstr(next + 1, "},{"));
-    const char *own = strstr(run, formatted("\"peak_force_N\":%.17g,", rows[0].values[0])),
+    const char *own =
+                   strstr(run, formatted("\"peak_force_N\":%.17g,", rows[0].values[0])),
                *same = strstr(run, "\"differs\":[]");
     assert_true(own != NULL && own < next && same != NULL && same < next);
     assert_non_null(strstr(of.json, "\"against\":\"a \\\"b\\\"\""));
@@ -90,7 +92,8 @@ TEST(rows_reach_every_form)
 // Two scenarios at two forces, each pair compared with the reference of its own force.
 TEST(varied_values_have_columns)
 {
-    const sweep_axis varied[] = {varied_axis("control.force"), varied_axis("control.gains")};
+    const sweep_axis varied[] = {varied_axis("control.force"),
+                                 varied_axis("control.gains")};
     compare_row rows[4], references[2];
     for (int i = 0; i < 4; i++) {
         rows[i] = (compare_row){.scenario = i % 2 ? "b" : "a",
@@ -110,16 +113,19 @@ TEST(varied_values_have_columns)
                        .tolerance = 0.05};
     DONE(compare_choose(&t, "peak_force_N,impacts", &f));
     SCOPED(forget) forms of = forms_of(&t);
-    assert_non_null(strstr(of.page, "| scenario | law | force [N] | gains | peak [N] | impacts |\n"
-                                    "|---|---|---|---|---|---|\n"
-                                    "| a | hybrid | 0.5 | volts | 1.5 | 0 |\n"));
+    assert_non_null(strstr(of.page,
+                           "| scenario | law | force [N] | gains | peak [N] | impacts |\n"
+                           "|---|---|---|---|---|---|\n"
+                           "| a | hybrid | 0.5 | volts | 1.5 | 0 |\n"));
     assert_null(strstr(of.text, "error"));
     assert_non_null(strstr(of.text, "9*"));
     assert_null(strstr(of.text, "1.5*"));
     assert_non_null(strstr(
-        of.csv, "scenario[],law[],control.force[N],control.gains[],status[],peak_force[N],"));
+        of.csv,
+        "scenario[],law[],control.force[N],control.gains[],status[],peak_force[N],"));
     assert_non_null(
-        strstr(of.json, "\"varied\":{\"control.force\":2.0,\"control.gains\":\"volts\"}"));
+        strstr(of.json,
+               "\"varied\":{\"control.force\":2.0,\"control.gains\":\"volts\"}"));
     REFUSED(STATUS_BAD_ARGUMENT, "did you mean 'impacts'?",
             compare_choose(&t, "peak_force_N,impact", &f));
 }
@@ -127,11 +133,12 @@ TEST(varied_values_have_columns)
 // Full knowledge of the state bounds every law, and only where its model holds.
 TEST(nothing_beats_the_best)
 {
-    for (EACH_TEXT(c, "control.law=hybrid", "control.law=optimal", "control.law=predictive",
-                   "control.law=force-pd")) {
+    for (EACH_TEXT(c, "control.law=hybrid", "control.law=optimal",
+                   "control.law=predictive", "control.law=force-pd")) {
         for (int k = 1; k <= 8; k++) {
             scenario s = {.name = (char *)"it",
-                          .parameters = rig_parameters_with("%s control.force=%g", *c, 0.5 * k)};
+                          .parameters =
+                              rig_parameters_with("%s control.force=%g", *c, 0.5 * k)};
             KEPT_RUN(r) = run_done(&s, false);
             compare_row row = compare_row_of(&s, &r);
             check_below(row.values[2], row.values[0]);
@@ -151,15 +158,16 @@ TEST(nothing_beats_the_best)
     }
 }
 
-// The best settling time may press as hard as the run did, and at least up to the end of its band:
-// after this impact no less than 0.789 N is possible.
+// The best settling time may press as hard as the run did, and at least up to the end of
+// its band: after this impact no less than 0.789 N is possible.
 TEST(a_gentle_run_is_held_against_its_band)
 {
     static const double command[] = {0.7, 0.77}, pressed[] = {0, 0.8};
     for (int i = 0; i < 4; i++) {
         scenario s = {.name = (char *)"it",
-                      .parameters = rig_parameters_with("control.law=hybrid control.force=%g",
-                                                        command[i / 2])};
+                      .parameters =
+                          rig_parameters_with("control.law=hybrid control.force=%g",
+                                              command[i / 2])};
         KEPT_RUN(r) = run_done(&s, false);
         r.summary.peak_force_N = pressed[i % 2];
         const compare_row row = compare_row_of(&s, &r);
@@ -174,8 +182,9 @@ TEST(a_failed_run_says_so)
 {
     const sweep_axis varied[] = {varied_axis("printed.spring_counted_twice"),
                                  varied_axis("arm.model")};
-    compare_row rows[2] = {{.scenario = "a", .law = "none", .ok = true, .varied = {1, ARM_PRINTED}},
-                           {.scenario = "b", .law = "none", .varied = {0, ARM_CORRECTED}}};
+    compare_row rows[2] = {
+        {.scenario = "a", .law = "none", .ok = true, .varied = {1, ARM_PRINTED}},
+        {.scenario = "b", .law = "none", .varied = {0, ARM_CORRECTED}}};
     for (int k = 0; k < COMPARE_QUANTITIES; k++) {
         rows[0].values[k] = 1234.5;
         rows[1].values[k] = (double)NAN;
@@ -194,14 +203,26 @@ TEST(a_failed_run_says_so)
     assert_non_null(strstr(of.json, "\"status\":\"failed\",\"peak_force_N\":null"));
 }
 
-// Every form to the last character: widths, marks, units, and a thousand without digits behind it.
+// Every form to the last character: widths, marks, units, and a thousand without digits
+// behind it.
 TEST(forms_are_written_to_the_letter)
 {
-    const sweep_axis varied[] = {varied_axis("control.force"), varied_axis("sensor.ideal")};
-    compare_row rows[3] = {
-        {.scenario = "a", .law = "hybrid", .ok = true, .varied = {0.5, 1}, .values = {1.5}},
-        {.scenario = "much longer", .law = "none", .varied = {12.25, 0}, .values = {(double)NAN}},
-        {.scenario = "c", .law = "recovering", .ok = true, .varied = {1, 1}, .values = {1.6}}};
+    const sweep_axis varied[] = {varied_axis("control.force"),
+                                 varied_axis("sensor.ideal")};
+    compare_row rows[3] = {{.scenario = "a",
+                            .law = "hybrid",
+                            .ok = true,
+                            .varied = {0.5, 1},
+                            .values = {1.5}},
+                           {.scenario = "much longer",
+                            .law = "none",
+                            .varied = {12.25, 0},
+                            .values = {(double)NAN}},
+                           {.scenario = "c",
+                            .law = "recovering",
+                            .ok = true,
+                            .varied = {1, 1},
+                            .values = {1.6}}};
     rows[0].values[8] = 1000;
     rows[1].values[8] = 999.75;
     rows[2].values[8] = -1000;
@@ -214,21 +235,23 @@ TEST(forms_are_written_to_the_letter)
                        .tolerance = 0.05};
     DONE(compare_choose(&t, "impacts,peak_force_N", &f));
     SCOPED(forget) forms of = forms_of(&t);
-    assert_string_equal(of.page, "| scenario | law | force [N] | ideal | peak [N] | impacts |\n"
-                                 "|---|---|---|---|---|---|\n"
-                                 "| a | hybrid | 0.5 | true | 1.5 | 1000 |\n"
-                                 "| much longer | none | 12.25 | false | – | 1000 |\n"
-                                 "| c | recovering | 1 | true | 1.6 | -1000 |\n");
+    assert_string_equal(of.page,
+                        "| scenario | law | force [N] | ideal | peak [N] | impacts |\n"
+                        "|---|---|---|---|---|---|\n"
+                        "| a | hybrid | 0.5 | true | 1.5 | 1000 |\n"
+                        "| much longer | none | 12.25 | false | – | 1000 |\n"
+                        "| c | recovering | 1 | true | 1.6 | -1000 |\n");
     assert_string_equal(
-        of.text, "scenario     law         force/N  ideal       peak/N       impacts \n"
-                 "a            hybrid          0.5   true          1.5          1000 \n"
-                 "much longer  none          12.25  false            -*        999.8  failed\n"
-                 "c            recovering        1   true          1.6*        -1000*\n");
+        of.text,
+        "scenario     law         force/N  ideal       peak/N       impacts \n"
+        "a            hybrid          0.5   true          1.5          1000 \n"
+        "much longer  none          12.25  false            -*        999.8  failed\n"
+        "c            recovering        1   true          1.6*        -1000*\n");
     const char *rows_of_csv = strchr(of.csv, '\n') + 1;
-    assert_string_equal(rows_of_csv,
-                        "a,hybrid,0.5,true,ok,1.5,0,0,0,0,0,0,0,1000,0,0,0,0\n"
-                        "much longer,none,12.25,false,failed,,0,0,0,0,0,0,0,999.75,0,0,0,0\n"
-                        "c,recovering,1,true,ok,1.6,0,0,0,0,0,0,0,-1000,0,0,0,0\n");
+    assert_string_equal(
+        rows_of_csv, "a,hybrid,0.5,true,ok,1.5,0,0,0,0,0,0,0,1000,0,0,0,0\n"
+                     "much longer,none,12.25,false,failed,,0,0,0,0,0,0,0,999.75,0,0,0,0\n"
+                     "c,recovering,1,true,ok,1.6,0,0,0,0,0,0,0,-1000,0,0,0,0\n");
 }
 
 // Each number of a row is the summary's, or a bound that holds for such an arm only.
@@ -243,7 +266,10 @@ TEST(a_row_has_the_numbers_of_its_run)
         given("control.law=force-pd control.force=0"),
         given("control.law=hybrid run.duration=0.01"),
     };
-    const action push = {.time = 0.5, .kind = ACTION_PUSH, .parameter = -1, .value = 1e-3};
+    const action push = {.time = 0.5,
+                         .kind = ACTION_PUSH,
+                         .parameter = -1,
+                         .value = 1e-3};
     for (size_t i = 0; i < 1 + sizeof cases / sizeof cases[0]; i++) {
         const bool scripted = i == sizeof cases / sizeof cases[0];
         action script[1] = {push};
@@ -270,16 +296,16 @@ TEST(a_row_has_the_numbers_of_its_run)
         };
         for (int k = 0; k < COMPARE_QUANTITIES; k++) {
             if (k == 2 || k == 5 || k == 7) {
-                // bounds of a plastic impact of two links without a script; the least time is for
-                // an arm that starts at rest with a commanded force
+                // bounds of a plastic impact of two links without a script; the least
+                // time is for an arm that starts at rest with a commanded force
                 const bool impact = i < 3 || i == 5;
                 const bool known = k == 2 ? impact : k == 5 ? i == 0 || i == 2 : i == 0;
                 fail_if(isnan(row.values[k]) == known, "case %zu: %s is %g", i,
                         compare_quantities[k].key, row.values[k]);
             } else if (!(row.values[k] == expected[k] ||
                          (isnan(row.values[k]) && isnan(expected[k])))) {
-                fail_msg("case %zu: %s is %g, not %g", i, compare_quantities[k].key, row.values[k],
-                         expected[k]);
+                fail_msg("case %zu: %s is %g, not %g", i, compare_quantities[k].key,
+                         row.values[k], expected[k]);
             }
         }
         assert_true(row.ok);

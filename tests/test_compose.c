@@ -1,4 +1,5 @@
-// The explorer on small and narrow screens: no word is cut, and the most important parts stay.
+// The explorer on small and narrow screens: no word is cut, and the most important parts
+// stay.
 #include "tests/explorer_on_screen.h"
 
 static char *lines_of(const char *text, int width, bool *split)
@@ -34,7 +35,8 @@ TEST(test_text_is_wrapped_at_blanks)
 static void check_small(explorer *ex, int width, int height, const char *wanted)
 {
     KEPT_TEXT(text) = picture(ex, width, height, GLYPHS_BRAILLE);
-    fail_if(strncmp(text, wanted, strlen(wanted)) != 0, "%d x %d shows\n%s", width, height, text);
+    fail_if(strncmp(text, wanted, strlen(wanted)) != 0, "%d x %d shows\n%s", width,
+            height, text);
 }
 
 TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
@@ -45,8 +47,10 @@ TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
     check_small(&ex, 5, 1, "small\n");
     check_small(&ex, 5, 2, "5x2 <\n40x12\n");
     check_small(&ex, 12, 1, "12x1 < 40x12\n");
-    check_small(&ex, 20, 5, "The lab needs 40 x\n12 characters, here\nare 20 x 5. q quits.\n");
-    check_small(&ex, 200, 5, "The lab needs 40 x 12 characters, here are 200 x 5. q quits.\n");
+    check_small(&ex, 20, 5,
+                "The lab needs 40 x\n12 characters, here\nare 20 x 5. q quits.\n");
+    check_small(&ex, 200, 5,
+                "The lab needs 40 x 12 characters, here are 200 x 5. q quits.\n");
     // no word is ever cut at the edge
     for (int width = 1; width < 60; width++) {
         for (int height = 1; height < 12; height++) {
@@ -54,9 +58,9 @@ TEST(test_a_screen_that_is_too_small_says_so_in_what_fits)
             char *rest = text;
             for (char *word; (word = strtok_r(rest, " \n", &rest)) != NULL;) {
                 bool known = strspn(word, "0123456789x.:") == strlen(word);
-                for (EACH_TEXT(c, "The", "lab", "needs", "40", "x", "12", "characters,", "here",
-                               "are", "q", "quits.", "the", "(q", "quits)", "<", "small",
-                               "40x12")) {
+                for (EACH_TEXT(c, "The", "lab", "needs", "40", "x", "12", "characters,",
+                               "here", "are", "q", "quits.", "the", "(q", "quits)", "<",
+                               "small", "40x12")) {
                     known = known || strcmp(word, *c) == 0;
                 }
                 fail_if(!known, "'%s' at %d x %d", word, width, height);
@@ -88,8 +92,8 @@ TEST(test_eighty_columns_show_what_a_first_visit_needs)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.35<Enter>");
-    for (EACH_TEXT(c, "force 1.2", "w1 0.2", "gap 0", "voltage", "0.0\u2524", "1 s", "0.1\u2524",
-                   "N, 93 ms")) {
+    for (EACH_TEXT(c, "force 1.2", "w1 0.2", "gap 0", "voltage", "0.0\u2524", "1 s",
+                   "0.1\u2524", "N, 93 ms")) {
         assert_shows_at(&ex, 80, 24, *c);
     }
     press(&ex, "b");
@@ -132,7 +136,8 @@ TEST(test_poles_follow_the_values_at_the_cursor)
     assert_shows_at(&ex, 80, 40, "there is no wall to press on");
     press(&ex, "<Esc>u:poles<Enter>");
     KEPT_TEXT(again) = picture(&ex, 80, 40, GLYPHS_ASCII);
-    fail_if(strstr(again, "there is no wall") != NULL, "taken back, and still shown:\n%s", again);
+    fail_if(strstr(again, "there is no wall") != NULL, "taken back, and still shown:\n%s",
+            again);
     fail_if(strstr(before, "damping") == NULL, "no numbers:\n%s", before);
     press(&ex, "<Esc>:model<Enter>:poles<Enter>");
     assert_shows_at(&ex, 80, 40, "printed");

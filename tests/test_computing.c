@@ -1,5 +1,5 @@
-// What computes is whole without SQLite: this program holds all of it and nothing that stores. A
-// sweep is kept in an array here.
+// What computes is whole without SQLite: this program holds all of it and nothing that
+// stores. A sweep is kept in an array here.
 
 #include "src/study/robust.h"
 #include "src/study/sweep_run.h"
@@ -34,8 +34,8 @@ static status commit_rows(sweep_store *store, fault *f)
     return STATUS_OK;
 }
 
-static status tell_quantity(sweep_store *store, sweep_share share, const char *key, double *values,
-                            size_t *failed, fault *f)
+static status tell_quantity(sweep_store *store, sweep_share share, const char *key,
+                            double *values, size_t *failed, fault *f)
 {
     const rows *r = (rows *)store;
     (void)f;

@@ -1,5 +1,6 @@
-// Transitions of the contact machine on one rod, taken one by one: what each event does to the
-// state, and what the state is found to be afterwards. Whole runs are in test_motion.c.
+// Transitions of the contact machine on one rod, taken one by one: what each event does
+// to the state, and what the state is found to be afterwards. Whole runs are in
+// test_motion.c.
 #include "tests/arm_fixture.h"
 #include "tests/explicit_stepper.h"
 
@@ -14,7 +15,8 @@ typedef struct moving_rod {
 static moving_rod start_rod_by(const char *const *settings, const engine *by)
 {
     parameters p = fixture_parameters(settings);
-    moving_rod r = {.inertia = p.arm.mass * p.arm.length * p.arm.length / 3 + p.arm.hub_inertia};
+    moving_rod r = {.inertia =
+                        p.arm.mass * p.arm.length * p.arm.length / 3 + p.arm.hub_inertia};
     arm_init(&r.arm, &p);
     r.motion = motion_create_by(&r.arm, &p.method, by);
     assert_non_null(r.motion);
@@ -27,7 +29,7 @@ static void drop_rod(moving_rod *r)
     motion_destroy(r->motion);
 }
 
-#define START_ROD_BY(r, by, ...)                                                                   \
+#define START_ROD_BY(r, by, ...)                                                         \
     SCOPED(drop_rod) moving_rod r = start_rod_by(given(__VA_ARGS__), by)
 #define START_ROD(r, ...) START_ROD_BY(r, NULL, __VA_ARGS__)
 
@@ -70,20 +72,21 @@ TEST(the_state_at_the_start_follows_from_where_the_arm_is)
     START_ROD(stuck, "arm.links=1 motor.voltage=0.05");
     assert_false(touches(&stuck));
     assert_true(stuck.motion->state[SLOT_FRICTION] == HUB_STICK);
-    check_close(stuck.motion->state[SLOT_FRICTION_TORQUE], -stuck.arm.motor.torque, 1e-15);
+    check_close(stuck.motion->state[SLOT_FRICTION_TORQUE], -stuck.arm.motor.torque,
+                1e-15);
 
     // more, and it slides
     START_ROD(driven, "arm.links=1 motor.voltage=1");
     assert_true(driven.motion->state[SLOT_FRICTION] == HUB_FORWARD);
 }
 
-// A face stands at rest: an arm that starts on it and moves into it strikes it at once, as one does
-// that comes from next to it.
+// A face stands at rest: an arm that starts on it and moves into it strikes it at once,
+// as one does that comes from next to it.
 TEST(an_arm_that_starts_on_a_face_strikes_it)
 {
     const double speed = 0.2, mass = 0.5;
-    START_ROD(r, "arm.links=1 wall.contact=kelvin-voigt wall.stiffness=1e4 wall.mass=0.5 "
-                 "initial.angle=0.1 initial.velocity=0.2");
+    START_ROD(r, "arm.links=1 wall.contact=kelvin-voigt wall.stiffness=1e4 "
+                 "wall.mass=0.5 initial.angle=0.1 initial.velocity=0.2");
     motion *m = r.motion;
     const double inertia = r.inertia, length = r.arm.link_length;
     assert_false(touches(&r));
@@ -102,15 +105,17 @@ TEST(an_arm_that_starts_on_a_face_strikes_it)
 TEST(a_face_that_flees_is_met_slowly)
 {
     for (int i = 0; i < 2; i++) {
-        START_ROD(r, "arm.links=1 wall.contact=kelvin-voigt wall.stiffness=1e4 wall.mass=0.5 "
-                     "wall.restitution=0.5 method.rest_speed=0.02 initial.velocity=0.2");
+        START_ROD(r, "arm.links=1 wall.contact=kelvin-voigt wall.stiffness=1e4 "
+                     "wall.mass=0.5 wall.restitution=0.5 method.rest_speed=0.02 "
+                     "initial.velocity=0.2");
         motion *m = r.motion;
         const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
         const double met = i == 0 ? 0.01 : 0.03;
         m->state[SLOT_FACE_VELOCITY] = chain_penetration_rate(&r.arm, q, w) - met;
         motion_report impact = {.event = MOTION_IMPACT};
         motion_apply(&r.arm, m, &impact);
-        const double left = chain_penetration_rate(&r.arm, q, w) - m->state[SLOT_FACE_VELOCITY];
+        const double left =
+            chain_penetration_rate(&r.arm, q, w) - m->state[SLOT_FACE_VELOCITY];
         check_relative(impact.speed, met, 1e-9);
         check_close(left, i == 0 ? 0 : -0.5 * met, 1e-12);
     }
@@ -137,14 +142,14 @@ TEST(an_elastic_impact_turns_the_rod_back)
     check_close(r.motion->state[SLOT_FORCE], 0, 0);
 }
 
-// The face of a wall that gives stays on an arm that is pushed as long as it presses, parts from
-// one that is torn away faster than it follows, and is met again.
+// The face of a wall that gives stays on an arm that is pushed as long as it presses,
+// parts from one that is torn away faster than it follows, and is met again.
 TEST(a_push_parts_arm_and_face)
 {
     for (int i = 0; i < 2; i++) {
         START_ROD(r,
-                  "arm.links=1 wall.contact=kelvin-voigt wall.damping=%d wall.stiffness=1e5 "
-                  "wall.angle=0 motor.voltage=1 initial.velocity=0.1",
+                  "arm.links=1 wall.contact=kelvin-voigt wall.damping=%d "
+                  "wall.stiffness=1e5 wall.angle=0 motor.voltage=1 initial.velocity=0.1",
                   50 * i);
         motion_report report;
         assert_true(touches(&r));
@@ -153,7 +158,8 @@ TEST(a_push_parts_arm_and_face)
         motion_push(&r.arm, r.motion, 1e-3, &report);
         assert_true(report.holds && touches(&r));
         assert_int_equal(report.event, MOTION_REACHED);
-        assert_int_equal(motion_advance(&r.arm, r.motion, 1e-3, 1e-3, &report), STATUS_OK);
+        assert_int_equal(motion_advance(&r.arm, r.motion, 1e-3, 1e-3, &report),
+                         STATUS_OK);
         const double depth = -r.motion->state[SLOT_GAP];
         check_below(0, depth);
 
@@ -179,13 +185,15 @@ TEST(a_push_parts_arm_and_face)
     }
 }
 
-// Stiction is a limit without a margin: a torque beyond it by a hundred millionth moves the rod.
+// Stiction is a limit without a margin: a torque beyond it by a hundred millionth moves
+// the rod.
 TEST(a_torque_just_beyond_stiction_moves_the_rod)
 {
     for (int sign = -1; sign <= 1; sign += 2) {
         START_ROD(r, "arm.links=1 motor.voltage=0.05");
         assert_int_equal(contact_state_of(r.motion->state).friction, HUB_STICK);
-        const double per_volt = r.arm.motor.torque / 0.05, stiction = r.arm.motor.stiction;
+        const double per_volt = r.arm.motor.torque / 0.05,
+                     stiction = r.arm.motor.stiction;
         arm_set_voltage(&r.arm, sign * (1 + 1e-8) * stiction / per_volt);
         motion_start(&r.arm, r.motion, 0, 0);
         assert_int_equal(contact_state_of(r.motion->state).friction,
@@ -195,8 +203,9 @@ TEST(a_torque_just_beyond_stiction_moves_the_rod)
     }
 }
 
-// Where the engine steps, a summit of the force is found by stepping again from the step's start;
-// the step then ends as if it had not been looked for. The series of the same arm have no need to.
+// Where the engine steps, a summit of the force is found by stepping again from the
+// step's start; the step then ends as if it had not been looked for. The series of the
+// same arm have no need to.
 TEST(a_located_peak_leaves_the_step_as_it_was)
 {
     START_ROD_BY(steps, &explicit_engine, "arm.links=2");
@@ -215,11 +224,13 @@ TEST(a_located_peak_leaves_the_step_as_it_was)
 
     // after its first pulses
     assert_true(series.motion->record.pulse_peak > 1);
-    check_relative(steps.motion->record.pulse_peak, series.motion->record.pulse_peak, 1e-9);
-    check_close(steps.motion->record.pulse_peak_time, series.motion->record.pulse_peak_time, 1e-5);
+    check_relative(steps.motion->record.pulse_peak, series.motion->record.pulse_peak,
+                   1e-9);
+    check_close(steps.motion->record.pulse_peak_time,
+                series.motion->record.pulse_peak_time, 1e-5);
     for (int i = 0; i < 2 * series.motion->dof + QUADRATURE_COUNT; i++) {
-        check_close(steps.motion->state[SLOT_COUNT + i], series.motion->state[SLOT_COUNT + i],
-                    1e-8);
+        check_close(steps.motion->state[SLOT_COUNT + i],
+                    series.motion->state[SLOT_COUNT + i], 1e-8);
     }
 }
 
@@ -231,7 +242,8 @@ TEST(a_push_in_flight_adds_its_impulse)
     assert_int_equal(report.event, MOTION_REACHED);
     check_relative(speed_of(&r), 1 + 0.03 / r.inertia, 1e-13);
     // its work is that of the mean velocity
-    check_relative(r.motion->state[SLOT_EXTERNAL_WORK], 0.03 * (1 + speed_of(&r)) / 2, 1e-12);
+    check_relative(r.motion->state[SLOT_EXTERNAL_WORK], 0.03 * (1 + speed_of(&r)) / 2,
+                   1e-12);
 }
 
 TEST(a_push_into_the_wall_is_answered_by_it)
@@ -262,7 +274,8 @@ TEST(a_torque_away_from_the_wall_ends_the_contact)
     motion_retorque(&r.arm, r.motion, before);
     assert_false(touches(&r));
     double torque = r.arm.motor.torque + r.arm.motor.stiction;
-    check_relative(state_accelerations(r.motion, r.motion->state)[0], torque / r.inertia, 1e-12);
+    check_relative(state_accelerations(r.motion, r.motion->state)[0], torque / r.inertia,
+                   1e-12);
 }
 
 // A release is looked at, not obeyed: what is pressed at the wall stays there.
@@ -276,17 +289,20 @@ TEST(a_release_of_what_is_pressed_is_none)
     check_relative(r.motion->state[SLOT_FORCE], force, 1e-12);
 }
 
-// Without stiction a hub that begins to turn meets no event of friction on its way to the wall.
+// Without stiction a hub that begins to turn meets no event of friction on its way to the
+// wall.
 TEST(a_hub_without_stiction_never_sticks)
 {
     START_ROD(r, "arm.links=1 motor.stiction=0");
     assert_int_equal(next_event(&r, 1).event, MOTION_IMPACT);
 }
 
-// A wall that gives stops nothing at once: the rod of 1 m keeps its speed, the damper answers it.
+// A wall that gives stops nothing at once: the rod of 1 m keeps its speed, the damper
+// answers it.
 TEST(a_wall_that_gives_takes_the_rod_at_its_speed)
 {
-    START_ROD(r, "arm.links=1 wall.contact=kelvin-voigt wall.stiffness=1e4 wall.damping=20");
+    START_ROD(r,
+              "arm.links=1 wall.contact=kelvin-voigt wall.stiffness=1e4 wall.damping=20");
     motion_report report;
     while ((report = step_of(&r, 1)).event == MOTION_REACHED) {
     }
@@ -298,8 +314,8 @@ TEST(a_wall_that_gives_takes_the_rod_at_its_speed)
     check_relative(r.motion->state[SLOT_FORCE], 20 * speed, 1e-9);
 }
 
-// A hub behind its spring under a torque that jumps: one that slides is accelerated by all of it,
-// one that sticks lets friction take it.
+// A hub behind its spring under a torque that jumps: one that slides is accelerated by
+// all of it, one that sticks lets friction take it.
 TEST(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not)
 {
     START_ROD(sliding, "arm.hub_joint=spring initial.velocity=1");
@@ -309,7 +325,8 @@ TEST(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not)
     const double jump = sliding.arm.motor.torque - torque;
     assert_true(jump < 0);
     motion_retorque(&sliding.arm, sliding.motion, torque);
-    check_close(sliding.motion->state[SLOT_FRICTION_TORQUE], -sliding.arm.motor.stiction, 0);
+    check_close(sliding.motion->state[SLOT_FRICTION_TORQUE], -sliding.arm.motor.stiction,
+                0);
     check_relative(state_accelerations(sliding.motion, sliding.motion->state)[0] - before,
                    jump / sliding.arm.hub_inertia, 1e-9);
 
@@ -320,9 +337,11 @@ TEST(a_sliding_hub_feels_a_jump_of_the_torque_and_a_stuck_one_does_not)
     arm_set_voltage(&stuck.arm, 0.06);
     motion_retorque(&stuck.arm, stuck.motion, held);
     assert_true(stuck.motion->state[SLOT_FRICTION] == HUB_STICK);
-    check_close(stuck.motion->state[SLOT_FRICTION_TORQUE], -stuck.arm.motor.torque, 1e-15);
+    check_close(stuck.motion->state[SLOT_FRICTION_TORQUE], -stuck.arm.motor.torque,
+                1e-15);
     check_close(state_accelerations(stuck.motion, stuck.motion->state)[0], 0, 0);
-    assert_true(stuck.motion->state[SLOT_JUMPED] == 0); // the implicit methods go on as they were
+    assert_true(stuck.motion->state[SLOT_JUMPED] ==
+                0); // the implicit methods go on as they were
 }
 
 TEST(a_cut_changes_nothing_before_it)
@@ -356,8 +375,8 @@ TEST(a_motion_can_be_started_again)
     assert_memory_equal(first, r.motion->state, size * sizeof *first);
 }
 
-// The algorithmic accelerations that the implicit methods go on with are those of the instant;
-// where those say nothing, the next step finds out.
+// The algorithmic accelerations that the implicit methods go on with are those of the
+// instant; where those say nothing, the next step finds out.
 static void assert_starts_anew(const moving_rod *r)
 {
     motion *m = r->motion;
@@ -375,10 +394,12 @@ TEST(implicit_methods_start_anew_after_a_jump)
     int events[MOTION_SLIP + 1] = {0}, moved = 0;
     for (int i = 0; i < 4; i++) {
         START_ROD(r,
-                  "method.name=generalized-alpha arm.hub_joint=%s arm.links=%d motor.stiction=0.02",
+                  "method.name=generalized-alpha arm.hub_joint=%s arm.links=%d "
+                  "motor.stiction=0.02",
                   i / 2 ? "spring" : "rigid", i % 2 ? 5 : 2);
         assert_starts_anew(&r);
-        const double start[] = {0.35, 0.5, 0.6, 0.7, 0.8, 0.9}, volts[] = {2, -0.5, 0.8, 0.3, 0, 1};
+        const double start[] = {0.35, 0.5, 0.6, 0.7, 0.8, 0.9},
+                     volts[] = {2, -0.5, 0.8, 0.3, 0, 1};
         for (int k = 0; k < 6; k++) {
             while (r.motion->state[SLOT_TIME] < start[k]) {
                 motion_report next = next_event(&r, start[k]);
@@ -402,12 +423,14 @@ TEST(implicit_methods_start_anew_after_a_jump)
     assert_true(events[MOTION_IMPACT] > 3 && events[MOTION_RELEASE] > 1 && moved > 3);
 }
 
-// What is held at wall and hub has neither velocity nor acceleration, to the last bit, and stays.
+// What is held at wall and hub has neither velocity nor acceleration, to the last bit,
+// and stays.
 TEST(what_is_held_does_not_move)
 {
     for (int i = 0; i < 4; i++) {
-        START_ROD(r, "motor.stiction=%g method.name=%s arm.damping_ratio=0.1 motor.voltage=2",
-                  i % 2 ? 0.4 : 0.1, i / 2 ? "generalized-alpha" : "event");
+        START_ROD(
+            r, "motor.stiction=%g method.name=%s arm.damping_ratio=0.1 motor.voltage=2",
+            i % 2 ? 0.4 : 0.1, i / 2 ? "generalized-alpha" : "event");
         motion *m = r.motion;
         const double *q = state_angles(m, m->state);
         int held = 0;
@@ -455,8 +478,8 @@ TEST(bounces_in_long_flights_are_no_chatter)
     }
 }
 
-// A force that only rises is largest at the last instant there was, one that only falls where it
-// began.
+// A force that only rises is largest at the last instant there was, one that only falls
+// where it began.
 TEST(the_peak_of_a_rising_force_is_at_its_end)
 {
     for (int i = 0; i < 2; i++) {
@@ -472,7 +495,8 @@ TEST(the_peak_of_a_rising_force_is_at_its_end)
             assert_true(m->record.pulse_peak >= m->state[SLOT_FORCE] * (1 - 1e-12));
             assert_true(m->record.pulse_peak_time <= m->state[SLOT_TIME] + 1e-15);
             assert_true(m->record.pulse_peak_time >= touched);
-            if (m->record.pulse_peak == m->state[SLOT_FORCE] && m->state[SLOT_FORCE] > last) {
+            if (m->record.pulse_peak == m->state[SLOT_FORCE] &&
+                m->state[SLOT_FORCE] > last) {
                 check_close(m->record.pulse_peak_time, m->state[SLOT_TIME], 1e-15);
                 rising++;
             }

@@ -1,4 +1,5 @@
-// The list of control laws: a law's name, word, controller and line of the manual belong together.
+// The list of control laws: a law's name, word, controller and line of the manual belong
+// together.
 #include "src/rig/controller_values.h"
 #include "src/rig/external/process_lines.h"
 #include "src/rig/rig.h"
@@ -14,7 +15,8 @@ TEST(every_word_chooses_the_controller_of_that_name)
         give(&p, "control.law", word);
         assert_int_equal(p.control.law, law);
         const controller *c = controller_of(law);
-        assert_true((c == NULL) == (law == LAW_NONE || law == LAW_PLUGIN || law == LAW_PROCESS));
+        assert_true((c == NULL) ==
+                    (law == LAW_NONE || law == LAW_PLUGIN || law == LAW_PROCESS));
         if (c != NULL) {
             assert_string_equal(c->name, word);
         }
@@ -32,7 +34,8 @@ TEST(parameters_of_the_scenario_are_described_there_alone)
             int index = parameter_find(path);
             if (index < 0) {
                 // one of the law's own, from control.settings
-                assert_true(c->parameters[i].unit != NULL && c->parameters[i].description != NULL);
+                assert_true(c->parameters[i].unit != NULL &&
+                            c->parameters[i].description != NULL);
                 continue;
             }
             fail_if(c->parameters[i].unit != NULL || c->parameters[i].initial != 0,
@@ -44,7 +47,8 @@ TEST(parameters_of_the_scenario_are_described_there_alone)
     }
 }
 
-// The value of the hybrid law's parameter `index` in its table, under settings of the scenario.
+// The value of the hybrid law's parameter `index` in its table, under settings of the
+// scenario.
 static double value_of(int index, const char *const *settings)
 {
     double values[16];
@@ -63,13 +67,16 @@ TEST(settings_go_before_the_scenario_and_that_before_the_default)
     double initial = parameter_table[PARAMETER_INDEX(control.kp)].default_corrected;
     check_close(value_of(kp, given("control.law=hybrid")), initial, 0);
     check_close(value_of(kp, given("control.law=hybrid control.kp=3")), 3, 0);
-    check_close(value_of(kp, given("control.law=hybrid control.kp=3 control.settings=kp=4")), 4, 0);
+    check_close(value_of(kp,
+                         given("control.law=hybrid control.kp=3 control.settings=kp=4")),
+                4, 0);
 }
 
 TEST(initial_values_of_ones_own_parameters_take_effect)
 {
     const controller_parameter table[] = {{"kp", "", 7, 0, 10, "own initial value"},
-                                          {"calm", "s", 0.5, 0, 1, "of this controller alone"},
+                                          {"calm", "s", 0.5, 0, 1,
+                                           "of this controller alone"},
                                           {.name = "kv"}};
     const controller own = {.name = "own", .parameters = table, .parameter_count = 3};
     double values[3];
@@ -77,7 +84,8 @@ TEST(initial_values_of_ones_own_parameters_take_effect)
     DONE(controller_values(&own, &p, values, &f));
     check_close(values[0], 7, 0);
     check_close(values[1], 0.5, 0);
-    check_close(values[2], parameter_table[PARAMETER_INDEX(control.kv)].default_corrected, 0);
+    check_close(values[2], parameter_table[PARAMETER_INDEX(control.kv)].default_corrected,
+                0);
     p = rig_parameters_with("control.kp=2");
     DONE(controller_values(&own, &p, values, &f));
     check_close(values[0], 2, 0);
@@ -87,7 +95,9 @@ TEST(initial_values_of_ones_own_parameters_take_effect)
         {.name = "kp", .unit = "1/s", .initial = 5, .maximum = 6},
         {.name = "kv", .description = "own", .initial = 3, .minimum = 1, .maximum = 4},
         {.name = "kp"}};
-    const controller partly = {.name = "partly", .parameters = parts, .parameter_count = 3};
+    const controller partly = {.name = "partly",
+                               .parameters = parts,
+                               .parameter_count = 3};
     const parameter_info *info = &parameter_table[PARAMETER_INDEX(control.kp)];
     p = rig_parameters(NULL);
     DONE(controller_values(&partly, &p, values, &f));
@@ -107,7 +117,9 @@ TEST(initial_values_of_ones_own_parameters_take_effect)
     check_close(told.maximum, info->maximum, 0);
 
     const controller_parameter unknown[] = {{.name = "nothing"}};
-    const controller vague = {.name = "vague", .parameters = unknown, .parameter_count = 1};
+    const controller vague = {.name = "vague",
+                              .parameters = unknown,
+                              .parameter_count = 1};
     REFUSED(STATUS_BAD_SCENARIO, "", controller_values(&vague, &p, values, &f));
 }
 
@@ -116,7 +128,8 @@ TEST(wrong_settings_are_told)
 {
     const controller_parameter table[] = {{"kp", "1/s", 7, 0, 10, "with a unit"},
                                           {"calm", "", 0.5, 0, 1, "without one"},
-                                          {"bare", NULL, 0.5, 0, 1, "with nothing said of it"}};
+                                          {"bare", NULL, 0.5, 0, 1,
+                                           "with nothing said of it"}};
     const controller own = {.name = "own", .parameters = table, .parameter_count = 3};
     static const struct {
         const char *settings, *sentence;
@@ -150,7 +163,7 @@ TEST(wrong_settings_are_told)
     assert_null(strstr(f.text, "did you mean"));
 }
 
-// --- a controller in a program of its own ----------------------------------------------------
+// --- a controller in a program of its own ----------------------------------------------
 
 // It hears its settings as numbers where they are numbers, else as texts.
 TEST(settings_are_told_as_numbers_or_texts)
@@ -162,7 +175,8 @@ TEST(settings_are_told_as_numbers_or_texts)
     KEPT_TEXT(first) = process_question(&setup, &p.control, &in);
     KEPT_TEXT(later) = process_question(NULL, &p.control, &in);
     assert_true(first != NULL && later != NULL);
-    assert_non_null(strstr(first, "\"gain\":2.5,\"way\":\"fast\",\"mixed\":\"3x\",\"bare\":\"\""));
+    assert_non_null(
+        strstr(first, "\"gain\":2.5,\"way\":\"fast\",\"mixed\":\"3x\",\"bare\":\"\""));
     assert_non_null(strstr(first, "\"protocol\":"));
     assert_null(strstr(later, "settings"));
     assert_int_equal(first[strlen(first) - 1], '\n');
@@ -176,7 +190,8 @@ TEST(answers_are_numbers)
         status answer;
     } cases[] = {
         {"{\"command\": 1.5}", STATUS_OK},
-        {"{\"command\": 1.5, \"desired_angle\": 2, \"calculated_force\": null}", STATUS_OK},
+        {"{\"command\": 1.5, \"desired_angle\": 2, \"calculated_force\": null}",
+         STATUS_OK},
         {"{\"command\": \"1.5\"}", STATUS_CONTROLLER_FAILED},
         {"{\"command\": null}", STATUS_CONTROLLER_FAILED},
         {"{}", STATUS_CONTROLLER_FAILED},
@@ -190,7 +205,8 @@ TEST(answers_are_numbers)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         controller_output out = {0};
         const char *line = cases[i].line;
-        fail_if(process_read_answer(line, strlen(line), &out) != cases[i].answer, "%s", line);
+        fail_if(process_read_answer(line, strlen(line), &out) != cases[i].answer, "%s",
+                line);
         if (cases[i].answer == STATUS_OK) {
             check_close(out.command, 1.5, 0);
             assert_true(isnan(out.desired_velocity) && isnan(out.calculated_force));
@@ -199,7 +215,7 @@ TEST(answers_are_numbers)
     }
 }
 
-// --- the manual -----------------------------------------------------------------------------
+// --- the manual ------------------------------------------------------------------------
 
 TEST(manual_says_of_every_law_when_to_take_it)
 {
@@ -210,7 +226,8 @@ TEST(manual_says_of_every_law_when_to_take_it)
     *end = '\0';
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
         const char *word = formatted("`%s`", control_law_table[law].word);
-        fail_if(strstr(text, word) == NULL, "the first table of %s has no %s", manual, word);
+        fail_if(strstr(text, word) == NULL, "the first table of %s has no %s", manual,
+                word);
     }
 }
 

@@ -1,15 +1,16 @@
-// A program in the place of a control law: odd ways to answer, and states of a run that it is led
-// back to and on from.
+// A program in the place of a control law: odd ways to answer, and states of a run that
+// it is led back to and on from.
 
 #include "tests/rig_fixture.h"
 
 // The arm under a program in the shell, asked a hundred times a second.
 static scenario under(const char *program)
 {
-    return (scenario){.name = (char *)"program",
-                      .parameters = rig_parameters(
-                          SETTINGS("control.law=process", formatted("control.command=%s", program),
-                                   "control.rate=100", "run.duration=0.2", "initial.angle=-0.01"))};
+    return (scenario){
+        .name = (char *)"program",
+        .parameters = rig_parameters(
+            SETTINGS("control.law=process", formatted("control.command=%s", program),
+                     "control.rate=100", "run.duration=0.2", "initial.angle=-0.01"))};
 }
 
 #define ANSWERS "while read -r l; do echo '{\"command\": 1}'; done"
@@ -25,7 +26,8 @@ TEST(odd_programs_are_understood)
     for (int i = 0; i < 3; i++) {
         scenario s = under(programs[i]);
         KEPT_RUN(r);
-        fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s: %s", programs[i], r.summary.message);
+        fail_if(run_scenario(&s, false, &r) != STATUS_OK, "%s: %s", programs[i],
+                r.summary.message);
         peak[i] = r.summary.peak_force_N;
         assert_true(i == 0 || peak[i] == peak[0]);
     }
@@ -65,8 +67,8 @@ static sample gone_to(run_loop *l, double time)
     return loop_row(l);
 }
 
-// Led back the program is started anew, and led on from where it is on the way; the rows are the
-// same.
+// Led back the program is started anew, and led on from where it is on the way; the rows
+// are the same.
 TEST(a_program_is_led_back_and_on)
 {
     const scenario s = under(ANSWERS);
@@ -90,11 +92,13 @@ TEST(a_program_is_led_back_and_on)
     }
 }
 
-// A program that answers otherwise when it is asked again cannot be led back. Its answers, from its
-// process number, are 1 to 2 V: enough to move the arm, whose stiffness then shows in the readings.
+// A program that answers otherwise when it is asked again cannot be led back. Its
+// answers, from its process number, are 1 to 2 V: enough to move the arm, whose stiffness
+// then shows in the readings.
 TEST(a_program_that_answers_otherwise_is_said)
 {
-    const scenario s = under("n=$$; while read -r l; do echo \"{\\\"command\\\": 1.$n}\"; done");
+    const scenario s =
+        under("n=$$; while read -r l; do echo \"{\\\"command\\\": 1.$n}\"; done");
     const loop_options options = {.keep_trace = false};
     KEPT_LOOP(l);
     DONE(loop_create(&l, &s, &options, &f));

@@ -68,8 +68,8 @@ TEST(the_event_method_needs_no_shorter_step)
     }
 }
 
-// Before and after an event are two rows of one instant, which belong side by side: the force jumps
-// by newtons there, and the runs differ by rounding.
+// Before and after an event are two rows of one instant, which belong side by side: the
+// force jumps by newtons there, and the runs differ by rounding.
 TEST(rows_at_an_event_are_compared_in_their_order)
 {
     enum { ROWS = 3000 };
@@ -91,14 +91,18 @@ TEST(rows_at_an_event_are_compared_in_their_order)
     run_finish(&results[1]);
 }
 
-// Only instants that both traces have are compared, whichever has more, and each row once.
+// Only instants that both traces have are compared, whichever has more, and each row
+// once.
 TEST(instants_of_one_trace_only_are_left_out)
 {
     enum { ROWS = 40 };
     for (int kind = 0; kind < 6; kind++) {
-        // multiples of two steps, one of which may begin later, end earlier or have double rows
-        const int step[2] = {(int[]){2, 3, 1, 4, 2, 5}[kind], (int[]){1, 2, 3, 1, 3, 7}[kind]};
-        const int from[2] = {kind % 2 ? 6 : 0, kind % 3 ? 0 : 12}, until[2] = {30, 22 + 3 * kind};
+        // multiples of two steps, one of which may begin later, end earlier or have
+        // double rows
+        const int step[2] = {(int[]){2, 3, 1, 4, 2, 5}[kind],
+                             (int[]){1, 2, 3, 1, 3, 7}[kind]};
+        const int from[2] = {kind % 2 ? 6 : 0, kind % 3 ? 0 : 12},
+                  until[2] = {30, 22 + 3 * kind};
         sample rows[2][ROWS] = {0};
         trace both[2] = {{.rows = rows[0]}, {.rows = rows[1]}};
         for (int t = 0; t < 2; t++) {
@@ -154,13 +158,15 @@ TEST(a_run_that_fails_is_told_with_its_step)
     }
 }
 
-// The cheapest of the points that keep an error, and none beyond the first one that does not.
+// The cheapest of the points that keep an error, and none beyond the first one that does
+// not.
 TEST(the_least_cost_is_read_off_a_study)
 {
     method_study study;
     for (int i = 0; i < STUDY_STEPS; i++) {
-        study.points[0][i] =
-            (study_point){.step = pow(2, -i), .cost = 1 + i, .error = {pow(4, -i), (double)NAN, 0}};
+        study.points[0][i] = (study_point){.step = pow(2, -i),
+                                           .cost = 1 + i,
+                                           .error = {pow(4, -i), (double)NAN, 0}};
     }
     study.points[0][2].error[0] = 1; // an accident among the long steps
     double step = 0;
@@ -171,7 +177,8 @@ TEST(the_least_cost_is_read_off_a_study)
 
     // of equal costs the shorter step's, which has the smaller error
     for (int i = 0; i < STUDY_STEPS; i++) {
-        study.points[1][i] = (study_point){.step = pow(2, -i), .cost = 3, .error = {0.1, 0.1, 0.1}};
+        study.points[1][i] =
+            (study_point){.step = pow(2, -i), .cost = 3, .error = {0.1, 0.1, 0.1}};
     }
     check_close(method_study_cost(&study, 1, 0, 0.1, &step), 3, 0);
     check_close(step, pow(2, -(STUDY_STEPS - 1)), 0);
@@ -197,7 +204,8 @@ TEST(a_study_that_is_stopped_keeps_the_runs_before)
     static method_study study;
     // its shortest steps would take hours
     scenario s = {.name = (char *)"test",
-                  .parameters = parameters_with("run.duration=50 wall.angle=3 motor.voltage=0.01")};
+                  .parameters =
+                      parameters_with("run.duration=50 wall.angle=3 motor.voltage=0.01")};
     run_monitor monitor = {0};
     fault f = {0};
     thrd_t other;
@@ -227,9 +235,10 @@ TEST(a_study_runs_each_method_at_each_step_once)
         method_study untouched;
     } both;
     static const method_study none;
-    scenario s = {.name = (char *)"test",
-                  .parameters = parameters_with(
-                      "run.duration=0.1 wall.angle=0 initial.angle=-1e-4 motor.voltage=1")};
+    scenario s = {
+        .name = (char *)"test",
+        .parameters = parameters_with(
+            "run.duration=0.1 wall.angle=0 initial.angle=-1e-4 motor.voltage=1")};
     run_monitor monitor = {0};
     DONE(method_study_compute(&s, &monitor, &both.study, &f));
     assert_int_equal(atomic_load(&monitor.pieces), STUDY_RUNS);
@@ -245,15 +254,17 @@ TEST(a_study_runs_each_method_at_each_step_once)
     for (int m = 0; m < STUDY_METHODS; m++) {
         for (int i = 0; i < STUDY_STEPS; i += 4) {
             const study_point *point = &both.study.points[m][i];
-            DONE(parameter_set_text(&s.parameters, PARAMETER_INDEX(method.name), study_methods[m],
-                                    &f));
+            DONE(parameter_set_text(&s.parameters, PARAMETER_INDEX(method.name),
+                                    study_methods[m], &f));
             s.parameters.method.step = point->step;
             KEPT_RUN(result) = run_done(&s, false);
             for (int k = 0; k < STUDY_QUANTITIES; k++) {
-                const double value = summary_value(&result.summary, summary_index(study_keys[k]));
+                const double value =
+                    summary_value(&result.summary, summary_index(study_keys[k]));
                 const double error = fabs(value - both.study.reference[k]);
                 compared += isfinite(error);
-                assert_true(point->error[k] == error || (isnan(error) && isnan(point->error[k])));
+                assert_true(point->error[k] == error ||
+                            (isnan(error) && isnan(point->error[k])));
             }
         }
     }

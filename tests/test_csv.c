@@ -1,5 +1,5 @@
-// CSV files: headings with units, quotes where RFC 4180 requires them, empty cells for unknown
-// values.
+// CSV files: headings with units, quotes where RFC 4180 requires them, empty cells for
+// unknown values.
 #include "src/base/csv.h"
 
 #include "tests/check.h"
@@ -48,8 +48,8 @@ TEST(texts_are_quoted_where_they_could_be_misread)
     csv_text(&m.csv, "next");
     csv_text(&m.csv, "\"\x1b[1m\xff\"");
     csv_end_row(&m.csv);
-    check_written(
-        &m, "plain text,\"one, two\",\"say \"\"ah\"\"\",\"two\nlines\",\nnext,\"\"\"?[1m?\"\"\"\n");
+    check_written(&m, "plain text,\"one, two\",\"say "
+                      "\"\"ah\"\"\",\"two\nlines\",\nnext,\"\"\"?[1m?\"\"\"\n");
 }
 
 TEST(missing_numbers_are_empty)

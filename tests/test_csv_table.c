@@ -66,7 +66,8 @@ TEST(what_cannot_be_read_is_named_with_line_and_column)
         status code = read_table(&t, c->text, 2, &f);
         if (code == STATUS_OK) {
             code = csv_table_times(&t, "time", &times, &f);
-            code = code == STATUS_OK ? csv_table_numbers(&t, "v", "V", false, &values, &f) : code;
+            code = code == STATUS_OK ? csv_table_numbers(&t, "v", "V", false, &values, &f)
+                                     : code;
             csv_table_finish(&t);
         }
         assert_int_equal(code, STATUS_BAD_ARGUMENT);
@@ -80,7 +81,8 @@ TEST(what_cannot_be_read_is_named_with_line_and_column)
     // what is no table at all
     csv_table t;
     fault f;
-    assert_int_equal(csv_table_read(&t, "/nowhere/at/all.csv", 2, &f), STATUS_CANNOT_READ);
+    assert_int_equal(csv_table_read(&t, "/nowhere/at/all.csv", 2, &f),
+                     STATUS_CANNOT_READ);
     assert_int_equal(csv_table_read(&t, "/", 2, &f), STATUS_CANNOT_READ);
 }
 

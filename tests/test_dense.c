@@ -40,7 +40,8 @@ TEST(what_is_solved_gives_the_right_sides_again)
     }
 }
 
-// Without an exchange of rows a zero ends the elimination, and a tiny pivot loses all digits.
+// Without an exchange of rows a zero ends the elimination, and a tiny pivot loses all
+// digits.
 TEST(the_largest_entry_is_the_pivot)
 {
     double zero[4] = {0, 1, 1, 1}, x[2] = {2, 5};
@@ -53,7 +54,8 @@ TEST(the_largest_entry_is_the_pivot)
     check_close(y[1], 1, 1e-15);
 
     // in the last columns of more, too
-    double late[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1e-20, 1, 0, 0, 1, 1}, z[4] = {3, 4, 1, 2};
+    double late[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1e-20, 1, 0, 0, 1, 1},
+           z[4] = {3, 4, 1, 2};
     assert_true(dense_solve(4, late, z));
     check_close(z[2], 1, 1e-15);
     check_close(z[3], 1, 1e-15);

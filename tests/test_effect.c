@@ -1,5 +1,6 @@
-// Every parameter is tried on scenarios of every kind: two values of it either come to other
-// results, or the scenario says that the parameter has no effect in it, or refuses it.
+// Every parameter is tried on scenarios of every kind: two values of it either come to
+// other results, or the scenario says that the parameter has no effect in it, or refuses
+// it.
 #include "src/scenario/effect.h"
 #include "tests/shipped_scenario.h"
 
@@ -56,12 +57,12 @@ static const struct {
     {"control.k2_table", {"1:4 2:7", "1:8 2:9"}},
 };
 
-// Bounds, thresholds and recordings that a run need not reach: they are never called without
-// effect.
+// Bounds, thresholds and recordings that a run need not reach: they are never called
+// without effect.
 static const char bounds[] =
-    " method.residual_bound motor.voltage_limit control.contact_threshold sensor.fsr_saturation "
-    "sensor.piezo_range printed.force_after_release control.playback_shift control.playback_hold "
-    "control.approach_voltage ";
+    " method.residual_bound motor.voltage_limit control.contact_threshold "
+    "sensor.fsr_saturation sensor.piezo_range printed.force_after_release "
+    "control.playback_shift control.playback_hold control.approach_voltage ";
 
 enum { MOST_VALUES = 8 };
 
@@ -97,8 +98,8 @@ static int values_to_try(const parameters *p, int parameter, char values[MOST_VA
     }
     const double shares[] = {0.31, 0.78};
     for (int i = 0; i < 2; i++) {
-        double number =
-            logarithmic ? low * pow(high / low, shares[i]) : low + (high - low) * shares[i];
+        double number = logarithmic ? low * pow(high / low, shares[i])
+                                    : low + (high - low) * shares[i];
         number = info->type == PARAMETER_INTEGER ? floor(number) : number;
         snprintf(values[i], 64, "%.6g", number);
     }
@@ -114,7 +115,8 @@ static bool same_number(double a, double b)
 static bool same_results(const run_result *a, const run_result *b)
 {
     if (strcmp(a->summary.message, b->summary.message) != 0 ||
-        a->trace.row_count != b->trace.row_count || a->trace.event_count != b->trace.event_count) {
+        a->trace.row_count != b->trace.row_count ||
+        a->trace.event_count != b->trace.event_count) {
         return false;
     }
     for (int i = 0; i < summary_count; i++) {
@@ -135,8 +137,9 @@ static bool same_results(const run_result *a, const run_result *b)
 // Where the texts' files lie.
 static const char *within_folder(const char *value)
 {
-    return strstr(value, ".csv") != NULL ? formatted("%s/%s", getenv("IMPACTLAB_SCENARIOS"), value)
-                                         : value;
+    return strstr(value, ".csv") != NULL
+               ? formatted("%s/%s", getenv("IMPACTLAB_SCENARIOS"), value)
+               : value;
 }
 
 // Gives a base its changes, and a shorter run.
@@ -149,18 +152,21 @@ static scenario changed_base(const base *b)
     int count = 0;
     for (; words[count] != NULL; count++) {
         const char *file = strstr(words[count], "workflow/");
-        const int before = (int)(file != NULL ? file - words[count] : (int)strlen(words[count]));
+        const int before =
+            (int)(file != NULL ? file - words[count] : (int)strlen(words[count]));
         snprintf(changes[count], sizeof changes[count], "%.*s%s", before, words[count],
                  file != NULL ? within_folder(file) : "");
         given[count] = changes[count];
     }
     given[count++] = (char *)"run.duration=0.7";
-    assert_int_equal(scenario_override_all(&s, given, count, fail_on_fault, NULL), STATUS_OK);
+    assert_int_equal(scenario_override_all(&s, given, count, fail_on_fault, NULL),
+                     STATUS_OK);
     return s;
 }
 
 // Tries the values of one parameter against the run without them.
-static void try_parameter(const base *b, const scenario *s, const run_result *untouched, int i)
+static void try_parameter(const base *b, const scenario *s, const run_result *untouched,
+                          int i)
 {
     char values[MOST_VALUES][64], own[64], path[64];
     const int tried = values_to_try(&s->parameters, i, values);
@@ -171,7 +177,8 @@ static void try_parameter(const base *b, const scenario *s, const run_result *un
     for (int k = 0; k < tried; k++) {
         scenario changed;
         fault f = {0};
-        const parameter_change change = {.parameter = i, .text = within_folder(values[k])};
+        const parameter_change change = {.parameter = i,
+                                         .text = within_folder(values[k])};
         if (scenario_with(s, &change, 1, &changed, &f) != STATUS_OK) {
             continue;
         }
@@ -182,8 +189,9 @@ static void try_parameter(const base *b, const scenario *s, const run_result *un
         KEPT_RUN(r) = (run_result){0};
         const status code = run_scenario(&changed, true, &r);
         const bool differs = code != STATUS_OK || !same_results(untouched, &r);
-        fail_if(differs && why != NULL && code == STATUS_OK, "%s %s: %s = %s acts, but: %s",
-                b->scenario, b->changes, parameter_table[i].path, values[k], why);
+        fail_if(differs && why != NULL && code == STATUS_OK,
+                "%s %s: %s = %s acts, but: %s", b->scenario, b->changes,
+                parameter_table[i].path, values[k], why);
         acts = acts || differs;
         named = named || why != NULL;
         others += strcmp(values[k], own) != 0;

@@ -52,8 +52,8 @@ TEST(test_mouse_reports_are_understood)
 
 TEST(test_what_means_nothing_is_passed_over)
 {
-    for (EACH_TEXT(c, "[<64;45;30m", "[<2;45;30M", "[<35;45;30M", "[<0;45M", "[<;;M", "[1;5C", "OQ",
-                   "[202~", "[?1;2c", "[<0;1;2;3M")) {
+    for (EACH_TEXT(c, "[<64;45;30m", "[<2;45;30M", "[<35;45;30M", "[<0;45M", "[<;;M",
+                   "[1;5C", "OQ", "[202~", "[?1;2c", "[<0;1;2;3M")) {
         meant m = feed_fresh(*c);
         assert_int_equal(m.result, SEQUENCE_OVER);
         assert_int_equal(m.taken, strlen(*c));

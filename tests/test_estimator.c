@@ -14,12 +14,14 @@ TEST(estimator_finds_a_constant)
     check_relative(e.p[0][0], 0.01 / 4 / 100, 1e-3);
 }
 
-// Arrays have room for the most states; those that a model does not use neither count nor change.
+// Arrays have room for the most states; those that a model does not use neither count nor
+// change.
 TEST(states_beyond_the_model_are_left_alone)
 {
     enum { STATES = 2, ALL = ESTIMATOR_STATES };
     const double nothing = (double)NAN;
-    double rate[ALL][ALL] = {{0, 1}, {-4, -0.1}}, input[ALL] = {0, 2}, row[ALL] = {1, 0.5};
+    double rate[ALL][ALL] = {{0, 1}, {-4, -0.1}}, input[ALL] = {0, 2},
+           row[ALL] = {1, 0.5};
     double noise[ALL] = {1e-3, 2e-3};
     sampled_model plain, m;
     sampled_model_init(&plain, STATES, rate, input, 0.01);
@@ -65,8 +67,8 @@ TEST(a_sampled_oscillator_has_its_closed_form)
     check_close(m.b[1], s / w, 1e-15);
 }
 
-// Any model of any number of states does what the matrices say; what lies behind its states is NaN
-// everywhere and reaches nothing.
+// Any model of any number of states does what the matrices say; what lies behind its
+// states is NaN everywhere and reaches nothing.
 TEST(any_model_follows_its_matrices)
 {
     enum { ALL = ESTIMATOR_STATES };
@@ -157,8 +159,8 @@ TEST(any_model_follows_its_matrices)
     }
 }
 
-// Another view of any number of states is that of the matrices; what lies behind either view is NaN
-// before and nothing after.
+// Another view of any number of states is that of the matrices; what lies behind either
+// view is NaN before and nothing after.
 TEST(another_view_is_that_of_its_matrix)
 {
     enum { ALL = ESTIMATOR_STATES };
@@ -185,7 +187,8 @@ TEST(another_view_is_that_of_its_matrix)
                 for (int j = 0; j < ALL; j++) {
                     double spread = 0;
                     for (int k = 0; i < to && j < to && k < from * from; k++) {
-                        spread += t[i][k / from] * e.p[k / from][k % from] * t[j][k % from];
+                        spread +=
+                            t[i][k / from] * e.p[k / from][k % from] * t[j][k % from];
                     }
                     check_close(seen.p[i][j], spread, 1e-13);
                 }

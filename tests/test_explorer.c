@@ -54,13 +54,15 @@ TEST(test_playing_shows_an_impact_within_seconds)
     assert_shows(&ex, "end of the run");
 }
 
-// A newcomer's way: watch, pause, go back to just before contact, lower the voltage, compare.
+// A newcomer's way: watch, pause, go back to just before contact, lower the voltage,
+// compare.
 TEST(test_a_lower_voltage_is_compared_with_the_run_before)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<Space>");
     act_advance(&ex.state, 3);
-    press_shows(&ex, "<Space>NNNN<Home>nN:seek 0.2<Enter>b<Enter>", ":set motor.voltage 1");
+    press_shows(&ex, "<Space>NNNN<Home>nN:seek 0.2<Enter>b<Enter>",
+                ":set motor.voltage 1");
     press_shows(&ex, "<Backspace>0.5<Enter>", "motor.voltage = 0.5 V from 0.2000 s on");
     check_below(ex.state.session.run.summary.peak_force_N,
                 ex.state.session.other.summary.peak_force_N);
@@ -85,8 +87,8 @@ static int tallest_column(explorer *ex, int width)
     explorer_draw(ex, &s);
     for (int x = ex->layout.plot.x; x < ex->layout.plot.x + ex->layout.plot.width; x++) {
         int cells = 0;
-        for (int y = ex->layout.plot.y + 1; y < ex->layout.plot.y + ex->layout.plot.height - 2;
-             y++) {
+        for (int y = ex->layout.plot.y + 1;
+             y < ex->layout.plot.y + ex->layout.plot.height - 2; y++) {
             uint32_t glyph = s.cells[(long)y * s.width + x].glyph;
             cells += glyph > 0x2800 && glyph < 0x2900;
         }
@@ -114,8 +116,8 @@ TEST(test_values_show_the_difference_to_the_mark)
 TEST(test_the_list_filters_and_opens)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press_shows(&ex, "o/three", "corrected/three-links", "Three links against a flat wall",
-                "!five-links");
+    press_shows(&ex, "o/three", "corrected/three-links",
+                "Three links against a flat wall", "!five-links");
     press_opens(&ex, "<Enter>", "corrected/three-links");
     press_opens(&ex, ":open thesis/fig-3-4<Enter>", "thesis/fig-3-4");
     assert_shows(&ex, "printed");
@@ -216,8 +218,8 @@ TEST(test_a_lesson_leaves_the_arm_any_height)
     }
 }
 
-// At the last row before a touch the linearised arm says what "impactlab predict" says, for as many
-// links as there are; while the run plays it is not asked.
+// At the last row before a touch the linearised arm says what "impactlab predict" says,
+// for as many links as there are; while the run plays it is not asked.
 TEST(test_many_links_are_predicted_while_the_run_rests)
 {
     OPEN_EXPLORER(ex, "corrected/five-links");
@@ -258,8 +260,9 @@ TEST(test_random_keys_do_no_harm)
     random_generator r = seeded(6);
     OPEN_EXPLORER(ex, "corrected/first-impact");
     for (int i = 0; i < 4000; i++) {
-        bool saving = ex.state.prompt.open && (strncmp(ex.state.prompt.text, "s", 1) == 0 &&
-                                               strncmp(ex.state.prompt.text, "set ", 4) != 0);
+        bool saving =
+            ex.state.prompt.open && (strncmp(ex.state.prompt.text, "s", 1) == 0 &&
+                                     strncmp(ex.state.prompt.text, "set ", 4) != 0);
         bool lengthens = ex.state.session.effective.parameters.run.duration > 3;
         int key = chance(&r, 3) > 0 ? ' ' + chance(&r, 95) : keys[chance(&r, 16)];
         key = saving || (lengthens && key == 'x') ? KEY_CODE_ESCAPE : key;
@@ -277,14 +280,15 @@ TEST(test_random_keys_do_no_harm)
     free(save_and_compare(&ex.state.session));
 }
 
-// The lab draws and takes keys while a long run is computed; what it shows in the end is what a
-// lab that waits for its runs shows.
+// The lab draws and takes keys while a long run is computed; what it shows in the end is
+// what a lab that waits for its runs shows.
 TEST(test_a_long_run_is_drawn_while_it_is_computed)
 {
     SCOPED(explorer_finish) explorer ex;
     open_changed(&ex, "corrected/twenty-links", "run.duration=20", 0);
     assert_shows(&ex, "computing", "of 20 s (Esc stops)");
-    press_shows(&ex, ":save never-written.csv<Enter>", "wait for its end, or stop it with Esc");
+    press_shows(&ex, ":save never-written.csv<Enter>",
+                "wait for its end, or stop it with Esc");
     press_shows(&ex, "b", "wait for its end, or stop it");
     press(&ex, "<Esc>");
     assert_null(ex.state.session.computing);
@@ -300,8 +304,8 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
         free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     }
     OPEN_EXPLORER(patient, "corrected/twenty-links");
-    press(&patient,
-          ":set run.duration 20<Enter>:set run.duration 3<Enter>:set run.duration 4<Enter>");
+    press(&patient, ":set run.duration 20<Enter>:set run.duration 3<Enter>:set "
+                    "run.duration 4<Enter>");
     patient.state.playback.playing = ex.state.playback.playing = false;
     patient.state.playback.speed = ex.state.playback.speed;
     press(&ex, ":seek 2<Enter>");
@@ -315,14 +319,15 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
     ex.state.session.input_count = 0;
 }
 
-// Legends, values and what is subtracted from them are of one row: before an impact nothing has a
-// force, and a run changed later equals the one before it on either side.
+// Legends, values and what is subtracted from them are of one row: before an impact
+// nothing has a force, and a run changed later equals the one before it on either side.
 TEST(test_both_sides_of_an_impact_are_told_apart)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.5<Enter>b:set motor.voltage 2<Enter>:panes 1<Enter>I<Tab>");
     const sample before = *session_sample(&ex.state.session);
-    press_shows(&ex, "<Right>", formatted("force %.4g ", session_sample(&ex.state.session)->force));
+    press_shows(&ex, "<Right>",
+                formatted("force %.4g ", session_sample(&ex.state.session)->force));
     check_close(session_sample(&ex.state.session)->time, before.time, 0);
     press_shows(&ex, "<Left>", "force 0 ", "hub_velocity             0.5851         0 ",
                 "last_velocity            0.9001         0 ");
@@ -344,8 +349,8 @@ TEST(test_marks_lie_in_the_run)
     press_draws(&ex, ":zoom 0.1 0.1000001<Enter>");
 }
 
-// Any number typed at the prompt is refused or kept within what there is, and the screen drawn: the
-// sanitizers look on.
+// Any number typed at the prompt is refused or kept within what there is, and the screen
+// drawn: the sanitizers look on.
 TEST(test_numbers_of_any_size_are_survived)
 {
     static const char *const lines[] = {"step %s",
@@ -384,8 +389,8 @@ TEST(test_numbers_of_any_size_are_survived)
                                         "zoom all"};
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":save! rows.csv<Enter>");
-    for (EACH_TEXT(number, "1e300", "-1e300", "1e9", "nan", "4294967297", "-9223372036854775809",
-                   "1e-320", "0", "-1")) {
+    for (EACH_TEXT(number, "1e300", "-1e300", "1e9", "nan", "4294967297",
+                   "-9223372036854775809", "1e-320", "0", "-1")) {
         press(&ex, ":seek 0.3<Enter>");
         for (EACH(line, lines)) {
 #pragma GCC diagnostic push

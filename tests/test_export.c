@@ -5,7 +5,8 @@
 static scenario parse(const char *text)
 {
     scenario s;
-    assert_int_equal(scenario_parse(&s, text, strlen(text), "t.yaml", NULL, fail_on_fault, NULL),
+    assert_int_equal(scenario_parse(&s, text, strlen(text), "t.yaml", NULL, fail_on_fault,
+                                    NULL),
                      STATUS_OK);
     return s;
 }
@@ -28,10 +29,11 @@ static run_result stopped_result(void)
 
 TEST(object_holds_every_key)
 {
-    KEPT_SCENARIO(s) = parse("title: T\narm: {links: 3}\nwall: {kind: plane}\n"
-                             "expect:\n  impacts: {value: 1, tolerance: 0}\n  peak_force_N: null\n"
-                             "  first_contact_s: {value: 0.3, tolerance: 0.01}\n"
-                             "script:\n  - {at: 0.1 s, set: {motor.voltage: 2 V}}\n");
+    KEPT_SCENARIO(s) =
+        parse("title: T\narm: {links: 3}\nwall: {kind: plane}\n"
+              "expect:\n  impacts: {value: 1, tolerance: 0}\n  peak_force_N: null\n"
+              "  first_contact_s: {value: 0.3, tolerance: 0.01}\n"
+              "script:\n  - {at: 0.1 s, set: {motor.voltage: 2 V}}\n");
     KEPT_RUN(result) = stopped_result();
     json_t *object = export_run(&s, &result);
     assert_string_equal(json_string_value(json_object_get(object, "scenario")), "t.yaml");
@@ -55,7 +57,8 @@ TEST(object_holds_every_key)
     json_t *events = json_object_get(object, "events");
     assert_int_equal(json_array_size(events), 3);
     json_t *change = json_array_get(events, 0), *impact = json_array_get(events, 1);
-    assert_string_equal(json_string_value(json_object_get(change, "parameter")), "motor.voltage");
+    assert_string_equal(json_string_value(json_object_get(change, "parameter")),
+                        "motor.voltage");
     check_close(json_number_value(json_object_get(change, "value")), 2, 0);
     check_close(json_number_value(json_object_get(impact, "speed_m_s")), 0.75, 0);
     check_close(json_number_value(json_object_get(impact, "loss_J")), 0.125, 0);
@@ -73,8 +76,8 @@ TEST(object_holds_every_key)
     json_decref(object);
 }
 
-// A change of a word is told as the word; one whose place in the script is not known as an event
-// alone.
+// A change of a word is told as the word; one whose place in the script is not known as
+// an event alone.
 TEST(changes_are_told_as_they_were_written)
 {
     KEPT_SCENARIO(s) = parse("title: T\ncontrol: {law: hybrid}\n"
@@ -84,7 +87,8 @@ TEST(changes_are_told_as_they_were_written)
     trace_add_event(&result.trace, (event){0.4, EVENT_CHANGE, 0, 0, 0, -1});
     json_t *object = export_run(&s, &result), *events = json_object_get(object, "events");
     json_t *change = json_array_get(events, 0);
-    assert_string_equal(json_string_value(json_object_get(change, "parameter")), "control.lock");
+    assert_string_equal(json_string_value(json_object_get(change, "parameter")),
+                        "control.lock");
     assert_string_equal(json_string_value(json_object_get(change, "value")), "force");
     for (size_t i = 3; i < 5; i++) {
         assert_non_null(json_array_get(events, i));
@@ -109,9 +113,9 @@ TEST(missed_expectations_say_what_is_and_what_was_expected)
                              "  first_contact_s: {value: 0.25, tolerance: 0.01}\n");
     KEPT_RUN(result) = stopped_result();
     assert_int_equal(run_check_expectations(&s, &result, keep_sentences, said), 2);
-    assert_string_equal(said,
-                        "t.yaml:3:3: impacts is 1, expected null\n"
-                        "t.yaml:4:3: peak_force_N is nothing (null), expected 2 within 0.5\n");
+    assert_string_equal(
+        said, "t.yaml:3:3: impacts is 1, expected null\n"
+              "t.yaml:4:3: peak_force_N is nothing (null), expected 2 within 0.5\n");
 }
 
 // CSV of a trace of two rows with three angles each, on the heap.
@@ -201,7 +205,8 @@ TEST(values_without_effect_are_named)
     check_idle("wall: {stiffness: 1000 N/m}\narm: {k1: 10}\n", "arm.k1 wall.stiffness ");
     check_idle("wall: {stiffness: 1000 N/m, contact: kelvin-voigt}\n", "");
     check_idle("control: {law: hybrid}\nmotor: {voltage: 5 V}\n", "motor.voltage ");
-    check_idle("control: {law: open-loop, kp: 5, approach_voltage: 2 V}\nbelief: {k2_factor: 2}\n",
+    check_idle("control: {law: open-loop, kp: 5, approach_voltage: 2 V}\nbelief: "
+               "{k2_factor: 2}\n",
                "control.kp belief.k2_factor ");
 
     // a bound is none, reached or not

@@ -1,5 +1,5 @@
-// Parameters at the ends of their ranges: a run ends with bounded effort, and nothing that is no
-// finite number passes for a result.
+// Parameters at the ends of their ranges: a run ends with bounded effort, and nothing
+// that is no finite number passes for a result.
 #include <signal.h>
 
 #include "tests/arm_fixture.h"
@@ -28,12 +28,13 @@ TEST(a_push_of_any_size_ends_a_run_or_lets_it_go_on)
     assert_int_equal(ends_of_push(2, 0.1), STATUS_OK);
 }
 
-// Whoever asks a run of either model to end gets its first rows, and hears at which instant.
+// Whoever asks a run of either model to end gets its first rows, and hears at which
+// instant.
 TEST(a_run_that_is_asked_to_end_does)
 {
     for (EACH_TEXT(c, "printed", "corrected")) {
-        KEPT_SCENARIO(s) =
-            good(formatted("title: Ended\narm: {model: %s}\nrun: {duration: 0.5 s}\n", *c));
+        KEPT_SCENARIO(s) = good(
+            formatted("title: Ended\narm: {model: %s}\nrun: {duration: 0.5 s}\n", *c));
         KEPT_RUN(whole) = run_done(&s, true);
         KEPT_RUN(ended);
         run_monitor monitor = {.stop = true};
@@ -54,17 +55,17 @@ TEST(strides_that_pass_no_time_end_a_run)
     assert_int_equal(ends_of_push(1, -1e20), STATUS_NO_PROGRESS);
 }
 
-// The force just after an impact of a chain that is damped beyond all vibration: the last joint's
-// damper, which grows with N, turns at the speed over a link's length, its lever arm. So the peak
-// grows with N^3, and it is at the first contact.
+// The force just after an impact of a chain that is damped beyond all vibration: the last
+// joint's damper, which grows with N, turns at the speed over a link's length, its lever
+// arm. So the peak grows with N^3, and it is at the first contact.
 TEST(the_peak_of_a_damped_chain_is_at_its_impact)
 {
     double before = 0;
     for (EACH_OF(int, c, 16, 24, 28, 32, 40)) {
-        KEPT_RUN(result) =
-            run_told(formatted("title: Damped\nmotor: {voltage: 5 V}\nwall: {kind: plane}\n"
-                               "arm: {links: %d, damping_ratio: 1}\nrun: {duration: 0.2 s}\n",
-                               *c));
+        KEPT_RUN(result) = run_told(
+            formatted("title: Damped\nmotor: {voltage: 5 V}\nwall: {kind: plane}\n"
+                      "arm: {links: %d, damping_ratio: 1}\nrun: {duration: 0.2 s}\n",
+                      *c));
         const double coefficient = result.summary.peak_force_N / pow(*c, 3);
         check_close(result.summary.time_to_peak_s, 0, 1e-9);
         check_relative(coefficient, before > 0 ? before : coefficient, 0.03);
@@ -76,10 +77,10 @@ TEST(the_peak_of_a_damped_chain_is_at_its_impact)
 TEST(a_touch_behind_the_link_is_told)
 {
     for (int way = -1; way <= 1; way += 2) {
-        KEPT_RUN(result) =
-            run_told(formatted("title: Round\nmotor: {voltage: %d V}\nwall: {angle: 2.9 rad}\n"
-                               "run: {duration: 3 s}\n",
-                               way));
+        KEPT_RUN(result) = run_told(
+            formatted("title: Round\nmotor: {voltage: %d V}\nwall: {angle: 2.9 rad}\n"
+                      "run: {duration: 3 s}\n",
+                      way));
         assert_true(result.summary.impacts > 0);
         assert_int_equal(result.summary.message[0] != '\0', way < 0);
     }
@@ -98,12 +99,15 @@ static void give_up(void *context, const sweep_progress *p)
 
 TEST(runs_without_an_end_are_abandoned_and_not_stored)
 {
-    const char *text = "title: Nearly for ever\ninitial: {velocity: 0.01 rad/s}\n"
-                       "wall: {angle: 3 rad}\narm: {links: 24}\nrun: {duration: 90000 s}\n";
+    const char *text =
+        "title: Nearly for ever\ninitial: {velocity: 0.01 rad/s}\n"
+        "wall: {angle: 3 rad}\narm: {links: 24}\nrun: {duration: 90000 s}\n";
     char *vary[] = {"motor.voltage=0.001:0.002:3"};
     const sweep_request request = {.vary = vary, .vary_count = 1};
-    const sweep_options options = {
-        .jobs = 2, .stop = &stop, .abandon = &abandoned, .report = give_up};
+    const sweep_options options = {.jobs = 2,
+                                   .stop = &stop,
+                                   .abandon = &abandoned,
+                                   .report = give_up};
     KEPT_SCENARIO(base) = good(text);
     KEPT_SWEEP(s);
     KEPT_STORE(store);

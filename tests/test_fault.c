@@ -6,7 +6,8 @@
 TEST(a_fault_names_its_parameter)
 {
     fault f;
-    assert_int_equal(fault_set_at(&f, STATUS_BAD_SCENARIO, "wall.angle", "%s is %d", "it", 7),
+    assert_int_equal(fault_set_at(&f, STATUS_BAD_SCENARIO, "wall.angle", "%s is %d", "it",
+                                  7),
                      STATUS_BAD_SCENARIO);
     assert_int_equal(f.code, STATUS_BAD_SCENARIO);
     assert_string_equal(f.text, "it is 7");
@@ -31,8 +32,10 @@ TEST(a_fault_names_its_place)
 TEST(nobody_has_to_listen)
 {
     assert_int_equal(fault_set(NULL, STATUS_NO_MEMORY, "lost"), STATUS_NO_MEMORY);
-    assert_int_equal(fault_set_at(NULL, STATUS_SINGULAR, "arm.k2", "lost"), STATUS_SINGULAR);
-    assert_int_equal(fault_set_place(NULL, STATUS_BAD_SCENARIO, 1, 2, "lost"), STATUS_BAD_SCENARIO);
+    assert_int_equal(fault_set_at(NULL, STATUS_SINGULAR, "arm.k2", "lost"),
+                     STATUS_SINGULAR);
+    assert_int_equal(fault_set_place(NULL, STATUS_BAD_SCENARIO, 1, 2, "lost"),
+                     STATUS_BAD_SCENARIO);
 }
 
 TEST(long_sentences_are_cut)

@@ -1,9 +1,9 @@
-// Every figure and table at the widths of one column and of a page, judged by its pixels: texts
-// against what is drawn round them, curves against their frames, colours against each other as
-// people with colour blindness see them, and lines without colours.
+// Every figure and table at the widths of one column and of a page, judged by its pixels:
+// texts against what is drawn round them, curves against their frames, colours against
+// each other as people with colour blindness see them, and lines without colours.
 //
-// The program's own functions that draw a text or a legend's line are intercepted, so that texts
-// can be left out, drawn alone, and asked for their looks.
+// The program's own functions that draw a text or a legend's line are intercepted, so
+// that texts can be left out, drawn alone, and asked for their looks.
 #include "tests/plot_fixture.h"
 
 #include "render/plot/drawing.h"
@@ -41,16 +41,16 @@ static cairo_surface_t *of_alone;
 static swatch swatches[MOST_SWATCHES];
 static int swatch_count;
 
-figure_rect __real_text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x,
-                            double y, anchor part, colour c);
-figure_rect __wrap_text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x,
-                            double y, anchor part, colour c);
+figure_rect __real_text_put(cairo_t *cr, PangoContext *context, const text_block *t,
+                            double x, double y, anchor part, colour c);
+figure_rect __wrap_text_put(cairo_t *cr, PangoContext *context, const text_block *t,
+                            double x, double y, anchor part, colour c);
 void __real_draw_swatch(drawing *d, panel_layout *l, int index, double x, double y);
 void __wrap_draw_swatch(drawing *d, panel_layout *l, int index, double x, double y);
 
 // Leaves the text out and keeps its letters.
-figure_rect __wrap_text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x,
-                            double y, anchor part, colour c)
+figure_rect __wrap_text_put(cairo_t *cr, PangoContext *context, const text_block *t,
+                            double x, double y, anchor part, colour c)
 {
     if (masks == NULL) {
         return __real_text_put(cr, context, t, x, y, part, c);
@@ -72,7 +72,10 @@ figure_rect __wrap_text_put(cairo_t *cr, PangoContext *context, const text_block
     cairo_surface_flush(of_alone);
 
     // its pixels, cut out and wiped away
-    double corners[4][2] = {{x, y}, {x + width, y}, {x, y + height}, {x + width, y + height}};
+    double corners[4][2] = {{x, y},
+                            {x + width, y},
+                            {x, y + height},
+                            {x + width, y + height}};
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
     for (int i = 0; i < 4; i++) {
         cairo_matrix_transform_point(&place, &corners[i][0], &corners[i][1]);
@@ -169,7 +172,8 @@ static colour ground_of(cairo_surface_t *surface, const letter_mask *m)
             best = count[bin] > count[best] ? bin : best;
         }
     }
-    return (colour){example[best][2] / 255.0, example[best][1] / 255.0, example[best][0] / 255.0};
+    return (colour){example[best][2] / 255.0, example[best][1] / 255.0,
+                    example[best][0] / 255.0};
 }
 
 // Share of a text's letters that lie on something that stands out from its ground.
@@ -206,8 +210,8 @@ static void check_texts(const artwork *a, const char *id, double width)
         colour ground = ground_of(surface, m);
         double share = crossed(surface, m, ground);
         if (share > 0.01) {
-            complain_of("%s at %g mm: %.0f %% of '%.30s' is crossed by what is drawn", id, width,
-                        100 * share, m->text);
+            complain_of("%s at %g mm: %.0f %% of '%.30s' is crossed by what is drawn", id,
+                        width, 100 * share, m->text);
         }
         if (contrast(m->ink, ground) < 4.5) {
             complain_of("%s at %g mm: '%.30s' has a contrast of %.1f", id, width, m->text,
@@ -218,7 +222,8 @@ static void check_texts(const artwork *a, const char *id, double width)
 }
 
 // Nothing leaves the page, no text covers another, none is smaller than can be read.
-static void check_page(const artwork *a, const figure_report *r, const char *id, double width)
+static void check_page(const artwork *a, const figure_report *r, const char *id,
+                       double width)
 {
     const figure_rect ink = record_page(a, NULL), page = {0, 0, a->width, a->height};
     check_close(a->width, width / 25.4 * 72, 1e-6);
@@ -232,7 +237,8 @@ static void check_page(const artwork *a, const figure_report *r, const char *id,
             complain_of("%s at %g mm: '%s' leaves the page", id, width, t->text);
         }
         if (t->size < LETTERS_LEAST - 1e-9 || t->size > 12) {
-            complain_of("%s at %g mm: '%s' has letters of %.2f pt", id, width, t->text, t->size);
+            complain_of("%s at %g mm: '%s' has letters of %.2f pt", id, width, t->text,
+                        t->size);
         }
         for (int k = 0; k < i; k++) {
             // side by side, two words need room between them, too
@@ -240,7 +246,8 @@ static void check_page(const artwork *a, const figure_report *r, const char *id,
             wider.x -= 1.5;
             wider.width += 3;
             if (overlap(&wider, &r->texts[k].place)) {
-                complain_of("%s at %g mm: '%s' covers '%s'", id, width, t->text, r->texts[k].text);
+                complain_of("%s at %g mm: '%s' covers '%s'", id, width, t->text,
+                            r->texts[k].text);
             }
         }
     }
@@ -277,7 +284,8 @@ static bool may_have_ink(const figure *fig, const figure_report *r, double x, do
         double room = 1;
         for (int k = 0; k < fig->panels[i].series_count; k++) {
             const figure_series *s = &fig->panels[i].series[k];
-            room = fmax(room, s->marker == MARKER_NONE ? 0 : 1.3 * fmax(s->radius, 1.6) + 0.5);
+            room = fmax(room,
+                        s->marker == MARKER_NONE ? 0 : 1.3 * fmax(s->radius, 1.6) + 0.5);
         }
         figure_rect spot = {x, y, 0, 0};
         if (rect_is_within(&spot, &r->panels[i], room) ||
@@ -288,31 +296,34 @@ static bool may_have_ink(const figure *fig, const figure_report *r, double x, do
     return fig->common_legend && y < r->panels[0].y;
 }
 
-// Curves end at their panel's frame: a pixel that changes with their colours is within one.
+// Curves end at their panel's frame: a pixel that changes with their colours is within
+// one.
 static void check_frames(const figure *fig, const char *id, double width)
 {
     static figure_report r;
     static recoloured other;
     recolour(&other, fig, 1);
-    PIXELS(one) = paint_pixels(fig, SCALE, &r), *two = paint_pixels(&other.figure, SCALE, NULL);
+    PIXELS(one) = paint_pixels(fig, SCALE, &r),
+    *two = paint_pixels(&other.figure, SCALE, NULL);
     int outside = 0, inside = 0;
     for (int j = 0; j < cairo_image_surface_get_height(one); j++) {
         for (int i = 0; i < cairo_image_surface_get_width(one); i++) {
             if (memcmp(bytes_at(one, i, j), bytes_at(two, i, j), 3) != 0) {
-                bool allowed = may_have_ink(fig, &r, (i + 0.5) / SCALE, (j + 0.5) / SCALE);
+                bool allowed =
+                    may_have_ink(fig, &r, (i + 0.5) / SCALE, (j + 0.5) / SCALE);
                 inside += allowed;
                 outside += !allowed;
             }
         }
     }
     if (outside > 0 || inside < 50) {
-        complain_of("%s at %g mm: %d pixels of curves inside, %d outside their frames", id, width,
-                    inside, outside);
+        complain_of("%s at %g mm: %d pixels of curves inside, %d outside their frames",
+                    id, width, inside, outside);
     }
 }
 
-// The mark of the peak stands at a point of the force's curve that none near it exceeds, that of
-// the contact where the force begins.
+// The mark of the peak stands at a point of the force's curve that none near it exceeds,
+// that of the contact where the force begins.
 static void check_marks(const figure *fig, const char *id)
 {
     for (int m = 0; m < fig->mark_count; m++) {
@@ -352,12 +363,14 @@ static bool same_dashes(const swatch *a, const swatch *b)
 static bool differ_in_form(const swatch *a, const swatch *b)
 {
     double wider = fmax(a->width, b->width), narrower = fmin(a->width, b->width);
-    return a->marker != b->marker || (narrower == 0) != (wider == 0) || !same_dashes(a, b) ||
-           (narrower > 0 && wider / narrower > 1.6);
+    return a->marker != b->marker || (narrower == 0) != (wider == 0) ||
+           !same_dashes(a, b) || (narrower > 0 && wider / narrower > 1.6);
 }
 
-// Colours of one legend are far from each other for everybody; without colours, greys or forms are.
-static void check_legends(const figure *fig, figure_theme theme, const char *id, double width)
+// Colours of one legend are far from each other for everybody; without colours, greys or
+// forms are.
+static void check_legends(const figure *fig, figure_theme theme, const char *id,
+                          double width)
 {
     const double least_colours = 15, least_greys = 25;
     figure copy = *fig;
@@ -373,13 +386,15 @@ static void check_legends(const figure *fig, figure_theme theme, const char *id,
             bool form = differ_in_form(a, b);
             for (int sight = 0; sight < (int)G_N_ELEMENTS(sights); sight++) {
                 double seen = distance_seen(a->ink, b->ink, sight);
-                bool told = theme == THEME_MONO ? form || seen > least_greys
-                                                : seen > least_colours || (form && seen < 1e-9);
+                bool told = theme == THEME_MONO
+                                ? form || seen > least_greys
+                                : seen > least_colours || (form && seen < 1e-9);
                 if (!told) {
-                    complain_of("%s at %g mm, theme %d: '%s' and '%s' are %.1f apart in %s%s", id,
-                                width, (int)theme, a->panel->series[a->index].label,
-                                b->panel->series[b->index].label, seen, sight_names[sight],
-                                form ? "" : ", alike in form");
+                    complain_of(
+                        "%s at %g mm, theme %d: '%s' and '%s' are %.1f apart in %s%s", id,
+                        width, (int)theme, a->panel->series[a->index].label,
+                        b->panel->series[b->index].label, seen, sight_names[sight],
+                        form ? "" : ", alike in form");
                 }
             }
         }
@@ -412,7 +427,8 @@ TEST(every_figure_can_be_read)
     assert_int_equal(complaints, 0);
 }
 
-// Every colour of the palette differs from every other for everyone, and contrasts with the page.
+// Every colour of the palette differs from every other for everyone, and contrasts with
+// the page.
 TEST(colours_are_far_from_each_other)
 {
     static const figure_theme coloured[] = {THEME_COLOUR, THEME_DARK};
@@ -426,10 +442,11 @@ TEST(colours_are_far_from_each_other)
             }
             for (int k = 0; k < i; k++) {
                 for (int sight = 0; sight < (int)G_N_ELEMENTS(sights); sight++) {
-                    double seen = distance_seen(a, palette_series(coloured[t], k, 0), sight);
+                    double seen =
+                        distance_seen(a, palette_series(coloured[t], k, 0), sight);
                     if (seen < 10) {
-                        complain_of("theme %d: slots %d and %d are %.1f apart in %s", t, k, i, seen,
-                                    sight_names[sight]);
+                        complain_of("theme %d: slots %d and %d are %.1f apart in %s", t,
+                                    k, i, seen, sight_names[sight]);
                     }
                 }
             }

@@ -1,10 +1,11 @@
-// The catalogue of figures and tables, judged by what is drawn: texts and where they are, numbers
-// next to them, bytes of files.
+// The catalogue of figures and tables, judged by what is drawn: texts and where they are,
+// numbers next to them, bytes of files.
 #include "tests/plot_fixture.h"
 
 #include "render/figures/figures.h"
 
-// But those that take long: test_figure_legibility looks at them, and at all in a column of 85 mm.
+// But those that take long: test_figure_legibility looks at them, and at all in a column
+// of 85 mm.
 TEST(every_figure_is_tidy)
 {
     for (int i = 0; i < thesis_figure_count(); i++) {
@@ -12,7 +13,8 @@ TEST(every_figure_is_tidy)
         const thesis_figure *which = thesis_figure_at(i);
         assert_ptr_equal(thesis_figure_find(which->id), which);
         if (!which->slow) {
-            SCOPED(artwork_finish) artwork drawn = open_figure(which->id, (figure_options){0});
+            SCOPED(artwork_finish)
+            artwork drawn = open_figure(which->id, (figure_options){0});
             expect_tidy_page(&drawn, &r);
             assert_true(r.text_count >= 3);
         }
@@ -35,9 +37,12 @@ static void expect_texts(const char *id, const char *const *texts)
 
 TEST(figures_say_what_they_show)
 {
-    expect_texts("2.1", (const char *[]){"Fig. 2.1", "40\u2009kΩ", "FSR", "(V)", "(N)", NULL});
-    expect_texts("4.3", (const char *[]){"0.0443", "T = 70.0\u2009ms", "fmax = 1.34\u2009N", NULL});
-    expect_texts("4.2", (const char *[]){"impulse 0.0443\u2009N·s", "0.743\u2009m/s", NULL});
+    expect_texts("2.1",
+                 (const char *[]){"Fig. 2.1", "40\u2009kΩ", "FSR", "(V)", "(N)", NULL});
+    expect_texts("4.3", (const char *[]){"0.0443", "T = 70.0\u2009ms",
+                                         "fmax = 1.34\u2009N", NULL});
+    expect_texts("4.2",
+                 (const char *[]){"impulse 0.0443\u2009N·s", "0.743\u2009m/s", NULL});
     expect_texts("5.5", (const char *[]){"impact mode", "force mode", "(V)", NULL});
     expect_texts("T2.1", (const char *[]){"2.443\u2009V·s/rad", "33.6\u2009Ω", NULL});
     expect_texts("T4.3", (const char *[]){"2.04", "7.43", "4.92\u2009N·m/rad", NULL});
@@ -57,7 +62,8 @@ TEST(the_predictors_figures_have_the_legends_colours)
     }
 }
 
-// The number in the column `column` of the line that begins with `start`; fails if there is none.
+// The number in the column `column` of the line that begins with `start`; fails if there
+// is none.
 static double number_in_csv(const char *csv, const char *start, int column)
 {
     const char *line = strstr(csv, start);
@@ -106,7 +112,8 @@ static status overlaid(const char *csv, const char *id, fault *f)
 
 TEST(reference_data_lie_over_signals)
 {
-    const char *good = "time[s],force [N],remark\n0.35,1.5,first\r\n0.4,,missing\n\n0.45,0.25,\n";
+    const char *good =
+        "time[s],force [N],remark\n0.35,1.5,first\r\n0.4,,missing\n\n0.45,0.25,\n";
     DONE(overlaid(good, "3.4", &f));
     assert_true(file_has("overlaid/fig-3-4.csv", ",force measured.csv,0.35,1.5\n"));
     assert_true(file_has("overlaid/fig-3-4.csv", ",force measured.csv,0.45,0.25\n"));
@@ -115,7 +122,8 @@ TEST(reference_data_lie_over_signals)
     assert_false(file_has("overlaid/fig-3-2.csv", "measured.csv"));
     REFUSED(STATUS_BAD_ARGUMENT, "measured.csv:2:2: 'x1'",
             overlaid("time[s],force[N]\n0.3,x1\n", "3.4", &f));
-    REFUSED(STATUS_BAD_ARGUMENT, "no column 'time'", overlaid("force[N]\n1\n", "3.4", &f));
+    REFUSED(STATUS_BAD_ARGUMENT, "no column 'time'",
+            overlaid("force[N]\n1\n", "3.4", &f));
     REFUSED(STATUS_BAD_ARGUMENT, "", overlaid("", "3.4", &f));
     REFUSED(STATUS_BAD_ARGUMENT, "", overlaid(good, "4.1", &f));
     const figure_options missing = {.overlay = "/nowhere/data.csv"};
@@ -128,7 +136,8 @@ static double map_error(const char *csv, const char *step, double beta, double g
 {
     double nearest = HUGE_VAL, error = (double)NAN;
     const char *start = formatted("h = %s\u2009ms,map,", step);
-    for (const char *line = strstr(csv, start); line != NULL; line = strstr(line + 1, start)) {
+    for (const char *line = strstr(csv, start); line != NULL;
+         line = strstr(line + 1, start)) {
         double b = number_in_csv(line, start, 2), g = number_in_csv(line, start, 3);
         double distance = hypot(b - beta, g - gamma);
         if (distance < nearest) {
@@ -230,8 +239,10 @@ TEST(the_report_stands_alone)
     assert_null(strstr(html, "href=\"http"));
     assert_null(strstr(html, "@import"));
     for (int i = 0; i < thesis_figure_count(); i++) {
-        const char *again = formatted("<code>impactlab figures %s</code>", thesis_figure_at(i)->id);
-        fail_if(strstr(html, again) == NULL, "%s is not in the report", thesis_figure_at(i)->id);
+        const char *again =
+            formatted("<code>impactlab figures %s</code>", thesis_figure_at(i)->id);
+        fail_if(strstr(html, again) == NULL, "%s is not in the report",
+                thesis_figure_at(i)->id);
     }
     assert_non_null(strstr(html, "82.92"));
     assert_non_null(strstr(html, "motor.torque_constant"));
@@ -247,11 +258,12 @@ TEST(the_report_stands_alone)
 
 TEST(a_report_without_a_folder_is_complained_about)
 {
-    REFUSED(STATUS_CANNOT_WRITE, "/proc/nowhere", report_write("/proc/nowhere", NULL, 0, NULL, &f));
+    REFUSED(STATUS_CANNOT_WRITE, "/proc/nowhere",
+            report_write("/proc/nowhere", NULL, 0, NULL, &f));
 }
 
-// --- what follows the thesis: captions, axes and numbers, by equations that the drawing does not
-// use
+// --- what follows the thesis: captions, axes and numbers, by equations that the drawing
+// does not use
 
 static void expect_in_caption(const char *id, const char *part)
 {
@@ -294,8 +306,9 @@ TEST(chapters_2_and_3_have_one_time_axis)
         bool found = false;
         for (int k = 0; k < r.text_count; k++) {
             figure_rect p = r.texts[k].place;
-            found = found || (strcmp(r.texts[k].text, "1.0") == 0 &&
-                              fabs(p.x + p.width / 2 - r.panels[0].x - r.panels[0].width) < 0.6);
+            found = found ||
+                    (strcmp(r.texts[k].text, "1.0") == 0 &&
+                     fabs(p.x + p.width / 2 - r.panels[0].x - r.panels[0].width) < 0.6);
         }
         fail_if(!found, "%s: its time axis does not end at 1.0 s", *c);
     }
@@ -310,8 +323,9 @@ TEST(the_printed_peak_is_a_point)
     expect_in_caption("3.10", "5.22");
 }
 
-// The cut body: the hinge's torque about the centre is the moment of its impulse, a relation of
-// (4.3) and (4.4) that the drawing does not use; and the wall stops the point of collision.
+// The cut body: the hinge's torque about the centre is the moment of its impulse, a
+// relation of (4.3) and (4.4) that the drawing does not use; and the wall stops the point
+// of collision.
 TEST(the_cut_body_is_in_balance)
 {
     KEPT_TEXT(csv) = csv_of("4.2");
@@ -340,8 +354,8 @@ TEST(the_algorithm_has_the_thesis_numbers)
     }
 }
 
-// What the thesis prints stands where it prints it, what is computed beside it, and the residual is
-// their difference.
+// What the thesis prints stands where it prints it, what is computed beside it, and the
+// residual is their difference.
 TEST(printed_values_have_residuals)
 {
     KEPT_TEXT(csv) = csv_of("forces");
@@ -351,14 +365,16 @@ TEST(printed_values_have_residuals)
     check_close(computed, 23.93, 0.5);
     check_relative(number_behind(csv, "residual k2 x 100[%],max_force_energy printed,1,"),
                    100 * (computed / printed - 1), 1e-9);
-    check_close(number_behind(csv, "force k2 x 1[N],max_force_simulation printed,10,"), 7.43, 0);
+    check_close(number_behind(csv, "force k2 x 1[N],max_force_simulation printed,10,"),
+                7.43, 0);
     free(csv);
     csv = csv_of("delays");
-    check_close(number_behind(csv, "delay k2 x 1[ms],delay_dynamics printed,10,"), 109, 1e-9);
+    check_close(number_behind(csv, "delay k2 x 1[ms],delay_dynamics printed,10,"), 109,
+                1e-9);
 }
 
-// Section 3.1.3: with one run of the algorithm no pair gives a usable force, with two the thesis's
-// does.
+// Section 3.1.3: with one run of the algorithm no pair gives a usable force, with two the
+// thesis's does.
 TEST(the_printed_arm_needs_its_second_run)
 {
     static const char *const starts[] = {"\"two runs, h = 1\u2009ms\",map,",

@@ -3,7 +3,8 @@
 
 #include "render/scene/film.h"
 
-static status film_of(const recorded *r, const film_options *options, const char *path, fault *f)
+static status film_of(const recorded *r, const film_options *options, const char *path,
+                      fault *f)
 {
     const film_run run = {&r->scenario, &r->result, r->scenario.name};
     return film_write(&run, 1, options, path, f);
@@ -15,7 +16,8 @@ static film_clock clock_of(const recorded *r, double seconds, double slow)
     return film_clock_of(&result, 1, seconds, slow);
 }
 
-// The film runs through the whole run, forwards, and slower round the impact by what was asked for.
+// The film runs through the whole run, forwards, and slower round the impact by what was
+// asked for.
 TEST(test_clock)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
@@ -42,19 +44,20 @@ TEST(test_clock)
     check_relative(speed, untouched.scenario.parameters.run.duration / 5, 1e-6);
 }
 
-static const film_options small_film = {
-    .view = {.renderer = RENDER_CAIRO, .samples = SAMPLES_QUICK},
-    .width = 320,
-    .height = 240,
-    .frames_per_second = 10,
-    .seconds = 0.5};
+static const film_options small_film = {.view = {.renderer = RENDER_CAIRO,
+                                                 .samples = SAMPLES_QUICK},
+                                        .width = 320,
+                                        .height = 240,
+                                        .frames_per_second = 10,
+                                        .seconds = 0.5};
 
 // A run that goes when its block is left, and what a small film is made by.
-#define FILMED(r, options, name)                                                                   \
-    SCOPED(forget) recorded r = record(name);                                                      \
+#define FILMED(r, options, name)                                                         \
+    SCOPED(forget) recorded r = record(name);                                            \
     film_options options = small_film
 
-// Every impact is slowed down, not the first alone, and the speed told is the clock's own.
+// Every impact is slowed down, not the first alone, and the speed told is the clock's
+// own.
 TEST(test_clock_of_bounces)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
@@ -70,7 +73,8 @@ TEST(test_clock_of_bounces)
         bool seen = false;
         for (int i = 0; i <= 2000; i++) {
             double time = film_clock_time(&c, i / 200.0, &speed);
-            seen = seen || (fabs(time - c.impacts[k]) < 0.005 && speed < 1.01 * fastest / 8);
+            seen =
+                seen || (fabs(time - c.impacts[k]) < 0.005 && speed < 1.01 * fastest / 8);
         }
         slowed += seen;
     }
@@ -105,13 +109,14 @@ TEST(test_frames)
 static void expect_same_frames(const char *one, const char *two, int count)
 {
     for (int i = 1; i <= count; i++) {
-        assert_int_equal(
-            system(formatted("cmp %s/frame-%05d.png %s/frame-%05d.png", one, i, two, i)), 0);
+        assert_int_equal(system(formatted("cmp %s/frame-%05d.png %s/frame-%05d.png", one,
+                                          i, two, i)),
+                         0);
     }
 }
 
-// One film after the other, by OpenGL where it is: the one leaves none of its pictures to the
-// other.
+// One film after the other, by OpenGL where it is: the one leaves none of its pictures to
+// the other.
 TEST(test_films_by_gl)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
@@ -124,12 +129,14 @@ TEST(test_films_by_gl)
     }
 }
 
-// Each run has a view of its own: with an arm in it, and the first's own picture in the first.
+// Each run has a view of its own: with an arm in it, and the first's own picture in the
+// first.
 TEST(test_split_screen)
 {
     SCOPED(forget)
     recorded a = record("corrected/first-impact"), b = record("corrected/plane-wall");
-    const film_run runs[2] = {{&a.scenario, &a.result, "one"}, {&b.scenario, &b.result, "two"}};
+    const film_run runs[2] = {{&a.scenario, &a.result, "one"},
+                              {&b.scenario, &b.result, "two"}};
     film_options options = small_film;
     DONE(film_write(runs, 2, &options, "split", &f));
     PIXELS(frame) = cairo_image_surface_create_from_png("split/frame-00003.png");
@@ -138,15 +145,16 @@ TEST(test_split_screen)
     check_below(60, count_pixels_in(frame, 160, 320, 160, count_beam));
 }
 
-// Runs side by side have one scale of force: where each presses with its share of its own peak, the
-// arrow of four times the force is several times as large.
+// Runs side by side have one scale of force: where each presses with its share of its own
+// peak, the arrow of four times the force is several times as large.
 TEST(test_one_scale_of_force)
 {
     SCOPED(forget) recorded a = record("corrected/first-impact");
     SCOPED(forget)
     recorded b = {.scenario = shipped_with("corrected/first-impact", "motor.voltage=4")};
     DONE(run_scenario(&b.scenario, true, &b.result));
-    const film_run runs[2] = {{&a.scenario, &a.result, "one"}, {&b.scenario, &b.result, "two"}};
+    const film_run runs[2] = {{&a.scenario, &a.result, "one"},
+                              {&b.scenario, &b.result, "two"}};
     film_options options = small_film;
     options.width = 640;
     options.height = 480;
@@ -193,8 +201,8 @@ static void restore_encoder(char **old)
 }
 
 // The same until the block is left.
-#define ENCODER(text)                                                                              \
-    SCOPED(restore_encoder) char *old_path = with_encoder(text);                                   \
+#define ENCODER(text)                                                                    \
+    SCOPED(restore_encoder) char *old_path = with_encoder(text);                         \
     (void)old_path
 
 // An encoder that gives up is quoted, and nothing of the film is left.
@@ -239,22 +247,25 @@ TEST(test_interrupted)
     options.stop = &stopped;
     ENCODER("#!/bin/sh\ncat >/dev/null\n");
     int before = count_files(test_folder);
-    REFUSED(STATUS_STOPPED, "stopped: 2 of 5 frames", film_of(&r, &options, "half.mp4", &f));
+    REFUSED(STATUS_STOPPED, "stopped: 2 of 5 frames",
+            film_of(&r, &options, "half.mp4", &f));
     assert_int_equal(count_files(test_folder), before);
 }
 
-// An error message is a failure for any status of the encoder, as with a full disk; and what it
-// leaves without a complaint must be a film.
+// An error message is a failure for any status of the encoder, as with a full disk; and
+// what it leaves without a complaint must be a film.
 TEST(test_encoder_complains)
 {
     static const struct {
         const char *script, *said;
     } cases[] = {
-        {"#!/bin/sh\ncat >/dev/null\nfor last; do :; done\nprintf 'xxxxftyp' >\"${last#file:}\"\n"
+        {"#!/bin/sh\ncat >/dev/null\nfor last; do :; done\nprintf 'xxxxftyp' "
+         ">\"${last#file:}\"\n"
          "echo 'av_interleaved_write_frame(): No space left on device' >&2\n",
          "No space left"},
         {"#!/bin/sh\ncat >/dev/null\n", "no such film"},
-        {"#!/bin/sh\ncat >/dev/null\nfor last; do :; done\necho nonsense >\"${last#file:}\"\n",
+        {"#!/bin/sh\ncat >/dev/null\nfor last; do :; done\necho nonsense "
+         ">\"${last#file:}\"\n",
          "no such film"},
     };
     FILMED(r, options, "corrected/first-impact");
@@ -263,7 +274,8 @@ TEST(test_encoder_complains)
     put_file("kept.mp4", "old");
     for (int i = 0; i < 3; i++) {
         ENCODER(cases[i].script);
-        REFUSED(STATUS_CANNOT_WRITE, cases[i].said, film_of(&r, &options, "kept.mp4", &f));
+        REFUSED(STATUS_CANNOT_WRITE, cases[i].said,
+                film_of(&r, &options, "kept.mp4", &f));
         assert_holds("kept.mp4", "old");
     }
     unlink("kept.mp4");
@@ -275,7 +287,8 @@ static void stop_now(int number)
     stopped = 1;
 }
 
-// An encoder that hangs, before the first frame or after the last, is left at the first signal.
+// An encoder that hangs, before the first frame or after the last, is left at the first
+// signal.
 TEST(test_encoder_hangs)
 {
     FILMED(r, options, "corrected/first-impact");

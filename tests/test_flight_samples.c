@@ -1,6 +1,7 @@
-// Samples of the rig that are taken in flight while a step goes on: a loop from one to the next is
-// the run to the last bit, and what they read is what is read where every one of them ends a step,
-// with a piezo film, which these laws do not read, and in a loop that a program stops anywhere.
+// Samples of the rig that are taken in flight while a step goes on: a loop from one to
+// the next is the run to the last bit, and what they read is what is read where every one
+// of them ends a step, with a piezo film, which these laws do not read, and in a loop
+// that a program stops anywhere.
 #include "src/study/batch.h"
 #include "tests/rig_fixture.h"
 
@@ -33,9 +34,9 @@ static parameters draw(random_generator *g)
 
     // ideal sensors have no code step at which a last bit would show
     return rig_parameters_with(
-        "control.law=%s control.rate=%.3g control.delay=%.3g control.jitter=%.3g wall.kind=%s "
-        "arm.hub_joint=%s arm.k2=%.4g sensor.film=%s sensor.accelerometer=%s run.duration=0.6 "
-        "sensor.ideal=true",
+        "control.law=%s control.rate=%.3g control.delay=%.3g control.jitter=%.3g "
+        "wall.kind=%s arm.hub_joint=%s arm.k2=%.4g sensor.film=%s "
+        "sensor.accelerometer=%s run.duration=0.6 sensor.ideal=true",
         law, rate, delay, jitter, wall, hub, k2, film, accelerometer);
 }
 
@@ -54,7 +55,8 @@ static double largest_of(const trace *t, size_t offset)
     return most;
 }
 
-static void check_same_signal(const sample *x, const sample *y, size_t signal, double tolerance)
+static void check_same_signal(const sample *x, const sample *y, size_t signal,
+                              double tolerance)
 {
     const double one = signal_of(x, signal), other = signal_of(y, signal);
     assert_int_equal(isfinite(one), isfinite(other));
@@ -73,9 +75,9 @@ static size_t end_of_instant(const trace *t, size_t row)
     return end;
 }
 
-// The last rows of an instant have the same signals; there may be others where an input is
-// recorded, or a command differs from the one before by its last bit. All instants are the same but
-// for those of inputs, which are those of b.
+// The last rows of an instant have the same signals; there may be others where an input
+// is recorded, or a command differs from the one before by its last bit. All instants are
+// the same but for those of inputs, which are those of b.
 static void check_rows(const trace *a, const trace *b, bool inputs)
 {
     static const size_t signals[] = {
@@ -97,7 +99,8 @@ static void check_rows(const trace *a, const trace *b, bool inputs)
         const size_t x = end_of_instant(a, i), y = end_of_instant(b, j);
         const double later = a->rows[i].time - b->rows[j].time;
         for (int k = 0; k < SIGNALS && fabs(later) < SAME_TIME; k++) {
-            check_same_signal(&a->rows[x - 1], &b->rows[y - 1], signals[k], SAME * most[k]);
+            check_same_signal(&a->rows[x - 1], &b->rows[y - 1], signals[k],
+                              SAME * most[k]);
         }
         together += fabs(later) < SAME_TIME;
         missing += later <= -SAME_TIME || (later >= SAME_TIME && !inputs);
@@ -114,7 +117,8 @@ typedef enum looping {
     LOOPING_ENDED       // from sample to sample, each ending the step
 } looping;
 
-// Queries everything of a loop, continues it and restores it. It is then in its former state.
+// Queries everything of a loop, continues it and restores it. It is then in its former
+// state.
 static void ask_and_return(run_loop *l, random_generator *g, void *bytes)
 {
     int freedoms;
@@ -159,10 +163,10 @@ static void check_same_summary(const summary *a, const summary *b)
     }
 }
 
-// A whole run and a loop agree, where it is not cut by inputs or anywhere in contact to the last
-// bit.
-static void check_same_run(const run_result *whole, const run_result *loop, const summary *end,
-                           looping how)
+// A whole run and a loop agree, where it is not cut by inputs or anywhere in contact to
+// the last bit.
+static void check_same_run(const run_result *whole, const run_result *loop,
+                           const summary *end, looping how)
 {
     const trace *a = &whole->trace, *b = &loop->trace;
     const summary *s = &whole->summary;

@@ -1,4 +1,5 @@
-// When a force has settled, and the largest mean over a window, on forces known in closed form.
+// When a force has settled, and the largest mean over a window, on forces known in closed
+// form.
 #include "src/run/recording.h"
 #include "src/contact/contact_machine.h"
 #include "src/run/driver.h"
@@ -26,7 +27,8 @@ static double flat(double t)
     return 3;
 }
 
-// The history of a curve over [0, 1] s; each step has its mean by Simpson's rule, exact for cubics.
+// The history of a curve over [0, 1] s; each step has its mean by Simpson's rule, exact
+// for cubics.
 static shared_array history_of(force_curve f)
 {
     shared_array h;
@@ -64,7 +66,8 @@ TEST(a_rising_force_settles_where_it_enters_the_band)
 
 TEST(the_band_is_entered_within_a_step)
 {
-    // up and down again to nothing: 4 t (1 - t) = 0.05 f where the band round f ends from below
+    // up and down again to nothing: 4 t (1 - t) = 0.05 f where the band round f ends from
+    // below
     SCOPED(shared_array_finish) shared_array h = history_of(parabola);
     assert_true(isnan(force_settled_since(&h, 0.5)));
     shared_array_finish(&h);
@@ -76,9 +79,11 @@ TEST(the_band_is_entered_within_a_step)
 }
 
 // A step with the parabola first + slope s + curve s^2 of its share s.
-static force_step parabolic_step(double start, double end, double first, double slope, double curve)
+static force_step parabolic_step(double start, double end, double first, double slope,
+                                 double curve)
 {
-    return (force_step){start, end, first, first + slope + curve, first + slope / 2 + curve / 3};
+    return (force_step){start, end, first, first + slope + curve,
+                        first + slope / 2 + curve / 3};
 }
 
 TEST(a_line_that_meets_the_band_at_a_steps_end_settles_there)
@@ -123,7 +128,8 @@ TEST(a_history_keeps_all_of_its_steps)
     SCOPED(shared_array_finish) shared_array h;
     shared_array_init(&h, sizeof(force_step));
     for (int i = 0; i < STEPS; i++) {
-        assert_int_equal(force_history_add(&h, (force_step){i, i + 1, i, i, i}), STATUS_OK);
+        assert_int_equal(force_history_add(&h, (force_step){i, i + 1, i, i, i}),
+                         STATUS_OK);
     }
     assert_int_equal(h.count, STEPS);
     for (int i = 0; i < STEPS; i++) {
@@ -132,15 +138,16 @@ TEST(a_history_keeps_all_of_its_steps)
     }
 }
 
-// Steps as long as their lines are steep, with what rounding leaves of their curves: the instant of
-// the crossing is that of the line, for any unit of the force.
+// Steps as long as their lines are steep, with what rounding leaves of their curves: the
+// instant of the crossing is that of the line, for any unit of the force.
 TEST(lines_are_crossed_where_they_are)
 {
     random_generator g = seeded(5);
     for (int i = 0; i < 2000; i++) {
         const double final = pow(10, 12 * random_uniform(&g) - 6);
         const double edge = final - SETTLED_BAND * final, share = random_uniform(&g);
-        const double slope = final * (0.06 + random_uniform(&g)), first = edge - share * slope;
+        const double slope = final * (0.06 + random_uniform(&g)),
+                     first = edge - share * slope;
         force_step step = parabolic_step(0, 1, first, slope, 0);
         if (step.last > final * (1 + SETTLED_BAND)) {
             continue; // beyond the band again
@@ -152,8 +159,9 @@ TEST(lines_are_crossed_where_they_are)
     }
 }
 
-// Histories of parabolas that end near their final force. From the instant found on the force is in
-// the band, and just before it was not; the same forces in another unit give the same instant.
+// Histories of parabolas that end near their final force. From the instant found on the
+// force is in the band, and just before it was not; the same forces in another unit give
+// the same instant.
 TEST(from_the_instant_found_the_force_stays)
 {
     enum { STEPS = 30, LOOKS = 200 };
@@ -167,12 +175,15 @@ TEST(from_the_instant_found_the_force_stays)
         double force = 0, time = 0;
         for (int i = 0; i < STEPS; i++) {
             // towards 1 by shares, now and then with a jump as at an impact
-            const double spread = exp(-0.15 * i), jump = random_uniform(&g) < 0.2 ? spread : 0;
+            const double spread = exp(-0.15 * i),
+                         jump = random_uniform(&g) < 0.2 ? spread : 0;
             const double end = time + 0.1 + random_uniform(&g);
-            const double aim = 1 + (round % 2 ? 0.3 : 1) * spread * (random_uniform(&g) - 0.5);
+            const double aim =
+                1 + (round % 2 ? 0.3 : 1) * spread * (random_uniform(&g) - 0.5);
             const double curve = 2 * spread * (random_uniform(&g) - 0.5);
             const double first = force + jump * (random_uniform(&g) - 0.5);
-            const force_step step = parabolic_step(time, end, first, aim - first - curve, curve);
+            const force_step step =
+                parabolic_step(time, end, first, aim - first - curve, curve);
             force_step larger_unit = step;
             larger_unit.first = ldexp(step.first, -45);
             larger_unit.last = ldexp(step.last, -45);
@@ -199,11 +210,12 @@ TEST(from_the_instant_found_the_force_stays)
                 }
             }
 
-            // the step that it lies in crosses the band's edge there, else the one before ends
-            // outside
+            // the step that it lies in crosses the band's edge there, else the one before
+            // ends outside
             if (since > step->start && since < step->end) {
                 const double s = (since - step->start) / (step->end - step->start);
-                check_close(fabs(p.first + s * (p.slope + s * p.curve) - 1), SETTLED_BAND, 1e-9);
+                check_close(fabs(p.first + s * (p.slope + s * p.curve) - 1), SETTLED_BAND,
+                            1e-9);
                 within++;
             } else if (since == step->end) {
                 assert_true(fabs(step->last - 1) > SETTLED_BAND);
@@ -220,7 +232,8 @@ TEST(the_opposite_force_is_outside)
     for (int sign = -1; sign <= 1; sign += 2) {
         SCOPED(shared_array_finish) shared_array h;
         shared_array_init(&h, sizeof(force_step));
-        assert_int_equal(force_history_add(&h, (force_step){0, 1, sign, -sign, 0}), STATUS_OK);
+        assert_int_equal(force_history_add(&h, (force_step){0, 1, sign, -sign, 0}),
+                         STATUS_OK);
         assert_true(isnan(force_settled_since(&h, sign)));
         // the way from one to the other is a line of slope 2
         check_close(force_settled_since(&h, -sign), 1 - SETTLED_BAND / 2, 1e-12);
@@ -239,7 +252,8 @@ TEST(the_largest_mean_is_where_the_curve_is_highest)
     check_close(largest_mean(parabola, 0, 0.1), 1 - 0.01 / 3, 1e-12);
     check_close(largest_mean(parabola, 0, 0.237), 1 - 0.237 * 0.237 / 3, 1e-12);
     // from 0.6 s on it is the first window
-    check_close(largest_mean(parabola, 0.6, 0.1), 4 * (0.65 - 0.65 * 0.65) - 0.01 / 3, 1e-12);
+    check_close(largest_mean(parabola, 0.6, 0.1), 4 * (0.65 - 0.65 * 0.65) - 0.01 / 3,
+                1e-12);
     // the whole curve, and a window longer than what is left
     check_close(largest_mean(parabola, 0, 1), 2.0 / 3, 1e-12);
     assert_true(isnan(largest_mean(parabola, 0.95, 0.1)));
@@ -256,8 +270,8 @@ TEST(an_impulse_counts_as_long_as_the_window_holds_it)
     shared_array_finish(&r.history.forces);
 }
 
-// The largest value of the lag tau y' + y = 4 t (1 - t) from y(0) = value on: y = f - tau f' +
-// tau^2 f'' + C exp(-t/tau), and where y = f.
+// The largest value of the lag tau y' + y = 4 t (1 - t) from y(0) = value on: y = f - tau
+// f' + tau^2 f'' + C exp(-t/tau), and where y = f.
 static double parabola_sensed(double tau, double value)
 {
     const double c = value + 4 * tau + 8 * tau * tau;
@@ -271,21 +285,23 @@ static double parabola_sensed(double tau, double value)
     return fmax(parabola(early), value);
 }
 
-// Exact, wherever within a step it is; with an impulse at the start, too, whether that is the
-// largest itself, or not; up to an instant, at that.
+// Exact, wherever within a step it is; with an impulse at the start, too, whether that is
+// the largest itself, or not; up to an instant, at that.
 TEST(the_largest_reading_of_a_sensor_is_located)
 {
     const double taus[] = {0.001, 0.03, 0.1, 0.2};
-    run_result r = {.history = {.forces = history_of(parabola)}, .summary = {.peak_force_N = 1}};
+    run_result r = {.history = {.forces = history_of(parabola)},
+                    .summary = {.peak_force_N = 1}};
     for (EACH(tau, taus)) {
         r.trace.event_count = 0;
-        check_relative(force_largest_sensed(&r, *tau, HUGE_VAL), parabola_sensed(*tau, 0), 1e-14);
+        check_relative(force_largest_sensed(&r, *tau, HUGE_VAL), parabola_sensed(*tau, 0),
+                       1e-14);
         for (double value = 0.1; value < 2; value += 0.3) {
             event impact = {.kind = EVENT_IMPACT, .impulse = value * *tau, .index = -1};
             r.trace.events = &impact;
             r.trace.event_count = 1;
-            check_relative(force_largest_sensed(&r, *tau, HUGE_VAL), parabola_sensed(*tau, value),
-                           1e-14);
+            check_relative(force_largest_sensed(&r, *tau, HUGE_VAL),
+                           parabola_sensed(*tau, value), 1e-14);
         }
     }
 
@@ -293,16 +309,19 @@ TEST(the_largest_reading_of_a_sensor_is_located)
     const double tau = 0.1, t = 0.123, c = 4 * tau + 8 * tau * tau;
     r.trace.event_count = 0;
     check_relative(force_largest_sensed(&r, tau, t),
-                   parabola(t) - tau * (4 - 8 * t) - 8 * tau * tau + c * exp(-t / tau), 1e-13);
+                   parabola(t) - tau * (4 - 8 * t) - 8 * tau * tau + c * exp(-t / tau),
+                   1e-13);
 
-    // an impact at the very end adds to what is left; one that a step delivers does not count twice
+    // an impact at the very end adds to what is left; one that a step delivers does not
+    // count twice
     event last = {.time = 1, .kind = EVENT_IMPACT, .impulse = 0.5, .index = -1};
     r.trace.events = &last;
     r.trace.event_count = 1;
     const double left = 4 * tau - 8 * tau * tau + c * exp(-1 / tau);
     check_relative(force_largest_sensed(&r, tau, HUGE_VAL), left + 0.5 / tau, 1e-13);
     last.delivered_by_step = true;
-    check_relative(force_largest_sensed(&r, tau, HUGE_VAL), parabola_sensed(tau, 0), 1e-14);
+    check_relative(force_largest_sensed(&r, tau, HUGE_VAL), parabola_sensed(tau, 0),
+                   1e-14);
     shared_array_finish(&r.history.forces);
 }
 
@@ -319,7 +338,8 @@ TEST(a_run_tells_what_a_sensor_of_1_ms_reads)
                 {"compare/hybrid", ""}};
     for (EACH(c, runs)) {
         KEPT_SCENARIO(s) =
-            shipped_with(c->name, formatted("method.step=1e-5 run.duration=0.7 %s", c->changes));
+            shipped_with(c->name,
+                         formatted("method.step=1e-5 run.duration=0.7 %s", c->changes));
         KEPT_RUN(r) = run_done(&s, true);
         double value = 0, largest = 0;
         for (size_t k = 1; k < r.trace.row_count; k++) {
@@ -347,13 +367,13 @@ static double pressed(const parameters *p)
     return state_quadratures(m, m->state)[QUADRATURE_FORCE];
 }
 
-// The modes of a damped chain decay within nanoseconds of an impact, in which they press with
-// thousands of newtons: what is kept of the force has their impulse.
+// The modes of a damped chain decay within nanoseconds of an impact, in which they press
+// with thousands of newtons: what is kept of the force has their impulse.
 TEST(the_force_kept_has_the_impulse_of_decays)
 {
     static const char *const links[] = {"arm.links=2", "arm.links=8", "arm.links=32"};
-    static const char *const ratios[] = {"arm.damping_ratio=0.01", "arm.damping_ratio=0.3",
-                                         "arm.damping_ratio=1"};
+    static const char *const ratios[] = {"arm.damping_ratio=0.01",
+                                         "arm.damping_ratio=0.3", "arm.damping_ratio=1"};
     for (int i = 0; i < 9; i++) {
         const char *const settings[] = {links[i / 3],          ratios[i % 3],
                                         "initial.angle=-0.01", "initial.velocity=1",
@@ -373,8 +393,9 @@ TEST(the_force_kept_has_the_impulse_of_decays)
     }
 }
 
-// Wall and friction hold two links, and only the motor's current goes on: once it has settled the
-// force is that of the last row, and so is its mean, however long the strides are by then.
+// Wall and friction hold two links, and only the motor's current goes on: once it has
+// settled the force is that of the last row, and so is its mean, however long the strides
+// are by then.
 TEST(a_held_arm_presses_with_the_mean_of_its_force)
 {
     static const char *const cases[][2] = {
@@ -412,7 +433,8 @@ TEST(a_mean_that_the_force_never_was_is_said)
         // into contact
         motion *m = d.corrected.motion;
         while (m->state[SLOT_FORCE] == 0 && !ended) {
-            assert_int_equal(driver_advance(&d, driver_time(&d) + 1e-3, &ended, &f), STATUS_OK);
+            assert_int_equal(driver_advance(&d, driver_time(&d) + 1e-3, &ended, &f),
+                             STATUS_OK);
         }
         assert_false(ended);
 

@@ -1,6 +1,6 @@
-// identify against recordings whose parameters are known: coverage of its intervals and the bound
-// of Cramer and Rao, which is computed here by differences of loops that are stepped; what it
-// refuses, what it finds undetermined or unexplained.
+// identify against recordings whose parameters are known: coverage of its intervals and
+// the bound of Cramer and Rao, which is computed here by differences of loops that are
+// stepped; what it refuses, what it finds undetermined or unexplained.
 //
 //   test_identify SEEDS
 #include "src/study/identify.h"
@@ -15,7 +15,8 @@ enum { SAMPLES = 1501, READINGS = 3, FITTED = 5, OWN = 3, RECORDINGS = 3 };
 static int seeds = 2;
 
 static const char *const paths[FITTED] = {"arm.k2", "arm.hub_inertia", "motor.stiction",
-                                          "motor.torque_constant", "motor.viscous_friction"};
+                                          "motor.torque_constant",
+                                          "motor.viscous_friction"};
 static const double truth[FITTED] = {5.3, 0.0058, 0.052, 2.3, 0.007};
 
 // A recording: how it is made, and what came of it.
@@ -37,12 +38,12 @@ static scenario rig_scenario(const recording_made *r, const double *values, int 
     }
     scenario s = {.name = (char *)"rig", .actions = reversals};
     s.parameters = rig_parameters_with(
-        "control.law=%s control.rate=1000 method.step=0.0005 initial.angle=%g control.force=1 "
-        "control.approach_voltage=%g control.seed=%d wall.kind=%s%s",
+        "control.law=%s control.rate=1000 method.step=0.0005 initial.angle=%g "
+        "control.force=1 control.approach_voltage=%g control.seed=%d wall.kind=%s%s",
         r->law, r->angle, r->voltage, seed, r->no_wall ? "none" : "point", known);
     for (int i = 0; i < 3 && r->reverses; i++) {
-        reversals[i] =
-            SETS(0.25 + 0.4 * i, control.approach_voltage, i % 2 == 0 ? -r->voltage : r->voltage);
+        reversals[i] = SETS(0.25 + 0.4 * i, control.approach_voltage,
+                            i % 2 == 0 ? -r->voltage : r->voltage);
         s.action_count = 3;
     }
     return s;
@@ -70,8 +71,8 @@ static void record(recording_made *r, const double *values, int seed, int links)
     assert_int_equal(fclose(file), 0);
 }
 
-static void set_up(identification *id, const scenario *base, recording_made *made, int count,
-                   int fitted)
+static void set_up(identification *id, const scenario *base, recording_made *made,
+                   int count, int fitted)
 {
     *id = (identification){.base = base, .jobs = 2, .starts = 1};
     for (int i = 0; i < fitted; i++) {
@@ -87,9 +88,10 @@ static void fit(identification *id)
     DONE(identify_fit(id, &f));
 }
 
-// --- the bound --------------------------------------------------------------------------------
+// --- the bound -------------------------------------------------------------------------
 
-// What ideal converters without noise read under the recorded command, and the first touch.
+// What ideal converters without noise read under the recorded command, and the first
+// touch.
 static void read_exactly(const recording_made *r, const double *values, double angle,
                          double read[READINGS][SAMPLES], double *touch)
 {
@@ -115,14 +117,15 @@ static void read_exactly(const recording_made *r, const double *values, double a
     *touch = sum.first_contact_s;
 }
 
-// Standard deviations that no unbiased estimate goes below: Fisher's information of all readings
-// more than 10 ms from a touch or release and of the first touch, each recording's shift, offset
-// and start being unknown too. A standing encoder says its value once.
+// Standard deviations that no unbiased estimate goes below: Fisher's information of all
+// readings more than 10 ms from a touch or release and of the first touch, each
+// recording's shift, offset and start being unknown too. A standing encoder says its
+// value once.
 static void bound(const recording_made *made, int count, int fitted, double *deviations)
 {
     enum { MOST = FITTED + RECORDINGS * OWN };
-    static double exact[READINGS][SAMPLES], low[READINGS][SAMPLES], high[READINGS][SAMPLES],
-        slope[MOST][READINGS][SAMPLES];
+    static double exact[READINGS][SAMPLES], low[READINGS][SAMPLES],
+        high[READINGS][SAMPLES], slope[MOST][READINGS][SAMPLES];
     double information[MOST * MOST] = {0}, unit[MOST * MOST] = {0};
     const sensor_parameters sensor = rig_scenario(made, truth, 1).parameters.sensor;
     const double adc = 20.0 / 4096, step = 2 * M_PI / sensor.encoder_counts;
@@ -142,9 +145,11 @@ static void bound(const recording_made *made, int count, int fitted, double *dev
             memcpy(values, truth, sizeof values);
             const int column = i < fitted ? i : own + 2;
             values[i < fitted ? i : 0] += i < fitted ? h : 0;
-            read_exactly(&made[r], values, made[r].angle + (i < fitted ? 0 : h), high, &after);
+            read_exactly(&made[r], values, made[r].angle + (i < fitted ? 0 : h), high,
+                         &after);
             values[i < fitted ? i : 0] -= i < fitted ? 2 * h : 0;
-            read_exactly(&made[r], values, made[r].angle - (i < fitted ? 0 : h), low, &before);
+            read_exactly(&made[r], values, made[r].angle - (i < fitted ? 0 : h), low,
+                         &before);
             touch_slope[column] = (after - before) / (2 * h);
             for (int c = 0; c < READINGS; c++) {
                 for (int k = 0; k < SAMPLES - 1; k++) {
@@ -170,8 +175,9 @@ static void bound(const recording_made *made, int count, int fitted, double *dev
             quiet = turns ? 0 : quiet + 1;
             standing = 1;
             for (int way = -1; way <= 1; way += 2) {
-                for (int j = k; j > 0 && j < SAMPLES - 1 &&
-                                floor(exact[0][j] / step + 0.5) == floor(exact[0][k] / step + 0.5);
+                for (int j = k;
+                     j > 0 && j < SAMPLES - 1 &&
+                     floor(exact[0][j] / step + 0.5) == floor(exact[0][k] / step + 0.5);
                      j += way) {
                     standing += j != k;
                 }
@@ -183,14 +189,16 @@ static void bound(const recording_made *made, int count, int fitted, double *dev
                 const double weight = 1 / (variance[c] * (c == 0 ? standing : 1));
                 for (int i = 0; i < n; i++) {
                     for (int j = 0; j < n; j++) {
-                        information[i * n + j] += weight * slope[i][c][k] * slope[j][c][k];
+                        information[i * n + j] +=
+                            weight * slope[i][c][k] * slope[j][c][k];
                     }
                 }
             }
         }
         for (int i = 0; i < n && isfinite(touch); i++) {
             for (int j = 0; j < n; j++) {
-                information[i * n + j] += 12 / (PERIOD * PERIOD) * touch_slope[i] * touch_slope[j];
+                information[i * n + j] +=
+                    12 / (PERIOD * PERIOD) * touch_slope[i] * touch_slope[j];
             }
         }
     }
@@ -208,7 +216,7 @@ static void bound(const recording_made *made, int count, int fitted, double *dev
     }
 }
 
-// --- many seeds -------------------------------------------------------------------------------
+// --- many seeds ------------------------------------------------------------------------
 
 static void study(const recording_made *from, int fitted, bool bounded)
 {
@@ -216,7 +224,8 @@ static void study(const recording_made *from, int fitted, bool bounded)
     recording_made made[count];
     memcpy(made, from, sizeof made);
     double(*errors)[FITTED] = calloc((size_t)seeds, sizeof *errors), least[FITTED];
-    double squares[FITTED] = {0}; // of what estimates are off, in their own standard errors
+    double squares[FITTED] = {
+        0}; // of what estimates are off, in their own standard errors
     SCOPED(free_kept) double *sorted = calloc((size_t)seeds, sizeof *sorted);
     int covered[FITTED] = {0}, white = 0;
     double values[FITTED];
@@ -253,10 +262,10 @@ static void study(const recording_made *from, int fitted, bool bounded)
         }
         qsort(sorted, (size_t)seeds, sizeof *sorted, by_size);
         const double median = sorted[seeds / 2];
-        print_message(
-            "%-24s covered %d of %d, off %.2f, error %.3g of %.4g, bound %.3g, ratio %.3g\n",
-            paths[i], covered[i], seeds, sqrt(squares[i] / seeds), median, values[i], least[i],
-            median / least[i]);
+        print_message("%-24s covered %d of %d, off %.2f, error %.3g of %.4g, bound %.3g, "
+                      "ratio %.3g\n",
+                      paths[i], covered[i], seeds, sqrt(squares[i] / seeds), median,
+                      values[i], least[i], median / least[i]);
         // four standard deviations of a binomial number below 95 %, or 90 % of many
         const double spread = 4 * sqrt(0.95 * 0.05 * seeds);
         assert_true(covered[i] >= (seeds >= 200 ? 0.9 * seeds : 0.95 * seeds - spread));
@@ -294,11 +303,14 @@ TEST(so_they_do_in_a_closed_loop)
     study(made, 4, true);
 }
 
-// --- what the data do not say -----------------------------------------------------------------
+// --- what the data do not say ----------------------------------------------------------
 
 TEST(one_combination_is_named)
 {
-    recording_made made = {.law = "open-loop", .angle = -2.9, .voltage = 3, .no_wall = true};
+    recording_made made = {.law = "open-loop",
+                           .angle = -2.9,
+                           .voltage = 3,
+                           .no_wall = true};
     char words[512];
     const scenario base = rig_scenario(&made, NULL, 1);
     record(&made, truth, 1, 2);
@@ -342,7 +354,8 @@ TEST(two_links_leave_eight_unexplained)
 
 TEST(another_trace_is_foretold)
 {
-    recording_made made[RECORDINGS], other = {.law = "open-loop", .angle = -0.2, .voltage = 2};
+    recording_made made[RECORDINGS],
+        other = {.law = "open-loop", .angle = -0.2, .voltage = 2};
     memcpy(made, three, sizeof made);
     const scenario base = rig_scenario(&made[1], NULL, 1);
     double values[FITTED];
@@ -377,7 +390,8 @@ TEST(another_trace_is_foretold)
     unlink(other.file);
 }
 
-// A value that the search would have further away, and a motor whose back EMF is another one.
+// A value that the search would have further away, and a motor whose back EMF is another
+// one.
 TEST(a_bad_fit_is_known_as_one)
 {
     recording_made made = three[0];
@@ -386,7 +400,8 @@ TEST(a_bad_fit_is_known_as_one)
     for (int slow = 0; slow <= 1; slow++) {
         DONE(parameter_set_number(&base.parameters, PARAMETER_INDEX(motor.back_emf),
                                   (slow ? 1.5 : 1) * base.parameters.motor.back_emf, &f));
-        SCOPED(identify_finish) identification id = {.base = &base, .jobs = 2, .starts = 1};
+        SCOPED(identify_finish)
+        identification id = {.base = &base, .jobs = 2, .starts = 1};
         DONE(identify_add_path(&id, slow ? "arm.k2" : "arm.hub_inertia=0.004:0.005", &f));
         DONE(identify_add_trace(&id, made.file, NULL, 0, &f));
         fit(&id);

@@ -20,8 +20,12 @@ static void momentum(const arm *a, const double *q, const double *v, double *out
         out[i] = i == 0 ? a->hub_inertia * v[0] : 0;
         for (int j = a->first; j < a->dof && i >= a->first; j++) {
             for (int body = a->first; body < a->dof; body++) {
-                double ri = body > i ? a->link_length : body == i ? a->link_length / 2 : 0;
-                double rj = body > j ? a->link_length : body == j ? a->link_length / 2 : 0;
+                double ri = body > i    ? a->link_length
+                            : body == i ? a->link_length / 2
+                                        : 0;
+                double rj = body > j    ? a->link_length
+                            : body == j ? a->link_length / 2
+                                        : 0;
                 out[i] += a->link_mass * ri * rj * cos(q[i] - q[j]) * v[j];
             }
         }
@@ -41,10 +45,12 @@ TEST(impulse_is_the_change_of_momentum)
 {
     for (int links = 1; links <= 12; links++) {
         for (int kind = 0; kind < 8; kind++) {
-            arm a = arm_with(given("arm.links=%d %s %s", links,
-                                   kind & 1 ? "arm.hub_joint=spring" : "arm.hub_joint=rigid",
-                                   kind & 2 ? "wall.kind=plane" : "wall.kind=point"));
-            double e = kind & 4 ? 0.6 : 0, q[LARGEST], w[LARGEST], dw[LARGEST], after[LARGEST];
+            arm a =
+                arm_with(given("arm.links=%d %s %s", links,
+                               kind & 1 ? "arm.hub_joint=spring" : "arm.hub_joint=rigid",
+                               kind & 2 ? "wall.kind=plane" : "wall.kind=point"));
+            double e = kind & 4 ? 0.6 : 0, q[LARGEST], w[LARGEST], dw[LARGEST],
+                   after[LARGEST];
             double change[LARGEST];
             chain_link work[LARGEST];
             approaching_state(&a, kind, q, w);
@@ -57,7 +63,8 @@ TEST(impulse_is_the_change_of_momentum)
             assert_true(r.impulse > 0);
             check_close(chain_penetration_rate(&a, q, after), -e * r.speed, 1e-12);
             double before = chain_kinetic_energy(&a, q, w);
-            check_close(before - chain_kinetic_energy(&a, q, after), r.loss, 1e-12 * (1 + before));
+            check_close(before - chain_kinetic_energy(&a, q, after), r.loss,
+                        1e-12 * (1 + before));
             assert_true(r.loss >= 0);
         }
     }
@@ -67,7 +74,8 @@ TEST(increments_of_the_two_links_have_opposite_signs)
 {
     for (int seed = 0; seed < 50; seed++) {
         for (int rigid = 0; rigid < 2; rigid++) {
-            arm a = arm_with(given("%s", rigid ? "arm.hub_joint=rigid" : "arm.hub_joint=spring"));
+            arm a = arm_with(
+                given("%s", rigid ? "arm.hub_joint=rigid" : "arm.hub_joint=spring"));
             double q[3], w[3], dw[3];
             chain_link work[2];
             approaching_state(&a, seed, q, w);
@@ -87,14 +95,16 @@ TEST(hub_jumps_only_with_a_rigid_joint)
     check_close(dw[0], 0, 0); // (4.10)
     assert_true(fabs(dw[1]) > 1e-3);
 
-    // the rigid hub is the first link's: its jump is that of the limit of a heavier first link
+    // the rigid hub is the first link's: its jump is that of the limit of a heavier first
+    // link
     arm rigid = arm_with(given("arm.hub_joint=rigid"));
     double q2[2] = {q[1], q[2]}, w2[2] = {w[1], w[2]}, dw2[2];
     impact_velocity_increments(&rigid, work, q2, w2, 0, 0, dw2);
     assert_true(fabs(dw2[0]) > 0 && fabs(dw2[0]) < fabs(dw[1]));
 }
 
-// (4.11), (4.12), (4.14) with the contact force at the contact point (errata B5), by Cramer's rule.
+// (4.11), (4.12), (4.14) with the contact force at the contact point (errata B5), by
+// Cramer's rule.
 TEST(agrees_with_the_closed_form)
 {
     arm a = arm_with(given("arm.hub_joint=spring"));
@@ -113,13 +123,14 @@ TEST(agrees_with_the_closed_form)
     check_relative(dw[2], -p * i3, 1e-12);
 }
 
-// Arm and face are two bodies: the impulse that turns the arm moves the face, which then leaves at
-// the share e of the speed they met at; what both lose is the loss.
+// Arm and face are two bodies: the impulse that turns the arm moves the face, which then
+// leaves at the share e of the speed they met at; what both lose is the loss.
 TEST(a_face_takes_the_impulse_that_the_arm_gives)
 {
     for (int kind = 0; kind < 4; kind++) {
         const double e = kind & 1 ? 0.6 : 0, face = kind & 2 ? -0.3 : 0.2;
-        arm a = arm_with(given("wall.contact=kelvin-voigt wall.stiffness=1e5 wall.mass=0.05"));
+        arm a = arm_with(
+            given("wall.contact=kelvin-voigt wall.stiffness=1e5 wall.mass=0.05"));
         double q[LARGEST], w[LARGEST], dw[LARGEST], after[LARGEST];
         chain_link work[LARGEST];
         approaching_state(&a, kind, q, w);
@@ -129,9 +140,11 @@ TEST(a_face_takes_the_impulse_that_the_arm_gives)
             after[i] = w[i] + dw[i];
         }
         const double face_after = face + r.impulse / 0.05;
-        check_close(chain_penetration_rate(&a, q, after) - face_after, -e * r.speed, 1e-12);
+        check_close(chain_penetration_rate(&a, q, after) - face_after, -e * r.speed,
+                    1e-12);
         const double before = chain_kinetic_energy(&a, q, w) + 0.025 * face * face;
-        const double left = chain_kinetic_energy(&a, q, after) + 0.025 * face_after * face_after;
+        const double left =
+            chain_kinetic_energy(&a, q, after) + 0.025 * face_after * face_after;
         check_close(before - left, r.loss, 1e-12 * (1 + before));
     }
 }

@@ -1,5 +1,5 @@
-// The colours of the explorer: readable on their backgrounds, distinguishable by everyone, and the
-// same choice with fewer of them.
+// The colours of the explorer: readable on their backgrounds, distinguishable by
+// everyone, and the same choice with fewer of them.
 #include "tests/explorer_on_screen.h"
 
 #include "tests/colour_vision.h"
@@ -20,7 +20,8 @@ TEST(test_measures_agree_with_known_values)
 
 static double least_contrast(colour_theme theme, rgb c)
 {
-    return fmin(rgb_contrast(c, theme_grounds(theme)[0]), rgb_contrast(c, theme_grounds(theme)[1]));
+    return fmin(rgb_contrast(c, theme_grounds(theme)[0]),
+                rgb_contrast(c, theme_grounds(theme)[1]));
 }
 
 TEST(test_every_ink_can_be_read_on_its_ground)
@@ -43,8 +44,9 @@ TEST(test_every_ink_can_be_read_on_its_ground)
             assert_true(least_contrast((colour_theme)theme, colour_256(near)) >= least);
             check_below(rgb_distance(colour_256(near), c), 0.09);
             assert_true(basic < 16);
-            assert_true(basic < 0 || rgb_contrast(colour_256(basic),
-                                                  theme_grounds((colour_theme)theme)[0]) >= least);
+            assert_true(basic < 0 ||
+                        rgb_contrast(colour_256(basic),
+                                     theme_grounds((colour_theme)theme)[0]) >= least);
         }
     }
 }
@@ -64,11 +66,13 @@ TEST(test_curves_are_told_apart_by_everybody)
                 ink_rgb((colour_theme)theme, (ink)j, &b);
                 for (int sight = 0; sight < 3; sight++) {
                     double apart = distance_seen(colour_of(a), colour_of(b), sight);
-                    fail_if(apart < 10, "curves %d and %d of theme %d are %.1f apart in %s",
-                            i - INK_SERIES_0, j - INK_SERIES_0, theme, apart, sight_names[sight]);
+                    fail_if(apart < 10,
+                            "curves %d and %d of theme %d are %.1f apart in %s",
+                            i - INK_SERIES_0, j - INK_SERIES_0, theme, apart,
+                            sight_names[sight]);
                 }
-                // with fewer colours they are at least not the same; on light ground 16 have only
-                // seven that can be read, text's own among them
+                // with fewer colours they are at least not the same; on light ground 16
+                // have only seven that can be read, text's own among them
                 assert_true(theme == COLOURS_LIGHT ||
                             ink_index((colour_theme)theme, (ink)i, DEPTH_16) !=
                                 ink_index((colour_theme)theme, (ink)j, DEPTH_16));
@@ -109,7 +113,8 @@ static void find_alike(colour_theme theme, int pair[2])
         for (int b = a + 1; b < signal_count; b++) {
             const int x = signal_table[a].colour, y = signal_table[b].colour;
             const ink one = (ink)(INK_SERIES_0 + x), other = (ink)(INK_SERIES_0 + y);
-            if (x != y && ink_index(theme, one, DEPTH_16) == ink_index(theme, other, DEPTH_16)) {
+            if (x != y &&
+                ink_index(theme, one, DEPTH_16) == ink_index(theme, other, DEPTH_16)) {
                 pair[0] = a;
                 pair[1] = b;
                 return;
@@ -133,20 +138,24 @@ TEST(test_curves_of_a_pane_differ_with_few_colours)
         if (theme == COLOURS_LIGHT) {
             int pair[2] = {0};
             find_alike(theme, pair);
-            assert_true(explorer_carry_out(&ex, formatted("trace %s %s", signal_table[pair[0]].name,
+            assert_true(explorer_carry_out(&ex, formatted("trace %s %s",
+                                                          signal_table[pair[0]].name,
                                                           signal_table[pair[1]].name)));
         }
         assert_true(screen_resize(&s, 120, 80));
         explorer_draw(&ex, &s);
 
         // a legend has a piece of line and a blank before each name
-        for (int y = ex.layout.plot.y; y < ex.layout.plot.y + ex.layout.plot.height; y++) {
+        for (int y = ex.layout.plot.y; y < ex.layout.plot.y + ex.layout.plot.height;
+             y++) {
             ink seen[PANE_SIGNALS];
             int count = 0;
             const cell *row = &s.cells[(long)y * s.width];
-            for (int x = ex.layout.plot.x; x + 2 < ex.layout.plot.x + ex.layout.plot.width; x++) {
+            for (int x = ex.layout.plot.x;
+                 x + 2 < ex.layout.plot.x + ex.layout.plot.width; x++) {
                 const uint32_t g = row[x].glyph;
-                const bool line = g == 0x2500 || g == 0x254c || g == 0x2508 || g == 0x2574;
+                const bool line =
+                    g == 0x2500 || g == 0x254c || g == 0x2508 || g == 0x2574;
                 if (line && row[x + 1].glyph == ' ' && row[x].ink >= INK_SERIES_0 &&
                     count < PANE_SIGNALS) {
                     for (int k = 0; k < count; k++) {

@@ -1,6 +1,6 @@
-// The law inverse-dynamics: against an inverse computed with nothing but sums over frequencies, and
-// on the arm: the tip goes as planned, rests afterwards, meets the wall as fast as planned, and the
-// force follows its plan.
+// The law inverse-dynamics: against an inverse computed with nothing but sums over
+// frequencies, and on the arm: the tip goes as planned, rests afterwards, meets the wall
+// as fast as planned, and the force follows its plan.
 #include <complex.h>
 
 #include "src/rig/laws/laws.h"
@@ -12,7 +12,7 @@
 
 static const double complex i_ = (double complex)_Complex_I;
 
-// --- the plan itself ------------------------------------------------------------------------
+// --- the plan itself -------------------------------------------------------------------
 
 enum { FORCE, ARRIVAL_SPEED, TRAVEL, TRANSITION, THRESHOLD };
 
@@ -31,7 +31,8 @@ static controller_setup default_setup(const double *values)
                               .parameters = values};
 }
 
-// When the tip of the default arm departs: the law takes 8/s for what the hub does before.
+// When the tip of the default arm departs: the law takes 8/s for what the hub does
+// before.
 static double departure(const controller_setup *r)
 {
     double ml2 = r->link_mass * r->link_length * r->link_length;
@@ -49,16 +50,17 @@ static double planned_tip(double time)
 static double complex torque_per_acceleration(const controller_setup *r, double w)
 {
     double ml2 = r->link_mass * r->link_length * r->link_length, k2 = r->k2;
-    double complex a =
-        k2 + i_ * w * r->hub_damping - w * w * (r->hub_inertia + r->link_inertia + 1.25 * ml2);
+    double complex a = k2 + i_ * w * r->hub_damping -
+                       w * w * (r->hub_inertia + r->link_inertia + 1.25 * ml2);
     double complex b = -k2 - w * w * 0.5 * ml2;
     double complex d = k2 - w * w * (r->link_inertia + 0.25 * ml2);
     double complex det = a * d - b * b, tip = (d - b) / 2 / det;
     return 1 / (-w * w * tip);
 }
 
-// A window of two seconds in 1024 instants, the tip departing in its middle: transform, divide,
-// transform back. At w = 0 the arm is a rigid body; its acceleration has no mean, its damping has.
+// A window of two seconds in 1024 instants, the tip departing in its middle: transform,
+// divide, transform back. At w = 0 the arm is a rigid body; its acceleration has no mean,
+// its damping has.
 TEST(plan_is_the_inverse_of_every_frequency)
 {
     enum { COUNT = 1024 };
@@ -76,8 +78,9 @@ TEST(plan_is_the_inverse_of_every_frequency)
             acceleration += there * 2 * PI * WAY / (TRAVEL_TIME * TRAVEL_TIME) *
                             cexp(-i_ * w * k * step) / COUNT;
         }
-        double complex part = n == 0 ? setup.hub_damping * WAY / window
-                                     : 2 * torque_per_acceleration(&setup, w) * acceleration;
+        double complex part = n == 0
+                                  ? setup.hub_damping * WAY / window
+                                  : 2 * torque_per_acceleration(&setup, w) * acceleration;
         for (int k = 0; k < COUNT; k++) {
             torque[k] += creal(part * cexp(i_ * w * k * step));
         }
@@ -120,7 +123,7 @@ TEST(plan_needs_an_arm_that_it_can_invert)
     assert_non_null(strstr(inverse_dynamics_law.start(memory, &loose), "motor"));
 }
 
-// --- on the arm, in free motion -------------------------------------------------------------
+// --- on the arm, in free motion --------------------------------------------------------
 
 typedef struct travelled {
     double tip_error;   // root mean square over the whole run, share of the way
@@ -131,8 +134,9 @@ typedef struct travelled {
 
 static travelled travel(const char *const *settings)
 {
-    const char *all[16] = {"control.law=inverse-dynamics", "control.force=0", "wall.kind=none",
-                           "control.travel_time=0.25", "sensor.ideal=true"};
+    const char *all[16] = {"control.law=inverse-dynamics", "control.force=0",
+                           "wall.kind=none", "control.travel_time=0.25",
+                           "sensor.ideal=true"};
     for (int i = 5; *settings != NULL; i++) {
         all[i] = *settings++;
     }
@@ -154,7 +158,8 @@ static travelled travel(const char *const *settings)
             result.hub_ahead = (row->hub_angle + WAY) / WAY;
             result.tip_ahead = tip / WAY;
         }
-        if (row->time > arrives + 0.25) { // what the hub does after the tip's arrival has died away
+        if (row->time >
+            arrives + 0.25) { // what the hub does after the tip's arrival has died away
             low = fmin(low, tip);
             high = fmax(high, tip);
         }
@@ -178,8 +183,8 @@ TEST(tip_follows_its_plan_and_rests)
     check_below(rough.left_moving, 0.01);
 }
 
-// The same law that believes in an arm a hundred times stiffer is the computed torque of a rigid
-// body.
+// The same law that believes in an arm a hundred times stiffer is the computed torque of
+// a rigid body.
 TEST(rigid_body_torque_leaves_vibration)
 {
     travelled rigid = travel(given("motor.stiction=0 belief.k2_factor=100"));
@@ -200,7 +205,7 @@ TEST(wrong_stiffness_costs)
     }
 }
 
-// --- at the wall ----------------------------------------------------------------------------
+// --- at the wall -----------------------------------------------------------------------
 
 static const event *first_impact(const run_result *r)
 {
@@ -212,8 +217,9 @@ TEST(tip_meets_the_wall_as_fast_as_planned)
     for (EACH_OF(double, c, 0.1, 0.2, 0.4, 0.8)) {
         for (int seed = 1; seed <= 5; seed++) {
             const char *speed = formatted("control.arrival_speed=%g", *c);
-            KEPT_RUN(r) = rig_run(
-                given("control.law=inverse-dynamics %s control.seed=%d", speed, seed), false);
+            KEPT_RUN(r) = rig_run(given("control.law=inverse-dynamics %s control.seed=%d",
+                                        speed, seed),
+                                  false);
             check_relative(first_impact(&r)->speed, *c, 0.03);
             check_close(first_impact(&r)->time, 0.583, 0.006);
             check_close(r.summary.steady_force_N, 1, 0.03);
@@ -221,7 +227,8 @@ TEST(tip_meets_the_wall_as_fast_as_planned)
     }
 }
 
-// Sampled fast and without friction the force is the planned one through the impact and after it.
+// Sampled fast and without friction the force is the planned one through the impact and
+// after it.
 TEST(force_follows_its_plan)
 {
     for (EACH_TEXT(c, "control.arrival_speed=0", "control.arrival_speed=0.3")) {
@@ -230,15 +237,18 @@ TEST(force_follows_its_plan)
                 "control.rate=5000 control.transition_time=0.1 %s",
                 *c);
         for (EACH_ROW(row, &r.trace)) {
-            // a touch without speed comes when the force is above what the tip is off its plan
-            check_close(row->force, row->calculated_force, row->time < 0.62 ? 0.15 : 0.01);
+            // a touch without speed comes when the force is above what the tip is off its
+            // plan
+            check_close(row->force, row->calculated_force,
+                        row->time < 0.62 ? 0.15 : 0.01);
         }
         check_close(first_impact(&r)->time, 0.583, 0.01);
         check_close(r.summary.steady_force_N, 1, 2e-3);
     }
 }
 
-// On the noisy default rig, and with the wall found 0.02 rad before or behind its believed place.
+// On the noisy default rig, and with the wall found 0.02 rad before or behind its
+// believed place.
 TEST(press_ends_near_its_force)
 {
     const char *const errors[] = {"belief.wall_error=0", "belief.wall_error=0.02",
@@ -246,8 +256,9 @@ TEST(press_ends_near_its_force)
     const double peaks[] = {1.05, 1.3, 1.5};
     for (int i = 0; i < 3; i++) {
         for (int seed = 1; seed <= 5; seed++) {
-            summary s = rig_summary_with("control.law=inverse-dynamics %s control.seed=%d",
-                                         errors[i], seed);
+            summary s =
+                rig_summary_with("control.law=inverse-dynamics %s control.seed=%d",
+                                 errors[i], seed);
             check_close(s.steady_force_N, 1, 0.05);
             check_below(s.peak_force_N, peaks[i]);
         }

@@ -14,8 +14,9 @@ static char *written(json_t *value)
 
 TEST(json_is_what_jansson_reads)
 {
-    const char *source = "{\"b\": [1, 0.1, null, true], \"a\": {\"quote\\\" \\u00e9\\n\": \"\"}, "
-                         "\"empty\": {}, \"none\": [], \"list\": [{\"x\": -1e-300}, []]}";
+    const char *source =
+        "{\"b\": [1, 0.1, null, true], \"a\": {\"quote\\\" \\u00e9\\n\": \"\"}, "
+        "\"empty\": {}, \"none\": [], \"list\": [{\"x\": -1e-300}, []]}";
     json_t *value = json_loads(source, 0, NULL);
     KEPT_TEXT(text) = written(json_deep_copy(value));
     json_t *again = json_loads(text, 0, NULL);
@@ -49,9 +50,11 @@ TEST(numbers_that_are_missing_are_null)
 
 TEST(objects_have_a_line_a_member)
 {
-    KEPT_TEXT(text) = written(json_loads("{\"a\": 1, \"b\": {}, \"c\": [{\"d\": 2}]}", 0, NULL));
-    assert_string_equal(text, "{\n  \"a\": 1,\n  \"b\": {},\n  \"c\": [\n    {\n      \"d\": 2\n"
-                              "    }\n  ]\n}\n");
+    KEPT_TEXT(text) =
+        written(json_loads("{\"a\": 1, \"b\": {}, \"c\": [{\"d\": 2}]}", 0, NULL));
+    assert_string_equal(
+        text, "{\n  \"a\": 1,\n  \"b\": {},\n  \"c\": [\n    {\n      \"d\": 2\n"
+              "    }\n  ]\n}\n");
 }
 
 TEST(lists_within_lists_have_lines_of_their_own)

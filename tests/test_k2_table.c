@@ -56,8 +56,8 @@ TEST(it_is_written_as_it_was_read)
 
 TEST(what_is_no_table_is_refused)
 {
-    for (EACH_TEXT(c, "1", "1:", ":5", "1:0", "1:-2", "-1:5", "2:5 1:5", "1:5 1:6", "1:5,2:6",
-                   "a:b", "1:nan", "1:5 0:6", "1:5 x", "inf:5")) {
+    for (EACH_TEXT(c, "1", "1:", ":5", "1:0", "1:-2", "-1:5", "2:5 1:5", "1:5 1:6",
+                   "1:5,2:6", "a:b", "1:nan", "1:5 0:6", "1:5 x", "inf:5")) {
         k2_table t;
         fault f = {.text = ""};
         fail_if(k2_table_read(&t, *c, &f) == STATUS_OK, "'%s' is taken for a table", *c);

@@ -1,9 +1,9 @@
-// What one did in the lab is kept: scenarios that are opened, pinned runs, leaving. And what
-// matters is on the screen, at three sizes.
+// What one did in the lab is kept: scenarios that are opened, pinned runs, leaving. And
+// what matters is on the screen, at three sizes.
 #include "tests/explorer_on_screen.h"
 
-// Each way of opening another scenario keeps the changes and the pins; u brings them back, U leaves
-// again.
+// Each way of opening another scenario keeps the changes and the pins; u brings them
+// back, U leaves again.
 TEST(test_opening_loses_nothing)
 {
     for (EACH_TEXT(c, "]", "[", "o/three<Enter>", ":open thesis/fig-3-4<Enter>",
@@ -30,17 +30,21 @@ TEST(test_opening_loses_nothing)
     }
 }
 
-// As many openings as are kept, and more, are undone one by one; a new one forgets what was undone.
+// As many openings as are kept, and more, are undone one by one; a new one forgets what
+// was undone.
 TEST(test_openings_are_undone_one_by_one)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     for (int i = 0; i < VISITS + 3; i++) {
-        press(&ex, i % 2 ? ":open corrected/first-impact<Enter>" : ":open thesis/fig-3-4<Enter>");
+        press(&ex, i % 2 ? ":open corrected/first-impact<Enter>"
+                         : ":open thesis/fig-3-4<Enter>");
     }
     for (int i = 0; i < VISITS - 1; i++) {
-        const bool was_printed = strcmp(ex.state.session.base.name, "thesis/fig-3-4") == 0;
+        const bool was_printed =
+            strcmp(ex.state.session.base.name, "thesis/fig-3-4") == 0;
         press(&ex, "u");
-        assert_int_equal(strcmp(ex.state.session.base.name, "thesis/fig-3-4") == 0, !was_printed);
+        assert_int_equal(strcmp(ex.state.session.base.name, "thesis/fig-3-4") == 0,
+                         !was_printed);
     }
     press_shows(&ex, "u", "nothing to undo");
     press_shows(&ex, "UU:open corrected/three-links<Enter>U", "nothing to redo");
@@ -93,7 +97,7 @@ TEST(test_leaving_asks_for_everything_that_would_be_lost)
     }
 }
 
-// --- on the screen ----------------------------------------------------------------------------
+// --- on the screen ---------------------------------------------------------------------
 
 // What a line of keys makes the lab say, and what it must not.
 TEST(test_sentences_are_whole_and_numbers_short)
@@ -101,10 +105,12 @@ TEST(test_sentences_are_whole_and_numbers_short)
     static const struct {
         const char *keys, *says, *never;
     } cases[] = {
-        {":set arm.k2 2.8000000000000003<Enter>", "arm.k2 = 2.8 N m/rad from the start", "000003"},
+        {":set arm.k2 2.8000000000000003<Enter>", "arm.k2 = 2.8 N m/rad from the start",
+         "000003"},
         {":set arm.k2 2.8000000000000003<Enter>bR", "k2 2.8 ", "000003"},
         {":set arm.k2 2.8000000000000003<Enter>H", "arm.k2 = 2.8 N", "000003"},
-        {":set arm.k2 2.8000000000000003<Enter>:edit arm.k2<Enter>", ":set arm.k2 2.8", "000003"},
+        {":set arm.k2 2.8000000000000003<Enter>:edit arm.k2<Enter>", ":set arm.k2 2.8",
+         "000003"},
         {":law nosuch<Enter>", "there is no control law 'nosuch'", "|"},
         {":law hybird<Enter>", "did you mean 'hybrid'?", "|"},
         {":seek 99<Enter>", "the run goes from 0 to 1 s", "|"},
@@ -189,7 +195,7 @@ TEST(test_a_signal_is_hidden_by_a_key_or_a_click)
     check_below(calm.high, all.high);
 }
 
-// --- what is asked for ------------------------------------------------------------------------
+// --- what is asked for -----------------------------------------------------------------
 
 static int count_keys(const char *keys)
 {
@@ -225,7 +231,8 @@ TEST(test_a_limit_is_asked_for_in_few_keys)
     // none, nonsense, and a range of one's own
     press_shows(&ex, ":solve voltage=0.1:0.2 peak_force_N<lt>2<Enter>",
                 "no limit of motor.voltage from 0.1 to 0.2 V");
-    press_shows(&ex, ":solve voltage peak_froce_N<lt>2<Enter>", "did you mean 'peak_force_N'?");
+    press_shows(&ex, ":solve voltage peak_froce_N<lt>2<Enter>",
+                "did you mean 'peak_force_N'?");
     press_warns(&ex, ":solve control.law peak_force_N<lt>2<Enter>", "");
     press_shows(&ex, ":solve voltage<Enter>", "solve takes");
     assert_int_equal(ex.state.pinned.count, 1);
@@ -247,7 +254,8 @@ TEST(test_help_is_where_one_stands)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>NNNN<Home>n<F1>");
-    for (EACH_TEXT(c, "motor.voltage", ":sweep and :solve vary it", "the event at the cursor")) {
+    for (EACH_TEXT(c, "motor.voltage", ":sweep and :solve vary it",
+                   "the event at the cursor")) {
         assert_shows_everywhere(&ex, *c);
     }
     press(&ex, "<Esc>");
@@ -270,8 +278,8 @@ TEST(test_own_panes_stand_side_by_side)
     press(&ex, ":trace impulse<Enter>");
     assert_true(count_keys(keys) <= 12);
     press(&ex, keys);
-    press(&ex, ":spectrum force<Enter>:phase gap force<Enter>:panes 1<Enter>:trace 10<Enter>:trace "
-               "11<Enter>:trace 12<Enter>:trace 13<Enter>");
+    press(&ex, ":spectrum force<Enter>:phase gap force<Enter>:panes 1<Enter>:trace "
+               "10<Enter>:trace 11<Enter>:trace 12<Enter>:trace 13<Enter>");
     const pane *own = &ex.state.panes.pane[PANES_OF_TABLE];
     assert_true(own[0].shown && own[1].shown && own[2].shown && own[3].shown);
     assert_int_equal(own[0].signals[0], SIGNAL_INDEX(impulse));
@@ -294,5 +302,6 @@ TEST(test_the_transition_is_three_steps_shorter_in_few_keys)
     OPEN_EXPLORER(ex, "lessons/hybrid-law");
     press(&ex, keys);
     assert_true(count_keys(keys) <= 5);
-    check_close(ex.state.session.effective.parameters.control.transition_time, 0.32, 1e-9);
+    check_close(ex.state.session.effective.parameters.control.transition_time, 0.32,
+                1e-9);
 }

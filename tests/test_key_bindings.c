@@ -1,4 +1,5 @@
-// Keys bound by the user, the help page that shows them, and the settings that store them.
+// Keys bound by the user, the help page that shows them, and the settings that store
+// them.
 #include "tests/explorer_on_screen.h"
 
 TEST(test_a_key_gets_another_command)
@@ -8,7 +9,8 @@ TEST(test_a_key_gets_another_command)
     size_t before = ex.state.session.row;
     press(&ex, "x");
     assert_int_equal(ex.state.session.row, before + 5);
-    press(&ex, ":key \u00e4 seek 0.3<Enter>:key C-t trace 5<Enter>:key F1 seek end<Enter>");
+    press(&ex,
+          ":key \u00e4 seek 0.3<Enter>:key C-t trace 5<Enter>:key F1 seek end<Enter>");
     explorer_key(&ex, 0xe4);
     check_close(ex.state.session.now, 0.3, 0.002);
     press(&ex, "<C-t>");
@@ -45,14 +47,15 @@ TEST(test_wrong_keys_are_told)
     for (EACH(c, wrong)) {
         assert_false(explorer_execute(&ex.state, c->line));
         const message_line result = ex.state.message;
-        fail_if(strstr(result.text, c->why) == NULL || result.at != c->at, "'%s' at %d: %s",
-                c->line, result.at, result.text);
+        fail_if(strstr(result.text, c->why) == NULL || result.at != c->at,
+                "'%s' at %d: %s", c->line, result.at, result.text);
     }
     assert_int_equal(ex.state.keys.count, 0);
     // a full table
     for (int i = 0; i < USER_KEYS; i++) {
-        assert_true(explorer_carry_out(
-            &ex, formatted("key %c%c play", i < 32 ? 0xc3 : 0xc4, 0xa0 + i % 32)));
+        assert_true(
+            explorer_carry_out(&ex, formatted("key %c%c play", i < 32 ? 0xc3 : 0xc4,
+                                              0xa0 + i % 32)));
     }
     assert_false(explorer_carry_out(&ex, "key x play"));
     assert_true(explorer_carry_out(&ex, "unkey \u00e4"));
@@ -99,11 +102,12 @@ TEST_IN_FOLDER(test_settings_keep_looks_axes_and_keys)
 {
     make_settings(NULL);
     OPEN_EXPLORER(keeps, "corrected/first-impact");
-    press(&keeps,
-          ":theme light<Enter>:glyphs blocks<Enter>:colours 16<Enter>:axis -0.5 2.25 1<Enter>");
+    press(&keeps, ":theme light<Enter>:glyphs blocks<Enter>:colours 16<Enter>:axis -0.5 "
+                  "2.25 1<Enter>");
     press_shows(&keeps,
-                ":axis grow 3<Enter>:key <lt> step -5<Enter>:key C-t trace 5<Enter>:unkey "
-                "x<Enter>:key Space step 3<Enter>:key # mark<Enter>:remember<Enter>",
+                ":axis grow 3<Enter>:key <lt> step -5<Enter>:key C-t trace "
+                "5<Enter>:unkey x<Enter>:key Space step 3<Enter>:key # "
+                "mark<Enter>:remember<Enter>",
                 "settings kept");
     OPEN_EXPLORER(ex, "corrected/first-impact");
     explorer_load_settings(&ex);
@@ -141,9 +145,10 @@ TEST_IN_FOLDER(test_faults_in_settings_are_told_with_their_place)
     assert_int_equal(ex.state.looks.theme, COLOURS_LIGHT);
     assert_string_equal(key_line(&ex.state.keys, 'x'), "step 5");
     assert_true(ex.state.message.warning);
-    assert_non_null(strstr(
-        ex.state.message.text,
-        formatted("%s/impactlab/lab:3:7 is ignored: there is no command 'stepp'", test_folder)));
+    assert_non_null(
+        strstr(ex.state.message.text,
+               formatted("%s/impactlab/lab:3:7 is ignored: there is no command 'stepp'",
+                         test_folder)));
     assert_non_null(strstr(ex.state.message.text, "(and 2 more)"));
     assert_false(explorer_carry_out(&ex, "remember"));
     assert_non_null(strstr(ex.state.message.text, "left alone"));

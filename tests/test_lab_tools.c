@@ -1,8 +1,9 @@
-// What the lab has beside curves: notes, bands, colours of runs, maps, parameters fitted to
-// measured data, residuals, the clipboard, the first visit.
+// What the lab has beside curves: notes, bands, colours of runs, maps, parameters fitted
+// to measured data, residuals, the clipboard, the first visit.
 #include "tests/explorer_on_screen.h"
 
-// A pane whose line can be typed is kept whole; a line that cannot be is refused with a sentence.
+// A pane whose line can be typed is kept whole; a line that cannot be is refused with a
+// sentence.
 TEST(long_lines_of_a_view_are_kept_whole_or_refused)
 {
     const char *path = "long.session";
@@ -27,7 +28,8 @@ TEST(long_lines_of_a_view_are_kept_whole_or_refused)
     assert_int_equal(strlen(signal_table[p->signals[3]].name), strlen(sum) + 3);
 
     // the same beside others takes more than a line can
-    assert_false(explorer_execute(&ex.state, formatted("%s+force+force+force+force", line)));
+    assert_false(
+        explorer_execute(&ex.state, formatted("%s+force+force+force+force", line)));
     assert_non_null(strstr(ex.state.message.text, "too long"));
 }
 
@@ -36,8 +38,8 @@ TEST(notes_are_kept_in_time_and_in_sessions)
     const char *path = "notes.session";
     {
         OPEN_EXPLORER(ex, "corrected/first-impact");
-        press(&ex, ":seek 0.4<Enter>:note late<Enter>:note @0.1 early, by hand<Enter>:note @0.4 "
-                   "later<Enter>:notes<Enter>");
+        press(&ex, ":seek 0.4<Enter>:note late<Enter>:note @0.1 early, by "
+                   "hand<Enter>:note @0.4 later<Enter>:notes<Enter>");
         assert_int_equal(ex.state.note_count, 2);
         assert_shows_everywhere(&ex, "early, by hand");
         assert_shows_everywhere(&ex, "0.40000 s  later");
@@ -48,8 +50,9 @@ TEST(notes_are_kept_in_time_and_in_sessions)
         press_warns(&ex, ":note<Enter>:note<Enter>", "takes a text");
         press_warns(&ex, ":note @nan x<Enter>", "no instant");
         press_text(&ex,
-                   ":note @0.1 early, by hand<Enter>:band force 0.1<Enter>:colourby run<Enter>"
-                   ":trace force - voltage<Enter>:axis calm 10<Enter>:session save %s<Enter>",
+                   ":note @0.1 early, by hand<Enter>:band force 0.1<Enter>:colourby "
+                   "run<Enter>:trace force - voltage<Enter>:axis calm 10<Enter>:session "
+                   "save %s<Enter>",
                    path);
     }
     OPEN_EXPLORER(ex, "compare/hybrid");
@@ -133,7 +136,8 @@ TEST(a_map_gives_what_single_runs_give)
     assert_false(lab_sweep_is_on(m));
 }
 
-// A table of what the sensors of a run read, as a bench records them, its clock from `begin` [s].
+// A table of what the sensors of a run read, as a bench records them, its clock from
+// `begin` [s].
 static void write_recording(explorer *ex, const char *path, double begin)
 {
     const trace *t = &ex->state.session.run.trace;
@@ -178,16 +182,17 @@ TEST(the_arm_that_was_measured_is_found)
     press_shows(&ex, ":data off<Enter>", "no measured data (:data");
 }
 
-// The run that a fit pins is the one that was compared: with the start, the command and the clock
-// of the recording, which are not those of the lab's run. So it moves as the recorded arm did.
+// The run that a fit pins is the one that was compared: with the start, the command and
+// the clock of the recording, which are not those of the lab's run. So it moves as the
+// recorded arm did.
 TEST(the_pinned_fit_is_the_run_that_was_compared)
 {
     enum { INSTANTS = 27 };
     const char *path = "data.csv";
     double angle[INSTANTS];
     OPEN_EXPLORER(ex, "compare/hybrid");
-    press(&ex,
-          ":set arm.k2 5.5<Enter>:set initial.angle -0.15<Enter>:set control.force 1.3<Enter>");
+    press(&ex, ":set arm.k2 5.5<Enter>:set initial.angle -0.15<Enter>:set control.force "
+               "1.3<Enter>");
     write_recording(&ex, path, 7.25);
     for (int i = 0; i < INSTANTS; i++) {
         const trace *t = &ex.state.session.run.trace;
@@ -204,7 +209,8 @@ TEST(the_pinned_fit_is_the_run_that_was_compared)
     check_close(ex.state.measured.rows[0].time, 0, 1e-3);
 }
 
-// Data that were laid to the run's touch stay there when that moves; given a shift they keep it.
+// Data that were laid to the run's touch stay there when that moves; given a shift they
+// keep it.
 TEST(data_follow_the_touch_of_a_changed_run)
 {
     const char *path = "data.csv";
@@ -229,7 +235,8 @@ TEST(data_without_a_command_say_what_is_missing_and_what_for)
     OPEN_EXPLORER(ex, "compare/hybrid");
     put_file(path, "time[s],encoder[rad]\n0,0\n0.1,0.01\n0.2,0.02\n");
     press_text(&ex, ":data %s<Enter>", path);
-    press_warns(&ex, ":identify k2<Enter>", "no column 'command', the voltage [V] with which");
+    press_warns(&ex, ":identify k2<Enter>",
+                "no column 'command', the voltage [V] with which");
     assert_non_null(strstr(ex.state.message.text, "record it, or rename its heading"));
 }
 
@@ -319,7 +326,8 @@ static int key_count(const char *keys)
     return count;
 }
 
-// Questions and the keys they take, with completion; each answer is on a screen of any size.
+// Questions and the keys they take, with completion; each answer is on a screen of any
+// size.
 TEST(what_is_wanted_takes_few_keys)
 {
     static const struct {
@@ -344,7 +352,8 @@ TEST(what_is_wanted_takes_few_keys)
     }
 }
 
-// A command's description tells which words Tab finds, in expressions behind each operator.
+// A command's description tells which words Tab finds, in expressions behind each
+// operator.
 TEST(arguments_are_completed_by_their_kind)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -352,7 +361,8 @@ TEST(arguments_are_completed_by_their_kind)
     press_prompts(&ex, "<C-u>limit volt<Tab>", "limit voltage ");
     press_prompts(&ex, "<Tab>", "limit voltage off ");
     press_prompts(&ex, "<C-u>phase gap hub_v<Tab>", "phase gap hub_velocity ");
-    press_prompts(&ex, "<C-u>solve motor.voltage set<Tab>", "solve motor.voltage settling_time_s ");
+    press_prompts(&ex, "<C-u>solve motor.voltage set<Tab>",
+                  "solve motor.voltage settling_time_s ");
     press_prompts(&ex, "<C-u>session o<Tab>", "session open ");
     press_prompts(&ex, "<C-u>colours 2<Tab>", "colours 256 ");
     press_prompts(&ex, "<C-u>sweep arm.k2=4:6:3 motor.voltage_<Tab>",

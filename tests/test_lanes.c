@@ -34,7 +34,8 @@ TEST(test_the_contact_lane_is_where_rows_touch)
     const double duration = ex.state.session.effective.parameters.run.duration;
     int filled = 0;
     for (int i = 0; i < lanes.width; i++) {
-        const double from = duration * i / lanes.width, to = duration * (i + 1) / lanes.width;
+        const double from = duration * i / lanes.width,
+                     to = duration * (i + 1) / lanes.width;
         bool touches = false;
         for (size_t r = trace_row_at(t, from); r <= trace_row_at(t, to); r++) {
             touches = touches || t->rows[r].contact != 0;
@@ -78,8 +79,8 @@ TEST(test_a_click_moves_the_cursor_or_the_window)
     press(&ex, "<End>");
     free(picture(&ex, 120, 50, GLYPHS_BRAILLE));
     const area lanes = find_part(&ex, PART_LANES);
-    explorer_point(
-        &ex, (pointer_event){POINTER_PRESS, lanes.x + lanes.width / 2, lanes.y, false, false});
+    explorer_point(&ex, (pointer_event){POINTER_PRESS, lanes.x + lanes.width / 2, lanes.y,
+                                        false, false});
     check_close(ex.state.session.now, 0.5, 0.02);
     explorer_point(&ex, (pointer_event){POINTER_RELEASE, lanes.x, lanes.y, false, false});
 
@@ -89,8 +90,8 @@ TEST(test_a_click_moves_the_cursor_or_the_window)
     free(picture(&ex, 120, 50, GLYPHS_BRAILLE));
     const area map = find_part(&ex, PART_MAP);
     assert_true(map.width > 20);
-    explorer_point(&ex,
-                   (pointer_event){POINTER_PRESS, map.x + map.width * 3 / 4, map.y, false, false});
+    explorer_point(&ex, (pointer_event){POINTER_PRESS, map.x + map.width * 3 / 4, map.y,
+                                        false, false});
     check_close(ex.state.window.to - ex.state.window.from, 0.1, 1e-9);
     check_close((ex.state.window.to + ex.state.window.from) / 2, 0.75, 0.02);
 }

@@ -1,4 +1,5 @@
-// The largest mean of the force over a sliding window, against analytic results and plain sums.
+// The largest mean of the force over a sliding window, against analytic results and plain
+// sums.
 #include "src/run/recording.h"
 
 #include "tests/rig_fixture.h"
@@ -22,7 +23,8 @@ static void finish(run_result *r)
 static void add_step(run_result *r, double start, double end, double first, double slope,
                      double curve)
 {
-    force_step step = {start, end, first, first + slope + curve, first + slope / 2 + curve / 3};
+    force_step step = {start, end, first, first + slope + curve,
+                       first + slope / 2 + curve / 3};
     assert_int_equal(force_history_add(&r->history.forces, step), STATUS_OK);
 }
 
@@ -67,7 +69,8 @@ TEST(an_impulse_counts_over_the_window)
     finish(&r);
 }
 
-// Steps without a length, impacts without an impulse and events of another kind change nothing.
+// Steps without a length, impacts without an impulse and events of another kind change
+// nothing.
 TEST(what_has_no_impulse_changes_nothing)
 {
     run_result r = empty_run();
@@ -104,7 +107,8 @@ TEST(it_is_the_largest_of_many)
     run_result r = empty_run();
     double time = 0, last = 0;
     for (int i = 0; i < 60; i++) {
-        double length = 0.004 + 0.003 * (i * 7 % 5), slope = sin(1.7 * i), curve = cos(2.3 * i);
+        double length = 0.004 + 0.003 * (i * 7 % 5), slope = sin(1.7 * i),
+               curve = cos(2.3 * i);
         add_step(&r, time, time + length, last, slope, curve);
         last += slope + curve;
         time += length;
@@ -138,8 +142,9 @@ static double integral_to(const run_result *r, double time)
     return sum;
 }
 
-// Windows shorter and longer than the steps, some with impulses: of all windows that begin on a
-// fine grid none has a larger mean, and near the best of them there is one with the mean found.
+// Windows shorter and longer than the steps, some with impulses: of all windows that
+// begin on a fine grid none has a larger mean, and near the best of them there is one
+// with the mean found.
 TEST(no_window_of_random_forces_has_more)
 {
     enum { ROUNDS = 60, FINE = 3000 };
@@ -150,12 +155,14 @@ TEST(no_window_of_random_forces_has_more)
         const double unit = round % 2 ? 1 : 50; // of time
         for (int i = 0; i < 6; i++) {
             const double length = unit * (0.1 + 0.2 * random_uniform(&g));
-            const double slope = 4 * random_uniform(&g) - 2, curve = 4 * random_uniform(&g) - 2;
+            const double slope = 4 * random_uniform(&g) - 2,
+                         curve = 4 * random_uniform(&g) - 2;
             add_step(&r, time, time + length, last, slope, curve);
             last += slope + curve;
             time += length;
         }
-        const double at = time * random_uniform(&g), impulse = round % 3 == 0 ? 0.3 * unit : 0;
+        const double at = time * random_uniform(&g),
+                     impulse = round % 3 == 0 ? 0.3 * unit : 0;
         if (impulse > 0) {
             add_impulse(&r, at, impulse, false);
         }
@@ -165,9 +172,11 @@ TEST(no_window_of_random_forces_has_more)
         const double found = force_largest_mean(&r, from, window);
         double seen = -HUGE_VAL;
         for (int i = 0; i <= FINE; i++) {
-            const double start = from + (time - window - from) * i / FINE, end = start + window;
+            const double start = from + (time - window - from) * i / FINE,
+                         end = start + window;
             const double hit = start <= at && at <= end ? impulse : 0;
-            seen = fmax(seen, (integral_to(&r, end) - integral_to(&r, start) + hit) / window);
+            seen = fmax(seen,
+                        (integral_to(&r, end) - integral_to(&r, start) + hit) / window);
         }
         // without impulses a window's mean is smooth but for kinks
         check_below(seen, found + 1e-10);
@@ -176,7 +185,8 @@ TEST(no_window_of_random_forces_has_more)
     }
 }
 
-// The largest force at the start of a history that fills its memory: behind it nothing has more.
+// The largest force at the start of a history that fills its memory: behind it nothing
+// has more.
 TEST(a_full_history_is_looked_at_to_its_end)
 {
     run_result r = empty_run();

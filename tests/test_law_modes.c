@@ -1,25 +1,27 @@
 // The control law in the explorer: its panel, the lock on a mode, the log of its modes.
 #include "tests/explorer_on_screen.h"
 
-static void assert_pictured(explorer *ex, int width, int height, glyph_set set, const char *wanted)
+static void assert_pictured(explorer *ex, int width, int height, glyph_set set,
+                            const char *wanted)
 {
     KEPT_TEXT(text) = picture(ex, width, height, set);
-    fail_if(strstr(text, wanted) == NULL, "'%s' is not on the screen of %d x %d:\n%s", wanted,
-            width, height, text);
+    fail_if(strstr(text, wanted) == NULL, "'%s' is not on the screen of %d x %d:\n%s",
+            wanted, width, height, text);
 }
 
 TEST(test_the_panel_is_whole_on_every_screen)
 {
     static const int sizes[][2] = {{80, 24}, {100, 30}, {120, 40}, {200, 60}};
     OPEN_EXPLORER(ex, "compare/hybrid");
-    for (EACH_TEXT(c, "hybrid", "recovering", "force-pd", "force-integral", "discontinuous",
-                   "optimal", "predictive", "speed-limit", "open-loop", "bang-bang",
-                   "reverse-torque")) {
+    for (EACH_TEXT(c, "hybrid", "recovering", "force-pd", "force-integral",
+                   "discontinuous", "optimal", "predictive", "speed-limit", "open-loop",
+                   "bang-bang", "reverse-torque")) {
         char mode[MODE_NAME_SIZE];
         assert_true(explorer_carry_out(&ex, formatted("law %s", *c)));
         session_seek(&ex.state.session, 0.9);
         law_mode_name(state_law_modes(&ex.state),
-                      session_sample(&ex.state.session)->controller_mode, mode, sizeof mode);
+                      session_sample(&ex.state.session)->controller_mode, mode,
+                      sizeof mode);
         for (int k = 0; k < 8; k++) {
             int width = sizes[k / 2][0], height = sizes[k / 2][1];
             glyph_set set = k % 2 ? GLYPHS_ASCII : GLYPHS_BRAILLE;
@@ -31,7 +33,8 @@ TEST(test_the_panel_is_whole_on_every_screen)
             assert_pictured(&ex, width, height, set,
                             strcmp(*c, "open-loop") ? "not locked (L locks)"
                                                     : "takes no lock on a mode");
-            assert_pictured(&ex, width, height, set, height < 40 ? "of 1 N" : "force commanded");
+            assert_pictured(&ex, width, height, set,
+                            height < 40 ? "of 1 N" : "force commanded");
         }
     }
     press_shows(&ex, ":law off<Enter>", "!, 200 Hz");
@@ -79,7 +82,8 @@ TEST(test_one_key_goes_through_the_modes)
 TEST(test_a_lock_is_saved_and_run_again_byte_for_byte)
 {
     OPEN_EXPLORER(ex, "compare/recovering");
-    press(&ex, ":seek 0.4<Enter>:lock approach<Enter>:seek 0.6<Enter>LLb:seek 0.8<Enter>F");
+    press(&ex,
+          ":seek 0.4<Enter>:lock approach<Enter>:seek 0.6<Enter>LLb:seek 0.8<Enter>F");
     assert_false(ex.state.message.warning);
     KEPT_TEXT(text) = save_and_compare(&ex.state.session);
     assert_non_null(strstr(text, "set: {control.lock: \"approach\"}"));
@@ -94,7 +98,8 @@ TEST(test_laws_and_modes_are_completed_and_checked)
     assert_shows(&ex, "expected none, approach, impact, force or recover");
     press_warns(&ex, ":lock recover<Enter>:law hybrid<Enter>", "");
     assert_shows(&ex, "undo the lock first", "recovering, 200 Hz");
-    press_shows(&ex, "u:law inverse-dynamics<Enter>L", "this law cannot be held in a mode");
+    press_shows(&ex, "u:law inverse-dynamics<Enter>L",
+                "this law cannot be held in a mode");
     press_shows(&ex, "C", "!, 200 Hz");
     press_shows(&ex, "L", "no law is on");
     press_shows(&ex, "C", "inverse-dynamics, 200 Hz");
@@ -109,7 +114,8 @@ TEST(test_the_log_names_modes)
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, "nn");
     check_close(ex.state.session.now, 0.295, 0);
-    assert_shows(&ex, "goes into its mode 'impact' at 0.295000 s", "0.29500 s  mode impact");
+    assert_shows(&ex, "goes into its mode 'impact' at 0.295000 s",
+                 "0.29500 s  mode impact");
     press_shows(&ex, "<End>", "mode force");
     press_shows(&ex, "N:seek 0.7<Enter>:lock approach<Enter>", "change lock approach");
     press_shows(&ex, "n", "0.70000 s  mode approach");

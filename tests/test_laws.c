@@ -1,11 +1,11 @@
-// Required results of the control laws, on the impact of the thesis's 5.4: 1 V from rest, 0.1 rad
-// before the wall.
+// Required results of the control laws, on the impact of the thesis's 5.4: 1 V from rest,
+// 0.1 rad before the wall.
 #include "tests/rig_fixture.h"
 
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
 
-// --- the hybrid law -------------------------------------------------------------------------
+// --- the hybrid law --------------------------------------------------------------------
 
 TEST(hybrid_makes_contact_once_and_settles)
 {
@@ -16,10 +16,11 @@ TEST(hybrid_makes_contact_once_and_settles)
     check_close(one.settling_time_s, 0.3, 0.1);
     check_close(two.separations, 0, 0);
     check_below(two.settling_time_s, one.settling_time_s);
-    summary printed_one =
-        rig_summary_with("control.law=hybrid arm.model=printed control.coefficients=printed");
-    summary printed_two = rig_summary_with(
-        "control.law=hybrid arm.model=printed control.coefficients=printed control.force=2");
+    summary printed_one = rig_summary_with(
+        "control.law=hybrid arm.model=printed control.coefficients=printed");
+    summary printed_two =
+        rig_summary_with("control.law=hybrid arm.model=printed "
+                         "control.coefficients=printed control.force=2");
     check_close(printed_one.separations, 0, 0);
     check_close(printed_one.settling_time_s, 0.3, 0.1);
     check_below(printed_two.settling_time_s, printed_one.settling_time_s);
@@ -28,8 +29,8 @@ TEST(hybrid_makes_contact_once_and_settles)
 TEST(hybrid_force_follows_its_coefficients)
 {
     summary corrected = rig_summary_with("control.law=hybrid sensor.ideal=true");
-    summary printed =
-        rig_summary_with("control.law=hybrid sensor.ideal=true control.coefficients=printed");
+    summary printed = rig_summary_with(
+        "control.law=hybrid sensor.ideal=true control.coefficients=printed");
     check_close(corrected.steady_force_N, 1, 0.02);
     // 3 f l and a torque gain: f (1 + kp/(4 k2)) = (1.5 + kp/(4 k2)) f_command
     double share = 10.15 / (4 * 4.92);
@@ -55,28 +56,31 @@ TEST(quintic_joins_contact_and_rest)
     check_close(end->desired_angle, 0.5 / (2 * 4.92), 1e-4);
     check_close(end->desired_velocity, 0, 1e-2);
     check_close(t->rows[last + 1].controller_mode, 2, 0);
-    // (5.14) with the model's own acceleration is the true force to the motion's nonlinearity
+    // (5.14) with the model's own acceleration is the true force to the motion's
+    // nonlinearity
     check_close(LAST_ROW(t)->calculated_force, r.summary.steady_force_N, 0.05);
 }
 
 TEST(gains_have_both_readings)
 {
-    summary torque = rig_summary_with(
-        "control.law=hybrid control.coefficients=printed control.gains=torque sensor.ideal=true");
-    summary volts = rig_summary_with(
-        "control.law=hybrid control.coefficients=printed control.gains=volts sensor.ideal=true");
-    summary printed = rig_summary_with(
-        "control.law=hybrid control.coefficients=printed control.gains=printed sensor.ideal=true");
-    // a volt is 0.4377 N m: read as volts the gain pulls less against the wrong feed-forward
+    summary torque = rig_summary_with("control.law=hybrid control.coefficients=printed "
+                                      "control.gains=torque sensor.ideal=true");
+    summary volts = rig_summary_with("control.law=hybrid control.coefficients=printed "
+                                     "control.gains=volts sensor.ideal=true");
+    summary printed = rig_summary_with("control.law=hybrid control.coefficients=printed "
+                                       "control.gains=printed sensor.ideal=true");
+    // a volt is 0.4377 N m: read as volts the gain pulls less against the wrong
+    // feed-forward
     check_below(torque.steady_force_N + 0.05, volts.steady_force_N);
     check_close(printed.steady_force_N, volts.steady_force_N, 0.02);
     check_close(printed.peak_force_N, torque.peak_force_N, 1e-9);
 }
 
-// --- the sampling rate ----------------------------------------------------------------------
+// --- the sampling rate -----------------------------------------------------------------
 
-// The impact of compare/sampling-rate with settings, met at five instants between two samples.
-// Returns how many of the five runs fail: bounce more than once, or never settle.
+// The impact of compare/sampling-rate with settings, met at five instants between two
+// samples. Returns how many of the five runs fail: bounce more than once, or never
+// settle.
 static int failures_of(const char *const *settings)
 {
     int failures = 0;
@@ -97,7 +101,8 @@ static int failures_of(const char *const *settings)
 
 TEST(the_thesis_needs_its_200_hertz)
 {
-    // a separate hub before the beam, a delay of one period: 100 Hz fails, 200 Hz does not
+    // a separate hub before the beam, a delay of one period: 100 Hz fails, 200 Hz does
+    // not
     assert_int_equal(failures_of(given("control.rate=100")), 5);
     assert_int_equal(failures_of(given("control.rate=150")), 5);
     assert_int_equal(failures_of(given("control.rate=200")), 0);
@@ -105,10 +110,15 @@ TEST(the_thesis_needs_its_200_hertz)
     assert_int_equal(failures_of(given("control.rate=2000")), 0);
     // as printed, arm and law, on its own grid of 1 ms
     assert_int_equal(
-        failures_of(given("control.rate=100 arm.model=printed control.coefficients=printed")), 5);
+        failures_of(
+            given("control.rate=100 arm.model=printed control.coefficients=printed")),
+        5);
     assert_int_equal(
-        failures_of(given("control.rate=200 arm.model=printed control.coefficients=printed")), 0);
-    // without the delay 50 Hz fails and 100 Hz does; gains in volts are weaker, and so do not
+        failures_of(
+            given("control.rate=200 arm.model=printed control.coefficients=printed")),
+        0);
+    // without the delay 50 Hz fails and 100 Hz does; gains in volts are weaker, and so do
+    // not
     assert_int_equal(failures_of(given("control.rate=50 control.delay_periods=0")), 5);
     assert_int_equal(failures_of(given("control.rate=100 control.delay_periods=0")), 0);
     assert_int_equal(failures_of(given("control.rate=100 control.gains=volts")), 0);
@@ -117,19 +127,21 @@ TEST(the_thesis_needs_its_200_hertz)
     assert_int_equal(failures_of(given("control.rate=20 arm.hub_joint=rigid")), 5);
 }
 
-// What fails is the velocity gain on the hub alone: held for a period T and a period late,
-// w' = -(kv/I1) w becomes w(k + 1) = w(k) - (kv T/I1) w(k - 1), stable below kv = I1/T.
+// What fails is the velocity gain on the hub alone: held for a period T and a period
+// late, w' = -(kv/I1) w becomes w(k + 1) = w(k) - (kv T/I1) w(k - 1), stable below kv =
+// I1/T.
 TEST(the_rate_limits_the_velocity_gain)
 {
     for (EACH_OF(double, c, 100, 150, 200, 300, 500)) {
-        assert_int_equal(
-            failures_of(given("control.rate=%g control.kv=%g", *c, 0.55 * 5.2e-3 * *c)), 0);
-        assert_true(failures_of(given("control.rate=%g control.kv=%g", *c, 1.6 * 5.2e-3 * *c)) >=
-                    4);
+        assert_int_equal(failures_of(given("control.rate=%g control.kv=%g", *c,
+                                           0.55 * 5.2e-3 * *c)),
+                         0);
+        assert_true(failures_of(given("control.rate=%g control.kv=%g", *c,
+                                      1.6 * 5.2e-3 * *c)) >= 4);
     }
 }
 
-// --- the optimal law ------------------------------------------------------------------------
+// --- the optimal law -------------------------------------------------------------------
 
 // Against the hybrid law with corrected coefficients on the noisy default rig.
 TEST(optimal_law_beats_the_hybrid)
@@ -143,10 +155,10 @@ TEST(optimal_law_beats_the_hybrid)
                  {"control.force=3", 1.0 / 3}};
     for (int i = 0; i < 4; i++) {
         for (int seed = 1; seed <= 10; seed++) {
-            summary hybrid =
-                rig_summary_with("control.law=hybrid %s control.seed=%d", cases[i].force, seed);
-            summary optimal =
-                rig_summary_with("control.law=optimal %s control.seed=%d", cases[i].force, seed);
+            summary hybrid = rig_summary_with("control.law=hybrid %s control.seed=%d",
+                                              cases[i].force, seed);
+            summary optimal = rig_summary_with("control.law=optimal %s control.seed=%d",
+                                               cases[i].force, seed);
             check_close(optimal.separations, 0, 0);
             check_below(optimal.force_over_command_N,
                         fmax(cases[i].share * hybrid.force_over_command_N, 1e-9));
@@ -158,8 +170,8 @@ TEST(optimal_law_beats_the_hybrid)
 
 TEST(optimal_law_stands_wrong_beliefs)
 {
-    for (EACH_TEXT(c, "belief.k2_factor=0.8", "belief.k2_factor=1.2", "belief.wall_error=0.02",
-                   "belief.wall_error=-0.02")) {
+    for (EACH_TEXT(c, "belief.k2_factor=0.8", "belief.k2_factor=1.2",
+                   "belief.wall_error=0.02", "belief.wall_error=-0.02")) {
         for (EACH_TEXT(each, "control.force=0.5", "control.force=1", "control.force=2",
                        "control.force=3")) {
             summary hybrid = rig_summary_with("control.law=hybrid %s %s", *each, *c);
@@ -179,13 +191,14 @@ TEST(predictive_law_keeps_its_limit)
     for (EACH_OF(double, c, 0.7, 1, 1.5, 2)) {
         for (int k = 0; k < 8; k++) {
             const char *limit = formatted("control.force_limit=%g", *c);
-            summary fast =
-                rig_summary_with("control.law=predictive %s control.seed=%d initial.angle=%g "
+            summary fast = rig_summary_with(
+                "control.law=predictive %s control.seed=%d initial.angle=%g "
+                "control.force=0.5 control.approach_voltage=5",
+                limit, k, -0.2 - 0.013 * k);
+            summary blind =
+                rig_summary_with("control.law=optimal control.seed=%d initial.angle=%g "
                                  "control.force=0.5 control.approach_voltage=5",
-                                 limit, k, -0.2 - 0.013 * k);
-            summary blind = rig_summary_with("control.law=optimal control.seed=%d initial.angle=%g "
-                                             "control.force=0.5 control.approach_voltage=5",
-                                             k, -0.2 - 0.013 * k);
+                                 k, -0.2 - 0.013 * k);
             check_below(fast.peak_force_N, *c);
             check_below(2, blind.peak_force_N);
             // and no slower than that needs: the limit is nearly used
@@ -194,7 +207,7 @@ TEST(predictive_law_keeps_its_limit)
     }
 }
 
-// --- the others -----------------------------------------------------------------------------
+// --- the others ------------------------------------------------------------------------
 
 TEST(bang_bang_hits_harder_than_the_plain_approach)
 {
@@ -207,7 +220,8 @@ TEST(bang_bang_hits_harder_than_the_plain_approach)
 // Speed of the tip at the first touch and the peak that follows, wall at `angle` [rad].
 static double peak_of_touch(const char *angle, double *tip_speed)
 {
-    KEPT_SCENARIO(s) = shipped_with("compare/vibration-phase", formatted("wall.angle=%s", angle));
+    KEPT_SCENARIO(s) =
+        shipped_with("compare/vibration-phase", formatted("wall.angle=%s", angle));
     KEPT_RUN(r) = run_done(&s, false);
     const double *velocity = r.landing.before.velocity;
     assert_true(r.landing.time > 0);
@@ -217,7 +231,8 @@ static double peak_of_touch(const char *angle, double *tip_speed)
 
 TEST(same_tip_speed_at_another_phase_gives_another_peak)
 {
-    double early, late, soft = peak_of_touch("0.11", &early), hard = peak_of_touch("0.21", &late);
+    double early, late, soft = peak_of_touch("0.11", &early),
+                        hard = peak_of_touch("0.21", &late);
     check_relative(early, late, 0.01);
     check_below(1.4 * soft, hard);
 }
@@ -233,12 +248,13 @@ TEST(slower_approach_hits_softer)
     }
 }
 
-// The force at rest is the commanded one to what friction holds, 0.045 N m over 2 l, for every law
-// that regulates it.
+// The force at rest is the commanded one to what friction holds, 0.045 N m over 2 l, for
+// every law that regulates it.
 TEST(every_law_ends_near_its_force)
 {
-    for (EACH_TEXT(c, "control.law=hybrid", "control.law=force-pd", "control.law=reverse-torque",
-                   "control.law=speed-limit", "control.law=discontinuous", "control.law=recovering",
+    for (EACH_TEXT(c, "control.law=hybrid", "control.law=force-pd",
+                   "control.law=reverse-torque", "control.law=speed-limit",
+                   "control.law=discontinuous", "control.law=recovering",
                    "control.law=optimal", "control.law=bang-bang")) {
         summary s = rig_summary_with("%s", *c);
         check_close(s.steady_force_N, 1, 0.05);
@@ -249,8 +265,8 @@ TEST(every_law_ends_near_its_force)
 
 TEST(recovering_law_returns_to_position_control)
 {
-    RIG_RUN(r,
-            "control.law=recovering control.approach_voltage=7 control.force=0.5 run.duration=2");
+    RIG_RUN(r, "control.law=recovering control.approach_voltage=7 control.force=0.5 "
+               "run.duration=2");
     bool recovered = false, pressed_after = false;
     for (EACH_ROW(row, &r.trace)) {
         recovered |= row->controller_mode == 3;
@@ -260,17 +276,20 @@ TEST(recovering_law_returns_to_position_control)
     assert_true(pressed_after);
 }
 
-// Spring and beam in series: a wall believed d rad off costs d k K/(k + K) of torque, K = 4 k2.
+// Spring and beam in series: a wall believed d rad off costs d k K/(k + K) of torque, K =
+// 4 k2.
 TEST(impedance_gives_way_by_its_stiffness)
 {
     for (EACH_OF(double, c, 5, 20, 40)) {
         summary right = rig_summary_with(
             "control.law=impedance motor.stiction=0 control.settings=stiffness=%g", *c);
-        summary off = rig_summary_with("control.law=impedance motor.stiction=0 "
-                                       "control.settings=stiffness=%g belief.wall_error=0.02",
-                                       *c);
+        summary off =
+            rig_summary_with("control.law=impedance motor.stiction=0 "
+                             "control.settings=stiffness=%g belief.wall_error=0.02",
+                             *c);
         double k = *c, beam = 4 * 4.92;
-        check_close(off.steady_force_N - right.steady_force_N, 0.02 * k * beam / (k + beam), 0.02);
+        check_close(off.steady_force_N - right.steady_force_N,
+                    0.02 * k * beam / (k + beam), 0.02);
         check_close(right.steady_error_N, 0, 0.02);
     }
 }
@@ -298,8 +317,8 @@ TEST(several_settings_are_taken)
     assert_int_equal(differ, 1);
 }
 
-// A setting is a number within its limits, both included, and nothing else; what is refused names
-// the word.
+// A setting is a number within its limits, both included, and nothing else; what is
+// refused names the word.
 TEST(settings_are_numbers_within_limits)
 {
     static const controller_parameter own[] = {
@@ -337,14 +356,15 @@ TEST(settings_are_numbers_within_limits)
     for (EACH(one, right)) {
         double values[2] = {-99, -99};
         strcpy(p.control.settings, one->text);
-        fail_if(controller_values(&law, &p, values, &f) != STATUS_OK, "'%s': %s", one->text,
-                f.text);
+        fail_if(controller_values(&law, &p, values, &f) != STATUS_OK, "'%s': %s",
+                one->text, f.text);
         check_close(values[0], one->gain, 0);
         check_close(values[1], one->gains, 0);
     }
-    for (EACH_TEXT(c, "gain", "gain=", "gain=x", "gain=5x", "gain=5,", "gain=1e", "gain=nan",
-                   "gain=-", "gain==5", "gain=5=", "gain=8.01", "gain=-4.01", "gain=inf",
-                   "gains=-1e-9", "gai=5", "gainss=5", "=5", "5", "gain=5 x", "gain=5 =1")) {
+    for (EACH_TEXT(c, "gain", "gain=", "gain=x", "gain=5x", "gain=5,", "gain=1e",
+                   "gain=nan", "gain=-", "gain==5", "gain=5=", "gain=8.01", "gain=-4.01",
+                   "gain=inf", "gains=-1e-9", "gai=5", "gainss=5", "=5", "5", "gain=5 x",
+                   "gain=5 =1")) {
         double values[2];
         strcpy(p.control.settings, *c);
         fail_if(controller_values(&law, &p, values, &f) != STATUS_BAD_SCENARIO,
@@ -353,7 +373,8 @@ TEST(settings_are_numbers_within_limits)
     }
 }
 
-// Admittance ends where the reading is right, wherever the wall is and however stiff the beam.
+// Admittance ends where the reading is right, wherever the wall is and however stiff the
+// beam.
 TEST(admittance_ends_with_the_force)
 {
     for (EACH_TEXT(c, "belief.wall_error=0.02", "belief.k2_factor=0.75",
@@ -364,16 +385,18 @@ TEST(admittance_ends_with_the_force)
     }
 }
 
-// A wall believed 0.02 rad off spoils the force by 0.13 N; what a sensor shows of it mends that,
-// and costs little where the belief was right.
+// A wall believed 0.02 rad off spoils the force by 0.13 N; what a sensor shows of it
+// mends that, and costs little where the belief was right.
 TEST(the_impact_angle_can_be_measured)
 {
-    static const char *const beliefs[] = {"belief.wall_error=-0.02", "belief.wall_error=0",
+    static const char *const beliefs[] = {"belief.wall_error=-0.02",
+                                          "belief.wall_error=0",
                                           "belief.wall_error=0.02"};
     for (int b = 0; b < 3; b++) {
         summary told = rig_summary_with("control.law=hybrid %s", beliefs[b]);
         check_close(fabs(told.steady_error_N), b == 1 ? 0 : 0.13, 0.02);
-        for (EACH_TEXT(c, "control.impact_angle=film", "control.impact_angle=accelerometer")) {
+        for (EACH_TEXT(c, "control.impact_angle=film",
+                       "control.impact_angle=accelerometer")) {
             summary s = rig_summary_with("control.law=hybrid %s %s", *c, beliefs[b]);
             check_below(fabs(s.steady_error_N), 0.06);
             assert_int_equal(s.separations, 0);

@@ -1,5 +1,5 @@
-// The least time to the wanted force: its touch can be had, nothing does better, and limits that
-// leave less take longer.
+// The least time to the wanted force: its touch can be had, nothing does better, and
+// limits that leave less take longer.
 
 #include "src/arm/modes.h"
 #include "src/base/dense.h"
@@ -14,7 +14,8 @@ static least_time of(const char *const *settings, double force, double peak)
     return least_time_of(&p, force, 0.05, peak);
 }
 
-// The torque of the solution's multiplier: full either way, by the sign of what a step comes to.
+// The torque of the solution's multiplier: full either way, by the sign of what a step
+// comes to.
 static int torque_of(const parameters *p, const least_time *t, double *torque)
 {
     const int n = (int)lround(t->touch / LEAST_TIME_STEP);
@@ -56,11 +57,13 @@ TEST(full_voltage_either_way_has_it)
     }
 }
 
-// Weak duality: for any torque, K xi less the weighted tip is on this side of the solution's.
+// Weak duality: for any torque, K xi less the weighted tip is on this side of the
+// solution's.
 TEST(no_torque_does_better)
 {
     parameters p = fixture_parameters(SETTINGS(START));
-    const double most = motor_torque_per_volt(&p.motor) * p.motor.voltage_limit + p.motor.stiction;
+    const double most =
+        motor_torque_per_volt(&p.motor) * p.motor.voltage_limit + p.motor.stiction;
     least_time t = least_time_of(&p, 1, 0.05, 2);
     const int n = (int)lround(t.touch / LEAST_TIME_STEP);
     const double side = t.largest ? 1 : -1;
@@ -72,14 +75,16 @@ TEST(no_torque_does_better)
             torque[k] = sign * most * (trial % 2 == 0 ? 1 : random_uniform(&r));
         }
         least_time_follow(&p, torque, n, &tip, &press);
-        check_below(side * (press - t.weight * tip), side * t.press + 1e-3 * fabs(t.weight));
+        check_below(side * (press - t.weight * tip),
+                    side * t.press + 1e-3 * fabs(t.weight));
     }
 }
 
 TEST(less_voltage_and_less_force_take_longer)
 {
     static const char *const volts[] = {"motor.voltage_limit=10", "motor.voltage_limit=5",
-                                        "motor.voltage_limit=3", "motor.voltage_limit=2.5"};
+                                        "motor.voltage_limit=3",
+                                        "motor.voltage_limit=2.5"};
     double before = 0;
     for (int i = 0; i < 4; i++) {
         double total = of(SETTINGS(START, volts[i]), 1, 1.5).total;
@@ -94,15 +99,16 @@ TEST(less_voltage_and_less_force_take_longer)
                 of(SETTINGS(START, volts[3]), 1, 1.05).total);
 }
 
-// A beam that hardly bends goes as one rod about the hub, braked by the motor: I w' = T - D w. A
-// touch throws both links onto x' = (M11 - M22)/M w, (2.16) and (2.17), hub and first link one
-// body.
+// A beam that hardly bends goes as one rod about the hub, braked by the motor: I w' = T -
+// D w. A touch throws both links onto x' = (M11 - M22)/M w, (2.16) and (2.17), hub and
+// first link one body.
 TEST(a_stiff_arm_goes_as_a_rod)
 {
     enum { STEPS = 200 };
     parameters p = fixture_parameters(SETTINGS(START, "arm.k2=1000"));
     const double damping = motor_damping(&p.motor), most = 0.5;
-    const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
+    const double inertia =
+        p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
     double torque[STEPS], tip, press;
     for (int k = 0; k < STEPS; k++) {
         torque[k] = most;
@@ -117,12 +123,13 @@ TEST(a_stiff_arm_goes_as_a_rod)
     const double rate = most / damping * (1 - exp(-time / lag));
     const double share =
         (p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 8) / m.inertia;
-    check_relative(
-        press, m.spring_force * (angle - 0.1) + sqrt(m.spring_force * m.mass_force) * share * rate,
-        1e-2);
+    check_relative(press,
+                   m.spring_force * (angle - 0.1) +
+                       sqrt(m.spring_force * m.mass_force) * share * rate,
+                   1e-2);
 }
 
-// --- the same by sorting ----------------------------------------------------------------------
+// --- the same by sorting ---------------------------------------------------------------
 
 enum { LONGEST = 400 }; // steps that are looked at
 
@@ -138,9 +145,10 @@ static int by_ratio(const void *a, const void *b)
     return (first > second) - (first < second);
 }
 
-// The largest press under torques up to `most` that bring the tip `way` on: a knapsack of n steps.
-// False if none do.
-static bool largest_press(const response *steps, int n, double most, double way, double *press)
+// The largest press under torques up to `most` that bring the tip `way` on: a knapsack of
+// n steps. False if none do.
+static bool largest_press(const response *steps, int n, double most, double way,
+                          double *press)
 {
     response sorted[LONGEST];
     double tip = 0;
@@ -158,7 +166,8 @@ static bool largest_press(const response *steps, int n, double most, double way,
     // the steps that press least for their way are turned round until the way is right
     qsort(sorted, (size_t)n, sizeof sorted[0], by_ratio);
     for (int k = 0; k < n && tip > way; k++) {
-        const double back = 2 * most * fabs(sorted[k].tip), part = fmin(1, (tip - way) / back);
+        const double back = 2 * most * fabs(sorted[k].tip),
+                     part = fmin(1, (tip - way) / back);
         tip -= part * back;
         *press -= part * back * sorted[k].press / sorted[k].tip;
     }
@@ -170,14 +179,18 @@ TEST(it_is_the_best_of_all_touches)
     static const struct {
         const char *limit;
         double force, peak;
-    } cases[] = {{"motor.voltage_limit=10", 1, 2},    {"motor.voltage_limit=10", 4, 4},
-                 {"motor.voltage_limit=5", 0.5, 0.6}, {"motor.voltage_limit=3", 2, 8},
-                 {"motor.voltage_limit=10", 0.05, 1}, {"motor.voltage_limit=2.5", 1, 1.05},
+    } cases[] = {{"motor.voltage_limit=10", 1, 2},
+                 {"motor.voltage_limit=10", 4, 4},
+                 {"motor.voltage_limit=5", 0.5, 0.6},
+                 {"motor.voltage_limit=3", 2, 8},
+                 {"motor.voltage_limit=10", 0.05, 1},
+                 {"motor.voltage_limit=2.5", 1, 1.05},
                  {"motor.voltage_limit=10", 9, 1}};
     for (EACH(c, cases)) {
         parameters p = fixture_parameters(SETTINGS(START, c->limit, "arm.length=1.2"));
-        const double band = 0.05, most = motor_torque_per_volt(&p.motor) * p.motor.voltage_limit +
-                                         p.motor.stiction;
+        const double band = 0.05,
+                     most = motor_torque_per_volt(&p.motor) * p.motor.voltage_limit +
+                            p.motor.stiction;
         response steps[LONGEST + 1];
         double kick[LONGEST] = {1}, rest[LONGEST] = {0}, at_rest[2];
         pressed_arm_model m;
@@ -231,8 +244,9 @@ TEST(it_is_the_best_of_all_touches)
     }
 }
 
-// Before it touches, the arm moves as M q'' + C q' + K q = T e says, with the matrices that its
-// modes are computed from; of its momentum the touch leaves what the constraint allows.
+// Before it touches, the arm moves as M q'' + C q' + K q = T e says, with the matrices
+// that its modes are computed from; of its momentum the touch leaves what the constraint
+// allows.
 TEST(the_flight_is_that_of_the_straight_arm)
 {
     enum { SIZE = 5, STEPS = 400 }; // q, q', 1
@@ -240,16 +254,19 @@ TEST(the_flight_is_that_of_the_straight_arm)
     double m[4] = {0}, k[4] = {0};
     arm a = arm_of(&p);
     modes_matrices(&a, m, k);
-    const double damping = motor_damping(&p.motor), determinant = m[0] * m[3] - m[1] * m[2];
-    const double inverse[4] = {m[3] / determinant, -m[1] / determinant, -m[2] / determinant,
-                               m[0] / determinant};
+    const double damping = motor_damping(&p.motor),
+                 determinant = m[0] * m[3] - m[1] * m[2];
+    const double inverse[4] = {m[3] / determinant, -m[1] / determinant,
+                               -m[2] / determinant, m[0] / determinant};
 
     // the propagator of a step under a torque of 0.7 N m
-    double matrix[SIZE * SIZE] = {0}, step[SIZE * SIZE], power[SIZE * SIZE], product[SIZE * SIZE];
+    double matrix[SIZE * SIZE] = {0}, step[SIZE * SIZE], power[SIZE * SIZE],
+                         product[SIZE * SIZE];
     for (int i = 0; i < 2; i++) {
         matrix[i * SIZE + 2 + i] = 1;
         for (int j = 0; j < 2; j++) {
-            matrix[(2 + i) * SIZE + j] = -(inverse[2 * i] * k[j] + inverse[2 * i + 1] * k[2 + j]);
+            matrix[(2 + i) * SIZE + j] =
+                -(inverse[2 * i] * k[j] + inverse[2 * i + 1] * k[2 + j]);
         }
         matrix[(2 + i) * SIZE + 2] = -inverse[2 * i] * damping;
         matrix[(2 + i) * SIZE + 4] = inverse[2 * i] * 0.7;
@@ -282,6 +299,6 @@ TEST(where_there_is_no_way_it_says_so)
     assert_true(isnan(of(SETTINGS("arm.links=3", START), 1, 2).total));
     assert_true(isnan(of(SETTINGS("initial.angle=0", "wall.angle=0"), 1, 2).total));
     assert_true(isnan(of(SETTINGS(START), 0, 2).total));
-    assert_true(
-        isnan(of(SETTINGS(START, "motor.voltage_limit=0", "motor.stiction=0"), 1, 2).total));
+    assert_true(isnan(
+        of(SETTINGS(START, "motor.voltage_limit=0", "motor.stiction=0"), 1, 2).total));
 }

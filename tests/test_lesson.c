@@ -1,5 +1,5 @@
-// Lessons: every one that ships can be gone through to its end by its own commands, no step is done
-// before it is, and wrong files are reported.
+// Lessons: every one that ships can be gone through to its end by its own commands, no
+// step is done before it is, and wrong files are reported.
 #include "tests/explorer_on_screen.h"
 
 // Goes through a lesson by its own commands.
@@ -8,18 +8,19 @@ static void go_through(explorer *ex, const char *name)
     const lesson *l = &ex->state.session.base.lesson;
     for (int i = 0; i < l->step_count; i++) {
         const lesson_step *step = &l->steps[i];
-        fail_if(ex->state.lesson.step != i || !ex->state.lesson.on, "%s is at step %d, expected %d",
-                name, ex->state.lesson.step + 1, i + 1);
+        fail_if(ex->state.lesson.step != i || !ex->state.lesson.on,
+                "%s is at step %d, expected %d", name, ex->state.lesson.step + 1, i + 1);
 
         // asked before it is done it gives a hint and stays
         if (step->check != LESSON_READ) {
             explorer_carry_out(ex, "continue");
             fail_if(ex->state.lesson.step != i || strlen(step->hint) < 5,
-                    "%s: step %d is done before anything is, or has no hint", name, i + 1);
+                    "%s: step %d is done before anything is, or has no hint", name,
+                    i + 1);
         }
         for (int k = 0; k < step->command_count; k++) {
-            fail_if(!explorer_carry_out(ex, step->commands[k]), "%s: step %d: '%s': %s", name,
-                    i + 1, step->commands[k], ex->state.message.text);
+            fail_if(!explorer_carry_out(ex, step->commands[k]), "%s: step %d: '%s': %s",
+                    name, i + 1, step->commands[k], ex->state.message.text);
         }
         fail_if(step->check != LESSON_READ && !ex->state.lesson.passed,
                 "%s: step %d is not done by its own commands", name, i + 1);
@@ -30,8 +31,9 @@ static void go_through(explorer *ex, const char *name)
 
 TEST(test_a_copy_keeps_its_lesson)
 {
-    for (EACH_TEXT(c, "lessons/impulse-and-force", "lessons/two-predictors", "lessons/step-size",
-                   "lessons/beta-and-gamma", "lessons/hybrid-law", "lessons/what-a-sensor-sees")) {
+    for (EACH_TEXT(c, "lessons/impulse-and-force", "lessons/two-predictors",
+                   "lessons/step-size", "lessons/beta-and-gamma", "lessons/hybrid-law",
+                   "lessons/what-a-sensor-sees")) {
         KEPT_SCENARIO(s) = shipped(*c);
         scenario copy = read_again(&s);
         SCOPED(explorer_finish) explorer ex;

@@ -1,4 +1,5 @@
-// The linear arm: its poles and zeros against closed forms and the modes, and the MAT file.
+// The linear arm: its poles and zeros against closed forms and the modes, and the MAT
+// file.
 #include "src/study/linear/linear.h"
 
 #include "src/arm/modes.h"
@@ -30,8 +31,9 @@ static void poles_of(const linear_arm *l, double complex *poles)
 
 #define ROUND "corrected/first-impact"
 
-// The straight two-link arm: in contact M x'' + D x' + 4 k2 x = K u; in flight the hub's and the
-// bend's cubic; and with the force as input or output the zeros +-(4 k2/mu)^(1/2).
+// The straight two-link arm: in contact M x'' + D x' + 4 k2 x = K u; in flight the hub's
+// and the bend's cubic; and with the force as input or output the zeros +-(4
+// k2/mu)^(1/2).
 TEST(two_links_have_their_closed_forms)
 {
     double complex poles[MOST], zeros[MOST];
@@ -56,8 +58,8 @@ TEST(two_links_have_their_closed_forms)
     // in flight: det(M s^2 + C s + K)/s vanishes at every pole but the one at rest
     LINEARISED(free, ROUND, "", LINEAR_FREE);
     poles_of(&free, poles);
-    const double M11 = 5.2e-3 + own + m * half * half * 1.25, M22 = own + m * half * half / 4,
-                 M12 = m * half * half / 2;
+    const double M11 = 5.2e-3 + own + m * half * half * 1.25,
+                 M22 = own + m * half * half / 4, M12 = m * half * half / 2;
     check_close(cabs(poles[0]), 0, 1e-9);
     for (int i = 1; i < 4; i++) {
         const double complex s = poles[i];
@@ -82,7 +84,8 @@ TEST(zeros_to_the_hub_are_frequencies_of_the_held_arm)
         arm a;
         int modes, count;
         arm_init(&a, &s.parameters);
-        assert_int_equal(modes_compute(&a, HUB_LOCKED, place == LINEAR_FREE ? TIP_FREE : TIP_PINNED,
+        assert_int_equal(modes_compute(&a, HUB_LOCKED,
+                                       place == LINEAR_FREE ? TIP_FREE : TIP_PINNED,
                                        &modes, frequencies, shapes),
                          STATUS_OK);
         DONE(linear_zeros(&with.system, LINEAR_HUB_ANGLE, &count, zeros, &f));
@@ -94,8 +97,8 @@ TEST(zeros_to_the_hub_are_frequencies_of_the_held_arm)
     }
 }
 
-// The arm rests where it is said to: the force is the torque over the lever, and a wall that gives
-// is as deep as its law says.
+// The arm rests where it is said to: the force is the torque over the lever, and a wall
+// that gives is as deep as its law says.
 TEST(the_arm_rests_under_its_force)
 {
     const double K = 6.02 * 0.249092 * 9.80665 / 33.6;
@@ -113,13 +116,16 @@ TEST(the_arm_rests_under_its_force)
             formatted("wall.contact=hunt-crossley wall.stiffness=%s arm.tilt=-1.5%s",
                       i % 2 == 0 ? "1e4" : "1e8", weights[i / 2]);
         LINEARISED(gives, i / 2 == 0 ? ROUND : "compare/hybrid", changes, LINEAR_CONTACT);
-        check_close(gives.force, i / 2 == 0 ? 9.80665 * sin(1.5) * 0.40108 / 2 * cos(0.1) + K : 2,
+        check_close(gives.force,
+                    i / 2 == 0 ? 9.80665 * sin(1.5) * 0.40108 / 2 * cos(0.1) + K : 2,
                     i / 2 == 0 ? 0.03 : 1e-9);
     }
 
-    for (EACH_TEXT(c, "kelvin-voigt wall.stiffness=1e4", "hunt-crossley wall.stiffness=1e6")) {
+    for (EACH_TEXT(c, "kelvin-voigt wall.stiffness=1e4",
+                   "hunt-crossley wall.stiffness=1e6")) {
         LINEARISED(gives, "compare/hybrid",
-                   formatted("wall.contact=%s wall.damping=5 control.force=2", *c), LINEAR_CONTACT);
+                   formatted("wall.contact=%s wall.damping=5 control.force=2", *c),
+                   LINEAR_CONTACT);
         double complex poles[MOST];
         poles_of(&gives, poles);
         check_close(gives.force, 2, 1e-9);
@@ -130,8 +136,8 @@ TEST(the_arm_rests_under_its_force)
     }
 }
 
-// A pole that friction alone holds still is not in the arm with its hub held, and what cannot be
-// linearised is said.
+// A pole that friction alone holds still is not in the arm with its hub held, and what
+// cannot be linearised is said.
 TEST(what_has_no_linear_form_is_refused)
 {
     static const struct {
@@ -142,7 +148,8 @@ TEST(what_has_no_linear_form_is_refused)
         {"motor.voltage=-1", "does not press", LINEAR_CONTACT},
         {"arm.model=printed", "printed", LINEAR_FREE},
         {"arm.links=65", "64 links", LINEAR_FREE},
-        {"wall.contact=hunt-crossley wall.stiffness=1e6 motor.voltage=0", "Hunt", LINEAR_STUCK},
+        {"wall.contact=hunt-crossley wall.stiffness=1e6 motor.voltage=0", "Hunt",
+         LINEAR_STUCK},
         {"wall.contact=hunt-crossley arm.tilt=0.3", "does not press", LINEAR_STUCK},
         {"wall.contact=hunt-crossley arm.tilt=1.5", "does not press", LINEAR_CONTACT},
         {"wall.motion=sine", "moves", LINEAR_CONTACT},
@@ -150,7 +157,8 @@ TEST(what_has_no_linear_form_is_refused)
     for (EACH(c, cases)) {
         KEPT_SCENARIO(s) = shipped_with(ROUND, c->changes);
         linear_arm l;
-        REFUSED(STATUS_BAD_ARGUMENT, c->says, linear_arm_init(&l, &s.parameters, c->place, &f));
+        REFUSED(STATUS_BAD_ARGUMENT, c->says,
+                linear_arm_init(&l, &s.parameters, c->place, &f));
     }
     LINEARISED(stuck, ROUND, "", LINEAR_STUCK);
     assert_int_equal(stuck.system.states, 0);
@@ -179,7 +187,8 @@ TEST(mat_files_are_read_element_by_element)
     mat_file_matrix(stream, "none", 0, 3, values);
     assert_int_equal(fclose(stream), 0);
 
-    const unsigned char *at = (unsigned char *)bytes + 128, *end = (unsigned char *)bytes + size;
+    const unsigned char *at = (unsigned char *)bytes + 128,
+                        *end = (unsigned char *)bytes + size;
     assert_memory_equal(bytes, "MATLAB 5.0 MAT-file", 19);
     for (int i = 0; i < 4; i++) {
         static const char *const names[] = {"A", "eightlet", "ninelette", "none"};

@@ -1,5 +1,5 @@
-// Sampled loops: limits of stability, margins, loop gains measured in runs, pushes that lose
-// contact.
+// Sampled loops: limits of stability, margins, loop gains measured in runs, pushes that
+// lose contact.
 #include <assert.h>
 
 #include "src/arm/chain.h"
@@ -27,8 +27,10 @@ TEST(limits_are_those_found_otherwise)
         double from, to, known;
     } cases[] = {
         {"compare/sampling-rate", IDEAL, "control.rate", 150, 250, 193.5},
-        {"compare/sampling-rate", IDEAL "control.delay_periods=0", "control.rate", 40, 60, 45.5},
-        {"compare/sampling-rate", IDEAL "control.delay_periods=0", "control.rate", 60, 120, 88.5},
+        {"compare/sampling-rate", IDEAL "control.delay_periods=0", "control.rate", 40, 60,
+         45.5},
+        {"compare/sampling-rate", IDEAL "control.delay_periods=0", "control.rate", 60,
+         120, 88.5},
         {"compare/force-pd", "control.rate=200", "control.force_gain", 1, 8, 4.12},
     };
     for (EACH(c, cases)) {
@@ -42,7 +44,8 @@ TEST(limits_are_those_found_otherwise)
     }
 }
 
-// A gain margin is the factor, a delay margin the delay, at which a pole reaches the unit circle.
+// A gain margin is the factor, a delay margin the delay, at which a pole reaches the unit
+// circle.
 TEST(margins_are_met_by_the_poles)
 {
     static const char *const cases[][2] = {
@@ -103,16 +106,18 @@ static const char *drawn_loop(random_generator *g)
     static const double gains[] = {0.8, 8, 2};
     const int law = (int)random_below(g, 3);
     const double length = between(g, 0.4, 1.2);
-    return formatted(IDEAL "control.law=%s=%.6g control.rate=%.4g arm.links=%d arm.hub_joint=%s "
-                           "arm.length=%.4g arm.mass=%.4g arm.EI=%.4g arm.damping_ratio=%.3g "
-                           "arm.hub_inertia=%.3g wall.angle=0 ",
-                     laws[law], gains[law] * between(g, 0.3, 2), between(g, 80, 400),
-                     2 + (int)random_below(g, 4), joints[random_below(g, 2)], length,
-                     0.4 * length * between(g, 0.7, 1.4), between(g, 0.7, 4),
-                     between(g, 0.005, 0.05), between(g, 0.002, 0.01));
+    return formatted(
+        IDEAL "control.law=%s=%.6g control.rate=%.4g arm.links=%d arm.hub_joint=%s "
+              "arm.length=%.4g arm.mass=%.4g arm.EI=%.4g arm.damping_ratio=%.3g "
+              "arm.hub_inertia=%.3g wall.angle=0 ",
+        laws[law], gains[law] * between(g, 0.3, 2), between(g, 80, 400),
+        2 + (int)random_below(g, 4), joints[random_below(g, 2)], length,
+        0.4 * length * between(g, 0.7, 1.4), between(g, 0.7, 4), between(g, 0.005, 0.05),
+        between(g, 0.002, 0.01));
 }
 
-// How much wider the force swings between 6 and 7 s than between 2 and 3 s, after a small push.
+// How much wider the force swings between 6 and 7 s than between 2 and 3 s, after a small
+// push.
 static double swing_grows(const char *changes)
 {
     KEPT_SCENARIO(s) = shipped_with("compare/force-pd", changes);
@@ -147,14 +152,14 @@ static double radius_of(const scenario *s, double factor)
     return cabs(poles[loop.states - 1]);
 }
 
-// Margins of drawn arms and laws part runs that fade from runs that swing on, and poles within the
-// circle from those outside. The first margin is a part of a period.
+// Margins of drawn arms and laws part runs that fade from runs that swing on, and poles
+// within the circle from those outside. The first margin is a part of a period.
 TEST(margins_part_runs)
 {
     static const char *const first =
-        IDEAL "arm.links=3 arm.hub_joint=beam arm.length=0.6 arm.mass=0.2 arm.EI=0.9 "
-              "arm.damping_ratio=0.01 arm.hub_inertia=0.002 control.force_gain=0.6 "
-              "control.rate=200 ";
+        IDEAL "arm.links=3 arm.hub_joint=beam arm.length=0.6 arm.mass=0.2 "
+              "arm.EI=0.9 arm.damping_ratio=0.01 arm.hub_inertia=0.002 "
+              "control.force_gain=0.6 control.rate=200 ";
     random_generator g;
     random_seed(&g, 47);
     int compared = 0;
@@ -183,8 +188,8 @@ TEST(margins_part_runs)
         }
         for (int more = 0; more < 2 && m.delay_s < 4.5 * period; more++) {
             const double delay = (more ? 1.05 : 0.95) * m.delay_s;
-            const char *late =
-                formatted("%scontrol.delay=%.9g belief.delay_error=-%.9g", changes, delay, delay);
+            const char *late = formatted("%scontrol.delay=%.9g belief.delay_error=-%.9g",
+                                         changes, delay, delay);
             assert_true((swing_grows(late) > 0.5) == more);
             compared++;
         }
@@ -208,11 +213,14 @@ static const char *plugin_path, *program_path;
 // Small sines in a run meet what the matrices say, also of laws that are not the lab's.
 TEST(measured_loops_are_the_exact_ones)
 {
-    const char *loaded = formatted(
-        IDEAL "control.law=plugin control.settings=rise_time=0.05 control.plugin=%s", plugin_path);
+    const char *loaded =
+        formatted(IDEAL
+                  "control.law=plugin control.settings=rise_time=0.05 control.plugin=%s",
+                  plugin_path);
     const char *const cases[][2] = {
-        {"compare/force-pd", IDEAL},  {"compare/hybrid", IDEAL},   {"compare/impedance", IDEAL},
-        {"compare/force-pd", loaded}, {"compare/force-pd", IDEAL},
+        {"compare/force-pd", IDEAL},  {"compare/hybrid", IDEAL},
+        {"compare/impedance", IDEAL}, {"compare/force-pd", loaded},
+        {"compare/force-pd", IDEAL},
     };
     for (int i = 0; i < 5; i++) {
         KEPT_SCENARIO(s) = shipped_with(cases[i][0], cases[i][1]);
@@ -220,7 +228,8 @@ TEST(measured_loops_are_the_exact_ones)
         p->code_allowed = i >= 3;
         if (i == 4) {
             p->control.law = LAW_PROCESS;
-            snprintf(p->control.command, sizeof p->control.command, "python3 '%s'", program_path);
+            snprintf(p->control.command, sizeof p->control.command, "python3 '%s'",
+                     program_path);
         }
 
         // one that does not hold the force is asked for that which it comes to
@@ -239,7 +248,8 @@ TEST(measured_loops_are_the_exact_ones)
             const double turn = r.frequency[k] * period;
             if (turn <= 0.8 * acos(-1)) {
                 const double complex point = complex_of(cos(turn), sin(turn));
-                const double complex ratio = r.gain[k] / -linear_answer(&loop, 0, point, scratch);
+                const double complex ratio =
+                    r.gain[k] / -linear_answer(&loop, 0, point, scratch);
                 check_close(20 * log10(cabs(ratio)), 0, 0.1);
                 check_close(carg(ratio) * 180 / acos(-1), 0, 1);
                 compared++;
@@ -250,22 +260,23 @@ TEST(measured_loops_are_the_exact_ones)
     }
 }
 
-// A law whose command deviates `factor` times as far from that at rest, under a sine that keeps it
-// from falling asleep, from 3 s on.
+// A law whose command deviates `factor` times as far from that at rest, under a sine that
+// keeps it from falling asleep, from 3 s on.
 typedef struct scaled {
     rig *inner;
     double factor, rest; // NaN until then
 } scaled;
 
-static void sample_scaled(void *memory, const controller_input *in, controller_output *out)
+static void sample_scaled(void *memory, const controller_input *in,
+                          controller_output *out)
 {
     scaled *s;
     memcpy(&s, memory, sizeof s);
     s->inner->law->sample(s->inner->memory, in, out);
     if (in->time >= 3) {
         s->rest = isnan(s->rest) ? out->command : s->rest;
-        out->command =
-            s->rest + s->factor * (out->command - s->rest) + 0.3 * sin(8 * (in->time - 3));
+        out->command = s->rest + s->factor * (out->command - s->rest) +
+                       0.3 * sin(8 * (in->time - 3));
     }
 }
 
@@ -297,8 +308,8 @@ static double losses_with(double factor)
     return after - before;
 }
 
-// The observer law, which has no linear form, fails in runs within a tenth of the loop gain and of
-// the further delay that its measured loop bears.
+// The observer law, which has no linear form, fails in runs within a tenth of the loop
+// gain and of the further delay that its measured loop bears.
 TEST(measured_margins_are_those_of_runs)
 {
     KEPT_SCENARIO(s) = shipped_with("compare/observer", IDEAL "run.duration=3");
@@ -319,19 +330,22 @@ TEST(measured_margins_are_those_of_runs)
     for (int more = 0; more < 2; more++) {
         const double delay = more ? fmin(1.1 * m.delay_s, 0.0249) : 0.9 * m.delay_s;
         KEPT_SCENARIO(late) =
-            shipped_with("compare/observer", formatted(IDEAL "run.duration=6 control.delay=%.6g "
-                                                             "belief.delay_error=-%.6g",
-                                                       delay, delay));
+            shipped_with("compare/observer",
+                         formatted(IDEAL "run.duration=6 control.delay=%.6g "
+                                         "belief.delay_error=-%.6g",
+                                   delay, delay));
         KEPT_RUN(result) = run_done(&late, false);
-        assert_true(isfinite(result.summary.settling_time_s) == !more); // or it never does
+        assert_true(isfinite(result.summary.settling_time_s) ==
+                    !more); // or it never does
     }
 }
 
-// A push away from a rigid wall throws the arm off with p C, C = J M^-1 J', and the force f brings
-// it back after (p C)^2/(2 f C): a micrometre is a separation.
+// A push away from a rigid wall throws the arm off with p C, C = J M^-1 J', and the force
+// f brings it back after (p C)^2/(2 f C): a micrometre is a separation.
 TEST(the_least_push_lifts_the_arm_by_a_micrometre)
 {
-    KEPT_SCENARIO(s) = shipped_with("corrected/first-impact", "motor.stiction=0 run.duration=4");
+    KEPT_SCENARIO(s) =
+        shipped_with("corrected/first-impact", "motor.stiction=0 run.duration=4");
     linear_arm l;
     double push;
     DONE(linear_arm_init(&l, &s.parameters, LINEAR_CONTACT, &f));

@@ -1,4 +1,5 @@
-// The project's own predictor against the corrected simulation, on the cases of Tables 4.1-4.3.
+// The project's own predictor against the corrected simulation, on the cases of Tables
+// 4.1-4.3.
 #include "src/predict/linearised.h"
 #include "tests/arm_fixture.h"
 
@@ -42,9 +43,10 @@ static prediction predicted_of(const parameters *p, motion *m)
 // Prediction at the instant before the first contact, and what the simulation then did.
 static comparison compare(double k2, double volts, const char *wall, const char *more)
 {
-    scenario s = {.parameters =
-                      parameters_with("arm.k2=%.17g motor.voltage=%.17g %s %s run.duration=2", k2,
-                                      volts, wall, more)};
+    scenario s = {
+        .parameters =
+            parameters_with("arm.k2=%.17g motor.voltage=%.17g %s %s run.duration=2", k2,
+                            volts, wall, more)};
     KEPT_RUN(r) = run_done(&s, false);
     const arm a = arm_of(&s.parameters);
     KEPT_MOTION(m) = before_impact(&a, &s.parameters.method);
@@ -66,7 +68,8 @@ static void it_is_right_on_the_twelve_cases(const char *wall, told_errors told)
         assert_int_equal(c.predicted.holds, held_in_fact);
         check_relative(c.predicted.impulse, c.simulated.contact_impulse_Ns, 1e-9);
         if (held_in_fact) {
-            peak_error[held] = fabs(c.predicted.force / c.simulated.first_pulse_peak_N - 1);
+            peak_error[held] =
+                fabs(c.predicted.force / c.simulated.first_pulse_peak_N - 1);
             delay_error[held] =
                 fabs(c.predicted.delay / c.simulated.first_pulse_time_to_peak_s - 1);
             check_below(peak_error[held], 0.01);
@@ -77,8 +80,8 @@ static void it_is_right_on_the_twelve_cases(const char *wall, told_errors told)
     assert_in_range(held, 8, 11); // some of the twelve release at once
     qsort(peak_error, (size_t)held, sizeof *peak_error, by_size);
     qsort(delay_error, (size_t)held, sizeof *delay_error, by_size);
-    print_message("%s: %d touches hold; peak error median %.3f %%, worst %.3f %%; delay error "
-                  "median %.3f %%, worst %.3f %%\n",
+    print_message("%s: %d touches hold; peak error median %.3f %%, worst %.3f %%; "
+                  "delay error median %.3f %%, worst %.3f %%\n",
                   wall, held, 100 * peak_error[held / 2], 100 * peak_error[held - 1],
                   100 * delay_error[held / 2], 100 * delay_error[held - 1]);
 
@@ -91,19 +94,22 @@ static void it_is_right_on_the_twelve_cases(const char *wall, told_errors told)
 
 TEST(it_is_right_at_a_point)
 {
-    it_is_right_on_the_twelve_cases("wall.kind=point", (told_errors){0.008, 0.5, 0.004, 0.066});
+    it_is_right_on_the_twelve_cases("wall.kind=point",
+                                    (told_errors){0.008, 0.5, 0.004, 0.066});
 }
 
 TEST(it_is_right_at_a_flat_wall)
 {
-    it_is_right_on_the_twelve_cases("wall.kind=plane", (told_errors){0.004, 0.234, 0.002, 0.023});
+    it_is_right_on_the_twelve_cases("wall.kind=plane",
+                                    (told_errors){0.004, 0.234, 0.002, 0.023});
 }
 
 TEST(other_arms_are_predicted_too)
 {
     comparison spring = compare(4.92, 1, "wall.kind=point", "arm.hub_joint=spring");
     check_relative(spring.predicted.force, spring.simulated.first_pulse_peak_N, 0.01);
-    check_relative(spring.predicted.delay, spring.simulated.first_pulse_time_to_peak_s, 0.02);
+    check_relative(spring.predicted.delay, spring.simulated.first_pulse_time_to_peak_s,
+                   0.02);
     comparison five = compare(4.92, 1, "wall.kind=plane", "arm.links=5");
     check_relative(five.predicted.force, five.simulated.first_pulse_peak_N, 0.01);
     check_relative(five.predicted.delay, five.simulated.first_pulse_time_to_peak_s, 0.02);
@@ -114,7 +120,8 @@ TEST(other_arms_are_predicted_too)
 // Strong damping makes the force jump up at the touch and peak long before the arm stops.
 TEST(an_early_peak_is_predicted_too)
 {
-    static const char *const damping[] = {"arm.damping_ratio=0.15", "arm.damping_ratio=0.3",
+    static const char *const damping[] = {"arm.damping_ratio=0.15",
+                                          "arm.damping_ratio=0.3",
                                           "arm.damping_ratio=0.5"};
     static const char *const walls[] = {"wall.kind=point", "wall.kind=plane"};
     for (int i = 0; i < 6; i++) {
@@ -124,7 +131,8 @@ TEST(an_early_peak_is_predicted_too)
     }
 }
 
-// A joint that is overdamped: the force jumps up at the touch and only falls, at any voltage.
+// A joint that is overdamped: the force jumps up at the touch and only falls, at any
+// voltage.
 TEST(an_overdamped_arm_is_predicted_too)
 {
     static const char *const damping[] = {"arm.modal_ratios=1.2", "arm.modal_ratios=3",
@@ -138,17 +146,17 @@ TEST(an_overdamped_arm_is_predicted_too)
     }
 }
 
-// A hub that the motor's own friction holds back comes to rest late or only in the limit: later
-// than the pulse is followed nothing is claimed.
+// A hub that the motor's own friction holds back comes to rest late or only in the limit:
+// later than the pulse is followed nothing is claimed.
 TEST(a_damped_hub_is_predicted_too)
 {
     static const double friction[] = {0.03, 0.1, 0.2, 0.3, 0.5, 0.7, 1, 2, 3, 8};
     static const double volts[] = {2, 5, 10};
     int held = 0;
     for (int i = 0; i < 60; i++) {
-        comparison c =
-            compare(4.92, volts[i / 10 % 3], i < 30 ? "wall.kind=point" : "wall.kind=plane",
-                    formatted("motor.viscous_friction=%g", friction[i % 10]));
+        comparison c = compare(4.92, volts[i / 10 % 3],
+                               i < 30 ? "wall.kind=point" : "wall.kind=plane",
+                               formatted("motor.viscous_friction=%g", friction[i % 10]));
         if (c.predicted.holds) {
             check_relative(c.predicted.force, c.simulated.first_pulse_peak_N, 0.01);
             held++;
@@ -193,14 +201,15 @@ static prediction of_one_link(const char *const *settings, const voltage_profile
     assert_int_equal(predict_pulse(&a, &p.method, q, w, command, true, &out), STATUS_OK);
 
     // whether energies are looked at changes nothing
-    assert_int_equal(predict_pulse(&a, &p.method, q, w, command, false, &plain), STATUS_OK);
+    assert_int_equal(predict_pulse(&a, &p.method, q, w, command, false, &plain),
+                     STATUS_OK);
     assert_int_equal(plain.doubtful, out.doubtful);
     check_relative(plain.force, out.force, 1e-9);
     return out;
 }
 
-// A rod on a rigid wall is held by it with what the motor presses, then as later; on one that gives
-// it swings as a mass on a spring about the hub.
+// A rod on a rigid wall is held by it with what the motor presses, then as later; on one
+// that gives it swings as a mass on a spring about the hub.
 TEST(one_link_presses_with_its_motor)
 {
     const double at[] = {0.05}, more[] = {3}, off[] = {0};
@@ -216,11 +225,13 @@ TEST(one_link_presses_with_its_motor)
     check_relative(of_one_link(rigid, &weaker).force, per_volt, 1e-6);
 
     // v sqrt(k m), m the rod's and the hub's inertia over the square of its length
-    const char *const *const soft = given(
-        "arm.links=1 motor.voltage=0 motor.stiction=0 motor.viscous_friction=0 motor.back_emf=0 "
-        "wall.angle=0.1 wall.contact=kelvin-voigt wall.stiffness=1e5 wall.damping=0");
+    const char *const *const soft =
+        given("arm.links=1 motor.voltage=0 motor.stiction=0 "
+              "motor.viscous_friction=0 motor.back_emf=0 wall.angle=0.1 "
+              "wall.contact=kelvin-voigt wall.stiffness=1e5 wall.damping=0");
     const parameters s = fixture_parameters(soft);
-    const double mass = s.arm.mass / 3 + s.arm.hub_inertia / (s.arm.length * s.arm.length);
+    const double mass =
+        s.arm.mass / 3 + s.arm.hub_inertia / (s.arm.length * s.arm.length);
     out = of_one_link(soft, &none);
     check_relative(out.force, 0.6 * s.arm.length * sqrt(1e5 * mass), 0.01);
     assert_true(isnan(out.restitution)); // no joint stores anything
@@ -235,9 +246,10 @@ TEST(without_a_wall_there_is_no_touch)
     assert_true(isnan(out.force));
 }
 
-// What the motion does under commands that are given after the touch: peak of the pulse, its delay,
-// and the energies that e_eq is made of.
-static prediction follow_motion(const arm *source, motion *m, const voltage_profile *command)
+// What the motion does under commands that are given after the touch: peak of the pulse,
+// its delay, and the energies that e_eq is made of.
+static prediction follow_motion(const arm *source, motion *m,
+                                const voltage_profile *command)
 {
     arm a = *source;
     motion_report report = {.event = MOTION_IMPACT};
@@ -265,14 +277,15 @@ static prediction follow_motion(const arm *source, motion *m, const voltage_prof
             motion_apply(&a, m, &report);
         } while (report.event != MOTION_REACHED && m->state[SLOT_CONTACT] != 0);
     }
-    double left =
-        chain_kinetic_energy(&a, state_angles(m, m->state), state_velocities(m, m->state));
+    double left = chain_kinetic_energy(&a, state_angles(m, m->state),
+                                       state_velocities(m, m->state));
     return (prediction){.force = m->record.pulse_peak,
                         .delay = m->record.pulse_peak_time - touch,
                         .restitution = (left - kinetic) / most_strain};
 }
 
-static void predict_and_follow(const char *joint, const char *links, const voltage_profile *command)
+static void predict_and_follow(const char *joint, const char *links,
+                               const voltage_profile *command)
 {
     parameters p = parameters_with("%s %s arm.k1=90 motor.voltage=1", joint, links);
     arm a = arm_of(&p);
@@ -281,8 +294,8 @@ static void predict_and_follow(const char *joint, const char *links, const volta
     assert_int_equal(predict_pulse(&a, &p.method, state_angles(m, m->state),
                                    state_velocities(m, m->state), command, true, &out),
                      STATUS_OK);
-    print_message("%s, %s, %d commands: %g N after %g s, e_eq %g\n", joint, links, command->count,
-                  out.force, out.delay, out.restitution);
+    print_message("%s, %s, %d commands: %g N after %g s, e_eq %g\n", joint, links,
+                  command->count, out.force, out.delay, out.restitution);
     assert_true(out.holds);
     prediction is = follow_motion(&a, m, command);
     check_relative(out.force, is.force, 0.005);
@@ -300,13 +313,16 @@ TEST(a_prescribed_voltage_is_followed)
 {
     const double times[] = {0.01, 0.03}, volts[] = {0.5, 1.5};
     predict_and_follow("arm.hub_joint=rigid", "arm.links=2", &(voltage_profile){0});
-    predict_and_follow("arm.hub_joint=rigid", "arm.links=2", &(voltage_profile){2, times, volts});
-    predict_and_follow("arm.hub_joint=spring", "arm.links=2", &(voltage_profile){2, times, volts});
-    predict_and_follow("arm.hub_joint=spring", "arm.links=5", &(voltage_profile){2, times, volts});
+    predict_and_follow("arm.hub_joint=rigid", "arm.links=2",
+                       &(voltage_profile){2, times, volts});
+    predict_and_follow("arm.hub_joint=spring", "arm.links=2",
+                       &(voltage_profile){2, times, volts});
+    predict_and_follow("arm.hub_joint=spring", "arm.links=5",
+                       &(voltage_profile){2, times, volts});
 }
 
-// What a pulse of a quarter of a millisecond gives back does not depend on the engine, whose steps
-// end at other instants of it.
+// What a pulse of a quarter of a millisecond gives back does not depend on the engine,
+// whose steps end at other instants of it.
 TEST(a_short_pulse_gives_back_the_same_by_any_engine)
 {
     static const char *const more[] = {"arm.air_drag=0", "arm.air_drag=1e-11",
@@ -314,11 +330,13 @@ TEST(a_short_pulse_gives_back_the_same_by_any_engine)
     for (EACH_OF(double, rate, 1.3, 1.7, 2.1, 2.5)) {
         double first = 0;
         for (EACH(setting, more)) {
-            parameters p = parameters_with("arm.hub_joint=spring motor.voltage=3 %s", *setting);
+            parameters p =
+                parameters_with("arm.hub_joint=spring motor.voltage=3 %s", *setting);
             arm a = arm_of(&p);
             const double q[3] = {0.1, 0.1, 0.1}, w[3] = {*rate, *rate, 1.3 * *rate};
             prediction out;
-            assert_int_equal(predict_pulse(&a, &p.method, q, w, NULL, true, &out), STATUS_OK);
+            assert_int_equal(predict_pulse(&a, &p.method, q, w, NULL, true, &out),
+                             STATUS_OK);
             assert_true(out.holds && out.restitution > 0.1);
             first = first > 0 ? first : out.restitution;
             check_relative(out.restitution, first, 2e-4);
@@ -334,8 +352,8 @@ TEST(an_elastic_impact_does_not_hold)
     assert_false(out.doubtful);
 }
 
-// Commands take the force down after its first peak and up to a higher one: that is the answer as
-// long as the force does not vanish in between, else the first peak is.
+// Commands take the force down after its first peak and up to a higher one: that is the
+// answer as long as the force does not vanish in between, else the first peak is.
 TEST(a_force_that_vanishes_ends_the_pulse)
 {
     parameters p = parameters_with("motor.voltage=1");
@@ -350,7 +368,8 @@ TEST(a_force_that_vanishes_ends_the_pulse)
         const double volts[] = {1 + 0.03 * i, -5};
         const voltage_profile command = {2, times, volts};
         prediction out;
-        assert_int_equal(predict_pulse(&a, &p.method, q, w, &command, true, &out), STATUS_OK);
+        assert_int_equal(predict_pulse(&a, &p.method, q, w, &command, true, &out),
+                         STATUS_OK);
         assert_true(out.holds && !out.doubtful);
         if (out.delay > times[0]) {
             assert_true(out.force > 1.2 * plain.force);
@@ -367,9 +386,9 @@ TEST(a_force_that_vanishes_ends_the_pulse)
     assert_true(held > 100 && lost > 50);
 }
 
-// A gentle touch is one damped oscillation of the hub, x'' = a - c x' - k x, and the force
-// (2 k2 x + 2 d x' + (m33 - m23) x'')/l, l a link's length, d the joint's damping. The closed form
-// and the followed pulse are both compared with it.
+// A gentle touch is one damped oscillation of the hub, x'' = a - c x' - k x, and the
+// force (2 k2 x + 2 d x' + (m33 - m23) x'')/l, l a link's length, d the joint's damping.
+// The closed form and the followed pulse are both compared with it.
 TEST(a_gentle_touch_is_one_oscillation)
 {
     static const struct {
@@ -381,8 +400,9 @@ TEST(a_gentle_touch_is_one_oscillation)
     for (int i = 0; i < 48; i++) {
         const double size = 1e-3; // of all of it, so that nothing bends far
         const double ratio = ratios[i / 12];
-        parameters p = parameters_with("%s motor.stiction=0 wall.angle=0 method.rest_speed=0",
-                                       walls[i / 6 % 2]);
+        parameters p =
+            parameters_with("%s motor.stiction=0 wall.angle=0 method.rest_speed=0",
+                            walls[i / 6 % 2]);
         p.arm.damping_ratio = ratio;
         p.motor.voltage = size * touches[i % 6].volts;
         arm a = arm_of(&p);
@@ -390,7 +410,8 @@ TEST(a_gentle_touch_is_one_oscillation)
         const double q[2] = {x0, -x0};
         const double w[2] = {size * touches[i % 6].speed, size * touches[i % 6].second};
 
-        // masses of the two angles, and of the one that is left: both turn against each other
+        // masses of the two angles, and of the one that is left: both turn against each
+        // other
         const double l = 0.5, ml2 = 0.20054 * l * l, m33 = p.arm.link_inertia + ml2 / 4;
         const double m23 = ml2 / 2, m22 = m33 + ml2 + p.arm.hub_inertia;
         const double mass = m22 + m33 - 2 * m23, d = a.joint_damping;
@@ -409,7 +430,8 @@ TEST(a_gentle_touch_is_one_oscillation)
             v = e * ((sine * turn - decay * (x0 - rest)) * co -
                      (sine * decay + turn * (x0 - rest)) * si);
             const double acceleration = drive - c * v - k * x;
-            const double force = (2 * p.arm.k2 * x + 2 * d * v + (m33 - m23) * acceleration) / l;
+            const double force =
+                (2 * p.arm.k2 * x + 2 * d * v + (m33 - m23) * acceleration) / l;
             if (force < 0) {
                 break;
             }
@@ -421,7 +443,8 @@ TEST(a_gentle_touch_is_one_oscillation)
 
         const prediction one = predicted(&p, q, w);
         prediction other;
-        assert_int_equal(predict_pulse(&a, &p.method, q, w, NULL, true, &other), STATUS_OK);
+        assert_int_equal(predict_pulse(&a, &p.method, q, w, NULL, true, &other),
+                         STATUS_OK);
         assert_int_equal(one.holds, isfinite(peak));
         assert_int_equal(other.holds, isfinite(peak));
         if (one.holds) {

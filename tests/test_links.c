@@ -34,8 +34,8 @@ static const links_row *row_of(const links_study *study, const char *key)
     return NULL;
 }
 
-// Frequencies and statics have the beam's as their limit, whether the first link is held by the hub
-// (an error of order one) or by the beam's root (order two).
+// Frequencies and statics have the beam's as their limit, whether the first link is held
+// by the hub (an error of order one) or by the beam's root (order two).
 TEST(small_motion_tends_to_the_beam)
 {
     static const char *const keys[] = {"frequency_tip_free_Hz", "frequency_tip_pinned_Hz",
@@ -52,8 +52,9 @@ TEST(small_motion_tends_to_the_beam)
     }
 }
 
-// The stopped half-infinite beam: 4 EI v (rho A / 4 EI)^(3/4) sqrt(t / pi), which many links meet
-// within a hundredth. An undamped beam has it, a damped one and a wall that gives do not.
+// The stopped half-infinite beam: 4 EI v (rho A / 4 EI)^(3/4) sqrt(t / pi), which many
+// links meet within a hundredth. An undamped beam has it, a damped one and a wall that
+// gives do not.
 TEST(a_blow_tends_to_the_stopped_beam)
 {
     const links_row *momentum = row_of(of_fast_arm(), "momentum_2ms_Ns"),
@@ -63,23 +64,25 @@ TEST(a_blow_tends_to_the_stopped_beam)
     assert_true(momentum->enough >= 8 && momentum->enough <= 32);
     check_below(2 * momentum->beam, momentum->value[0]);
 
-    const links_study soft = studied("corrected/plane-wall-fast", "wall.contact=kelvin-voigt"),
-                      slow = studied("corrected/plane-wall-fast", "arm.damping_ratio=0.05");
+    const links_study soft = studied("corrected/plane-wall-fast",
+                                     "wall.contact=kelvin-voigt"),
+                      slow =
+                          studied("corrected/plane-wall-fast", "arm.damping_ratio=0.05");
     assert_true(isnan(row_of(&soft, "momentum_2ms_Ns")->beam));
     assert_true(isnan(row_of(&slow, "sensed_1ms_N")->beam));
 }
 
-// What a run of the same arm comes to, by its rows and events: first impulse, momentum of 2 ms, and
-// a lag of 1 ms that is stepped finely through the first 20 ms.
+// What a run of the same arm comes to, by its rows and events: first impulse, momentum of
+// 2 ms, and a lag of 1 ms that is stepped finely through the first 20 ms.
 TEST(a_blow_is_what_rows_and_events_come_to)
 {
     static const char *const bounces[] = {"wall.restitution=0", "wall.restitution=0.3"};
     for (int kind = 0; kind < 2; kind++) {
         const links_study study = studied("corrected/plane-wall-fast", bounces[kind]);
         for (int i = 0; i < 3; i++) {
-            KEPT_SCENARIO(s) = shipped_with(
-                "corrected/plane-wall-fast",
-                formatted("arm.links=%d method.step=1e-5 %s", links_numbers[i], bounces[kind]));
+            KEPT_SCENARIO(s) = shipped_with("corrected/plane-wall-fast",
+                                            formatted("arm.links=%d method.step=1e-5 %s",
+                                                      links_numbers[i], bounces[kind]));
             KEPT_RUN(r) = run_done(&s, true);
             const double touch = r.summary.first_contact_s, end = touch + 0.02;
 
@@ -88,7 +91,8 @@ TEST(a_blow_is_what_rows_and_events_come_to)
             size_t next = 0;
             for (size_t k = 0; k + 1 < r.trace.row_count; k++) {
                 const sample *a = &r.trace.rows[k], *b = a + 1;
-                for (; next < r.trace.event_count && r.trace.events[next].time <= a->time; next++) {
+                for (; next < r.trace.event_count && r.trace.events[next].time <= a->time;
+                     next++) {
                     const event *e = &r.trace.events[next];
                     if (e->kind == EVENT_IMPACT && e->time <= end) {
                         first = e->time == touch ? e->impulse : first;
@@ -117,8 +121,10 @@ TEST(a_blow_is_what_rows_and_events_come_to)
 TEST(two_links_read_as_one_impulse)
 {
     const double impulse = row_of(of_fast_arm(), "first_impulse_Ns")->value[0];
-    check_relative(row_of(of_fast_arm(), "sensed_500us_N")->value[0], impulse / 0.5e-3, 1e-12);
-    check_relative(row_of(of_fast_arm(), "sensed_2ms_N")->value[0], impulse / 2e-3, 1e-12);
+    check_relative(row_of(of_fast_arm(), "sensed_500us_N")->value[0], impulse / 0.5e-3,
+                   1e-12);
+    check_relative(row_of(of_fast_arm(), "sensed_2ms_N")->value[0], impulse / 2e-3,
+                   1e-12);
     check_close(impulse, 0.15583707, 1e-6); // docs/explanation/trust.md
 }
 
@@ -134,8 +140,8 @@ TEST(a_rigid_contact_has_no_limit)
     assert_int_equal(peak->enough + impulse->enough, 0);
 }
 
-// The limit against the transform it comes from: y(t) of K / sqrt(t) by the substitution u =
-// sqrt(t).
+// The limit against the transform it comes from: y(t) of K / sqrt(t) by the substitution
+// u = sqrt(t).
 TEST(the_beams_limit_is_the_lag_of_an_inverse_root)
 {
     const parameters p = defaults_of(ARM_CORRECTED);
@@ -152,7 +158,9 @@ TEST(the_beams_limit_is_the_lag_of_an_inverse_root)
     }
     check_relative(links_beam_sensed(&p, 2, tau), largest, 1e-5);
     // K itself for the default beam, by hand: EI = 2.46 N m2, rho A = 0.40108 kg/m
-    check_relative(k, 2 * pow(2.46, 0.25) * pow(0.40108, 0.75) / sqrt(2 * 3.14159265358979), 1e-12);
+    check_relative(k,
+                   2 * pow(2.46, 0.25) * pow(0.40108, 0.75) / sqrt(2 * 3.14159265358979),
+                   1e-12);
 }
 
 // Enough is the fewest from which on all are near, not the first that happens to be.

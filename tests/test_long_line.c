@@ -1,6 +1,6 @@
-// A long line from which cairo omits a piece for lack of memory: the drawing reports it. The
-// functions below take the allocator's place in cairo, too, so that each request of a stroke can be
-// refused.
+// A long line from which cairo omits a piece for lack of memory: the drawing reports it.
+// The functions below take the allocator's place in cairo, too, so that each request of a
+// stroke can be refused.
 #include <signal.h>
 
 #include "render/page/picture_file.h"
@@ -58,15 +58,16 @@ static status draw(cairo_surface_t *onto, long requests)
 
 typedef enum outcome { WHOLE, SAID, LACKING, CRASHED, OUTCOMES } outcome;
 
-// The result of a drawing with a refused request, in a separate process because cairo crashes where
-// it does not get some of them.
+// The result of a drawing with a refused request, in a separate process because cairo
+// crashes where it does not get some of them.
 static outcome try_drawing(const unsigned char *wanted, size_t size, long requests)
 {
     const pid_t child = fork();
     if (child == 0) {
         signal(SIGSEGV, SIG_DFL);
         signal(SIGABRT, SIG_DFL);
-        cairo_surface_t *onto = cairo_image_surface_create(CAIRO_FORMAT_RGB24, SIZE, SIZE);
+        cairo_surface_t *onto =
+            cairo_image_surface_create(CAIRO_FORMAT_RGB24, SIZE, SIZE);
         const bool drawn = draw(onto, requests) == STATUS_OK;
         const bool same = memcmp(cairo_image_surface_get_data(onto), wanted, size) == 0;
         _exit(!drawn ? SAID : same ? WHOLE : LACKING);

@@ -1,5 +1,5 @@
-// Long runs: computed in the background of the session, stopped, continued, resumed from another
-// run's rows, which are then kept once.
+// Long runs: computed in the background of the session, stopped, continued, resumed from
+// another run's rows, which are then kept once.
 #include "tests/shared_memory.h"
 #include "tests/trace_check.h"
 
@@ -7,7 +7,8 @@
 
 #include "tests/session_fixture.h"
 
-static void open_lasting(session *s, const char *name, const char *duration, double patience)
+static void open_lasting(session *s, const char *name, const char *duration,
+                         double patience)
 {
     scenario base;
     assert_int_equal(scenario_open(&base, name, fail_on_fault, NULL), STATUS_OK);
@@ -15,8 +16,9 @@ static void open_lasting(session *s, const char *name, const char *duration, dou
     DONE(session_open(s, &base, patience, &f));
 }
 
-// Opens a session on a run of twenty links and looks until it has `rows` rows. Where a busy machine
-// ends the run before anybody looks, a longer one is opened. Returns the run's duration [s].
+// Opens a session on a run of twenty links and looks until it has `rows` rows. Where a
+// busy machine ends the run before anybody looks, a longer one is opened. Returns the
+// run's duration [s].
 static int open_while_computing(session *s, size_t rows)
 {
     for (int duration = 4;; duration *= 2) {
@@ -39,7 +41,8 @@ static int wait_for_run(session *s)
     while (s->computing != NULL) {
         const trace *t = &s->run.trace;
         size_t before = t->row_count;
-        double sum = t->rows[before - 1].force + t->angles[before * (size_t)t->angle_count - 1];
+        double sum =
+            t->rows[before - 1].force + t->angles[before * (size_t)t->angle_count - 1];
         assert_true(isfinite(sum));
         for (size_t i = 1; i < t->event_count; i++) {
             assert_true(t->events[i].time >= t->events[i - 1].time);
@@ -75,9 +78,10 @@ static void assert_as_from_the_start(const session *s)
 TEST(a_resumed_run_is_the_run_from_the_start)
 {
     random_generator random = seeded(7);
-    for (EACH_TEXT(c, "corrected/first-impact", "corrected/newmark", "corrected/restitution",
-                   "corrected/spring-hub", "corrected/stuck-hub", "corrected/five-links",
-                   "corrected/pull-away", "compare/hybrid", "thesis/fig-3-4")) {
+    for (EACH_TEXT(c, "corrected/first-impact", "corrected/newmark",
+                   "corrected/restitution", "corrected/spring-hub", "corrected/stuck-hub",
+                   "corrected/five-links", "corrected/pull-away", "compare/hybrid",
+                   "thesis/fig-3-4")) {
         KEPT_SESSION(s);
         fault f = {0};
         open_lasting(&s, *c, "3", HUGE_VAL);
@@ -87,7 +91,8 @@ TEST(a_resumed_run_is_the_run_from_the_start)
                 session_seek(&s, s.now + 3e-4 * random_uniform(&random));
             }
             if (k % 4 == 1 && s.run.summary.status == STATUS_OK &&
-                session_push(&s, 0.02 * (random_uniform(&random) - 0.5), &f) != STATUS_OK) {
+                session_push(&s, 0.02 * (random_uniform(&random) - 0.5), &f) !=
+                    STATUS_OK) {
                 assert_non_null(strstr(f.text, "knows no pushes"));
             } else if (k % 4 == 2) {
                 change(&s, "run.duration", k < 6 ? "3.5" : "2.8");
@@ -122,7 +127,9 @@ TEST(test_a_change_supersedes_a_run_being_computed)
             assert_int_equal(session_undo(&s, &f), STATUS_OK);
         }
         // a change that is refused lets the run go on
-        assert_int_not_equal(session_change(&s, PARAMETER_INDEX(arm.link_inertia), "-1", &f), 0);
+        assert_int_not_equal(session_change(&s, PARAMETER_INDEX(arm.link_inertia), "-1",
+                                            &f),
+                             0);
     }
     wait_for_run(&s);
     assert_as_from_the_start(&s);
@@ -189,7 +196,8 @@ static void check_shared_rows(const char *name)
         session_seek(&s, 59 + 0.1 * i);
         DONE(session_keep_beside(&s, &s.run, &f));
         change(&s, "arm.k2", i % 2 ? "7.5" : "6.5");
-        // two runs with the same rows but for the last second and chunks that are not full
+        // two runs with the same rows but for the last second and chunks that are not
+        // full
         assert_true(shared_array_memory() < alone + alone / 60 + 2 * arrays * chunk);
     }
     assert_as_from_the_start(&s);

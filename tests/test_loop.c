@@ -1,5 +1,5 @@
-// A run that a program steps: what holds at its end, after a failure, and of states and inputs that
-// are not its own.
+// A run that a program steps: what holds at its end, after a failure, and of states and
+// inputs that are not its own.
 
 #include "tests/arm_fixture.h"
 
@@ -18,7 +18,8 @@ static run_loop *begun(const char *const *settings, const given_law *law)
 // The end of a loop is final for every way of continuing, with a law and without one.
 TEST(the_end_stays)
 {
-    const char *const *const cases[] = {SETTINGS(BRIEF), SETTINGS(BRIEF, "control.law=hybrid"),
+    const char *const *const cases[] = {SETTINGS(BRIEF),
+                                        SETTINGS(BRIEF, "control.law=hybrid"),
                                         given("arm.model=printed run.duration=0.1")};
     for (EACH(c, cases)) {
         KEPT_LOOP(l) = begun(*c, NULL);
@@ -38,14 +39,17 @@ TEST(the_end_stays)
 }
 
 // One volt, and after a while none that is a number.
-static void give_up(void *memory, const controller_input *input, controller_output *output)
+static void give_up(void *memory, const controller_input *input,
+                    controller_output *output)
 {
     (void)memory;
     output->command = input->time < 0.0299 ? 1 : (double)NAN;
 }
 
-static const controller gives_up = {
-    .interface = CONTROLLER_INTERFACE, .name = "gives up", .memory_size = 16, .sample = give_up};
+static const controller gives_up = {.interface = CONTROLLER_INTERFACE,
+                                    .name = "gives up",
+                                    .memory_size = 16,
+                                    .sample = give_up};
 
 TEST(what_stopped_it_is_said_again)
 {
@@ -71,7 +75,8 @@ TEST(what_stopped_it_is_said_again)
 
 TEST(no_more_commands_are_under_way_than_have_room)
 {
-    KEPT_LOOP(l) = begun(SETTINGS(BRIEF, "control.law=force-pd", "control.rate=2000"), NULL);
+    KEPT_LOOP(l) =
+        begun(SETTINGS(BRIEF, "control.law=force-pd", "control.rate=2000"), NULL);
     DONE(loop_until(l, 0.02, &f));
     REFUSED(STATUS_BAD_SCENARIO, "together longer than 5 periods",
             loop_set_number(l, PARAMETER_INDEX(control.delay), 0.042, &f));
@@ -84,11 +89,14 @@ TEST(a_refused_input_changes_nothing)
     KEPT_LOOP(same) = begun(SETTINGS(BRIEF, "arm.hub_joint=beam"), NULL);
     fault f = {.text = ""};
     assert_int_equal(loop_until(l, 0.02, &f), STATUS_OK);
-    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.k2), -1, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.k2), -1, &f),
+                     STATUS_BAD_SCENARIO);
     assert_string_equal(f.path, "arm.k2");
-    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.k1), 90, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.k1), 90, &f),
+                     STATUS_BAD_SCENARIO);
     assert_non_null(strstr(f.text, "arm.k1 is for arm.hub_joint = spring"));
-    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.links), 3, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(loop_set_number(l, PARAMETER_INDEX(arm.links), 3, &f),
+                     STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "cannot change during this run"));
     assert_int_equal(loop_until(l, 0.08, &f), STATUS_OK);
     assert_int_equal(loop_until(same, 0.02, &f), STATUS_OK);
@@ -112,7 +120,8 @@ TEST(a_state_belongs_to_its_loop)
         loop_save(l, kept);
         const sample before = loop_row(l);
         REFUSED(STATUS_BAD_ARGUMENT, "", loop_restore(l, kept, size - 1, &f));
-        REFUSED(STATUS_BAD_ARGUMENT, "another scenario", loop_restore(other, kept, size, &f));
+        REFUSED(STATUS_BAD_ARGUMENT, "another scenario",
+                loop_restore(other, kept, size, &f));
 
         // continued and restored
         DONE(loop_until(l, 0.025, &f));
@@ -122,14 +131,15 @@ TEST(a_state_belongs_to_its_loop)
     }
 }
 
-// What is kept of a state is the state: two loops that have come to the same one keep the same
-// bytes, wherever they lie.
+// What is kept of a state is the state: two loops that have come to the same one keep the
+// same bytes, wherever they lie.
 TEST(a_state_holds_no_addresses)
 {
 #define LAW(name, prefix, word, ...) {"arm.model=corrected", "control.law=" word},
-    static const char *const settings[][2] = {
-        CONTROL_LAWS(LAW){"arm.model=corrected", "control.law=none"},
-        {"arm.model=printed", "control.law=force-pd"}};
+    static const char *const settings[][2] = {CONTROL_LAWS(LAW){"arm.model=corrected",
+                                                                "control.law=none"},
+                                              {"arm.model=printed",
+                                               "control.law=force-pd"}};
 #undef LAW
     for (EACH(c, settings)) {
         char *kept[2];
@@ -150,13 +160,13 @@ TEST(a_state_holds_no_addresses)
     }
 }
 
-// A state kept while the wall's face is on its way back has it where it is: the arm meets it again
-// where it does without going back.
+// A state kept while the wall's face is on its way back has it where it is: the arm meets
+// it again where it does without going back.
 TEST(a_state_has_the_face_on_its_way)
 {
-    KEPT_LOOP(l) =
-        begun(given("wall.contact=kelvin-voigt wall.stiffness=100 wall.damping=500 run.duration=2"),
-              NULL);
+    KEPT_LOOP(l) = begun(given("wall.contact=kelvin-voigt wall.stiffness=100 "
+                               "wall.damping=500 run.duration=2"),
+                         NULL);
     DONE(loop_until(l, 0.8, &f));
     DONE(loop_set_number(l, PARAMETER_INDEX(motor.voltage), -0.5, &f));
     DONE(loop_until(l, 1.2, &f));
@@ -180,8 +190,9 @@ TEST(a_state_has_the_face_on_its_way)
     assert_memory_equal(&ends[0], &ends[1], sizeof ends[0]);
 }
 
-// Another voltage each millisecond, whose strides are made for no more than the next change or two:
-// the motion is the one that a program finds which stops in between, and the ledger closes.
+// Another voltage each millisecond, whose strides are made for no more than the next
+// change or two: the motion is the one that a program finds which stops in between, and
+// the ledger closes.
 TEST(changes_are_followed_wherever_steps_end)
 {
     const char *const *const settings =
@@ -231,14 +242,17 @@ TEST(a_cut_elsewhere_is_rounding)
     }
 }
 
-// Nor does a cut change where the arm meets the face of a wall that it has left on its way back.
+// Nor does a cut change where the arm meets the face of a wall that it has left on its
+// way back.
 TEST(a_cut_leaves_the_face_on_its_way)
 {
     const char *const *const walls[] = {
         given("arm.links=4 arm.hub_joint=beam motor.voltage=4 wall.kind=plane "
-              "wall.contact=kelvin-voigt wall.stiffness=2e3 wall.damping=100 run.duration=0.45"),
+              "wall.contact=kelvin-voigt wall.stiffness=2e3 wall.damping=100 "
+              "run.duration=0.45"),
         given("arm.links=4 arm.hub_joint=beam motor.voltage=8 wall.kind=plane "
-              "wall.contact=hunt-crossley wall.stiffness=1e4 wall.damping=1e5 run.duration=0.3")};
+              "wall.contact=hunt-crossley wall.stiffness=1e4 wall.damping=1e5 "
+              "run.duration=0.3")};
     for (int i = 0; i < 2; i++) {
         KEPT_LOOP(whole) = begun(walls[i], NULL), *cut = begun(walls[i], NULL);
         double left = 0;
@@ -256,8 +270,8 @@ TEST(a_cut_leaves_the_face_on_its_way)
     }
 }
 
-// A loop that plays back takes the state of another one, which is gone by then, and goes on as that
-// one would have.
+// A loop that plays back takes the state of another one, which is gone by then, and goes
+// on as that one would have.
 TEST_IN_FOLDER(a_playback_goes_on_in_another_loop)
 {
     put_file("played.csv", "t,u\n0,1\n0.01,2\n0.03,0.5\n0.06,1.5\n");

@@ -1,4 +1,5 @@
-// Damping of the beam by mode and by air: how each mode decays, and what the ledger says of it.
+// Damping of the beam by mode and by air: how each mode decays, and what the ledger says
+// of it.
 #include "tests/arm_fixture.h"
 
 enum { MOST = 9 }; // bodies
@@ -19,7 +20,8 @@ static held_modes held_modes_of(const parameters *p)
     return m;
 }
 
-// Joints that the arm does not have take no part; an arm may have as many as a list has numbers.
+// Joints that the arm does not have take no part; an arm may have as many as a list has
+// numbers.
 TEST(only_joints_that_are_there_are_damped)
 {
     const char *const *const arms[] = {given("arm.links=5"),
@@ -51,9 +53,9 @@ static double product(const held_modes *m, const double *x, const double *y)
     return sum;
 }
 
-// How fast mode i decays and vibrates, from a run of 20 radians begun in its shape with the hub
-// held by friction: an amplitude a e^(-d t) cos(w t + phase) has a'' + 2 d a' + (d^2 + w^2) a = 0,
-// whose two factors three instants give.
+// How fast mode i decays and vibrates, from a run of 20 radians begun in its shape with
+// the hub held by friction: an amplitude a e^(-d t) cos(w t + phase) has a'' + 2 d a' +
+// (d^2 + w^2) a = 0, whose two factors three instants give.
 static void decay_of_mode(const parameters *p, int mode, double *rate, double *frequency)
 {
     held_modes m = held_modes_of(p);
@@ -68,11 +70,13 @@ static void decay_of_mode(const parameters *p, int mode, double *rate, double *f
     motion_evaluate(&m.arm, run, run->state);
     run->record.start_energy = chain_strain_energy(&m.arm, state_angles(run, run->state));
 
-    // amplitudes at equal distances, with y[k+1] + y[k-1] = c y[k] - (e^(-2 d h) - 1) y[k-1]
+    // amplitudes at equal distances, with y[k+1] + y[k-1] = c y[k] - (e^(-2 d h) - 1)
+    // y[k-1]
     double amplitude[52], a = 0, b = 0, c = 0, d = 0, e = 0;
     for (int k = 0; k < 52; k++) {
         motion_report report;
-        assert_int_equal(motion_advance(&m.arm, run, k * step, p->method.step, &report), STATUS_OK);
+        assert_int_equal(motion_advance(&m.arm, run, k * step, p->method.step, &report),
+                         STATUS_OK);
         amplitude[k] =
             product(&m, shape, state_angles(run, run->state)) / product(&m, shape, shape);
     }
@@ -83,7 +87,8 @@ static void decay_of_mode(const parameters *p, int mode, double *rate, double *f
         d += amplitude[k] * amplitude[k + 1];
         e -= amplitude[k - 1] * amplitude[k + 1];
     }
-    const double s = (d * c - b * e) / (a * c - b * b), r = (a * e - b * d) / (a * c - b * b);
+    const double s = (d * c - b * e) / (a * c - b * b),
+                 r = (a * e - b * d) / (a * c - b * b);
     *rate = -log(r) / (2 * step);
     *frequency = acos(s / (2 * sqrt(r))) / step;
 
@@ -110,18 +115,19 @@ TEST(modes_decay_with_the_ratios_of_the_list)
     const double ratios[] = {0.02, 0.3, 0.005, 0};
     for (int hub = 0; hub < 2; hub++) {
         for (int mode = 0; mode < 4; mode++) {
-            parameters p =
-                parameters_with("%s arm.links=5 wall.kind=none arm.modal_ratios=0.02,0.3,0.005 "
-                                "motor.stiction=1000 motor.voltage=0",
-                                hubs[hub]);
+            parameters p = parameters_with(
+                "%s arm.links=5 wall.kind=none arm.modal_ratios=0.02,0.3,0.005 "
+                "motor.stiction=1000 motor.voltage=0",
+                hubs[hub]);
             check_decay(&p, mode, ratios[mode]);
         }
     }
 
     // and links that differ
-    parameters p = parameters_with(
-        "arm.links=4 wall.kind=none arm.modal_ratios=0.02,0.3,0.1 arm.joint_stiffness=8,11,5 "
-        "arm.link_lengths=0.2,0.3,0.4,0.1 motor.stiction=1000 motor.voltage=0");
+    parameters p =
+        parameters_with("arm.links=4 wall.kind=none arm.modal_ratios=0.02,0.3,0.1 "
+                        "arm.joint_stiffness=8,11,5 arm.link_lengths=0.2,0.3,0.4,0.1 "
+                        "motor.stiction=1000 motor.voltage=0");
     check_decay(&p, 0, 0.02);
     check_decay(&p, 1, 0.3);
     check_decay(&p, 2, 0.1);
@@ -132,8 +138,8 @@ TEST(air_takes_from_all_modes_alike)
 {
     const double drag = 0.5, rate = drag / 0.40108 / 2;
     for (int mode = 0; mode < 3; mode++) {
-        parameters p = parameters_with(
-            "arm.links=4 wall.kind=none arm.air_drag=0.5 motor.stiction=1000 motor.voltage=0");
+        parameters p = parameters_with("arm.links=4 wall.kind=none arm.air_drag=0.5 "
+                                       "motor.stiction=1000 motor.voltage=0");
         held_modes m = held_modes_of(&p);
         check_decay(&p, mode, rate / m.modes.w[mode]);
     }
@@ -144,7 +150,8 @@ TEST(ratios_in_proportion_are_structural_damping)
 {
     for (int hub = 0; hub < 2; hub++) {
         parameters p =
-            parameters_with("%s arm.links=5 arm.damping_ratio=0.03 wall.kind=plane", hubs[hub]);
+            parameters_with("%s arm.links=5 arm.damping_ratio=0.03 wall.kind=plane",
+                            hubs[hub]);
         held_modes m = held_modes_of(&p);
         char list[160] = "arm.modal_ratios=";
         for (int i = 0; i < m.modes.count; i++) {
@@ -152,7 +159,8 @@ TEST(ratios_in_proportion_are_structural_damping)
             snprintf(list + used, sizeof list - used, "%s%.15g", i > 0 ? "," : "",
                      0.03 * m.modes.w[i] / m.modes.w[0]);
         }
-        parameters q = parameters_with("%s arm.links=5 %s wall.kind=plane", hubs[hub], list);
+        parameters q =
+            parameters_with("%s arm.links=5 %s wall.kind=plane", hubs[hub], list);
         arm b = arm_of(&q);
         assert_int_equal(b.damped_modes, m.modes.count);
 
@@ -164,10 +172,10 @@ TEST(ratios_in_proportion_are_structural_damping)
             angle[i] = 0.2 * sin(2.1 * i);
             velocity[i] = cos(1.7 * i);
         }
-        chain_accelerations(&m.arm, work, angle, velocity, (contact_state){true, HUB_FORWARD}, one,
-                            &r);
-        chain_accelerations(&b, work, angle, velocity, (contact_state){true, HUB_FORWARD}, other,
-                            &s);
+        chain_accelerations(&m.arm, work, angle, velocity,
+                            (contact_state){true, HUB_FORWARD}, one, &r);
+        chain_accelerations(&b, work, angle, velocity, (contact_state){true, HUB_FORWARD},
+                            other, &s);
         for (int i = 0; i < b.dof; i++) {
             check_close(other[i], one[i], 1e-6 * (1 + fabs(one[i])));
         }
@@ -179,7 +187,8 @@ TEST(ratios_in_proportion_are_structural_damping)
 // An arm that turns as a whole loses nothing to damping by mode.
 TEST(an_arm_that_turns_as_a_whole_is_not_damped)
 {
-    parameters p = parameters_with("arm.links=5 arm.hub_joint=beam arm.modal_ratios=0.1,0.2");
+    parameters p =
+        parameters_with("arm.links=5 arm.hub_joint=beam arm.modal_ratios=0.1,0.2");
     held_modes m = held_modes_of(&p);
     double angle[MOST] = {0}, velocity[MOST], alpha[MOST];
     chain_link work[MOST];
@@ -187,7 +196,7 @@ TEST(an_arm_that_turns_as_a_whole_is_not_damped)
     for (int i = 0; i < m.arm.dof; i++) {
         velocity[i] = 3;
     }
-    chain_accelerations(&m.arm, work, angle, velocity, (contact_state){false, HUB_FORWARD}, alpha,
-                        &r);
+    chain_accelerations(&m.arm, work, angle, velocity,
+                        (contact_state){false, HUB_FORWARD}, alpha, &r);
     check_close(r.damping_power, 0, 1e-20);
 }

@@ -1,8 +1,8 @@
 // Modes of the chain against the Euler-Bernoulli beam it approximates.
 #include "tests/arm_fixture.h"
 
-// beta L of mode i of the chain: w = (beta L)^2 sqrt(EI / (rho A L^4)). N links with joints of
-// stiffness k2 N/2 at distances L/N stand for EI = k2 L / 2.
+// beta L of mode i of the chain: w = (beta L)^2 sqrt(EI / (rho A L^4)). N links with
+// joints of stiffness k2 N/2 at distances L/N stand for EI = k2 L / 2.
 static double beta_length(int links, tip_end tip, int mode)
 {
     parameters p = fixture_parameters(SETTINGS(formatted("arm.links=%d", links)));
@@ -13,8 +13,8 @@ static double beta_length(int links, tip_end tip, int mode)
     return sqrt(m.w[mode] / sqrt(stiffness / density) * p.arm.length * p.arm.length);
 }
 
-// The root is held by a whole rigid link, so the clamp sits half a link too far out: first order in
-// 1/N. Richardson's extrapolation of two values takes that error away.
+// The root is held by a whole rigid link, so the clamp sits half a link too far out:
+// first order in 1/N. Richardson's extrapolation of two values takes that error away.
 static void check_mode(tip_end tip, int mode, double expected)
 {
     double coarse = beta_length(32, tip, mode), fine = beta_length(64, tip, mode);
@@ -44,7 +44,8 @@ TEST(two_links_with_locked_hub_have_the_closed_form)
     const double mass = 0.20054, l = 0.5;
     const arm_modes m = modes_of(&a, HUB_LOCKED, TIP_FREE);
     assert_int_equal(m.count, 1);
-    check_relative(m.w[0], sqrt(4.92 / (mass * l * l / 3)), 1e-12); // rod on its own joint
+    check_relative(m.w[0], sqrt(4.92 / (mass * l * l / 3)),
+                   1e-12); // rod on its own joint
     check_close(m.shapes[0], 0, 0);
     check_close(m.shapes[1], 1, 0);
 }
@@ -68,7 +69,8 @@ static const char *const *const any_arms[] = {
     SETTINGS("arm.links=2"),
     SETTINGS("arm.links=5", "arm.hub_joint=spring", "arm.tip_mass=0.1"),
     SETTINGS("arm.links=5", "arm.hub_joint=beam"),
-    SETTINGS("arm.links=4", "arm.joint_stiffness=5,12,30", "arm.link_lengths=0.1,0.4,0.2,0.3"),
+    SETTINGS("arm.links=4", "arm.joint_stiffness=5,12,30",
+             "arm.link_lengths=0.1,0.4,0.2,0.3"),
     SETTINGS("arm.links=3", "arm.hub_joint=beam", "arm.joint_stiffness=60,5,12",
              "arm.link_lengths=0.2,0.5,0.3", "arm.tip_mass=0.05"),
 };
@@ -102,8 +104,8 @@ TEST(matrices_are_those_of_the_energies)
     }
 }
 
-// (K - w^2 M) x is nothing but what holds the hub and a force on the tip, at whose levers the links
-// are; and the tip is where it is held.
+// (K - w^2 M) x is nothing but what holds the hub and a force on the tip, at whose levers
+// the links are; and the tip is where it is held.
 TEST(every_mode_balances_but_for_what_holds_the_arm)
 {
     for (size_t i = 0; i < 4 * sizeof any_arms / sizeof any_arms[0]; i++) {
@@ -122,12 +124,14 @@ TEST(every_mode_balances_but_for_what_holds_the_arm)
                 left[j] = 0;
                 for (int k = 0; k < n; k++) {
                     left[j] +=
-                        (stiffness[j * n + k] - m.w[mode] * m.w[mode] * mass[j * n + k]) * x[k];
+                        (stiffness[j * n + k] - m.w[mode] * m.w[mode] * mass[j * n + k]) *
+                        x[k];
                 }
                 scale = fmax(scale, stiffness[j * n + j]);
                 largest = fmax(largest, x[j]);
                 assert_true(fabs(x[j]) <= 1);
-                deflection += j >= a.first ? arm_link_of(&a, j - a.first).length * x[j] : 0;
+                deflection +=
+                    j >= a.first ? arm_link_of(&a, j - a.first).length * x[j] : 0;
             }
             check_close(largest, 1, 0);
             assert_true(mode == 0 || m.w[mode] >= m.w[mode - 1]);
@@ -136,7 +140,8 @@ TEST(every_mode_balances_but_for_what_holds_the_arm)
             const double force =
                 tip == TIP_PINNED ? left[n - 1] / arm_link_of(&a, a.links - 1).length : 0;
             for (int j = hub == HUB_LOCKED; j < n; j++) {
-                const double lever = j >= a.first ? arm_link_of(&a, j - a.first).length : 0;
+                const double lever =
+                    j >= a.first ? arm_link_of(&a, j - a.first).length : 0;
                 check_close(left[j], force * lever, 1e-9 * scale);
             }
         }

@@ -1,5 +1,5 @@
-// The machine of free flight, impact, contact, release, stick and slip, on motions with closed
-// forms and by what must hold at every row.
+// The machine of free flight, impact, contact, release, stick and slip, on motions with
+// closed forms and by what must hold at every row.
 
 #include "tests/arm_fixture.h"
 #include "tests/told_events.h"
@@ -7,8 +7,9 @@
 // A run of these settings under a script.
 static run_result run_acted(action *todo, int count, const char *const *settings)
 {
-    const scenario s = {
-        .parameters = fixture_parameters(settings), .actions = todo, .action_count = count};
+    const scenario s = {.parameters = fixture_parameters(settings),
+                        .actions = todo,
+                        .action_count = count};
     return run_done(&s, true);
 }
 
@@ -47,16 +48,18 @@ TEST(a_single_rod_follows_its_closed_form)
     check_close(result.summary.impacts, 1, 0);
     check_relative(result.summary.steady_force_N, r.torque + 0.045, 1e-12);
     check_close(result.trace.rows[200].last_angle, rod_angle(&r, 0.2), 1e-13);
-    check_close(find_event(&result, EVENT_IMPACT, 0)->loss, 0.5 * r.inertia * w * w, 1e-12);
+    check_close(find_event(&result, EVENT_IMPACT, 0)->loss, 0.5 * r.inertia * w * w,
+                1e-12);
 }
 
-// Without any damping its velocity is a straight line, however long the stride: what the gap makes
-// of it, the sine of a parabola, has its say in how long that is.
+// Without any damping its velocity is a straight line, however long the stride: what the
+// gap makes of it, the sine of a parabola, has its say in how long that is.
 TEST(a_rod_that_gathers_speed_meets_the_wall_where_it_is)
 {
     for (EACH_TEXT(c, "wall.kind=point", "wall.kind=plane")) {
-        RUN(r, "arm.links=1", "motor.back_emf=0", "motor.viscous_friction=0", "motor.stiction=0",
-            "motor.voltage=8", "wall.angle=2.5", "wall.restitution=0.95", *c, "run.duration=3");
+        RUN(r, "arm.links=1", "motor.back_emf=0", "motor.viscous_friction=0",
+            "motor.stiction=0", "motor.voltage=8", "wall.angle=2.5",
+            "wall.restitution=0.95", *c, "run.duration=3");
         const double torque = 8 * 6.02 * 0.249092 * 9.80665 / 33.6;
         const double t = sqrt(2 * 2.5 * (0.40108 / 3 + 5.2e-3) / torque);
         check_close(r.summary.first_contact_s, t, 1e-12);
@@ -68,8 +71,8 @@ TEST(a_rod_that_gathers_speed_meets_the_wall_where_it_is)
 TEST(a_coasting_rod_sticks_when_friction_says)
 {
     rod r = one_rod();
-    RUN(result, "arm.links=1", "wall.kind=none", "motor.voltage=0", "initial.velocity=0.5",
-        "run.duration=1.2");
+    RUN(result, "arm.links=1", "wall.kind=none", "motor.voltage=0",
+        "initial.velocity=0.5", "run.duration=1.2");
     // I w' = -D w - c: w = 0 at t = ln(1 + D w0 / c) I / D
     double t = log(1 + r.damping * 0.5 / 0.045) / r.rate;
     check_close(find_event(&result, EVENT_STICK, 0)->time, t, 1e-11);
@@ -84,7 +87,8 @@ TEST(a_bouncing_rod_rebounds_by_e_and_comes_to_rest)
     RUN(result, "arm.links=1", "wall.restitution=0.5", "run.duration=1.5");
     const event *first = find_event(&result, EVENT_IMPACT, 0);
     check_relative(first->impulse, 1.5 * r.inertia * first->speed, 1e-12);
-    check_relative(first->loss, 0.5 * r.inertia * first->speed * first->speed * 0.75, 1e-12);
+    check_relative(first->loss, 0.5 * r.inertia * first->speed * first->speed * 0.75,
+                   1e-12);
     // the speeds fall at least by e from bounce to bounce: back EMF takes its share too
     int impacts = (int)result.summary.impacts;
     assert_in_range(impacts, 8, 20);
@@ -92,14 +96,15 @@ TEST(a_bouncing_rod_rebounds_by_e_and_comes_to_rest)
         assert_true(find_event(&result, EVENT_IMPACT, i)->speed <
                     0.5 * find_event(&result, EVENT_IMPACT, i - 1)->speed);
     }
-    // the rest rule: the last impact is slower than the rest speed, and the wall then holds the rod
+    // the rest rule: the last impact is slower than the rest speed, and the wall then
+    // holds the rod
     check_below(find_event(&result, EVENT_IMPACT, impacts - 1)->speed, 1e-4);
     assert_true(find_event(&result, EVENT_IMPACT, impacts - 2)->speed >= 1e-4);
     check_relative(result.summary.steady_force_N, r.torque + 0.045, 1e-12);
 }
 
-// Parameters refuse an arm that starts behind the wall; put there regardless, it cannot be relied
-// on, whatever moves it.
+// Parameters refuse an arm that starts behind the wall; put there regardless, it cannot
+// be relied on, whatever moves it.
 TEST(an_arm_inside_a_rigid_wall_is_never_ok)
 {
     static const char *const methods[] = {"method.name=event", "method.name=newmark",
@@ -119,8 +124,8 @@ TEST(an_arm_inside_a_rigid_wall_is_never_ok)
     }
 }
 
-// A torque that nobody tells the motion of takes a stuck hub beyond stiction: that is noted, and
-// what is within stiction or slides is not.
+// A torque that nobody tells the motion of takes a stuck hub beyond stiction: that is
+// noted, and what is within stiction or slides is not.
 TEST(a_hub_held_beyond_stiction_is_noted)
 {
     for (EACH_TEXT(c, "method.engine=pair", "method.engine=stiff")) {
@@ -136,19 +141,19 @@ TEST(a_hub_held_beyond_stiction_is_noted)
     }
 }
 
-// A point stops the line through the link on both sides of the hub: an arm may start, and press, on
-// its far side, which the run says.
+// A point stops the line through the link on both sides of the hub: an arm may start, and
+// press, on its far side, which the run says.
 TEST(a_start_on_the_point_behind_the_hub_is_a_touch_from_behind)
 {
-    RUN(r, "arm.links=1", "wall.angle=3", "initial.angle=-0.14159265358979312", "motor.voltage=-1",
-        "run.duration=0.2");
+    RUN(r, "arm.links=1", "wall.angle=3", "initial.angle=-0.14159265358979312",
+        "motor.voltage=-1", "run.duration=0.2");
     check_close(r.summary.first_contact_s, 0, 0);
     check_relative(r.summary.steady_force_N, one_rod().torque + 0.045, 1e-12);
     assert_non_null(strstr(r.summary.message, "1 of the touches were behind it"));
 }
 
-// An arm that starts on its wall does not know at what angle that is, which rounding of the gap
-// does: of every arm, motor and wall the run is the same, and comes to its end.
+// An arm that starts on its wall does not know at what angle that is, which rounding of
+// the gap does: of every arm, motor and wall the run is the same, and comes to its end.
 TEST(a_start_on_the_wall_is_the_same_at_any_angle)
 {
     static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt",
@@ -179,7 +184,8 @@ static void check_complementarity(const run_result *r)
         assert_true(row->gap >= -1e-11);
         assert_true(row->force >= -1e-8);
         assert_true(fabs(row->gap * row->force) < 1e-10);
-        assert_true(row->contact == 0 ? row->force == 0 : fabs(row->gap_velocity) < 1e-10);
+        assert_true(row->contact == 0 ? row->force == 0
+                                      : fabs(row->gap_velocity) < 1e-10);
         assert_true(fabs(row->friction_torque) <= 0.045 + 1e-10);
         assert_true(row->sticking == 0 || row->hub_velocity == 0);
     }
@@ -194,14 +200,16 @@ static void check_ledger(const run_result *r)
     }
     for (size_t i = 1; i < r->trace.row_count; i++) {
         assert_true(r->trace.rows[i].time >= r->trace.rows[i - 1].time);
-        assert_true(r->trace.rows[i].friction_loss >= r->trace.rows[i - 1].friction_loss - 1e-15);
+        assert_true(r->trace.rows[i].friction_loss >=
+                    r->trace.rows[i - 1].friction_loss - 1e-15);
         assert_true(r->trace.rows[i].impact_loss >= r->trace.rows[i - 1].impact_loss);
     }
 }
 
 TEST(gap_and_force_stay_complementary_and_energy_is_accounted_for)
 {
-    const char *const links[] = {"arm.links=1", "arm.links=2", "arm.links=3", "arm.links=5"};
+    const char *const links[] = {"arm.links=1", "arm.links=2", "arm.links=3",
+                                 "arm.links=5"};
     for (int i = 0; i < 4 * 8; i++) {
         RUN(r, links[i % 4], i & 4 ? "wall.kind=plane" : "wall.kind=point",
             i & 8 ? "motor.voltage=5" : "motor.voltage=1",
@@ -214,14 +222,15 @@ TEST(gap_and_force_stay_complementary_and_energy_is_accounted_for)
     check_ledger(&r);
 }
 
-// With the arm at rest on the wall and the hub held by friction, the middle spring alone presses.
+// With the arm at rest on the wall and the hub held by friction, the middle spring alone
+// presses.
 TEST(the_steady_force_is_the_springs)
 {
     RUN(r, "run.duration=2");
     const sample *last = LAST_ROW(&r.trace);
     double d = last->last_angle - last->first_angle;
-    double lever =
-        cos(0.1) * cos(last->last_angle) + sin(0.1) * sin(last->last_angle) - 0.5 * cos(d);
+    double lever = cos(0.1) * cos(last->last_angle) + sin(0.1) * sin(last->last_angle) -
+                   0.5 * cos(d);
     check_close(last->sticking, 1, 0);
     check_relative(last->force, -4.92 * d / lever, 1e-9);
     check_relative(r.summary.steady_force_N, last->force, 1e-9);
@@ -231,11 +240,13 @@ TEST(the_located_peak_does_not_depend_on_the_step)
 {
     RUN(coarse, "method.step=4e-3");
     RUN(fine, "method.step=1e-4");
-    check_relative(coarse.summary.first_pulse_peak_N, fine.summary.first_pulse_peak_N, 1e-9);
-    check_close(coarse.summary.first_pulse_time_to_peak_s, fine.summary.first_pulse_time_to_peak_s,
-                1e-5);
+    check_relative(coarse.summary.first_pulse_peak_N, fine.summary.first_pulse_peak_N,
+                   1e-9);
+    check_close(coarse.summary.first_pulse_time_to_peak_s,
+                fine.summary.first_pulse_time_to_peak_s, 1e-5);
     check_close(coarse.summary.first_contact_s, fine.summary.first_contact_s, 1e-11);
-    check_relative(coarse.summary.contact_impulse_Ns, fine.summary.contact_impulse_Ns, 1e-9);
+    check_relative(coarse.summary.contact_impulse_Ns, fine.summary.contact_impulse_Ns,
+                   1e-9);
 }
 
 TEST(without_a_trace_the_summary_is_the_same)
@@ -292,10 +303,10 @@ TEST(events_tell_what_is_in_contact_and_what_sticks)
                          SETS(2.3, motor.stiction, 2), PUSHES(2.4, -0.02),
                          SETS(2.6, motor.stiction, 0)};
         const char *const *wall = walls[i / 4 % 5];
-        KEPT_RUN(r) =
-            run_acted(todo, sizeof todo / sizeof *todo,
-                      SETTINGS(arms[i % 4], wall[0], wall[1], wall[2], "run.duration=3",
-                               "arm.k1=300", i < 20 ? "wall.kind=point" : "wall.kind=plane"));
+        KEPT_RUN(r) = run_acted(todo, sizeof todo / sizeof *todo,
+                                SETTINGS(arms[i % 4], wall[0], wall[1], wall[2],
+                                         "run.duration=3", "arm.k1=300",
+                                         i < 20 ? "wall.kind=point" : "wall.kind=plane"));
         check_events_tell_the_state(&r);
     }
 }
@@ -308,7 +319,8 @@ TEST(a_hub_that_stops_may_release_the_arm)
     int lifted = 0;
     for (size_t i = 0; i + 1 < r.trace.event_count; i++) {
         const event *e = &r.trace.events[i];
-        lifted += e->kind == EVENT_STICK && e[1].kind == EVENT_RELEASE && e[1].time == e->time;
+        lifted +=
+            e->kind == EVENT_STICK && e[1].kind == EVENT_RELEASE && e[1].time == e->time;
     }
     assert_int_equal(lifted, 1);
     check_events_tell_the_state(&r);
@@ -328,14 +340,15 @@ TEST(a_contact_ended_from_outside_is_released)
     for (EACH(c, cases)) {
         action todo = c->todo;
         KEPT_RUN(r) =
-            run_acted(&todo, 1, SETTINGS("arm.links=1", c->restitution, "run.duration=1.2"));
+            run_acted(&todo, 1,
+                      SETTINGS("arm.links=1", c->restitution, "run.duration=1.2"));
         check_close(find_event(&r, EVENT_RELEASE, 0)->time, 1, 0);
         check_events_tell_the_state(&r);
     }
 }
 
-// An arm that starts at rest on the wall is in its first contact at once, held still or not, for
-// any wall; one that swings off at once is not.
+// An arm that starts at rest on the wall is in its first contact at once, held still or
+// not, for any wall; one that swings off at once is not.
 TEST(an_arm_that_starts_on_the_wall_is_in_contact)
 {
     static const struct {
@@ -368,22 +381,23 @@ TEST(an_arm_that_starts_on_the_wall_is_in_contact)
         run_finish(&r);
 
         // behind a spring the tip swings off as the fourth power of the time
-        r = RUN_OF("arm.hub_joint=spring", "arm.k1=276", "arm.k2=64", "motor.voltage=2", *each,
-                   "wall.angle=0");
+        r = RUN_OF("arm.hub_joint=spring", "arm.k1=276", "arm.k2=64", "motor.voltage=2",
+                   *each, "wall.angle=0");
         check_close(r.summary.first_contact_s, 0.0262512050, 1e-9);
         assert_true(r.summary.first_pulse_peak_N > 1);
     }
 }
 
-// One that starts on a wall that gives and moves into it is in contact from the start: as one that
-// comes from 1 nm in front of it.
+// One that starts on a wall that gives and moves into it is in contact from the start: as
+// one that comes from 1 nm in front of it.
 TEST(an_arm_that_moves_into_the_wall_is_in_contact)
 {
     for (EACH_TEXT(c, "wall.contact=kelvin-voigt", "wall.contact=hunt-crossley")) {
         RUN(at, *c, "wall.angle=0", "initial.velocity=1");
         RUN(before, *c, "wall.angle=0", "initial.velocity=1", "initial.angle=-1e-9");
         check_close(at.summary.first_contact_s, 0, 0);
-        check_relative(at.summary.first_pulse_peak_N, before.summary.first_pulse_peak_N, 1e-5);
+        check_relative(at.summary.first_pulse_peak_N, before.summary.first_pulse_peak_N,
+                       1e-5);
         check_relative(at.summary.peak_force_N, before.summary.peak_force_N, 1e-5);
         check_close(find_event(&at, EVENT_CONTACT, 0)->time, 0, 0);
     }
@@ -392,11 +406,14 @@ TEST(an_arm_that_moves_into_the_wall_is_in_contact)
 // The gap of an arm that starts on the wall is zero, whatever rounding makes of it.
 TEST(an_arm_on_the_wall_does_not_strike_it)
 {
-    static const char *const arms[] = {"arm.links=3", "arm.link_lengths=0.294,0.386,0.314"};
-    static const char *const walls[] = {"wall.contact=rigid", "wall.contact=kelvin-voigt"};
+    static const char *const arms[] = {"arm.links=3",
+                                       "arm.link_lengths=0.294,0.386,0.314"};
+    static const char *const walls[] = {"wall.contact=rigid",
+                                        "wall.contact=kelvin-voigt"};
     for (int i = 0; i < 400; i++) {
-        scenario s = {.parameters = fixture_parameters(SETTINGS(
-                          "arm.links=3", arms[i & 1], walls[i >> 1 & 1], "run.duration=1e-3"))};
+        scenario s = {.parameters = fixture_parameters(
+                          SETTINGS("arm.links=3", arms[i & 1], walls[i >> 1 & 1],
+                                   "run.duration=1e-3"))};
         s.parameters.wall.kind = i & 4 ? WALL_PLANE : WALL_POINT;
         s.parameters.wall.angle = s.parameters.initial.angle = 0.01 * (i / 2 - 100);
         KEPT_RUN(r) = run_done(&s, false);
@@ -414,7 +431,8 @@ TEST(a_push_of_nothing_changes_nothing)
         for (int k = 0; k < PUSHES; k++) {
             todo[k] = (action){.time = 0.1 + 0.093 * k, .kind = ACTION_PUSH};
         }
-        const char *const *settings = SETTINGS(*c, "arm.damping_ratio=0.05", "run.duration=2");
+        const char *const *settings =
+            SETTINGS(*c, "arm.damping_ratio=0.05", "run.duration=2");
         KEPT_RUN(pushed) = run_acted(todo, PUSHES, settings);
         KEPT_RUN(free) = run_acted(NULL, 0, settings);
         check_close(pushed.summary.impacts, free.summary.impacts, 0);
@@ -425,8 +443,9 @@ TEST(a_push_of_nothing_changes_nothing)
 
 TEST(a_step_that_cannot_be_taken_stops_with_time_and_reason)
 {
-    scenario s = {.parameters = fixture_parameters(SETTINGS(
-                      "method.name=newmark", "method.step=0.5", "motor.voltage=10", "arm.k2=1e5"))};
+    scenario s = {.parameters = fixture_parameters(
+                      SETTINGS("method.name=newmark", "method.step=0.5",
+                               "motor.voltage=10", "arm.k2=1e5"))};
     s.parameters.motor.stiction = (double)NAN; // a bad number that slipped in
     KEPT_RUN(r);
     assert_int_equal(run_scenario(&s, true, &r), STATUS_NOT_FINITE);
@@ -434,11 +453,13 @@ TEST(a_step_that_cannot_be_taken_stops_with_time_and_reason)
     assert_true(r.trace.row_count >= 1);
 }
 
-// Newmark with gamma below 1/2 feeds energy into the motion: the ledger notices and the run stops.
+// Newmark with gamma below 1/2 feeds energy into the motion: the ledger notices and the
+// run stops.
 TEST(a_run_that_makes_energy_from_nothing_is_stopped)
 {
-    scenario s = {.parameters = fixture_parameters(SETTINGS(
-                      "method.name=newmark", "method.gamma=0.3", "arm.links=8", "run.duration=3"))};
+    scenario s = {.parameters = fixture_parameters(
+                      SETTINGS("method.name=newmark", "method.gamma=0.3", "arm.links=8",
+                               "run.duration=3"))};
     KEPT_RUN(r);
     assert_int_equal(run_scenario(&s, true, &r), STATUS_UNSTABLE);
     assert_non_null(strstr(r.summary.message, "method.step"));
@@ -457,7 +478,8 @@ TEST(a_ledger_that_does_not_close_makes_a_run_inaccurate)
         RUN(r, "method.name=newmark", c->step, c->bound);
         assert_int_equal(r.summary.inaccurate, c->inaccurate);
         assert_int_equal(r.summary.message[0] != '\0', c->inaccurate);
-        assert_string_equal(summary_status(&r.summary), c->inaccurate ? "inaccurate" : "ok");
+        assert_string_equal(summary_status(&r.summary),
+                            c->inaccurate ? "inaccurate" : "ok");
     }
 
     // the event method's own bound is narrow, and kept
@@ -466,8 +488,8 @@ TEST(a_ledger_that_does_not_close_makes_a_run_inaccurate)
     assert_string_equal(summary_status(&r.summary), "ok");
 }
 
-// A motion so small that the tolerances of events are a share of it does not go by either; a large
-// one, an arm that friction holds and one that the wall holds do.
+// A motion so small that the tolerances of events are a share of it does not go by
+// either; a large one, an arm that friction holds and one that the wall holds do.
 TEST(a_motion_too_small_to_follow_is_inaccurate)
 {
     static const struct {
@@ -486,11 +508,13 @@ TEST(a_motion_too_small_to_follow_is_inaccurate)
                  {"0.1", "0", "0", "arm.links=1", false}};
     for (EACH(c, cases)) {
         KEPT_RUN(r) = run_arm(
-            parameters_with("motor.voltage=%s motor.stiction=%s wall.angle=%s %s wall.kind=plane",
-                            c->voltage, c->stiction, c->angle, c->links),
+            parameters_with(
+                "motor.voltage=%s motor.stiction=%s wall.angle=%s %s wall.kind=plane",
+                c->voltage, c->stiction, c->angle, c->links),
             true);
-        fail_if(r.summary.inaccurate != c->inaccurate, "%s V, %s rad, %s: %s %s", c->voltage,
-                c->angle, c->links, summary_status(&r.summary), r.summary.message);
+        fail_if(r.summary.inaccurate != c->inaccurate, "%s V, %s rad, %s: %s %s",
+                c->voltage, c->angle, c->links, summary_status(&r.summary),
+                r.summary.message);
     }
 }
 
@@ -508,11 +532,12 @@ TEST(fast_rotation_is_resolved_whatever_the_step)
     check_close(peak[0], peak[1], 1e-7 * peak[1]);
 }
 
-// Pressed on an elastic wall the arm does not bounce for ever: the chatter rule, and says so.
+// Pressed on an elastic wall the arm does not bounce for ever: the chatter rule, and says
+// so.
 TEST(elastic_chattering_is_bounded_and_said)
 {
-    RUN(r, "arm.links=20", "arm.damping_ratio=0.001", "wall.kind=plane", "wall.restitution=1",
-        "motor.voltage=10", "run.duration=0.25");
+    RUN(r, "arm.links=20", "arm.damping_ratio=0.001", "wall.kind=plane",
+        "wall.restitution=1", "motor.voltage=10", "run.duration=0.25");
     check_ledger(&r);
     check_below(r.summary.impacts, 2000);
     size_t chatters = 0;

@@ -31,7 +31,8 @@ TEST(commands_saturate_both_ways)
     motor_parameters p = drive();
     motor_model m;
     motor_init(&m, &p);
-    const double commands[] = {3, 10, 11, 1e6, -4, -10.5}, reached[] = {3, 10, 10, 10, -4, -10};
+    const double commands[] = {3, 10, 11, 1e6, -4, -10.5},
+                 reached[] = {3, 10, 10, 10, -4, -10};
     for (int i = 0; i < 6; i++) {
         motor_set_voltage(&m, commands[i]);
         check_close(m.voltage, reached[i], 0);
@@ -57,15 +58,18 @@ TEST(energy_in_is_heat_and_work)
     double current = (p.amplifier_gain * volts - p.back_emf * speed) / p.resistance;
     double heat = current * current * p.resistance * duration;
     double work = p.back_emf * current * turn;
-    check_relative(motor_electrical_energy(&p, volts, duration, turn), heat + work, 1e-14);
-    // a motor that is turned against its command gives energy back where back EMF outweighs it
+    check_relative(motor_electrical_energy(&p, volts, duration, turn), heat + work,
+                   1e-14);
+    // a motor that is turned against its command gives energy back where back EMF
+    // outweighs it
     check_below(motor_electrical_energy(&p, 1, 1, 10), 0);
     // and a command beyond the limit feeds in no more than one at it
-    check_close(motor_electrical_energy(&p, 99, 1, 0), motor_electrical_energy(&p, 10, 1, 0), 0);
+    check_close(motor_electrical_energy(&p, 99, 1, 0),
+                motor_electrical_energy(&p, 10, 1, 0), 0);
 }
 
-// An amplifier that controls the current: a torque independent of the speed, and a limit in
-// amperes.
+// An amplifier that controls the current: a torque independent of the speed, and a limit
+// in amperes.
 TEST(a_current_drive_knows_no_back_emf)
 {
     motor_parameters p = drive();
@@ -96,23 +100,26 @@ TEST(a_current_drive_knows_no_back_emf)
 
     // what goes in: heat, and work against back EMF
     const double duration = 0.3, turn = 0.51, heat = 0.4 * 0.4 * p.resistance * duration;
-    check_relative(motor_electrical_energy(&p, 2, duration, turn), heat + p.back_emf * 0.4 * turn,
-                   1e-14);
+    check_relative(motor_electrical_energy(&p, 2, duration, turn),
+                   heat + p.back_emf * 0.4 * turn, 1e-14);
 }
 
-// A single link without friction in free motion: constant acceleration under a current, an
-// exponential approach to the idle speed under a voltage.
+// A single link without friction in free motion: constant acceleration under a current,
+// an exponential approach to the idle speed under a voltage.
 TEST(free_motion_is_that_of_the_drive)
 {
     for (int current = 0; current <= 1; current++) {
-        parameters p = parameters_with("arm.links=1 wall.kind=none motor.stiction=0 "
-                                       "motor.viscous_friction=0 motor.voltage=2 %s",
-                                       current ? "motor.drive=current" : "motor.drive=voltage");
+        parameters p =
+            parameters_with("arm.links=1 wall.kind=none motor.stiction=0 "
+                            "motor.viscous_friction=0 motor.voltage=2 %s",
+                            current ? "motor.drive=current" : "motor.drive=voltage");
         arm a = arm_of(&p);
         KEPT_MOTION(m) = motion_create(&a, &p.method);
         motion_report report;
-        const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
-        const double torque = 2 * 6.02 * p.motor.torque_constant / p.motor.resistance, t = 0.4;
+        const double inertia =
+            p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
+        const double torque = 2 * 6.02 * p.motor.torque_constant / p.motor.resistance,
+                     t = 0.4;
         motion_start(&a, m, 0, 0);
         assert_int_equal(motion_advance(&a, m, t, 1e-3, &report), STATUS_OK);
         double rate = motor_damping(&p.motor) / inertia;
@@ -123,7 +130,8 @@ TEST(free_motion_is_that_of_the_drive)
     }
 }
 
-// The motion of an arm from its initial velocity until t [s]; the ledger closes on the way.
+// The motion of an arm from its initial velocity until t [s]; the ledger closes on the
+// way.
 static motion *motion_until(const arm *a, const parameters *p, double t)
 {
     motion *m = motion_create(a, &p->method);
@@ -150,7 +158,8 @@ TEST(current_of_a_held_motor_rises_as_in_a_coil)
 {
     for (int links = 1; links <= 2; links++) {
         parameters p = parameters_with(
-            "arm.links=%d wall.kind=none motor.stiction=1000 motor.inductance=0.1", links);
+            "arm.links=%d wall.kind=none motor.stiction=1000 motor.inductance=0.1",
+            links);
         arm a = arm_of(&p);
         for (int i = 1; i <= 4; i++) {
             const double t = 0.002 * i, full = 6.02 / 33.6;
@@ -165,78 +174,92 @@ TEST(current_of_a_held_motor_rises_as_in_a_coil)
 TEST(a_free_link_and_its_coil_are_two_exponentials)
 {
     const double inductance = 0.5, t = 0.15;
-    parameters p = parameters_with("arm.links=1 wall.kind=none motor.stiction=0 "
-                                   "motor.viscous_friction=0 motor.inductance=0.5 motor.voltage=2");
+    parameters p =
+        parameters_with("arm.links=1 wall.kind=none motor.stiction=0 "
+                        "motor.viscous_friction=0 motor.inductance=0.5 motor.voltage=2");
     arm a = arm_of(&p);
-    const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
-    const double kt = p.motor.torque_constant, kb = p.motor.back_emf, r = p.motor.resistance;
+    const double inertia =
+        p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
+    const double kt = p.motor.torque_constant, kb = p.motor.back_emf,
+                 r = p.motor.resistance;
     const double half = r / inductance / 2,
                  root = sqrt(half * half - kt * kb / inertia / inductance);
     const double fast = -half - root, slow = -half + root, idle = 2 * 6.02 / kb;
     KEPT_MOTION(m) = motion_until(&a, &p, t);
     check_relative(state_velocities(m, m->state)[0],
-                   idle * (1 + (fast * exp(slow * t) - slow * exp(fast * t)) / (slow - fast)),
+                   idle * (1 +
+                           (fast * exp(slow * t) - slow * exp(fast * t)) / (slow - fast)),
                    1e-9);
-    check_relative(
-        current_of(m),
-        inertia / kt * idle * fast * slow / (slow - fast) * (exp(slow * t) - exp(fast * t)), 1e-9);
+    check_relative(current_of(m),
+                   inertia / kt * idle * fast * slow / (slow - fast) *
+                       (exp(slow * t) - exp(fast * t)),
+                   1e-9);
 }
 
-// Cut at a limit the current accelerates evenly until back EMF takes it below the limit, at a speed
-// from which the approach to the idle speed is exponential.
+// Cut at a limit the current accelerates evenly until back EMF takes it below the limit,
+// at a speed from which the approach to the idle speed is exponential.
 TEST(a_limited_current_accelerates_evenly_at_first)
 {
-    parameters p =
-        parameters_with("arm.links=1 wall.kind=none motor.stiction=0 motor.viscous_friction=0 "
-                        "motor.current_limit=0.2 motor.voltage=2");
+    parameters p = parameters_with(
+        "arm.links=1 wall.kind=none motor.stiction=0 "
+        "motor.viscous_friction=0 motor.current_limit=0.2 motor.voltage=2");
     arm a = arm_of(&p);
-    const double inertia = p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
-    const double kt = p.motor.torque_constant, kb = p.motor.back_emf, r = p.motor.resistance;
+    const double inertia =
+        p.arm.hub_inertia + p.arm.mass * p.arm.length * p.arm.length / 3;
+    const double kt = p.motor.torque_constant, kb = p.motor.back_emf,
+                 r = p.motor.resistance;
     const double knee = (2 * 6.02 - r * 0.2) / kb, until = knee * inertia / (kt * 0.2);
     const double idle = 2 * 6.02 / kb, rate = kt * kb / r / inertia;
     const double times[2] = {0.7 * until, 2.5 * until};
-    const double speeds[2] = {0.7 * knee, idle + (knee - idle) * exp(-rate * 1.5 * until)};
+    const double speeds[2] = {0.7 * knee,
+                              idle + (knee - idle) * exp(-rate * 1.5 * until)};
     for (int i = 0; i < 2; i++) {
         KEPT_MOTION(m) = motion_until(&a, &p, times[i]);
         check_relative(state_velocities(m, m->state)[0], speeds[i], 1e-9);
     }
 
     // a coil reaches the limit on the way to more, and stays there with the hub held
-    p = parameters_with(
-        "wall.kind=none motor.stiction=1000 motor.inductance=0.1 motor.current_limit=0.1");
+    p = parameters_with("wall.kind=none motor.stiction=1000 motor.inductance=0.1 "
+                        "motor.current_limit=0.1");
     arm_init(&a, &p);
     const double reached = -0.1 / 33.6 * log(1 - 0.1 * 33.6 / 6.02);
     KEPT_MOTION(before) = motion_until(&a, &p, 0.9 * reached),
     *after = motion_until(&a, &p, 1.2 * reached);
-    check_relative(current_of(before), 6.02 / 33.6 * (1 - exp(-336 * 0.9 * reached)), 1e-9);
+    check_relative(current_of(before), 6.02 / 33.6 * (1 - exp(-336 * 0.9 * reached)),
+                   1e-9);
     check_close(current_of(after), 0.1, 0);
 }
 
-// A link whose back EMF outweighs the voltage slows at one limit of the current, goes towards the
-// speed at which friction and motor balance, and slows on at the other limit: however short the
-// stretch between the limits is, angle and speed are those of the three pieces.
+// A link whose back EMF outweighs the voltage slows at one limit of the current, goes
+// towards the speed at which friction and motor balance, and slows on at the other limit:
+// however short the stretch between the limits is, angle and speed are those of the three
+// pieces.
 TEST(a_limited_current_changes_sides_however_fast)
 {
     const double volts = 7.298 * 6.02, start = 18.5, whole = 0.4;
     for (EACH_OF(double, limit, 1e-3, 1e-4, 1e-5, 3e-3)) {
         for (EACH_OF(double, side, 1, -1)) {
-            parameters p =
-                parameters_with("arm.links=1 arm.mass=0.0837 wall.kind=none motor.voltage=%.17g "
-                                "motor.viscous_friction=0 motor.current_limit=%.17g",
-                                7.298 * *side, *limit);
+            parameters p = parameters_with(
+                "arm.links=1 arm.mass=0.0837 wall.kind=none motor.voltage=%.17g "
+                "motor.viscous_friction=0 motor.current_limit=%.17g",
+                7.298 * *side, *limit);
             p.initial.velocity = start * *side;
-            const double inertia = p.arm.hub_inertia + p.arm.mass / 3, kst = p.motor.stiction;
+            const double inertia = p.arm.hub_inertia + p.arm.mass / 3,
+                         kst = p.motor.stiction;
             const double kt = p.motor.torque_constant, kb = p.motor.back_emf;
-            const double resistance = p.motor.resistance, rate = kt * kb / resistance / inertia;
+            const double resistance = p.motor.resistance,
+                         rate = kt * kb / resistance / inertia;
 
-            // evenly until the current leaves one limit, by an exponential to the other, evenly
+            // evenly until the current leaves one limit, by an exponential to the other,
+            // evenly
             const double drop = resistance * *limit / kb, middle = volts / kb;
             const double slows = (kst + kt * *limit) / inertia;
             const double slower = (kst - kt * *limit) / inertia;
             const double balance = middle - kst * resistance / (kt * kb);
             const double above = middle + drop - balance, below = middle - drop - balance;
             const double first = (start - middle - drop) / slows;
-            const double second = log(above / below) / rate, third = whole - first - second;
+            const double second = log(above / below) / rate,
+                         third = whole - first - second;
             const double turned = (start + middle + drop) / 2 * first + balance * second +
                                   2 * drop / rate + (middle - drop) * third -
                                   slower * third * third / 2;
@@ -244,13 +267,14 @@ TEST(a_limited_current_changes_sides_however_fast)
             arm a = arm_of(&p);
             KEPT_MOTION(m) = motion_until(&a, &p, whole);
             check_close(*side * state_angles(m, m->state)[0], turned, 1e-10);
-            check_close(*side * state_velocities(m, m->state)[0], middle - drop - slower * third,
-                        1e-10);
+            check_close(*side * state_velocities(m, m->state)[0],
+                        middle - drop - slower * third, 1e-10);
         }
     }
 }
 
-// A coil that follows at once in the end: the arm's impact goes to that without one with L.
+// A coil that follows at once in the end: the arm's impact goes to that without one with
+// L.
 TEST(a_small_inductance_is_none_in_the_limit)
 {
     double momentum[3];

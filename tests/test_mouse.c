@@ -39,8 +39,10 @@ TEST(test_the_wheel_zooms_where_it_points)
     state_window(&ex.state, &from, &to);
     check_close(to - from, pow(0.8, 5), 1e-9);
     check_close((0.3 - from) / (to - from), 0.3, 0.02);
-    explorer_point(
-        &ex, (pointer_event){.kind = POINTER_WHEEL_DOWN, .x = x, .y = c.area.y + 3, .shift = true});
+    explorer_point(&ex, (pointer_event){.kind = POINTER_WHEEL_DOWN,
+                                        .x = x,
+                                        .y = c.area.y + 3,
+                                        .shift = true});
     check_close(ex.state.window.from, from + 0.1 * (to - from), 1e-9);
     for (int i = 0; i < 9; i++) {
         point(&ex, POINTER_WHEEL_DOWN, x, c.area.y + 3);
@@ -86,7 +88,8 @@ TEST(test_an_axis_of_values_is_dragged_and_zoomed)
     point(&ex, POINTER_DRAG, a.area.x + 2, a.area.y + 2);
     point(&ex, POINTER_RELEASE, a.area.x + 2, a.area.y + 2);
     // what is under the pointer goes down with it
-    check_close(ex.state.panes.pane[3].fixed.low, low + (high - low) / a.area.height, 1e-9);
+    check_close(ex.state.panes.pane[3].fixed.low, low + (high - low) / a.area.height,
+                1e-9);
     point(&ex, POINTER_WHEEL_UP, a.area.x + 2, a.area.y + 1);
     check_close(ex.state.panes.pane[3].fixed.high - ex.state.panes.pane[3].fixed.low,
                 0.8 * (high - low), 1e-9);
@@ -158,19 +161,20 @@ TEST(test_random_pointing_does_no_harm)
     static const char *const pages[] = {"",           "?",       "<Esc>o", "<Esc>c",
                                         "<Esc><Tab>", "<Esc>:x", "<Esc>w"};
     for (int i = 0; i < 3000; i++) {
-        pointer_event p = {(pointer_kind)random_below(&r, 5), (int)random_below(&r, 130) - 5,
-                           (int)random_below(&r, 50) - 5, random_below(&r, 2) != 0,
-                           random_below(&r, 2) != 0};
+        pointer_event p = {(pointer_kind)random_below(&r, 5),
+                           (int)random_below(&r, 130) - 5, (int)random_below(&r, 50) - 5,
+                           random_below(&r, 2) != 0, random_below(&r, 2) != 0};
         explorer_point(&ex, p);
         if (i % 10 == 0) {
             press(&ex, pages[random_below(&r, sizeof pages / sizeof pages[0])]);
-            free(picture(&ex, 1 + (int)random_below(&r, 140), 1 + (int)random_below(&r, 50),
-                         GLYPHS_BRAILLE));
+            free(picture(&ex, 1 + (int)random_below(&r, 140),
+                         1 + (int)random_below(&r, 50), GLYPHS_BRAILLE));
         }
         double from, to;
         state_window(&ex.state, &from, &to);
         assert_true(from >= 0 && from < to &&
-                    to <= ex.state.session.effective.parameters.run.duration * (1 + 1e-12));
+                    to <=
+                        ex.state.session.effective.parameters.run.duration * (1 + 1e-12));
     }
 }
 

@@ -1,5 +1,5 @@
-// A wall that moves: driven arms and impacts in closed form, walls moved at once by a script, and a
-// law that holds its force on one.
+// A wall that moves: driven arms and impacts in closed form, walls moved at once by a
+// script, and a law that holds its force on one.
 
 #include "src/arm/impact.h"
 #include "src/session/session.h"
@@ -8,9 +8,10 @@
 #include "tests/scenario_fixture.h"
 
 // One link without friction, pressed by its weight against a flat wall at the angle 0.
-#define PRESSED_LINK                                                                               \
-    "arm.links=1", "wall.kind=plane", "wall.angle=0", "motor.voltage=0", "motor.stiction=0",       \
-        "motor.viscous_friction=0", "motor.back_emf=0", "arm.tilt=-0.3", "wall.motion=sine"
+#define PRESSED_LINK                                                                     \
+    "arm.links=1", "wall.kind=plane", "wall.angle=0", "motor.voltage=0",                 \
+        "motor.stiction=0", "motor.viscous_friction=0", "motor.back_emf=0",              \
+        "arm.tilt=-0.3", "wall.motion=sine"
 
 // The angle at an instant, from rest at the wall.
 static double angle_at(const char *const *settings, double time, double *force)
@@ -33,7 +34,8 @@ TEST(a_driven_spring_has_its_amplitude_and_phase)
     const double inertia = a.hub_inertia + a.link_mass * length * length / 3;
     for (EACH_TEXT(one, "2", "15", "20", "60")) {
         const double w = 2 * M_PI * atof(*one), period = 2 * M_PI / w;
-        const double lre = length * length * k - inertia * w * w, lim = length * length * w * c;
+        const double lre = length * length * k - inertia * w * w,
+                     lim = length * length * w * c;
         const double d = lre * lre + lim * lim;
         const double re = -length * u * (k * lre + w * c * lim) / d;
         const double im = -length * u * (w * c * lre - k * lim) / d;
@@ -41,11 +43,12 @@ TEST(a_driven_spring_has_its_amplitude_and_phase)
             const double t = 2 + phase * period / 4;
             double q[2], force;
             for (int side = 0; side < 2; side++) {
-                q[side] = angle_at(
-                    SETTINGS(PRESSED_LINK, "wall.contact=kelvin-voigt", "wall.stiffness=2000",
-                             "wall.damping=20", formatted("wall.motion_frequency=%s", *one),
-                             side ? "wall.motion_amplitude=-1e-5" : "wall.motion_amplitude=1e-5"),
-                    t, &force);
+                q[side] = angle_at(SETTINGS(PRESSED_LINK, "wall.contact=kelvin-voigt",
+                                            "wall.stiffness=2000", "wall.damping=20",
+                                            formatted("wall.motion_frequency=%s", *one),
+                                            side ? "wall.motion_amplitude=-1e-5"
+                                                 : "wall.motion_amplitude=1e-5"),
+                                   t, &force);
             }
             const double expected = re * sin(w * t) + im * cos(w * t);
             check_close((q[0] - q[1]) / 2, expected, 2e-4 * hypot(re, im));
@@ -61,45 +64,53 @@ TEST(a_rigid_wall_leads_the_tip)
     const double inertia = a.hub_inertia + a.link_mass * length * length / 3;
     for (int i = 1; i < 8; i++) {
         // from its end on, where it comes to the arm at no speed
-        const double t = 0.11 * i, s = u0 * sin(w * (t + 0.125)), v = u0 * w * cos(w * (t + 0.125));
+        const double t = 0.11 * i, s = u0 * sin(w * (t + 0.125)),
+                     v = u0 * w * cos(w * (t + 0.125));
         const double accelerates = -w * w * s;
         double force;
         const double q =
-            angle_at(SETTINGS(PRESSED_LINK, "wall.motion_frequency=2", "wall.motion_time=-0.125",
+            angle_at(SETTINGS(PRESSED_LINK, "wall.motion_frequency=2",
+                              "wall.motion_time=-0.125",
                               formatted("initial.angle=%.17g", -asin(u0 / length))),
                      t, &force);
         check_close(q, -asin(s / length), 1e-9);
 
         // q' = -v/(L cos q), q" = -(a + L sin q q'^2 ... )/(L cos q), of s = -L sin q
         const double rate = -v / (length * cos(q));
-        const double turn = -(accelerates - length * sin(q) * rate * rate) / (length * cos(q));
+        const double turn =
+            -(accelerates - length * sin(q) * rate * rate) / (length * cos(q));
         const double weight = a.gravity * a.link_mass * length / 2 * cos(q);
         check_relative(force, (-weight - inertia * turn) / (length * cos(q)), 1e-6);
     }
 }
 
-// A link at rest that a wall meets at a constant speed leaves it as one that comes at that speed
-// leaves a wall at rest: seen from the wall. The sine is slow enough to be straight.
+// A link at rest that a wall meets at a constant speed leaves it as one that comes at
+// that speed leaves a wall at rest: seen from the wall. The sine is slow enough to be
+// straight.
 TEST(a_wall_at_constant_speed_is_one_at_rest_seen_from_it)
 {
     for (EACH_OF(double, c, 0, 0.5, 1)) {
-        const parameters p = fixture_parameters(SETTINGS(
-            PRESSED_LINK, "arm.tilt=0", "initial.angle=-0.01", formatted("wall.restitution=%g", *c),
-            "wall.motion_amplitude=10", "wall.motion_frequency=0.001"));
+        const parameters p = fixture_parameters(
+            SETTINGS(PRESSED_LINK, "arm.tilt=0", "initial.angle=-0.01",
+                     formatted("wall.restitution=%g", *c), "wall.motion_amplitude=10",
+                     "wall.motion_frequency=0.001"));
         STARTED(a, m, &p, NULL, -0.01, 0);
         const double w = 2 * M_PI * 1e-3, place = a.link_length * sin(0.01);
         const double meets = asin(place / 10) / w, speed = 10 * w * cos(w * meets);
         const passage done = move_on(&a, m, meets + 1e-3, 1000);
         assert_int_equal(done.impacts, 1);
         const double turns = -(1 + *c) * speed / (a.link_length * cos(0.01));
-        const double inertia = a.hub_inertia + a.link_mass * a.link_length * a.link_length / 3;
+        const double inertia =
+            a.hub_inertia + a.link_mass * a.link_length * a.link_length / 3;
         check_relative(state_velocities(m, m->state)[0], turns, 1e-5);
-        check_relative(done.momentum, -inertia * turns / (a.link_length * cos(0.01)), 1e-5);
+        check_relative(done.momentum, -inertia * turns / (a.link_length * cos(0.01)),
+                       1e-5);
         check_below(done.open, 1e-10);
     }
 }
 
-// An arm at rest that a wall strikes gets the impulse with which it would strike the wall.
+// An arm at rest that a wall strikes gets the impulse with which it would strike the
+// wall.
 TEST(only_the_relative_velocity_counts_at_an_impact)
 {
     for (EACH_TEXT(c, "wall.kind=plane", "wall.kind=point")) {
@@ -118,7 +129,8 @@ TEST(only_the_relative_velocity_counts_at_an_impact)
         for (int k = 0; k < 4; k++) {
             w[k] *= -same / reach;
         }
-        const impact_result one = impact_velocity_increments(&still, work, q, w, 0, 0.4, by_arm);
+        const impact_result one =
+            impact_velocity_increments(&still, work, q, w, 0, 0.4, by_arm);
         const impact_result two =
             impact_velocity_increments(&comes, work, q, rest, 0, 0.4, by_wall);
         check_relative(one.speed, two.speed, 1e-13);
@@ -128,27 +140,32 @@ TEST(only_the_relative_velocity_counts_at_an_impact)
         }
 
         // the arm gains what the wall does less the loss
-        check_relative(chain_kinetic_energy(&comes, q, by_wall), two.work - two.loss, 1e-12);
+        check_relative(chain_kinetic_energy(&comes, q, by_wall), two.work - two.loss,
+                       1e-12);
     }
 }
 
-// --- a face with a mass --------------------------------------------------------------------------
+// --- a face with a mass ----------------------------------------------------------------
 
-// x'' = u'' - (c x' + k x)/M and the work of (k x + c x') u', by the classic formula of order 4 in
-// so many steps, extrapolated.
-static void shaken_by_steps(const wall_model *w, wall_face from, double h, int steps, double y[3])
+// x'' = u'' - (c x' + k x)/M and the work of (k x + c x') u', by the classic formula of
+// order 4 in so many steps, extrapolated.
+static void shaken_by_steps(const wall_model *w, wall_face from, double h, int steps,
+                            double y[3])
 {
-    static const double node[] = {0, 0.5, 0.5, 1}, weight[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+    static const double node[] = {0, 0.5, 0.5, 1},
+                        weight[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
     const double step = h / steps;
     y[0] = from.position, y[1] = from.velocity, y[2] = 0;
     for (int i = 0; i < steps; i++) {
         double k[3] = {0}, sum[3] = {0};
         for (int j = 0; j < 4; j++) {
-            const double part = node[j] * step, x = y[0] + part * k[0], v = y[1] + part * k[1];
+            const double part = node[j] * step, x = y[0] + part * k[0],
+                         v = y[1] + part * k[1];
             const wall_shift at =
                 wall_motion_at(&w->motion, w->shift.time + i * step + node[j] * step);
             const double pulls = w->stiffness * x + w->damping * v;
-            k[0] = v, k[1] = at.acceleration - pulls / w->face_mass, k[2] = pulls * at.velocity;
+            k[0] = v, k[1] = at.acceleration - pulls / w->face_mass,
+            k[2] = pulls * at.velocity;
             for (int n = 0; n < 3; n++) {
                 sum[n] += weight[j] * k[n];
             }
@@ -159,8 +176,8 @@ static void shaken_by_steps(const wall_model *w, wall_face from, double h, int s
     }
 }
 
-// Swinging, at its own frequency without a damper, creeping, and in a soft bed: place, speed and
-// work are those of an independent integrator; energy put in is stored or lost.
+// Swinging, at its own frequency without a damper, creeping, and in a soft bed: place,
+// speed and work are those of an independent integrator; energy put in is stored or lost.
 TEST(a_shaken_face_swings_as_its_equation_says)
 {
     static const double beds[][3] = {{0.05, 2000, 3},
@@ -171,13 +188,15 @@ TEST(a_shaken_face_swings_as_its_equation_says)
     static const wall_motion_kind kinds[] = {MOTION_SINE, MOTION_STEP};
     for (int i = 0; i < 10; i++) {
         const double *bed = beds[i / 2];
-        const wall_model still = {
-            .law = WALL_KELVIN_VOIGT,
-            .stiffness = bed[1],
-            .damping = bed[2],
-            .exponent = 1,
-            .face_mass = bed[0],
-            .motion = {.kind = kinds[i % 2], .amplitude = 2e-3, .frequency = 30, .time = -1e-3}};
+        const wall_model still = {.law = WALL_KELVIN_VOIGT,
+                                  .stiffness = bed[1],
+                                  .damping = bed[2],
+                                  .exponent = 1,
+                                  .face_mass = bed[0],
+                                  .motion = {.kind = kinds[i % 2],
+                                             .amplitude = 2e-3,
+                                             .frequency = 30,
+                                             .time = -1e-3}};
         const wall_model w = wall_at(&still, 2e-3);
         const wall_face from = {1e-4, -0.02};
         const double h = 8e-3;
@@ -194,21 +213,24 @@ TEST(a_shaken_face_swings_as_its_equation_says)
 
         // in two parts as in one, and without a loss where no damper is
         const wall_face half = wall_face_after(&w, from, h / 3);
-        const wall_model later = wall_at(&still, 2e-3 + h / 3), last = wall_at(&still, 2e-3 + h);
+        const wall_model later = wall_at(&still, 2e-3 + h / 3),
+                         last = wall_at(&still, 2e-3 + h);
         const wall_face again = wall_face_after(&later, half, h - h / 3);
         check_close(again.position, end.position, 1e-15);
         const double put_in = wall_face_work(&w, from, h);
-        const double lost = wall_face_energy(&w, from) + put_in - wall_face_energy(&last, end);
+        const double lost =
+            wall_face_energy(&w, from) + put_in - wall_face_energy(&last, end);
         fail_if(bed[2] > 0 ? lost <= 0 : fabs(lost) > 1e-15, "%d: %g J", i, lost);
 
         // the rate is that of the motion
         const wall_face next = wall_face_after(&w, from, 1e-7);
-        check_relative(wall_face_acceleration(&w, from), (next.velocity - from.velocity) / 1e-7,
-                       1e-3);
+        check_relative(wall_face_acceleration(&w, from),
+                       (next.velocity - from.velocity) / 1e-7, 1e-3);
     }
 }
 
-// A light face with a heavy damper soon creeps: it is followed in long steps as in short ones.
+// A light face with a heavy damper soon creeps: it is followed in long steps as in short
+// ones.
 TEST(a_face_that_creeps_is_followed_in_long_steps)
 {
     const wall_model still = {.law = WALL_KELVIN_VOIGT,
@@ -250,42 +272,44 @@ TEST(the_ledger_closes_on_a_shaken_face)
         const char *const *set = sets[i / 2];
         RUN(r, "wall.kind=plane", "wall.contact=kelvin-voigt", "wall.mass=0.05",
             "wall.motion_frequency=9", "wall.motion_time=0.2", set[0], set[1], set[2],
-            i % 2 ? "arm.links=4" : "arm.links=2", "arm.tilt=-0.2", "wall.motion_amplitude=2e-3",
-            "wall.restitution=0.3");
+            i % 2 ? "arm.links=4" : "arm.links=2", "arm.tilt=-0.2",
+            "wall.motion_amplitude=2e-3", "wall.restitution=0.3");
         assert_true(r.summary.impacts > 0);
         check_below(r.summary.energy_residual_J, 1e-10 * fabs(r.summary.motor_work_J));
     }
 }
 
-// The same of all walls that move, at every row: what is lacking is a share of what motor and wall
-// did, one way and the other.
+// The same of all walls that move, at every row: what is lacking is a share of what motor
+// and wall did, one way and the other.
 TEST(the_ledger_closes_on_every_wall_that_moves)
 {
     static const char *const sets[][5] = {
-        {"wall.motion=sine", "wall.contact=hunt-crossley", "wall.damping=300", "arm.links=6",
-         "wall.motion_frequency=743"},
-        {"wall.motion=sine", "wall.contact=hunt-crossley", "wall.damping=0", "arm.links=1",
-         "wall.motion_frequency=986"},
-        {"wall.motion=step", "wall.contact=kelvin-voigt", "wall.stiffness=3000", "arm.links=1",
-         "motor.voltage=5"},
+        {"wall.motion=sine", "wall.contact=hunt-crossley", "wall.damping=300",
+         "arm.links=6", "wall.motion_frequency=743"},
+        {"wall.motion=sine", "wall.contact=hunt-crossley", "wall.damping=0",
+         "arm.links=1", "wall.motion_frequency=986"},
+        {"wall.motion=step", "wall.contact=kelvin-voigt", "wall.stiffness=3000",
+         "arm.links=1", "motor.voltage=5"},
         // so fast that the force falls through zero within the last bit of the time
         {"wall.motion=sine", "wall.motion_amplitude=1e-6", "wall.motion_frequency=1e4",
          "arm.links=2", "motor.voltage=2"}};
     int worked = 0;
     for (EACH(set, sets)) {
         const char *const *more = *set;
-        RUN(r, "wall.motion_amplitude=5e-3", "wall.motion_frequency=15", more[0], more[1], more[2],
-            more[3], more[4], "run.duration=0.6");
+        RUN(r, "wall.motion_amplitude=5e-3", "wall.motion_frequency=15", more[0], more[1],
+            more[2], more[3], more[4], "run.duration=0.6");
         double worst = 0, done = 0;
         for (size_t k = 1; k < r.trace.row_count; k++) {
             const sample *was = &r.trace.rows[k - 1], *is = &r.trace.rows[k];
             worst = fmax(worst, fabs(is->energy_residual));
-            done += fabs(is->motor_work - was->motor_work) + fabs(is->wall_work - was->wall_work);
+            done += fabs(is->motor_work - was->motor_work) +
+                    fabs(is->wall_work - was->wall_work);
         }
         check_below(fmax(worst, r.summary.energy_residual_J), 1e-10 * done);
 
         // the summary says what the wall did in all
-        check_close(r.summary.wall_work_J, r.trace.rows[r.trace.row_count - 1].wall_work, 0);
+        check_close(r.summary.wall_work_J, r.trace.rows[r.trace.row_count - 1].wall_work,
+                    0);
         worked += r.summary.wall_work_J != 0;
     }
     assert_true(worked > 1);
@@ -293,9 +317,10 @@ TEST(the_ledger_closes_on_every_wall_that_moves)
     assert_true(isnan(still.summary.wall_work_J));
 }
 
-// --- walls that a script moves -------------------------------------------------------------------
+// --- walls that a script moves ---------------------------------------------------------
 
-static run_result run_of(const char *wall, double from, double time, double to, status expected)
+static run_result run_of(const char *wall, double from, double time, double to,
+                         status expected)
 {
     const char *text = formatted("wall: {%s, angle: %.17g}\nrun: {duration: 0.6}\n"
                                  "script:\n  - {at: %.17g, set: {wall.angle: %g}}\n",
@@ -307,9 +332,10 @@ static run_result run_of(const char *wall, double from, double time, double to, 
     return r;
 }
 
-static const char *const walls[] = {
-    "kind: point", "kind: plane, restitution: 0.4", "kind: point, contact: kelvin-voigt",
-    "kind: plane, contact: hunt-crossley", "kind: point, contact: kelvin-voigt, mass: 0.05"};
+static const char *const walls[] = {"kind: point", "kind: plane, restitution: 0.4",
+                                    "kind: point, contact: kelvin-voigt",
+                                    "kind: plane, contact: hunt-crossley",
+                                    "kind: point, contact: kelvin-voigt, mass: 0.05"};
 
 // Moved while the arm flies, it is as if it had always been there.
 TEST(a_wall_moved_in_flight_is_where_it_was_put)
@@ -323,8 +349,8 @@ TEST(a_wall_moved_in_flight_is_where_it_was_put)
     }
 }
 
-// Taken away from an arm that presses on it, it lets go at once and costs no energy; moved into the
-// arm it is refused.
+// Taken away from an arm that presses on it, it lets go at once and costs no energy;
+// moved into the arm it is refused.
 TEST(a_wall_moved_in_contact_lets_go_or_is_refused)
 {
     for (EACH(c, walls)) {
@@ -332,8 +358,9 @@ TEST(a_wall_moved_in_contact_lets_go_or_is_refused)
         const trace *t = &r.trace;
         double pressed = 0;
         for (size_t k = 0; k < t->row_count && pressed == 0; k++) {
-            pressed =
-                t->rows[k].force > 0.01 && t->rows[k].contact != 0 ? t->rows[k].time + 4e-4 : 0;
+            pressed = t->rows[k].force > 0.01 && t->rows[k].contact != 0
+                          ? t->rows[k].time + 4e-4
+                          : 0;
         }
         assert_true(pressed > 0);
         run_finish(&r);
@@ -389,7 +416,7 @@ TEST(the_observer_holds_its_force_on_a_moving_wall)
     }
 }
 
-// --- a wall that a table moves ----------------------------------------------------------------
+// --- a wall that a table moves ---------------------------------------------------------
 
 static const char *const path_csv = "wall-path.csv";
 
@@ -406,8 +433,8 @@ static void write_sine(double amplitude, double f, double from, double to, doubl
     assert_int_equal(fclose(file), 0);
 }
 
-// The spline goes through the rows, its rate and acceleration are the derivatives of its place, and
-// neither jumps at a row; a step of the engine ends at each.
+// The spline goes through the rows, its rate and acceleration are the derivatives of its
+// place, and neither jumps at a row; a step of the engine ends at each.
 TEST(a_spline_is_smooth_up_to_the_acceleration)
 {
     wall_path *path;
@@ -416,14 +443,16 @@ TEST(a_spline_is_smooth_up_to_the_acceleration)
     const wall_motion m = {.kind = MOTION_FILE, .time = 0.4, .path = path};
     for (size_t i = 0; i < path->rows; i++) {
         const double t = 0.4 + path->times[i], next = 1e-9;
-        const wall_shift before = wall_motion_at(&m, t - next), at = wall_motion_at(&m, t);
+        const wall_shift before = wall_motion_at(&m, t - next),
+                         at = wall_motion_at(&m, t);
         check_close(at.place, path->places[i], 1e-15);
         check_close(before.velocity, at.velocity, 1e-8);
         if (i > 0 && i + 1 < path->rows) {
             check_close(before.acceleration, at.acceleration, 1e-5);
             check_close(wall_motion_lasts(&m, t), 0.02, 1e-9);
             const double h = 1e-5, x = t + 0.013;
-            const wall_shift low = wall_motion_at(&m, x - h), high = wall_motion_at(&m, x + h);
+            const wall_shift low = wall_motion_at(&m, x - h),
+                             high = wall_motion_at(&m, x + h);
             const wall_shift mid = wall_motion_at(&m, x);
             check_close((high.place - low.place) / (2 * h), mid.velocity, 1e-8);
             check_close((high.velocity - low.velocity) / (2 * h), mid.acceleration, 1e-8);
@@ -437,8 +466,8 @@ TEST(a_spline_is_smooth_up_to_the_acceleration)
     unlink(path_csv);
 }
 
-// Rows of a sine close together, at rest at the ends, are that sine: the same contacts and forces,
-// to the fourth power of their distance.
+// Rows of a sine close together, at rest at the ends, are that sine: the same contacts
+// and forces, to the fourth power of their distance.
 TEST(a_table_of_a_sine_is_the_sine)
 {
     static const char *const kinds[][2] = {

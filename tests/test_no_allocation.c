@@ -1,19 +1,19 @@
-// No step, event or push allocates memory: runs in real time, or a million of them, rely on it. The
-// linker puts the counting functions below in the place of the allocator's (-Wl,--wrap=malloc and
-// so on, see meson.build).
+// No step, event or push allocates memory: runs in real time, or a million of them, rely
+// on it. The linker puts the counting functions below in the place of the allocator's
+// (-Wl,--wrap=malloc and so on, see meson.build).
 
 #include "src/predict/linearised.h"
 #include "tests/arm_fixture.h"
 
 static long allocations;
 
-#define COUNTED(name, parameters, arguments)                                                       \
-    void *__real_##name parameters;                                                                \
-    void *__wrap_##name parameters;                                                                \
-    void *__wrap_##name parameters                                                                 \
-    {                                                                                              \
-        allocations++;                                                                             \
-        return __real_##name arguments;                                                            \
+#define COUNTED(name, parameters, arguments)                                             \
+    void *__real_##name parameters;                                                      \
+    void *__wrap_##name parameters;                                                      \
+    void *__wrap_##name parameters                                                       \
+    {                                                                                    \
+        allocations++;                                                                   \
+        return __real_##name arguments;                                                  \
     }
 COUNTED(malloc, (size_t size), (size))
 COUNTED(calloc, (size_t count, size_t size), (count, size))
@@ -54,7 +54,8 @@ static passage go_through(const char *const *settings)
 }
 
 // That goes through so many events of a kind and allocates nothing.
-static void nothing_is_allocated(const char *const *settings, motion_event kind, int least)
+static void nothing_is_allocated(const char *const *settings, motion_event kind,
+                                 int least)
 {
     const passage seen = go_through(settings);
     assert_int_equal(seen.allocations, 0);
@@ -85,19 +86,21 @@ TEST(a_run_through_impacts_allocates_nothing)
     nothing_is_allocated(
         given("arm.links=64 wall.kind=plane arm.damping_ratio=0.01 run.duration=0.32"),
         MOTION_IMPACT, 1);
-    nothing_is_allocated(given("wall.contact=hunt-crossley motor.inductance=0.01"), MOTION_RELEASE,
-                         1);
+    nothing_is_allocated(given("wall.contact=hunt-crossley motor.inductance=0.01"),
+                         MOTION_RELEASE, 1);
 }
 
 TEST(implicit_runs_through_impacts_allocate_nothing)
 {
     nothing_is_allocated(given("method.name=newmark"), MOTION_IMPACT, 2);
-    nothing_is_allocated(given("method.name=generalized-alpha arm.links=6"), MOTION_IMPACT, 1);
+    nothing_is_allocated(given("method.name=generalized-alpha arm.links=6"),
+                         MOTION_IMPACT, 1);
 }
 
 TEST(a_hub_spring_allocates_nothing)
 {
-    nothing_is_allocated(given("arm.hub_joint=spring run.duration=0.4"), MOTION_IMPACT, 1);
+    nothing_is_allocated(given("arm.hub_joint=spring run.duration=0.4"), MOTION_IMPACT,
+                         1);
 }
 
 // The predictor of two links is asked in free flight at every sample.

@@ -1,5 +1,6 @@
-// The library's own work with every request for memory, descriptors and threads refused in turn:
-// reading, runs of every engine and of the rig, predictions, sessions, loops, batches and sweeps.
+// The library's own work with every request for memory, descriptors and threads refused
+// in turn: reading, runs of every engine and of the rig, predictions, sessions, loops,
+// batches and sweeps.
 #include "src/base/words.h"
 #include "src/predict/predictors.h"
 #include "src/rig/rig.h"
@@ -115,8 +116,8 @@ static status change_on_the_way(scenario *s, FILE *out)
         return code;
     }
 
-    // changed, pushed, taken back, and beside what it was; a run that ends early is kept and says
-    // so
+    // changed, pushed, taken back, and beside what it was; a run that ends early is kept
+    // and says so
     session *t = &made_session;
     code = t->run.summary.status;
     session_seek(t, 0.03);
@@ -198,7 +199,8 @@ static status sweep_over(scenario *s, FILE *out)
     if (code == STATUS_OK) {
         const sweep_options options = {.jobs = 1};
         code = sweep_store_open(&store, NULL, &made_sweep, &f);
-        code = code == STATUS_OK ? sweep_run(&made_sweep, store, &options, &progress, &f) : code;
+        code = code == STATUS_OK ? sweep_run(&made_sweep, store, &options, &progress, &f)
+                                 : code;
         code = code == STATUS_OK ? sweep_store_write(store, out, false, &f) : code;
         code = code == STATUS_OK ? sweep_store_write(store, out, true, &f) : code;
         code = code == STATUS_OK
@@ -225,7 +227,7 @@ static status put_side_by_side(scenario *s, FILE *out)
     return code;
 }
 
-// --- the tests ----------------------------------------------------------------------------------
+// --- the tests -------------------------------------------------------------------------
 
 TEST(scenarios_are_read_copied_and_written)
 {
@@ -253,7 +255,8 @@ TEST(runs_of_every_engine)
 TEST(runs_of_the_rig)
 {
     static const char *const settings[] = {"control.law=hybrid", "control.law=optimal",
-                                           "control.law=observer", "control.law=inverse-dynamics"};
+                                           "control.law=observer",
+                                           "control.law=inverse-dynamics"};
     for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {
         try_with_scenario(run, settings[i]);
         try_with_scenario(start_rig, settings[i]);

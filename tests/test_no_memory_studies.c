@@ -1,5 +1,5 @@
-// As test_no_memory, for what stands around a run: scenarios by name, sets of cases, studies, parts
-// of a sweep, and the printed model.
+// As test_no_memory, for what stands around a run: scenarios by name, sets of cases,
+// studies, parts of a sweep, and the printed model.
 
 #include "src/run/export.h"
 #include "src/study/calibrate.h"
@@ -9,14 +9,15 @@
 #include "src/study/thesis_tables.h"
 #include "tests/refused_requests.h"
 
-// --- scenarios by name --------------------------------------------------------------------------
+// --- scenarios by name -----------------------------------------------------------------
 
 static void write_sentence(void *out, const char *sentence)
 {
     fprintf(out, "%s\n", sentence);
 }
 
-// A name that is unknown is refused with the same sentence, however little memory there is.
+// A name that is unknown is refused with the same sentence, however little memory there
+// is.
 static status look_up(const char *name, FILE *out)
 {
     scenario s;
@@ -49,7 +50,7 @@ static status place_of(const char *name, FILE *out)
     return path != NULL ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-// --- studies ------------------------------------------------------------------------------------
+// --- studies ---------------------------------------------------------------------------
 
 static const char short_run[] = "title: t\nwall: {angle: 0}\nmotor: {voltage: 4 V}\n"
                                 "run: {duration: 0.12 s}\ninitial: {angle: -0.01 rad}\n";
@@ -111,7 +112,7 @@ static status measure_stiffness(scenario *s, FILE *out)
     return code;
 }
 
-// --- parts of a sweep ---------------------------------------------------------------------------
+// --- parts of a sweep ------------------------------------------------------------------
 
 // Two parts into files, together into a third, and read as columns.
 static status sweep_in_parts(scenario *s, FILE *out)
@@ -143,7 +144,8 @@ static status sweep_in_parts(scenario *s, FILE *out)
     double *columns[2] = {NULL, NULL};
     size_t count = 0;
     code = code == STATUS_OK ? sweep_merge(files, 2, files[2], &merged, &f) : code;
-    code = code == STATUS_OK ? sweep_table_read(files[2], keys, 2, columns, &count, &f) : code;
+    code = code == STATUS_OK ? sweep_table_read(files[2], keys, 2, columns, &count, &f)
+                             : code;
     for (size_t i = 0; i < count && code == STATUS_OK; i++) {
         fprintf(out, "%a %a\n", columns[0][i], columns[1][i]);
     }
@@ -160,7 +162,7 @@ static status sweep_in_parts(scenario *s, FILE *out)
     return code == STATUS_CANNOT_READ && refused_at > 0 ? STATUS_NO_MEMORY : code;
 }
 
-// --- runs ---------------------------------------------------------------------------------------
+// --- runs ------------------------------------------------------------------------------
 
 // The force and the hub of every row.
 static status show_rows(const run_result *result, FILE *out)
@@ -179,12 +181,13 @@ static status run(scenario *s, FILE *out)
     return code;
 }
 
-// --- the tests ----------------------------------------------------------------------------------
+// --- the tests -------------------------------------------------------------------------
 
 TEST(a_name_means_the_same_scenario)
 {
     put_file("own.yaml", "title: Own\n");
-    KEPT_TEXT(before) = strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
+    KEPT_TEXT(before) =
+        strdup(getenv("IMPACTLAB_SCENARIOS") ? getenv("IMPACTLAB_SCENARIOS") : "");
     setenv("IMPACTLAB_SCENARIOS", test_folder, 1);
     try_all(look_up, "own");
     try_all(look_up, formatted("%s/own", test_folder));
@@ -197,7 +200,8 @@ TEST(a_name_means_the_same_scenario)
 
 TEST(sets_and_studies)
 {
-    put_file("set", "arm.k2=4:6\ncase soft: arm.k2=3\ncase pushed: push=0.1@0.05; arm.k2=4\n");
+    put_file("set",
+             "arm.k2=4:6\ncase soft: arm.k2=3\ncase pushed: push=0.1@0.05; arm.k2=4\n");
     try_with_scenario(draw_cases, "");
     try_all(thesis, "");
     try_with_scenario(converge, "");

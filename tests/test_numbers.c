@@ -49,15 +49,16 @@ TEST(decimals_are_read_with_what_follows)
 
 TEST(what_is_no_decimal_is_refused)
 {
-    for (EACH_TEXT(c, "", "x", "-", ".", "0x10", "inf", ".inf", "nan", "-.", " 1", "+-1", "e5")) {
+    for (EACH_TEXT(c, "", "x", "-", ".", "0x10", "inf", ".inf", "nan", "-.", " 1", "+-1",
+                   "e5")) {
         double value;
         const char *rest;
         assert_false(decimal_read(*c, &value, &rest));
     }
 }
 
-// Numbers of all sizes, also powers of two, for which the next number below is nearer than that
-// above.
+// Numbers of all sizes, also powers of two, for which the next number below is nearer
+// than that above.
 static double some_number(random_generator *g, int i)
 {
     double value;
@@ -68,8 +69,8 @@ static double some_number(random_generator *g, int i)
                         : value;
 }
 
-// What is written reads back to the last bit, and no number of one digit less does; of those with
-// as many digits it is the nearest.
+// What is written reads back to the last bit, and no number of one digit less does; of
+// those with as many digits it is the nearest.
 TEST(digits_are_as_few_as_read_back)
 {
     random_generator g = seeded(20261122);
@@ -133,17 +134,20 @@ TEST(digits_and_points_stand_where_they_belong)
     random_generator g = seeded(12);
     for (int trial = 0; trial < 40000; trial++) {
         char digits[24], source[64], expected[64], text[NUMBER_TEXT];
-        const int count = 1 + (int)random_below(&g, 15), place = (int)random_below(&g, 44) - 22;
+        const int count = 1 + (int)random_below(&g, 15),
+                  place = (int)random_below(&g, 44) - 22;
         digits[0] = (char)('1' + random_below(&g, 9));
         for (int i = 1; i < count; i++) {
             digits[i] = (char)('0' + random_below(&g, 10));
         }
-        digits[count - 1] = count > 1 && digits[count - 1] == '0' ? '7' : digits[count - 1];
+        digits[count - 1] =
+            count > 1 && digits[count - 1] == '0' ? '7' : digits[count - 1];
         digits[count] = '\0';
         snprintf(source, sizeof source, "%c.%se%d", digits[0], digits + 1, place);
         const double value = strtod(source, NULL) * (trial % 2 ? -1 : 1);
 
-        // without an exponent from 1e-4 to as many digits as there are, or at least 15 or 6
+        // without an exponent from 1e-4 to as many digits as there are, or at least 15 or
+        // 6
         for (int brief = 0; brief < 2; brief++) {
             const int least = brief ? 6 : 15, most = count > least ? count : least;
             char *to = expected;
@@ -155,8 +159,8 @@ TEST(digits_and_points_stand_where_they_belong)
                 sprintf(to, "0.%.*s%s", -place - 1, "0000", digits);
             } else {
                 for (int i = 0; i <= place || i < count; i++) {
-                    to +=
-                        sprintf(to, "%s%c", i == place + 1 ? "." : "", i < count ? digits[i] : '0');
+                    to += sprintf(to, "%s%c", i == place + 1 ? "." : "",
+                                  i < count ? digits[i] : '0');
                 }
             }
             (brief ? number_format_short : number_format)(text, value);

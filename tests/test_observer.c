@@ -1,5 +1,5 @@
-// The law `observer`: its gain, its reduced arm, and what it has to show on the rig; and that laws
-// see sensors only.
+// The law `observer`: its gain, its reduced arm, and what it has to show on the rig; and
+// that laws see sensors only.
 
 #include "src/rig/estimation/arm_observer.h"
 #include "src/rig/controller_values.h"
@@ -11,20 +11,20 @@
 
 #define N ESTIMATOR_STATES
 
-// --- synthesis --------------------------------------------------------------------------------
+// --- synthesis -------------------------------------------------------------------------
 
-// The cost that a feedback leaves, as z'P z: P = C + (growth (A - b k))' P (growth (A - b k))
-// summed sample by sample.
-static void cost_of_feedback(const sampled_model *m, const quadratic_cost *c, const double *k,
-                             double p[N][N])
+// The cost that a feedback leaves, as z'P z: P = C + (growth (A - b k))' P (growth (A - b
+// k)) summed sample by sample.
+static void cost_of_feedback(const sampled_model *m, const quadratic_cost *c,
+                             const double *k, double p[N][N])
 {
     double loop[N][N], once[N][N], product[N][N];
     memset(p, 0, N * sizeof p[0]);
     for (int i = 0; i < m->n; i++) {
         for (int j = 0; j < m->n; j++) {
             loop[i][j] = c->growth * (m->a[i][j] - m->b[i] * k[j]);
-            once[i][j] =
-                c->state[i][j] - c->cross[i] * k[j] - k[i] * c->cross[j] + c->effort * k[i] * k[j];
+            once[i][j] = c->state[i][j] - c->cross[i] * k[j] - k[i] * c->cross[j] +
+                         c->effort * k[i] * k[j];
         }
     }
 
@@ -46,7 +46,8 @@ static void cost_of_feedback(const sampled_model *m, const quadratic_cost *c, co
 }
 
 // Where all that follows is paid for by P, no other first command is better.
-static void check_optimal(const sampled_model *m, const quadratic_cost *c, double tolerance)
+static void check_optimal(const sampled_model *m, const quadratic_cost *c,
+                          double tolerance)
 {
     double k[N], p[N][N], weight = c->effort, size = 0;
     assert_true(quadratic_gain(m, c, k));
@@ -129,7 +130,8 @@ TEST(all_states_have_a_gain_in_any_unit)
 // Each term is weight (row z + direct u)^2 = z'C z + 2 u s'z + r u^2.
 TEST(a_cost_is_the_sum_of_its_squares)
 {
-    const double rows[2][2] = {{2, -3}, {0.5, 4}}, direct[2] = {0.7, -1.1}, weight[2] = {3, 5};
+    const double rows[2][2] = {{2, -3}, {0.5, 4}}, direct[2] = {0.7, -1.1},
+                 weight[2] = {3, 5};
     const double z[2] = {0.3, -0.8}, u = 1.7;
     quadratic_cost cost = {.growth = 1};
     double sum = 0;
@@ -184,7 +186,8 @@ static controller_setup two_links(void)
                               .hub_spring = HUGE_VAL};
 }
 
-// Two links have one degree of freedom in contact: M x'' = T - 4 k2 x, f = 4 k2 x - mu x''.
+// Two links have one degree of freedom in contact: M x'' = T - 4 k2 x, f = 4 k2 x - mu
+// x''.
 TEST(two_links_reduce_to_themselves)
 {
     controller_setup s = two_links();
@@ -201,13 +204,14 @@ TEST(two_links_reduce_to_themselves)
     check_relative(at_once, -mu / mass, 1e-9);
 
     // a rotation of all bodies has p of the free modes and bends nothing
-    check_relative(reduced.free.momentum[0] * reduced.free.momentum[0], reduced.inertia, 1e-9);
+    check_relative(reduced.free.momentum[0] * reduced.free.momentum[0], reduced.inertia,
+                   1e-9);
     check_close(reduced.free.momentum[1], 0, 1e-9);
     check_close(reduced.free.square[0], 0, 1e-6);
 }
 
-// A plastic touch keeps what M projects: it loses energy, and nothing of a motion that the contact
-// allows.
+// A plastic touch keeps what M projects: it loses energy, and nothing of a motion that
+// the contact allows.
 TEST(a_touch_loses_energy)
 {
     controller_setup s = two_links();
@@ -230,7 +234,7 @@ TEST(a_touch_loses_energy)
     check_below(after, before);
 }
 
-// --- on the rig -------------------------------------------------------------------------------
+// --- on the rig ------------------------------------------------------------------------
 
 TEST(overshoot_is_small_when_told_the_truth)
 {
@@ -251,10 +255,11 @@ TEST(wrong_beliefs_do_no_harm)
 {
     for (EACH_TEXT(c, "belief.mass_factor=0.85", "belief.mass_factor=1.15",
                    "belief.friction_factor=0.7", "belief.friction_factor=1.3",
-                   "belief.wall_error=0.03", "belief.wall_error=-0.03", "belief.k2_factor=0.75",
-                   "belief.k2_factor=1.25", "belief.torque_factor=0.85",
-                   "belief.torque_factor=1.15", "initial.angle=-0.6", "wall.kind=plane",
-                   "wall.restitution=0.3", "belief.hub_spring_factor=10", "sensor.fsr_noise=0.06",
+                   "belief.wall_error=0.03", "belief.wall_error=-0.03",
+                   "belief.k2_factor=0.75", "belief.k2_factor=1.25",
+                   "belief.torque_factor=0.85", "belief.torque_factor=1.15",
+                   "initial.angle=-0.6", "wall.kind=plane", "wall.restitution=0.3",
+                   "belief.hub_spring_factor=10", "sensor.fsr_noise=0.06",
                    "sensor.tachometer_offset=0.02", "sensor.tachometer_offset=-0.02")) {
         summary s = rig_summary_with("control.law=observer run.duration=2 %s", *c);
         check_below(s.force_over_command_N, 0.3);
@@ -263,15 +268,16 @@ TEST(wrong_beliefs_do_no_harm)
     }
 }
 
-// A tip thrown back is met softly: the second meeting is no harder than the command allows.
+// A tip thrown back is met softly: the second meeting is no harder than the command
+// allows.
 TEST(walls_that_throw_back_are_met_softly)
 {
     for (EACH_TEXT(c, "wall.restitution=0.1", "wall.restitution=0.2",
                    "wall.contact=kelvin-voigt wall.stiffness=1000",
                    "wall.contact=kelvin-voigt wall.stiffness=5000")) {
         for (int newtons = 1; newtons <= 3; newtons += 2) {
-            summary s = rig_summary_with("control.law=observer run.duration=2 control.force=%d %s",
-                                         newtons, *c);
+            summary s = rig_summary_with(
+                "control.law=observer run.duration=2 control.force=%d %s", newtons, *c);
             check_below(s.smoothed_over_command_N, 0.3 * newtons);
             check_below(s.settling_time_s, 0.3);
             check_below(s.first_contact_s, 1.5 * 0.293); // open-loop's
@@ -281,8 +287,8 @@ TEST(walls_that_throw_back_are_met_softly)
 
 TEST(a_delay_untold_does_no_harm)
 {
-    summary s =
-        rig_summary_with("control.law=observer control.delay=5e-3 belief.delay_error=-5e-3");
+    summary s = rig_summary_with(
+        "control.law=observer control.delay=5e-3 belief.delay_error=-5e-3");
     check_below(s.force_over_command_N, 0.3);
     check_below(s.settling_time_s, 0.3);
     check_close(s.steady_error_N, 0, 0.05);
@@ -303,20 +309,22 @@ TEST(it_settles_on_many_links)
     }
 }
 
-// Behind a spring a torque is no force at once, and a limit on that force is none of the command.
+// Behind a spring a torque is no force at once, and a limit on that force is none of the
+// command.
 TEST(a_hub_on_a_spring_does_not_swing)
 {
     for (EACH_TEXT(c, "arm.k1=90", "arm.k1=150", "arm.k1=300")) {
-        summary s =
-            rig_summary_with("control.law=observer control.force=2 arm.hub_joint=spring %s", *c);
+        summary s = rig_summary_with(
+            "control.law=observer control.force=2 arm.hub_joint=spring %s", *c);
         check_below(s.settling_time_s, 0.3);
         check_close(s.steady_error_N, 0, 0.05);
     }
 }
 
-// What a law gets at sample k, with this voltage so far: what the first row of these shows that is
-// between it and the next sample.
-static controller_input input_of(const sample **rows, int k, double period, double voltage)
+// What a law gets at sample k, with this voltage so far: what the first row of these
+// shows that is between it and the next sample.
+static controller_input input_of(const sample **rows, int k, double period,
+                                 double voltage)
 {
     const sample *read = *rows;
     while (read->time < (k + 0.5) * period) {
@@ -334,8 +342,8 @@ static controller_input input_of(const sample **rows, int k, double period, doub
                               .wanted_mode = -1};
 }
 
-// The readings of a run with these settings, as all observers of the arms held possible see them:
-// which of them the law ends with.
+// The readings of a run with these settings, as all observers of the arms held possible
+// see them: which of them the law ends with.
 static observer_arms arms_after(const char *const *settings)
 {
     scenario s = {.parameters = rig_parameters(settings)};
@@ -366,9 +374,9 @@ static observer_arms arms_after(const char *const *settings)
     return arms;
 }
 
-// Told the truth, the arm told of; told something else, the one that is nearest: of eight links
-// six, the tip's mass, and the hub that gives. A stiffness or an inertia believed wrongly is no
-// other arm.
+// Told the truth, the arm told of; told something else, the one that is nearest: of eight
+// links six, the tip's mass, and the hub that gives. A stiffness or an inertia believed
+// wrongly is no other arm.
 TEST(readings_tell_which_arm_it_is)
 {
     for (EACH_TEXT(c, "", "belief.k2_factor=1.2", "belief.mass_factor=0.87",
@@ -383,41 +391,44 @@ TEST(readings_tell_which_arm_it_is)
     assert_int_equal(eight.on, 2);
     observer_arms loaded = arms_after(given("control.law=observer arm.tip_mass=0.08"));
     check_close(loaded.arms[loaded.on].observer.arm.inertia, 0.139 + 0.08, 0.005);
-    observer_arms gives = arms_after(
-        given("control.law=observer arm.hub_joint=spring arm.k1=90 belief.hub_spring_factor=100"));
+    observer_arms gives = arms_after(given("control.law=observer arm.hub_joint=spring "
+                                           "arm.k1=90 belief.hub_spring_factor=100"));
     assert_int_equal(gives.on, 3);
     assert_int_equal(gives.count, 10);
 }
 
-// On a wall that gives, the arm at one that gives about as much, 1.5 k^(2/3) f^(1/3) of Hertz's
-// law; the force then settles as on a rigid one.
+// On a wall that gives, the arm at one that gives about as much, 1.5 k^(2/3) f^(1/3) of
+// Hertz's law; the force then settles as on a rigid one.
 TEST(a_wall_that_gives_is_found)
 {
     static const double stiffness[] = {400, 1600, 6000};
     for (int i = 0; i < 3; i++) {
-        const observer_arms soft = arms_after(given(
-            "control.law=observer wall.contact=hunt-crossley wall.stiffness=%g", stiffness[i]));
+        const observer_arms soft = arms_after(
+            given("control.law=observer wall.contact=hunt-crossley wall.stiffness=%g",
+                  stiffness[i]));
         const double tangent = 1.5 * pow(stiffness[i], 2.0 / 3);
         static const double walls[] = {60, 150, 375, 940};
         assert_in_range(soft.on, soft.giving, soft.loaded - 1);
         assert_in_range(100 * walls[soft.on - soft.giving] / tangent, 50, 250);
 
-        scenario s = {.parameters = rig_parameters(
-                          given("control.law=observer wall.contact=hunt-crossley "
-                                "wall.stiffness=%g wall.angle=0 initial.angle=-0.1 run.duration=2",
-                                stiffness[i]))};
+        scenario s = {
+            .parameters = rig_parameters(
+                given("control.law=observer wall.contact=hunt-crossley "
+                      "wall.stiffness=%g wall.angle=0 initial.angle=-0.1 run.duration=2",
+                      stiffness[i]))};
         KEPT_RUN(r) = run_done(&s, false);
         check_below(r.summary.settling_time_s, 0.3);
         check_below(r.summary.smoothed_over_command_N, 0.15);
     }
 
     // a rigid one that throws the tip back is none
-    const observer_arms rigid = arms_after(given("control.law=observer wall.restitution=0.3"));
+    const observer_arms rigid =
+        arms_after(given("control.law=observer wall.restitution=0.3"));
     assert_int_equal(rigid.on, 0);
 }
 
-// A stiffness believed wrongly is learned from the readings: half the way to it counts as much as
-// what was believed, and the force at the end does not depend on it.
+// A stiffness believed wrongly is learned from the readings: half the way to it counts as
+// much as what was believed, and the force at the end does not depend on it.
 TEST(it_learns_how_stiff_the_arm_is)
 {
     for (EACH_OF(double, c, 0.75, 1.25)) {
@@ -428,7 +439,8 @@ TEST(it_learns_how_stiff_the_arm_is)
         hub_sensors hub;
         assert_null(arm_observer_init(&o, &setup, 1, 0, HUGE_VAL));
 
-        // the hub bends the arm against the wall, the readings are those of the true stiffness
+        // the hub bends the arm against the wall, the readings are those of the true
+        // stiffness
         const double stiffness = 4 * setup.k2 / *c;
         controller_input in = {.piezo_force = (double)NAN,
                                .film = (double)NAN,
@@ -468,12 +480,13 @@ TEST(it_finds_the_wall_again)
     }
 }
 
-// The speeds of the summary are those that the rows show, and the tip does not come back faster
-// than it came.
+// The speeds of the summary are those that the rows show, and the tip does not come back
+// faster than it came.
 TEST(the_tip_comes_back_no_faster_than_it_came)
 {
-    scenario s = SCRIPTED(rig_parameters_with("control.law=observer wall.restitution=0.3"),
-                          PUSHES(0.8, -0.05));
+    scenario s =
+        SCRIPTED(rig_parameters_with("control.law=observer wall.restitution=0.3"),
+                 PUSHES(0.8, -0.05));
     KEPT_RUN(r) = run_done(&s, true);
 
     double there = 0, back = 0;
@@ -492,35 +505,39 @@ TEST(the_tip_comes_back_no_faster_than_it_came)
     check_close(rig_summary_with("control.law=observer").return_speed_m_s, 0, 0);
 }
 
-// Walls that give, and that throw the tip back: it comes to rest on them with the wanted force.
+// Walls that give, and that throw the tip back: it comes to rest on them with the wanted
+// force.
 TEST(it_settles_on_walls_that_give)
 {
-    for (EACH_TEXT(c, "kelvin-voigt wall.stiffness=200", "kelvin-voigt wall.stiffness=2e4",
-                   "kelvin-voigt wall.stiffness=1e6",
+    for (EACH_TEXT(c, "kelvin-voigt wall.stiffness=200",
+                   "kelvin-voigt wall.stiffness=2e4", "kelvin-voigt wall.stiffness=1e6",
                    "kelvin-voigt wall.stiffness=1e5 wall.mass=0.01",
-                   "hunt-crossley wall.stiffness=5000", "hunt-crossley wall.stiffness=7.5e4",
+                   "hunt-crossley wall.stiffness=5000",
+                   "hunt-crossley wall.stiffness=7.5e4",
                    "hunt-crossley wall.stiffness=1e6")) {
-        summary s = rig_summary_with("control.law=observer run.duration=2.5 wall.contact=%s", *c);
+        summary s =
+            rig_summary_with("control.law=observer run.duration=2.5 wall.contact=%s", *c);
         check_below(s.settling_time_s, 1.5);
         check_below(s.separations, 40);
         check_close(s.steady_error_N, 0, 0.05);
     }
 }
 
-// The force of a run in contact whose set-point goes from one value to another at 1 s [N], at a
-// rate or at once (0).
+// The force of a run in contact whose set-point goes from one value to another at 1 s
+// [N], at a rate or at once (0).
 static run_result force_after_change(double from, double to, double rate)
 {
-    scenario s =
-        SCRIPTED(rig_parameters_with("control.law=observer control.force=%g control.force_rate=%g "
-                                     "run.duration=2",
-                                     from, rate),
-                 SETS(1, control.force, to));
+    scenario s = SCRIPTED(
+        rig_parameters_with("control.law=observer control.force=%g control.force_rate=%g "
+                            "run.duration=2",
+                            from, rate),
+        SETS(1, control.force, to));
     return run_done(&s, true);
 }
 
-// A step of the set-point settles in 0.15 s with at most a tenth of it over; a ramp is followed
-// within a twentieth of the force, once the force that first goes the other way is over it.
+// A step of the set-point settles in 0.15 s with at most a tenth of it over; a ramp is
+// followed within a twentieth of the force, once the force that first goes the other way
+// is over it.
 TEST(it_follows_a_setpoint_in_contact)
 {
     static const double steps[][2] = {{1, 1.5}, {1.5, 1}, {0.5, 1}, {1, 0.5}, {2.5, 3}};
@@ -545,17 +562,20 @@ TEST(it_follows_a_setpoint_in_contact)
     }
 }
 
-// A tip that drifts to the wall where no force is wanted is touched by, and nothing presses on it.
+// A tip that drifts to the wall where no force is wanted is touched by, and nothing
+// presses on it.
 TEST(no_force_is_wanted_and_none_is_held)
 {
-    const summary m = rig_summary_with("control.law=observer control.force=0 initial.velocity=2");
+    const summary m =
+        rig_summary_with("control.law=observer control.force=0 initial.velocity=2");
     check_below(0, m.first_contact_s);
     check_below(fabs(m.steady_force_N), 0.05);
 }
 
-// --- laws see sensors only --------------------------------------------------------------------
+// --- laws see sensors only -------------------------------------------------------------
 
-// The plant is replaced by a recording of what its sensors read: the commands are the same.
+// The plant is replaced by a recording of what its sensors read: the commands are the
+// same.
 TEST(the_same_readings_give_the_same_commands)
 {
     for (int law = LAW_NONE + 1; law < LAW_PLUGIN; law++) {
@@ -577,7 +597,8 @@ TEST(the_same_readings_give_the_same_commands)
 
         double voltage = 0;
         const sample *read = r.trace.rows;
-        const converter dac = converter_of(s.parameters.sensor.dac_bits, setup.voltage_limit);
+        const converter dac =
+            converter_of(s.parameters.sensor.dac_bits, setup.voltage_limit);
         for (int k = 0; k < 159; k++) {
             controller_input in = input_of(&read, k, setup.period, voltage);
             controller_output out = {0};

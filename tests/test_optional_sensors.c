@@ -1,5 +1,5 @@
-// The optional sensors, each against its data: piezoelectric force sensor, piezo film along the
-// beam, accelerometer on the hub.
+// The optional sensors, each against its data: piezoelectric force sensor, piezo film
+// along the beam, accelerometer on the hub.
 
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
@@ -41,7 +41,7 @@ static double accelerometer(sensors *s, double acceleration)
     return sensors_read(s, &m).accelerometer;
 }
 
-// --- whether they are there -----------------------------------------------------------------
+// --- whether they are there ------------------------------------------------------------
 
 TEST(sensors_not_fitted_read_nothing)
 {
@@ -96,9 +96,10 @@ TEST(ideal_sensors_tell_the_truth)
     check_relative(r.accelerometer, -1234.567, 1e-14);
 }
 
-// --- converter, range, noise ----------------------------------------------------------------
+// --- converter, range, noise -----------------------------------------------------------
 
-// Checks that a reading goes up in whole steps of the converter, read back through the gain.
+// Checks that a reading goes up in whole steps of the converter, read back through the
+// gain.
 static void check_steps(double (*read)(sensors *, double), sensors *s, double gain)
 {
     const double step = CONVERTER_STEP / gain;
@@ -117,8 +118,9 @@ static void check_steps(double (*read)(sensors *, double), sensors *s, double ga
 TEST(readings_have_the_steps_of_the_converter)
 {
     sensors s = fresh_sensors(
-        given(ALL_FITTED " sensor.piezo_noise=0 sensor.film_noise=0 sensor.accelerometer_noise=0 "
-                         "sensor.piezo_rise_time=0 sensor.accelerometer_rise_time=0"));
+        given(ALL_FITTED " sensor.piezo_noise=0 sensor.film_noise=0 "
+                         "sensor.accelerometer_noise=0 sensor.piezo_rise_time=0 "
+                         "sensor.accelerometer_rise_time=0"));
     check_steps(piezo, &s, 1);
     check_steps(film, &s, 10);
     check_steps(accelerometer, &s, 0.02);
@@ -126,20 +128,22 @@ TEST(readings_have_the_steps_of_the_converter)
 
 TEST(sensors_go_off_scale)
 {
-    sensors s = fresh_sensors(given(
-        ALL_FITTED " sensor.piezo_noise=0 sensor.film_noise=0 sensor.accelerometer_noise=0 "
-                   "sensor.piezo_rise_time=0 sensor.adc_bits=0 sensor.accelerometer_rise_time=0 "
-                   "sensor.piezo_range=8 sensor.accelerometer_range=400"));
+    sensors s = fresh_sensors(
+        given(ALL_FITTED " sensor.piezo_noise=0 sensor.film_noise=0 "
+                         "sensor.accelerometer_noise=0 sensor.piezo_rise_time=0 "
+                         "sensor.adc_bits=0 sensor.accelerometer_rise_time=0 "
+                         "sensor.piezo_range=8 sensor.accelerometer_range=400"));
     check_close(piezo(&s, 9), 8, 1e-12);
     check_close(piezo(&s, -9), -8, 1e-12);
     check_close(piezo(&s, 7.9), 7.9, 1e-12);
     check_close(accelerometer(&s, 401), 400, 1e-12);
     check_close(accelerometer(&s, -401), -400, 1e-12);
     check_close(film(&s, 1.5), 1, 1e-12); // 10 V/rad: where the converter ends
-    sensors wide = fresh_sensors(given(
-        ALL_FITTED " sensor.adc_range=1000 sensor.piezo_noise=0 sensor.adc_bits=0 "
-                   "sensor.accelerometer_noise=0 sensor.piezo_rise_time=0 sensor.piezo_range=0 "
-                   "sensor.accelerometer_rise_time=0 sensor.accelerometer_range=0"));
+    sensors wide = fresh_sensors(
+        given(ALL_FITTED " sensor.adc_range=1000 sensor.piezo_noise=0 sensor.adc_bits=0 "
+                         "sensor.accelerometer_noise=0 sensor.piezo_rise_time=0 "
+                         "sensor.piezo_range=0 sensor.accelerometer_rise_time=0 "
+                         "sensor.accelerometer_range=0"));
     check_close(piezo(&wide, 900), 900, 1e-9);
     check_close(accelerometer(&wide, 9000), 9000, 1e-9);
 }
@@ -160,9 +164,9 @@ static void check_spread(double (*read)(sensors *, double), sensors *s, double s
 
 TEST(noise_has_its_spread)
 {
-    sensors s =
-        fresh_sensors(given(ALL_FITTED " sensor.adc_bits=0 sensor.piezo_noise=0.03 "
-                                       "sensor.film_noise=0.02 sensor.accelerometer_noise=0.01"));
+    sensors s = fresh_sensors(
+        given(ALL_FITTED " sensor.adc_bits=0 sensor.piezo_noise=0.03 "
+                         "sensor.film_noise=0.02 sensor.accelerometer_noise=0.01"));
     check_spread(piezo, &s, 0.03);
     check_spread(film, &s, 0.002);
     check_spread(accelerometer, &s, 0.5);
@@ -171,10 +175,11 @@ TEST(noise_has_its_spread)
 TEST(each_noise_is_its_own)
 {
     sensors s = fresh_sensors(given(
-        ALL_FITTED
-        " sensor.adc_bits=0 sensor.tachometer_noise=1 sensor.piezo_noise=1 sensor.film_noise=1 "
-        "sensor.accelerometer_noise=1 sensor.tachometer_gain=1 sensor.film_gain=1 "
-        "sensor.accelerometer_gain=1 sensor.piezo_range=0 sensor.accelerometer_range=0"));
+        ALL_FITTED " sensor.adc_bits=0 sensor.tachometer_noise=1 sensor.piezo_noise=1 "
+                   "sensor.film_noise=1 sensor.accelerometer_noise=1 "
+                   "sensor.tachometer_gain=1 sensor.film_gain=1 "
+                   "sensor.accelerometer_gain=1 sensor.piezo_range=0 "
+                   "sensor.accelerometer_range=0"));
     enum { COUNT = 20000 };
     double product[6] = {0};
     for (int i = 0; i < COUNT; i++) {
@@ -191,16 +196,19 @@ TEST(each_noise_is_its_own)
     }
 }
 
-// --- lags and leaks -------------------------------------------------------------------------
+// --- lags and leaks --------------------------------------------------------------------
 
-#define QUIET                                                                                      \
-    ALL_FITTED                                                                                     \
-    " sensor.adc_bits=0 sensor.piezo_noise=0 sensor.film_noise=0 sensor.accelerometer_noise=0"
+#define QUIET                                                                            \
+    ALL_FITTED                                                                           \
+    " sensor.adc_bits=0 sensor.piezo_noise=0 sensor.film_noise=0 "                       \
+    "sensor.accelerometer_noise=0"
 
-// A step of 1 N: exp(-t/q) - exp(-t/r), times q/(q - r), with the rise's r and the leak's q.
+// A step of 1 N: exp(-t/q) - exp(-t/r), times q/(q - r), with the rise's r and the leak's
+// q.
 TEST(piezo_rises_and_leaks)
 {
-    const double r = 5e-5 / RISE_CONSTANTS, q = 5, instants[] = {1e-5, 5e-5, 2e-4, 5e-3, 1, 4, 20};
+    const double r = 5e-5 / RISE_CONSTANTS, q = 5,
+                 instants[] = {1e-5, 5e-5, 2e-4, 5e-3, 1, 4, 20};
     sensors s = fresh_sensors(given(QUIET));
     double t = 0, tenth = 0;
     for (int i = 0; i < 7; i++) {
@@ -217,8 +225,8 @@ TEST(piezo_rises_and_leaks)
     check_close(t - tenth, 5e-5, 3e-7);
 }
 
-// What a gain makes larger at the converter is taken back: the reading is the force, and the
-// converter's step is so much finer.
+// What a gain makes larger at the converter is taken back: the reading is the force, and
+// the converter's step is so much finer.
 TEST(a_gain_is_taken_back)
 {
     sensors s = fresh_sensors(
@@ -226,8 +234,8 @@ TEST(a_gain_is_taken_back)
                     "sensor.accelerometer_rise_time=0 sensor.accelerometer_gain=0.5"));
     check_relative(piezo(&s, 1.3), 1.3, 1e-14);
     check_relative(accelerometer(&s, 3), 3.0, 1e-14);
-    s = fresh_sensors(
-        given(ALL_FITTED " sensor.piezo_noise=0 sensor.piezo_rise_time=0 sensor.piezo_gain=4"));
+    s = fresh_sensors(given(
+        ALL_FITTED " sensor.piezo_noise=0 sensor.piezo_rise_time=0 sensor.piezo_gain=4"));
     const double step = 2 * s.p.adc_range / (double)(1 << s.p.adc_bits) / 4;
     const double codes = piezo(&s, 1.3) / step;
     check_close(codes, round(codes), 1e-9);
@@ -245,7 +253,8 @@ TEST(piezo_without_leak_stays_and_without_rise_is_instant)
     check_close(piezo(&s, 2), 2 * exp(-1), 1e-12);
 }
 
-// An impulse p arrives as p/r; the sensor is off scale until it has died down to its range.
+// An impulse p arrives as p/r; the sensor is off scale until it has died down to its
+// range.
 TEST(impulse_drives_the_piezo_off_scale)
 {
     const double impulse = 0.02, r = 5e-5 / RISE_CONSTANTS;
@@ -262,8 +271,8 @@ TEST(impulse_drives_the_piezo_off_scale)
     check_close(piezo(&s, 0), -impulse / 5, 1e-6);
 }
 
-// Strides far shorter than the leak, each with a force that rises and falls by ten newtons: a
-// ringing chain of many links makes them. By symmetry the leak sees the mean.
+// Strides far shorter than the leak, each with a force that rises and falls by ten
+// newtons: a ringing chain of many links makes them. By symmetry the leak sees the mean.
 TEST(leak_keeps_its_digits_over_short_strides)
 {
     const int strides = 100000;
@@ -291,7 +300,8 @@ TEST(film_leaks)
     check_close(film(&tight, 0.3), 0.3, 1e-12);
 }
 
-// A swinging beam: the high pass turns sin(w t) into w q/(1 + w^2 q^2) (w q sin + cos) in the end.
+// A swinging beam: the high pass turns sin(w t) into w q/(1 + w^2 q^2) (w q sin + cos) in
+// the end.
 TEST(film_follows_a_swing)
 {
     const double w = 12, q = 0.2, h = 0.005, share = w * q / (1 + w * w * q * q);
@@ -303,7 +313,8 @@ TEST(film_follows_a_swing)
         sensors_follow(&s, h, &first, &last, 0);
     }
     double end = w * h * 1000;
-    check_close(film(&s, 0.1 * sin(end)), 0.1 * share * (w * q * sin(end) + cos(end)), 1e-8);
+    check_close(film(&s, 0.1 * sin(end)), 0.1 * share * (w * q * sin(end) + cos(end)),
+                1e-8);
 }
 
 TEST(accelerometer_rises_in_its_time)
@@ -318,11 +329,13 @@ TEST(accelerometer_rises_in_its_time)
     }
 }
 
-// A jump of the velocity is a pulse of acceleration: jump/tau, whose integral is the jump.
+// A jump of the velocity is a pulse of acceleration: jump/tau, whose integral is the
+// jump.
 TEST(accelerometer_feels_a_jump)
 {
     const double tau = 3.5e-4 / RISE_CONSTANTS, h = 1e-6;
-    sensors s = fresh_sensors(given(QUIET " sensor.adc_range=1000 sensor.accelerometer_range=0"));
+    sensors s =
+        fresh_sensors(given(QUIET " sensor.adc_range=1000 sensor.accelerometer_range=0"));
     const sensed_motion before = {.velocity = 0.8}, after = {.velocity = 0.5};
     sensors_follow(&s, 0.01, &before, &before, 0);
     double last = sensors_read(&s, &after).accelerometer, gained = 0;
@@ -336,16 +349,17 @@ TEST(accelerometer_feels_a_jump)
     check_relative(gained, -0.3, 1e-5);
 }
 
-// --- in a run -------------------------------------------------------------------------------
+// --- in a run --------------------------------------------------------------------------
 
 // Against the rows of a run, put through lag and leak in the simplest way.
 TEST(run_feeds_the_sensors)
 {
     const double tau = 0.01 / RISE_CONSTANTS, leak = 0.1;
-    run_result run = rig_run(
-        given(QUIET " control.law=force-pd method.step=2e-5 run.duration=0.4 initial.angle=-0.02 "
-                    "sensor.film_leak_time=0.1 sensor.accelerometer_rise_time=0.01"),
-        true);
+    run_result run =
+        rig_run(given(QUIET " control.law=force-pd method.step=2e-5 run.duration=0.4 "
+                            "initial.angle=-0.02 sensor.film_leak_time=0.1 "
+                            "sensor.accelerometer_rise_time=0.01"),
+                true);
     const trace *t = &run.trace;
     double felt = 0, leaked = 0, largest = 0, bending_before = 0;
     int compared = 0;
@@ -378,8 +392,8 @@ TEST(run_feeds_the_sensors)
 TEST(sensors_feel_a_push_in_contact)
 {
     // a twentieth of a millisecond before a sample
-    scenario s =
-        SCRIPTED(rig_parameters_with("control.law=force-pd " QUIET), PUSHES(0.99995, 0.02));
+    scenario s = SCRIPTED(rig_parameters_with("control.law=force-pd " QUIET),
+                          PUSHES(0.99995, 0.02));
     KEPT_RUN(run) = run_done(&s, true);
     double fsr = 0, piezo_force = 0, acceleration = 0;
     for (EACH_ROW(row, &run.trace)) {
@@ -394,12 +408,13 @@ TEST(sensors_feel_a_push_in_contact)
     check_below(1, acceleration);
 }
 
-// Steps that do not resolve an impact deliver it as a force, unless it rebounds: then it is a jump,
-// and an impulse like any other.
+// Steps that do not resolve an impact deliver it as a force, unless it rebounds: then it
+// is a jump, and an impulse like any other.
 TEST(sensors_feel_an_unresolved_rebound)
 {
-    RIG_RUN(run, QUIET " control.law=open-loop control.rate=5000 method.name=newmark arm.links=12 "
-                       "wall.kind=plane wall.restitution=0.8 run.duration=0.305");
+    RIG_RUN(run,
+            QUIET " control.law=open-loop control.rate=5000 method.name=newmark "
+                  "arm.links=12 wall.kind=plane wall.restitution=0.8 run.duration=0.305");
     double fsr = 0, largest_impulse = 0;
     for (EACH_ROW(row, &run.trace)) {
         largest_impulse = fmax(largest_impulse, row->impulse);

@@ -1,5 +1,5 @@
-// What a run reads from outside its scenario: whoever keeps results of such runs refuses to go on
-// when it is another one.
+// What a run reads from outside its scenario: whoever keeps results of such runs refuses
+// to go on when it is another one.
 //
 //   test_outside PLUGIN OTHER_PLUGIN
 #include <assert.h>
@@ -13,7 +13,8 @@ static char *plugin_files[2];
 // A law that answers every sample with so many volts.
 static void write_law(const char *path, const char *volts)
 {
-    put_file(path, formatted("while read -r line; do echo '{\"command\": %s}'; done\n", volts));
+    put_file(path,
+             formatted("while read -r line; do echo '{\"command\": %s}'; done\n", volts));
 }
 
 static void copy_file(const char *from, const char *to)
@@ -53,14 +54,14 @@ static const struct outside_case {
     void (*write)(int which);
     const char *file;
 } cases[] = {
-    {offsetof(parameters, control.plugin), "./law.so", LAW_PLUGIN, MOTION_NONE, write_plugin,
-     "law.so"},
-    {offsetof(parameters, control.command), "sh law.sh", LAW_PROCESS, MOTION_NONE, write_program,
-     "law.sh"},
+    {offsetof(parameters, control.plugin), "./law.so", LAW_PLUGIN, MOTION_NONE,
+     write_plugin, "law.so"},
+    {offsetof(parameters, control.command), "sh law.sh", LAW_PROCESS, MOTION_NONE,
+     write_program, "law.sh"},
     {offsetof(parameters, control.playback_file), "u.csv", LAW_PLAYBACK, MOTION_NONE,
      write_recording, "u.csv"},
-    {offsetof(parameters, wall.motion_file), "w.csv", LAW_OPEN_LOOP, MOTION_FILE, write_path,
-     "w.csv"},
+    {offsetof(parameters, wall.motion_file), "w.csv", LAW_OPEN_LOOP, MOTION_FILE,
+     write_path, "w.csv"},
 };
 enum { CASES = sizeof cases / sizeof cases[0] };
 
@@ -92,18 +93,20 @@ SWEEP_TEST(one_list_has_all_that_names_a_file)
         for (int k = 0; k < outside_count; k++) {
             known = known || parameter_at(outside_table[k].parameter) == i;
         }
-        fail_if(!known, "%s is a text: does a run read what it names?", parameter_table[i].path);
+        fail_if(!known, "%s is a text: does a run read what it names?",
+                parameter_table[i].path);
     }
 }
 
-// --- the digest -------------------------------------------------------------------------------
+// --- the digest ------------------------------------------------------------------------
 
 static status digest(const char *command, char text[SHA256_TEXT], fault *f)
 {
     parameters p = {.control.law = LAW_PROCESS};
     snprintf(p.control.command, sizeof p.control.command, "%s", command);
     for (int i = 0; i < outside_count; i++) {
-        if (outside_is_read(&outside_table[i], &p) && outside_is_told(&outside_table[i], &p)) {
+        if (outside_is_read(&outside_table[i], &p) &&
+            outside_is_told(&outside_table[i], &p)) {
             return outside_digest(&outside_table[i], &p, text, f);
         }
     }
@@ -194,7 +197,8 @@ SWEEP_TEST(a_plugin_is_its_file)
     parameters p = {.control.law = LAW_PLUGIN, .control.plugin = "law.so"};
     assert_false(outside_is_told(&outside_table[0], &p));
     strcpy(p.control.plugin, "./law.so");
-    REFUSED(STATUS_CANNOT_READ, "control.plugin = './law.so' cannot be read: No such file",
+    REFUSED(STATUS_CANNOT_READ,
+            "control.plugin = './law.so' cannot be read: No such file",
             outside_digest(&outside_table[0], &p, text, &f));
 
     // a folder, and what nobody may read
@@ -209,7 +213,7 @@ SWEEP_TEST(a_plugin_is_its_file)
     }
 }
 
-// --- sweeps -----------------------------------------------------------------------------------
+// --- sweeps ----------------------------------------------------------------------------
 
 // Expects to be refused, by name of what changed.
 static void check_refused(const char *path, const sweep *s, const char *name)
@@ -237,7 +241,8 @@ static void check_rows(const char *path, const sweep *s, const char *expected)
     assert_string_equal(rows, expected);
 }
 
-// A program, plug-in or file that is another one when a sweep goes on, in a part or in a merge.
+// A program, plug-in or file that is another one when a sweep goes on, in a part or in a
+// merge.
 SWEEP_TEST(rows_of_what_is_gone_are_refused)
 {
     for (int i = 0; i < CASES; i++) {
@@ -294,12 +299,13 @@ SWEEP_TEST(a_varied_law_decides_what_is_read)
     sweep_store_close(must_open("none", &none));
 }
 
-// A command that only a shell can read may be of any program: its rows are kept, and not mixed with
-// others.
+// A command that only a shell can read may be of any program: its rows are kept, and not
+// mixed with others.
 SWEEP_TEST(rows_of_what_cannot_be_told_stay_alone)
 {
-    const struct outside_case shell = {
-        .parameter = cases[1].parameter, .value = "exec sh law.sh; exit", .law = LAW_PROCESS};
+    const struct outside_case shell = {.parameter = cases[1].parameter,
+                                       .value = "exec sh law.sh; exit",
+                                       .law = LAW_PROCESS};
     base.parameters = parameters_of(&shell);
     write_program(0);
     SWEPT(s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
@@ -308,7 +314,8 @@ SWEEP_TEST(rows_of_what_cannot_be_told_stay_alone)
     check_refused("first", &s, "control.command may be another one, it cannot be told");
     char *parts[] = {"first", "second"};
     sweep_merged merged;
-    REFUSED(STATUS_BAD_ARGUMENT, "cannot be told", sweep_merge(parts, 2, "merged", &merged, &f));
+    REFUSED(STATUS_BAD_ARGUMENT, "cannot be told",
+            sweep_merge(parts, 2, "merged", &merged, &f));
     DONE(sweep_merge(parts, 1, "merged", &merged, &f));
 }
 
@@ -340,7 +347,8 @@ SWEEP_TEST(what_changes_during_a_sweep_ends_it)
     sweep_store_close(store);
 }
 
-// A run that was not let, or whose plug-in cannot be loaded, is no row: the next time it may be.
+// A run that was not let, or whose plug-in cannot be loaded, is no row: the next time it
+// may be.
 SWEEP_TEST(what_could_not_begin_is_no_row)
 {
     sweep_progress progress;
@@ -355,7 +363,8 @@ SWEEP_TEST(what_could_not_begin_is_no_row)
         cases[i].write(0);
         SWEPT(s, SWEEP_GRID, 0, "initial.angle=-0.1,-0.2", NULL);
         sweep_store *store = must_open("rows", &s);
-        REFUSED(STATUS_NOT_ALLOWED, "--allow-code", sweep_run(&s, store, &options, &progress, &f));
+        REFUSED(STATUS_NOT_ALLOWED, "--allow-code",
+                sweep_run(&s, store, &options, &progress, &f));
         sweep_store_close(store);
         base.parameters.code_allowed = true;
         must_compute(&s, "rows", (sweep_share){0, 0});
@@ -372,7 +381,7 @@ SWEEP_TEST(what_could_not_begin_is_no_row)
     sweep_store_close(store);
 }
 
-// --- sessions ---------------------------------------------------------------------------------
+// --- sessions --------------------------------------------------------------------------
 
 static void open_session(session *s)
 {

@@ -29,7 +29,8 @@ TEST(test_words_find_things_of_every_kind)
 
     // all of it without words, each once
     const int all = palette_find(menu, keys, "", entries);
-    assert_int_equal(all, explorer_command_count + parameter_count + signal_count + menu->count);
+    assert_int_equal(all, explorer_command_count + parameter_count + signal_count +
+                              menu->count);
 }
 
 TEST(test_enter_does_what_the_entry_is_for)
@@ -37,7 +38,8 @@ TEST(test_enter_does_what_the_entry_is_for)
     OPEN_EXPLORER(ex, "corrected/first-impact");
 
     // a parameter opens the prompt for its value, which typing replaces
-    press_prompts(&ex, ":seek 0.2<Enter><C-p>stiction<Enter>", "set motor.stiction 0.045");
+    press_prompts(&ex, ":seek 0.2<Enter><C-p>stiction<Enter>",
+                  "set motor.stiction 0.045");
     press(&ex, "0.01<Enter>");
     const parameters p = state_parameters(&ex.state);
     check_close(p.motor.stiction, 0.01, 0);
@@ -51,7 +53,8 @@ TEST(test_enter_does_what_the_entry_is_for)
 
     // a signal gets a pane, a scenario opens
     press(&ex, "<C-p>energy_residual<Enter>");
-    assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].signals[0], SIGNAL_INDEX(energy_residual));
+    assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].signals[0],
+                     SIGNAL_INDEX(energy_residual));
     press_opens(&ex, "<C-p>fig-3-4<Enter>", "thesis/fig-3-4");
 }
 
@@ -82,7 +85,8 @@ TEST(test_a_click_takes_an_entry)
     for (int i = 0; i < ex.layout.hit_count; i++) {
         const hit_area h = ex.layout.hits[i];
         if (h.panel == PANEL_PALETTE && h.part == PART_LINES) {
-            const pointer_event down = {POINTER_PRESS, h.area.x + 3, h.area.y, false, false};
+            const pointer_event down = {POINTER_PRESS, h.area.x + 3, h.area.y, false,
+                                        false};
             explorer_point(&ex, down);
         }
     }

@@ -8,18 +8,19 @@ TEST(test_a_spectrum_names_the_highest_line)
     // the command follows a sine of 5 Hz on the commanded force
     open_changed(&ex, "compare/force-pd", "", HUGE_VAL);
     press_shows(&ex,
-                ":set control.force_amplitude 0.2<Enter>:set control.force_frequency 5<Enter>"
-                "<End>:zoom 0.7 1.5<Enter>:spectrum command<Enter>e",
+                ":set control.force_amplitude 0.2<Enter>:set control.force_frequency "
+                "5<Enter><End>:zoom 0.7 1.5<Enter>:spectrum command<Enter>e",
                 "highest at 5 Hz");
 
     // a rise has no line at 0 Hz, where its mean was
-    press_shows(&ex, ":set control.force_amplitude 0<Enter>:zoom all<Enter>", "highest at ",
-                "!highest at 0 Hz");
+    press_shows(&ex, ":set control.force_amplitude 0<Enter>:zoom all<Enter>",
+                "highest at ", "!highest at 0 Hz");
 
     // a constant has none at all, rounding aside
-    press_shows(
-        &ex, ":set control.law none<Enter>:set motor.voltage 0.1<Enter>:spectrum command<Enter>e",
-        "constant, to [Hz]", "!highest at ");
+    press_shows(&ex,
+                ":set control.law none<Enter>:set motor.voltage 0.1<Enter>:spectrum "
+                "command<Enter>e",
+                "constant, to [Hz]", "!highest at ");
     press_warns(&ex, ":spectrum<Enter>", "");
     press_warns(&ex, ":spectrum force gap<Enter>", "");
 }
@@ -39,8 +40,8 @@ TEST(test_a_phase_pane_ends_where_the_signals_end)
     for (int i = 0; i < ex.layout.hit_count; i++) {
         const hit_area h = ex.layout.hits[i];
         if (h.part == PART_VIEW) {
-            explorer_point(
-                &ex, (pointer_event){POINTER_PRESS, h.area.x + 2, h.area.y + 1, false, false});
+            explorer_point(&ex, (pointer_event){POINTER_PRESS, h.area.x + 2, h.area.y + 1,
+                                                false, false});
         }
     }
     check_close(ex.state.session.now, now, 0);
@@ -60,8 +61,8 @@ TEST(test_statistics_are_from_the_mark_to_the_cursor)
     press_shows(&ex, "X", "!mark and cursor,");
 }
 
-// Rows of a run, written and laid under another one, are shifted so that both touch at once, or as
-// they are told; what cannot be read leaves what is there.
+// Rows of a run, written and laid under another one, are shifted so that both touch at
+// once, or as they are told; what cannot be read leaves what is there.
 TEST_IN_FOLDER(test_measured_data_touch_when_the_run_does)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
@@ -135,7 +136,8 @@ TEST(test_a_pane_of_expressions)
         assert_int_equal(ex.state.panes.focus, before);
     }
 
-    // more than there are places for: a sentence; one whose pane was replaced is free again
+    // more than there are places for: a sentence; one whose pane was replaced is free
+    // again
     for (int i = 0; i < 40; i++) {
         press_text(&ex, ":trace force+%d, gap+%d<Enter>", i, i);
     }

@@ -2,7 +2,8 @@
 #include "src/arm/chain.h"
 #include "tests/given_parameters.h"
 
-// Of several that contradict one another the first that was given is to blame; defaults are not.
+// Of several that contradict one another the first that was given is to blame; defaults
+// are not.
 TEST(defaults_are_never_to_blame)
 {
     parameters p = fresh(ARM_CORRECTED);
@@ -15,8 +16,8 @@ TEST(defaults_are_never_to_blame)
     assert_string_equal(f.path, "initial.angle");
 }
 
-// Where a straight arm starts: how far its tip is behind the flat wall, or its line behind the
-// point, is by the sine of the angle between them, for any number of links.
+// Where a straight arm starts: how far its tip is behind the flat wall, or its line
+// behind the point, is by the sine of the angle between them, for any number of links.
 static void check_start(parameters p, double angle, double wall)
 {
     fault f = {0};
@@ -35,7 +36,8 @@ static void check_start(parameters p, double angle, double wall)
     const double behind = chain_penetration(&a, q, rest).depth;
     const bool far = angle > wall + 1e-14; // where the wall is in front only after a turn
     fail_if(fabs(behind) > 1e-14 && (code == STATUS_OK) != (behind < 0 && !far),
-            "start at %.17g, wall at %.17g, %.3g m behind: %s", angle, wall, behind, f.text);
+            "start at %.17g, wall at %.17g, %.3g m behind: %s", angle, wall, behind,
+            f.text);
     const double ahead = wall - angle;
     if (ahead == 0 || ahead == M_PI) {
         assert_int_equal(code, STATUS_OK);
@@ -59,7 +61,8 @@ TEST(an_arm_starts_in_front_of_its_wall)
             give(&p, "method.name", methods[contact > 0 ? 0 : random_below(&g, 3)]);
             give(&p, "arm.links", links[random_below(&g, 3)]);
         }
-        const double wall = 6 * random_uniform(&g) - 3, near = exp(-40 * random_uniform(&g));
+        const double wall = 6 * random_uniform(&g) - 3,
+                     near = exp(-40 * random_uniform(&g));
         const double sign = random_uniform(&g) < 0.5 ? -1 : 1;
         check_start(p, 6 * random_uniform(&g) - 3, wall);
         check_start(p, wall, wall);
@@ -97,8 +100,9 @@ TEST(the_ledgers_bound_follows_the_method)
         assert_int_equal(parameters_resolve(&back, &f), STATUS_OK);
         check_close(back.method.residual_bound, bound[0], 0);
     }
-    check_close(bound[0],
-                parameter_table[parameter_find("method.residual_bound")].default_corrected, 0);
+    check_close(
+        bound[0],
+        parameter_table[parameter_find("method.residual_bound")].default_corrected, 0);
     check_close(bound[1], 1e-2, 0);
     check_close(bound[2], 1e-2, 0);
 }
@@ -138,7 +142,8 @@ TEST(conditions_hold_up_to_their_limits)
 
         // delays and jitter as long as the periods allow, and beyond
         {"control.rate=100 control.delay=0.05"},
-        {"control.rate=100 control.delay=0.0501", "control.delay", "longer than 5 periods of 0.01"},
+        {"control.rate=100 control.delay=0.0501", "control.delay",
+         "longer than 5 periods of 0.01"},
         {"control.rate=64 control.delay=0.0078125 control.delay_periods=4.5"},
         {"control.rate=64 control.delay=0.0078125 control.delay_periods=4.51",
          "control.delay_periods"},
@@ -149,11 +154,12 @@ TEST(conditions_hold_up_to_their_limits)
         // a sensor that is asked for is there, unless it was left out
         {"control.impact_angle=film"},
         {"control.impact_angle=film sensor.film=true"},
-        {"control.impact_angle=film sensor.film=false", "control.impact_angle", "sensor.film"},
+        {"control.impact_angle=film sensor.film=false", "control.impact_angle",
+         "sensor.film"},
         {"sensor.film=false"},
         {"control.impact_angle=accelerometer"},
-        {"control.impact_angle=accelerometer sensor.accelerometer=false", "control.impact_angle",
-         "sensor.accelerometer = false"},
+        {"control.impact_angle=accelerometer sensor.accelerometer=false",
+         "control.impact_angle", "sensor.accelerometer = false"},
         {"control.impact_angle=accelerometer sensor.film=false"},
         {"sensor.force=piezo"},
         {"sensor.force=piezo sensor.piezo=false", "sensor.force"},
@@ -161,16 +167,18 @@ TEST(conditions_hold_up_to_their_limits)
 
         // a band-pass has its edges in order
         {"sensor.piezo_leak_time=1e-3 sensor.piezo_rise_time=1e-3"},
-        {"sensor.piezo_leak_time=0.99e-3 sensor.piezo_rise_time=1e-3", "sensor.piezo_leak_time",
-         "sensor.piezo_leak_time"},
+        {"sensor.piezo_leak_time=0.99e-3 sensor.piezo_rise_time=1e-3",
+         "sensor.piezo_leak_time", "sensor.piezo_leak_time"},
         {"sensor.piezo_leak_time=0 sensor.piezo_rise_time=1e-3"},
 
         // motors
         {"motor.inductance=1e-3"},
         {"motor.inductance=1e-3 method.name=newmark", "motor.inductance",
          "method.name = event only"},
-        {"motor.inductance=1e-3 motor.drive=current", "motor.inductance", "motor.drive = voltage"},
-        {"motor.current_limit=2 method.name=newmark", "motor.current_limit", "under a voltage"},
+        {"motor.inductance=1e-3 motor.drive=current", "motor.inductance",
+         "motor.drive = voltage"},
+        {"motor.current_limit=2 method.name=newmark", "motor.current_limit",
+         "under a voltage"},
         {"motor.current_limit=2 motor.drive=current method.name=newmark"},
         {"motor.current_limit=2"},
         {"motor.transconductance=1 motor.drive=current"},
@@ -196,31 +204,39 @@ TEST(conditions_hold_up_to_their_limits)
         {"arm.hub_joint=beam arm.hub_inertia=0", "arm.hub_inertia", "nothing to move"},
         {"arm.links=4 arm.joint_stiffness=10,12", "arm.joint_stiffness",
          "has 2 numbers, expected 3"},
-        {"arm.links=3 arm.hub_joint=beam arm.joint_stiffness=10,12", "arm.joint_stiffness",
-         "has 2 numbers, expected 3"},
-        {"arm.hub_joint=beam arm.joint_stiffness=7", "arm.joint_stiffness", "a joint before each"},
-        {"arm.joint_stiffness=10 arm.k2=10", "arm.joint_stiffness", "arm.k2 are both given"},
-        {"arm.joint_stiffness=10 arm.EI=10", "arm.joint_stiffness", "arm.EI are both given"},
-        {"arm.joint_stiffness=10 arm.stiffening=1", "arm.stiffening", "equal links and joints"},
+        {"arm.links=3 arm.hub_joint=beam arm.joint_stiffness=10,12",
+         "arm.joint_stiffness", "has 2 numbers, expected 3"},
+        {"arm.hub_joint=beam arm.joint_stiffness=7", "arm.joint_stiffness",
+         "a joint before each"},
+        {"arm.joint_stiffness=10 arm.k2=10", "arm.joint_stiffness",
+         "arm.k2 are both given"},
+        {"arm.joint_stiffness=10 arm.EI=10", "arm.joint_stiffness",
+         "arm.EI are both given"},
+        {"arm.joint_stiffness=10 arm.stiffening=1", "arm.stiffening",
+         "equal links and joints"},
         {"arm.links=3 arm.link_lengths=0.5,0.5", "arm.link_lengths", "has 2 numbers"},
         {"arm.links=3 arm.link_lengths=1", "arm.link_lengths", "has 1 number, but"},
         {"arm.links=1 arm.link_lengths=0.5,0.5", "arm.link_lengths", "has 2 numbers"},
         {"arm.links=1 arm.hub_joint=beam arm.link_lengths=0.1,0.2", "arm.link_lengths",
          "arm.links = 1"},
         {"arm.link_lengths=0.4,0.6 arm.length=1", "arm.link_lengths", "both given"},
-        {"arm.link_lengths=0.4,0.6 arm.link_inertia=1e-5", "arm.link_inertia", "two equal links"},
-        {"arm.link_lengths=0.4,0.6 arm.stiffening=1", "arm.stiffening", "equal links and joints"},
-        {"arm.link_lengths=0.4,0.6 method.name=newmark", "arm.link_lengths", "event only"},
+        {"arm.link_lengths=0.4,0.6 arm.link_inertia=1e-5", "arm.link_inertia",
+         "two equal links"},
+        {"arm.link_lengths=0.4,0.6 arm.stiffening=1", "arm.stiffening",
+         "equal links and joints"},
+        {"arm.link_lengths=0.4,0.6 method.name=newmark", "arm.link_lengths",
+         "event only"},
         {"arm.modal_ratios=0.1 arm.damping_ratio=0.1", "arm.modal_ratios", "both given"},
         {"arm.modal_ratios=0.1,0.2", "arm.modal_ratios", "expected at most 1"},
-        {"arm.links=24 arm.modal_ratios=0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0.1", "arm.modal_ratios",
-         "has 17 numbers, expected at most 16"},
+        {"arm.links=24 arm.modal_ratios=0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0.1",
+         "arm.modal_ratios", "has 17 numbers, expected at most 16"},
         {"arm.links=1 arm.modal_ratios=0.1,0.2", "arm.modal_ratios",
          "expected at most 0: arm.links = 1"},
         {"arm.links=200 arm.modal_ratios=0.1", "arm.modal_ratios", "at most"},
         {"arm.modal_ratios=0.1 method.name=newmark", "arm.modal_ratios",
          "method.name = event only"},
-        {"arm.air_drag=1 method.name=newmark", "arm.air_drag", "method.name = event only"},
+        {"arm.air_drag=1 method.name=newmark", "arm.air_drag",
+         "method.name = event only"},
         {"method.name=generalized-alpha arm.joint_stiffness=[] arm.stiffening=0"},
 
         // the printed arm
@@ -234,9 +250,11 @@ TEST(conditions_hold_up_to_their_limits)
         {"arm.model=printed method.name=event", "method.name", "newmark"},
         {"arm.model=printed wall.kind=plane", "wall.kind", "point or none"},
         {"arm.model=printed arm.tip_mass=0.02", "arm.tip_mass", "printed model has none"},
-        {"arm.model=printed arm.damping_ratio=0.5", "arm.damping_ratio", "printed model has none"},
+        {"arm.model=printed arm.damping_ratio=0.5", "arm.damping_ratio",
+         "printed model has none"},
         {"arm.model=printed arm.damping_ratio=0"},
-        {"arm.model=printed wall.restitution=0.5", "wall.restitution", "printed model has none"},
+        {"arm.model=printed wall.restitution=0.5", "wall.restitution",
+         "printed model has none"},
         {"arm.model=printed method.rest_speed=1e-3", "method.rest_speed"},
         {"arm.model=printed method.residual_bound=1e-3", "method.residual_bound"},
         {"arm.model=printed arm.air_drag=0.1", "arm.air_drag", "printed model has none"},
@@ -249,8 +267,8 @@ TEST(conditions_hold_up_to_their_limits)
         const bool right = c->blamed != NULL && strcmp(f.path, c->blamed) == 0 &&
                            strstr(f.text, f.path) != NULL &&
                            (c->says == NULL || strstr(f.text, c->says) != NULL);
-        fail_if(code == STATUS_OK ? c->blamed != NULL : !right, "%s: %s: %s", c->settings, f.path,
-                f.text);
+        fail_if(code == STATUS_OK ? c->blamed != NULL : !right, "%s: %s: %s", c->settings,
+                f.path, f.text);
     }
 }
 
@@ -273,7 +291,8 @@ TEST(walls_motors_and_sensors_follow_what_was_given)
 
     // what a law or a signal is taken from is there
     static const char *const asked[] = {"control.impact_angle=film",
-                                        "control.impact_angle=accelerometer", "sensor.force=piezo"};
+                                        "control.impact_angle=accelerometer",
+                                        "sensor.force=piezo"};
     for (int i = 0; i < 3; i++) {
         p = resolved(asked[i]);
         assert_int_equal(p.sensor.film, i == 0);

@@ -1,5 +1,5 @@
-// Lists of joint stiffnesses and link lengths: their notation, what contradicts them, and what they
-// make of the arm.
+// Lists of joint stiffnesses and link lengths: their notation, what contradicts them, and
+// what they make of the arm.
 
 #include "src/arm/modes.h"
 #include "src/predict/predictors.h"
@@ -64,7 +64,8 @@ TEST(what_is_no_list_of_its_numbers_is_refused)
 // Of a beam in one link only the root bends, and k2 is that spring.
 TEST(one_link_bends_at_its_root_alone)
 {
-    parameters one = parameters_with("arm.links=1 arm.hub_joint=beam arm.joint_stiffness=5");
+    parameters one =
+        parameters_with("arm.links=1 arm.hub_joint=beam arm.joint_stiffness=5");
     assert_true(parameters_even_links(&one.arm));
     check_close(one.arm.k2, 5, 1e-12);
     check_close(one.arm.k1, 5, 1e-12);
@@ -77,12 +78,16 @@ TEST(what_follows_from_others_may_not_change)
     parameters beam = parameters_with("arm.hub_joint=beam");
     parameters spring = parameters_with("arm.hub_joint=spring");
     parameters list = parameters_with("arm.joint_stiffness=10");
-    assert_int_equal(parameter_may_change(&beam, PARAMETER_INDEX(arm.k1), &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(parameter_may_change(&beam, PARAMETER_INDEX(arm.k1), &f),
+                     STATUS_BAD_SCENARIO);
     assert_string_equal(f.path, "arm.k1");
-    assert_int_equal(parameter_may_change(&spring, PARAMETER_INDEX(arm.k1), &f), STATUS_OK);
+    assert_int_equal(parameter_may_change(&spring, PARAMETER_INDEX(arm.k1), &f),
+                     STATUS_OK);
     assert_int_equal(parameter_may_change(&beam, PARAMETER_INDEX(arm.k2), &f), STATUS_OK);
-    assert_int_equal(parameter_may_change(&list, PARAMETER_INDEX(arm.k2), &f), STATUS_BAD_SCENARIO);
-    assert_int_equal(parameter_may_change(&list, PARAMETER_INDEX(arm.EI), &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(parameter_may_change(&list, PARAMETER_INDEX(arm.k2), &f),
+                     STATUS_BAD_SCENARIO);
+    assert_int_equal(parameter_may_change(&list, PARAMETER_INDEX(arm.EI), &f),
+                     STATUS_BAD_SCENARIO);
 }
 
 static void check_same_bytes(const char *const *settings, const char *const *listed)
@@ -101,22 +106,26 @@ TEST(equal_numbers_are_the_uniform_arm_to_the_last_bit)
     check_same_bytes(given("arm.links=4 arm.k2=5 wall.kind=plane"),
                      given("arm.links=4 arm.joint_stiffness=10,10,10 wall.kind=plane "
                            "arm.link_lengths=0.25,0.25,0.25,0.25"));
-    check_same_bytes(given("arm.links=4 arm.k2=5 arm.hub_joint=beam"),
-                     given("arm.links=4 arm.joint_stiffness=20,10,10,10 arm.hub_joint=beam"));
+    check_same_bytes(
+        given("arm.links=4 arm.k2=5 arm.hub_joint=beam"),
+        given("arm.links=4 arm.joint_stiffness=20,10,10,10 arm.hub_joint=beam"));
 }
 
 // Lists that differ from the uniform arm by nothing that counts.
 TEST(the_general_way_meets_the_uniform_one)
 {
     KEPT_RUN(one) =
-        run_arm(fixture_parameters(given("arm.links=4 arm.k2=5 run.duration=0.33")), true);
-    KEPT_RUN(other) =
-        run_arm(fixture_parameters(given(
-                    "arm.links=4 arm.joint_stiffness=10,10.000000000001,10 run.duration=0.33")),
+        run_arm(fixture_parameters(given("arm.links=4 arm.k2=5 run.duration=0.33")),
                 true);
+    KEPT_RUN(other) = run_arm(
+        fixture_parameters(given(
+            "arm.links=4 arm.joint_stiffness=10,10.000000000001,10 run.duration=0.33")),
+        true);
     check_relative(other.summary.first_contact_s, one.summary.first_contact_s, 1e-12);
-    check_relative(other.summary.contact_impulse_Ns, one.summary.contact_impulse_Ns, 1e-10);
-    check_relative(other.summary.first_pulse_peak_N, one.summary.first_pulse_peak_N, 1e-9);
+    check_relative(other.summary.contact_impulse_Ns, one.summary.contact_impulse_Ns,
+                   1e-10);
+    check_relative(other.summary.first_pulse_peak_N, one.summary.first_pulse_peak_N,
+                   1e-9);
     check_below(fabs(other.summary.energy_residual_J), 1e-11);
 }
 
@@ -124,7 +133,8 @@ TEST(the_general_way_meets_the_uniform_one)
 static double tip_compliance(const char *const *settings)
 {
     parameters p = fixture_parameters(settings);
-    double length[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST], lever = 0, sum = 0;
+    double length[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST], lever = 0,
+                                                                        sum = 0;
     parameters_link_lengths(&p.arm, length);
     parameters_joint_stiffness(&p.arm, stiffness);
     for (int k = p.arm.links - 1; k >= (p.arm.hub_joint == HUB_BEAM ? 0 : 1); k--) {
@@ -141,15 +151,16 @@ TEST(k2_of_a_list_bends_the_same_under_a_tip_load)
         const char *const list =
             hub ? "arm.joint_stiffness=30,12,9,14" : "arm.joint_stiffness=12,9,14";
         const char *const *listed =
-            given("arm.links=4 %s %s arm.link_lengths=0.2,0.3,0.25,0.25", hubs[hub], list);
+            given("arm.links=4 %s %s arm.link_lengths=0.2,0.3,0.25,0.25", hubs[hub],
+                  list);
         check_relative(tip_compliance(given("arm.links=4 %s arm.k2=%.17g", hubs[hub],
                                             fixture_parameters(listed).arm.k2)),
                        tip_compliance(listed), 1e-13);
     }
 
     // a beam cut into unequal links has its joints from the middles of two links
-    parameters p =
-        parameters_with("arm.links=3 arm.EI=2 arm.hub_joint=beam arm.link_lengths=0.2,0.3,0.5");
+    parameters p = parameters_with(
+        "arm.links=3 arm.EI=2 arm.hub_joint=beam arm.link_lengths=0.2,0.3,0.5");
     double stiffness[PARAMETER_LIST_MOST];
     parameters_joint_stiffness(&p.arm, stiffness);
     check_relative(stiffness[0], 2 / 0.1, 1e-15);
@@ -182,11 +193,12 @@ TEST(a_beam_cut_into_unequal_links_converges)
     check_close(log2(off[0] / off[1]), 2, 0.1);
 }
 
-// The linearised arm takes any links and joints, the thesis's two links say that they do not.
+// The linearised arm takes any links and joints, the thesis's two links say that they do
+// not.
 TEST(predictors_take_lists_or_say_so)
 {
-    parameters p =
-        parameters_with("arm.links=3 arm.joint_stiffness=8,5 arm.link_lengths=0.4,0.35,0.25");
+    parameters p = parameters_with(
+        "arm.links=3 arm.joint_stiffness=8,5 arm.link_lengths=0.4,0.35,0.25");
     const double q[3] = {0.1, 0.1, 0.1}, w[3] = {0.6, 0.6, 0.6};
     const prediction_question question = {.parameters = &p,
                                           .bodies = {{0.1, 0.1, 0.1}, {0.6, 0.6, 0.6}},
@@ -201,11 +213,11 @@ TEST(predictors_take_lists_or_say_so)
         assert_int_equal(answer.outcome, PREDICTION_HOLDS);
 
         // against the run from there
-        KEPT_RUN(r) =
-            run_arm(fixture_parameters(
-                        given("arm.links=3 arm.joint_stiffness=8,5 arm.link_lengths=0.4,0.35,0.25 "
-                              "initial.angle=0.1 initial.velocity=0.6 run.duration=0.3")),
-                    true);
+        KEPT_RUN(r) = run_arm(
+            fixture_parameters(given(
+                "arm.links=3 arm.joint_stiffness=8,5 arm.link_lengths=0.4,0.35,0.25 "
+                "initial.angle=0.1 initial.velocity=0.6 run.duration=0.3")),
+            true);
         check_relative(answer.prediction.force, r.summary.first_pulse_peak_N, 0.01);
         check_relative(answer.prediction.impulse, r.summary.contact_impulse_Ns, 1e-6);
     }

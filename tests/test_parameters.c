@@ -1,15 +1,16 @@
 // The table of parameters: properties of every entry, and reading of values.
 #include "tests/given_parameters.h"
 
-// The text is refused, nothing changes, and the sentence mentions the path and `expected`.
+// The text is refused, nothing changes, and the sentence mentions the path and
+// `expected`.
 static void check_refused(const char *path, const char *text, const char *expected)
 {
     parameters p = fresh(ARM_CORRECTED), before = p;
     fault f = {0};
     int index = parameter_find(path);
     assert_true(index >= 0);
-    fail_if(parameter_set_text(&p, index, text, &f) == STATUS_OK, "%s = '%s' was accepted", path,
-            text);
+    fail_if(parameter_set_text(&p, index, text, &f) == STATUS_OK,
+            "%s = '%s' was accepted", path, text);
     assert_int_equal(f.code, STATUS_BAD_SCENARIO);
     assert_memory_equal(&p, &before, sizeof p);
     assert_string_equal(f.path, path);
@@ -38,7 +39,8 @@ TEST(every_field_is_a_place_of_its_own)
     for (int i = 0; i < parameter_count; i++) {
         for (int j = 0; j < i; j++) {
             fail_if(parameter_table[i].offset == parameter_table[j].offset,
-                    "%s and %s share a field", parameter_table[i].path, parameter_table[j].path);
+                    "%s and %s share a field", parameter_table[i].path,
+                    parameter_table[j].path);
         }
     }
 }
@@ -79,8 +81,8 @@ TEST(defaults_are_in_range)
             bool derived = isnan(both[k]);
             fail_if(!derived && !parameter_is_text(info) &&
                         (both[k] < info->minimum || both[k] > info->maximum),
-                    "%s: default %g is not in %g to %g", info->path, both[k], info->minimum,
-                    info->maximum);
+                    "%s: default %g is not in %g to %g", info->path, both[k],
+                    info->minimum, info->maximum);
             assert_true(!derived || strcmp(info->path, "arm.link_inertia") == 0 ||
                         strcmp(info->path, "arm.EI") == 0 ||
                         strcmp(info->path, "wall.stiffness") == 0 ||
@@ -90,14 +92,16 @@ TEST(defaults_are_in_range)
     }
 }
 
-// Steps through the range of one parameter; text made of a value reads back as the same value.
+// Steps through the range of one parameter; text made of a value reads back as the same
+// value.
 static void check_round_trip(int index)
 {
     const parameter_info *info = &parameter_table[index];
     bool whole = info->type != PARAMETER_REAL;
     for (int k = 0; k <= 40; k++) {
         double share = k / 40.0;
-        double value = info->minimum + (info->maximum - info->minimum) * share * share * share;
+        double value =
+            info->minimum + (info->maximum - info->minimum) * share * share * share;
         parameters p = fresh(ARM_CORRECTED), q = p;
         char text[64], again[64];
         value = whole ? floor(value) : value;
@@ -127,7 +131,8 @@ TEST(the_own_unit_is_accepted)
         const parameter_info *info = &parameter_table[i];
         parameters p = fresh(ARM_PRINTED), q = p;
         char number[64];
-        if (info->unit[0] == '\0' || isnan(parameter_get(&p, i)) || parameter_is_text(info)) {
+        if (info->unit[0] == '\0' || isnan(parameter_get(&p, i)) ||
+            parameter_is_text(info)) {
             continue; // no unit, or a default that follows from others
         }
         parameter_format(&p, i, number, sizeof number);
@@ -141,7 +146,8 @@ TEST(notations_of_numbers)
     static const struct {
         const char *text;
         double value;
-    } cases[] = {{"49.2", 49.2}, {"4.92e1", 49.2}, {"+3", 3}, {".5", 0.5}, {"1e-6", 1e-6}};
+    } cases[] = {
+        {"49.2", 49.2}, {"4.92e1", 49.2}, {"+3", 3}, {".5", 0.5}, {"1e-6", 1e-6}};
     for (EACH(c, cases)) {
         parameters p = fresh(ARM_CORRECTED);
         give(&p, "arm.k2", c->text);
@@ -234,14 +240,17 @@ TEST(numbers_are_checked_too)
     fault f;
     int links = PARAMETER_INDEX(arm.links), model = PARAMETER_INDEX(arm.model);
     assert_int_equal(parameter_set_number(&p, links, 2.5, &f), STATUS_BAD_SCENARIO);
-    assert_int_equal(parameter_set_number(&p, links, (double)NAN, &f), STATUS_BAD_SCENARIO);
-    assert_int_equal(parameter_set_number(&p, links, (double)INFINITY, &f), STATUS_BAD_SCENARIO);
+    assert_int_equal(parameter_set_number(&p, links, (double)NAN, &f),
+                     STATUS_BAD_SCENARIO);
+    assert_int_equal(parameter_set_number(&p, links, (double)INFINITY, &f),
+                     STATUS_BAD_SCENARIO);
     assert_int_equal(parameter_set_number(&p, model, 2, &f), STATUS_BAD_SCENARIO);
     assert_int_equal(parameter_set_number(&p, links, 1025, NULL), STATUS_BAD_SCENARIO);
     assert_int_equal(p.set[links], 0);
 
     // what takes no number says so
-    const int plugin = PARAMETER_INDEX(control.plugin), list = PARAMETER_INDEX(arm.link_lengths);
+    const int plugin = PARAMETER_INDEX(control.plugin),
+              list = PARAMETER_INDEX(arm.link_lengths);
     assert_int_equal(parameter_set_number(&p, plugin, 1, &f), STATUS_BAD_SCENARIO);
     assert_string_equal(f.text, "control.plugin is a text and takes no number");
     assert_int_equal(parameter_set_number(&p, list, 1, &f), STATUS_BAD_SCENARIO);
@@ -250,8 +259,8 @@ TEST(numbers_are_checked_too)
     assert_int_equal(p.arm.links, 2);
 }
 
-// A text is one line: wherever a control character stands in it, it is refused, and nothing
-// changes.
+// A text is one line: wherever a control character stands in it, it is refused, and
+// nothing changes.
 TEST(texts_are_lines)
 {
     const char *const plain = "a text of one line";
@@ -263,7 +272,8 @@ TEST(texts_are_lines)
             fault f = {0};
             char *text = formatted("%s", plain);
             text[at] = characters[i];
-            assert_int_equal(parameter_set_text(&p, index, text, &f), STATUS_BAD_SCENARIO);
+            assert_int_equal(parameter_set_text(&p, index, text, &f),
+                             STATUS_BAD_SCENARIO);
             assert_memory_equal(&p, &before, sizeof p);
             assert_non_null(strstr(f.text, "control character"));
         }
@@ -278,7 +288,8 @@ TEST(texts_are_lines)
     assert_memory_equal(&p, &once, sizeof p);
 }
 
-// Every number may be its least and its largest value, nothing beyond, and whole ones no other.
+// Every number may be its least and its largest value, nothing beyond, and whole ones no
+// other.
 TEST(ranges_include_their_ends)
 {
     for (int i = 0; i < parameter_count; i++) {
@@ -292,18 +303,21 @@ TEST(ranges_include_their_ends)
             parameters p = fresh(ARM_CORRECTED);
             fault f = {0};
             const double away = k == 0 ? -HUGE_VAL : HUGE_VAL;
-            const double beyond = real ? nextafter(ends[k], away) : ends[k] + (k == 0 ? -1 : 1);
+            const double beyond =
+                real ? nextafter(ends[k], away) : ends[k] + (k == 0 ? -1 : 1);
             assert_int_equal(parameter_set_number(&p, i, ends[k], &f), STATUS_OK);
             check_close(parameter_get(&p, i), ends[k], 0);
             assert_int_equal(p.set[i], 1);
             if (isfinite(beyond)) {
-                assert_int_equal(parameter_set_number(&p, i, beyond, &f), STATUS_BAD_SCENARIO);
+                assert_int_equal(parameter_set_number(&p, i, beyond, &f),
+                                 STATUS_BAD_SCENARIO);
                 assert_string_equal(f.path, info->path);
                 assert_non_null(strstr(f.text, "is out of range, expected "));
             }
             if (!real) {
                 const double between = ends[k] + (k == 0 ? 0.5 : -0.5);
-                assert_int_equal(parameter_set_number(&p, i, between, &f), STATUS_BAD_SCENARIO);
+                assert_int_equal(parameter_set_number(&p, i, between, &f),
+                                 STATUS_BAD_SCENARIO);
                 assert_non_null(strstr(f.text, "is not a whole number"));
             }
             check_close(parameter_get(&p, i), ends[k], 0);
@@ -349,7 +363,8 @@ TEST(a_link_is_a_uniform_rod_unless_told)
     for (EACH(c, links)) {
         parameters p = fresh(ARM_CORRECTED);
         fault f;
-        assert_int_equal(parameter_set_number(&p, PARAMETER_INDEX(arm.links), *c, &f), STATUS_OK);
+        assert_int_equal(parameter_set_number(&p, PARAMETER_INDEX(arm.links), *c, &f),
+                         STATUS_OK);
         assert_int_equal(parameters_resolve(&p, &f), STATUS_OK);
         double n = *c;
         check_relative(p.arm.link_inertia * n * n * n, 0.40108 / 12, 1e-14);

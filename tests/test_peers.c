@@ -1,5 +1,6 @@
-// A separate general Taylor integrator (tests/bench/peers/taylor_peer.c), compared with the
-// laboratory: the same impacts, pulses and forces. Keeps the peers that need no library compiling.
+// A separate general Taylor integrator (tests/bench/peers/taylor_peer.c), compared with
+// the laboratory: the same impacts, pulses and forces. Keeps the peers that need no
+// library compiling.
 #include "tests/bench/peers/peer.h"
 #include "tests/check.h"
 

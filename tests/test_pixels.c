@@ -1,5 +1,5 @@
-// Pictures for terminals: the output is decoded and compared with the drawing, and terminals are
-// believed only what they answer.
+// Pictures for terminals: the output is decoded and compared with the drawing, and
+// terminals are believed only what they answer.
 #include "tests/explorer_on_screen.h"
 
 #include <zlib.h>
@@ -31,7 +31,7 @@ static void forget(decoded *d)
     free(d->pixels);
 }
 
-// --- decoders ---------------------------------------------------------------------------------
+// --- decoders --------------------------------------------------------------------------
 
 // What a VT340 makes of a sixel picture, by the book of 1988.
 static decoded decode_sixel(const char *text)
@@ -44,7 +44,8 @@ static decoded decode_sixel(const char *text)
     for (const char *at = text + 13 + used; *at != '\033';) {
         int count = 1;
         if (*at == '#') {
-            const int numbers = sscanf(at, "#%d;%d;%d;%d;%d", &n[0], &n[1], &n[2], &n[3], &n[4]);
+            const int numbers =
+                sscanf(at, "#%d;%d;%d;%d;%d", &n[0], &n[1], &n[2], &n[3], &n[4]);
             assert_in_range(n[0], 0, SIXEL_COLOURS - 1);
             if (numbers == 5) {
                 assert_int_equal(n[1], 2);
@@ -72,7 +73,8 @@ static decoded decode_sixel(const char *text)
                     if ((*at - '?') >> row & 1) {
                         assert_true(x < d.width && top + row < d.height);
                         // each pixel is drawn once
-                        assert_int_equal(d.pixels[(long)(top + row) * d.width + x], UNSET);
+                        assert_int_equal(d.pixels[(long)(top + row) * d.width + x],
+                                         UNSET);
                         d.pixels[(long)(top + row) * d.width + x] = colour;
                     }
                 }
@@ -85,7 +87,8 @@ static decoded decode_sixel(const char *text)
 
 static int digit_of(char c)
 {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    static const char digits[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const char *found = strchr(digits, c);
     assert_non_null(found);
     return (int)(found - digits);
@@ -97,9 +100,10 @@ static decoded decode_kitty(const char *text, int *columns, int *rows)
     SCOPED(free_kept) unsigned char *packed = malloc(strlen(text));
     size_t size = 0;
     int number, width, height, more = 1, used;
-    assert_int_equal(sscanf(text, "\033_Ga=T,i=%d,p=1,f=24,s=%d,v=%d,c=%d,r=%d,o=z,C=1,q=2,m=%d;%n",
-                            &number, &width, &height, columns, rows, &more, &used),
-                     6);
+    assert_int_equal(
+        sscanf(text, "\033_Ga=T,i=%d,p=1,f=24,s=%d,v=%d,c=%d,r=%d,o=z,C=1,q=2,m=%d;%n",
+               &number, &width, &height, columns, rows, &more, &used),
+        6);
     const char *at = text + used;
     for (;;) {
         const char *end = strchr(at, '\033');
@@ -131,13 +135,13 @@ static decoded decode_kitty(const char *text, int *columns, int *rows)
     assert_int_equal(uncompress(plain, &plain_size, packed, size), Z_OK);
     assert_int_equal(plain_size, wanted);
     for (long i = 0; i < (long)d.width * d.height; i++) {
-        d.pixels[i] =
-            (uint32_t)plain[3 * i] << 16 | (uint32_t)plain[3 * i + 1] << 8 | plain[3 * i + 2];
+        d.pixels[i] = (uint32_t)plain[3 * i] << 16 | (uint32_t)plain[3 * i + 1] << 8 |
+                      plain[3 * i + 2];
     }
     return d;
 }
 
-// --- what is drawn ----------------------------------------------------------------------------
+// --- what is drawn ---------------------------------------------------------------------
 
 // A screen with pictures of the explorer, cells of 8 x 16 pixels.
 static void draw_pictures(explorer *ex, screen *s, picture_layer *layer)
@@ -152,13 +156,14 @@ static void draw_pictures(explorer *ex, screen *s, picture_layer *layer)
 // A surface as a PNG and back again.
 static decoded through_png(cairo_surface_t *surface)
 {
-    assert_int_equal(cairo_surface_write_to_png(surface, "pixels.png"), CAIRO_STATUS_SUCCESS);
+    assert_int_equal(cairo_surface_write_to_png(surface, "pixels.png"),
+                     CAIRO_STATUS_SUCCESS);
     cairo_surface_t *read = cairo_image_surface_create_from_png("pixels.png");
-    const decoded d =
-        unset_pixels(cairo_image_surface_get_width(read), cairo_image_surface_get_height(read));
+    const decoded d = unset_pixels(cairo_image_surface_get_width(read),
+                                   cairo_image_surface_get_height(read));
     for (int y = 0; y < d.height; y++) {
-        const unsigned char *row =
-            cairo_image_surface_get_data(read) + (long)y * cairo_image_surface_get_stride(read);
+        const unsigned char *row = cairo_image_surface_get_data(read) +
+                                   (long)y * cairo_image_surface_get_stride(read);
         memcpy(d.pixels + (long)y * d.width, row, (size_t)d.width * 4);
     }
     cairo_surface_destroy(read);
@@ -206,13 +211,15 @@ TEST_IN_FOLDER(test_what_is_written_is_the_picture)
         assert_int_equal(png.height, 16 * p->height);
 
         // five bits of each colour, and hundredths of it
-        SCOPED(free_kept) WRITTEN(lines, assert_true(sixel_write(stream, &block, SIXEL_COLOURS)));
+        SCOPED(free_kept)
+        WRITTEN(lines, assert_true(sixel_write(stream, &block, SIXEL_COLOURS)));
         SCOPED(forget) decoded sixel = decode_sixel(lines);
         assert_in_range(difference(&sixel, &png), 0, 10);
 
         // to the bit
         SCOPED(free_kept)
-        WRITTEN(text, assert_true(kitty_write(stream, &block, i + 1, p->width, p->height)));
+        WRITTEN(text,
+                assert_true(kitty_write(stream, &block, i + 1, p->width, p->height)));
         SCOPED(forget) decoded kitty = decode_kitty(text, &columns, &rows);
         assert_int_equal(columns, p->width);
         assert_int_equal(rows, p->height);
@@ -225,7 +232,9 @@ TEST(test_few_registers_are_enough)
     uint32_t pixels[64 * 20];
     // a ground, a line and all that lies between them
     for (int i = 0; i < 64 * 20; i++) {
-        pixels[i] = i % 64 < 30 ? 0x000010 : i % 64 < 50 ? 0xf08020 : (uint32_t)(i % 64 * 0x030201);
+        pixels[i] = i % 64 < 30   ? 0x000010
+                    : i % 64 < 50 ? 0xf08020
+                                  : (uint32_t)(i % 64 * 0x030201);
     }
     const pixel_block block = {pixels, 64, 20, 64};
     SCOPED(free_kept) WRITTEN(text, assert_true(sixel_write(stream, &block, 4)));
@@ -245,7 +254,8 @@ static long pixels_like(cairo_surface_t *surface, rgb c)
         for (int x = 0; x < b.width; x++) {
             const uint32_t p = b.pixels[(long)y * b.stride + x];
             count += abs((int)(p >> 16 & 0xff) - c.red) < 12 &&
-                     abs((int)(p >> 8 & 0xff) - c.green) < 12 && abs((int)(p & 0xff) - c.blue) < 12;
+                     abs((int)(p >> 8 & 0xff) - c.green) < 12 &&
+                     abs((int)(p & 0xff) - c.blue) < 12;
         }
     }
     return count;
@@ -280,7 +290,8 @@ TEST(test_what_lies_over_a_picture_is_seen)
     press(&ex, ":s");
     draw_pictures(&ex, &s, &layer);
 
-    // no region has a cell that shows a letter, and every cell that shows a picture is in one
+    // no region has a cell that shows a letter, and every cell that shows a picture is in
+    // one
     const int count = pictures_regions(&s, 1000, 1000, regions);
     long cells = 0, shown = 0;
     assert_int_not_equal(count, layer.count);
@@ -306,7 +317,8 @@ TEST(test_what_lies_over_a_picture_is_seen)
     }
 }
 
-// What cairo could not draw is not shown: words stand there, and the next drawing begins anew.
+// What cairo could not draw is not shown: words stand there, and the next drawing begins
+// anew.
 TEST(test_a_picture_that_failed_is_words)
 {
     SCOPED(screen_finish) screen s = {0};
@@ -317,7 +329,8 @@ TEST(test_a_picture_that_failed_is_words)
 
     picture_end(&s, picture_begin(&s, 0, 0, 50, 5));
     cairo_t *broken = picture_begin(&s, 10, 6, 40, 7);
-    cairo_restore(broken); // nothing was saved: an error that stays, as that of memory does
+    cairo_restore(
+        broken); // nothing was saved: an error that stays, as that of memory does
     picture_end(&s, broken);
     assert_int_equal(pictures_regions(&s, 1000, 1000, regions), 1);
     assert_int_equal(regions[0].picture, 0);
@@ -339,7 +352,7 @@ TEST(test_a_screen_without_pictures_has_dots)
     press_shows(&ex, ":bending 5<Enter>", "bent 5 times");
 }
 
-// --- answers ----------------------------------------------------------------------------------
+// --- answers ---------------------------------------------------------------------------
 
 // Has a terminal's answers, each behind its escape, taken as they come from the input.
 static pixel_protocol answered(const char *const *answers, int count, bool careful,
@@ -361,9 +374,10 @@ static pixel_protocol answered(const char *const *answers, int count, bool caref
     return pixel_answers_protocol(a);
 }
 
-#define ANSWERED(a, careful, ...)                                                                  \
-    answered((const char *const[]){__VA_ARGS__},                                                   \
-             (int)(sizeof(const char *const[]){__VA_ARGS__} / sizeof(char *)), careful, &(a))
+#define ANSWERED(a, careful, ...)                                                        \
+    answered((const char *const[]){__VA_ARGS__},                                         \
+             (int)(sizeof(const char *const[]){__VA_ARGS__} / sizeof(char *)), careful,  \
+             &(a))
 
 TEST(test_pictures_are_drawn_only_where_a_terminal_says_so)
 {
@@ -378,12 +392,13 @@ TEST(test_pictures_are_drawn_only_where_a_terminal_says_so)
     assert_int_equal(ANSWERED(a, false, "[?4c", "[?4c"), PIXELS_NONE);
     assert_int_equal(ANSWERED(a, false, "[?62c", "_Gi=31;ENOTSUPPORTED\033\\", "[?62c"),
                      PIXELS_NONE);
-    assert_int_equal(ANSWERED(a, false, "[?62c", "_Gi=30;OK\033\\", "[?62c"), PIXELS_NONE);
+    assert_int_equal(ANSWERED(a, false, "[?62c", "_Gi=30;OK\033\\", "[?62c"),
+                     PIXELS_NONE);
 
     // those that can
-    assert_int_equal(ANSWERED(a, false, "P>|XTerm(379)\033\\", "[?63;1;2;4;22c", "[6;15;8t",
-                              "[?1;0;16S", "[?2;0;1000;800S", "]11;rgb:ffff/fafa/0000\a",
-                              "[?63;1;2;4;22c"),
+    assert_int_equal(ANSWERED(a, false, "P>|XTerm(379)\033\\", "[?63;1;2;4;22c",
+                              "[6;15;8t", "[?1;0;16S", "[?2;0;1000;800S",
+                              "]11;rgb:ffff/fafa/0000\a", "[?63;1;2;4;22c"),
                      PIXELS_SIXEL);
     assert_int_equal(a.cell_width, 8);
     assert_int_equal(a.cell_height, 15);
@@ -392,9 +407,9 @@ TEST(test_pictures_are_drawn_only_where_a_terminal_says_so)
     assert_int_equal(a.most_height, 800);
     assert_true(a.has_ground && a.ground.red == 255 && a.ground.green == 0xfa &&
                 a.ground.blue == 0);
-    assert_int_equal(
-        ANSWERED(a, false, "[?62c", "_Gi=31;OK\033\\", "]11;rgb:10/20/30\033\\", "[?62c"),
-        PIXELS_KITTY);
+    assert_int_equal(ANSWERED(a, false, "[?62c", "_Gi=31;OK\033\\",
+                              "]11;rgb:10/20/30\033\\", "[?62c"),
+                     PIXELS_KITTY);
     assert_true(a.has_ground && a.ground.red == 0x10 && a.ground.blue == 0x30);
 
     // within tmux no query is sent that it takes for a title
@@ -416,8 +431,9 @@ TEST(test_answers_are_no_keys)
     // where none is awaited ESC P is two keys
     assert_int_equal(escape_sequence_take(&e, 'P', &ignored), SEQUENCE_OTHER_KEY);
     e = (escape_sequence){.state = SEQUENCE_ESCAPED, .awaits = true};
-    const char text[] = "P>|a name that is a good deal longer than all that there is room for in a "
-                        "sequence, and yet no key\033\\";
+    const char text[] =
+        "P>|a name that is a good deal longer than all that there is room "
+        "for in a sequence, and yet no key\033\\";
     for (size_t i = 0; i + 2 < sizeof text; i++) {
         assert_int_equal(escape_sequence_take(&e, text[i], &ignored), SEQUENCE_GOES_ON);
     }

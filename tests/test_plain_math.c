@@ -67,8 +67,10 @@ TEST(arctangents_are_right_to_two_units)
     random_generator g = seeded(5);
     for (int i = 0; i < TRIALS; i++) {
         const double size = i % 2 == 0 ? 1 : ldexp(1, i % 400 - 200);
-        const double x = 2 * random_uniform(&g) - 1, y = size * (2 * random_uniform(&g) - 1);
-        assert_true(units_off(plain_atan2(y, x), atan2l((long double)y, (long double)x)) < 2);
+        const double x = 2 * random_uniform(&g) - 1,
+                     y = size * (2 * random_uniform(&g) - 1);
+        assert_true(units_off(plain_atan2(y, x), atan2l((long double)y, (long double)x)) <
+                    2);
     }
 
     // the diagonal, where both ways to it meet: an eighth of a turn to the last bit

@@ -14,8 +14,8 @@ static summary record(const char *const *settings)
     return r.summary;
 }
 
-// What a run plays back is the run, to the last bit, where its samples are those that were
-// recorded. Under a delay the voltage is the command of a delay earlier.
+// What a run plays back is the run, to the last bit, where its samples are those that
+// were recorded. Under a delay the voltage is the command of a delay earlier.
 TEST(a_run_plays_back_its_own_csv)
 {
     static const struct {
@@ -23,16 +23,19 @@ TEST(a_run_plays_back_its_own_csv)
     } cases[] = {
         {"control.law=open-loop", "control.rate=200", "control.delay=0", "command", "0"},
         {"control.law=hybrid", "control.rate=200", "control.delay=0", "command", "0"},
-        {"control.law=hybrid", "control.rate=333", "control.jitter=0.0003", "command", "0"},
-        {"control.law=observer", "control.rate=1000", "control.delay=0", "voltage[V]", "0"},
-        {"control.law=hybrid", "control.rate=333", "control.delay=0.0007", "voltage", "-0.0007"},
+        {"control.law=hybrid", "control.rate=333", "control.jitter=0.0003", "command",
+         "0"},
+        {"control.law=observer", "control.rate=1000", "control.delay=0", "voltage[V]",
+         "0"},
+        {"control.law=hybrid", "control.rate=333", "control.delay=0.0007", "voltage",
+         "-0.0007"},
     };
     for (EACH(c, cases)) {
         const summary was = record(given("%s %s %s", c->law, c->rate, c->delay));
-        const summary is =
-            rig_summary_with("control.law=playback control.playback_file=recorded.csv %s %s %s %s",
-                             formatted("control.playback_column=%s", c->column),
-                             formatted("control.playback_shift=%s", c->shift), c->rate, c->delay);
+        const summary is = rig_summary_with(
+            "control.law=playback control.playback_file=recorded.csv %s %s %s %s",
+            formatted("control.playback_column=%s", c->column),
+            formatted("control.playback_shift=%s", c->shift), c->rate, c->delay);
         assert_true(was.peak_force_N > 0);
         check_close(is.first_contact_s, was.first_contact_s, 0);
         check_close(is.peak_force_N, was.peak_force_N, 0);
@@ -48,16 +51,18 @@ TEST(a_command_is_held_or_goes_straight)
         const char *hold, *shift;
         double time, volts;
     } cases[] = {
-        {"hold", "0", 0.15, 1},     {"linear", "0", 0.15, 1.5}, {"hold", "0", 0.2, 2},
-        {"hold", "0", 0.05, 1},     {"linear", "0", 0.05, 1},   {"hold", "0", 0.4, 3},
-        {"linear", "0", 0.4, 3},    {"hold", "0.1", 0.25, 1},   {"linear", "0.1", 0.25, 1.5},
-        {"linear", "-0.1", 0.1, 2},
+        {"hold", "0", 0.15, 1},       {"linear", "0", 0.15, 1.5},
+        {"hold", "0", 0.2, 2},        {"hold", "0", 0.05, 1},
+        {"linear", "0", 0.05, 1},     {"hold", "0", 0.4, 3},
+        {"linear", "0", 0.4, 3},      {"hold", "0.1", 0.25, 1},
+        {"linear", "0.1", 0.25, 1.5}, {"linear", "-0.1", 0.1, 2},
     };
     put_file("u.csv", "\"t[ms]\",u[mV]\n100,1000\n200,2000\n300,3000\n");
     for (EACH(c, cases)) {
         RIG_RUN(r,
-                "control.law=playback control.playback_file=u.csv control.playback_column=u %s "
-                "%s control.rate=1000 sensor.ideal=true run.duration=0.45 wall.kind=none",
+                "control.law=playback control.playback_file=u.csv "
+                "control.playback_column=u %s %s control.rate=1000 sensor.ideal=true "
+                "run.duration=0.45 wall.kind=none",
                 formatted("control.playback_hold=%s", c->hold),
                 formatted("control.playback_shift=%s", c->shift));
         const size_t row = trace_rows_until(&r.trace, c->time) - 1;
@@ -81,10 +86,12 @@ TEST(a_file_with_faults_is_told_with_its_place)
     };
     for (EACH(c, cases)) {
         put_file("bad.csv", c->text);
-        check_refused(given("control.law=playback control.playback_file=bad.csv"), c->sentence);
+        check_refused(given("control.law=playback control.playback_file=bad.csv"),
+                      c->sentence);
     }
     unlink("bad.csv");
-    check_refused(given("control.law=playback control.playback_file=bad.csv"), "cannot be opened");
+    check_refused(given("control.law=playback control.playback_file=bad.csv"),
+                  "cannot be opened");
 
     // without a file there is nothing to play
     parameters p = rig_parameters(NULL);
@@ -92,7 +99,8 @@ TEST(a_file_with_faults_is_told_with_its_place)
     p.control.law = LAW_PLAYBACK;
     p.set[PARAMETER_INDEX(control.law)] = 1;
     assert_int_equal(parameters_resolve(&p, &f), STATUS_BAD_SCENARIO);
-    assert_string_equal(f.text, "control.law = playback needs a CSV file in control.playback_file");
+    assert_string_equal(
+        f.text, "control.law = playback needs a CSV file in control.playback_file");
 }
 
 ALL_BETWEEN(enter_folder, leave_folder)

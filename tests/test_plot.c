@@ -6,10 +6,10 @@ TEST(all_texts_of_a_run_are_drawn)
     static figure_report r;
     SYNTHETIC(s, run_panels, RUN_PANELS);
     record(&s.plot->figure, &r);
-    for (EACH_TEXT(c, "Synthetic run & <more>", "Time t (s)", "Contact force f (N)", "Angle (rad)",
-                   "Angular velocity (rad\u2060/\u2060s)", "\u03b81  hub", "\u03b83  last link",
-                   "wall", "contact", "peak 2.10\u2009N", "release", "Impulse\n(N\u00b7s)", "0.044",
-                   "0.009", "\u22120.4", "0.4")) {
+    for (EACH_TEXT(c, "Synthetic run & <more>", "Time t (s)", "Contact force f (N)",
+                   "Angle (rad)", "Angular velocity (rad\u2060/\u2060s)", "\u03b81  hub",
+                   "\u03b83  last link", "wall", "contact", "peak 2.10\u2009N", "release",
+                   "Impulse\n(N\u00b7s)", "0.044", "0.009", "\u22120.4", "0.4")) {
         expect_text(&r, *c);
     }
     assert_int_equal(r.panel_count, RUN_PANELS);
@@ -37,7 +37,8 @@ TEST(many_marks_and_impulses_stay_readable)
         marks[i] = (figure_mark){i < 5 ? 0.5 : i / 59.0, "event"};
     }
     for (int i = 0; i < 300; i++) {
-        impulses[i] = (figure_impulse){0.3 + 0.5 * i / 299.0, i % 7 == 0 ? 1e-5 : 0.01 / (1 + i)};
+        impulses[i] =
+            (figure_impulse){0.3 + 0.5 * i / 299.0, i % 7 == 0 ? 1e-5 : 0.01 / (1 + i)};
     }
     SYNTHETIC(s, run_panels, RUN_PANELS);
     s.plot->figure.marks = marks;
@@ -85,8 +86,9 @@ TEST(impulses_do_not_touch_the_force_axis)
     check_below(bottom_of(expect_text(&r, "5\u00b7103")), r.panels[0].y + 1);
 }
 
-// The unit of small impulses, a power of ten and all, is wider than their name: it has its place.
-// Its raised exponent does not reach the letters of the name above: an empty row is between them.
+// The unit of small impulses, a power of ten and all, is wider than their name: it has
+// its place. Its raised exponent does not reach the letters of the name above: an empty
+// row is between them.
 TEST(the_unit_of_small_impulses_has_its_place)
 {
     static figure_report r;
@@ -101,7 +103,8 @@ TEST(the_unit_of_small_impulses_has_its_place)
         bool inked = false;
         expect_inside(&p, &r.page, r.texts[i].text);
         for (int y = (int)(FINE * p.y);
-             strstr(r.texts[i].text, "Impulse") != NULL && y < FINE * (p.y + p.height); y++) {
+             strstr(r.texts[i].text, "Impulse") != NULL && y < FINE * (p.y + p.height);
+             y++) {
             bool ink = false;
             for (int x = (int)(FINE * p.x); x < FINE * (p.x + p.width); x++) {
                 ink = ink || pixel_at(image, x, y).green < DARK;
@@ -127,7 +130,10 @@ TEST(a_spike_of_one_sample_is_visible)
     for (int sign = -1; sign <= 1; sign += 2) {
         y[SPIKE] = sign;
         figure_series series = {.x = x, .y = y, .count = COUNT, .colour = 5};
-        figure_panel panel = {.series = &series, .series_count = 1, .y.low = -1.1, .y.high = 1.1};
+        figure_panel panel = {.series = &series,
+                              .series_count = 1,
+                              .y.low = -1.1,
+                              .y.high = 1.1};
         figure fig = {.panels = &panel, .panel_count = 1, .width = 100, .dpi = 100};
         static figure_report r;
         record(&fig, &r);
@@ -140,7 +146,8 @@ TEST(a_spike_of_one_sample_is_visible)
         // the outer half of the spike, in the spike's place and nowhere else
         figure_rect here = {spike - 2, sign > 0 ? r.panels[0].y + 6 : middle + quarter, 4,
                             quarter - 6};
-        figure_rect left = {r.panels[0].x, here.y, spike - 3 - r.panels[0].x, quarter - 6};
+        figure_rect left = {r.panels[0].x, here.y, spike - 3 - r.panels[0].x,
+                            quarter - 6};
         int most = (int)((quarter - 6) * scale);
         assert_true(coloured_pixels(image, scale, here) >= most - 2);
         assert_int_equal(coloured_pixels(image, scale, left), 0);
@@ -158,7 +165,10 @@ TEST(points_that_are_not_finite_leave_a_gap)
         }
         x[80] = *c;
         figure_series series = {.x = x, .y = y, .count = COUNT, .colour = 5};
-        figure_panel panel = {.series = &series, .series_count = 1, .y.low = 0, .y.high = 1};
+        figure_panel panel = {.series = &series,
+                              .series_count = 1,
+                              .y.low = 0,
+                              .y.high = 1};
         figure fig = {.panels = &panel, .panel_count = 1};
         static figure_report r;
         PIXELS(image) = paint_pixels(&fig, 2, &r);
@@ -195,8 +205,9 @@ TEST(empty_and_hopeless_series_are_drawn_without_fuss)
                               {.x = same, .y = x, .count = 4},
                               {.x = x, .y = same, .count = 4}};
     for (int i = 0; i < 6; i++) {
-        figure_panel panel = {
-            .series = &series[i], .series_count = 1, .y = {.label = "y", .unit = "N"}};
+        figure_panel panel = {.series = &series[i],
+                              .series_count = 1,
+                              .y = {.label = "y", .unit = "N"}};
         figure fig = {.panels = &panel, .panel_count = 1};
         expect_tidy(&fig);
     }
@@ -205,7 +216,8 @@ TEST(empty_and_hopeless_series_are_drawn_without_fuss)
     expect_tidy(&fig);
 }
 
-// Lines to far away points keep their direction inside the panel and stay out of everything else.
+// Lines to far away points keep their direction inside the panel and stay out of
+// everything else.
 TEST(far_away_points_are_clipped)
 {
     double x[] = {0, 0.25, 0.5, 0.75, 1}, y[] = {0.5, 1e12, 0.5, -1e300, 0.5};
@@ -256,8 +268,9 @@ TEST(legend_goes_to_a_free_corner)
             y[i] = (corner / 2 ? -1 : 1) * t * t * (1 + 0.1 * sin(200 * t));
             z[i] = 0.9 * y[i];
         }
-        figure_series series[] = {{.x = x, .y = y, .count = COUNT, .label = "one"},
-                                  {.x = x, .y = z, .count = COUNT, .label = "two", .colour = 1}};
+        figure_series series[] = {
+            {.x = x, .y = y, .count = COUNT, .label = "one"},
+            {.x = x, .y = z, .count = COUNT, .label = "two", .colour = 1}};
         figure_panel panel = {.series = series, .series_count = 2};
         figure fig = {.panels = &panel, .panel_count = 1};
         static figure_report r, none;
@@ -279,10 +292,12 @@ TEST(legend_leaves_a_full_panel)
         y[i] = i % 2 ? 1 : -1;
         z[i] = -y[i];
     }
-    figure_series series[] = {{.x = x, .y = y, .count = COUNT, .label = "one"},
-                              {.x = x, .y = z, .count = COUNT, .label = "two", .colour = 1}};
-    figure_panel panels[] = {{.series = series, .series_count = 2, .zoom_from = 3, .zoom_to = 9},
-                             {.heading = "heading", .series = series, .series_count = 2}};
+    figure_series series[] = {
+        {.x = x, .y = y, .count = COUNT, .label = "one"},
+        {.x = x, .y = z, .count = COUNT, .label = "two", .colour = 1}};
+    figure_panel panels[] = {
+        {.series = series, .series_count = 2, .zoom_from = 3, .zoom_to = 9},
+        {.heading = "heading", .series = series, .series_count = 2}};
     figure fig = {.panels = panels, .panel_count = 2};
     static figure_report r;
     record(&fig, &r);
@@ -339,7 +354,9 @@ TEST(a_busy_line_has_no_dashes)
     figure_series series[] = {
         {.label = "stairs", .x = x, .y = stairs, .count = STAIRS, .style = LINE_DASHED},
         {.label = "smooth", .x = x, .y = smooth, .count = STAIRS}};
-    figure_panel panel = {.series = series, .series_count = 2, .y = {.low = 0, .high = 30}};
+    figure_panel panel = {.series = series,
+                          .series_count = 2,
+                          .y = {.low = 0, .high = 30}};
     figure fig = {.panels = &panel, .panel_count = 1, .theme = THEME_MONO};
     const double scale = 6;
     PIXELS(surface) = paint_pixels(&fig, scale, &r);
@@ -354,8 +371,8 @@ TEST(a_busy_line_has_no_dashes)
         for (double along = 2; along < 16; along += 0.25) {
             int darkest = 255;
             for (double off = -2; off <= 2; off += 0.25) {
-                pixel p =
-                    pixel_at(surface, (int)((legend->x + along) * scale), (int)((y + off) * scale));
+                pixel p = pixel_at(surface, (int)((legend->x + along) * scale),
+                                   (int)((y + off) * scale));
                 darkest = p.red < darkest ? p.red : darkest;
             }
             lightest = darkest > lightest ? darkest : lightest;
@@ -375,14 +392,16 @@ static bool is_in_key(const figure *fig, const figure_series *s, bool by_colour)
     bool found = false;
     for (int i = 0; i < fig->key->series_count; i++) {
         const figure_series *k = &fig->key->series[i];
-        found = found || (k->label != NULL && (by_colour ? k->colour == s->colour
-                                                         : k->colour == 6 && k->style == s->style));
+        found = found || (k->label != NULL &&
+                          (by_colour ? k->colour == s->colour
+                                     : k->colour == 6 && k->style == s->style));
     }
     return found;
 }
 
-// Each curve says which run (by its colour) and which signal (by its line) it is, in every panel
-// alike, and one key on top has them all; of eight runs with three signals each, at both widths.
+// Each curve says which run (by its colour) and which signal (by its line) it is, in
+// every panel alike, and one key on top has them all; of eight runs with three signals
+// each, at both widths.
 TEST(each_curve_of_a_comparison_says_run_and_signal)
 {
     static const trace_panel panels[] = {
@@ -400,7 +419,8 @@ TEST(each_curve_of_a_comparison_says_run_and_signal)
         }
         owned_figure *t = trace_figure_create("Runs", panels, 3, runs, count);
 
-        // colours are the runs', lines the signals': that of a body is the same in all panels
+        // colours are the runs', lines the signals': that of a body is the same in all
+        // panels
         line_style of_body[4];
         for (int p = 0; p < 3; p++) {
             const figure_panel *panel = &t->figure.panels[p];
@@ -408,21 +428,25 @@ TEST(each_curve_of_a_comparison_says_run_and_signal)
             for (int i = 0; i < panel->series_count; i++) {
                 const figure_series *one = &panel->series[i];
                 const int run = i / signals[p], signal = i % signals[p];
-                const int body = signal_table[signal_find(panels[p].signals[signal])].body;
+                const int body =
+                    signal_table[signal_find(panels[p].signals[signal])].body;
                 assert_int_equal(one->run, run + 1);
-                assert_int_equal(one->colour, t->figure.panels[0].series[run * signals[0]].colour);
+                assert_int_equal(one->colour,
+                                 t->figure.panels[0].series[run * signals[0]].colour);
                 if (run == 0 && p == (body == BODY_HUB)) {
                     of_body[body] = one->style;
                 }
                 assert_int_equal(one->style, of_body[body]);
-                assert_true(is_in_key(&t->figure, one, true) && is_in_key(&t->figure, one, false));
+                assert_true(is_in_key(&t->figure, one, true) &&
+                            is_in_key(&t->figure, one, false));
             }
         }
         assert_true(of_body[BODY_HUB] != of_body[BODY_FIRST_LINK] &&
                     of_body[BODY_HUB] != of_body[BODY_LAST_LINK] &&
                     of_body[BODY_FIRST_LINK] != of_body[BODY_LAST_LINK]);
         for (int i = 1; i < count; i++) {
-            assert_int_not_equal(t->figure.key->series[i].colour, t->figure.key->series[0].colour);
+            assert_int_not_equal(t->figure.key->series[i].colour,
+                                 t->figure.key->series[0].colour);
         }
 
         // the key is drawn once, above the panels

@@ -12,19 +12,22 @@ TEST(plugin_controls_the_arm)
     summary s = rig_summary_with(PLUGIN " control.force=1.5", file);
     check_close(s.separations, 0, 0);
     check_relative(s.steady_force_N, 1.5, 0.06);
-    summary slow =
-        rig_summary(SETTINGS("control.law=plugin", formatted("control.plugin=%s", file),
-                             "control.force=1.5", "control.settings=rise_time=0.4 damping=1"));
+    summary slow = rig_summary(
+        SETTINGS("control.law=plugin", formatted("control.plugin=%s", file),
+                 "control.force=1.5", "control.settings=rise_time=0.4 damping=1"));
     check_below(s.settling_time_s, slow.settling_time_s);
 }
 
 TEST(wrong_plugins_are_refused)
 {
     const char *const file = soft_push_file;
-    check_refused(given("control.law=plugin control.plugin=/nonexistent.so"), "/nonexistent.so");
-    check_refused(given(PLUGIN " control.settings=dampin=1", file), "did you mean 'damping'?");
+    check_refused(given("control.law=plugin control.plugin=/nonexistent.so"),
+                  "/nonexistent.so");
+    check_refused(given(PLUGIN " control.settings=dampin=1", file),
+                  "did you mean 'damping'?");
     check_refused(given(PLUGIN " control.settings=damping=-1", file), "from 0 to 100");
-    check_refused(given(PLUGIN " control.lock=force", file), "expected none, approach or push");
+    check_refused(given(PLUGIN " control.lock=force", file),
+                  "expected none, approach or push");
     check_refused(given(PLUGIN " control.settings=damping", file), "damping=NUMBER");
     check_refused(given(PLUGIN " motor.amplifier_gain=0", file), "no torque");
     check_refused(given(PLUGIN, outdated_file), "compile it again");
@@ -63,7 +66,8 @@ TEST(command_that_is_not_finite_stops_the_run)
         KEPT_RUN(r);
         scenario s = {.parameters = rig_parameters_with(PLUGIN " %s", broken_file, *c)};
         assert_int_equal(run_scenario(&s, true, &r), STATUS_NOT_FINITE);
-        assert_non_null(strstr(r.summary.message, "at t = 0.1 s the controller 'broken'"));
+        assert_non_null(
+            strstr(r.summary.message, "at t = 0.1 s the controller 'broken'"));
         check_close(LAST_ROW(&r.trace)->time, 0.1, 0.0011);
     }
 }
@@ -71,7 +75,8 @@ TEST(command_that_is_not_finite_stops_the_run)
 int main(int count, char **arguments)
 {
     if (count != 5) {
-        fprintf(stderr, "usage: test_plugin SOFT_PUSH.so BROKEN.so OUTDATED.so SILENT.so\n");
+        fprintf(stderr,
+                "usage: test_plugin SOFT_PUSH.so BROKEN.so OUTDATED.so SILENT.so\n");
         return 2;
     }
     soft_push_file = arguments[1];

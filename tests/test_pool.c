@@ -141,7 +141,8 @@ TEST(a_failure_ends_the_work_and_is_returned)
     pool_work w = work_on(&t);
     REFUSED(STATUS_CANNOT_WRITE, "piece", pool_run(&w, 4, &f));
     assert_int_equal(t.total, 10);
-    assert_true(t.computed <= 2 * QUEUE + 4); // what was there when it failed and what came then
+    assert_true(t.computed <=
+                2 * QUEUE + 4); // what was there when it failed and what came then
 }
 
 TEST(a_stop_ends_it_early_without_a_fault)

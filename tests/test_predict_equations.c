@@ -1,9 +1,9 @@
-// The thesis's predictors against their equations, derived anew: the corrected arm of two links
-// with any hub, lengths and masses, and the printed forms.
+// The thesis's predictors against their equations, derived anew: the corrected arm of two
+// links with any hub, lengths and masses, and the printed forms.
 #include "tests/three_body_states.h"
 
-// Masses of both links' angles and levers of a force on the tip's side at a bend, hub included
-// where it is one body with the first link.
+// Masses of both links' angles and levers of a force on the tip's side at a bend, hub
+// included where it is one body with the first link.
 typedef struct links {
     double m22, m23, m33; // [kg m2]
     double j2, j3;        // the way that the contact point makes by each angle [m]
@@ -12,7 +12,8 @@ typedef struct links {
 
 static links links_of(const parameters *p, double bend)
 {
-    const double l = p->arm.length / 2, m = p->arm.mass / 2, e = l / 2, in = p->arm.link_inertia;
+    const double l = p->arm.length / 2, m = p->arm.mass / 2, e = l / 2,
+                 in = p->arm.link_inertia;
     const bool rigid = p->arm.hub_joint == HUB_RIGID;
     links a = {.m22 = m * (e * e + l * l) + in + (rigid ? p->arm.hub_inertia : 0),
                .m23 = m * l * e * cos(bend),
@@ -57,8 +58,8 @@ static parameters any_arm(int trial, unsigned *seed, three_body_state *s)
     return p;
 }
 
-// Energy of all bodies, shared by the springs in series; then both links rest, bent back, and the
-// wall's force is what the drive and the spring press with.
+// Energy of all bodies, shared by the springs in series; then both links rest, bent back,
+// and the wall's force is what the drive and the spring press with.
 static double energy_force(const parameters *p, const three_body_state *s)
 {
     const bool rigid = p->arm.hub_joint == HUB_RIGID;
@@ -70,7 +71,8 @@ static double energy_force(const parameters *p, const three_body_state *s)
     // what an oscillator with the damping of the beam keeps until it is bent most
     if (p->arm.damping_ratio > 0) {
         const links a = links_of(p, bend);
-        const double turn = -a.j2 / a.j3, mass = a.m22 + 2 * a.m23 * turn + a.m33 * turn * turn;
+        const double turn = -a.j2 / a.j3,
+                     mass = a.m22 + 2 * a.m23 * turn + a.m33 * turn * turn;
         const double square = p->arm.k2 * (turn - 1) * (turn - 1) / mass;
         const double d = square * p->arm.damping_ratio / sqrt(p->arm.k2 / a.m33);
         const double rate = w[2] - w[1], frequency = sqrt(square - d * d);
@@ -99,7 +101,8 @@ TEST(energy_of_any_state_is_shared_by_the_springs)
     for (int trial = 0; trial < 400; trial++) {
         three_body_state s;
         parameters p = any_arm(trial, &seed, &s);
-        p.arm.damping_ratio = trial % 3 == 0 && trial % 8 != 7 ? 0.05 * (1.1 + noise(&seed)) : 0;
+        p.arm.damping_ratio =
+            trial % 3 == 0 && trial % 8 != 7 ? 0.05 * (1.1 + noise(&seed)) : 0;
         prediction out;
         assert_int_equal(predict_energy(&p, &s, &out, NULL), STATUS_OK);
         check_relative(out.force, energy_force(&p, &s), 1e-9);
@@ -134,40 +137,45 @@ TEST(listed_energy_of_any_state)
         const parameters other = any_arm(trial, &seed, &s);
         parameters p = defaults_of(ARM_PRINTED);
         p.arm.length = other.arm.length, p.arm.mass = other.arm.mass;
-        p.arm.link_inertia = other.arm.link_inertia, p.arm.hub_inertia = other.arm.hub_inertia;
+        p.arm.link_inertia = other.arm.link_inertia,
+        p.arm.hub_inertia = other.arm.hub_inertia;
         p.arm.k2 = other.arm.k2, p.motor.voltage = other.motor.voltage;
         p.printed.energy_cross_term = trial % 2;
 
         // I2 and I3 left out, and one length too many or not
         const double l = p.arm.length / 2, e = l / 2, m = p.arm.mass / 2, *w = s.velocity;
         const double b = s.angle[2] - s.angle[1], cross = trial % 2 ? e : 2 * l * e;
-        const double twice = p.arm.hub_inertia * w[0] * w[0] +
-                             m * e * e * (w[1] * w[1] + w[2] * w[2]) + m * l * l * w[1] * w[1] +
-                             m * cross * w[1] * w[2] * cos(b) + p.arm.k2 * b * b;
+        const double twice =
+            p.arm.hub_inertia * w[0] * w[0] + m * e * e * (w[1] * w[1] + w[2] * w[2]) +
+            m * l * l * w[1] * w[1] + m * cross * w[1] * w[2] * cos(b) + p.arm.k2 * b * b;
 
         // (m22 + m23) a + l (1 + c) f = S - k d, (m32 - c m33) ... with l (c a2 + a3) = 0
         double damping;
         p.motor.stiction = 0;
-        const double d = sqrt(twice / p.arm.k2), c = cos(d), drive = drive_of(&p, 1, &damping);
+        const double d = sqrt(twice / p.arm.k2), c = cos(d),
+                     drive = drive_of(&p, 1, &damping);
         const double m33 = m * e * e + p.arm.link_inertia, m23 = m * l * e * c;
         const double m22 = m33 + m * l * l;
-        const double both = m22 + m23 - c * (m33 + m23), last = m23 - c * m33, k = p.arm.k2 * d;
-        const double force = (both * k - last * (drive - k)) / (both * l - last * l * (1 + c));
+        const double both = m22 + m23 - c * (m33 + m23), last = m23 - c * m33,
+                     k = p.arm.k2 * d;
+        const double force =
+            (both * k - last * (drive - k)) / (both * l - last * l * (1 + c));
         prediction out;
         assert_int_equal(predict_energy(&p, &s, &out, NULL), STATUS_OK);
         check_relative(out.force, force, 1e-9);
     }
 }
 
-// What (4.20)-(4.22) leave of the corrected arm at a delay, force and hub velocity from the others.
+// What (4.20)-(4.22) leave of the corrected arm at a delay, force and hub velocity from
+// the others.
 typedef struct motion_left {
     double left;  // balance of both links [N m s]
     double force; // [N]
     double hub;   // [rad/s]
 } motion_left;
 
-static motion_left left_at(const parameters *p, const three_body_state *s, const double after[3],
-                           double T)
+static motion_left left_at(const parameters *p, const three_body_state *s,
+                           const double after[3], double T)
 {
     const bool rigid = p->arm.hub_joint == HUB_RIGID;
     const double d1 = s->angle[1] - s->angle[0], d2 = s->angle[2] - s->angle[1];
@@ -203,7 +211,8 @@ TEST(corrected_dynamics_solves_its_equations)
         assert_int_equal(predict_impact_dynamics(&p, &s, &out, NULL), STATUS_OK);
         check_close(out.impulse, impulse, 0);
 
-        // every delay at which the balance changes its sign, but for where the hub's has a pole
+        // every delay at which the balance changes its sign, but for where the hub's has
+        // a pole
         double best = HUGE_VAL, delay = (double)NAN, before = 1e-9;
         const bool rigid = p.arm.hub_joint == HUB_RIGID;
         for (double T = 1.01e-9; T < 100; before = T, T *= 1.006) {
@@ -239,13 +248,15 @@ TEST(corrected_dynamics_solves_its_equations)
         assert_int_equal(predict_impact_quadratic(&p, &s, &quadratic, NULL), STATUS_OK);
         p.arm.hub_joint = HUB_RIGID;
         assert_int_equal(predict_impact_dynamics(&p, &s, &out, NULL), STATUS_OK);
-        assert_true(quadratic.force == out.force || (isnan(quadratic.force) && isnan(out.force)));
+        assert_true(quadratic.force == out.force ||
+                    (isnan(quadratic.force) && isnan(out.force)));
         assert_int_equal(quadratic.holds, out.holds);
     }
     assert_true(found > 200 && none > 0);
 }
 
-// The printed quadratic form: the hub jumps with the first link, (4.21) and (4.22) remain.
+// The printed quadratic form: the hub jumps with the first link, (4.21) and (4.22)
+// remain.
 TEST(the_printed_quadratic_form_solves_two_of_the_equations)
 {
     unsigned seed = 25;
@@ -265,14 +276,16 @@ TEST(the_printed_quadratic_form_solves_two_of_the_equations)
 
         // with all that jumps, the hub's angle is its bend away
         const double l = 0.5, u = p.arm.mass / 2 * 0.0625, w2 = after[1], w3 = after[2];
-        const double w1 = s.velocity[0] + w2 - s.velocity[1], T = out.delay, f = out.force;
+        const double w1 = s.velocity[0] + w2 - s.velocity[1], T = out.delay,
+                     f = out.force;
         const double d1 = s.angle[1] - s.angle[0], d2 = s.angle[2] - s.angle[1];
         const double spring1 = p.arm.k1 * T * (d1 + T / 4 * (w2 - w1));
         const double spring2 = p.arm.k2 * T * (d2 + T / 4 * (w3 - w2));
         check_close(spring1 - (trial % 2) * spring2 - 7 * u * w2 - 3 * u * w3 +
                         T / 2 * l * (1 + cos(d2)) * f,
                     0, 1e-9);
-        check_close(spring2 + T / 2 * l * f - 2 * u * cos(d2) * w2 - (u + p.arm.link_inertia) * w3,
+        check_close(spring2 + T / 2 * l * f - 2 * u * cos(d2) * w2 -
+                        (u + p.arm.link_inertia) * w3,
                     0, 1e-9);
         found++;
     }

@@ -8,11 +8,13 @@ static double penetration_rate(const parameters *p, const double q[3], const dou
     return l * c * w[1] + (a * cos(q[2]) + b * sin(q[2]) - l * c) * w[2];
 }
 
-typedef status (*predictor)(const parameters *, const three_body_state *, prediction *, fault *);
+typedef status (*predictor)(const parameters *, const three_body_state *, prediction *,
+                            fault *);
 static const predictor predictors[3] = {predict_energy, predict_impact_dynamics,
                                         predict_impact_quadratic};
 
-static prediction predicted(predictor which, const parameters *p, const three_body_state *s)
+static prediction predicted(predictor which, const parameters *p,
+                            const three_body_state *s)
 {
     prediction out;
     DONE(which(p, s, &out, &f));
@@ -43,8 +45,9 @@ TEST(springs_share_energy_by_their_compliance)
     check_close(energy, 9, 1e-12);
 }
 
-// Links without inertia of their own, at rest, bent by a small D: all masses are multiples of
-// u = m e^2, cosines are 1, the levers 2l and l, and the second link turns against the first.
+// Links without inertia of their own, at rest, bent by a small D: all masses are
+// multiples of u = m e^2, cosines are 1, the levers 2l and l, and the second link turns
+// against the first.
 TEST(energy_of_a_small_bend_can_be_computed_by_hand)
 {
     const double D = 1e-4;
@@ -68,8 +71,9 @@ TEST(energy_of_a_small_bend_can_be_computed_by_hand)
     check_close(out.force, (k * D - u * a) / 0.5, 1e-6);
 }
 
-// 4.3 on damping: a straight arm that strikes with no drive bends for a quarter of a period, in
-// which the oscillator with mass I1 + 2u and stiffness 4 k2 loses exp(-pi d / w) of its energy.
+// 4.3 on damping: a straight arm that strikes with no drive bends for a quarter of a
+// period, in which the oscillator with mass I1 + 2u and stiffness 4 k2 loses exp(-pi d /
+// w) of its energy.
 TEST(damping_takes_its_share_of_the_energy)
 {
     const double ratio = 0.02;
@@ -82,7 +86,8 @@ TEST(damping_takes_its_share_of_the_energy)
     p.arm.damping_ratio = ratio;
     const prediction damped = predicted(predict_energy, &p, &s);
 
-    double u = p.arm.mass / 2 * 0.0625, square = 4 * p.arm.k2 / (p.arm.hub_inertia + 2 * u);
+    double u = p.arm.mass / 2 * 0.0625,
+           square = 4 * p.arm.k2 / (p.arm.hub_inertia + 2 * u);
     double d = square * ratio / sqrt(p.arm.k2 / u), w = sqrt(square - d * d);
     check_relative(damped.force, undamped.force * exp(-M_PI_2 * d / w), 1e-4);
 }
@@ -117,8 +122,10 @@ TEST(impact_stops_the_contact_point)
         double after[3], impulse = impulse_of(&p, &s, after);
         assert_true(impulse > 0);
         assert_true(penetration_rate(&p, s.angle, s.velocity) > 0);
-        // the corrected form has the contact point on the arm, second order in the bend from (a, b)
-        check_close(penetration_rate(&p, s.angle, after), 0, trial % 3 == 0 ? 1e-14 : 1e-4);
+        // the corrected form has the contact point on the arm, second order in the bend
+        // from (a, b)
+        check_close(penetration_rate(&p, s.angle, after), 0,
+                    trial % 3 == 0 ? 1e-14 : 1e-4);
         if (trial % 3 != 1) {
             check_close(after[0], s.velocity[0], 0);
         } else {
@@ -134,18 +141,21 @@ TEST(plastic_impact_loses_half_impulse_times_speed)
         parameters p = corrected_with(trial % 2 ? HUB_SPRING : HUB_RIGID);
         three_body_state s = state_at_wall(&p, &seed);
         double after[3], impulse = impulse_of(&p, &s, after);
-        double loss = kinetic_energy(&p, s.angle, s.velocity) - kinetic_energy(&p, s.angle, after);
+        double loss =
+            kinetic_energy(&p, s.angle, s.velocity) - kinetic_energy(&p, s.angle, after);
         assert_true(loss > 0);
-        check_relative(loss, 0.5 * impulse * penetration_rate(&p, s.angle, s.velocity), 1e-3);
+        check_relative(loss, 0.5 * impulse * penetration_rate(&p, s.angle, s.velocity),
+                       1e-3);
     }
 }
 
 // What (4.20)-(4.22) leave over at a prediction; the hub's velocity is taken from (4.20).
-static void thesis_equations(const parameters *p, const three_body_state *s, const prediction *out,
-                             double left[2])
+static void thesis_equations(const parameters *p, const three_body_state *s,
+                             const prediction *out, double left[2])
 {
     double l = 0.5, T = out->delay, f = out->force, u = p->arm.mass / 2 * 0.0625;
-    double after[3], impulse, d1 = s->angle[1] - s->angle[0], d2 = s->angle[2] - s->angle[1];
+    double after[3], impulse, d1 = s->angle[1] - s->angle[0],
+                              d2 = s->angle[2] - s->angle[1];
     double kt = p->motor.torque_constant, ra = p->motor.resistance;
     double load = p->motor.amplifier_gain * kt / ra * p->motor.voltage;
     double kv = p->motor.viscous_friction + kt * p->motor.back_emf / ra;
@@ -155,8 +165,10 @@ static void thesis_equations(const parameters *p, const three_body_state *s, con
                 (p->arm.k1 * T * T / 4 - p->arm.hub_inertia + kv * T / 2);
     double spring1 = p->arm.k1 * T * (d1 + T / 4 * (w2 - w1));
     double spring2 = p->arm.k2 * T * (d2 + T / 4 * (w3 - w2));
-    left[0] = -spring2 + spring1 - 7 * u * w2 - 3 * u * w3 + T / 2 * l * (1 + cos(d2)) * f;
-    left[1] = spring2 + T / 2 * l * f - 2 * u * cos(d2) * w2 - (u + p->arm.link_inertia) * w3;
+    left[0] =
+        -spring2 + spring1 - 7 * u * w2 - 3 * u * w3 + T / 2 * l * (1 + cos(d2)) * f;
+    left[1] =
+        spring2 + T / 2 * l * f - 2 * u * cos(d2) * w2 - (u + p->arm.link_inertia) * w3;
 }
 
 TEST(printed_dynamics_solves_the_printed_equations)
@@ -180,8 +192,8 @@ TEST(printed_dynamics_solves_the_printed_equations)
     assert_true(held >= 50);
 }
 
-// Hubs and beams far softer and stiffer than the thesis's: what is predicted solves the equations,
-// and what has no solution nearby is said to have none.
+// Hubs and beams far softer and stiffer than the thesis's: what is predicted solves the
+// equations, and what has no solution nearby is said to have none.
 TEST(any_springs_solve_the_printed_equations)
 {
     unsigned seed = 12;
@@ -212,9 +224,10 @@ TEST(any_springs_solve_the_printed_equations)
     assert_true(held >= 2000);
 }
 
-// Hub and first link one body, straight beam, no motor, no friction: after the impact the beam
-// swings with d = -2 theta2, (I1 + 2u) theta2'' = -4 k theta2 for small bends, u = m e^2. Its first
-// peak is known; the thesis's assumptions meet the force and are 4/pi too late.
+// Hub and first link one body, straight beam, no motor, no friction: after the impact the
+// beam swings with d = -2 theta2, (I1 + 2u) theta2'' = -4 k theta2 for small bends, u = m
+// e^2. Its first peak is known; the thesis's assumptions meet the force and are 4/pi too
+// late.
 TEST(corrected_dynamics_meets_the_peak_of_a_half_oscillation)
 {
     parameters p = corrected_with(HUB_RIGID);
@@ -281,7 +294,9 @@ TEST(no_state_gives_garbage)
         p.arm.k2 *= pow(10, 1 + noise(&seed));
         p.arm.k1 *= pow(10, 2 * noise(&seed));
         p.motor.voltage = 10 * noise(&seed);
-        p.wall.kind = trial % 5 == 0 ? WALL_NONE : trial % 2 && trial % 3 ? WALL_PLANE : WALL_POINT;
+        p.wall.kind = trial % 5 == 0           ? WALL_NONE
+                      : trial % 2 && trial % 3 ? WALL_PLANE
+                                               : WALL_POINT;
         three_body_state s;
         for (int i = 0; i < 3; i++) {
             s.angle[i] = 0.2 * noise(&seed);
@@ -294,7 +309,8 @@ TEST(no_state_gives_garbage)
             if (out.holds) {
                 held++;
                 assert_true(out.force > 0 && out.force < 1e4);
-                assert_true(i == 0 ? isnan(out.delay) : out.delay > 0 && out.delay <= 100);
+                assert_true(i == 0 ? isnan(out.delay)
+                                   : out.delay > 0 && out.delay <= 100);
                 assert_true(i == 0 || out.impulse >= 0);
             }
         }
@@ -363,12 +379,13 @@ TEST(a_list_of_equal_joints_changes_no_prediction)
 {
     parameters plain, listed;
     parameters_defaults(&plain, ARM_CORRECTED);
-    assert_int_equal(parameter_set_number(&plain, PARAMETER_INDEX(arm.links), 4, NULL), STATUS_OK);
+    assert_int_equal(parameter_set_number(&plain, PARAMETER_INDEX(arm.links), 4, NULL),
+                     STATUS_OK);
     plain.arm.damping_ratio = 0.1;
     listed = plain;
-    assert_int_equal(
-        parameter_set_text(&listed, PARAMETER_INDEX(arm.joint_stiffness), "9.84,9.84,9.84", NULL),
-        STATUS_OK);
+    assert_int_equal(parameter_set_text(&listed, PARAMETER_INDEX(arm.joint_stiffness),
+                                        "9.84,9.84,9.84", NULL),
+                     STATUS_OK);
     assert_int_equal(parameters_resolve(&plain, NULL), STATUS_OK);
     assert_int_equal(parameters_resolve(&listed, NULL), STATUS_OK);
     three_body_state s = {{0.1, 0.1, 0.1}, {1, 1, 1}};
@@ -386,7 +403,8 @@ TEST(a_state_that_is_not_finite_is_refused)
     three_body_state s = {{0.1, 0.1, 0.1}, {1, 1, (double)NAN}};
     for (int i = 0; i < 3; i++) {
         prediction out;
-        REFUSED(STATUS_NOT_FINITE, "second link's velocity", predictors[i](&p, &s, &out, &f));
+        REFUSED(STATUS_NOT_FINITE, "second link's velocity",
+                predictors[i](&p, &s, &out, &f));
         assert_false(out.holds);
     }
 

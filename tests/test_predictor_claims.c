@@ -1,6 +1,6 @@
-// If the linearised predictor says that its answer holds, it is right within 2 %: on random arms of
-// both hub joints, at both walls, of 2 to 12 links, damped weakly and strongly. And it does say so
-// in most cases.
+// If the linearised predictor says that its answer holds, it is right within 2 %: on
+// random arms of both hub joints, at both walls, of 2 to 12 links, damped weakly and
+// strongly. And it does say so in most cases.
 //
 // test_predictor_claims [CASES [SEED]]
 #include "src/predict/linearised.h"
@@ -27,9 +27,10 @@ static void set(parameters *p, const char *path, double value)
 
 // What random arms are drawn from.
 typedef struct family {
-    int fewest, most;       // links
-    bool gives;             // at a wall that gives, with a sensor at the tip; else at a rigid one
-    double strongly_damped; // all of them, with ratios up to this; 0: half of them, weakly
+    int fewest, most; // links
+    bool gives; // at a wall that gives, with a sensor at the tip; else at a rigid one
+    double
+        strongly_damped; // all of them, with ratios up to this; 0: half of them, weakly
 } family;
 
 static double random_damping(random_generator *g, int links, double strongest)
@@ -44,7 +45,8 @@ static double random_damping(random_generator *g, int links, double strongest)
 
 static parameters random_arm(random_generator *g, const family *of)
 {
-    const int links = of->fewest + (int)random_below(g, (uint64_t)(of->most - of->fewest + 1));
+    const int links =
+        of->fewest + (int)random_below(g, (uint64_t)(of->most - of->fewest + 1));
     parameters p = fresh(ARM_CORRECTED);
     set(&p, "arm.links", links);
     set(&p, "arm.k2", between_decades(g, 3, 500));
@@ -60,7 +62,8 @@ static parameters random_arm(random_generator *g, const family *of)
         set(&p, "wall.contact", hertz ? WALL_HUNT_CROSSLEY : WALL_KELVIN_VOIGT);
         set(&p, "wall.stiffness",
             hertz ? between_decades(g, 1e6, 1e9) : between_decades(g, 1e3, 1e5));
-        set(&p, "wall.damping", hertz ? between_decades(g, 1e3, 1e6) : evenly(g, 0.1, 10));
+        set(&p, "wall.damping",
+            hertz ? between_decades(g, 1e3, 1e6) : evenly(g, 0.1, 10));
         set(&p, "arm.tip_mass", evenly(g, 0, 0.05));
     }
     DONE(parameters_resolve(&p, &f));
@@ -108,16 +111,17 @@ typedef struct tally {
     double worst;
 } tally;
 
-static void describe(const parameters *p, const char *what, const prediction *out, const truth *is)
+static void describe(const parameters *p, const char *what, const prediction *out,
+                     const truth *is)
 {
-    print_message("%s: arm.links=%d arm.k2=%.6g arm.mass=%.6g arm.hub_joint=%s arm.k1=%.6g "
-                  "arm.damping_ratio=%.4g motor.voltage=%.6g wall.kind=%s wall.angle=%.6g: "
-                  "predicted %.6g N at %.6g s, is %.6g N at %.6g s\n",
+    print_message("%s: arm.links=%d arm.k2=%.6g arm.mass=%.6g arm.hub_joint=%s "
+                  "arm.k1=%.6g arm.damping_ratio=%.4g motor.voltage=%.6g wall.kind=%s "
+                  "wall.angle=%.6g: predicted %.6g N at %.6g s, is %.6g N at %.6g s\n",
                   what, p->arm.links, p->arm.k2, p->arm.mass,
                   p->arm.hub_joint == HUB_RIGID ? "rigid" : "spring", p->arm.k1,
                   p->arm.damping_ratio, p->motor.voltage,
-                  p->wall.kind == WALL_POINT ? "point" : "plane", p->wall.angle, out->force,
-                  out->delay, is->peak, is->delay);
+                  p->wall.kind == WALL_POINT ? "point" : "plane", p->wall.angle,
+                  out->force, out->delay, is->peak, is->delay);
 }
 
 // One random case into the tally.
@@ -166,8 +170,8 @@ static void claims_hold(long count, const family *of, double share)
         parameters p = random_arm(&g, of);
         try_case(&p, &t);
     }
-    print_message("%d to %d links: %d touches, %d lost at once, %d hold, %d of them predicted "
-                  "(%.1f %%), worst error %.2f %%; %d too long; %d wrong\n",
+    print_message("%d to %d links: %d touches, %d lost at once, %d hold, %d of them "
+                  "predicted (%.1f %%), worst error %.2f %%; %d too long; %d wrong\n",
                   of->fewest, of->most, t.cases, t.lost, t.held, t.answered,
                   100.0 * t.answered / t.held, 100 * t.worst, t.doubtful, t.wrong);
     assert_int_equal(t.wrong, 0);
@@ -189,15 +193,18 @@ TEST(walls_that_give)
     claims_hold(cases / 5, &(family){.fewest = 2, .most = 6, .gives = true}, 0.5);
 }
 
-// The force then jumps up at the touch, and peaks there or soon after, long before the arm stops.
+// The force then jumps up at the touch, and peaks there or soon after, long before the
+// arm stops.
 TEST(two_strongly_damped_links)
 {
-    claims_hold(cases / 5, &(family){.fewest = 2, .most = 2, .strongly_damped = 0.5}, 0.8);
+    claims_hold(cases / 5, &(family){.fewest = 2, .most = 2, .strongly_damped = 0.5},
+                0.8);
 }
 
 TEST(strongly_damped_beams)
 {
-    claims_hold(cases / 10, &(family){.fewest = 3, .most = 6, .strongly_damped = 0.5}, 0.5);
+    claims_hold(cases / 10, &(family){.fewest = 3, .most = 6, .strongly_damped = 0.5},
+                0.5);
 }
 
 TEST(strongly_damped_at_walls_that_give)

@@ -22,8 +22,9 @@ TEST(every_predictor_answers_for_the_corrected_arm)
     assert_string_equal(answers[PREDICTOR_IMPACT_QUADRATIC].name, "impact_quadratic");
 }
 
-// A wall that throws back takes 1 + e times the plastic impulse, as the run does, and no touch
-// holds; the printed equations know no restitution, nor does an impact below the rest rule's speed.
+// A wall that throws back takes 1 + e times the plastic impulse, as the run does, and no
+// touch holds; the printed equations know no restitution, nor does an impact below the
+// rest rule's speed.
 TEST(a_rebound_is_no_touch_that_holds)
 {
     const char *const bounces[] = {"wall.restitution=0.5", "wall.angle=0.1", NULL};
@@ -50,10 +51,10 @@ TEST(a_rebound_is_no_touch_that_holds)
     check_relative(plastic.impulse, r.summary.contact_impulse_Ns, 1e-6);
 
     p.method.rest_speed = 1;
-    assert_int_equal(
-        predict_with(PREDICTOR_IMPACT_DYNAMICS, &(prediction_question){&p, closing, links, rates})
-            .outcome,
-        PREDICTION_HOLDS);
+    assert_int_equal(predict_with(PREDICTOR_IMPACT_DYNAMICS,
+                                  &(prediction_question){&p, closing, links, rates})
+                         .outcome,
+                     PREDICTION_HOLDS);
 }
 
 TEST(an_arm_that_moves_away_does_not_hold)
@@ -70,18 +71,21 @@ TEST(an_arm_that_moves_away_does_not_hold)
 
     // for any later command
     const prediction_question told = {&p, away, links, back, {1, at, volts}, false};
-    assert_int_equal(predict_with(PREDICTOR_IMPACT_QUADRATIC, &told).outcome, PREDICTION_LOST);
+    assert_int_equal(predict_with(PREDICTOR_IMPACT_QUADRATIC, &told).outcome,
+                     PREDICTION_LOST);
 }
 
 TEST(the_linearised_arm_says_what_it_lacks)
 {
-    const parameters p = fixture_parameters(NULL), printed = parameters_with("arm.model=printed");
+    const parameters p = fixture_parameters(NULL),
+                     printed = parameters_with("arm.model=printed");
 
     prediction_answer answer =
-        predict_with(PREDICTOR_LINEARISED, &(prediction_question){&p, closing, NULL, NULL});
+        predict_with(PREDICTOR_LINEARISED,
+                     &(prediction_question){&p, closing, NULL, NULL});
     assert_int_equal(answer.outcome, PREDICTION_LINKS_UNKNOWN);
-    answer =
-        predict_with(PREDICTOR_LINEARISED, &(prediction_question){&printed, closing, links, rates});
+    answer = predict_with(PREDICTOR_LINEARISED,
+                          &(prediction_question){&printed, closing, links, rates});
     assert_int_equal(answer.outcome, PREDICTION_CORRECTED_ONLY);
     assert_false(prediction_known(&answer));
     assert_true(isnan(answer.prediction.force));
@@ -101,19 +105,23 @@ TEST(a_state_that_is_not_finite_fails_with_a_sentence)
 
     // so does one that an iteration over commands would begin with
     const double at[] = {0}, volts[] = {1};
-    answer = predict_with(PREDICTOR_IMPACT_DYNAMICS,
-                          &(prediction_question){&p, bad, links, rates, {1, at, volts}, false});
+    answer = predict_with(
+        PREDICTOR_IMPACT_DYNAMICS,
+        &(prediction_question){&p, bad, links, rates, {1, at, volts}, false});
     assert_int_equal(answer.outcome, PREDICTION_FAILED);
     assert_int_equal(answer.fault.code, STATUS_NOT_FINITE);
 }
 
 // The force that a predictor says for commands from the touch on.
-static prediction predicted(predictor which, int count, const double *times, const double *volts)
+static prediction predicted(predictor which, int count, const double *times,
+                            const double *volts)
 {
     parameters p = fixture_parameters(NULL);
-    prediction_question question = {&p, closing, links, rates, {count, times, volts}, false};
+    prediction_question question = {&p,   closing, links, rates, {count, times, volts},
+                                    false};
     prediction_answer answer = predict_with(which, &question);
-    fail_if(answer.outcome != PREDICTION_HOLDS, "%s: %s", answer.name, prediction_reason(&answer));
+    fail_if(answer.outcome != PREDICTION_HOLDS, "%s: %s", answer.name,
+            prediction_reason(&answer));
     return answer.prediction;
 }
 
@@ -127,8 +135,10 @@ TEST(commands_after_the_touch_count_while_it_lasts)
         // the voltage there is, told once more, and another one when the peak is over
         const double late[] = {0, 2 * plain.delay}, same[] = {v, 10};
         const double told = predicted(which, 1, late, same).force;
-        check_relative(told, plain.force, 2e-3); // the linearised arm then follows friction, too
-        if (which != PREDICTOR_LINEARISED) {     // which looks on until the arm leaves the wall
+        check_relative(told, plain.force,
+                       2e-3); // the linearised arm then follows friction, too
+        if (which !=
+            PREDICTOR_LINEARISED) { // which looks on until the arm leaves the wall
             check_relative(predicted(which, 2, late, same).force, told, 1e-6);
         }
 
@@ -141,8 +151,9 @@ TEST(commands_after_the_touch_count_while_it_lasts)
     }
 }
 
-// A command acts from its own instant on, not from that of the next sample, a tenth of a radian
-// later: the later more voltage comes, by half a millisecond each time, the less the arm presses.
+// A command acts from its own instant on, not from that of the next sample, a tenth of a
+// radian later: the later more voltage comes, by half a millisecond each time, the less
+// the arm presses.
 TEST(a_command_counts_from_its_own_instant)
 {
     enum { STEPS = 24 };
@@ -166,7 +177,8 @@ TEST(who_cannot_answer_says_why)
         predictor which;
         prediction_outcome outcome;
     } cases[] = {
-        {given("wall.contact=kelvin-voigt"), PREDICTOR_ENERGY, PREDICTION_RIGID_WALL_ONLY},
+        {given("wall.contact=kelvin-voigt"), PREDICTOR_ENERGY,
+         PREDICTION_RIGID_WALL_ONLY},
         {given("arm.tip_mass=0.1"), PREDICTOR_IMPACT_DYNAMICS, PREDICTION_BARE_TIP_ONLY},
         {given("arm.links=3 arm.joint_stiffness=5,9"), PREDICTOR_IMPACT_QUADRATIC,
          PREDICTION_EQUAL_LINKS_ONLY},
@@ -188,7 +200,8 @@ TEST(who_cannot_answer_says_why)
     }
 
     // an amplifier that controls its current needs no limit
-    parameters drive = parameters_with("motor.drive=current motor.current_limit=5 motor.voltage=1");
+    parameters drive =
+        parameters_with("motor.drive=current motor.current_limit=5 motor.voltage=1");
     prediction_question limited = {.parameters = &drive, .bodies = closing};
     assert_int_equal(predict_with(PREDICTOR_ENERGY, &limited).outcome, PREDICTION_HOLDS);
 
@@ -196,11 +209,12 @@ TEST(who_cannot_answer_says_why)
     const double at[] = {0}, volts[] = {1};
     parameters p = fixture_parameters(NULL);
     prediction_question question = {&p, closing, links, rates, {1, at, volts}, false};
-    assert_int_equal(predict_with(PREDICTOR_ENERGY, &question).outcome, PREDICTION_KNOWS_NO_TIME);
+    assert_int_equal(predict_with(PREDICTOR_ENERGY, &question).outcome,
+                     PREDICTION_KNOWS_NO_TIME);
 }
 
-// The row of a run that is asked about: none where it begins in contact, and of the printed model
-// what three bodies tell.
+// The row of a run that is asked about: none where it begins in contact, and of the
+// printed model what three bodies tell.
 TEST(the_row_before_landing_is_asked_about)
 {
     const double none[1] = {0};
@@ -209,9 +223,9 @@ TEST(the_row_before_landing_is_asked_about)
         KEPT_RUN(given) = {.landing = {.time = i / 2}};
         trace_init(&given.trace, 1);
         assert_null(row_before_landing(&given));
-        assert_int_equal(
-            trace_add_row(&given.trace, i % 2 == 0 ? &on_the_wall : &struck, none, none),
-            STATUS_OK);
+        assert_int_equal(trace_add_row(&given.trace, i % 2 == 0 ? &on_the_wall : &struck,
+                                       none, none),
+                         STATUS_OK);
         assert_null(row_before_landing(&given));
     }
 
@@ -234,22 +248,23 @@ static run_result predicted_run(scenario *s, prediction_answer answers[PREDICTOR
     return r;
 }
 
-// The current of a motor with inductance is followed through the pulse, at its limit, too; what
-// leaves it out says how much that is.
+// The current of a motor with inductance is followed through the pulse, at its limit,
+// too; what leaves it out says how much that is.
 TEST(a_current_that_lags_is_followed)
 {
     static const char *const lags[] = {"motor.inductance=5e-3", "motor.inductance=0.5",
                                        "motor.inductance=2", "motor.inductance=20"};
-    static const char *const limits[] = {"motor.current_limit=0", "motor.current_limit=0.15"};
+    static const char *const limits[] = {"motor.current_limit=0",
+                                         "motor.current_limit=0.15"};
     static const char *const arms[] = {"arm.links=2", "arm.links=1", "arm.links=3",
                                        "arm.hub_joint=beam"};
     static const char *const walls[] = {"wall.kind=point", "wall.kind=plane",
                                         "wall.contact=kelvin-voigt"};
     int held = 0;
     for (int i = 0; i < 4 * 2 * 4 * 3; i++) {
-        scenario s = {.parameters =
-                          parameters_with("%s %s %s %s run.duration=3", lags[i % 4],
-                                          limits[i / 4 % 2], arms[i / 8 % 4], walls[i / 32])};
+        scenario s = {.parameters = parameters_with("%s %s %s %s run.duration=3",
+                                                    lags[i % 4], limits[i / 4 % 2],
+                                                    arms[i / 8 % 4], walls[i / 32])};
         prediction_answer answers[PREDICTOR_COUNT];
         KEPT_RUN(r) = predicted_run(&s, answers);
         const prediction_answer *own = &answers[PREDICTOR_LINEARISED];
@@ -278,7 +293,8 @@ TEST(a_current_that_lags_is_followed)
             }
             assert_true(answer->prediction.inductance == change ||
                         (isnan(change) && isnan(answer->prediction.inductance)));
-            assert_non_null(strstr(prediction_reason(answer), "without the motor's inductance"));
+            assert_non_null(
+                strstr(prediction_reason(answer), "without the motor's inductance"));
             check_close(answer->prediction.force, at_once[which].prediction.force, 0);
         }
     }
@@ -296,9 +312,10 @@ TEST(an_arm_that_starts_on_the_wall_is_asked_about_when_it_returns)
     int held = 0;
     for (int i = 0; i < 4 * 2; i++) {
         const char *const *start = starts[i / 2];
-        scenario s = {.parameters = parameters_with("%s %s %s wall.angle=0 run.duration=3 %s",
-                                                    start[0], start[1], start[2],
-                                                    i % 2 ? "arm.links=3" : "arm.links=2")};
+        scenario s = {.parameters =
+                          parameters_with("%s %s %s wall.angle=0 run.duration=3 %s",
+                                          start[0], start[1], start[2],
+                                          i % 2 ? "arm.links=3" : "arm.links=2")};
         prediction_answer answers[PREDICTOR_COUNT];
         KEPT_RUN(r) = predicted_run(&s, answers);
         const sample *row = row_before_landing(&r);

@@ -107,8 +107,8 @@ TEST(contact_keeps_the_constraint_and_never_pulls)
     assert_true(pulses >= 2);
 }
 
-// The listing's way of letting go: the constraint is left in the step after the one whose force
-// came out as nothing, and no sooner.
+// The listing's way of letting go: the constraint is left in the step after the one whose
+// force came out as nothing, and no sooner.
 TEST(contact_ends_after_the_step_without_force)
 {
     parameters p = printed_parameters_of(2, 1);
@@ -125,8 +125,9 @@ TEST(contact_ends_after_the_step_without_force)
 
 TEST(steady_force_is_the_balance_of_the_printed_equations)
 {
-    // at rest k1 (theta1 - theta2) = torque less what friction holds back, and (2.16), (2.17) as
-    // printed give f l (1 + cos d) + f l = k1 (theta1 - theta2): three levers instead of two
+    // at rest k1 (theta1 - theta2) = torque less what friction holds back, and (2.16),
+    // (2.17) as printed give f l (1 + cos d) + f l = k1 (theta1 - theta2): three levers
+    // instead of two
     parameters p = printed_parameters_of(1, 6);
     p.arm.damping_ratio = 0;
     SCOPED(free_kept) recording *r = run(&p, NULL);
@@ -164,7 +165,8 @@ TEST(the_wall_stands_where_its_angle_says)
 
 TEST(command_saturates_at_its_limit)
 {
-    parameters ten = printed_parameters_of(10, 0.3), twenty = printed_parameters_of(20, 0.3);
+    parameters ten = printed_parameters_of(10, 0.3),
+               twenty = printed_parameters_of(20, 0.3);
     SCOPED(free_kept) recording *a = run(&ten, NULL), *b = run(&twenty, NULL);
     assert_memory_equal(a->rows, b->rows, (size_t)a->count * sizeof a->rows[0]);
 }
@@ -185,7 +187,8 @@ static void switch_off_at_100_ms(double time, parameters *p)
 TEST(script_changes_parameters_between_steps)
 {
     parameters p = printed_parameters_of(2, 1);
-    SCOPED(free_kept) recording *driven = run(&p, NULL), *coasting = run(&p, switch_off_at_100_ms);
+    SCOPED(free_kept)
+    recording *driven = run(&p, NULL), *coasting = run(&p, switch_off_at_100_ms);
     assert_memory_equal(driven->rows, coasting->rows, 101 * sizeof driven->rows[0]);
     check_below(coasting->rows[101].velocity[0], driven->rows[101].velocity[0]);
     // back EMF and friction stop it before the wall
@@ -216,15 +219,18 @@ static void follow_ramp(double time, parameters *p)
 }
 
 // (2.15)-(2.17) without contact and stiction, solved for the accelerations by hand.
-static void printed_equations(const parameters *p, double time, const double y[6], double rate[6])
+static void printed_equations(const parameters *p, double time, const double y[6],
+                              double rate[6])
 {
     double l = 0.5, e = 0.25, m = p->arm.mass / 2, in = p->arm.link_inertia;
     double d = y[2] - y[1], c = cos(d), s = sin(d), w1 = y[3], w2 = y[4], w3 = y[5];
     double kt = p->motor.torque_constant, ra = p->motor.resistance;
     double torque = p->motor.amplifier_gain * kt / ra * ramp(time);
-    double a = m * e * e + m * l * l + in + m * l * e * c, b = m * e * e + in + m * l * e * c;
+    double a = m * e * e + m * l * l + in + m * l * e * c,
+           b = m * e * e + in + m * l * e * c;
     double g = m * l * e * c, h = m * e * e + in;
-    double right2 = p->arm.k2 * d - p->arm.k1 * (y[1] - y[0]) + m * l * e * s * (w3 * w3 - w2 * w2);
+    double right2 =
+        p->arm.k2 * d - p->arm.k1 * (y[1] - y[0]) + m * l * e * s * (w3 * w3 - w2 * w2);
     double right3 = -p->arm.k2 * d - m * l * e * s * w2 * w2;
     double determinant = a * h - b * g;
     memcpy(rate, y + 3, 3 * sizeof(double));
@@ -283,7 +289,8 @@ TEST(free_flight_converges_to_the_equations_with_second_order)
     check_close(log2(fine / finest), 2, 0.15);
     // with gamma off one half the order drops to one
     p.method.gamma = 0.6;
-    check_close(log2(newmark_error(p, exact, 2.5e-4) / newmark_error(p, exact, 1.25e-4)), 1, 0.15);
+    check_close(log2(newmark_error(p, exact, 2.5e-4) / newmark_error(p, exact, 1.25e-4)),
+                1, 0.15);
 }
 
 TEST(beta_matters_little_in_free_flight)
@@ -308,8 +315,8 @@ static double largest_force(const parameters *p)
     return largest;
 }
 
-// 3.1.3: with a single run no beta and gamma give a force that is any use. Where it survives, it
-// is the impulse over one step: ten times as large with a tenth of the step.
+// 3.1.3: with a single run no beta and gamma give a force that is any use. Where it
+// survives, it is the impulse over one step: ten times as large with a tenth of the step.
 TEST(a_single_run_gives_no_force_whatever_beta_and_gamma)
 {
     parameters p = printed_parameters_of(1, 0.5);
@@ -354,8 +361,9 @@ TEST(negative_forces_change_no_peak)
     check_close(largest[1], largest[0], 0);
 }
 
-// Every step under every combination of switches: Newmark's relations between both ends, the
-// equations at its end, what is re-evaluated there, and what the next step starts from.
+// Every step under every combination of switches: Newmark's relations between both ends,
+// the equations at its end, what is re-evaluated there, and what the next step starts
+// from.
 TEST(every_step_solves_what_its_switches_say)
 {
     int constrained = 0, released = 0, steps = 0, unsolved = 0;
@@ -393,11 +401,12 @@ TEST(every_step_solves_what_its_switches_say)
                                 h * h * ((0.5 - beta) * fed[i] + beta * next),
                             size * h);
                 check_close(to->velocity[i],
-                            from.velocity[i] + h * ((1 - gamma) * fed[i] + gamma * next), size);
+                            from.velocity[i] + h * ((1 - gamma) * fed[i] + gamma * next),
+                            size);
             }
 
-            // the equations to Newton's tolerance; without contact the wall is not passed unless
-            // the force of a release is still there
+            // the equations to Newton's tolerance; without contact the wall is not passed
+            // unless the force of a release is still there
             double residual[4], alpha[3] = {0}, force;
             printed_residual(&m.arm, to->angle, to->velocity, to->newmark_acceleration,
                              m.newmark_force, residual);
@@ -419,13 +428,16 @@ TEST(every_step_solves_what_its_switches_say)
                                     : to->contact;
             if (!wanted) {
                 check_close(to->force, 0, 0);
-                assert_memory_equal(to->acceleration, to->newmark_acceleration, sizeof alpha);
+                assert_memory_equal(to->acceleration, to->newmark_acceleration,
+                                    sizeof alpha);
             } else if (p.printed.reevaluation == REEVALUATE_NONE) {
                 const double own = m.newmark_force;
                 check_close(to->force, p.printed.clamp_force ? fmax(own, 0) : own, 0);
-                assert_memory_equal(to->acceleration, to->newmark_acceleration, sizeof alpha);
+                assert_memory_equal(to->acceleration, to->newmark_acceleration,
+                                    sizeof alpha);
             } else {
-                assert_true(printed_reevaluate(&m.arm, to->angle, to->velocity, alpha, &force));
+                assert_true(
+                    printed_reevaluate(&m.arm, to->angle, to->velocity, alpha, &force));
                 check_close(to->force, p.printed.clamp_force ? fmax(force, 0) : force, 0);
                 assert_memory_equal(to->acceleration, alpha, sizeof alpha);
             }

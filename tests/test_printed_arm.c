@@ -37,8 +37,8 @@ static printed_arm arm_with(unsigned switches)
 enum { SWITCHINGS = 64 }; // every combination of the six switches above
 
 // The residual with angle or force number `column` moved by `change`.
-static void moved_residual(const printed_arm *a, newmark_slopes slopes, motion_state m, int column,
-                           double change, double residual[4])
+static void moved_residual(const printed_arm *a, newmark_slopes slopes, motion_state m,
+                           int column, double change, double residual[4])
 {
     if (column == 3) {
         m.force += change;
@@ -74,16 +74,19 @@ TEST(jacobian_is_the_derivative_of_the_residual)
     }
 }
 
-// Kinetic and strain energy from the speeds of the two centres of mass, not from the equations.
+// Kinetic and strain energy from the speeds of the two centres of mass, not from the
+// equations.
 static double energy(const printed_arm *a, const double q[3], const double w[3])
 {
     double l = a->link_length, e = a->centre;
     double x2 = -e * sin(q[1]) * w[1], y2 = e * cos(q[1]) * w[1];
     double x3 = -l * sin(q[1]) * w[1] - e * sin(q[2]) * w[2];
     double y3 = l * cos(q[1]) * w[1] + e * cos(q[2]) * w[2];
-    return 0.5 * (a->hub_inertia * w[0] * w[0] + a->link_inertia * (w[1] * w[1] + w[2] * w[2]) +
-                  a->link_mass * (x2 * x2 + y2 * y2 + x3 * x3 + y3 * y3) +
-                  a->k1 * (q[1] - q[0]) * (q[1] - q[0]) + a->k2 * (q[2] - q[1]) * (q[2] - q[1]));
+    return 0.5 *
+           (a->hub_inertia * w[0] * w[0] + a->link_inertia * (w[1] * w[1] + w[2] * w[2]) +
+            a->link_mass * (x2 * x2 + y2 * y2 + x3 * x3 + y3 * y3) +
+            a->k1 * (q[1] - q[0]) * (q[1] - q[0]) +
+            a->k2 * (q[2] - q[1]) * (q[2] - q[1]));
 }
 
 // Accelerations that make R1..R3 vanish, from the residual alone (it is linear in them).
@@ -171,7 +174,8 @@ TEST(gradient_is_the_derivative_of_the_penetration)
             q[i] += change;
             double above = printed_penetration(&a, q);
             q[i] -= 2 * change;
-            check_close(gradient[i], (above - printed_penetration(&a, q)) / (2 * change), 1e-9);
+            check_close(gradient[i], (above - printed_penetration(&a, q)) / (2 * change),
+                        1e-9);
         }
     }
 }
@@ -209,8 +213,8 @@ TEST(reevaluation_satisfies_the_equations_of_motion_and_the_constraint)
     }
 }
 
-// The listing multiplies the force by what belongs on the right side: the penetration then
-// accelerates by -(1 + f) times that term.
+// The listing multiplies the force by what belongs on the right side: the penetration
+// then accelerates by -(1 + f) times that term.
 TEST(listed_reevaluation_breaks_the_constraint_by_the_misplaced_term)
 {
     printed_arm a = arm_with(8);

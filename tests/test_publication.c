@@ -1,4 +1,5 @@
-// Figures as files, for publications too: bytes, fonts, data, captions beside them, LaTeX, recipes.
+// Figures as files, for publications too: bytes, fonts, data, captions beside them,
+// LaTeX, recipes.
 #include "tests/plot_fixture.h"
 
 #include "render/figures/figures.h"
@@ -10,7 +11,8 @@ TEST(bare_pages_have_no_title_and_no_caption)
 {
     static figure_report r;
     for (EACH_TEXT(c, "2.2", "3.4", "4.3", "T3.1")) {
-        figure_options dressed = {.look.width = 120}, bare = {.look = {.width = 120, .bare = true}};
+        figure_options dressed = {.look.width = 120},
+                       bare = {.look = {.width = 120, .bare = true}};
         SCOPED(artwork_finish)
         artwork a = open_figure(*c, dressed), b = open_figure(*c, bare);
         check_below(b.height, a.height - 12);
@@ -26,7 +28,9 @@ static void publish(const figure_options *o, const char *path)
 {
     static const double x[] = {0, 1, 2}, y[] = {1, 3, 2};
     const figure_series series = {.name = "run", .x = x, .y = y, .count = 3};
-    const figure_panel panel = {.y = {.name = "force", .label = "Force <i>f</i>", .unit = "N"},
+    const figure_panel panel = {.y = {.name = "force",
+                                      .label = "Force <i>f</i>",
+                                      .unit = "N"},
                                 .series = &series,
                                 .series_count = 1};
     const figure fig = {.title = "A title & more",
@@ -50,10 +54,12 @@ TEST(latex_sets_the_figure)
     publish(&(figure_options){.look.width = 85, .latex = "paper.tex"}, "force.pdf");
     KEPT_TEXT(text) = file_text("paper.tex");
     assert_non_null(strstr(text, "\\begin{figure}\n"));
-    assert_non_null(strstr(text, "width=85mm,alt={A title \\& more. 1 panel over Time in s: Force "
-                                 "f in N.}]{force.pdf}"));
-    assert_non_null(strstr(text, "\\caption{A title \\& more. With \\textit{$\\beta$} = 0.4, 5 \\% "
-                                 "off, \\textit{$\\theta$}\\textsubscript{1}}"));
+    assert_non_null(
+        strstr(text, "width=85mm,alt={A title \\& more. 1 panel over Time in s: Force "
+                     "f in N.}]{force.pdf}"));
+    assert_non_null(
+        strstr(text, "\\caption{A title \\& more. With \\textit{$\\beta$} = 0.4, 5 \\% "
+                     "off, \\textit{$\\theta$}\\textsubscript{1}}"));
     assert_non_null(strstr(text, "\\label{fig:force}"));
     // every brace that opens closes
     int depth = 0;
@@ -69,7 +75,8 @@ TEST(files_know_the_command_and_tell_what_they_show)
 {
     const figure_options o = {.command = "impactlab run x --set arm.k2=3"};
     publish(&o, "m.svg");
-    assert_true(file_has("m.svg", "<dc:source>impactlab run x --set arm.k2=3</dc:source>"));
+    assert_true(
+        file_has("m.svg", "<dc:source>impactlab run x --set arm.k2=3</dc:source>"));
     assert_true(file_has("m.svg", "<desc>A title &amp; more. 1 panel over Time in s"));
     publish(&o, "m.png");
     assert_true(file_has("m.png", "impactlab run x --set arm.k2=3"));
@@ -159,8 +166,8 @@ TEST(png_knows_its_resolution_and_origin)
     for (int i = 0; i < count; i++) {
         found += strcmp(notes[i].key, "Title") == 0 &&
                  strcmp(notes[i].text, "Synthetic run & <more>") == 0;
-        found +=
-            strcmp(notes[i].key, "Software") == 0 && strncmp(notes[i].text, "impactlab ", 10) == 0;
+        found += strcmp(notes[i].key, "Software") == 0 &&
+                 strncmp(notes[i].text, "impactlab ", 10) == 0;
         found += strcmp(notes[i].key, "Parameters") == 0 &&
                  strstr(notes[i].text, "motor.voltage=1") != NULL;
     }
@@ -194,8 +201,8 @@ TEST(svg_ids_are_unique_and_all_references_resolve)
     g_hash_table_destroy(ids);
 }
 
-// The CSV of a figure is headed by the axes' names and units, those of different quantities by
-// each.
+// The CSV of a figure is headed by the axes' names and units, those of different
+// quantities by each.
 TEST(csv_holds_what_is_drawn)
 {
     double x[] = {0, 0.1, 0.2}, y[] = {1, (double)NAN, -2.5};
@@ -266,7 +273,8 @@ TEST(measured_data_have_a_panel_of_residuals)
     const figure_options o = {.overlay = "bench.csv:cell@0.02",
                               .signals = "force,hub_angle+last_angle"};
     owned_figure *drawn = NULL;
-    DONE((drawn = run_figure_create("t", NULL, 0, &run, 1, &o, &f)) == NULL ? f.code : STATUS_OK);
+    DONE((drawn = run_figure_create("t", NULL, 0, &run, 1, &o, &f)) == NULL ? f.code
+                                                                            : STATUS_OK);
     const figure *fig = &drawn->figure;
     record(fig, &r);
     expect_text(&r, "bench.csv: cell");
@@ -281,10 +289,13 @@ TEST(measured_data_have_a_panel_of_residuals)
     owned_figure_destroy(drawn);
 
     // what does not fit is said
-    for (EACH_TEXT(signals, "forse", "", "force,", ",force", "force+", "force+hub_angle")) {
+    for (EACH_TEXT(signals, "forse", "", "force,", ",force", "force+",
+                   "force+hub_angle")) {
         const figure_options bad = {.signals = *signals};
-        REFUSED(STATUS_BAD_ARGUMENT, strcmp(*signals, "force+hub_angle") == 0 ? "" : "did you mean",
-                run_figure_create("t", NULL, 0, &run, 1, &bad, &f) == NULL ? f.code : STATUS_OK);
+        REFUSED(STATUS_BAD_ARGUMENT,
+                strcmp(*signals, "force+hub_angle") == 0 ? "" : "did you mean",
+                run_figure_create("t", NULL, 0, &run, 1, &bad, &f) == NULL ? f.code
+                                                                           : STATUS_OK);
     }
 }
 
@@ -321,7 +332,8 @@ TEST(shipped_recipes_are_drawn)
         drawn_recipes++;
         fault f = {0};
         SCOPED(artwork_finish) artwork drawn = {0};
-        fail_if(open_recipe(formatted("%s/%s", recipes, name), 85, &drawn, &f) != STATUS_OK,
+        fail_if(open_recipe(formatted("%s/%s", recipes, name), 85, &drawn, &f) !=
+                    STATUS_OK,
                 "%s: %s%s", name, heard->str, f.text);
         expect_tidy_page(&drawn, &r);
     }
@@ -364,8 +376,9 @@ TEST(multiples_are_runs_at_their_values)
 TEST(a_recipe_shows_what_its_runs_give)
 {
     int panels;
-    KEPT_TEXT(recipe) = data_of_recipe(
-        formatted("%s/recipes/fig-3-4.yaml", getenv("IMPACTLAB_SCENARIOS")), &panels);
+    KEPT_TEXT(recipe) = data_of_recipe(formatted("%s/recipes/fig-3-4.yaml",
+                                                 getenv("IMPACTLAB_SCENARIOS")),
+                                       &panels);
     DONE(figure_draw("3.4", &(figure_options){0}, "thesis", "svg", NULL, &f));
     KEPT_TEXT(thesis) = file_text("thesis/fig-3-4.csv");
     const double printed = number_behind(recipe, "printed force,0.4,");
@@ -393,17 +406,21 @@ TEST(faults_of_recipes_have_their_places)
         {"runs: [{scenario: a}]\npanels: [{signals: [force, hub_angle]}]\n",
          ":2:28: 'hub_angle' has another unit than 'force'"},
         {"runs: [{scenario: a}, {scenario: a}]\n", ":1:23: the name 'a' is there twice"},
-        {"runs: [{scenario: a}]\nx: {range: [1]}\n", ":2:12: range is a list, expected two"},
+        {"runs: [{scenario: a}]\nx: {range: [1]}\n",
+         ":2:12: range is a list, expected two"},
         {"runs: [{scenario: a}]\npanels: [{signals: [force], notes: [{at: [0, 1]}]}]\n",
          ":2:37: a note needs 'text'"},
         {"runs: 3\n", ":1:7: runs is a single value, expected a list"},
         {"runs: [\n", ":2:1: "},
-        {"runs: [{scenario: a}]\npanels: [{signals: [force]}]\nmultiples: {vary: motor.volts}\n",
+        {"runs: [{scenario: a}]\npanels: [{signals: [force]}]\nmultiples: {vary: "
+         "motor.volts}\n",
          ":3:19: there is no parameter 'motor.volts', did you mean 'motor.voltage'?"},
-        {"runs: [{scenario: a}]\npanels: [{signals: [force]}]\nmultiples: {values: [1]}\n",
+        {"runs: [{scenario: a}]\npanels: [{signals: [force]}]\nmultiples: {values: "
+         "[1]}\n",
          ":3:12: multiples needs 'vary'"},
         {"runs: [{scenario: a}]\npanels: [{signals: [force]}]\n"
-         "multiples: {vary: arm.k2, values: [1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17]}\n",
+         "multiples: {vary: arm.k2, values: "
+         "[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17]}\n",
          ":3:75: there are more than 16 values"},
         {"runs: [{scenario: a}]\ntables: [{file: b, x: c, y: d}]\n"
          "panels: [{signals: [force], difference: [a, b]}]\n",
@@ -418,14 +435,15 @@ TEST(faults_of_recipes_have_their_places)
         put_file("bad.yaml", cases[i].text);
         assert_int_equal(open_recipe("bad.yaml", 0, &drawn, &f), STATUS_BAD_SCENARIO);
         const char *expected = formatted("bad.yaml%s", cases[i].said);
-        fail_if(strstr(heard->str, expected) == NULL, "expected '%s', heard '%s'", expected,
-                heard->str);
+        fail_if(strstr(heard->str, expected) == NULL, "expected '%s', heard '%s'",
+                expected, heard->str);
     }
 
     // what is found out only when a run is opened has a place, too
     artwork drawn;
     put_file("bad.yaml", "runs:\n  - scenario: no/such\npanels: [{signals: [force]}]\n");
-    REFUSED(STATUS_BAD_ARGUMENT, "bad.yaml:2:5: ", open_recipe("bad.yaml", 0, &drawn, &f));
+    REFUSED(STATUS_BAD_ARGUMENT,
+            "bad.yaml:2:5: ", open_recipe("bad.yaml", 0, &drawn, &f));
 }
 
 ALL_BETWEEN(enter_folder, leave_plot_folder)

@@ -3,7 +3,7 @@
 #include "src/rig/laws/observer_paths.h"
 #include "tests/rig_fixture.h"
 
-// --- the rise ---------------------------------------------------------------------------------
+// --- the rise --------------------------------------------------------------------------
 
 // The force of a point of the way, by a'' = s^2 (a - f).
 static double force_of(const force_rise_task *t, const double way[3])
@@ -46,7 +46,8 @@ TEST(the_way_is_one_that_its_force_makes)
             force_rise_at(&rise, time - h, before);
             force_rise_at(&rise, time, way);
             force_rise_at(&rise, time + h, after);
-            check_close((after[0] - before[0]) / (2 * h), way[1], 1e-6 * t.divergence * t.end);
+            check_close((after[0] - before[0]) / (2 * h), way[1],
+                        1e-6 * t.divergence * t.end);
             double force = force_of(&t, way);
             check_below(t.least - 1e-9, force);
             check_below(force, fmin(t.most, 2 * t.end) + 1e-9);
@@ -62,7 +63,8 @@ TEST(the_way_is_one_that_its_force_makes)
     }
 }
 
-// What any other force that ends at rest costs is more: some forces added that leave no motion.
+// What any other force that ends at rest costs is more: some forces added that leave no
+// motion.
 TEST(no_other_force_costs_less)
 {
     const double s = 34, end = 1, stopping = 0.6, step = 1e-4;
@@ -76,7 +78,8 @@ TEST(no_other_force_costs_less)
     random_generator r = seeded(3);
 
     for (int trial = 0; trial < 50; trial++) {
-        // a pulse and the one that undoes what it does to x: the integral of exp(-s t) f is kept
+        // a pulse and the one that undoes what it does to x: the integral of exp(-s t) f
+        // is kept
         double first = 0.1 * random_uniform(&r), second = 0.1 + 0.1 * random_uniform(&r);
         double height = random_uniform(&r) - 0.5, width = 0.02;
         double undo = -height * exp(-s * (first - second)), least = 0, other = 0;
@@ -93,7 +96,7 @@ TEST(no_other_force_costs_less)
     }
 }
 
-// --- the quickest touch -----------------------------------------------------------------------
+// --- the quickest touch ----------------------------------------------------------------
 
 #define VOLTS 10.0
 
@@ -116,7 +119,9 @@ static controller_setup believed_of(const parameters *p)
 static observer_design design_of(const parameters *p)
 {
     const controller_setup setup = believed_of(p);
-    const observer_task task = {.force = 1, .stopping_force = 1, .approach_voltage = VOLTS};
+    const observer_task task = {.force = 1,
+                                .stopping_force = 1,
+                                .approach_voltage = VOLTS};
     observer_design d;
     assert_null(observer_design_init(&d, &setup, &task));
     return d;
@@ -143,11 +148,12 @@ static void fly(const observer_design *d, double *z, double torque)
     memcpy(z, next, sizeof next);
 }
 
-// Flown as planned, each period planned anew, the tip is at the wall with the wanted motion, no
-// torque beyond the limits, and hardly later than by the bound.
+// Flown as planned, each period planned anew, the tip is at the wall with the wanted
+// motion, no torque beyond the limits, and hardly later than by the bound.
 TEST(the_plan_does_what_it_says)
 {
-    for (EACH_TEXT(c, "initial.angle=-0.06", "initial.angle=-0.1", "initial.angle=-0.35")) {
+    for (EACH_TEXT(c, "initial.angle=-0.06", "initial.angle=-0.1",
+                   "initial.angle=-0.35")) {
         parameters p = fixture_parameters(SETTINGS(*c, "wall.angle=0"));
         const observer_design d = design_of(&p);
         const double most = motor_torque_per_volt(&p.motor) * VOLTS;
@@ -192,16 +198,19 @@ TEST(without_a_way_there_is_no_plan)
     assert_false(quickest_touch_plan(&q, &task));
 }
 
-// On the rig, with its noise and friction: near the bound, below the limit, without separation.
+// On the rig, with its noise and friction: near the bound, below the limit, without
+// separation.
 TEST(the_law_comes_near_the_least_time)
 {
     static const char *const starts[] = {"initial.angle=-0.09", "initial.angle=-0.1",
                                          "initial.angle=-0.13"};
-    static const char *const seeds[] = {"control.seed=5", "control.seed=6", "control.seed=7"};
+    static const char *const seeds[] = {"control.seed=5", "control.seed=6",
+                                        "control.seed=7"};
     for (int i = 0; i < 9; i++) {
-        const char *const *settings = SETTINGS(
-            "control.law=observer", "control.settings=wall_doubt=0", "control.approach_voltage=10",
-            "control.force_limit=1.5", starts[i / 3], seeds[i % 3]);
+        const char *const *settings =
+            SETTINGS("control.law=observer", "control.settings=wall_doubt=0",
+                     "control.approach_voltage=10", "control.force_limit=1.5",
+                     starts[i / 3], seeds[i % 3]);
         parameters p = rig_parameters(settings);
         summary s = rig_summary(settings);
         double bound = least_time_of(&p, 1, 0.05, s.peak_force_N).total;
@@ -215,13 +224,14 @@ TEST(the_law_comes_near_the_least_time)
     }
 }
 
-// The force at once falls with a command, but a motion that the limit does not stop is not to be
-// answered by pressing on.
+// The force at once falls with a command, but a motion that the limit does not stop is
+// not to be answered by pressing on.
 TEST(beyond_its_limit_it_brakes)
 {
-    summary s = rig_summary(SETTINGS("control.law=observer", "control.settings=wall_doubt=0",
-                                     "control.approach_voltage=10", "control.force_limit=1.5",
-                                     "initial.angle=-0.35", "belief.k2_factor=0.76"));
+    summary s =
+        rig_summary(SETTINGS("control.law=observer", "control.settings=wall_doubt=0",
+                             "control.approach_voltage=10", "control.force_limit=1.5",
+                             "initial.angle=-0.35", "belief.k2_factor=0.76"));
     check_below(1.5, s.peak_force_N);
     check_close(s.steady_error_N, 0, 0.05);
 }
@@ -229,8 +239,9 @@ TEST(beyond_its_limit_it_brakes)
 // A wall that is not where it is believed to be is still found.
 TEST(a_wall_further_away_is_found)
 {
-    summary s = rig_summary(SETTINGS("control.law=observer", "control.settings=wall_doubt=0",
-                                     "control.approach_voltage=10", "belief.wall_error=-0.03"));
+    summary s =
+        rig_summary(SETTINGS("control.law=observer", "control.settings=wall_doubt=0",
+                             "control.approach_voltage=10", "belief.wall_error=-0.03"));
     check_close(s.steady_error_N, 0, 0.05);
     assert_false(isnan(s.settling_time_s));
 }

@@ -3,7 +3,8 @@
 
 TEST(xoshiro_gives_its_published_sequence)
 {
-    static const uint64_t expected[] = {UINT64_C(11520), UINT64_C(0), UINT64_C(1509978240),
+    static const uint64_t expected[] = {UINT64_C(11520), UINT64_C(0),
+                                        UINT64_C(1509978240),
                                         UINT64_C(1215971899390074240)};
     random_generator g = {{1, 2, 3, 4}};
     for (int i = 0; i < 4; i++) {
@@ -14,9 +15,10 @@ TEST(xoshiro_gives_its_published_sequence)
 TEST(splitmix_gives_its_published_sequence)
 {
     // of the seed 1234567, as other implementations list it
-    static const uint64_t expected[] = {
-        UINT64_C(6457827717110365317), UINT64_C(3203168211198807973), UINT64_C(9817491932198370423),
-        UINT64_C(4593380528125082431)};
+    static const uint64_t expected[] = {UINT64_C(6457827717110365317),
+                                        UINT64_C(3203168211198807973),
+                                        UINT64_C(9817491932198370423),
+                                        UINT64_C(4593380528125082431)};
     uint64_t counter = 1234567;
     for (int i = 0; i < 4; i++) {
         assert_true(splitmix64_next(&counter) == expected[i]);
@@ -43,13 +45,17 @@ TEST(numbers_that_would_be_uneven_are_drawn_again)
 {
     const struct {
         uint64_t bound, again; // 2^64 mod bound
-    } cases[] = {{3, 1}, {10, 6}, {UINT64_C(1) << 32, 0}, {(UINT64_C(1) << 63) + 1, INT64_MAX}};
+    } cases[] = {{3, 1},
+                 {10, 6},
+                 {UINT64_C(1) << 32, 0},
+                 {(UINT64_C(1) << 63) + 1, INT64_MAX}};
     for (EACH(c, cases)) {
         for (uint64_t bits = c->again - (c->again > 0); bits <= c->again; bits++) {
             // a state whose next number is `bits`: nine, the turn by 7 and five undone
             const uint64_t ninth = bits * UINT64_C(0x8e38e38e38e38e39);
             const uint64_t turned = ninth >> 7 | ninth << 57;
-            random_generator g = {{1, turned * UINT64_C(0xcccccccccccccccd), 2, 3}}, next = g;
+            random_generator g = {{1, turned * UINT64_C(0xcccccccccccccccd), 2, 3}},
+                             next = g;
             assert_true(random_bits(&next) == bits);
             const uint64_t drawn = random_below(&g, c->bound);
 
@@ -95,7 +101,8 @@ TEST(whole_numbers_are_equally_likely_up_to_the_bound)
         check_close(counts[i], 10000, 5 * sqrt(60000 * 5.0 / 36));
     }
     assert_true(random_below(&g, 1) == 0);
-    // a bound above half of the range, where plain remainders would favour small numbers two to one
+    // a bound above half of the range, where plain remainders would favour small numbers
+    // two to one
     uint64_t bound = UINT64_C(3) << 62;
     int low = 0;
     for (int i = 0; i < 10000; i++) {

@@ -1,4 +1,5 @@
-// What is done in a lab outlives every end but the one that is asked for, and is offered once more.
+// What is done in a lab outlives every end but the one that is asked for, and is offered
+// once more.
 #include "tests/explorer_on_screen.h"
 
 #include <dirent.h>
@@ -53,7 +54,8 @@ TEST_IN_FOLDER(what_was_done_is_offered_and_comes_back)
     open_watched(&ex, false);
     keep(&ex, 0);
     assert_int_equal(files_called("rec"), 0); // nothing would be lost
-    press(&ex, "b:set arm.k2 5<Enter>:note hard<Enter>:seek 0.4<Enter>:set motor.voltage 2<Enter>");
+    press(&ex, "b:set arm.k2 5<Enter>:note hard<Enter>:seek 0.4<Enter>:set motor.voltage "
+               "2<Enter>");
     keep(&ex, 1);
     press(&ex, ":session save as-told.session<Enter>");
     KEPT_TEXT(told) = file_text("as-told.session");
@@ -98,7 +100,8 @@ TEST_IN_FOLDER(no_lab_takes_the_file_of_another)
     open_watched(&third, false);
     recovery_end(&first, false);
 
-    // of two that start one offers it; declined by another key it is offered again, by n it is kept
+    // of two that start one offers it; declined by another key it is offered again, by n
+    // it is kept
     recovery_end(&second, true);
     explorer_finish(&second);
     open_watched(&second, true);
@@ -111,7 +114,8 @@ TEST_IN_FOLDER(no_lab_takes_the_file_of_another)
     assert_false(recovery_begin(&second));
 }
 
-// One sentence says that nothing can be kept; the lab works on, and a file that is there stays.
+// One sentence says that nothing can be kept; the lab works on, and a file that is there
+// stays.
 TEST_IN_FOLDER(a_file_that_cannot_be_written_is_told_once)
 {
     SCOPED(explorer_finish) explorer ex, nowhere;
@@ -119,7 +123,8 @@ TEST_IN_FOLDER(a_file_that_cannot_be_written_is_told_once)
     press(&ex, ":set arm.k2 5<Enter>");
     keep(&ex, 0);
     signal(SIGXFSZ, SIG_IGN);
-    const struct rlimit full = {100, RLIM_INFINITY}, room = {RLIM_INFINITY, RLIM_INFINITY};
+    const struct rlimit full = {100, RLIM_INFINITY},
+                        room = {RLIM_INFINITY, RLIM_INFINITY};
     setrlimit(RLIMIT_FSIZE, &full);
     press(&ex, ":set arm.k2 6<Enter>");
     keep(&ex, 1);
@@ -152,7 +157,8 @@ static void change_and_tell(int pipe)
     }
 }
 
-// Killed at whatever instant of the writing it has all that was written before, and is whole.
+// Killed at whatever instant of the writing it has all that was written before, and is
+// whole.
 TEST_IN_FOLDER(whatever_ends_it_the_file_is_whole)
 {
     static const int signals[] = {SIGKILL, SIGHUP, SIGABRT, SIGSEGV, SIGTERM};
@@ -188,7 +194,8 @@ TEST_IN_FOLDER(whatever_ends_it_the_file_is_whole)
         SCOPED(explorer_finish) explorer next;
         open_watched(&next, true);
         const int changes = changes_in(next.recovery.left);
-        fail_if(changes != written && changes != written + 1, "%d of %d changes", changes, written);
+        fail_if(changes != written && changes != written + 1, "%d of %d changes", changes,
+                written);
         press(&next, "y");
         assert_int_equal(next.state.session.input_count, changes);
         recovery_end(&next, true);

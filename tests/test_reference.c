@@ -29,8 +29,10 @@ static reference_case cases[] = {
     {"spring hub, plane, N = 3, 5 V", 3, true, true, 5, 0, 1, TOLERANCE, SPRING_LOOK},
     {"spring hub, point, N = 2, 1 V", 2, true, false, 1, 0, 1, TOLERANCE, SPRING_LOOK},
     {"spring hub, point, N = 2, 5 V", 2, true, false, 5, 0, 1, TOLERANCE, SPRING_LOOK},
-    {"beam root, plane, N = 3, 1 V", 3, false, true, 1, 0, 1, TOLERANCE, RIGID_LOOK, true},
-    {"beam root, plane, N = 5, 1 V", 5, false, true, 1, 0, 1, TOLERANCE, RIGID_LOOK, true},
+    {"beam root, plane, N = 3, 1 V", 3, false, true, 1, 0, 1, TOLERANCE, RIGID_LOOK,
+     true},
+    {"beam root, plane, N = 5, 1 V", 5, false, true, 1, 0, 1, TOLERANCE, RIGID_LOOK,
+     true},
 };
 enum { CASES = sizeof cases / sizeof cases[0] };
 
@@ -38,8 +40,8 @@ static reference_answer simulate(const reference_case *c)
 {
     reference_answer answer;
     char message[256];
-    fail_if(!reference_simulate(c, &answer, message, sizeof message), "the reference failed: %s",
-            message);
+    fail_if(!reference_simulate(c, &answer, message, sizeof message),
+            "the reference failed: %s", message);
     return answer;
 }
 
@@ -68,16 +70,17 @@ static summary library_of(const reference_case *c, const char *method, double st
             c->beam_root    ? "beam"
             : c->spring_hub ? "spring"
                             : "rigid",
-            c->plane_wall ? "plane" : "point", c->restitution, c->voltage, c->duration, method,
-            step)};
+            c->plane_wall ? "plane" : "point", c->restitution, c->voltage, c->duration,
+            method, step)};
     KEPT_RUN(result);
     run_scenario(&s, false, &result);
-    fail_if(result.summary.status != STATUS_OK, "%s: %s", c->name, result.summary.message);
+    fail_if(result.summary.status != STATUS_OK, "%s: %s", c->name,
+            result.summary.message);
     return result.summary;
 }
 
-// What is told of a case: by the reference, and by the library, which may be off by `most` or by
-// this share of it; HUGE_VAL where it is not asked.
+// What is told of a case: by the reference, and by the library, which may be off by
+// `most` or by this share of it; HUGE_VAL where it is not asked.
 typedef struct row {
     const char *label;
     double reference, library, most, share;
@@ -85,7 +88,8 @@ typedef struct row {
 
 enum { ROWS = 24 };
 
-// The tolerances are what a reader of a result may rely on; the two programs agree far better.
+// The tolerances are what a reader of a result may rely on; the two programs agree far
+// better.
 static void list_rows(const reference_answer *r, const summary *l, row rows[static ROWS])
 {
     const row all[ROWS] = {
@@ -93,7 +97,8 @@ static void list_rows(const reference_answer *r, const summary *l, row rows[stat
         {"first_approach_m_s", r->first_approach, 0, HUGE_VAL, 0},
         {"contact_impulse_Ns", r->first_impulse, l->contact_impulse_Ns, 0, 1e-4},
         {"first_pulse_peak_N", r->first_pulse_peak, l->first_pulse_peak_N, 0, 1e-4},
-        {"first_pulse_time_to_peak_s", r->first_pulse_delay, l->first_pulse_time_to_peak_s, 1e-4},
+        {"first_pulse_time_to_peak_s", r->first_pulse_delay,
+         l->first_pulse_time_to_peak_s, 1e-4},
         {"first_pulse_s", r->first_pulse, l->first_pulse_s, 1e-4, 0},
         {"peak_force_N", r->peak, l->peak_force_N, 0, 1e-4},
         {"time_to_peak_s", r->peak_delay, l->time_to_peak_s, 1e-4, 0},
@@ -132,15 +137,16 @@ static void library_agrees(void **state)
                                ? isnan(w->library)
                                : fabs(off) <= w->most + w->share * fabs(w->reference);
         if (w->most < HUGE_VAL) {
-            printf("    %-26s %-18.12g %-18.12g %9.2g%s\n", w->label, w->reference, w->library, off,
-                   close ? "" : "  <-- too far");
+            printf("    %-26s %-18.12g %-18.12g %9.2g%s\n", w->label, w->reference,
+                   w->library, off, close ? "" : "  <-- too far");
             same &= close;
         }
     }
     assert_true(same);
 }
 
-// Newmark (gamma = 1/2) and generalised-alpha approach the reference with the square of the step.
+// Newmark (gamma = 1/2) and generalised-alpha approach the reference with the square of
+// the step.
 static void implicit_methods_converge(void **state)
 {
     (void)state;
@@ -149,7 +155,8 @@ static void implicit_methods_converge(void **state)
         summary coarse = library_of(&cases[0], *c, 1e-3);
         summary fine = library_of(&cases[0], *c, 1e-4);
         double errors[3][2] = {
-            {coarse.first_contact_s - r.first_contact, fine.first_contact_s - r.first_contact},
+            {coarse.first_contact_s - r.first_contact,
+             fine.first_contact_s - r.first_contact},
             {coarse.contact_impulse_Ns - r.first_impulse,
              fine.contact_impulse_Ns - r.first_impulse},
             {coarse.first_pulse_s - r.first_pulse, fine.first_pulse_s - r.first_pulse},
@@ -176,7 +183,8 @@ static void reference_conserves_energy(void **state)
     assert_true(r.impact_loss > 0.0);
 }
 
-// Half the distance of the looks and a fifth of the tolerance change nothing that is compared.
+// Half the distance of the looks and a fifth of the tolerance change nothing that is
+// compared.
 static void reference_is_converged(void **state)
 {
     const reference_case *c = *state;
@@ -216,11 +224,13 @@ int main(int argc, char **argv)
     if (argc > 1 && strcmp(argv[1], "--print") == 0) {
         return print_all();
     }
-    struct CMUnitTest tests[1 + 3 * CASES] = {cmocka_unit_test(implicit_methods_converge)};
+    struct CMUnitTest tests[1 + 3 * CASES] = {
+        cmocka_unit_test(implicit_methods_converge)};
     for (int i = 0; i < CASES; i++) {
         struct CMUnitTest *t = &tests[1 + 3 * i];
         const char *name = cases[i].name;
-        t[0] = (struct CMUnitTest){name, reference_conserves_energy, NULL, NULL, &cases[i]};
+        t[0] =
+            (struct CMUnitTest){name, reference_conserves_energy, NULL, NULL, &cases[i]};
         t[1] = (struct CMUnitTest){name, reference_is_converged, NULL, NULL, &cases[i]};
         t[2] = (struct CMUnitTest){name, library_agrees, NULL, NULL, &cases[i]};
     }

@@ -1,13 +1,14 @@
-// Chains of many links against the independent simulation (tests/reference): with both hub roots,
-// with and without structural damping, on both walls, with plastic impacts and with bounces; by the
-// engine that a run takes, and of few links by the explicit formula too.
+// Chains of many links against the independent simulation (tests/reference): with both
+// hub roots, with and without structural damping, on both walls, with plastic impacts and
+// with bounces; by the engine that a run takes, and of few links by the explicit formula
+// too.
 //
-//   test_reference_chain [--from FOLDER | --into FOLDER] [LINKS[:KIND]...]     default: 8, all
-//   kinds
+//   test_reference_chain [--from FOLDER | --into FOLDER] [LINKS[:KIND]...]     default:
+//   8, all kinds
 //
-// KIND is the sum of 1 (beam root, else rigid), 2 (plane wall, else point), 4 (e = 0.5, else 0) and
-// 8 (1 % damping, else none). --into keeps the simulation's answers in FOLDER, --from compares with
-// those kept there: 64 links take it many minutes a case.
+// KIND is the sum of 1 (beam root, else rigid), 2 (plane wall, else point), 4 (e = 0.5,
+// else 0) and 8 (1 % damping, else none). --into keeps the simulation's answers in
+// FOLDER, --from compares with those kept there: 64 links take it many minutes a case.
 
 #include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"
@@ -20,17 +21,19 @@
 
 static chain_outcome library_outcome(const reference_case *c, bool by_formula)
 {
-    parameters p = parameters_with(
-        "arm.links=%d arm.damping_ratio=%.17g wall.restitution=%.17g %s %s motor.voltage=1",
-        c->links, c->damping, c->restitution,
-        c->beam_root ? "arm.hub_joint=beam" : "arm.hub_joint=rigid",
-        c->plane_wall ? "wall.kind=plane" : "wall.kind=point");
+    parameters p =
+        parameters_with("arm.links=%d arm.damping_ratio=%.17g wall.restitution=%.17g %s "
+                        "%s motor.voltage=1",
+                        c->links, c->damping, c->restitution,
+                        c->beam_root ? "arm.hub_joint=beam" : "arm.hub_joint=rigid",
+                        c->plane_wall ? "wall.kind=plane" : "wall.kind=point");
 
-    const chain_start start = {&p,          c->angle,    c->velocity,
-                               c->duration, c->duration, by_formula ? &explicit_engine : NULL};
+    const chain_start start = {&p,          c->angle,
+                               c->velocity, c->duration,
+                               c->duration, by_formula ? &explicit_engine : NULL};
     chain_outcome o = chain_outcome_of(&start);
-    fail_if(o.status != STATUS_OK, "%s, %s: %s", c->name, by_formula ? "formula" : "default",
-            status_text(o.status));
+    fail_if(o.status != STATUS_OK, "%s, %s: %s", c->name,
+            by_formula ? "formula" : "default", status_text(o.status));
     return o;
 }
 
@@ -38,8 +41,8 @@ static chain_outcome reference_outcome(const reference_case *c)
 {
     static reference_answer r;
     char message[256];
-    fail_if(!reference_simulate(c, &r, message, sizeof message), "the reference failed: %s",
-            message);
+    fail_if(!reference_simulate(c, &r, message, sizeof message),
+            "the reference failed: %s", message);
     chain_outcome o = {.first_contact = r.first_contact,
                        .first_impulse = r.first_impulse,
                        .motor_work = r.motor_work,
@@ -50,7 +53,7 @@ static chain_outcome reference_outcome(const reference_case *c)
     return o;
 }
 
-// --- answers that are kept --------------------------------------------------------------------
+// --- answers that are kept -------------------------------------------------------------
 
 static const char *from, *into; // folders of kept answers; NULL: none
 static char said[200];          // of the case: kept answers are of no other one
@@ -59,7 +62,8 @@ static char said[200];          // of the case: kept answers are of no other one
 static void describe(const reference_case *c, const char *folder, char path[static 512])
 {
     snprintf(path, 512, "%s/%d-%d.csv", folder, c->links,
-             c->beam_root + 2 * c->plane_wall + 4 * (c->restitution > 0) + 8 * (c->damping > 0));
+             c->beam_root + 2 * c->plane_wall + 4 * (c->restitution > 0) +
+                 8 * (c->damping > 0));
     snprintf(said, sizeof said,
              "%s, from %g rad and %g rad/s at %g V for %g s, tolerance %g, "
              "looks %g s apart",
@@ -73,8 +77,8 @@ static void keep(const reference_case *c, const chain_outcome *o)
     describe(c, into, path);
     FILE *file = fopen(path, "w");
     fail_if(file == NULL, "%s: %s", path, strerror(errno));
-    fprintf(file, "# %s\n%.15g,%.15g,%.15g,%.15g,%d,%d\n", said, o->first_contact, o->first_impulse,
-            o->motor_work, o->residual, o->impacts, o->samples);
+    fprintf(file, "# %s\n%.15g,%.15g,%.15g,%.15g,%d,%d\n", said, o->first_contact,
+            o->first_impulse, o->motor_work, o->residual, o->impacts, o->samples);
     for (int k = 0; k < o->samples; k++) {
         fprintf(file, "%.15g\n", o->momentum[k]);
     }
@@ -106,7 +110,7 @@ static chain_outcome kept(const reference_case *c)
     return o;
 }
 
-// --- comparing --------------------------------------------------------------------------------
+// --- comparing -------------------------------------------------------------------------
 
 static bool within(const char *what, double difference, double bound)
 {
@@ -122,12 +126,15 @@ static bool compare(const reference_case *c, const chain_outcome *r, bool by_for
     printf("    %s:", by_formula ? "formula" : "default");
     bool same = within("contact", l.first_contact - r->first_contact, 1e-6);
     same &= within("impulse", l.first_impulse / r->first_impulse - 1, 1e-4);
-    same &= within("1 ms", l.momentum[OUTCOME_FIRST_MS] / r->momentum[OUTCOME_FIRST_MS] - 1, 1e-3);
+    same &=
+        within("1 ms", l.momentum[OUTCOME_FIRST_MS] / r->momentum[OUTCOME_FIRST_MS] - 1,
+               1e-3);
     same &= within("50 ms", l.momentum[last] / r->momentum[last] - 1, 1e-3);
     same &= within("sensor", chain_outcome_sensor_difference(r, &l), 5e-3);
     same &= within("work", l.motor_work / r->motor_work - 1, 1e-4);
     same &= within("residual", l.residual / l.put_in, 1e-6);
-    same &= within("impacts", l.impacts - r->impacts, c->links <= 16 ? 0 : 0.1 * r->impacts + 2);
+    same &= within("impacts", l.impacts - r->impacts,
+                   c->links <= 16 ? 0 : 0.1 * r->impacts + 2);
     printf("\n");
     return same;
 }
@@ -139,10 +146,10 @@ static void library_agrees(void **state)
     if (into != NULL) {
         keep(c, &r);
     }
-    printf("%s: contact %.9g s, impulse %.9g N s, %d impacts, after 50 ms %.9g N s, reference's "
-           "residual %.2g J\n",
-           c->name, r.first_contact, r.first_impulse, r.impacts, r.momentum[REFERENCE_SAMPLES - 1],
-           r.residual);
+    printf("%s: contact %.9g s, impulse %.9g N s, %d impacts, after 50 ms %.9g "
+           "N s, reference's residual %.2g J\n",
+           c->name, r.first_contact, r.first_impulse, r.impacts,
+           r.momentum[REFERENCE_SAMPLES - 1], r.residual);
     assert_int_equal(r.samples, REFERENCE_SAMPLES);
     bool same = compare(c, &r, false);
     same &= c->links > FEW_LINKS || compare(c, &r, true);
@@ -172,9 +179,9 @@ int main(int argc, char **argv)
                 continue;
             }
             bool beam = kind & 1, plane = kind & 2, bounces = kind & 4, damped = kind & 8;
-            snprintf(names[count], sizeof names[count], "N = %d, %s root, %s, e = %g, %g %%", links,
-                     beam ? "beam" : "rigid", plane ? "plane" : "point", bounces ? 0.5 : 0,
-                     damped ? 1.0 : 0.0);
+            snprintf(names[count], sizeof names[count],
+                     "N = %d, %s root, %s, e = %g, %g %%", links, beam ? "beam" : "rigid",
+                     plane ? "plane" : "point", bounces ? 0.5 : 0, damped ? 1.0 : 0.0);
             // looks within a third of the fastest period
             cases[count] = (reference_case){.name = names[count],
                                             .links = links,
@@ -188,8 +195,8 @@ int main(int argc, char **argv)
                                             .damping = damped ? 0.01 : 0,
                                             .angle = START_ANGLE,
                                             .velocity = START_VELOCITY};
-            tests[count] =
-                (struct CMUnitTest){names[count], library_agrees, NULL, NULL, &cases[count]};
+            tests[count] = (struct CMUnitTest){names[count], library_agrees, NULL, NULL,
+                                               &cases[count]};
             count++;
         }
     }

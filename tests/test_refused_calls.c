@@ -1,6 +1,7 @@
-// Calls of the system refused in turn, and requests for memory with them: whole files are those of
-// before or the whole new ones, rows that are shared stay what they are, programs that are
-// controllers answer or the run says why not, and what measures says that it cannot.
+// Calls of the system refused in turn, and requests for memory with them: whole files are
+// those of before or the whole new ones, rows that are shared stay what they are,
+// programs that are controllers answer or the run says why not, and what measures says
+// that it cannot.
 #include "src/base/shared_array.h"
 #include "src/base/whole_file.h"
 #include "src/rig/external/supervisor.h"
@@ -9,7 +10,7 @@
 #include "tests/shared_memory.h"
 #include "tests/refused_calls.h"
 
-// --- whole files --------------------------------------------------------------------------------
+// --- whole files -----------------------------------------------------------------------
 
 static void assert_has(const char *path, const char *expected)
 {
@@ -56,7 +57,7 @@ static status write_in_place(const char *path, FILE *out)
     return code;
 }
 
-// --- shared rows --------------------------------------------------------------------------------
+// --- shared rows -----------------------------------------------------------------------
 
 enum { PER_CHUNK = ARRAY_CHUNK / sizeof(uint64_t), ROWS = 5 * PER_CHUNK / 2 };
 
@@ -94,7 +95,7 @@ static status share_rows(const char *ignored, FILE *out)
     return whole ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-// --- programs -----------------------------------------------------------------------------------
+// --- programs --------------------------------------------------------------------------
 
 // A program that reads a line, answers it and ends with a given status.
 static status ask_once(const char *command, FILE *out)
@@ -119,7 +120,8 @@ static status ask_once(const char *command, FILE *out)
 // Has a scenario led by a program in the shell.
 static status lead_by_program(scenario *s)
 {
-    char command[] = "control.command=while read -r line; do echo '{\"command\": 1}'; done";
+    char command[] =
+        "control.command=while read -r line; do echo '{\"command\": 1}'; done";
     char law[] = "control.law=process";
     char *const settings[] = {command, law};
     s->parameters.code_allowed = true;
@@ -143,13 +145,15 @@ static status ask_a_program(scenario *s, FILE *out)
     }
     code = session_open(&t, &own, HUGE_VAL, &f);
     if (code != STATUS_OK) {
-        return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
+        return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY
+                                                                  : code;
     }
 
     // what is asked after the change follows what was asked before it
     code = t.run.summary.status;
     session_seek(&t, 0.05);
-    code = code == STATUS_OK ? session_change(&t, PARAMETER_INDEX(control.force), "2", &f) : code;
+    code = code == STATUS_OK ? session_change(&t, PARAMETER_INDEX(control.force), "2", &f)
+                             : code;
     code = code == STATUS_OK ? t.run.summary.status : code;
     for (size_t i = 0; i < t.run.trace.row_count && code == STATUS_OK; i++) {
         fprintf(out, "%a %a\n", t.run.trace.rows[i].force, t.run.trace.rows[i].hub_angle);
@@ -160,8 +164,8 @@ static status ask_a_program(scenario *s, FILE *out)
     return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
 }
 
-// One read of the program's answers or complaints fails for good: the run is the same without it or
-// ends and says why, and never because of a program that ended.
+// One read of the program's answers or complaints fails for good: the run is the same
+// without it or ends and says why, and never because of a program that ended.
 TEST(answers_that_cannot_be_read)
 {
     int failed = 0;
@@ -179,14 +183,15 @@ TEST(answers_that_cannot_be_read)
         unreadable_at = 0;
         if (code != STATUS_OK) {
             assert_int_equal(code, STATUS_CONTROLLER_FAILED);
-            assert_non_null(strstr(result.summary.message, "cannot be read: Input/output error"));
+            assert_non_null(
+                strstr(result.summary.message, "cannot be read: Input/output error"));
             failed++;
         }
     }
     assert_true(failed > 8);
 }
 
-// --- scenarios ----------------------------------------------------------------------------------
+// --- scenarios -------------------------------------------------------------------------
 
 static status list_scenarios(const char *ignored, FILE *out)
 {
@@ -221,8 +226,8 @@ TEST(scenarios_are_listed_whole)
     try_all(list_scenarios, "");
 }
 
-// One that is there is never said to be missing, and to find it no folder is read: a list of all
-// reads each folder once.
+// One that is there is never said to be missing, and to find it no folder is read: a list
+// of all reads each folder once.
 TEST(scenarios_are_found_by_name)
 {
     folders_opened = 0;
@@ -230,7 +235,7 @@ TEST(scenarios_are_found_by_name)
     assert_int_equal(folders_opened, 0);
 }
 
-// --- measurements -------------------------------------------------------------------------------
+// --- measurements ----------------------------------------------------------------------
 
 // A number, or a sentence that says why there is none.
 static status measure(const char *name, FILE *out)
@@ -248,10 +253,10 @@ static status measure(const char *name, FILE *out)
     return code;
 }
 
-// --- the tests ----------------------------------------------------------------------------------
+// --- the tests -------------------------------------------------------------------------
 
-// The first rows of a program need a file and tables that later ones find; each refusal leaves some
-// of it, from which the next attempt goes on.
+// The first rows of a program need a file and tables that later ones find; each refusal
+// leaves some of it, from which the next attempt goes on.
 TEST(the_first_rows_of_all)
 {
     long attempts = 0;
@@ -261,7 +266,8 @@ TEST(the_first_rows_of_all)
         shared_array a;
         atomic_store(&requests, 0);
         refused_at = 1 + attempts++ / 2;
-        grown = shared_array_reserve(&a, sizeof(uint64_t), 1, 1) && shared_array_grow(&a, 1);
+        grown =
+            shared_array_reserve(&a, sizeof(uint64_t), 1, 1) && shared_array_grow(&a, 1);
         refused_at = 0;
         shared_array_finish(&a);
         assert_true(shared_array_memory() == 0);
@@ -294,13 +300,15 @@ TEST(programs_as_controllers)
 TEST(measurements)
 {
     static const char *const names[] = {"arm_n2_us_per_ms", "struck_n8_us_per_ms",
-                                        "batch_n2_steps_per_s", "batch_width_4_us_per_run"};
+                                        "batch_n2_steps_per_s",
+                                        "batch_width_4_us_per_run"};
     bench_window = 1e-9;
     for (EACH(c, names)) {
         try_all(measure, *c);
     }
 }
 
-REFUSING_MAIN("title: t\nwall: {angle: 0}\nmotor: {voltage: 4 V}\nrun: {duration: 0.12 s}\n"
-              "initial: {angle: -0.01 rad}\n",
-              refuse_in_folder, leave_folder)
+REFUSING_MAIN(
+    "title: t\nwall: {angle: 0}\nmotor: {voltage: 4 V}\nrun: {duration: 0.12 s}\n"
+    "initial: {angle: -0.01 rad}\n",
+    refuse_in_folder, leave_folder)

@@ -1,6 +1,6 @@
-// What was refused may be finished: after each initialisation that fails, for want of memory or by
-// its arguments, the caller's next call, its finish, frees nothing twice and leaves nothing. The
-// sanitizers see what it does.
+// What was refused may be finished: after each initialisation that fails, for want of
+// memory or by its arguments, the caller's next call, its finish, frees nothing twice and
+// leaves nothing. The sanitizers see what it does.
 
 #include "src/base/csv_table.h"
 #include "src/session/session.h"
@@ -77,16 +77,21 @@ static status plan_of(const char *text, sweep_sampling how, bool tuned)
     }
     if (tuned) {
         SCOPED(tune_finish) tuning t = {0};
-        const tune_request asked = {
-            .base = &s, .vary = vary, .vary_count = count, .minimise = "peak_force_N", .runs = 4};
+        const tune_request asked = {.base = &s,
+                                    .vary = vary,
+                                    .vary_count = count,
+                                    .minimise = "peak_force_N",
+                                    .runs = 4};
         code = tune_init(&t, &asked, &f);
     } else {
         KEPT_SWEEP(w) = {0};
         KEPT_SWEEP(again) = {0};
         SCOPED(definition_finish) definition d = {0};
         KEPT_STORE(store) = NULL;
-        const sweep_request request = {
-            .vary = vary, .vary_count = count, .sampling = how, .runs = how == SWEEP_GRID ? 0 : 3};
+        const sweep_request request = {.vary = vary,
+                                       .vary_count = count,
+                                       .sampling = how,
+                                       .runs = how == SWEEP_GRID ? 0 : 3};
         code = sweep_init(&w, &s, &request, &f);
         code = code == STATUS_OK ? definition_init(&d, &w, &f) : code;
         code = code == STATUS_OK ? definition_plan(&d, "here", &again, &f) : code;
@@ -171,12 +176,17 @@ TEST(what_is_refused_by_its_arguments_is_finished)
         work *does;
         const char *about[8];
     } refused[] = {
-        {table, {"", "time[s]\n", "time[s],a[V]\n1,2\n0,1\n", "time[s]\nx\n", "time[m]\n1\n"}},
+        {table,
+         {"", "time[s]\n", "time[s],a[V]\n1,2\n0,1\n", "time[s]\nx\n", "time[m]\n1\n"}},
         {set, {"", "case x\n", "case : a=b\n", "case a: push=1\n"}},
         {session_of_lines, {"", "x\n", "session 999\n"}},
-        {parsed, {"", "- a", "motor: {voltage: x}", "script: [{at: -1}]", "title: A\nlesson: 3"}},
-        {grid, {"arm.k2", "arm.k2=1:2", "arm.k2=1,1", "arm.k2=1,2;arm.k2=3,4", "with arm.k2=1,2"}},
-        {drawn, {"arm.k2=1,2;with arm.mass=0.1", "x=1:2", "arm.k2=1:2;with arm.mass=1:2"}},
+        {parsed,
+         {"", "- a", "motor: {voltage: x}", "script: [{at: -1}]", "title: A\nlesson: 3"}},
+        {grid,
+         {"arm.k2", "arm.k2=1:2", "arm.k2=1,1", "arm.k2=1,2;arm.k2=3,4",
+          "with arm.k2=1,2"}},
+        {drawn,
+         {"arm.k2=1,2;with arm.mass=0.1", "x=1:2", "arm.k2=1:2;with arm.mass=1:2"}},
         {tuned, {"control.kp=1", "control.kp=1,2", "x=1:2", "control.law=none,hybrid"}},
         {fitted, {"arm.k2=", "arm.links", "x", "arm.k2=5:5", "control.law"}},
     };

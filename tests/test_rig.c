@@ -31,8 +31,8 @@ TEST(delay_shifts_the_command)
     }
 }
 
-// A command that is still on its way when the run ends has moved nothing: the largest is the
-// largest of the rows.
+// A command that is still on its way when the run ends has moved nothing: the largest is
+// the largest of the rows.
 TEST(a_command_still_on_its_way_does_not_count)
 {
     for (EACH_TEXT(c, "run.duration=0.32", "run.duration=0.3102", "run.duration=0.305")) {
@@ -48,8 +48,8 @@ TEST(a_command_still_on_its_way_does_not_count)
     }
 }
 
-// A program that takes a whole period to compute: its command goes out with the next sample, also
-// where jitter brings that one early.
+// A program that takes a whole period to compute: its command goes out with the next
+// sample, also where jitter brings that one early.
 TEST(a_command_a_period_late_goes_out_with_the_next_sample)
 {
     for (EACH_TEXT(c, "control.jitter=0", "control.jitter=0.002")) {
@@ -75,9 +75,9 @@ TEST(a_command_a_period_late_goes_out_with_the_next_sample)
     }
 }
 
-// Commands that are several periods under way keep their order and their delay, also where samples
-// scatter over the whole period; with a delay of whole periods they go out at a sample at the
-// latest.
+// Commands that are several periods under way keep their order and their delay, also
+// where samples scatter over the whole period; with a delay of whole periods they go out
+// at a sample at the latest.
 TEST(commands_of_several_periods_go_out_in_order)
 {
     const char *const delays[] = {"control.delay_periods=2.5", "control.delay_periods=5"};
@@ -102,7 +102,8 @@ TEST(commands_of_several_periods_go_out_in_order)
             }
             if (changed && out < samples && r->voltage == wanted[out]) {
                 check_below(time - taken[out], r->delay + 1e-9);
-                check_below(k % 2 == 0 ? r->delay : r->delay - 0.005, time - taken[out] + 1e-9);
+                check_below(k % 2 == 0 ? r->delay : r->delay - 0.005,
+                            time - taken[out] + 1e-9);
                 out++;
             }
         }
@@ -149,13 +150,15 @@ TEST(rig_changes_the_bare_arm_only_by_its_converter)
     assert_true(isnan(bare.force_command_N));
 }
 
-// What the amplifier feeds in is what the rows say, before and after a script lowers its limit.
+// What the amplifier feeds in is what the rows say, before and after a script lowers its
+// limit.
 TEST(energy_under_a_limit_that_changes)
 {
     static const char *const models[] = {"arm.model=corrected", "arm.model=printed"};
     for (int i = 0; i < 2; i++) {
         scenario s = SCRIPTED(
-            rig_parameters_with("%s control.law=open-loop control.approach_voltage=5", models[i]),
+            rig_parameters_with("%s control.law=open-loop control.approach_voltage=5",
+                                models[i]),
             SETS(0.5, motor.voltage_limit, 1));
         KEPT_RUN(r) = run_done(&s, true);
 
@@ -166,8 +169,8 @@ TEST(energy_under_a_limit_that_changes)
             const sample *to = &r.trace.rows[k], *from = to - 1;
             const double volts = m->amplifier_gain * (i ? to : from)->voltage;
             const double turn = to->hub_angle - from->hub_angle;
-            energy +=
-                volts / m->resistance * (volts * (to->time - from->time) - m->back_emf * turn);
+            energy += volts / m->resistance *
+                      (volts * (to->time - from->time) - m->back_emf * turn);
         }
         check_relative(r.summary.electrical_energy_J, energy, 1e-10);
     }
@@ -197,32 +200,35 @@ TEST(same_seed_same_bytes)
     assert_true(a.summary.peak_force_N != c.summary.peak_force_N);
 }
 
-// A beam of twelve links bends further at the hub than two links with the same k2: the stiffness
-// that the controller has to believe in, (5.26), is the one measured there.
+// A beam of twelve links bends further at the hub than two links with the same k2: the
+// stiffness that the controller has to believe in, (5.26), is the one measured there.
 TEST(many_links_want_their_own_stiffness)
 {
-    run_result r = rig_run(given("control.law=open-loop arm.links=12 run.duration=4"), true);
+    run_result r =
+        rig_run(given("control.law=open-loop arm.links=12 run.duration=4"), true);
     const sample *last = LAST_ROW(&r.trace);
     double measured = last->force * 0.5 / (2 * last->first_angle);
     run_finish(&r);
-    summary nominal = rig_summary_with("control.law=hybrid arm.links=12 run.duration=2.5");
+    summary nominal =
+        rig_summary_with("control.law=hybrid arm.links=12 run.duration=2.5");
     summary looked_up = rig_summary_with(
-        "control.law=hybrid arm.links=12 belief.k2_factor=%.6g run.duration=2.5", measured / 4.92);
+        "control.law=hybrid arm.links=12 belief.k2_factor=%.6g run.duration=2.5",
+        measured / 4.92);
     check_below(nominal.steady_force_N, 0.8);
     check_close(looked_up.steady_force_N, 1, 0.12); // it still swings a little
 }
 
-// A stop of the run and a sample that differ by rounding are one instant: a stride between them
-// would be too short for an implicit method.
+// A stop of the run and a sample that differ by rounding are one instant: a stride
+// between them would be too short for an implicit method.
 TEST(instants_apart_by_rounding_are_one)
 {
-    summary s = rig_summary_with(
-        "control.law=hybrid arm.links=12 wall.kind=plane method.name=newmark run.duration=1.5");
+    summary s = rig_summary_with("control.law=hybrid arm.links=12 wall.kind=plane "
+                                 "method.name=newmark run.duration=1.5");
     check_below(0, s.impacts);
 }
 
-// A hub that friction holds and a command that never stays: forty seconds of torque that jumps
-// under a hub at rest, each jump a question of what sticks and what is touched.
+// A hub that friction holds and a command that never stays: forty seconds of torque that
+// jumps under a hub at rest, each jump a question of what sticks and what is touched.
 TEST(a_command_that_alternates_passes_time)
 {
     const char *const *const arms[] = {
@@ -244,8 +250,9 @@ TEST(a_command_that_alternates_passes_time)
     }
 }
 
-// What a lag of that time constant [s] makes of the motion without a rig, `after` the first contact
-// [s]: its impulses, and its force in strides that grow by a twentieth of the time since.
+// What a lag of that time constant [s] makes of the motion without a rig, `after` the
+// first contact [s]: its impulses, and its force in strides that grow by a twentieth of
+// the time since.
 static double lagged_force(const parameters *p, double time_constant, double after)
 {
     STARTED(a, m, p, NULL, p->initial.angle, p->initial.velocity);
@@ -256,7 +263,8 @@ static double lagged_force(const parameters *p, double time_constant, double aft
         const double from = m->state[SLOT_TIME],
                      had = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         const double until =
-            touched < 0 ? end : fmin(end, from + fmin(2e-6, fmax(1e-11, (from - last) / 20)));
+            touched < 0 ? end
+                        : fmin(end, from + fmin(2e-6, fmax(1e-11, (from - last) / 20)));
         assert_int_equal(motion_step(&a, m, until, 1e-3, &report), STATUS_OK);
         const double length = m->state[SLOT_TIME] - from;
         const double gained = state_quadratures(m, m->state)[QUADRATURE_FORCE] - had;
@@ -276,16 +284,18 @@ static double lagged_force(const parameters *p, double time_constant, double aft
     return touched < 0 ? (double)NAN : felt;
 }
 
-// The modes of a strongly damped chain decay within nanoseconds of an impact, in which they press
-// with thousands of newtons: a force sensor reads their impulse.
+// The modes of a strongly damped chain decay within nanoseconds of an impact, in which
+// they press with thousands of newtons: a force sensor reads their impulse.
 TEST(sensors_feel_the_spike_of_a_damped_chain)
 {
     for (int i = 0; i < 4; i++) {
         const char *const *settings =
-            given("arm.damping_ratio=%g arm.links=%d control.law=open-loop control.rate=20000 "
-                  "method.step=5e-5 initial.angle=-0.001 initial.velocity=1 run.duration=0.0015 "
-                  "sensor.piezo=true sensor.piezo_gain=1e-3 sensor.piezo_leak_time=0 "
-                  "sensor.piezo_range=0 sensor.piezo_noise=0 sensor.adc_bits=0 sensor.dac_bits=0",
+            given("arm.damping_ratio=%g arm.links=%d control.law=open-loop "
+                  "control.rate=20000 method.step=5e-5 initial.angle=-0.001 "
+                  "initial.velocity=1 run.duration=0.0015 sensor.piezo=true "
+                  "sensor.piezo_gain=1e-3 sensor.piezo_leak_time=0 "
+                  "sensor.piezo_range=0 sensor.piezo_noise=0 sensor.adc_bits=0 "
+                  "sensor.dac_bits=0",
                   i % 2 ? 1 : 0.3, i / 2 ? 32 : 8);
         const parameters p = rig_parameters(settings);
         KEPT_RUN(run) = rig_run(settings, true);
@@ -295,7 +305,8 @@ TEST(sensors_feel_the_spike_of_a_damped_chain)
         double compared = 0;
         for (size_t k = 0; k < run.trace.row_count && compared < 3; k++) {
             const sample *row = &run.trace.rows[k];
-            const double after = row->time - touch - p.method.step; // read a sample before
+            const double after =
+                row->time - touch - p.method.step; // read a sample before
             if (after > 4e-6 + compared * 5e-5) {
                 const double rise = p.sensor.piezo_rise_time / log(9);
                 check_relative(row->piezo_force, lagged_force(&p, rise, after), 2e-3);
@@ -311,28 +322,33 @@ TEST(the_approach_speed_is_the_largest_of_the_flight)
 {
     static const char *const arms[][8] = {
         {"control.law=observer", "control.approach_voltage=0.6569", "wall.angle=0.0502",
-         "initial.angle=0", "arm.k2=53.36", "arm.damping_ratio=0.01", "control.force=0.855"},
+         "initial.angle=0", "arm.k2=53.36", "arm.damping_ratio=0.01",
+         "control.force=0.855"},
         {"control.law=bang-bang", "control.approach_voltage=0.5618", "wall.angle=0.2352",
-         "initial.angle=0", "arm.k2=2.873", "arm.damping_ratio=0.01", "control.force=3.196"}};
+         "initial.angle=0", "arm.k2=2.873", "arm.damping_ratio=0.01",
+         "control.force=3.196"}};
     for (EACH(c, arms)) {
-        const char *settings[16] = {"control.rate=50", "wall.kind=plane", "motor.stiction=0",
-                                    "sensor.ideal=true", "method.step=1e-4"};
+        const char *settings[16] = {"control.rate=50", "wall.kind=plane",
+                                    "motor.stiction=0", "sensor.ideal=true",
+                                    "method.step=1e-4"};
         for (int k = 0; k < 7; k++) {
             settings[5 + k] = (*c)[k];
         }
         KEPT_RUN(r) = rig_run(settings, true);
         double fastest = 0;
         for (EACH_ROW(row, &r.trace)) {
-            const bool after = row->time > r.summary.first_contact_s; // never, without one
+            const bool after =
+                row->time > r.summary.first_contact_s; // never, without one
             fastest = after ? fastest : fmax(fastest, -row->gap_velocity);
         }
         check_relative(r.summary.approach_speed_m_s, fastest, 1e-4);
     }
 }
 
-// What the rig shows never changes between rows of different instants, and times never go back: a
-// sample and a command stand twice, before and after, on the grid of rows or between its rows, with
-// jitter, delays, a current that lags, other methods and the printed model.
+// What the rig shows never changes between rows of different instants, and times never go
+// back: a sample and a command stand twice, before and after, on the grid of rows or
+// between its rows, with jitter, delays, a current that lags, other methods and the
+// printed model.
 TEST(samples_and_commands_stand_twice)
 {
     static const char *const kinds[] = {
@@ -348,11 +364,13 @@ TEST(samples_and_commands_stand_twice)
         int samples = 0, commands = 0;
         for (size_t k = 1; k < r.trace.row_count; k++) {
             const sample *was = &r.trace.rows[k - 1], *is = was + 1;
-            const bool reads = was->tachometer != is->tachometer && !isnan(was->tachometer);
+            const bool reads =
+                was->tachometer != is->tachometer && !isnan(was->tachometer);
             const bool sends = was->voltage != is->voltage;
-            fail_if(is->time < was->time, "%s: %.17g s after %.17g s", *kind, is->time, was->time);
-            fail_if((reads || sends || was->command != is->command) && !isnan(was->command) &&
-                        is->time != was->time,
+            fail_if(is->time < was->time, "%s: %.17g s after %.17g s", *kind, is->time,
+                    was->time);
+            fail_if((reads || sends || was->command != is->command) &&
+                        !isnan(was->command) && is->time != was->time,
                     "%s: a jump between %.17g and %.17g s", *kind, was->time, is->time);
             if (is->time == was->time) {
                 check_close(is->hub_angle, was->hub_angle, 1e-12);
@@ -364,12 +382,12 @@ TEST(samples_and_commands_stand_twice)
     }
 }
 
-// With jitter a delay of periods is one of nominal periods: a command that no sample overtakes
-// takes effect just so long after its sample.
+// With jitter a delay of periods is one of nominal periods: a command that no sample
+// overtakes takes effect just so long after its sample.
 TEST(delays_are_nominal_periods_with_jitter)
 {
-    RIG_RUN(r, "control.law=hybrid run.duration=0.5 control.rate=200 control.jitter=0.002 "
-               "control.delay_periods=0.5 sensor.dac_bits=0");
+    RIG_RUN(r, "control.law=hybrid run.duration=0.5 control.rate=200 "
+               "control.jitter=0.002 control.delay_periods=0.5 sensor.dac_bits=0");
     double sampled = -1, sent = 0;
     int commands = 0;
     for (size_t k = 1; k < r.trace.row_count; k++) {

@@ -1,5 +1,5 @@
-// Laws held in a mode (control.lock): their behaviour, their continuation, and that a lock made in
-// a session is an input like any other.
+// Laws held in a mode (control.lock): their behaviour, their continuation, and that a
+// lock made in a session is an input like any other.
 
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
@@ -19,9 +19,12 @@ static action locked_at(double time, const char *mode)
 static run_result locked_run(const char *const *settings, const char *mode)
 {
     action script[2] = {locked_at(LOCK_TIME, mode), locked_at(RELEASE_TIME, "none")};
-    scenario s = {.parameters = rig_parameters(settings), .actions = script, .action_count = 2};
+    scenario s = {.parameters = rig_parameters(settings),
+                  .actions = script,
+                  .action_count = 2};
     run_result result;
-    fail_if(run_scenario(&s, true, &result) != STATUS_OK, "%s: %s", mode, result.summary.message);
+    fail_if(run_scenario(&s, true, &result) != STATUS_OK, "%s: %s", mode,
+            result.summary.message);
     return result;
 }
 
@@ -52,10 +55,10 @@ TEST(every_lockable_law_stays_in_every_mode_of_its_own)
 
 TEST(approach_means_the_approach_command)
 {
-    for (EACH_TEXT(c, "hybrid", "recovering", "reverse-torque", "force-pd", "force-integral",
-                   "discontinuous", "optimal")) {
-        KEPT_RUN(r) =
-            locked_run(given("control.law=%s control.approach_voltage=0.8", *c), "approach");
+    for (EACH_TEXT(c, "hybrid", "recovering", "reverse-torque", "force-pd",
+                   "force-integral", "discontinuous", "optimal")) {
+        KEPT_RUN(r) = locked_run(given("control.law=%s control.approach_voltage=0.8", *c),
+                                 "approach");
         check_close(answer_at(&r, 0.6)->command, 0.8, 0);
         check_close(answer_at(&r, 0.89)->command, 0.8, 0);
         // it is in contact, and detects it once it is free
@@ -69,7 +72,8 @@ TEST(force_means_the_force_law_at_once)
     // in free flight, from the first sample on
     RIG_RUN(r, "control.law=hybrid control.lock=force sensor.ideal=true");
     const sample *first = &r.trace.rows[0];
-    double final = 0.5 / (2 * 4.92), torque = 2 * 1 * 0.5 + 10.15 * (final - first->hub_angle);
+    double final = 0.5 / (2 * 4.92),
+           torque = 2 * 1 * 0.5 + 10.15 * (final - first->hub_angle);
     check_close(first->controller_mode, 2, 0);
     check_close(first->desired_angle, final, 1e-12);
     parameters p = rig_parameters(NULL);
@@ -80,8 +84,10 @@ TEST(force_means_the_force_law_at_once)
 TEST(impact_mode_is_planned_anew_and_waits_at_its_end)
 {
     KEPT_RUN(r) = locked_run(
-        given("control.law=hybrid sensor.ideal=true control.transition_time=0.2"), "impact");
-    const sample *before = answer_at(&r, LOCK_TIME - 0.005), *entry = answer_at(&r, LOCK_TIME);
+        given("control.law=hybrid sensor.ideal=true control.transition_time=0.2"),
+        "impact");
+    const sample *before = answer_at(&r, LOCK_TIME - 0.005),
+                 *entry = answer_at(&r, LOCK_TIME);
     double final = 0.5 / (2 * 4.92);
     check_close(before->controller_mode, 2, 0);
     check_close(entry->desired_angle, entry->hub_angle, 1e-4);
@@ -90,7 +96,8 @@ TEST(impact_mode_is_planned_anew_and_waits_at_its_end)
     check_close(answer_at(&r, LOCK_TIME + 0.3)->desired_angle, final, 1e-9);
     check_close(answer_at(&r, LOCK_TIME + 0.3)->desired_velocity, 0, 1e-9);
     // released after t_f it enters the force mode, and its command continues from there
-    const sample *last = answer_at(&r, RELEASE_TIME - 0.005), *next = answer_at(&r, RELEASE_TIME);
+    const sample *last = answer_at(&r, RELEASE_TIME - 0.005),
+                 *next = answer_at(&r, RELEASE_TIME);
     check_close(next->controller_mode, 2, 0);
     check_close(next->command, last->command, 0.15); // friction's part is the difference
 }
@@ -98,16 +105,18 @@ TEST(impact_mode_is_planned_anew_and_waits_at_its_end)
 TEST(release_goes_on_from_the_command_in_effect)
 {
     static const char *const cases[][2] = {
-        {"hybrid", "force"},           {"recovering", "force"}, {"force-pd", "contact"},
-        {"force-integral", "contact"}, {"optimal", "hold"},     {"force-integral", "approach"},
+        {"hybrid", "force"},     {"recovering", "force"},
+        {"force-pd", "contact"}, {"force-integral", "contact"},
+        {"optimal", "hold"},     {"force-integral", "approach"},
         {"predictive", "hold"},
     };
     for (EACH(c, cases)) {
-        KEPT_RUN(r) = locked_run(given("control.law=%s sensor.ideal=true", (*c)[0]), (*c)[1]);
+        KEPT_RUN(r) =
+            locked_run(given("control.law=%s sensor.ideal=true", (*c)[0]), (*c)[1]);
         double last = answer_at(&r, RELEASE_TIME - 0.005)->command;
         double next = answer_at(&r, RELEASE_TIME)->command;
-        fail_if(fabs(next - last) > 0.1, "%s released from %s jumps from %g V to %g V", (*c)[0],
-                (*c)[1], last, next);
+        fail_if(fabs(next - last) > 0.1, "%s released from %s jumps from %g V to %g V",
+                (*c)[0], (*c)[1], last, next);
     }
 }
 
@@ -117,7 +126,8 @@ TEST(observers_survive_a_lock_in_contact)
     static const char *const laws[] = {"control.law=optimal", "control.law=predictive"};
     static const char *const modes[] = {"approach", "press", "hold"};
     for (size_t i = 0; i < 6; i++) {
-        KEPT_RUN(r) = locked_run(given("%s control.approach_voltage=2", laws[i / 3]), modes[i % 3]);
+        KEPT_RUN(r) =
+            locked_run(given("%s control.approach_voltage=2", laws[i / 3]), modes[i % 3]);
         check_close(r.summary.steady_force_N, 1, 0.1);
     }
 }
@@ -144,7 +154,7 @@ TEST(unknown_modes_are_refused)
     assert_int_equal(scenario_override(&bare, "control.lock=force", NULL), STATUS_OK);
 }
 
-// --- in a session -----------------------------------------------------------------------------
+// --- in a session ----------------------------------------------------------------------
 
 TEST(lock_is_an_input_that_a_saved_scenario_repeats)
 {
@@ -159,7 +169,8 @@ TEST(lock_is_an_input_that_a_saved_scenario_repeats)
     DONE(session_change(&e, lock, "none", &f));
     REFUSED(STATUS_BAD_SCENARIO, "", session_change(&e, lock, "nonsense", &f));
     assert_int_equal(e.input_count, 2);
-    parameters then = session_parameters_at(&e, 0.5), later = session_parameters_at(&e, 0.8);
+    parameters then = session_parameters_at(&e, 0.5),
+               later = session_parameters_at(&e, 0.8);
     assert_string_equal(then.control.lock, "approach");
     assert_string_equal(later.control.lock, "none");
 
@@ -172,8 +183,9 @@ TEST(lock_is_an_input_that_a_saved_scenario_repeats)
     check_close(e.run.trace.rows[trace_row_at(&e.run.trace, 0.6)].controller_mode, 0, 0);
 }
 
-// Held in the pressing mode before there is a wall to press on, the observer follows the flight and
-// the law goes for where the wall is believed to be; what it then presses with is what is wanted.
+// Held in the pressing mode before there is a wall to press on, the observer follows the
+// flight and the law goes for where the wall is believed to be; what it then presses with
+// is what is wanted.
 TEST(pressing_from_the_start_finds_the_wall)
 {
     for (EACH_TEXT(c, "control.law=optimal", "control.law=predictive")) {
@@ -184,14 +196,15 @@ TEST(pressing_from_the_start_finds_the_wall)
     }
 }
 
-// Every lockable law is in the mode that it is told, from one to the next, in flight as in contact,
-// and with the printed arm, whose steps the sensors sample just the same.
+// Every lockable law is in the mode that it is told, from one to the next, in flight as
+// in contact, and with the printed arm, whose steps the sensors sample just the same.
 TEST(every_mode_is_gone_into_from_every_other)
 {
     enum { MOST = 32 };
     const char *const models[] = {"arm.model=corrected", "arm.model=printed"};
     for (int law = LAW_NONE + 1; law < 2 * LAW_PLUGIN; law++) {
-        const controller *c = law % LAW_PLUGIN == LAW_NONE ? NULL : controller_of(law % LAW_PLUGIN);
+        const controller *c =
+            law % LAW_PLUGIN == LAW_NONE ? NULL : controller_of(law % LAW_PLUGIN);
         if (c == NULL || !c->lockable) {
             continue;
         }
@@ -214,14 +227,17 @@ TEST(every_mode_is_gone_into_from_every_other)
             }
         }
 
-        scenario s = {.parameters = rig_parameters_with("control.law=%s %s run.duration=0.8",
-                                                        c->name, models[law / LAW_PLUGIN]),
+        scenario s = {.parameters =
+                          rig_parameters_with("control.law=%s %s run.duration=0.8",
+                                              c->name, models[law / LAW_PLUGIN]),
                       .actions = script,
                       .action_count = count};
         KEPT_RUN(r);
-        fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s: %s", c->name, r.summary.message);
+        fail_if(run_scenario(&s, true, &r) != STATUS_OK, "%s: %s", c->name,
+                r.summary.message);
         for (int i = 0; i < count; i++) {
-            const double then = script[i].time + 0.006, is = answer_at(&r, then)->controller_mode;
+            const double then = script[i].time + 0.006,
+                         is = answer_at(&r, then)->controller_mode;
             fail_if(is != mode[i], "%s, %s: mode %g, not %d, at %g s", c->name,
                     models[law / LAW_PLUGIN], is, mode[i], then);
         }
@@ -242,7 +258,8 @@ TEST(names_of_modes_keep_to_their_room)
     assert_string_equal(names[2], "untouched");
 }
 
-// A plug-in is opened where it is the law and may be; one that is only named changes nothing.
+// A plug-in is opened where it is the law and may be; one that is only named changes
+// nothing.
 TEST(only_the_law_itself_gives_modes)
 {
     char names[8][MODE_NAME_SIZE];
@@ -277,16 +294,16 @@ TEST(a_law_of_no_modes_has_none_to_be_held_in)
     assert_int_equal(mode, -1);
     assert_int_equal(rig_find_mode(&law, "only", &mode, &f), STATUS_BAD_SCENARIO);
     assert_int_equal(mode, -1);
-    assert_string_equal(f.text,
-                        "control.lock = 'only' is no mode of the law 'own', expected none, ");
+    assert_string_equal(
+        f.text, "control.lock = 'only' is no mode of the law 'own', expected none, ");
     assert_string_equal(f.path, "control.lock");
 
     law.modes = one;
     assert_int_equal(rig_find_mode(&law, "only", &mode, &f), STATUS_OK);
     assert_int_equal(mode, 0);
     assert_int_equal(rig_find_mode(&law, "onl", &mode, &f), STATUS_BAD_SCENARIO);
-    assert_string_equal(f.text,
-                        "control.lock = 'onl' is no mode of the law 'own', expected none, only");
+    assert_string_equal(
+        f.text, "control.lock = 'onl' is no mode of the law 'own', expected none, only");
     law.modes = NULL;
     assert_int_equal(rig_find_mode(&law, "only", &mode, &f), STATUS_BAD_SCENARIO);
     assert_int_equal(rig_find_mode(&law, "", &mode, &f), STATUS_OK);

@@ -1,4 +1,5 @@
-// Control laws over many beliefs: the set, the judgement, and that it depends on the seed alone.
+// Control laws over many beliefs: the set, the judgement, and that it depends on the seed
+// alone.
 #include "src/study/robust.h"
 #include "tests/rig_fixture.h"
 
@@ -26,10 +27,11 @@ static scenario derived_of(const scenario *base, const robust_case *of)
 }
 
 // Both of them, and the judgement of a law, until their block is left.
-#define SET(set, text)     SCOPED(robust_set_finish) robust_set set = set_of(text)
-#define DERIVED(name, ...) SCOPED(robust_case_finish) scenario name = derived_of(__VA_ARGS__)
-#define JUDGED(found, law, ...)                                                                    \
-    SCOPED(robust_law_finish) robust_law found;                                                    \
+#define SET(set, text) SCOPED(robust_set_finish) robust_set set = set_of(text)
+#define DERIVED(name, ...)                                                               \
+    SCOPED(robust_case_finish) scenario name = derived_of(__VA_ARGS__)
+#define JUDGED(found, law, ...)                                                          \
+    SCOPED(robust_law_finish) robust_law found;                                          \
     free(judged(&found, law, __VA_ARGS__))
 
 TEST(a_set_is_its_lines)
@@ -81,26 +83,30 @@ TEST(cases_are_what_differs)
 
 TEST(what_is_no_case_is_refused)
 {
-    for (EACH_TEXT(
-             c, "control.seed=1,2\ncase no colon\n", "control.seed=1,2\ncase a: push=0.05\n",
-             "control.seed=1,2\ncase a: nonsense\n", "case a:\n",
-             "control.seed=1,2\ncase : arm.links=3\n", "control.seed=1,2\ncase a: push=0.1@-1\n",
-             "control.seed=1,2\ncase a: push=0.1@1 s\n",
-             "control.seed=1,2\ncase a: push=1e999@0.1\n",
-             "control.seed=1,2\ncase a: push=0.1@1e999\n",
-             "control.seed=1,2\ncase a: push=much@1\n", "control.seed=1,2\ncase a: push=0.1@soon\n",
-             ("control.seed=1,2\ncase a: push=1@1; push=1@2; push=1@3;"
-              "push=1@4; push=1@5\n"))) {
+    for (EACH_TEXT(c, "control.seed=1,2\ncase no colon\n",
+                   "control.seed=1,2\ncase a: push=0.05\n",
+                   "control.seed=1,2\ncase a: nonsense\n", "case a:\n",
+                   "control.seed=1,2\ncase : arm.links=3\n",
+                   "control.seed=1,2\ncase a: push=0.1@-1\n",
+                   "control.seed=1,2\ncase a: push=0.1@1 s\n",
+                   "control.seed=1,2\ncase a: push=1e999@0.1\n",
+                   "control.seed=1,2\ncase a: push=0.1@1e999\n",
+                   "control.seed=1,2\ncase a: push=much@1\n",
+                   "control.seed=1,2\ncase a: push=0.1@soon\n",
+                   ("control.seed=1,2\ncase a: push=1@1; push=1@2; push=1@3;"
+                    "push=1@4; push=1@5\n"))) {
         SCOPED(robust_set_finish) robust_set set; // as callers do
         REFUSED(STATUS_BAD_ARGUMENT, "", read_set(&set, *c, &f));
     }
 
     // of several settings that cannot be the first is named
     SET(set, "control.seed=1,2\ncase a: arm.k2=4; arm.links=-3; wall.restitution=7\n");
-    const scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
+    const scenario base = {.name = "test",
+                           .parameters = rig_parameters_with("run.duration=1")};
     SCOPED(robust_case_finish) scenario derived;
     fault f = {0};
-    assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f),
+                     STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "case 'a'"));
     assert_non_null(strstr(f.text, "arm.links"));
     assert_null(strstr(f.text, "wall.restitution"));
@@ -113,9 +119,11 @@ TEST(pushes_of_a_case_must_act)
 {
     static const struct {
         const char *text, *says;
-    } wrong[] = {{"a=1\n\ncase late: push=1@1.1\n", ":3: case 'late': a push at 1.1 s is outside"},
+    } wrong[] = {{"a=1\n\ncase late: push=1@1.1\n",
+                  ":3: case 'late': a push at 1.1 s is outside"},
                  {"a=1\ncase later: push=1@0.1; push=1@9\n", "a push at 9 s is outside"},
-                 {"a=1\ncase short: run.duration=0.4; push=1@0.5\n", "expected 0 to 0.4 s"},
+                 {"a=1\ncase short: run.duration=0.4; push=1@0.5\n",
+                  "expected 0 to 0.4 s"},
                  {"a=1\ncase old: arm.model=printed; push=1@0.1\n", "takes no pushes"}};
     scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
     base.parameters.control.law = LAW_NONE;
@@ -123,8 +131,10 @@ TEST(pushes_of_a_case_must_act)
         SET(set, c->text);
         SCOPED(robust_case_finish) scenario derived;
         fault f = {0};
-        assert_int_not_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f), STATUS_OK);
-        fail_if(strstr(f.text, c->says) == NULL, "'%s' does not say '%s'", f.text, c->says);
+        assert_int_not_equal(robust_case_scenario(&derived, &base, &set.cases[0], &f),
+                             STATUS_OK);
+        fail_if(strstr(f.text, c->says) == NULL, "'%s' does not say '%s'", f.text,
+                c->says);
     }
 
     // at the very end there is still a run
@@ -159,8 +169,11 @@ static char *judged(robust_law *found, int law, size_t runs, int jobs, int count
     scenario base = {.name = "test", .parameters = rig_parameters_with("run.duration=1")};
     base.parameters.control.law = law;
     base.parameters.set[PARAMETER_INDEX(control.law)] = 1; // a default would come back
-    sweep_request request = {
-        .vary = lines, .vary_count = count, .sampling = SWEEP_LATIN, .runs = runs, .seed = 3};
+    sweep_request request = {.vary = lines,
+                             .vary_count = count,
+                             .sampling = SWEEP_LATIN,
+                             .runs = runs,
+                             .seed = 3};
     DONE(sweep_init(&s, &base, &request, &f));
     DONE(sweep_store_open(&store, NULL, &s, &f));
     sweep_options options = {.jobs = jobs};
@@ -174,7 +187,8 @@ static char *judged(robust_law *found, int law, size_t runs, int jobs, int count
     return text;
 }
 
-// Sets as short and as long as they may be, cases with as many pushes and settings as there are.
+// Sets as short and as long as they may be, cases with as many pushes and settings as
+// there are.
 TEST(sets_have_limits)
 {
     enum { LONGEST = 65536 };
@@ -200,7 +214,8 @@ TEST(sets_have_limits)
     for (int over = 0; over < 2; over++) {
         memset(text, '1', LONGEST + 1);
         text[LONGEST + over] = '\0';
-        assert_int_equal(read_set(&set, text, &f), over ? STATUS_BAD_ARGUMENT : STATUS_OK);
+        assert_int_equal(read_set(&set, text, &f),
+                         over ? STATUS_BAD_ARGUMENT : STATUS_OK);
         if (!over) {
             assert_int_equal(strlen(set.lines[0]), LONGEST);
         }
@@ -244,7 +259,9 @@ TEST(sets_have_limits)
 
     // one push too many, with the line that has it
     assert_int_equal(
-        read_set(&set, "a=1\n\ncase one: push=1@1; push=1@1; push=1@1; push=1@1; push=1@1\n", &f),
+        read_set(&set,
+                 "a=1\n\ncase one: push=1@1; push=1@1; push=1@1; push=1@1; push=1@1\n",
+                 &f),
         STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, formatted("%s:3: no case", path)));
     assert_int_equal(f.line, 3);
@@ -267,9 +284,11 @@ TEST(one_run_is_all_its_quantiles)
     JUDGED(found, LAW_HYBRID, 1, 1, 1, ((char *const[]){"wall.kind=point"}));
     summary s = rig_summary_with("control.law=hybrid run.duration=1");
     for (int i = 0; i < ROBUST_QUANTILES; i++) {
-        check_relative(found.overshoot[i], 100 * s.force_over_command_N / s.force_command_N, 1e-12);
+        check_relative(found.overshoot[i],
+                       100 * s.force_over_command_N / s.force_command_N, 1e-12);
         check_relative(found.settling[i], s.settling_time_s, 1e-12);
-        check_relative(found.error[i], 100 * fabs(s.steady_error_N) / s.force_command_N, 1e-12);
+        check_relative(found.error[i], 100 * fabs(s.steady_error_N) / s.force_command_N,
+                       1e-12);
     }
     check_close(found.settled, 1, 0);
     check_close(found.exceeded, 1, 0); // by 77 % of the command
@@ -277,9 +296,10 @@ TEST(one_run_is_all_its_quantiles)
 
 TEST(quantiles_rise_and_the_observer_law_stands_the_set)
 {
-    char *const lines[] = {"belief.mass_factor=0.85:1.15", "belief.torque_factor=0.85:1.15",
-                           "belief.friction_factor=0.7:1.3", "belief.wall_error=-0.03:0.03",
-                           "control.seed=1:1000"};
+    char *const lines[] = {"belief.mass_factor=0.85:1.15",
+                           "belief.torque_factor=0.85:1.15",
+                           "belief.friction_factor=0.7:1.3",
+                           "belief.wall_error=-0.03:0.03", "control.seed=1:1000"};
     SCOPED(robust_law_finish) robust_law hybrid, observer;
     free(judged(&hybrid, LAW_HYBRID, 24, 2, 5, lines));
     free(judged(&observer, LAW_OBSERVER, 24, 2, 5, lines));
@@ -315,21 +335,23 @@ static void write_page(FILE *stream, const robust_table *t)
 }
 
 // Every line of a table has as many columns as its heading, and the laws stand in it.
-static void check_table(void (*writes)(FILE *, const robust_table *), const robust_table *t,
-                        char separator, int lines)
+static void check_table(void (*writes)(FILE *, const robust_table *),
+                        const robust_table *t, char separator, int lines)
 {
     SCOPED(free_kept) WRITTEN(text, writes(stream, t));
     const char *line = text;
     const int columns = count_in_line(text, separator);
     assert_true(columns > 5);
     for (int i = 0; i < lines; i++) {
-        fail_if(count_in_line(line, separator) != columns, "not %d columns in: %s", columns, line);
+        fail_if(count_in_line(line, separator) != columns, "not %d columns in: %s",
+                columns, line);
         line = strchr(line, '\n') + 1;
     }
     assert_string_equal(line, "");
     for (int i = 0; i < t->count; i++) {
         assert_non_null(strstr(text, t->laws[i].law));
-        assert_true(t->laws[i].case_title == NULL || strstr(text, t->laws[i].case_title) != NULL);
+        assert_true(t->laws[i].case_title == NULL ||
+                    strstr(text, t->laws[i].case_title) != NULL);
     }
 }
 
@@ -379,7 +401,8 @@ TEST(texts_and_json_say_what_is_there)
 
     json_t *json = robust_json(&table);
     assert_null(json_object_get(json, "against"));
-    assert_null(json_object_get(json_array_get(json_object_get(json, "laws"), 0), "case"));
+    assert_null(
+        json_object_get(json_array_get(json_object_get(json, "laws"), 0), "case"));
     json_decref(json);
     laws[0].case_title = "plain";
     table.against = "hybrid";
@@ -391,11 +414,12 @@ TEST(texts_and_json_say_what_is_there)
     json_decref(json);
 }
 
-// A force limit is what a run may not exceed, where one is told; chains are judged by the smoothed
-// force.
+// A force limit is what a run may not exceed, where one is told; chains are judged by the
+// smoothed force.
 TEST(a_limit_says_what_is_too_much)
 {
-    char *const low[] = {"control.force_limit=0.5"}, *const high[] = {"control.force_limit=100"};
+    char *const low[] = {"control.force_limit=0.5"}, *const high[] = {
+                                                         "control.force_limit=100"};
     char *const links[] = {"arm.links=3"};
     robust_law found;
     free(judged(&found, LAW_HYBRID, 1, 1, 1, low));
@@ -424,11 +448,14 @@ TEST(a_limit_says_what_is_too_much)
         assert_non_null(strstr(text, formatted("\"overshoot_of\": \"%s\"", kinds[i].of)));
         for (int q = 0; q < ROBUST_QUANTILES; q++) {
             check_below(found.smoothed[q], found.raw[q]);
-            assert_true(i == 2 || found.overshoot[q] == (i == 0 ? found.raw : found.smoothed)[q]);
+            assert_true(i == 2 ||
+                        found.overshoot[q] == (i == 0 ? found.raw : found.smoothed)[q]);
         }
         for (EACH_TEXT(key, "median", "nine_tenths", "worst")) {
-            assert_non_null(strstr(text, formatted("\"raw_overshoot_%s_percent\": ", *key)));
-            assert_non_null(strstr(text, formatted("\"smoothed_overshoot_%s_percent\": ", *key)));
+            assert_non_null(
+                strstr(text, formatted("\"raw_overshoot_%s_percent\": ", *key)));
+            assert_non_null(
+                strstr(text, formatted("\"smoothed_overshoot_%s_percent\": ", *key)));
         }
         robust_law_finish(&found);
     }

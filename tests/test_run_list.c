@@ -15,8 +15,8 @@ TEST(test_runs_are_pinned_with_what_was_changed)
     assert_int_equal(list->count, 2);
     assert_int_equal(list->baseline, 1);
     press(&ex, ":baseline 1<Enter>");
-    check_close(ex.state.session.other.summary.peak_force_N, list->runs[0].run.summary.peak_force_N,
-                0);
+    check_close(ex.state.session.other.summary.peak_force_N,
+                list->runs[0].run.summary.peak_force_N, 0);
 
     // what differs, in both directions
     char text[LINE_TEXT];
@@ -39,7 +39,8 @@ TEST(test_names_are_cut_between_words)
     assert_shows_at(&ex, 100, 40, formatted("!%s", name));
 
     // where there is room it is whole, also one that is long
-    press_shows(&ex, "B:pin of the second series, with 12345678901234567890 samples<Enter>R",
+    press_shows(&ex,
+                "B:pin of the second series, with 12345678901234567890 samples<Enter>R",
                 "of the second series, with… ");
     press_shows(&ex, "r", "with 12345678901234567890 samples");
 }
@@ -115,7 +116,8 @@ TEST(test_the_difference_is_that_of_the_runs)
     // of the run from itself nothing
     press(&ex, "D");
     free(picture(&ex, 100, 30, GLYPHS_BRAILLE));
-    check_close(difference_first_beyond(&ex.state.difference, SIGNAL_INDEX(force), 0), -1, 0);
+    check_close(difference_first_beyond(&ex.state.difference, SIGNAL_INDEX(force), 0), -1,
+                0);
 
     // rows are the same up to a change, and then as far apart as the voltages
     press(&ex, ":set motor.voltage 0.5<Enter>");
@@ -131,8 +133,8 @@ TEST(test_the_difference_is_that_of_the_runs)
     assert_int_equal(state_run_count(&ex.state), 2);
 }
 
-// Contact, sticking and modes are no amounts: beside the differences they are the present run's, in
-// the curves, at the cursor, in the lanes and in the statistics.
+// Contact, sticking and modes are no amounts: beside the differences they are the present
+// run's, in the curves, at the cursor, in the lanes and in the statistics.
 TEST(test_states_are_not_subtracted)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");

@@ -1,10 +1,11 @@
-// Reading scenarios: what a file may say, and the place and sentence of everything it may not.
+// Reading scenarios: what a file may say, and the place and sentence of everything it may
+// not.
 #include "tests/given_parameters.h"
 #include "tests/scenario_fixture.h"
 
 #include "src/run/run.h"
 
-// ---- what a file may say ------------------------------------------------------------------------
+// ---- what a file may say --------------------------------------------------------------
 
 TEST(a_whole_scenario_is_read)
 {
@@ -66,7 +67,8 @@ TEST(what_is_left_out_has_a_default)
 
 TEST(the_order_of_groups_does_not_matter)
 {
-    KEPT_SCENARIO(s) = good("script: [{at: 4 s, push: -0.02 N s}]\nrun: {duration: 5 s}\n");
+    KEPT_SCENARIO(s) =
+        good("script: [{at: 4 s, push: -0.02 N s}]\nrun: {duration: 5 s}\n");
     assert_int_equal(s.actions[0].kind, ACTION_PUSH);
     check_close(s.actions[0].value, -0.02, 0);
 }
@@ -88,7 +90,7 @@ TEST(times_at_both_ends_of_the_run_are_inside)
     assert_int_equal(s.action_count, 2);
 }
 
-// ---- faults of parameters -----------------------------------------------------------------------
+// ---- faults of parameters -------------------------------------------------------------
 
 TEST(unknown_keys_suggest_what_was_meant)
 {
@@ -98,9 +100,11 @@ TEST(unknown_keys_suggest_what_was_meant)
                 "expected title, description, panes, arm, motor, wall");
     check_fault("arm:\n  k3: 5\n", 2, 3, "in arm, did you mean 'k1'?");
     check_fault("wall:\n  kind: point\n  angel: 0.1\n", 3, 3, "did you mean 'angle'?");
-    check_fault("wall: {kind: point, voltage: 1}\n", 1, 21, "did you mean motor.voltage?");
+    check_fault("wall: {kind: point, voltage: 1}\n", 1, 21,
+                "did you mean motor.voltage?");
     check_fault("control: {k2_factor: 1}\n", 1, 11, "did you mean belief.k2_factor?");
-    check_fault("wall: {height_above: 1}\n", 1, 8, "expected one of kind, angle, restitution");
+    check_fault("wall: {height_above: 1}\n", 1, 8,
+                "expected one of kind, angle, restitution");
     check_fault("wall: {stiffness: -1}\n", 1, 19, "out of range");
     check_fault("wall: {contact: kelvin-voigt, restitution: 0.5}\n", 1, 44,
                 "for wall.contact = rigid");
@@ -110,7 +114,8 @@ TEST(unknown_keys_suggest_what_was_meant)
 TEST(wrong_values_are_named_with_their_place)
 {
     check_fault("arm:\n  k2: stiff\n", 2, 7, "arm.k2 = 'stiff' is not a number");
-    check_fault("arm:\n  k2: -1\n", 2, 7, "out of range, expected 1e-06 to 1e+09 N m/rad");
+    check_fault("arm:\n  k2: -1\n", 2, 7,
+                "out of range, expected 1e-06 to 1e+09 N m/rad");
     check_fault("arm:\n  k2: 5 N/m\n", 2, 7, "expected N m/rad");
     check_fault("arm:\n  k2: .inf\n", 2, 7, "arm.k2");
     check_fault("arm:\n  k2: nan\n", 2, 7, "not finite");
@@ -125,7 +130,8 @@ TEST(wrong_shapes_are_named_with_their_place)
     check_fault("arm: 3\n", 1, 6, "arm is a single value, expected keys");
     check_fault("arm: [1]\n", 1, 6, "arm is a list, expected keys");
     check_fault("title: x\narm:\n", 2, 5, "arm is empty, expected keys");
-    check_fault("arm:\n  k2: {a: 1}\n", 2, 7, "arm.k2 is a map of keys, expected a value");
+    check_fault("arm:\n  k2: {a: 1}\n", 2, 7,
+                "arm.k2 is a map of keys, expected a value");
     check_fault("arm:\n  k2: [5]\n", 2, 7, "arm.k2 is a list, expected a value");
     check_fault("arm:\n  k2:\n", 2, 6, "arm.k2 is empty, expected a value");
     check_fault("- arm\n", 1, 1, "the file is a list");
@@ -140,34 +146,38 @@ TEST(wrong_shapes_are_named_with_their_place)
 TEST(a_key_may_be_there_once)
 {
     check_fault("arm:\n  k2: 5\n  k1: 7\n  k2: 6\n", 4, 3, "first at line 2");
-    check_fault("arm: {k2: 5}\nmotor: {voltage: 1}\narm: {k1: 7}\n", 3, 1, "'arm' is there twice");
+    check_fault("arm: {k2: 5}\nmotor: {voltage: 1}\narm: {k1: 7}\n", 3, 1,
+                "'arm' is there twice");
     check_fault("title: x\ntitle: x\n", 2, 1, "first at line 1");
 }
 
 TEST(impossible_combinations_point_at_the_key)
 {
-    check_fault("arm:\n  model: printed\n  links: 5\n", 3, 10, "the printed model has two links");
+    check_fault("arm:\n  model: printed\n  links: 5\n", 3, 10,
+                "the printed model has two links");
     check_fault("arm: {model: printed}\nwall: {kind: plane}\n", 2, 14, "not plane");
     check_fault("arm:\n  links: 3\n  link_inertia: 1e-5\n", 3, 17, "two links only");
     check_fault("arm:\n  EI: 2.46\n  k2: 4.92\n", 2, 7, "both given");
     check_fault("arm: {hub_joint: beam, k1: 90}\n", 1, 28, "arm.hub_joint = spring");
     // lists of the beam
     check_fault("arm:\n  links: 4\n  joint_stiffness: [10, 12]\n", 3, 20, "expected 3");
-    check_fault("arm:\n  links: 4\n  joint_stiffness: [10, -3, 9]\n", 3, 25, "-3 is out of range");
-    check_fault("arm:\n  links: 3\n  link_lengths:\n    - 0.3\n    - long\n    - 1\n", 5, 7,
-                "'long' is not a number");
+    check_fault("arm:\n  links: 4\n  joint_stiffness: [10, -3, 9]\n", 3, 25,
+                "-3 is out of range");
+    check_fault("arm:\n  links: 3\n  link_lengths:\n    - 0.3\n    - long\n    - 1\n", 5,
+                7, "'long' is not a number");
     check_fault("arm:\n  k2: 5\n  joint_stiffness: [7]\n", 3, 20, "both given");
-    check_fault("arm: {hub_joint: beam}\nscript:\n  - at: 0.1 s\n    set: {arm.k1: 90}\n", 4, 19,
-                "arm.k1 is for arm.hub_joint = spring");
-    check_fault("arm: {joint_stiffness: [7]}\nscript:\n  - at: 0.1 s\n    set: {arm.EI: 9}\n", 4,
-                19, "follows from arm.joint_stiffness");
+    check_fault("arm: {hub_joint: beam}\nscript:\n  - at: 0.1 s\n    set: {arm.k1: 90}\n",
+                4, 19, "arm.k1 is for arm.hub_joint = spring");
+    check_fault(
+        "arm: {joint_stiffness: [7]}\nscript:\n  - at: 0.1 s\n    set: {arm.EI: 9}\n", 4,
+        19, "follows from arm.joint_stiffness");
     // all of them, not the first one only
-    check_faults(
-        "arm: {model: printed, links: 5, hub_joint: rigid}\n"
-        "wall: {kind: plane}\n"
-        "method: {name: event}\n",
-        4,
-        (const char *const[]){"f.yaml:1:30: ", "f.yaml:1:44: ", "f.yaml:2:14: ", "f.yaml:3:16: "});
+    check_faults("arm: {model: printed, links: 5, hub_joint: rigid}\n"
+                 "wall: {kind: plane}\n"
+                 "method: {name: event}\n",
+                 4,
+                 (const char *const[]){"f.yaml:1:30: ", "f.yaml:1:44: ", "f.yaml:2:14: ",
+                                       "f.yaml:3:16: "});
 }
 
 // However the reader comes upon them: the keys of the whole before those within.
@@ -200,7 +210,7 @@ TEST(a_title_has_a_limit)
     check_fault(formatted("title: %s", repeated('x', 300)), 1, 8, "at most 200");
 }
 
-// ---- faults of script and expect ----------------------------------------------------------------
+// ---- faults of script and expect ------------------------------------------------------
 
 TEST(faults_of_actions)
 {
@@ -229,25 +239,30 @@ TEST(faults_of_actions)
 TEST(faults_of_set)
 {
     check_fault("script:\n  - at: 0.5\n    set: 3\n", 3, 10, "set is a single value");
-    check_fault("script:\n  - at: 0.5\n    set: {arm.links: 3}\n", 3, 11, "cannot change during");
+    check_fault("script:\n  - at: 0.5\n    set: {arm.links: 3}\n", 3, 11,
+                "cannot change during");
     check_fault("script:\n  - at: 0.5\n    set: {motor.voltag: 3}\n", 3, 11,
                 "did you mean 'motor.voltage'?");
-    check_fault("script:\n  - at: 0.5\n    set: {x: 3}\n", 3, 11, "unknown parameter 'x'");
-    check_fault("control: {law: force-pd}\nscript:\n  - at: 0.5\n    set: {control.delay: 0.5}\n",
-                3, 3,
-                "from 0.5 s on control.delay_periods = 0 and control.delay = 0.5 s are together");
-    check_fault("script:\n  - at: 0.5\n    set: {motor.voltage: 1e9}\n", 3, 26, "out of range");
-    check_fault("script:\n  - at: 0.5\n    set: {motor.voltage: [1]}\n", 3, 26, "is a list");
-    check_fault("script:\n  - at: 0.5\n    set: {motor.voltage: 1, motor.voltage: 2}\n", 3, 29,
-                "twice");
+    check_fault("script:\n  - at: 0.5\n    set: {x: 3}\n", 3, 11,
+                "unknown parameter 'x'");
+    check_fault(
+        "control: {law: force-pd}\nscript:\n  - at: 0.5\n    set: {control.delay: 0.5}\n",
+        3, 3,
+        "from 0.5 s on control.delay_periods = 0 and control.delay = 0.5 s are together");
+    check_fault("script:\n  - at: 0.5\n    set: {motor.voltage: 1e9}\n", 3, 26,
+                "out of range");
+    check_fault("script:\n  - at: 0.5\n    set: {motor.voltage: [1]}\n", 3, 26,
+                "is a list");
+    check_fault("script:\n  - at: 0.5\n    set: {motor.voltage: 1, motor.voltage: 2}\n",
+                3, 29, "twice");
 }
 
 // What a script may change is what the table says, from its first parameter to its last.
 TEST(only_timed_parameters_are_set_by_a_script)
 {
     for (int i = 0; i < parameter_count; i++) {
-        const char *text =
-            formatted("script:\n  - at: 0.5\n    set: {%s: no}\n", parameter_table[i].path);
+        const char *text = formatted("script:\n  - at: 0.5\n    set: {%s: no}\n",
+                                     parameter_table[i].path);
         if (!parameter_table[i].timed) {
             check_fault(text, 3, 11, "cannot change during a run");
         } else {
@@ -265,51 +280,57 @@ TEST(only_timed_parameters_are_set_by_a_script)
 TEST(faults_of_expectations)
 {
     check_fault("expect: 3\n", 1, 9, "expect is a single value");
-    check_fault("expect:\n  impact: {value: 1, tolerance: 0}\n", 2, 3, "did you mean 'impacts'?");
+    check_fault("expect:\n  impact: {value: 1, tolerance: 0}\n", 2, 3,
+                "did you mean 'impacts'?");
     check_fault("expect:\n  beauty_of_it_all: null\n", 2, 3, "unknown quantity");
     check_fault("expect:\n  wall_time_s: null\n", 2, 3, "depends on the computer");
-    check_fault("expect:\n  impacts: 3\n", 2, 12, "expected {value: ..., tolerance: ...} or null");
+    check_fault("expect:\n  impacts: 3\n", 2, 12,
+                "expected {value: ..., tolerance: ...} or null");
     check_fault("expect:\n  impacts: \"null\"\n", 2, 12, "expected {value");
     check_fault("expect:\n  impacts: {value: 3}\n", 2, 12, "no tolerance");
-    check_fault("expect:\n  impacts: {value: 3, tolerance: 1, value: 2}\n", 2, 37, "twice");
+    check_fault("expect:\n  impacts: {value: 3, tolerance: 1, value: 2}\n", 2, 37,
+                "twice");
     check_fault("expect:\n  impacts: {tolerance: 3}\n", 2, 12, "no value");
     check_fault("expect:\n  impacts: {value: 3, tolerance: -1}\n", 2, 34, "negative");
     check_fault("expect:\n  impacts: {value: nan, tolerance: 1}\n", 2, 20, "finite");
-    check_fault("expect:\n  impacts: {value: 3 N, tolerance: 1}\n", 2, 20, "without a unit");
-    check_fault("expect:\n  impacts: {value: 3, tolerance: 1, by: 2}\n", 2, 37, "unknown key 'by'");
+    check_fault("expect:\n  impacts: {value: 3 N, tolerance: 1}\n", 2, 20,
+                "without a unit");
+    check_fault("expect:\n  impacts: {value: 3, tolerance: 1, by: 2}\n", 2, 37,
+                "unknown key 'by'");
 }
 
 TEST(several_faults_are_all_reported)
 {
-    check_faults(
-        "titel: x\n"
-        "arm:\n"
-        "  k2: stiff\n"
-        "  links: 0\n"
-        "  k22: 1\n"
-        "motor: 5\n"
-        "run: {duration: 2 s}\n"
-        "script:\n"
-        "  - at: 9 s\n"
-        "    set: {arm.links: 3, motor.voltage: x}\n"
-        "  - push: 3\n"
-        "expect:\n"
-        "  impacts: {value: 3, tolerance: -1}\n"
-        "  nonsense: null\n",
-        11,
-        (const char *const[]){"f.yaml:1:1: unknown key 'titel'", "f.yaml:3:7: arm.k2 = 'stiff'",
-                              "f.yaml:4:10: arm.links = 0", "f.yaml:5:3: unknown key 'k22'",
-                              "f.yaml:6:8: motor is", "f.yaml:10:11: arm.links cannot change",
-                              "f.yaml:10:40: motor.voltage = 'x'",
-                              "f.yaml:11:5: an action without a time", "f.yaml:13:34: tolerance",
-                              "f.yaml:14:3: unknown quantity", "f.yaml:9:9: at = 9 s is outside"});
+    check_faults("titel: x\n"
+                 "arm:\n"
+                 "  k2: stiff\n"
+                 "  links: 0\n"
+                 "  k22: 1\n"
+                 "motor: 5\n"
+                 "run: {duration: 2 s}\n"
+                 "script:\n"
+                 "  - at: 9 s\n"
+                 "    set: {arm.links: 3, motor.voltage: x}\n"
+                 "  - push: 3\n"
+                 "expect:\n"
+                 "  impacts: {value: 3, tolerance: -1}\n"
+                 "  nonsense: null\n",
+                 11,
+                 (const char *const[]){
+                     "f.yaml:1:1: unknown key 'titel'", "f.yaml:3:7: arm.k2 = 'stiff'",
+                     "f.yaml:4:10: arm.links = 0", "f.yaml:5:3: unknown key 'k22'",
+                     "f.yaml:6:8: motor is", "f.yaml:10:11: arm.links cannot change",
+                     "f.yaml:10:40: motor.voltage = 'x'",
+                     "f.yaml:11:5: an action without a time", "f.yaml:13:34: tolerance",
+                     "f.yaml:14:3: unknown quantity", "f.yaml:9:9: at = 9 s is outside"});
 }
 
 // A list may be written as YAML's or as text; in either it has an end.
 TEST(lists_are_read_in_both_forms)
 {
     for (EACH_TEXT(c, "[10, 12.5]", "'10,12.5'")) {
-        KEPT_SCENARIO(s) = good(formatted("title: t\narm: {links: 3, joint_stiffness: %s}\n", *c));
+        KEPT_SCENARIO(s) =
+            good(formatted("title: t\narm: {links: 3, joint_stiffness: %s}\n", *c));
         assert_string_equal(s.parameters.arm.joint_stiffness, "10, 12.5");
     }
     scenario s;
@@ -324,31 +345,38 @@ TEST(lists_are_read_in_both_forms)
     assert_non_null(strstr(all.text, "arm.link_lengths is too long"));
 }
 
-// A value that the parameter does not accept changes nothing, for any origin of the action.
+// A value that the parameter does not accept changes nothing, for any origin of the
+// action.
 TEST(an_action_that_cannot_be_changes_nothing)
 {
     KEPT_SCENARIO(s) = good("title: t\n");
     const parameters before = s.parameters;
-    const action wrong = {.kind = ACTION_SET, .parameter = PARAMETER_INDEX(arm.k2), .value = -1};
+    const action wrong = {.kind = ACTION_SET,
+                          .parameter = PARAMETER_INDEX(arm.k2),
+                          .value = -1};
     REFUSED(STATUS_BAD_SCENARIO, "arm.k2", action_apply(&wrong, &s.parameters, &f));
     assert_memory_equal(&s.parameters, &before, sizeof before);
 }
 
-// One that the law does not know from the start is said even where a script follows.
-// A list may be as long as a text: with one character more it is refused where it becomes too long.
+// One that the law does not know from the start is said even where a script follows. A
+// list may be as long as a text: with one character more it is refused where it becomes
+// too long.
 TEST(a_list_has_a_limit)
 {
     for (int over = -1; over < 2; over++) {
         const int digits = PARAMETER_TEXT_SIZE - 1 - (int)strlen(", 7.5") + over;
         const char *text =
-            formatted("arm:\n  links: 3\n  joint_stiffness:\n  - 6.%0*d\n  - 7.5\n", digits - 2, 0);
+            formatted("arm:\n  links: 3\n  joint_stiffness:\n  - 6.%0*d\n  - 7.5\n",
+                      digits - 2, 0);
         if (over > 0) {
             check_fault(text, 5, 5, "too long");
             continue;
         }
         KEPT_SCENARIO(s) = good(text);
         double numbers[PARAMETER_LIST_MOST];
-        assert_int_equal(parameter_list_numbers(s.parameters.arm.joint_stiffness, numbers), 2);
+        assert_int_equal(parameter_list_numbers(s.parameters.arm.joint_stiffness,
+                                                numbers),
+                         2);
         check_close(numbers[0], 6, 0);
         check_close(numbers[1], 7.5, 0);
     }
@@ -360,9 +388,9 @@ TEST(nothing_is_read_behind_the_end)
     scenario s;
     sentences all = {0};
     const char *text = "arm: [1\t";
-    assert_int_equal(
-        scenario_parse(&s, text, strlen(text) - 1, "f.yaml", NULL, keep_sentence, &all),
-        STATUS_BAD_SCENARIO);
+    assert_int_equal(scenario_parse(&s, text, strlen(text) - 1, "f.yaml", NULL,
+                                    keep_sentence, &all),
+                     STATUS_BAD_SCENARIO);
     assert_int_equal(all.count, 1);
     assert_null(strstr(all.text, "a tab"));
 }
@@ -384,5 +412,6 @@ TEST(an_expectation_may_be_exact)
 {
     KEPT_SCENARIO(s) = good("title: t\nexpect: {impacts: {value: 2, tolerance: 0}}\n");
     check_close(s.expectations[0].tolerance, 0, 0);
-    check_fault("title: t\nexpect: {impacts: {value: 2, tolerance: -1}}\n", 2, 41, "tolerance");
+    check_fault("title: t\nexpect: {impacts: {value: 2, tolerance: -1}}\n", 2, 41,
+                "tolerance");
 }

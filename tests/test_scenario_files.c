@@ -1,10 +1,10 @@
-// Scenarios as files: found by name, listed, changed by --set, and written so that they can be read
-// back.
+// Scenarios as files: found by name, listed, changed by --set, and written so that they
+// can be read back.
 #include "tests/scenario_fixture.h"
 
 #include "src/run/run.h"
 
-// ---- files --------------------------------------------------------------------------------------
+// ---- files ----------------------------------------------------------------------------
 
 // A folder of scenarios.
 static int make_folder(void **state)
@@ -40,7 +40,7 @@ static void look_back(char **before)
 }
 
 // The same until the block is left.
-#define LOOKING_IN(folders)                                                                        \
+#define LOOKING_IN(folders)                                                              \
     SCOPED(look_back) char *before __attribute__((unused)) = look_in(folders)
 
 // Opens with the folder of this test as the scenario folder.
@@ -64,15 +64,18 @@ TEST_BETWEEN(scenarios_open_by_name_and_by_file, make_folder, leave_folder)
     assert_int_equal(open_here(&s, path, &all), STATUS_OK);
     assert_string_equal(s.name, path);
     scenario_finish(&s);
-    assert_int_equal(open_here(&s, formatted("%s/deep/alpha-10", test_folder), &all), STATUS_OK);
+    assert_int_equal(open_here(&s, formatted("%s/deep/alpha-10", test_folder), &all),
+                     STATUS_OK);
     assert_string_equal(s.title, "Ten");
 }
 
 TEST_BETWEEN(an_unknown_name_suggests_the_nearest, make_folder, leave_folder)
 {
-    static const char *const cases[][2] = {{"deep/alpha-8", "did you mean 'deep/alpha-9'?"},
+    static const char *const cases[][2] = {{"deep/alpha-8",
+                                            "did you mean 'deep/alpha-9'?"},
                                            {"alpha-10", "did you mean 'deep/alpha-10'?"},
-                                           {"alpha-9.yaml", "did you mean 'deep/alpha-9'?"},
+                                           {"alpha-9.yaml",
+                                            "did you mean 'deep/alpha-9'?"},
                                            {"zzzzzzzzzz", "impactlab list"},
                                            {"../etc/passwd", ""},
                                            {"", ""}};
@@ -90,10 +93,12 @@ TEST_BETWEEN(files_that_cannot_be_read, make_folder, leave_folder)
     const struct {
         const char *path, *says;
         status code;
-    } cases[] = {{"/nonexistent/x.yaml", "cannot be opened (No such file", STATUS_CANNOT_READ},
+    } cases[] = {{"/nonexistent/x.yaml", "cannot be opened (No such file",
+                  STATUS_CANNOT_READ},
                  {test_folder, "it is a folder", STATUS_CANNOT_READ},
                  // one that opens and gives nothing
-                 {"/proc/self/mem", "cannot be read (Input/output error)", STATUS_CANNOT_READ}};
+                 {"/proc/self/mem", "cannot be read (Input/output error)",
+                  STATUS_CANNOT_READ}};
     scenario s;
     for (EACH(c, cases)) {
         sentences all = {0};
@@ -142,7 +147,8 @@ TEST_BETWEEN(the_list_is_complete_and_sorted, make_folder, leave_folder)
     assert_int_equal(shipped, 1);
     free_names(names, count);
     setenv("IMPACTLAB_SCENARIOS", "/nonexistent", 1);
-    REFUSED(STATUS_CANNOT_READ, "/nonexistent: no such folder", scenario_list(&names, &count, &f));
+    REFUSED(STATUS_CANNOT_READ, "/nonexistent: no such folder",
+            scenario_list(&names, &count, &f));
     assert_int_equal(count, 0);
     assert_null(names);
 
@@ -185,18 +191,21 @@ TEST(every_shipped_scenario_reads_clean)
     for (int i = 0; i < count; i++) {
         KEPT_SCENARIO(s);
         sentences all = {0};
-        fail_if(scenario_open(&s, names[i], keep_sentence, &all) != STATUS_OK || all.count != 0,
+        fail_if(scenario_open(&s, names[i], keep_sentence, &all) != STATUS_OK ||
+                    all.count != 0,
                 "%s", all.text);
-        // a title of its own, a description, and the thesis's figures on the thesis's model
+        // a title of its own, a description, and the thesis's figures on the thesis's
+        // model
         assert_string_not_equal(s.title, names[i]);
         assert_in_range(strlen(s.title), 8, 72);
         assert_true(strlen(s.description) > 20);
         bool of_thesis = strncmp(names[i], "thesis/", 7) == 0;
         thesis += of_thesis;
-        // (what the thesis measured comes from the rig, on whatever arm it is; lessons are about
-        // both)
+        // (what the thesis measured comes from the rig, on whatever arm it is; lessons
+        // are about both)
         if (s.parameters.control.law == LAW_NONE && s.lesson.step_count == 0) {
-            assert_int_equal(s.parameters.arm.model, of_thesis ? ARM_PRINTED : ARM_CORRECTED);
+            assert_int_equal(s.parameters.arm.model,
+                             of_thesis ? ARM_PRINTED : ARM_CORRECTED);
         }
     }
     free_names(names, count);
@@ -209,8 +218,8 @@ TEST(every_figure_and_table_of_the_thesis_has_its_scenario)
     for (int i = 1; i <= 14; i++) {
         KEPT_SCENARIO(s);
         sentences all = {0};
-        const char *name =
-            formatted(i <= 11 ? "thesis/fig-3-%d" : "thesis/table-4-%d", i <= 11 ? i : i - 11);
+        const char *name = formatted(i <= 11 ? "thesis/fig-3-%d" : "thesis/table-4-%d",
+                                     i <= 11 ? i : i - 11);
         assert_int_equal(scenario_open(&s, name, keep_sentence, &all), STATUS_OK);
         bool coarse = i >= 6 && i <= 8, fast = i >= 9 && i <= 11;
         check_close(s.parameters.method.step, coarse ? 0.01 : 0.001, 0);
@@ -223,7 +232,7 @@ TEST(every_figure_and_table_of_the_thesis_has_its_scenario)
     }
 }
 
-// ---- --set --------------------------------------------------------------------------------------
+// ---- --set ----------------------------------------------------------------------------
 
 TEST(an_override_sets_and_resolves)
 {
@@ -244,7 +253,8 @@ static void check_override(const char *text, const char *assignment, const char 
     assert_int_not_equal(scenario_override(&s, assignment, &f), STATUS_OK);
     assert_int_not_equal(f.code, STATUS_OK);
     const char *beginning = formatted("--set %s: ", assignment);
-    fail_if(strncmp(f.text, beginning, strlen(beginning)) != 0 || strstr(f.text, what) == NULL,
+    fail_if(strncmp(f.text, beginning, strlen(beginning)) != 0 ||
+                strstr(f.text, what) == NULL,
             "'%s' does not begin with '%s' and say '%s'", f.text, beginning, what);
     assert_memory_equal(&s.parameters, &before, sizeof before);
 }
@@ -262,8 +272,8 @@ TEST(a_wrong_override_changes_nothing)
     check_override("{}", "arm.k2=1=2", "expected N m/rad");
     check_override("arm: {links: 5}", "arm.model=printed", "two links");
     check_override("script: [{at: 0.5, push: 1}]", "arm.model=printed", "push");
-    check_override("script: [{at: 0.5, push: 1}, {at: 0.6, push: 1}]", "arm.model=printed",
-                   "0.5 s");
+    check_override("script: [{at: 0.5, push: 1}, {at: 0.6, push: 1}]",
+                   "arm.model=printed", "0.5 s");
     check_override("arm: {hub_joint: spring}\n"
                    "script: [{at: 0.1, set: {arm.k1: 90}}, {at: 0.2, set: {arm.k2: 5}}]",
                    "arm.hub_joint=beam", "arm.k1");
@@ -287,7 +297,7 @@ TEST(an_endless_override_is_refused)
     assert_int_not_equal(scenario_override(&s, text, NULL), STATUS_OK);
 }
 
-// ---- writing ------------------------------------------------------------------------------------
+// ---- writing --------------------------------------------------------------------------
 
 // Everything but the expectations comes back from what scenario_write writes.
 static void check_written(const scenario *s)
@@ -351,13 +361,15 @@ TEST(other_line_ends_read_back)
 TEST(broken_texts_read_back)
 {
     KEPT_SCENARIO(s) = good("title: a\n");
-    DONE(parameter_set_text(&s.parameters, parameter_find("control.plugin"), "a\xff.so", &f));
+    DONE(parameter_set_text(&s.parameters, parameter_find("control.plugin"), "a\xff.so",
+                            &f));
     KEPT_TEXT(file) = file_of(&s);
     KEPT_SCENARIO(again) = good(file);
     assert_string_equal(again.parameters.control.plugin, "a?.so");
 }
 
-// However long the title is and however much was changed, the file can be read, and tells of it.
+// However long the title is and however much was changed, the file can be read, and tells
+// of it.
 TEST(changed_scenarios_read_back)
 {
     for (int length = 1; length <= SCENARIO_TITLE; length++) {
@@ -367,8 +379,8 @@ TEST(changed_scenarios_read_back)
             parameters p = s.parameters;
             const double at = parameter_get(&p, i), most = parameter_table[i].maximum;
             if (parameter_table[i].type == PARAMETER_REAL && at != 0 &&
-                parameter_set_number(&p, i, at < most / 2 ? at * 1.0123456789 : at / 1.1, NULL) ==
-                    STATUS_OK) {
+                parameter_set_number(&p, i, at < most / 2 ? at * 1.0123456789 : at / 1.1,
+                                     NULL) == STATUS_OK) {
                 scenario_take_parameters(&s, &p, NULL);
             }
             if (i != 0 && i != 20 && i != parameter_count - 1) {
@@ -387,7 +399,8 @@ TEST(changed_scenarios_read_back)
     }
 }
 
-// A lesson with every check, with and without what may be left out, is read back as it was.
+// A lesson with every check, with and without what may be left out, is read back as it
+// was.
 TEST(written_lessons_read_back)
 {
     KEPT_SCENARIO(s) =

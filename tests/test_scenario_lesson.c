@@ -4,7 +4,8 @@
 
 TEST(faults_of_panes)
 {
-    check_fault("panes: force\n", 1, 8, "panes is a single value, expected a list of signals");
+    check_fault("panes: force\n", 1, 8,
+                "panes is a single value, expected a list of signals");
     check_fault("panes: [force, forse]\n", 1, 16, "no signal 'forse'");
     check_fault("panes: [[force]]\n", 1, 9, "no signal 'a list'");
     const char *many = "panes: [force";
@@ -25,17 +26,21 @@ static void check_step(const char *step, const char *what)
     sentences all;
     const char *text = formatted("lesson: {steps: [%s]}\n", step);
     const status code = parse(&s, text, &all);
-    fail_if(code != STATUS_BAD_SCENARIO || all.count != 1 || strstr(all.text, what) == NULL,
-            "%s: %d faults, expected one about '%s':\n%s", text, all.count, what, all.text);
+    fail_if(code != STATUS_BAD_SCENARIO || all.count != 1 ||
+                strstr(all.text, what) == NULL,
+            "%s: %d faults, expected one about '%s':\n%s", text, all.count, what,
+            all.text);
 }
 
 TEST(faults_of_lessons)
 {
-    KEPT_SCENARIO(s) = good("lesson: {steps: [{say: a, choice: {of: [a, b], right: 2}}]}\n");
+    KEPT_SCENARIO(s) =
+        good("lesson: {steps: [{say: a, choice: {of: [a, b], right: 2}}]}\n");
     assert_int_equal(s.lesson.steps[0].right, 1);
 
     // the first of all parameters is one like the others
-    KEPT_SCENARIO(first) = good("lesson: {steps: [{say: a, value: {arm.model: printed}}]}\n");
+    KEPT_SCENARIO(first) =
+        good("lesson: {steps: [{say: a, value: {arm.model: printed}}]}\n");
     assert_int_equal(first.lesson.steps[0].parameter, parameter_find("arm.model"));
     check_close(first.lesson.steps[0].value, ARM_PRINTED, 0);
 
@@ -44,10 +49,12 @@ TEST(faults_of_lessons)
     check_fault("lesson: {steps: []}\n", 1, 9, "no steps");
     check_fault("lesson: {parameters: [arm.k2]}\n", 1, 9, "no steps");
     check_fault("lesson: {steps: {say: a}}\n", 1, 9, "no steps");
-    check_fault("lesson: {steps: [{say: a}], parameters: [motor.volts]}\n", 1, 41, "motor.volt");
-    check_fault("lesson: {steps: [{say: a}], parameters: arm.k2}\n", 1, 41, "expected a list");
-    check_fault("lesson: {steps: [{say: a}], parameters: [arm.k2, arm.k1, arm.EI, arm.mass, "
-                "arm.length, arm.links, arm.model]}\n",
+    check_fault("lesson: {steps: [{say: a}], parameters: [motor.volts]}\n", 1, 41,
+                "motor.volt");
+    check_fault("lesson: {steps: [{say: a}], parameters: arm.k2}\n", 1, 41,
+                "expected a list");
+    check_fault("lesson: {steps: [{say: a}], parameters: [arm.k2, arm.k1, arm.EI, "
+                "arm.mass, arm.length, arm.links, arm.model]}\n",
                 1, 99, "more than 6");
 
     // its steps
@@ -65,7 +72,8 @@ TEST(faults_of_lessons)
                "unknown key 'wihtin'");
     check_step("{say: a, cursor: {at: first_contact_s, ofset: 1, within: 0.1}}",
                "unknown key 'ofset'");
-    check_step("{say: a, choice: {of: [a, b], right: 1, wrong: 2}}", "unknown key 'wrong'");
+    check_step("{say: a, choice: {of: [a, b], right: 1, wrong: 2}}",
+               "unknown key 'wrong'");
     check_step("{say: a, ratio: {quantity: impacts, from: 0, to: 1, form: 2}}",
                "unknown key 'form'");
     check_step("{say: a, ratio: {quantity: impacts, from: 0, to: 1, from to: 2}}",
@@ -85,13 +93,15 @@ TEST(faults_of_lessons)
     check_step("{say: a, number: 3}", "expected");
     check_step("{say: a, number: {quantity: peek, within: 1}}", "no quantity of a run");
     check_step("{say: a, number: {within: 1}}", "no quantity of a run");
-    check_step("{say: a, number: {quantity: [peak_force_N], within: 1}}", "no quantity of a run");
+    check_step("{say: a, number: {quantity: [peak_force_N], within: 1}}",
+               "no quantity of a run");
     check_step("{say: a, number: {quantity: peak_force_N}}", "no 'within'");
     check_step("{say: a, cursor: {at: first_contact_s}}", "no 'within'");
     check_step("{say: a, ratio: {quantity: peak_force_N, from: 1}}", "no 'to'");
     check_step("{say: a, choice: {right: 1}}", "no 'of'");
     check_step("{say: a, choice: {of: [], right: 1}}", "no 'of'");
-    check_step("{say: a, choice: {of: a, right: 1}}", "of is a single value, expected a list");
+    check_step("{say: a, choice: {of: a, right: 1}}",
+               "of is a single value, expected a list");
     check_step("{say: a, choice: {of: [a, b]}}", "no 'right'");
     check_step("{say: a, choice: {of: [a, b], right: 3}}", "from 1 to 2");
     check_step("{say: a, choice: {of: [a, b], right: 1.5}}", "number of an answer");
@@ -125,28 +135,30 @@ TEST(keys_of_a_check_are_words)
 // Every field of every kind of step, and what is left out.
 TEST(everything_of_a_lesson_is_read)
 {
-    KEPT_SCENARIO(s) =
-        good("lesson:\n"
-             "  parameters: [arm.k2, motor.voltage, arm.k1, arm.EI, arm.mass, arm.model]\n"
-             "  steps:\n"
-             "    - {say: one, then: a, hint: b, do: [1, 2, 3, 4, 5, 6, 7, 8]}\n"
-             "    - {say: two, number: {quantity: peak_force_N, within: 0.05}}\n"
-             "    - {say: three, cursor: {at: first_contact_s, within: 0.01}}\n"
-             "    - {say: four, cursor: {at: settling_time_s, offset: -0.2, within: 0.02}}\n"
-             "    - {say: five, ratio: {quantity: impacts, from: 0.5, to: 0.75}}\n"
-             "    - {say: six, pinned: 1}\n"
-             "    - {say: seven, pinned: 7}\n"
-             "    - {say: eight, value: {motor.voltage: 1.5}}\n"
-             "    - {say: nine, choice: {of: [a, b, c, d, e, f], right: 1}}\n"
-             "    - {say: ten, choice: {of: [a, b, c, d, e, f], right: 6}}\n"
-             "    - say: >\n"
-             "        eleven\n"
-             "        words\n");
-    static const lesson_check checks[] = {
-        LESSON_READ,   LESSON_NUMBER, LESSON_CURSOR, LESSON_CURSOR, LESSON_RATIO, LESSON_PINNED,
-        LESSON_PINNED, LESSON_VALUE,  LESSON_CHOICE, LESSON_CHOICE, LESSON_READ};
-    static const char *const says[] = {"one",   "two",   "three", "four", "five",        "six",
-                                       "seven", "eight", "nine",  "ten",  "eleven words"};
+    KEPT_SCENARIO(s) = good(
+        "lesson:\n"
+        "  parameters: [arm.k2, motor.voltage, arm.k1, arm.EI, arm.mass, arm.model]\n"
+        "  steps:\n"
+        "    - {say: one, then: a, hint: b, do: [1, 2, 3, 4, 5, 6, 7, 8]}\n"
+        "    - {say: two, number: {quantity: peak_force_N, within: 0.05}}\n"
+        "    - {say: three, cursor: {at: first_contact_s, within: 0.01}}\n"
+        "    - {say: four, cursor: {at: settling_time_s, offset: -0.2, within: 0.02}}\n"
+        "    - {say: five, ratio: {quantity: impacts, from: 0.5, to: 0.75}}\n"
+        "    - {say: six, pinned: 1}\n"
+        "    - {say: seven, pinned: 7}\n"
+        "    - {say: eight, value: {motor.voltage: 1.5}}\n"
+        "    - {say: nine, choice: {of: [a, b, c, d, e, f], right: 1}}\n"
+        "    - {say: ten, choice: {of: [a, b, c, d, e, f], right: 6}}\n"
+        "    - say: >\n"
+        "        eleven\n"
+        "        words\n");
+    static const lesson_check checks[] = {LESSON_READ,   LESSON_NUMBER, LESSON_CURSOR,
+                                          LESSON_CURSOR, LESSON_RATIO,  LESSON_PINNED,
+                                          LESSON_PINNED, LESSON_VALUE,  LESSON_CHOICE,
+                                          LESSON_CHOICE, LESSON_READ};
+    static const char *const says[] = {"one",  "two", "three",       "four",
+                                       "five", "six", "seven",       "eight",
+                                       "nine", "ten", "eleven words"};
     static const char *const paths[] = {"arm.k2", "motor.voltage", "arm.k1",
                                         "arm.EI", "arm.mass",      "arm.model"};
     const lesson *l = &s.lesson;
@@ -204,7 +216,8 @@ TEST(everything_of_a_lesson_is_read)
     check_fault("lesson: {steps: [{say: a}, {hint: a}]}\n", 1, 28, "no 'say'");
     check_fault("lesson: {steps: [{say: a, ratio: {quantity: impacts, to: 1}}]}\n", 1, 34,
                 "no 'from'");
-    check_fault("lesson: {steps: [{say: a, number: {quantity: peek, within: 1}}]}\n", 1, 46,
-                "no quantity");
-    check_fault("lesson: {steps: [{say: a}], parameters: [arm.k2, arm.kk]}\n", 1, 41, "arm.kk");
+    check_fault("lesson: {steps: [{say: a, number: {quantity: peek, within: 1}}]}\n", 1,
+                46, "no quantity");
+    check_fault("lesson: {steps: [{say: a}], parameters: [arm.k2, arm.kk]}\n", 1, 41,
+                "arm.kk");
 }

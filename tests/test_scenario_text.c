@@ -1,5 +1,5 @@
-// The text of a scenario file before anything is known of its meaning: what of YAML is read, where
-// a fault of it is, in which order faults come.
+// The text of a scenario file before anything is known of its meaning: what of YAML is
+// read, where a fault of it is, in which order faults come.
 #include "tests/scenario_fixture.h"
 
 #include "src/scenario/yaml_tree.h"
@@ -35,7 +35,8 @@ TEST(a_nul_byte_is_refused)
     static const char text[] = "title: a\0b\n";
     scenario s;
     sentences all = {0};
-    assert_int_equal(scenario_parse(&s, text, sizeof text - 1, "f.yaml", NULL, keep_sentence, &all),
+    assert_int_equal(scenario_parse(&s, text, sizeof text - 1, "f.yaml", NULL,
+                                    keep_sentence, &all),
                      STATUS_BAD_SCENARIO);
     assert_int_equal(strncmp(all.text, "f.yaml:1:9: ", 12), 0);
 }
@@ -43,17 +44,20 @@ TEST(a_nul_byte_is_refused)
 TEST(columns_count_characters)
 {
     check_faults("wall: {\"\xc3\xa4\xc3\xb6\xc3\xbc\": 1, angle: x}\n", 2,
-                 (const char *const[]){"f.yaml:1:8: unknown key", "f.yaml:1:25: wall.angle"});
-    check_fault("{title: \"\xce\xb8\xcc\x87\", arm: 3}\n", 1, 20, "arm is a single value");
+                 (const char *const[]){"f.yaml:1:8: unknown key",
+                                       "f.yaml:1:25: wall.angle"});
+    check_fault("{title: \"\xce\xb8\xcc\x87\", arm: 3}\n", 1, 20,
+                "arm is a single value");
 }
 
 // No sentence may carry what a terminal would obey.
 TEST(sentences_are_printable)
 {
     for (EACH_TEXT(
-             one, "arm: {k2: \"\\e[31m\"}\n", "\"\\a\\e]0;x\": 1\n", "arm: {\"a\\nb\": 1}\n",
-             "arm: {model: \"\\x9b31m\"}\n",
-             "arm: {k2: aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\xc3\xa4}\n")) {
+             one, "arm: {k2: \"\\e[31m\"}\n", "\"\\a\\e]0;x\": 1\n",
+             "arm: {\"a\\nb\": 1}\n", "arm: {model: \"\\x9b31m\"}\n",
+             "arm: {k2: "
+             "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\xc3\xa4}\n")) {
         scenario s;
         sentences all;
         assert_int_equal(parse(&s, *one, &all), STATUS_BAD_SCENARIO);
@@ -107,7 +111,8 @@ TEST(faults_come_in_the_order_of_their_places)
     scenario s;
     sentences all;
     assert_int_equal(
-        parse(&s, "title: t\nrun: {duration: -1}\narm: {links: x, k2: y}\nnothing: 1\n", &all),
+        parse(&s, "title: t\nrun: {duration: -1}\narm: {links: x, k2: y}\nnothing: 1\n",
+              &all),
         STATUS_BAD_SCENARIO);
     const char *before = all.text;
     for (int i = 1; i < all.count; i++) {

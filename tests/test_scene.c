@@ -1,11 +1,11 @@
 // Pictures of the arm in space, and films of it.
 //
-// The golden pictures in tests/golden show no text, so that they depend on no font. A change of the
-// drawing that is meant is taken over by running this test with IMPACTLAB_WRITE_GOLDENS=1 and
-// looking at the new pictures before they are committed.
+// The golden pictures in tests/golden show no text, so that they depend on no font. A
+// change of the drawing that is meant is taken over by running this test with
+// IMPACTLAB_WRITE_GOLDENS=1 and looking at the new pictures before they are committed.
 #include "tests/scene_fixture.h"
 
-// --- geometry -------------------------------------------------------------------------------
+// --- geometry --------------------------------------------------------------------------
 
 static double distance(vector a, vector b)
 {
@@ -13,8 +13,8 @@ static double distance(vector a, vector b)
     return sqrt(vector_dot(d, d));
 }
 
-// The curve starts and ends where the arm does, along its outer links, and touches every inner link
-// at its middle.
+// The curve starts and ends where the arm does, along its outer links, and touches every
+// inner link at its middle.
 TEST(test_curve)
 {
     for (int links = 1; links <= 40; links += links < 3 ? 1 : 37) {
@@ -32,7 +32,8 @@ TEST(test_curve)
         vector end = vector_unit(vector_sum(curve[count - 1], -1, curve[count - 2]));
         // the first piece of a parabola leans by about half its own turn
         double slack = links == 1 ? 1e-7 : 1.5 / (count / (double)links);
-        check_close(vector_dot(start, vector_sum(joints[1], -1, joints[0])), 1, slack * slack);
+        check_close(vector_dot(start, vector_sum(joints[1], -1, joints[0])), 1,
+                    slack * slack);
         check_close(vector_dot(end, vector_sum(joints[links], -1, joints[links - 1])), 1,
                     slack * slack);
         for (int k = 1; k + 1 < links; k++) {
@@ -58,16 +59,20 @@ TEST(test_joints)
         row++;
     }
     scene_joints(t, p, t->rows[row].time, joints);
-    const double *angles = t->angles + (row + 1) * (size_t)t->angle_count - 5; // behind the hub's
+    const double *angles =
+        t->angles + (row + 1) * (size_t)t->angle_count - 5; // behind the hub's
     for (int k = 0; k < 5; k++) {
-        check_close(atan2(joints[k + 1].y - joints[k].y, joints[k + 1].x - joints[k].x), angles[k],
-                    1e-12);
+        check_close(atan2(joints[k + 1].y - joints[k].y, joints[k + 1].x - joints[k].x),
+                    angles[k], 1e-12);
         check_close(distance(joints[k + 1], joints[k]), p->arm.length / 5, 1e-12);
     }
-    sample half = scene_joints(t, p, (t->rows[row].time + t->rows[row + 1].time) / 2, joints);
-    check_close(half.last_angle, (t->rows[row].last_angle + t->rows[row + 1].last_angle) / 2, 1e-9);
+    sample half =
+        scene_joints(t, p, (t->rows[row].time + t->rows[row + 1].time) / 2, joints);
+    check_close(half.last_angle,
+                (t->rows[row].last_angle + t->rows[row + 1].last_angle) / 2, 1e-9);
     // beyond the ends the arm stays where it is
-    check_close(scene_joints(t, p, 1e9, joints).last_angle, LAST_ROW(t)->last_angle, 1e-15);
+    check_close(scene_joints(t, p, 1e9, joints).last_angle, LAST_ROW(t)->last_angle,
+                1e-15);
 }
 
 TEST(test_instants)
@@ -86,7 +91,10 @@ TEST(test_instants)
 // Whatever is to be seen lies within the window, and fills it in one direction.
 TEST(test_camera)
 {
-    const vector points[] = {{0, 0, 0.1}, {1, 0.2, -0.1}, {0.9, -0.4, 0}, {0.2, 0.3, 0.05}};
+    const vector points[] = {{0, 0, 0.1},
+                             {1, 0.2, -0.1},
+                             {0.9, -0.4, 0},
+                             {0.2, 0.3, 0.05}};
     const camera_window window = {0.1, 0.05, 0.9, 0.8};
     const camera_view kinds[] = {{CAMERA_THREE_QUARTER, 0, 0},
                                  {CAMERA_TOP, 0, 0},
@@ -114,14 +122,15 @@ TEST(test_camera)
         assert_true(right - left > 0.75 || bottom - top > 0.7);
     }
     // in a plan the heading points to the right
-    camera plan = camera_fit((camera_view){.kind = CAMERA_TOP}, 0.7, points, 4, 640, 360, window);
+    camera plan =
+        camera_fit((camera_view){.kind = CAMERA_TOP}, 0.7, points, 4, 640, 360, window);
     vector hub = camera_project(&plan, (vector){0}),
            ahead = camera_project(&plan, (vector){cos(0.7), sin(0.7), 0});
     check_close(hub.y, ahead.y, 1);
     check_below(hub.x, ahead.x);
 }
 
-// --- pictures -------------------------------------------------------------------------------
+// --- pictures --------------------------------------------------------------------------
 
 // The beam is there, the arrow only while the wall pushes.
 TEST(test_content)
@@ -156,13 +165,15 @@ TEST(test_camera_words)
     }
 }
 
-// Bending is drawn larger, while hub and tip stay where they are: the beam covers other pixels, the
-// arrow at its tip the same.
+// Bending is drawn larger, while hub and tip stay where they are: the beam covers other
+// pixels, the arrow at its tip the same.
 TEST(test_exaggerated)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
     const double peak = 0.3634;
-    scene_options o = {.renderer = RENDER_CAIRO, .plain = true, .camera = {.kind = CAMERA_TOP}};
+    scene_options o = {.renderer = RENDER_CAIRO,
+                       .plain = true,
+                       .camera = {.kind = CAMERA_TOP}};
     PIXELS(as_it_is) = scene_picture_of(&r, o, &peak, 1);
     o.exaggerate = 1;
     PIXELS(once) = scene_picture_of(&r, o, &peak, 1);
@@ -170,10 +181,12 @@ TEST(test_exaggerated)
     PIXELS(larger) = scene_picture_of(&r, o, &peak, 1);
     assert_int_equal(count_different(as_it_is, once, 0), 0);
     check_below(300, count_different(as_it_is, larger, 20));
-    check_close(count_pixels(larger, count_arrow), count_pixels(as_it_is, count_arrow), 12);
+    check_close(count_pixels(larger, count_arrow), count_pixels(as_it_is, count_arrow),
+                12);
 }
 
-// Four samples a pixel's edge are the same picture as two but for edges, without steps between.
+// Four samples a pixel's edge are the same picture as two but for edges, without steps
+// between.
 TEST(test_samples)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
@@ -186,16 +199,19 @@ TEST(test_samples)
     check_below(0, count_different(quick, fine, 4));
 }
 
-// Where the floor fades, squares of 8 x 8 pixels that hold no line mix two levels: a gradient
-// without dithering would be flat in nearly all of them and jump between.
+// Where the floor fades, squares of 8 x 8 pixels that hold no line mix two levels: a
+// gradient without dithering would be flat in nearly all of them and jump between.
 TEST(test_no_bands)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
     const double start = 0;
     int smooth = 0, mixed = 0;
-    PIXELS(s) = scene_picture_of(
-        &r, (scene_options){.renderer = RENDER_CAIRO, .plain = true, .width = 640, .height = 360},
-        &start, 1);
+    PIXELS(s) = scene_picture_of(&r,
+                                 (scene_options){.renderer = RENDER_CAIRO,
+                                                 .plain = true,
+                                                 .width = 640,
+                                                 .height = 360},
+                                 &start, 1);
     for (int y = 0; y + 8 <= 360; y += 8) {
         for (int x = 0; x + 8 <= 640; x += 8) {
             int low = 255, high = 0;
@@ -218,7 +234,11 @@ static const struct {
     double times[3];
     int count;
 } goldens[] = {
-    {"scene-point.png", "corrected/first-impact", CAMERA_THREE_QUARTER, {0.0, 0.2, 0.3634}, 3},
+    {"scene-point.png",
+     "corrected/first-impact",
+     CAMERA_THREE_QUARTER,
+     {0.0, 0.2, 0.3634},
+     3},
     {"scene-plane.png", "corrected/plane-wall", CAMERA_TOP, {0.1, 0.36}, 2},
     {"scene-side.png", "corrected/twenty-links", CAMERA_SIDE, {0.2}, 1},
 };
@@ -226,10 +246,13 @@ static const struct {
 static void compare_golden(size_t index, scene_renderer renderer, const char *name)
 {
     SCOPED(forget) recorded r = record(goldens[index].scenario);
-    const scene_options options = {
-        .camera = {.kind = goldens[index].camera}, .renderer = renderer, .plain = true};
-    PIXELS(drawn) = scene_picture_of(&r, options, goldens[index].times, goldens[index].count);
-    const char *path = formatted("%s/%s", getenv("IMPACTLAB_GOLDENS"), goldens[index].file);
+    const scene_options options = {.camera = {.kind = goldens[index].camera},
+                                   .renderer = renderer,
+                                   .plain = true};
+    PIXELS(drawn) =
+        scene_picture_of(&r, options, goldens[index].times, goldens[index].count);
+    const char *path =
+        formatted("%s/%s", getenv("IMPACTLAB_GOLDENS"), goldens[index].file);
     if (getenv("IMPACTLAB_WRITE_GOLDENS") != NULL && renderer == RENDER_CAIRO) {
         assert_int_equal(cairo_surface_write_to_png(drawn, path), CAIRO_STATUS_SUCCESS);
     }
@@ -238,8 +261,9 @@ static void compare_golden(size_t index, scene_renderer renderer, const char *na
     int different = count_different(drawn, golden, 12);
     if (different > WIDTH * HEIGHT / 500) {
         cairo_surface_write_to_png(drawn, goldens[index].file);
-        fail_msg("%s by %s: %d of %d pixels differ by more than 12 levels, the picture is %s",
-                 goldens[index].file, name, different, WIDTH * HEIGHT, goldens[index].file);
+        fail_msg(
+            "%s by %s: %d of %d pixels differ by more than 12 levels, the picture is %s",
+            goldens[index].file, name, different, WIDTH * HEIGHT, goldens[index].file);
     }
 }
 
@@ -254,7 +278,8 @@ TEST(test_golden_gl)
 {
     bool any = false;
     for (scene_renderer which = RENDER_OSMESA; which <= RENDER_EGL; which++) {
-        for (size_t i = 0; i < sizeof goldens / sizeof goldens[0] && is_there(which); i++) {
+        for (size_t i = 0; i < sizeof goldens / sizeof goldens[0] && is_there(which);
+             i++) {
             compare_golden(i, which, which == RENDER_EGL ? "EGL" : "OSMesa");
             any = true;
         }
@@ -269,14 +294,16 @@ TEST(test_file)
 {
     SCOPED(forget) recorded r = record("corrected/first-impact");
     const double time = 0.3;
-    const scene_picture p = {
-        .scenario = &r.scenario,
-        .result = &r.result,
-        .options = {.renderer = RENDER_CAIRO, .width = WIDTH, .height = HEIGHT},
-        .times = &time,
-        .count = 1};
+    const scene_picture p = {.scenario = &r.scenario,
+                             .result = &r.result,
+                             .options = {.renderer = RENDER_CAIRO,
+                                         .width = WIDTH,
+                                         .height = HEIGHT},
+                             .times = &time,
+                             .count = 1};
     DONE(scene_write(&p, "first.png", &f));
-    for (EACH_TEXT(c, "Renderer", "cairo ", "scenario=corrected/first-impact", "motor.voltage=1")) {
+    for (EACH_TEXT(c, "Renderer", "cairo ", "scenario=corrected/first-impact",
+                   "motor.voltage=1")) {
         check_contains("first.png", *c);
     }
     DONE(scene_write(&p, "second.png", &f));
@@ -287,9 +314,10 @@ TEST(test_file)
 TEST(a_wall_that_moves_is_drawn_at_the_tip)
 {
     SCOPED(forget)
-    recorded r = {.scenario =
-                      shipped_with("corrected/first-impact",
-                                   "wall.kind=plane wall.motion=sine wall.motion_amplitude=0.02")};
+    recorded r = {
+        .scenario =
+            shipped_with("corrected/first-impact",
+                         "wall.kind=plane wall.motion=sine wall.motion_amplitude=0.02")};
     const parameters *p = &r.scenario.parameters;
     DONE(run_scenario(&r.scenario, true, &r.result));
     const trace *t = &r.result.trace;
@@ -314,7 +342,9 @@ TEST(test_refused)
     const double late = 7, good = 0.1;
     scene_picture p = {.scenario = &r.scenario,
                        .result = &r.result,
-                       .options = {.renderer = RENDER_CAIRO, .width = WIDTH, .height = HEIGHT},
+                       .options = {.renderer = RENDER_CAIRO,
+                                   .width = WIDTH,
+                                   .height = HEIGHT},
                        .times = &late,
                        .count = 1};
     REFUSED(STATUS_BAD_ARGUMENT, "7 s", scene_write(&p, "x.png", &f));

@@ -1,10 +1,13 @@
-// Search by words: what is found, in which order, and that every section of the manual can be.
+// Search by words: what is found, in which order, and that every section of the manual
+// can be.
 #include "tests/check.h"
 
 #include "ui/manual/search.h"
 
-static const char *const about_walls[] = {"a wall may give", "how stiff the settled wall is"};
-static const char *const about_beams[] = {"a beam bends", "its frequencies, with the hub held"};
+static const char *const about_walls[] = {"a wall may give",
+                                          "how stiff the settled wall is"};
+static const char *const about_beams[] = {"a beam bends",
+                                          "its frequencies, with the hub held"};
 static const char *const about_hubs[] = {"the hub turns, the beam with it"};
 
 static const search_entry things[] = {

@@ -16,13 +16,16 @@ static sensors fresh_sensors(const char *const *settings, int seed)
 
 static sensor_reading read_hub(sensors *s, double angle, double velocity, double force)
 {
-    return sensors_read(s, &(sensed_motion){.angle = angle, .velocity = velocity, .force = force});
+    return sensors_read(s, &(sensed_motion){.angle = angle,
+                                            .velocity = velocity,
+                                            .force = force});
 }
 
 // A stride of the force alone.
 static void follow_force(sensors *s, double h, double first, double last, double mean)
 {
-    sensors_follow(s, h, &(sensed_motion){.force = first}, &(sensed_motion){.force = last}, mean);
+    sensors_follow(s, h, &(sensed_motion){.force = first},
+                   &(sensed_motion){.force = last}, mean);
 }
 
 TEST(encoder_steps_by_one_count)
@@ -84,7 +87,8 @@ TEST(force_sensor_follows_a_stride_exactly)
     for (int i = 0; i < 1000; i++) {
         double a = i / 1000.0, b = (i + 1) / 1000.0;
         double mean = 2 - 1.5 * (a + b) + 5.0 / 3 * (a * a + a * b + b * b);
-        follow_force(&often, h / 1000, 2 - 3 * a + 5 * a * a, 2 - 3 * b + 5 * b * b, mean);
+        follow_force(&often, h / 1000, 2 - 3 * a + 5 * a * a, 2 - 3 * b + 5 * b * b,
+                     mean);
     }
     check_close(once.fsr.value, often.fsr.value, 1e-9);
     // a stride of no length changes nothing
@@ -93,9 +97,9 @@ TEST(force_sensor_follows_a_stride_exactly)
     check_close(once.fsr.value, before, 1e-4);
 }
 
-// Over less than a thousandth of its lag a sensor takes of f = slope u + curve u^2, u the share of
-// the stride that is over, x times the integrals of e^-(1-u)x u^n: 1!/2! - x 1!/3! + ..., and so
-// on, to the last digits.
+// Over less than a thousandth of its lag a sensor takes of f = slope u + curve u^2, u the
+// share of the stride that is over, x times the integrals of e^-(1-u)x u^n: 1!/2! - x
+// 1!/3! + ..., and so on, to the last digits.
 TEST(short_strides_lose_no_digits)
 {
     const double h = 5e-7, slope = 3, curve = -2;
@@ -114,8 +118,8 @@ TEST(short_strides_lose_no_digits)
     check_relative(s.fsr.value, slope * of_u + curve * of_square, 1e-11);
 }
 
-// What a lag holds, and the input at a stride's ends and in its mean, add up: each is followed
-// whether the others are there or not.
+// What a lag holds, and the input at a stride's ends and in its mean, add up: each is
+// followed whether the others are there or not.
 TEST(a_lag_is_linear)
 {
     for (int i = 0; i < 2; i++) {
@@ -124,7 +128,8 @@ TEST(a_lag_is_linear)
         double of[16];
         for (int parts = 0; parts < 16; parts++) {
             s.fsr.value = parts & 1 ? 0.7 : 0;
-            follow_force(&s, h, parts & 2 ? 3 : 0, parts & 4 ? 2 : 0, parts & 8 ? -1.3 : 0);
+            follow_force(&s, h, parts & 2 ? 3 : 0, parts & 4 ? 2 : 0,
+                         parts & 8 ? -1.3 : 0);
             of[parts] = s.fsr.value;
         }
         check_close(of[0], 0, 0);
@@ -139,7 +144,8 @@ TEST(a_lag_is_linear)
     }
 }
 
-// Strides that are as long as the one before up to rounding decay as if there had been none before.
+// Strides that are as long as the one before up to rounding decay as if there had been
+// none before.
 TEST(strides_of_nearly_one_length_decay_by_their_own)
 {
     sensors s = fresh_sensors(NULL, 1);
@@ -166,7 +172,8 @@ TEST(quiet_sensors_draw_nothing)
     }
 }
 
-// In flight nothing needs to be followed, unless a force is remembered or the arm itself is felt.
+// In flight nothing needs to be followed, unless a force is remembered or the arm itself
+// is felt.
 TEST(sensors_at_rest_remember_no_force)
 {
     const sensors fresh = fresh_sensors(NULL, 1);
@@ -206,7 +213,8 @@ TEST(impulse_arrives_whole)
 TEST(divider_follows_the_power_law)
 {
     parameters p = rig_parameters(NULL);
-    // half the supply where the sensor has the measuring resistor's 40 kohm: 30 kohm f^-0.75
+    // half the supply where the sensor has the measuring resistor's 40 kohm: 30 kohm
+    // f^-0.75
     double force = pow(40.0 / 30, -1 / 0.75);
     check_close(fsr_volts(&p.sensor, force), 5, 1e-12);
     check_close(fsr_volts(&p.sensor, 1), 10 * 40.0 / 70, 1e-12);
@@ -243,23 +251,28 @@ TEST(noise_has_its_spread_and_follows_its_seed)
 TEST(ripple_follows_the_shaft)
 {
     sensors s = fresh_sensors(
-        given("sensor.tachometer_noise=0 sensor.adc_bits=0 sensor.tachometer_ripple=0.05"), 1);
+        given(
+            "sensor.tachometer_noise=0 sensor.adc_bits=0 sensor.tachometer_ripple=0.05"),
+        1);
     check_close(read_hub(&s, 0.5 * PI / 79, 2, 0).tachometer, 2.1, 1e-9);
     check_close(read_hub(&s, 1.5 * PI / 79, 2, 0).tachometer, 1.9, 1e-9);
 }
 
-// (1 + gain error) times the value and an offset, each sensor its own; none with ideal sensors.
+// (1 + gain error) times the value and an offset, each sensor its own; none with ideal
+// sensors.
 TEST(sensors_show_what_they_are_calibrated_for)
 {
     for (int ideal = 0; ideal < 2; ideal++) {
         sensors s = fresh_sensors(
             given("sensor.encoder_gain_error=0.02 sensor.encoder_offset=-0.03 "
                   "sensor.tachometer_gain_error=-0.1 sensor.tachometer_offset=0.2 "
-                  "sensor.fsr_gain_error=0.25 sensor.fsr_offset=-0.5 sensor.piezo_gain_error=0.5 "
-                  "sensor.piezo_offset=0.1 sensor.piezo=true sensor.encoder_counts=0 "
-                  "sensor.tachometer_noise=0 sensor.tachometer_ripple=0 sensor.fsr_noise=0 "
-                  "sensor.fsr_rise_time=0 sensor.piezo_noise=0 sensor.piezo_rise_time=0 "
-                  "sensor.piezo_leak_time=0 sensor.adc_bits=0 sensor.ideal=%s",
+                  "sensor.fsr_gain_error=0.25 sensor.fsr_offset=-0.5 "
+                  "sensor.piezo_gain_error=0.5 sensor.piezo_offset=0.1 "
+                  "sensor.piezo=true sensor.encoder_counts=0 sensor.tachometer_noise=0 "
+                  "sensor.tachometer_ripple=0 sensor.fsr_noise=0 "
+                  "sensor.fsr_rise_time=0 sensor.piezo_noise=0 "
+                  "sensor.piezo_rise_time=0 sensor.piezo_leak_time=0 sensor.adc_bits=0 "
+                  "sensor.ideal=%s",
                   ideal ? "true" : "false"),
             1);
         for (double x = 0.5; x < 3; x += 0.7) {
@@ -272,7 +285,8 @@ TEST(sensors_show_what_they_are_calibrated_for)
     }
 }
 
-// A force that goes up and down shows the loop of a play, and nothing is left where it ends.
+// A force that goes up and down shows the loop of a play, and nothing is left where it
+// ends.
 TEST(hysteresis_is_a_play)
 {
     sensors s = fresh_sensors(given("sensor.fsr_hysteresis=0.1 sensor.fsr_noise=0 "
@@ -292,18 +306,21 @@ TEST(hysteresis_is_a_play)
 // A force sensor with a play of that share and a lag of that rise time, nothing else.
 static sensors play_of(double share, double rise_time)
 {
-    return fresh_sensors(given("sensor.fsr_hysteresis=%g sensor.fsr_rise_time=%g "
-                               "sensor.fsr_noise=0 sensor.adc_bits=0 sensor.fsr_saturation=1e6",
-                               share, rise_time),
-                         1);
+    return fresh_sensors(
+        given("sensor.fsr_hysteresis=%g sensor.fsr_rise_time=%g "
+              "sensor.fsr_noise=0 sensor.adc_bits=0 sensor.fsr_saturation=1e6",
+              share, rise_time),
+        1);
 }
 
-// A parabola at once and in four thousand strides, each too short to hide a turn: the play is the
-// same, whether the force turns between its ends, the lag once or twice, or nothing.
+// A parabola at once and in four thousand strides, each too short to hide a turn: the
+// play is the same, whether the force turns between its ends, the lag once or twice, or
+// nothing.
 TEST(turns_within_a_stride_move_the_play)
 {
     enum { STRIDES = 4000 };
-    const double parabolas[][3] = {{1, 8, -8}, {2, -6, 7}, {0.5, 3, 0}, {3, -2.9, 0}, {1, 9, -9.5}};
+    const double parabolas[][3] = {
+        {1, 8, -8}, {2, -6, 7}, {0.5, 3, 0}, {3, -2.9, 0}, {1, 9, -9.5}};
     const double rises[] = {0, 1.5e-3, 0.02, 1}, starts[] = {0.2, 1.5, 6};
     int moved = 0;
     for (EACH(c, parabolas)) {
@@ -315,7 +332,8 @@ TEST(turns_within_a_stride_move_the_play)
             follow_force(&once, h, a, a + b + d, a + b / 2 + d / 3);
             for (int k = 0; k < STRIDES; k++) {
                 const double u = k / (double)STRIDES, v = (k + 1) / (double)STRIDES;
-                follow_force(&often, h / STRIDES, a + u * (b + u * d), a + v * (b + v * d),
+                follow_force(&often, h / STRIDES, a + u * (b + u * d),
+                             a + v * (b + v * d),
                              a + b / 2 * (u + v) + d / 3 * (u * u + u * v + v * v));
             }
             check_close(once.fsr_shown, often.fsr_shown, 1e-5);
@@ -324,15 +342,17 @@ TEST(turns_within_a_stride_move_the_play)
             ends.p.fsr_hysteresis = 0;
             follow_force(&ends, h, a, a + b + d, a + b / 2 + d / 3);
             const double end = ends.fsr_shown, start = starts[i % 3];
-            const double by_ends = fmax(0.8 * end, fmin(fmax(0.8 * start, start), 1.2 * end));
+            const double by_ends =
+                fmax(0.8 * end, fmin(fmax(0.8 * start, start), 1.2 * end));
             moved += fabs(by_ends - once.fsr_shown) > 1e-3;
         }
     }
     assert_true(moved > 5);
 }
 
-// An impulse is a force larger than any play: behind it the reading stands at the upper edge of
-// what the force falls to, once that has fallen far enough, as after a short strong force.
+// An impulse is a force larger than any play: behind it the reading stands at the upper
+// edge of what the force falls to, once that has fallen far enough, as after a short
+// strong force.
 TEST(a_blow_moves_the_play)
 {
     const double h = 0.3, impulse = 0.02, width = 1e-9;
@@ -364,13 +384,14 @@ TEST(a_blow_moves_the_play)
     check_relative(jumped.fsr_shown, (1 - h) * 2, 1e-12);
 }
 
-// In a run: what the lag holds at a sample 0.7 ms after the second impact, in closed form, is
-// falling, so that the reading stands 30 % above it.
+// In a run: what the lag holds at a sample 0.7 ms after the second impact, in closed
+// form, is falling, so that the reading stands 30 % above it.
 TEST(a_run_reads_the_play_after_an_impact)
 {
     KEPT_SCENARIO(s) =
-        shipped_with("compare/open-loop", "sensor.fsr_hysteresis=0.3 control.rate=1000 "
-                                          "sensor.adc_bits=0 sensor.fsr_noise=0 method.step=1e-4");
+        shipped_with("compare/open-loop",
+                     "sensor.fsr_hysteresis=0.3 control.rate=1000 "
+                     "sensor.adc_bits=0 sensor.fsr_noise=0 method.step=1e-4");
     KEPT_RUN(r) = run_done(&s, true);
     const double lag = s.parameters.sensor.fsr_rise_time / log(9), sampled = 0.579;
     const event *second = NULL;

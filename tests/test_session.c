@@ -1,4 +1,5 @@
-// The session of the terminal lab: cursor, changes, undo, branches, and files that reproduce a run.
+// The session of the terminal lab: cursor, changes, undo, branches, and files that
+// reproduce a run.
 #include "tests/trace_check.h"
 
 #include "tests/session_fixture.h"
@@ -89,10 +90,11 @@ static void assert_same_before(const trace *a, const trace *b, double time)
     assert_true(rows <= b->row_count && events <= b->event_count);
     for (size_t i = 0; i < rows; i++) {
         fail_if(memcmp(&a->rows[i], &b->rows[i], sizeof a->rows[i]) != 0,
-                "row %zu at %.17g s (or %.17g s) differs before %.17g s", i, a->rows[i].time,
-                b->rows[i].time, time);
+                "row %zu at %.17g s (or %.17g s) differs before %.17g s", i,
+                a->rows[i].time, b->rows[i].time, time);
     }
-    assert_memory_equal(a->angles, b->angles, rows * (size_t)a->angle_count * sizeof *a->angles);
+    assert_memory_equal(a->angles, b->angles,
+                        rows * (size_t)a->angle_count * sizeof *a->angles);
     check_same_events(a, b, events);
     assert_true(rows == b->row_count || b->rows[rows].time >= time);
 }
@@ -100,15 +102,18 @@ static void assert_same_before(const trace *a, const trace *b, double time)
 TEST(test_what_is_before_a_change_stays_to_the_last_bit)
 {
     random_generator random = seeded(6);
-    for (EACH_TEXT(c, "corrected/first-impact", "corrected/generalized-alpha", "corrected/newmark",
-                   "corrected/five-links", "corrected/restitution", "corrected/stuck-hub",
-                   "compare/hybrid", "thesis/fig-3-4", "corrected/spring-hub")) {
+    for (EACH_TEXT(c, "corrected/first-impact", "corrected/generalized-alpha",
+                   "corrected/newmark", "corrected/five-links", "corrected/restitution",
+                   "corrected/stuck-hub", "compare/hybrid", "thesis/fig-3-4",
+                   "corrected/spring-hub")) {
         OPEN_SESSION(s, *c);
         for (int k = 0; k < 24; k++) {
             session_seek(&s, random_uniform(&random) * session_end(&s));
-            // most changes are right behind an event, where a stride is likely to span both
+            // most changes are right behind an event, where a stride is likely to span
+            // both
             if (k % 4 != 0 && seek_next_event(&s)) {
-                session_seek(&s, s.now + (k % 4 == 1 ? 3e-6 : 3e-4) * random_uniform(&random));
+                session_seek(&s, s.now + (k % 4 == 1 ? 3e-6 : 3e-4) *
+                                             random_uniform(&random));
             } else if (k % 8 == 0) {
                 session_step(&s, 1);
             }
@@ -170,7 +175,8 @@ TEST(test_a_refused_change_changes_nothing)
     fault f = {0};
     OPEN_SESSION(s, "corrected/first-impact");
     unsigned version = s.version;
-    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "strong", &f), 0);
+    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "strong", &f),
+                         0);
     assert_non_null(strstr(f.text, "motor.voltage"));
     assert_int_not_equal(session_change(&s, PARAMETER_INDEX(wall.angle), "77", &f), 0);
     assert_int_not_equal(session_change(&s, PARAMETER_INDEX(method.step), "1e-7", &f), 0);
@@ -179,7 +185,8 @@ TEST(test_a_refused_change_changes_nothing)
     change(&s, "motor.voltage", "2");
     assert_int_equal(s.version, version + 1);
     // a combination that is refused takes its input out again
-    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(arm.link_inertia), "-1", &f), 0);
+    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(arm.link_inertia), "-1", &f),
+                         0);
     assert_int_equal(s.input_count, 1);
 }
 
@@ -188,7 +195,8 @@ TEST(test_no_change_puts_the_arm_behind_the_wall)
     fault f = {0};
     OPEN_SESSION(s, "corrected/first-impact");
     change(&s, "wall.angle", "2.9");
-    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(initial.angle), "-0.4", &f), 0);
+    assert_int_not_equal(session_change(&s, PARAMETER_INDEX(initial.angle), "-0.4", &f),
+                         0);
     assert_non_null(strstr(f.text, "initial.angle = -0.4 rad lies behind the wall"));
     change(&s, "initial.angle", "-0.2");
     assert_int_not_equal(session_change(&s, PARAMETER_INDEX(wall.angle), "2.95", &f), 0);

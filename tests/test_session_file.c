@@ -1,4 +1,5 @@
-// A visit to the lab is kept in a file and gone on with; files from elsewhere are checked.
+// A visit to the lab is kept in a file and gone on with; files from elsewhere are
+// checked.
 #include "tests/explorer_on_screen.h"
 
 #include "src/session/session_file.h"
@@ -8,21 +9,21 @@ static const char path[] = "lab.session";
 static void save(explorer *ex)
 {
     unlink(path);
-    fail_if(!explorer_carry_out(ex, "session save lab.session"), "%s", ex->state.message.text);
+    fail_if(!explorer_carry_out(ex, "session save lab.session"), "%s",
+            ex->state.message.text);
 }
 
-// Runs of two scenarios, changes, pushes, pins, panes, axes, zoom and mark come back to the last
-// bit; saved again the file is the same; leaving asks nothing.
+// Runs of two scenarios, changes, pushes, pins, panes, axes, zoom and mark come back to
+// the last bit; saved again the file is the same; leaving asks nothing.
 TEST(test_what_was_done_comes_back)
 {
     static const char keys[] =
-        "b:open compare/hybrid<Enter>:pin with \u03b8<Enter>:set control.force 1.37<Enter>"
-        ":seek 0.35<Enter>:set control.force 2.1<Enter>:push 0.003<Enter>b:hide 2<Enter>"
-        ":set control.transition_time 0.2<Enter>:trace gap_velocity<Enter>"
-        ":phase gap force<Enter>:axis -1 3 1<Enter>:axis grow 3<Enter>:signal hub_angle "
-        "2<Enter>:limit force 2.5<Enter>"
-        ":zoom 0.1 0.9<Enter>:mark 0.3<Enter>"
-        ":seek 0.5<Enter>";
+        "b:open compare/hybrid<Enter>:pin with \u03b8<Enter>:set control.force "
+        "1.37<Enter>:seek 0.35<Enter>:set control.force 2.1<Enter>:push "
+        "0.003<Enter>b:hide 2<Enter>:set control.transition_time 0.2<Enter>:trace "
+        "gap_velocity<Enter>:phase gap force<Enter>:axis -1 3 1<Enter>:axis grow "
+        "3<Enter>:signal hub_angle 2<Enter>:limit force 2.5<Enter>:zoom 0.1 "
+        "0.9<Enter>:mark 0.3<Enter>:seek 0.5<Enter>";
     SCOPED(explorer_finish) explorer ex;
     open_changed(&ex, "corrected/first-impact", "", HUGE_VAL);
     press(&ex, keys);
@@ -69,12 +70,15 @@ static void write_command(const char *volts)
     put_file("command.csv", formatted("t,command\n0,%s\n", volts));
 }
 
-// A recording that a run plays belongs to it, by content: another one in its place is told.
+// A recording that a run plays belongs to it, by content: another one in its place is
+// told.
 TEST(test_changed_recordings_are_told)
 {
     write_command("1");
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    press(&ex, ":set control.playback_file command.csv<Enter>:set control.law playback<Enter>");
+    press(
+        &ex,
+        ":set control.playback_file command.csv<Enter>:set control.law playback<Enter>");
     save(&ex);
     OPEN_EXPLORER(same, "corrected/three-links");
     assert_true(explorer_open_session(&same.state, path));
@@ -122,14 +126,17 @@ TEST(test_the_command_that_is_told_works)
     press_opens(&again, ":session open s 1<Enter>", "corrected/first-impact");
 }
 
-// A session whose law is a program asks before it starts it, and its lines do nothing but look.
+// A session whose law is a program asks before it starts it, and its lines do nothing but
+// look.
 TEST(test_a_file_from_elsewhere_starts_nothing)
 {
     const char *mark = formatted("%s/started", test_folder);
-    put_file(path, formatted("impactlab-session: 1\nscenario: mine\n| title: \"mine\"\npresent:\n"
-                             "start: 0 control.command touch %s\nstart: 0 control.law process\n"
-                             "cursor: 0 0\nbaseline: 0\nview: save %s\nview: allow\n",
-                             mark, mark));
+    put_file(
+        path,
+        formatted("impactlab-session: 1\nscenario: mine\n| title: \"mine\"\npresent:\n"
+                  "start: 0 control.command touch %s\nstart: 0 control.law process\n"
+                  "cursor: 0 0\nbaseline: 0\nview: save %s\nview: allow\n",
+                  mark, mark));
     OPEN_EXPLORER(ex, "corrected/first-impact");
     explorer_open_session(&ex.state, path);
     assert_int_equal(ex.state.session.run.summary.status, STATUS_NOT_ALLOWED);
@@ -158,7 +165,8 @@ TEST(test_broken_files_are_refused_with_their_line)
         {BASE "present:\nstart: 0 motor.voltgae 2\n", ":5:1: no change"},
         {BASE "present:\nstart: -1 motor.voltage 2\n", ":5:1: no change"},
         {BASE "present:\nstart: 0 motor.voltage lots\n", ":5:1: "},
-        {BASE "present:\nfrom: 0.1 arm.links 5\n", ":5:1: a parameter that does not change"},
+        {BASE "present:\nfrom: 0.1 arm.links 5\n",
+         ":5:1: a parameter that does not change"},
         {BASE "present:\npush: 0.1\n", ":5:1: no push"},
         {BASE "present:\npush: 0.1 nan\n", ":5:1: no push"},
         {BASE "present:\ncursor: 1\n", ":5:1: no cursor"},

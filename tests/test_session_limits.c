@@ -1,5 +1,5 @@
-// What a session refuses leaves it as it was, and a run that is being computed can be left,
-// stopped, and continued.
+// What a session refuses leaves it as it was, and a run that is being computed can be
+// left, stopped, and continued.
 #include "tests/trace_check.h"
 
 #include "src/rig/external/process_lines.h"
@@ -8,7 +8,8 @@
 static scenario read_text(const char *text)
 {
     scenario s;
-    assert_int_equal(scenario_parse(&s, text, strlen(text), "test.yaml", NULL, fail_on_fault, NULL),
+    assert_int_equal(scenario_parse(&s, text, strlen(text), "test.yaml", NULL,
+                                    fail_on_fault, NULL),
                      STATUS_OK);
     return s;
 }
@@ -24,7 +25,8 @@ static session opened(const char *text)
 static const char brief[] = "title: t\nwall: {angle: 0}\ninitial: {angle: -0.02}\n"
                             "run: {duration: 0.3 s}\n";
 
-// Pushes of one gesture are undone and redone together, and a new gesture has a number of its own.
+// Pushes of one gesture are undone and redone together, and a new gesture has a number of
+// its own.
 TEST(a_gesture_is_one_step)
 {
     KEPT_SESSION(s) = opened(brief);
@@ -32,7 +34,8 @@ TEST(a_gesture_is_one_step)
     static const struct {
         double time;
         unsigned gesture;
-    } pushes[] = {{0.05, 0}, {0.1, 4}, {0.12, 4}, {0.14, 4}, {0.16, 2}, {0.18, 0}, {0.2, 0}};
+    } pushes[] = {{0.05, 0}, {0.1, 4},  {0.12, 4}, {0.14, 4},
+                  {0.16, 2}, {0.18, 0}, {0.2, 0}};
     for (int i = 0; i < 7; i++) {
         session_seek(&s, pushes[i].time);
         DONE(session_pull(&s, 1e-4 * (i + 1), pushes[i].gesture, &f));
@@ -78,20 +81,24 @@ TEST(what_is_too_long_or_no_value_is_refused)
     fault f = {0};
     const char *endless = repeated('1', 4 * PARAMETER_TEXT_SIZE - 1);
     session_seek(&s, 0.1);
-    assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "2", &f), STATUS_OK);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(motor.voltage), "2", &f),
+                     STATUS_OK);
     assert_int_equal(session_push(&s, 0.01, &f), STATUS_OK);
     const unsigned version = s.version;
 
     // a new input
-    assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.k2), endless, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.k2), endless, &f),
+                     STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "too long"));
-    assert_int_not_equal(session_adjust(&s, PARAMETER_INDEX(arm.k2), "soft", &f), STATUS_OK);
+    assert_int_not_equal(session_adjust(&s, PARAMETER_INDEX(arm.k2), "soft", &f),
+                         STATUS_OK);
     assert_false(s.has_ghost);
 
     // too long by its last character
     const char *just = formatted("%s7 ", repeated('0', SESSION_INPUT_TEXT - 2));
     f = (fault){0};
-    assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.k2), just, &f), STATUS_BAD_ARGUMENT);
+    assert_int_equal(session_change(&s, PARAMETER_INDEX(arm.k2), just, &f),
+                     STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "too long"));
     f = (fault){0};
     assert_int_equal(session_change_input(&s, 0, just, &f), STATUS_BAD_ARGUMENT);
@@ -111,7 +118,8 @@ TEST(what_is_too_long_or_no_value_is_refused)
     assert_string_equal(s.inputs[0].text, "2");
     session_finish(&s);
 
-    KEPT_SESSION(printed) = opened("title: t\narm: {model: printed}\nrun: {duration: 0.1 s}\n");
+    KEPT_SESSION(printed) =
+        opened("title: t\narm: {model: printed}\nrun: {duration: 0.1 s}\n");
     assert_int_equal(session_push(&printed, 0.01, &f), STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "no pushes"));
 }
@@ -163,7 +171,8 @@ TEST(inputs_that_cannot_go_stay)
     assert_int_equal(s.input_count, 0);
 }
 
-// A gesture that nothing comes before, and one whose number another one had that was undone.
+// A gesture that nothing comes before, and one whose number another one had that was
+// undone.
 TEST(gestures_end_where_their_inputs_end)
 {
     KEPT_SESSION(s) = opened(brief);
@@ -209,8 +218,8 @@ TEST(a_refused_drop_keeps_the_order)
     assert_memory_equal(before + 1, s.inputs, 2 * sizeof *before);
 }
 
-// Where another input went meanwhile, the run has other rows at the instant that undoing leads to:
-// none, a later one, or another one with the number of the row that was shown.
+// Where another input went meanwhile, the run has other rows at the instant that undoing
+// leads to: none, a later one, or another one with the number of the row that was shown.
 TEST(undoing_leads_to_the_instant_in_another_run)
 {
     static const struct {
@@ -233,7 +242,8 @@ TEST(undoing_leads_to_the_instant_in_another_run)
     }
 }
 
-// An arm that starts on the wall meets it at once: what is done at the row before is done at 0.
+// An arm that starts on the wall meets it at once: what is done at the row before is done
+// at 0.
 TEST(a_push_before_a_contact_at_once_is_at_the_start)
 {
     KEPT_SESSION(s) = opened("title: t\nwall: {angle: 0}\nrun: {duration: 0.1 s}\n"
@@ -253,11 +263,13 @@ TEST(taken_inputs_make_the_same_run)
     DONE(session_change(&from, PARAMETER_INDEX(arm.k2), "7", &f));
     for (int i = 1; i <= 3; i++) {
         session_seek(&from, 0.05 * i);
-        DONE(session_change(&from, PARAMETER_INDEX(motor.voltage), formatted("%d", i), &f));
+        DONE(session_change(&from, PARAMETER_INDEX(motor.voltage), formatted("%d", i),
+                            &f));
         DONE(session_push(&from, 0.001 * i, &f));
         DONE(session_take_inputs(&to, from.inputs, from.input_count, &f));
         assert_int_equal(to.input_count, 1 + 2 * i);
-        assert_memory_equal(to.inputs, from.inputs, (size_t)to.input_count * sizeof *to.inputs);
+        assert_memory_equal(to.inputs, from.inputs,
+                            (size_t)to.input_count * sizeof *to.inputs);
         assert_int_equal(to.run.trace.row_count, from.run.trace.row_count);
         assert_memory_equal(to.run.trace.rows, from.run.trace.rows,
                             to.run.trace.row_count * sizeof *to.run.trace.rows);
@@ -273,8 +285,8 @@ TEST(taken_inputs_make_the_same_run)
     }
 }
 
-// A change given at the row before an event takes effect before it, one at the row after it does
-// not change the event.
+// A change given at the row before an event takes effect before it, one at the row after
+// it does not change the event.
 TEST(a_change_at_an_event_belongs_to_its_row)
 {
     KEPT_SESSION(s) = opened(brief);
@@ -300,8 +312,8 @@ TEST(a_change_at_an_event_belongs_to_its_row)
     assert_true(s.run.summary.first_contact_s == contact);
 }
 
-// So it is at every event of a run, the first and the last, and before nothing else is anything
-// moved.
+// So it is at every event of a run, the first and the last, and before nothing else is
+// anything moved.
 TEST(what_is_done_at_any_event_belongs_to_its_row)
 {
     KEPT_SESSION(s) =
@@ -341,12 +353,14 @@ TEST(what_is_done_at_any_event_belongs_to_its_row)
     assert_true(events >= 3 && changes > 0);
 }
 
-// A long run is available as far as it is computed; when stopped it continues to the same rows.
+// A long run is available as far as it is computed; when stopped it continues to the same
+// rows.
 TEST(a_stopped_run_goes_on)
 {
     KEPT_SESSION(s);
-    scenario base = read_text("title: t\nmotor: {voltage: 0.001 V}\nwall: {angle: 3 rad}\n"
-                              "arm: {links: 24, damping_ratio: 0}\nrun: {duration: 300 s}\n");
+    scenario base =
+        read_text("title: t\nmotor: {voltage: 0.001 V}\nwall: {angle: 3 rad}\n"
+                  "arm: {links: 24, damping_ratio: 0}\nrun: {duration: 300 s}\n");
     DONE(session_open(&s, &base, 0, &f));
     assert_non_null(s.computing);
     assert_true(s.run.trace.row_count > 0);
@@ -354,7 +368,8 @@ TEST(a_stopped_run_goes_on)
     // meanwhile it cannot be continued, and one too large leaves it running
     REFUSED(STATUS_BAD_ARGUMENT, "", session_go_on(&s, &f));
     assert_false(session_take_replay(&s).restarted);
-    REFUSED(STATUS_BAD_ARGUMENT, "", session_change(&s, PARAMETER_INDEX(method.step), "1e-7", &f));
+    REFUSED(STATUS_BAD_ARGUMENT, "",
+            session_change(&s, PARAMETER_INDEX(method.step), "1e-7", &f));
     assert_int_equal(s.input_count, 0);
     assert_non_null(s.computing);
 

@@ -1,4 +1,5 @@
-// control.settings.NAME: one number of the text, by --set, in files, in scripts and as an axis.
+// control.settings.NAME: one number of the text, by --set, in files, in scripts and as an
+// axis.
 #include "src/session/session.h"
 #include "src/study/sweep_axis.h"
 #include "src/tables/settings.h"
@@ -16,11 +17,13 @@ static void keep_fault(void *context, const char *sentence)
 }
 
 // A scenario with these lines under `control:` and behind; the caller finishes it.
-static status parse(scenario *s, const char *law, const char *lines, char fault_text[1024])
+static status parse(scenario *s, const char *law, const char *lines,
+                    char fault_text[1024])
 {
     const char *text = formatted(observer_file, law, lines);
     fault_text[0] = '\0';
-    return scenario_parse(s, text, strlen(text), "arm.yaml", NULL, keep_fault, fault_text);
+    return scenario_parse(s, text, strlen(text), "arm.yaml", NULL, keep_fault,
+                          fault_text);
 }
 
 TEST(one_number_is_exchanged_and_the_others_stay)
@@ -33,7 +36,8 @@ TEST(one_number_is_exchanged_and_the_others_stay)
         {"a=1 b=2 c=3", "b", "-5e-7", "a=1 b=-5e-07 c=3"},
         {"a=1 b=2 a=3", "a", "4", "a=4 b=2"},
         {"ab=1", "a", "2", "ab=1 a=2"},
-        {"mode=fast", "gain", "0.30000000000000004", "mode=fast gain=0.30000000000000004"},
+        {"mode=fast", "gain", "0.30000000000000004",
+         "mode=fast gain=0.30000000000000004"},
     };
     for (EACH(c, cases)) {
         parameters p = fresh(ARM_CORRECTED);
@@ -58,7 +62,8 @@ TEST(what_is_no_number_or_no_name_is_refused)
         {"control.settings.a=1e999", "is not"},
         {"control.settings.=3", "names no setting"},
         {"control.settings.a b=3", "names no setting"},
-        {"control.settings.name_of_a_number_that_is_far_too_long_to_be_one=3", "names no setting"},
+        {"control.settings.name_of_a_number_that_is_far_too_long_to_be_one=3",
+         "names no setting"},
     };
     char said[1024];
     KEPT_SCENARIO(s);
@@ -66,7 +71,8 @@ TEST(what_is_no_number_or_no_name_is_refused)
     for (EACH(c, cases)) {
         fault f = {0};
         assert_int_not_equal(scenario_override(&s, c->assignment, &f), STATUS_OK);
-        fail_if(strstr(f.text, c->sentence) == NULL, "'%s' does not say '%s'", f.text, c->sentence);
+        fail_if(strstr(f.text, c->sentence) == NULL, "'%s' does not say '%s'", f.text,
+                c->sentence);
     }
 
     // beside the others there must be room
@@ -108,24 +114,26 @@ TEST(a_file_has_a_map_or_the_text)
             scenario_finish(&s);
         } else {
             assert_int_equal(code, STATUS_BAD_SCENARIO);
-            fail_if(strstr(said, c->sentence) == NULL, "'%s' does not say '%s'", said, c->sentence);
+            fail_if(strstr(said, c->sentence) == NULL, "'%s' does not say '%s'", said,
+                    c->sentence);
         }
     }
 }
 
-// A number set during the run is what the law has from then on: the run is another, its rows until
-// then are the same; what is written reads back as the same script.
+// A number set during the run is what the law has from then on: the run is another, its
+// rows until then are the same; what is written reads back as the same script.
 TEST(a_script_sets_one_of_them)
 {
     char said[1024];
     KEPT_SCENARIO(plain), scripted, again;
     const char *law = "impedance";
     assert_int_equal(parse(&plain, law, "  settings: {force: 0.5}\n", said), STATUS_OK);
-    assert_int_equal(parse(&scripted, law,
-                           "  settings: {force: 0.5}\n"
-                           "script:\n  - at: 0.2 s\n    set: {control.settings.stiffness: 300}\n",
-                           said),
-                     STATUS_OK);
+    assert_int_equal(
+        parse(&scripted, law,
+              "  settings: {force: 0.5}\n"
+              "script:\n  - at: 0.2 s\n    set: {control.settings.stiffness: 300}\n",
+              said),
+        STATUS_OK);
     const parameters changed = scenario_parameters_at(&scripted, 0.25);
     assert_string_equal(changed.control.settings, "force=0.5 stiffness=300");
 
@@ -134,14 +142,15 @@ TEST(a_script_sets_one_of_them)
     assert_true(before.summary.steady_force_N != after.summary.steady_force_N);
     const size_t rows = trace_rows_until(&before.trace, 0.19);
     assert_true(rows > 10);
-    check_close(before.trace.rows[rows - 1].hub_angle, after.trace.rows[rows - 1].hub_angle, 0);
+    check_close(before.trace.rows[rows - 1].hub_angle,
+                after.trace.rows[rows - 1].hub_angle, 0);
 
     // written and read
     SCOPED(free_kept) WRITTEN(text, scenario_write(stream, &scripted));
     assert_non_null(strstr(text, "set: {control.settings.stiffness: 300}"));
-    assert_int_equal(
-        scenario_parse(&again, text, strlen(text), "again.yaml", NULL, keep_fault, said),
-        STATUS_OK);
+    assert_int_equal(scenario_parse(&again, text, strlen(text), "again.yaml", NULL,
+                                    keep_fault, said),
+                     STATUS_OK);
     assert_int_equal(again.action_count, 1);
     assert_string_equal(again.actions[0].text, scripted.actions[0].text);
 }

@@ -3,7 +3,8 @@
 
 #include "src/base/sha256.h"
 
-static void check_digest(const void *bytes, size_t size, size_t piece, const char *expected)
+static void check_digest(const void *bytes, size_t size, size_t piece,
+                         const char *expected)
 {
     sha256 h;
     char text[SHA256_TEXT];
@@ -19,9 +20,12 @@ TEST(the_standards_examples_come_out)
 {
     static char many_a[1000000];
     memset(many_a, 'a', sizeof many_a);
-    const char *const two_blocks = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
-    check_digest("", 0, 1, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-    check_digest("abc", 3, 3, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    const char *const two_blocks =
+        "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
+    check_digest("", 0, 1,
+                 "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    check_digest("abc", 3, 3,
+                 "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     check_digest(two_blocks, 56, 56,
                  "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
     check_digest(many_a, sizeof many_a, sizeof many_a,
@@ -30,7 +34,8 @@ TEST(the_standards_examples_come_out)
 
 TEST(pieces_make_no_difference)
 {
-    const char *const two_blocks = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
+    const char *const two_blocks =
+        "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
     for (size_t piece = 1; piece <= 56; piece++) {
         check_digest(two_blocks, 56, piece,
                      "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");

@@ -1,4 +1,5 @@
-// Growing arrays: elements stay what they are, shared ones where they are, and memory goes back.
+// Growing arrays: elements stay what they are, shared ones where they are, and memory
+// goes back.
 #include "tests/check.h"
 #include "tests/shared_memory.h"
 
@@ -155,7 +156,12 @@ TEST(memory_goes_back_with_the_last_array)
 // elements, and there is memory for as many different chunks as there are.
 TEST(any_number_of_arrays_share_their_chunks)
 {
-    enum { ARRAYS = 60, MOST = 40, WORDS = ARRAY_CHUNK / 4 / sizeof(uint64_t), STEPS = 1500 };
+    enum {
+        ARRAYS = 60,
+        MOST = 40,
+        WORDS = ARRAY_CHUNK / 4 / sizeof(uint64_t),
+        STEPS = 1500
+    };
     static shared_array arrays[ARRAYS];
     static uint64_t values[ARRAYS][MOST + 4];
     size_t counts[ARRAYS] = {0};
@@ -189,7 +195,8 @@ TEST(any_number_of_arrays_share_their_chunks)
             assert_true(shared_array_grow(a, count));
             assert_int_equal(a->capacity, a->mapped / ARRAY_CHUNK * 4);
             for (; counts[i] < count; counts[i]++) {
-                const uint64_t value = random_below(&g, 20) == 0 ? (uint64_t)step : counts[i];
+                const uint64_t value =
+                    random_below(&g, 20) == 0 ? (uint64_t)step : counts[i];
                 uint64_t *element = (uint64_t *)a->base + counts[i] * WORDS;
                 values[i][counts[i]] = element[0] = element[WORDS - 1] = value;
             }
@@ -206,7 +213,8 @@ TEST(any_number_of_arrays_share_their_chunks)
         for (size_t k = 0; k < ARRAYS; k++) {
             for (size_t e = 0; live[k] && e < counts[k] && step % 10 == 0; e++) {
                 const uint64_t *element = (const uint64_t *)arrays[k].base + e * WORDS;
-                assert_true(element[0] == values[k][e] && element[WORDS - 1] == values[k][e]);
+                assert_true(element[0] == values[k][e] &&
+                            element[WORDS - 1] == values[k][e]);
             }
             for (size_t c = 0; c <= MOST / 4 && ids[k][c] != 0; c++) {
                 seen[different] = ids[k][c];

@@ -1,4 +1,5 @@
-// The table of recorded signals: one order for rows and table, so that a field gives its index.
+// The table of recorded signals: one order for rows and table, so that a field gives its
+// index.
 #include "src/tables/signals.h"
 
 #include "tests/check.h"
@@ -32,7 +33,8 @@ TEST(rows_and_table_have_one_order)
 TEST(every_signal_is_described)
 {
     for (int i = 0; i < signal_count; i++) {
-        assert_true(signal_table[i].symbol[0] != '\0' && signal_table[i].ascii[0] != '\0');
+        assert_true(signal_table[i].symbol[0] != '\0' &&
+                    signal_table[i].ascii[0] != '\0');
         assert_true(signal_table[i].description[0] != '\0');
         for (const char *c = signal_table[i].ascii; *c != '\0'; c++) {
             assert_true((unsigned char)*c < 0x80);

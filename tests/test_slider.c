@@ -8,7 +8,8 @@ static hit_area slider_of(explorer *ex, int parameter)
     hit_area widest = {.panel = PANEL_NONE};
     for (int i = 0; i < ex->layout.hit_count; i++) {
         const hit_area *s = &ex->layout.hits[i];
-        if (s->part == PART_SLIDER && s->index == parameter && s->area.width > widest.area.width) {
+        if (s->part == PART_SLIDER && s->index == parameter &&
+            s->area.width > widest.area.width) {
             widest = *s;
         }
     }
@@ -108,7 +109,8 @@ TEST(test_clicks_select_and_the_wheel_nudges)
 }
 
 // The wide slider, ends and all.
-static void assert_slider(explorer *ex, int width, int height, glyph_set set, const char *track)
+static void assert_slider(explorer *ex, int width, int height, glyph_set set,
+                          const char *track)
 {
     KEPT_TEXT(text) = picture(ex, width, height, set);
     fail_if(!strstr(text, " -5 ") || !strstr(text, track) || !strstr(text, " 5 "),
@@ -119,7 +121,8 @@ TEST(test_the_selected_number_has_a_slider_on_every_screen)
 {
     static const int sizes[][2] = {{45, 16}, {60, 24}, {80, 24}, {120, 40}, {200, 60}};
     static const glyph_set sets[] = {GLYPHS_BRAILLE, GLYPHS_BLOCKS, GLYPHS_ASCII};
-    static const char *const tracks[] = {"\u2500\u25cf\u2500", "\u2500\u25cf\u2500", "-o-"};
+    static const char *const tracks[] = {"\u2500\u25cf\u2500", "\u2500\u25cf\u2500",
+                                         "-o-"};
     OPEN_EXPLORER(ex, "corrected/first-impact");
     ex.state.side.in_front = true;
     for (int i = 0; i < 15; i++) {

@@ -1,5 +1,5 @@
-// Arms that meet walls that give, from rest on: the library, and an integrator that shares no code
-// with it.
+// Arms that meet walls that give, from rest on: the library, and an integrator that
+// shares no code with it.
 #include "tests/arm_fixture.h"
 #include "tests/chain_outcome.h"
 #include "tests/reference/implicit_arm.h"
@@ -22,19 +22,20 @@ static const struct wall_case {
      {"arm.links=4", "arm.hub_joint=beam", "wall.kind=plane", "motor.voltage=4",
       "wall.stiffness=2e3", "wall.damping=100"}},
     {"Hunt-Crossley, point, N = 2, 1 V",
-     {"wall.contact=hunt-crossley", "motor.voltage=1", "wall.stiffness=1e6", "wall.damping=3e5"}},
+     {"wall.contact=hunt-crossley", "motor.voltage=1", "wall.stiffness=1e6",
+      "wall.damping=3e5"}},
     {"Hunt-Crossley, plane, N = 3, beam",
-     {"wall.contact=hunt-crossley", "arm.links=3", "arm.hub_joint=beam", "wall.kind=plane",
-      "motor.voltage=3", "wall.stiffness=1e6", "wall.damping=3e5"}},
+     {"wall.contact=hunt-crossley", "arm.links=3", "arm.hub_joint=beam",
+      "wall.kind=plane", "motor.voltage=3", "wall.stiffness=1e6", "wall.damping=3e5"}},
     {"Hunt-Crossley, n = 1.3, N = 2, sensor",
-     {"wall.contact=hunt-crossley", "arm.tip_mass=0.05", "wall.kind=plane", "motor.voltage=2",
-      "wall.stiffness=2e5", "wall.damping=6e4", "wall.exponent=1.3"}},
+     {"wall.contact=hunt-crossley", "arm.tip_mass=0.05", "wall.kind=plane",
+      "motor.voltage=2", "wall.stiffness=2e5", "wall.damping=6e4", "wall.exponent=1.3"}},
     {"Hunt-Crossley, slow to return, N = 4, beam",
-     {"wall.contact=hunt-crossley", "arm.links=4", "arm.hub_joint=beam", "wall.kind=plane",
-      "motor.voltage=8", "wall.stiffness=1e4", "wall.damping=1e5"}},
+     {"wall.contact=hunt-crossley", "arm.links=4", "arm.hub_joint=beam",
+      "wall.kind=plane", "motor.voltage=8", "wall.stiffness=1e4", "wall.damping=1e5"}},
     {"Hunt-Crossley, met at rest, N = 4, beam",
-     {"wall.contact=hunt-crossley", "arm.links=4", "arm.hub_joint=beam", "wall.kind=plane",
-      "motor.voltage=8", "wall.stiffness=1e5", "wall.damping=1e6"}},
+     {"wall.contact=hunt-crossley", "arm.links=4", "arm.hub_joint=beam",
+      "wall.kind=plane", "motor.voltage=8", "wall.stiffness=1e5", "wall.damping=1e6"}},
     {"face of 0.2 kg, point, N = 2, 1 V",
      {"wall.mass=0.2", "motor.voltage=1", "wall.stiffness=75e3", "wall.damping=20"}},
     {"face of 50 g, plane, N = 2, 5 V",
@@ -43,8 +44,8 @@ static const struct wall_case {
     {"face of 1 g, point, N = 2, overdamped",
      {"wall.mass=1e-3", "motor.voltage=2", "wall.stiffness=1e3", "wall.damping=60"}},
     {"face of 20 g, plane, N = 4, beam, sensor",
-     {"wall.mass=0.02", "arm.links=4", "arm.hub_joint=beam", "arm.tip_mass=0.02", "wall.kind=plane",
-      "motor.voltage=2", "wall.stiffness=2e4", "wall.damping=10"}},
+     {"wall.mass=0.02", "arm.links=4", "arm.hub_joint=beam", "arm.tip_mass=0.02",
+      "wall.kind=plane", "motor.voltage=2", "wall.stiffness=2e4", "wall.damping=10"}},
 };
 
 TEST(an_independent_integrator_finds_the_same)
@@ -56,10 +57,12 @@ TEST(an_independent_integrator_finds_the_same)
         }
         const parameters p = fixture_parameters(settings);
         const chain_start start = {&p, 0, 0, DURATION, DURATION, NULL, OUTCOME_CONTACTS};
-        const chain_outcome l = chain_outcome_of(&start), r = implicit_outcome_of(&start, 1e-10);
+        const chain_outcome l = chain_outcome_of(&start),
+                            r = implicit_outcome_of(&start, 1e-10);
         const double peak = l.peak / r.peak - 1;
-        print_message("%s: %d contacts to %.6f s, peak %.9g N, off by %.1e, %.1e s later\n",
-                      c->name, r.contacts, r.ended, r.peak, peak, l.peak_time - r.peak_time);
+        print_message(
+            "%s: %d contacts to %.6f s, peak %.9g N, off by %.1e, %.1e s later\n",
+            c->name, r.contacts, r.ended, r.peak, peak, l.peak_time - r.peak_time);
         assert_true(l.status == STATUS_OK && r.status == STATUS_OK);
 
         // contacts, forces, momentum, losses

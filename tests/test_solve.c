@@ -17,8 +17,8 @@ static solve_condition condition_of(const char *text)
     return c;
 }
 
-static solution solved(const scenario *s, const sweep_axis *axis, const char *text, int points,
-                       int jobs)
+static solution solved(const scenario *s, const sweep_axis *axis, const char *text,
+                       int points, int jobs)
 {
     solution found;
     const solve_condition c = condition_of(text);
@@ -27,23 +27,25 @@ static solution solved(const scenario *s, const sweep_axis *axis, const char *te
 }
 
 // The quantity of a run of its own with another value of the parameter.
-static double quantity_at(const scenario *s, const char *path, double value, const char *key)
+static double quantity_at(const scenario *s, const char *path, double value,
+                          const char *key)
 {
     scenario changed = *s;
     parameters p = s->parameters;
-    assert_int_equal(parameter_set_number(&p, parameter_find(path), value, NULL), STATUS_OK);
+    assert_int_equal(parameter_set_number(&p, parameter_find(path), value, NULL),
+                     STATUS_OK);
     assert_int_equal(scenario_take_parameters(&changed, &p, NULL), STATUS_OK);
     KEPT_RUN(result) = run_done(&changed, false);
     return summary_value(&result.summary, summary_find(key));
 }
 
-// One link at rest on the wall presses with the hub's torque, which is proportional to the voltage
-// where there is no friction: twice the force takes twice the voltage.
+// One link at rest on the wall presses with the hub's torque, which is proportional to
+// the voltage where there is no friction: twice the force takes twice the voltage.
 TEST(statics_have_the_limit_of_statics)
 {
-    KEPT_SCENARIO(s) =
-        shipped_with("corrected/first-impact",
-                     "motor.stiction=0 arm.links=1 initial.angle=0 wall.angle=0 run.duration=0.2");
+    KEPT_SCENARIO(s) = shipped_with(
+        "corrected/first-impact",
+        "motor.stiction=0 arm.links=1 initial.angle=0 wall.angle=0 run.duration=0.2");
     sweep_axis axis = axis_of("motor.voltage", 0.1, 4);
     const double at_one = quantity_at(&s, "motor.voltage", 1, "steady_force_N");
 
@@ -55,8 +57,8 @@ TEST(statics_have_the_limit_of_statics)
     assert_true(found.limits[0].holds_below);
 }
 
-// The condition holds at the limit and no longer a little beyond it, and neither the number of
-// values nor that of threads has a say in where it is.
+// The condition holds at the limit and no longer a little beyond it, and neither the
+// number of values nor that of threads has a say in where it is.
 TEST(limits_are_where_the_condition_ceases_to_hold)
 {
     KEPT_SCENARIO(s) = shipped("corrected/first-impact");
@@ -68,7 +70,8 @@ TEST(limits_are_where_the_condition_ceases_to_hold)
     check_close(few.limits[0].value, many.limits[0].value, 1e-11);
 
     const double limit = few.limits[0].value;
-    check_close(few.limits[0].reached, quantity_at(&s, "motor.voltage", limit, "peak_force_N"), 0);
+    check_close(few.limits[0].reached,
+                quantity_at(&s, "motor.voltage", limit, "peak_force_N"), 0);
     check_below(few.limits[0].reached, 2.0);
     check_below(2.0, quantity_at(&s, "motor.voltage", limit + 1e-11, "peak_force_N"));
     assert_false(few.limits[0].jumps);
@@ -80,8 +83,9 @@ TEST(limits_are_where_the_condition_ceases_to_hold)
     check_close(above.limits[0].value, limit, 1e-11);
 }
 
-// A count jumps; its limits come in the order of the range, each with a value that holds beside
-// those that do not. Within 1e-9 V of a grazing impact rounding decides whether it is one.
+// A count jumps; its limits come in the order of the range, each with a value that holds
+// beside those that do not. Within 1e-9 V of a grazing impact rounding decides whether it
+// is one.
 TEST(jumps_are_located_and_told)
 {
     KEPT_SCENARIO(s) = shipped("corrected/first-impact");
@@ -150,7 +154,8 @@ TEST(conditions_say_what_they_lack)
     };
     for (EACH(one, wrong)) {
         solve_condition c;
-        REFUSED(STATUS_BAD_ARGUMENT, one->expected, solve_condition_read(one->text, &c, &f));
+        REFUSED(STATUS_BAD_ARGUMENT, one->expected,
+                solve_condition_read(one->text, &c, &f));
     }
 
     const solve_condition c = condition_of("  impacts >= 3 ");

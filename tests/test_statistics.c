@@ -67,9 +67,10 @@ TEST(a_ramp_and_a_step)
     assert_true(isnan(s.mean) && isnan(s.maximum) && s.duration == 0);
 }
 
-// Sums over the pieces between two rows, each cut, by Simpson's rule, which is exact for them.
-static signal_statistics by_pieces(const double *times, const double *values, int rows, double from,
-                                   double to)
+// Sums over the pieces between two rows, each cut, by Simpson's rule, which is exact for
+// them.
+static signal_statistics by_pieces(const double *times, const double *values, int rows,
+                                   double from, double to)
 {
     signal_statistics s = {.minimum = HUGE_VAL, .maximum = -HUGE_VAL};
     double squares = 0;
@@ -90,14 +91,16 @@ static signal_statistics by_pieces(const double *times, const double *values, in
         }
         s.duration += end - begin;
         s.integral += (end - begin) * (at[0] + 4 * at[1] + at[2]) / 6;
-        squares += (end - begin) * (at[0] * at[0] + 4 * at[1] * at[1] + at[2] * at[2]) / 6;
+        squares +=
+            (end - begin) * (at[0] * at[0] + 4 * at[1] * at[1] + at[2] * at[2]) / 6;
     }
     s.mean = s.duration > 0 ? s.integral / s.duration : s.minimum;
     s.rms = s.duration > 0 ? sqrt(squares / s.duration) : fabs(s.minimum);
     return s;
 }
 
-// Rows at eighths of a second, some of them twice, some without a value, cut at sixteenths.
+// Rows at eighths of a second, some of them twice, some without a value, cut at
+// sixteenths.
 TEST(whatever_is_cut_is_the_sum_of_its_pieces)
 {
     enum { ROWS = 12 };
@@ -110,7 +113,8 @@ TEST(whatever_is_cut_is_the_sum_of_its_pieces)
         for (int i = 0; i < ROWS; i++) {
             times[i] = i == 0 ? 0 : times[i - 1] + (double)random_below(&g, 3) / 8;
             values[i] = (double)random_below(&g, 17) - 8;
-            values[i] = trial % 3 == 0 && random_below(&g, 8) == 0 ? (double)NAN : values[i];
+            values[i] =
+                trial % 3 == 0 && random_below(&g, 8) == 0 ? (double)NAN : values[i];
             add(&t, times[i], values[i]);
         }
 

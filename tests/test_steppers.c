@@ -4,11 +4,13 @@
 
 // One link on a spring whose hub never lets go: a linear oscillator,
 // (I + m l^2/4) a + k1 theta = 0. k1 is chosen for the wanted frequency.
-static arm oscillator(double frequency, const char *method, const char *more, method_parameters *mp)
+static arm oscillator(double frequency, const char *method, const char *more,
+                      method_parameters *mp)
 {
-    parameters p = parameters_with("arm.links=1 arm.hub_joint=spring arm.k1=%.17g wall.kind=none "
-                                   "motor.voltage=0 motor.stiction=1000 %s %s",
-                                   frequency * frequency * 0.40108 / 3, method, more);
+    parameters p =
+        parameters_with("arm.links=1 arm.hub_joint=spring arm.k1=%.17g wall.kind=none "
+                        "motor.voltage=0 motor.stiction=1000 %s %s",
+                        frequency * frequency * 0.40108 / 3, method, more);
     arm a = arm_of(&p);
     *mp = p.method;
     return a;
@@ -32,9 +34,9 @@ static motion *motion_by(const arm *a, const method_parameters *mp)
     return motion_create_by(a, mp, mp->name == METHOD_EVENT ? &explicit_engine : NULL);
 }
 
-// Growth of the state per step, averaged over many steps from a general start. The oscillator is
-// linear, so the state is scaled back after each step. Without damping the norm still swings within
-// a period, which leaves an error of a few 1e-4 in the average.
+// Growth of the state per step, averaged over many steps from a general start. The
+// oscillator is linear, so the state is scaled back after each step. Without damping the
+// norm still swings within a period, which leaves an error of a few 1e-4 in the average.
 static double spectral_radius(double frequency_step, const char *method, const char *more)
 {
     enum { STEPS = 4000 };
@@ -50,8 +52,8 @@ static double spectral_radius(double frequency_step, const char *method, const c
         double *q = &state_angles(m, m->state)[1], *v = &state_velocities(m, m->state)[1];
         double *algorithmic = &state_algorithmic(m, m->state)[1];
         double f = frequency_step / h;
-        double size =
-            sqrt(*q * *q + *v * *v / (f * f) + *algorithmic * *algorithmic / (f * f * f * f));
+        double size = sqrt(*q * *q + *v * *v / (f * f) +
+                           *algorithmic * *algorithmic / (f * f * f * f));
         growth += i > STEPS / 2 ? log(size / wanted) : 0;
         *q *= wanted / size;
         *v *= wanted / size;
@@ -89,17 +91,20 @@ TEST(orders_are_as_published)
     check_close(order_of("method.name=newmark", "method.beta=0.25", 1e-3), 2, 0.05);
     check_close(order_of("method.name=newmark", "method.beta=0.4", 1e-3), 2, 0.05);
     check_close(order_of("method.name=newmark", "method.gamma=0.6", 2.5e-4), 1, 0.1);
-    check_close(order_of("method.name=generalized-alpha", "method.spectral_radius=0.8", 1e-3), 2,
-                0.05);
-    check_close(order_of("method.name=generalized-alpha", "method.spectral_radius=0", 1e-3), 2,
-                0.1);
+    check_close(order_of("method.name=generalized-alpha", "method.spectral_radius=0.8",
+                         1e-3),
+                2, 0.05);
+    check_close(order_of("method.name=generalized-alpha", "method.spectral_radius=0",
+                         1e-3),
+                2, 0.1);
     check_close(order_of("method.name=event", "method.beta=0.4", 2e-2), 8, 0.5);
 }
 
 TEST(newmark_without_damping_keeps_the_amplitude)
 {
     for (EACH_OF(double, c, 0.1, 1, 10, 1000)) {
-        check_close(spectral_radius(*c, "method.name=newmark", "method.beta=0.25"), 1, 1e-3);
+        check_close(spectral_radius(*c, "method.name=newmark", "method.beta=0.25"), 1,
+                    1e-3);
     }
 }
 
@@ -109,12 +114,16 @@ TEST(stability_limits_are_those_of_table_3_1)
     double linear_acceleration = 1 / sqrt(0.25 - 1.0 / 6);
     check_close(linear_acceleration, 3.4641, 1e-4);
     const char *beta = "method.beta=0.166666666666666667";
-    check_close(spectral_radius(0.99 * linear_acceleration, "method.name=newmark", beta), 1, 1e-3);
-    assert_true(spectral_radius(1.01 * linear_acceleration, "method.name=newmark", beta) > 1.05);
+    check_close(spectral_radius(0.99 * linear_acceleration, "method.name=newmark", beta),
+                1, 1e-3);
+    assert_true(spectral_radius(1.01 * linear_acceleration, "method.name=newmark", beta) >
+                1.05);
 
     double limit = 1 / sqrt(0.25 - 0.1);
-    check_close(spectral_radius(0.99 * limit, "method.name=newmark", "method.beta=0.1"), 1, 1e-3);
-    assert_true(spectral_radius(1.01 * limit, "method.name=newmark", "method.beta=0.1") > 1.05);
+    check_close(spectral_radius(0.99 * limit, "method.name=newmark", "method.beta=0.1"),
+                1, 1e-3);
+    assert_true(spectral_radius(1.01 * limit, "method.name=newmark", "method.beta=0.1") >
+                1.05);
 
     // unconditional: 2 beta >= gamma >= 1/2
     check_close(spectral_radius(1e4, "method.name=newmark", "method.beta=0.4"), 1, 1e-3);
@@ -122,21 +131,25 @@ TEST(stability_limits_are_those_of_table_3_1)
 
 TEST(generalised_alpha_damps_the_highest_modes_as_asked)
 {
-    check_close(spectral_radius(3e4, "method.name=generalized-alpha", "method.spectral_radius=0.9"),
+    check_close(spectral_radius(3e4, "method.name=generalized-alpha",
+                                "method.spectral_radius=0.9"),
                 0.9, 2e-3);
-    check_close(spectral_radius(3e4, "method.name=generalized-alpha", "method.spectral_radius=0.5"),
+    check_close(spectral_radius(3e4, "method.name=generalized-alpha",
+                                "method.spectral_radius=0.5"),
                 0.5, 2e-3);
     // and hardly the lowest
     assert_true(spectral_radius(0.05, "method.name=generalized-alpha",
                                 "method.spectral_radius=0.5") > 0.999);
 }
 
-// Free, undamped motion of a bent chain: largest change of energy over the time, relative.
+// Free, undamped motion of a bent chain: largest change of energy over the time,
+// relative.
 static double energy_drift(const char *links, const char *hub, double duration)
 {
-    parameters p = parameters_with("%s %s wall.kind=none motor.voltage=0 motor.stiction=0 "
-                                   "motor.viscous_friction=0 motor.back_emf=0",
-                                   links, hub);
+    parameters p =
+        parameters_with("%s %s wall.kind=none motor.voltage=0 motor.stiction=0 "
+                        "motor.viscous_friction=0 motor.back_emf=0",
+                        links, hub);
     STARTED(a, m, &p, NULL, 0, 1);
     for (int i = 0; i < a.dof; i++) {
         state_angles(m, m->state)[i] += 0.3 * sin(1.0 + 2 * i / (double)a.dof);
@@ -145,10 +158,12 @@ static double energy_drift(const char *links, const char *hub, double duration)
     state_angles(m, m->state)[0] = a.hub_spring ? state_angles(m, m->state)[1] : 0.1;
     motion_evaluate(&a, m, m->state);
     double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
-    double energy = chain_kinetic_energy(&a, q, w) + chain_strain_energy(&a, q), drift = 0;
+    double energy = chain_kinetic_energy(&a, q, w) + chain_strain_energy(&a, q),
+           drift = 0;
     for (int second = 1; second <= 10; second++) {
         motion_report report;
-        assert_int_equal(motion_advance(&a, m, duration * second / 10, 1e-3, &report), STATUS_OK);
+        assert_int_equal(motion_advance(&a, m, duration * second / 10, 1e-3, &report),
+                         STATUS_OK);
         q = state_angles(m, m->state), w = state_velocities(m, m->state);
         double now = chain_kinetic_energy(&a, q, w) + chain_strain_energy(&a, q);
         drift = fmax(drift, fabs(now / energy - 1));
@@ -163,9 +178,10 @@ TEST(free_motion_keeps_its_energy)
     check_below(energy_drift("arm.links=2", "arm.hub_joint=spring", 10), 1e-8);
 }
 
-// The implicit step solves the same equations: halving h quarters the distance to the event method.
-static double distance_to_event_method(const char *links, const char *wall, const char *method,
-                                       double h)
+// The implicit step solves the same equations: halving h quarters the distance to the
+// event method.
+static double distance_to_event_method(const char *links, const char *wall,
+                                       const char *method, double h)
 {
     double angle[2];
     for (int side = 0; side < 2; side++) {
@@ -174,7 +190,8 @@ static double distance_to_event_method(const char *links, const char *wall, cons
         STARTED(a, m, &p, NULL, 0, 0);
         motion_report report = {.event = MOTION_IMPACT};
         while (m->state[SLOT_TIME] < 0.33) { // through the impact, into contact
-            assert_int_equal(motion_advance(&a, m, 0.33, side ? 1e-3 : h, &report), STATUS_OK);
+            assert_int_equal(motion_advance(&a, m, 0.33, side ? 1e-3 : h, &report),
+                             STATUS_OK);
             motion_apply(&a, m, &report);
         }
         angle[side] = state_angles(m, m->state)[a.dof - 1];
@@ -188,10 +205,12 @@ static double distance_to_event_method(const char *links, const char *wall, cons
 
 TEST(implicit_methods_converge_through_an_impact)
 {
-    static const char *const methods[] = {"method.name=newmark", "method.name=generalized-alpha"};
+    static const char *const methods[] = {"method.name=newmark",
+                                          "method.name=generalized-alpha"};
     for (int i = 0; i < 4; i++) {
         const char *wall = i % 2 ? "wall.kind=plane" : "wall.kind=point";
-        double coarse = distance_to_event_method("arm.links=2", wall, methods[i / 2], 1e-3);
+        double coarse =
+            distance_to_event_method("arm.links=2", wall, methods[i / 2], 1e-3);
         double fine = distance_to_event_method("arm.links=2", wall, methods[i / 2], 5e-4);
         check_below(coarse, 1e-4);
         check_close(log2(coarse / fine), 2, 0.4);

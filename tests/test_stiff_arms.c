@@ -1,6 +1,6 @@
-// Arms with decays or vibrations much faster than the motion of interest: they take few strides or
-// report why not, and their slow modes are right. And arms that start on the wall, with first
-// flights that are lower than rounding.
+// Arms with decays or vibrations much faster than the motion of interest: they take few
+// strides or report why not, and their slow modes are right. And arms that start on the
+// wall, with first flights that are lower than rounding.
 #include "src/contact/zeno_monitor.h"
 #include "tests/explicit_stepper.h"
 #include "tests/passage.h"
@@ -15,7 +15,8 @@ TEST(each_arm_has_its_engine)
         // two links
         {{NULL}, &taylor_engine},
         {{"arm.damping_ratio=0.3", "wall.restitution=0.5"}, &taylor_engine},
-        {{"arm.hub_joint=spring", "arm.hub_inertia=1e-6", "arm.damping_ratio=0.02"}, &stiff_engine},
+        {{"arm.hub_joint=spring", "arm.hub_inertia=1e-6", "arm.damping_ratio=0.02"},
+         &stiff_engine},
         {{"arm.tip_mass=0.1"}, &stiff_engine},
         {{"motor.current_limit=0.2"}, &stiff_engine},
         {{"motor.inductance=1e-3"}, &stiff_engine},
@@ -27,7 +28,8 @@ TEST(each_arm_has_its_engine)
         {{"arm.links=3"}, &stiff_engine},
         {{"arm.links=64", "wall.restitution=0.9"}, &stiff_engine},
         {{"arm.links=16", "wall.contact=kelvin-voigt", "wall.damping=50"}, &stiff_engine},
-        {{"arm.links=16", "wall.contact=kelvin-voigt", "wall.damping=1e4"}, &stiff_engine},
+        {{"arm.links=16", "wall.contact=kelvin-voigt", "wall.damping=1e4"},
+         &stiff_engine},
         {{"arm.links=3", "arm.damping_ratio=1e-4"}, &stiff_engine},
         {{"arm.links=3", "arm.modal_ratios=0.01"}, &stiff_engine},
         {{"arm.links=3", "arm.air_drag=0.01"}, &stiff_engine},
@@ -37,17 +39,18 @@ TEST(each_arm_has_its_engine)
     for (EACH(c, cases)) {
         const parameters p = fixture_parameters(c->settings);
         STARTED(a, m, &p, NULL, 0, 0);
-        fail_if(m->engine != c->by, "case %td goes by %s, not %s", c - cases, m->engine->name,
-                c->by->name);
+        fail_if(m->engine != c->by, "case %td goes by %s, not %s", c - cases,
+                m->engine->name, c->by->name);
     }
 }
 
-// A hub of a milligram square metre on a damped spring: its decay of 4e8 1/s is over at once.
+// A hub of a milligram square metre on a damped spring: its decay of 4e8 1/s is over at
+// once.
 TEST(a_stiff_hub_takes_few_strides)
 {
     for (int links = 2; links <= 4; links++) {
-        parameters p = parameters_with(
-            "arm.hub_joint=spring arm.hub_inertia=1e-6 arm.damping_ratio=0.02 motor.voltage=1");
+        parameters p = parameters_with("arm.hub_joint=spring arm.hub_inertia=1e-6 "
+                                       "arm.damping_ratio=0.02 motor.voltage=1");
         p.arm.links = links;
         passage stiff = passage_of(&p, 0, 0, 0.35, 2000);
         assert_true(stiff.impacts >= 1);
@@ -58,8 +61,9 @@ TEST(a_stiff_hub_takes_few_strides)
 // The two-link arm of a stiffer hub, and by the explicit formula.
 TEST(a_stiff_pair_moves_as_by_the_formula)
 {
-    parameters p = parameters_with("arm.links=2 arm.hub_joint=spring arm.hub_inertia=2e-4 "
-                                   "arm.damping_ratio=0.02 motor.voltage=1 wall.restitution=0.5");
+    parameters p =
+        parameters_with("arm.links=2 arm.hub_joint=spring arm.hub_inertia=2e-4 "
+                        "arm.damping_ratio=0.02 motor.voltage=1 wall.restitution=0.5");
     passage stiff = passage_of(&p, 0.09, 0.3, 0.1, 2000);
     passage formula = passage_by(&p, &explicit_engine, 0.09, 0.3, 0.1, 200000);
     assert_true(stiff.impacts > 2);
@@ -67,13 +71,13 @@ TEST(a_stiff_pair_moves_as_by_the_formula)
     check_relative(stiff.momentum, formula.momentum, 1e-6);
 }
 
-// An edit in mid-run makes the arm stiff: the motion goes on by what is right for it then, as the
-// same arm would that went on from a copy of its state.
+// An edit in mid-run makes the arm stiff: the motion goes on by what is right for it
+// then, as the same arm would that went on from a copy of its state.
 TEST(an_arm_made_stiff_changes_its_engine)
 {
     for (int links = 2; links <= 3; links++) {
-        parameters p =
-            parameters_with("arm.hub_joint=spring arm.k1=500 arm.damping_ratio=0 motor.voltage=1");
+        parameters p = parameters_with(
+            "arm.hub_joint=spring arm.k1=500 arm.damping_ratio=0 motor.voltage=1");
         p.arm.links = links;
         arm before, after;
         arm_init(&before, &p);
@@ -107,14 +111,15 @@ TEST(an_arm_made_stiff_changes_its_engine)
     }
 }
 
-// A stride begins with what decays make of rounding, over at once: the force does not leave its
-// band for that, and has settled when its rows have.
+// A stride begins with what decays make of rounding, over at once: the force does not
+// leave its band for that, and has settled when its rows have.
 TEST(a_stride_that_begins_does_not_unsettle_the_force)
 {
     scenario s = {
         .parameters = parameters_with(
-            "arm.links=7 arm.hub_joint=spring arm.k1=28214.187 arm.length=0.384470708390 "
-            "arm.mass=0.230311454988 arm.hub_inertia=2.421274642e-4 arm.k2=3.677424150693 "
+            "arm.links=7 arm.hub_joint=spring arm.k1=28214.187 "
+            "arm.length=0.384470708390 arm.mass=0.230311454988 "
+            "arm.hub_inertia=2.421274642e-4 arm.k2=3.677424150693 "
             "arm.damping_ratio=1 wall.kind=plane wall.angle=1.722191930126 "
             "motor.stiction=0.01 motor.voltage=-0.965138971621489 run.duration=2")};
     KEPT_RUN(r) = run_done(&s, true);
@@ -127,14 +132,15 @@ TEST(a_stride_that_begins_does_not_unsettle_the_force)
     check_close(r.summary.settling_time_s, settled, 2e-3);
 }
 
-// A damper so strong that the arm rests on it for ever: a run that could not end says so after a
-// bounded effort.
+// A damper so strong that the arm rests on it for ever: a run that could not end says so
+// after a bounded effort.
 TEST(a_run_that_could_not_end_says_so)
 {
     for (EACH_TEXT(c, "wall.damping=1e12", "wall.damping=1e15")) {
         scenario s = {
             .parameters = parameters_with(
-                "wall.contact=kelvin-voigt %s initial.angle=0.099 initial.velocity=0.7", *c)};
+                "wall.contact=kelvin-voigt %s initial.angle=0.099 initial.velocity=0.7",
+                *c)};
         KEPT_RUN(r);
         assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
         assert_int_equal(r.summary.status, STATUS_NO_PROGRESS);
@@ -143,13 +149,13 @@ TEST(a_run_that_could_not_end_says_so)
     }
 }
 
-// Arms with decays, of a light hub, a wall's damper or a current, that are over at once and would
-// shorten the strides of a formula that is not stiff.
+// Arms with decays, of a light hub, a wall's damper or a current, that are over at once
+// and would shorten the strides of a formula that is not stiff.
 TEST(decays_do_not_shorten_strides)
 {
     static const char *const arms[][7] = {
-        {"arm.links=3", "arm.hub_joint=spring", "arm.hub_inertia=1e-6", "arm.damping_ratio=0.02",
-         "arm.tip_mass=0.01"},
+        {"arm.links=3", "arm.hub_joint=spring", "arm.hub_inertia=1e-6",
+         "arm.damping_ratio=0.02", "arm.tip_mass=0.01"},
         {"wall.contact=kelvin-voigt", "wall.damping=1e6", "initial.angle=0.099",
          "initial.velocity=0.7"},
         {"arm.links=128", "arm.damping_ratio=0.01", "motor.inductance=1e-3"},
@@ -177,7 +183,10 @@ TEST(a_run_that_could_not_end_says_why)
          0,
          0.1,
          "wall.damping"},
-        {{"wall.contact=kelvin-voigt", "wall.stiffness=1e6"}, 0, 0, "fastest mode of the arm"},
+        {{"wall.contact=kelvin-voigt", "wall.stiffness=1e6"},
+         0,
+         0,
+         "fastest mode of the arm"},
         {{"motor.inductance=1"}, 0, 0, "fastest mode of the arm"},
         {{"arm.links=3", "wall.restitution=0.5"}, 0, 0, "arm.damping_ratio"},
     };
@@ -188,12 +197,13 @@ TEST(a_run_that_could_not_end_says_why)
         // the first check only begins to count, and none has passed since
         zeno_monitor looked = zeno_monitor_begin();
         DONE(zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f));
-        REFUSED(STATUS_NO_PROGRESS, c->cause, zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f));
+        REFUSED(STATUS_NO_PROGRESS, c->cause,
+                zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f));
     }
 }
 
-// An arm that a wall throws off and meets again by turns, with no time between, or next to none:
-// the run says that it is the wall, also where it ends in flight.
+// An arm that a wall throws off and meets again by turns, with no time between, or next
+// to none: the run says that it is the wall, also where it ends in flight.
 TEST(a_run_that_stands_still_at_a_wall_says_so)
 {
     static const struct {
@@ -201,10 +211,12 @@ TEST(a_run_that_stands_still_at_a_wall_says_so)
         const char *cause;
     } cases[] = {
         {{"wall.contact=kelvin-voigt", "wall.damping=1e15"}, "wall.damping"},
-        {{"wall.contact=kelvin-voigt", "wall.damping=1e15", "arm.links=8"}, "wall.damping"},
-        {{"wall.contact=kelvin-voigt", "wall.damping=1e15", "wall.mass=1e-9"}, "wall.mass"},
-        {{"wall.contact=kelvin-voigt", "wall.damping=0", "wall.stiffness=1e15", "wall.mass=1e-9",
-          "wall.restitution=1"},
+        {{"wall.contact=kelvin-voigt", "wall.damping=1e15", "arm.links=8"},
+         "wall.damping"},
+        {{"wall.contact=kelvin-voigt", "wall.damping=1e15", "wall.mass=1e-9"},
+         "wall.mass"},
+        {{"wall.contact=kelvin-voigt", "wall.damping=0", "wall.stiffness=1e15",
+          "wall.mass=1e-9", "wall.restitution=1"},
          "smaller wall.stiffness"},
     };
     for (EACH(c, cases)) {
@@ -213,18 +225,20 @@ TEST(a_run_that_stands_still_at_a_wall_says_so)
         s.parameters.initial.velocity = 0.7;
         KEPT_RUN(r);
         assert_int_equal(run_scenario(&s, false, &r), STATUS_NO_PROGRESS);
-        fail_if(strstr(r.summary.message, c->cause) == NULL, "case %td, '%s': %s", c - cases,
-                c->cause, r.summary.message);
+        fail_if(strstr(r.summary.message, c->cause) == NULL, "case %td, '%s': %s",
+                c - cases, c->cause, r.summary.message);
     }
 
     // strides half of which end in contact, and a look in flight
     parameters p = parameters_with("wall.contact=kelvin-voigt");
     STARTED(a, m, &p, NULL, 0, 0);
     zeno_monitor looked = {.steps = ZENO_STEPS, .touching = ZENO_STEPS / 2};
-    REFUSED(STATUS_NO_PROGRESS, "wall.damping", zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f));
+    REFUSED(STATUS_NO_PROGRESS, "wall.damping",
+            zeno_monitor_check(&looked, &a, m, 1, 1e-3, &f));
 }
 
-// Where strides are expensive, with many links, fewer of them are enough to give a run up.
+// Where strides are expensive, with many links, fewer of them are enough to give a run
+// up.
 TEST(expensive_strides_are_given_up_sooner)
 {
     static const struct {
@@ -232,7 +246,8 @@ TEST(expensive_strides_are_given_up_sooner)
         int most; // strides
     } cases[] = {
         {{"wall.contact=kelvin-voigt", "wall.damping=1e12"}, 3 * ZENO_STEPS},
-        {{"wall.contact=kelvin-voigt", "wall.damping=1e9", "arm.links=128"}, ZENO_STEPS / 4},
+        {{"wall.contact=kelvin-voigt", "wall.damping=1e9", "arm.links=128"},
+         ZENO_STEPS / 4},
     };
     for (EACH(c, cases)) {
         const parameters p = fixture_parameters(c->settings);
@@ -249,8 +264,8 @@ TEST(expensive_strides_are_given_up_sooner)
     }
 }
 
-// A program that goes back to a state a thousand times, or asks for instants a nanosecond apart,
-// has as many strides as it asks for.
+// A program that goes back to a state a thousand times, or asks for instants a nanosecond
+// apart, has as many strides as it asks for.
 TEST(a_loop_makes_as_many_strides_as_are_asked_for)
 {
     enum { EPISODES = 750, STEPS = 100, INSTANTS = 70000 };
@@ -286,8 +301,9 @@ TEST(a_loop_makes_as_many_strides_as_are_asked_for)
     loop_destroy(l);
 }
 
-// On the wall from the start and going into it: an impact at once, whatever rounding makes of the
-// gap, and then flights of less than 1e-15 m, which Runge-Kutta cannot tell from rounding.
+// On the wall from the start and going into it: an impact at once, whatever rounding
+// makes of the gap, and then flights of less than 1e-15 m, which Runge-Kutta cannot tell
+// from rounding.
 TEST(an_arm_that_starts_on_the_wall_strikes_it)
 {
     static const int links[] = {1, 2, 3, 6, 8, 10, 16};
@@ -299,21 +315,23 @@ TEST(an_arm_that_starts_on_the_wall_strikes_it)
         passage series = passage_of(&p, p.wall.angle, 0.7, 0.05, 1000);
         passage formula = passage_by(&p, &explicit_engine, p.wall.angle, 0.7, 0.05, 2000);
         assert_true(series.impacts >= 1 && formula.impacts >= 1);
-        assert_int_equal(series.impacts + series.touches, formula.impacts + formula.touches);
+        assert_int_equal(series.impacts + series.touches,
+                         formula.impacts + formula.touches);
         check_relative(series.momentum, formula.momentum, 1e-9);
         check_below(series.open, 1e-9);
         check_below(formula.open, 1e-9);
     }
 }
 
-// A heavy soft chain behind a light hub, with decays of 3e7 1/s, that meets its wall once. The
-// explicit formula needs a million strides for this; its answers are given.
+// A heavy soft chain behind a light hub, with decays of 3e7 1/s, that meets its wall
+// once. The explicit formula needs a million strides for this; its answers are given.
 TEST(an_impact_is_one_of_the_exact_gap)
 {
     parameters p = parameters_with(
-        "wall.kind=plane arm.links=6 arm.hub_joint=spring motor.voltage=-0.5147139341175766 "
-        "motor.amplifier_gain=13.842765371652092 motor.torque_constant=0.3932365213925073 "
-        "motor.back_emf=0 motor.viscous_friction=0.015406106879498435 motor.stiction=0 "
+        "wall.kind=plane arm.links=6 arm.hub_joint=spring "
+        "motor.voltage=-0.5147139341175766 motor.amplifier_gain=13.842765371652092 "
+        "motor.torque_constant=0.3932365213925073 motor.back_emf=0 "
+        "motor.viscous_friction=0.015406106879498435 motor.stiction=0 "
         "wall.angle=1.0716751263078903 wall.restitution=0.9370014048532785 "
         "arm.length=0.450056287740594 arm.mass=987.1087265748487 "
         "arm.hub_inertia=8.737877005452665e-06 arm.k1=6.9454369649959515 "
@@ -324,45 +342,49 @@ TEST(an_impact_is_one_of_the_exact_gap)
     check_below(stiff.open, 1e-7);
 }
 
-// A chain with decays of 8e6 1/s that bounces and then presses on the wall, bent and at rest: what
-// small changes mean there is told by its energy, not by velocities of next to nothing.
+// A chain with decays of 8e6 1/s that bounces and then presses on the wall, bent and at
+// rest: what small changes mean there is told by its energy, not by velocities of next to
+// nothing.
 TEST(an_arm_at_rest_takes_few_strides)
 {
     parameters p = parameters_with(
-        "wall.kind=plane arm.links=17 arm.hub_joint=spring motor.voltage=6.7365767390474254 "
-        "motor.amplifier_gain=14.453409212005569 motor.torque_constant=6.1153868614456117 "
-        "motor.back_emf=0.26887346231218617 motor.resistance=8.0031000871345093 "
-        "motor.viscous_friction=0.020549187441489439 motor.stiction=0.18169370328427453 "
-        "wall.angle=-0.17752419360221161 wall.restitution=1 arm.length=1.4657183229289217 "
-        "arm.hub_inertia=0.021138195229693537 arm.k1=94477.653277027581 arm.k2=13673.25777524287 "
-        "arm.damping_ratio=0.040977110363111233 initial.angle=-0.4");
+        "wall.kind=plane arm.links=17 arm.hub_joint=spring "
+        "motor.voltage=6.7365767390474254 motor.amplifier_gain=14.453409212005569 "
+        "motor.torque_constant=6.1153868614456117 motor.back_emf=0.26887346231218617 "
+        "motor.resistance=8.0031000871345093 "
+        "motor.viscous_friction=0.020549187441489439 "
+        "motor.stiction=0.18169370328427453 wall.angle=-0.17752419360221161 "
+        "wall.restitution=1 arm.length=1.4657183229289217 "
+        "arm.hub_inertia=0.021138195229693537 arm.k1=94477.653277027581 "
+        "arm.k2=13673.25777524287 arm.damping_ratio=0.040977110363111233 "
+        "initial.angle=-0.4");
     passage stiff = passage_of(&p, -0.35592624390555305, 1.7913204322644631, 0.3, 3000);
     assert_true(stiff.impacts > 100);
     check_below(stiff.open, 1e-6);
 }
 
-// A light hub before a heavy beam: what the hub's own fast vibration loses to back EMF turns twice
-// as far in a stride as the vibration.
+// A light hub before a heavy beam: what the hub's own fast vibration loses to back EMF
+// turns twice as far in a stride as the vibration.
 TEST(what_a_fast_hub_loses_is_all_booked)
 {
-    parameters p = parameters_with(
-        "arm.hub_joint=beam arm.length=27.7 arm.mass=594 arm.hub_inertia=0.0022 arm.k2=176 "
-        "motor.back_emf=15 motor.stiction=0 motor.voltage=-3");
+    parameters p = parameters_with("arm.hub_joint=beam arm.length=27.7 arm.mass=594 "
+                                   "arm.hub_inertia=0.0022 arm.k2=176 motor.back_emf=15 "
+                                   "motor.stiction=0 motor.voltage=-3");
     for (int links = 3; links <= 12; links += 3) {
         p.arm.links = links;
         check_below(passage_of(&p, -0.8, 0, 0.3, 1000).open, 1e-9);
     }
 }
 
-// Without damping, of the joints or of the motor, nothing is booked as lost to it, and the
-// ledger closes as it does with both: in flight, on the wall, pressed to it and bent.
+// Without damping, of the joints or of the motor, nothing is booked as lost to it, and
+// the ledger closes as it does with both: in flight, on the wall, pressed to it and bent.
 TEST(an_arm_without_damping_loses_nothing_to_it)
 {
     for (int i = 0; i < 8; i++) {
         const bool joints = i & 1, hub = i & 2, stands = i & 4;
         parameters p = parameters_with(
-            "arm.links=4 arm.hub_joint=spring arm.hub_inertia=2e-4 arm.k1=169468 %s %s "
-            "motor.back_emf=0 motor.voltage=0.5 %s",
+            "arm.links=4 arm.hub_joint=spring arm.hub_inertia=2e-4 arm.k1=169468 "
+            "%s %s motor.back_emf=0 motor.voltage=0.5 %s",
             joints ? "arm.damping_ratio=1e-3" : "arm.damping_ratio=0",
             hub ? "motor.viscous_friction=0.01" : "motor.viscous_friction=0",
             stands ? "wall.kind=point" : "wall.kind=none");

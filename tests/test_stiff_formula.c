@@ -15,7 +15,8 @@ static double power(double x, int n)
 TEST(stages_integrate_polynomials_to_degree_12)
 {
     for (int n = 0; n <= 2 * RADAU_STAGES - 2; n++) {
-        for (int i = 0; i < RADAU_STAGES && (n < RADAU_STAGES || i == RADAU_STAGES - 1); i++) {
+        for (int i = 0; i < RADAU_STAGES && (n < RADAU_STAGES || i == RADAU_STAGES - 1);
+             i++) {
             const bool last = i == RADAU_STAGES - 1;
             double sum = 0;
             for (int j = 0; j < RADAU_STAGES && (last || n < RADAU_STAGES); j++) {
@@ -46,11 +47,13 @@ TEST(systems_are_the_formula)
             double one = 0, matrix = 0;
             for (int j = 0; j < RADAU_SYSTEMS; j++) {
                 const double re = radau_to_real[k][j], im = radau_to_imaginary[k][j];
-                const double from_re = radau_from_real[j][i], from_im = radau_from_imaginary[j][i];
+                const double from_re = radau_from_real[j][i],
+                             from_im = radau_from_imaginary[j][i];
                 const double a = radau_root_real[j], b = radau_root_imaginary[j];
                 const double square = a * a + b * b;
                 one += from_re * re + from_im * im;
-                matrix += (from_re * (re * a + im * b) + from_im * (im * a - re * b)) / square;
+                matrix +=
+                    (from_re * (re * a + im * b) + from_im * (im * a - re * b)) / square;
             }
             check_close(one, i == k ? 1 : 0, 1e-12);
             check_close(matrix, radau_matrix[k][i], 1e-13);
@@ -94,7 +97,8 @@ static double polynomial(double x, double *slope, double *bend)
     return 0.5 + 3 * x - 4 * x * x + 2 * x * x * x + 5 * power(x, 7);
 }
 
-// Through nodes, integrated, divided: values, slopes and bounds of a polynomial of degree 7.
+// Through nodes, integrated, divided: values, slopes and bounds of a polynomial of degree
+// 7.
 TEST(functions_are_their_polynomials)
 {
     double nodes[RADAU_LANES], slope, bend, terms[4];

@@ -60,7 +60,8 @@ TEST(every_index_leads_to_another_number)
     double *first = &s.first_contact_s;
     assert_ptr_equal(first + summary_count - 1, &s.wall_time_s);
     for (int i = 0; i < summary_count; i++) {
-        memcpy((char *)first + (size_t)i * sizeof(double), &(double){i + 0.5}, sizeof(double));
+        memcpy((char *)first + (size_t)i * sizeof(double), &(double){i + 0.5},
+               sizeof(double));
     }
     for (int i = 0; i < summary_count; i++) {
         check_close(summary_value(&s, i), i + 0.5, 0);

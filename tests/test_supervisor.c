@@ -32,7 +32,8 @@ static void read_line(const supervised_program *p, char *text, size_t size)
     text[length] = '\0';
 }
 
-// Starts a command, waits for the end of its output and returns what supervised_program_end says.
+// Starts a command, waits for the end of its output and returns what
+// supervised_program_end says.
 static int ended(const char *command)
 {
     supervised_program p;
@@ -57,7 +58,8 @@ TEST(a_program_hears_and_answers)
 {
     supervised_program p;
     char line[64];
-    assert_int_equal(supervised_program_start(&p, "read x; echo \"heard $x\"; exit 3"), 0);
+    assert_int_equal(supervised_program_start(&p, "read x; echo \"heard $x\"; exit 3"),
+                     0);
     assert_int_equal(write(p.input, "this\n", 5), 5);
     read_line(&p, line, sizeof line);
     assert_string_equal(line, "heard this");
@@ -87,7 +89,8 @@ TEST(streams_may_be_closed_in_the_lab)
     char line[64];
     const int before = open_descriptors(), kept = dup(STDIN_FILENO);
     close(STDIN_FILENO);
-    assert_int_equal(supervised_program_start(&p, "read x; echo \"heard $x\"; exit 4"), 0);
+    assert_int_equal(supervised_program_start(&p, "read x; echo \"heard $x\"; exit 4"),
+                     0);
     const int input = p.input;
     const ssize_t written = write(p.input, "this\n", 5);
     read_line(&p, line, sizeof line);
@@ -112,13 +115,15 @@ TEST(an_end_is_told_once)
     assert_int_equal(supervised_program_end(&p), -1);
 }
 
-// A program that continues, and the processes it has left, are gone when the supervisor has ended.
+// A program that continues, and the processes it has left, are gone when the supervisor
+// has ended.
 TEST(nothing_is_left_of_what_goes_on)
 {
     supervised_program p;
     char line[64];
-    assert_int_equal(
-        supervised_program_start(&p, "(sleep 1000 & echo $!) ; trap '' TERM HUP; sleep 1000"), 0);
+    assert_int_equal(supervised_program_start(
+                         &p, "(sleep 1000 & echo $!) ; trap '' TERM HUP; sleep 1000"),
+                     0);
     read_line(&p, line, sizeof line);
     const pid_t orphan = atoi(line);
     assert_true(orphan > 1);

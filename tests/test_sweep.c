@@ -10,7 +10,8 @@ TEST(every_run_is_what_the_scenario_gives_alone)
     must_run(&s, store, 2);
     double peaks[4], contacts[4];
     DONE(sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", peaks, NULL, &f));
-    DONE(sweep_store_quantity(store, (sweep_share){0}, "first_contact_s", contacts, NULL, &f));
+    DONE(sweep_store_quantity(store, (sweep_share){0}, "first_contact_s", contacts, NULL,
+                              &f));
     for (int run = 0; run < 4; run++) {
         scenario alone = base;
         alone.parameters.motor.voltage = 0.5 + 0.5 * run;
@@ -29,16 +30,16 @@ TEST(the_number_of_jobs_does_not_change_a_byte)
     *many = uninterrupted(&s, 7);
     assert_string_equal(one, two);
     assert_string_equal(one, many);
-    static const char header[] =
-        "run[],motor.voltage[V],arm.links[],status[],message[],first_contact[s],"
-        "contact_impulse[N s],";
+    static const char header[] = "run[],motor.voltage[V],arm.links[],status[],message[],"
+                                 "first_contact[s],contact_impulse[N "
+                                 "s],";
     assert_int_equal(strncmp(one, header, sizeof header - 1), 0);
     assert_non_null(strstr(one, "peak_force[N]"));
     assert_null(strstr(one, "wall_time"));
 }
 
-// Runs of two links go side by side in the processor's vectors: with one lane, with all of them, on
-// one thread and on several, and where some of the runs are there already.
+// Runs of two links go side by side in the processor's vectors: with one lane, with all
+// of them, on one thread and on several, and where some of the runs are there already.
 TEST(the_number_of_lanes_does_not_change_a_byte)
 {
     SWEPT(s, SWEEP_LATIN, 201, "motor.voltage=0.5:5", "wall.restitution=0:1");
@@ -61,7 +62,8 @@ TEST(the_number_of_lanes_does_not_change_a_byte)
     assert_string_equal(csv, alone);
 }
 
-static void assert_refused(const char *path, const sweep *s, status code, const char *says)
+static void assert_refused(const char *path, const sweep *s, status code,
+                           const char *says)
 {
     sweep_store *store;
     fault f = {0};
@@ -81,13 +83,15 @@ TEST(another_sweep_is_refused_with_the_difference)
                    "--vary 1 was motor.voltage=1:2:3, now it is motor.voltage=1:2:4");
     sweep_finish(&other);
     must_sweep(&other, SWEEP_RANDOM, 3, "motor.voltage=1:2:3", NULL);
-    assert_refused("one.sqlite", &other, STATUS_BAD_ARGUMENT, "sample was grid, now it is random");
+    assert_refused("one.sqlite", &other, STATUS_BAD_ARGUMENT,
+                   "sample was grid, now it is random");
     sweep_finish(&other);
     scenario changed = base;
     DONE(scenario_override(&changed, "arm.k2=5", &f));
     other = s;
     other.base = &changed;
-    assert_refused("one.sqlite", &other, STATUS_BAD_ARGUMENT, "arm.k2 was 4.92, now it is 5");
+    assert_refused("one.sqlite", &other, STATUS_BAD_ARGUMENT,
+                   "arm.k2 was 4.92, now it is 5");
     // the same one in other words is the same
     must_sweep(&other, SWEEP_GRID, 0, "motor.voltage=1.0 V:2.0:3", NULL);
     sweep_store_close(must_open("one.sqlite", &other));
@@ -113,8 +117,9 @@ TEST(a_changed_script_is_another_sweep)
     sweep_store_close(must_open("script.sqlite", &s));
     sweep_store_close(must_open("script.sqlite", &s));
     other.base = &without;
-    assert_refused("script.sqlite", &other, STATUS_BAD_ARGUMENT,
-                   "script was at 0.1 control.lock = none; at 0.2 push = 0.01, now it is empty");
+    assert_refused(
+        "script.sqlite", &other, STATUS_BAD_ARGUMENT,
+        "script was at 0.1 control.lock = none; at 0.2 push = 0.01, now it is empty");
     unlink("script.sqlite");
 
     sweep_store_close(must_open("script.sqlite", &other));
@@ -131,9 +136,9 @@ TEST(a_script_goes_with_every_run)
     sweep s;
     base.actions = &PUSHES(0.2, 0.01);
     base.action_count = 1;
-    assert_int_equal(
-        sweep_of(&s, SWEEP_GRID, 0, 1, &f, "arm.model=corrected,printed", "motor.voltage=1,2"),
-        STATUS_BAD_ARGUMENT);
+    assert_int_equal(sweep_of(&s, SWEEP_GRID, 0, 1, &f, "arm.model=corrected,printed",
+                              "motor.voltage=1,2"),
+                     STATUS_BAD_ARGUMENT);
     assert_non_null(strstr(f.text, "run 3 (arm.model = printed, motor.voltage = 1)"));
     assert_non_null(strstr(f.text, "takes no pushes"));
     base.actions = NULL;
@@ -181,13 +186,15 @@ TEST(values_drawn_together_stay_pairs)
     } refused[] = {
         {SWEEP_GRID, "arm.k2=1,2", "with arm.mass=0.1,0.2", "goes with drawn values"},
         {SWEEP_LATIN, "with arm.k2=1,2", "arm.mass=0.1,0.2", "behind those"},
-        {SWEEP_LATIN, "arm.k2=1,2", "with arm.mass=0.1,0.2,0.3", "as many values: 2, not 3"},
+        {SWEEP_LATIN, "arm.k2=1,2", "with arm.mass=0.1,0.2,0.3",
+         "as many values: 2, not 3"},
         {SWEEP_LATIN, "arm.k2=1:2", "with arm.mass=0.1,0.2", "as many values"},
     };
     for (EACH(c, refused)) {
         sweep s;
         REFUSED(STATUS_BAD_ARGUMENT, c->says,
-                sweep_of(&s, c->how, c->how == SWEEP_GRID ? 0 : 4, 1, &f, c->first, c->second));
+                sweep_of(&s, c->how, c->how == SWEEP_GRID ? 0 : 4, 1, &f, c->first,
+                         c->second));
     }
 }
 
@@ -213,9 +220,12 @@ TEST(more_axes_than_there_may_be_are_refused)
     }
     assert_int_equal(count, TOO_MANY);
     sweep s;
-    const sweep_request request = {
-        .vary = vary, .vary_count = TOO_MANY, .sampling = SWEEP_LATIN, .runs = 3};
-    REFUSED(STATUS_BAD_ARGUMENT, "at most 32 parameters", sweep_init(&s, &base, &request, &f));
+    const sweep_request request = {.vary = vary,
+                                   .vary_count = TOO_MANY,
+                                   .sampling = SWEEP_LATIN,
+                                   .runs = 3};
+    REFUSED(STATUS_BAD_ARGUMENT, "at most 32 parameters",
+            sweep_init(&s, &base, &request, &f));
 }
 
 // Rows of runs that the sweep does not have are the work of others.
@@ -232,7 +242,8 @@ TEST(rows_that_are_no_runs_are_refused)
         double values[3];
         size_t failed;
         REFUSED(STATUS_BAD_ARGUMENT, "no run of the sweep",
-                sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values, &failed, &f));
+                sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values,
+                                     &failed, &f));
         sweep_store_close(store);
         assert_refused("rows.sqlite", &s, STATUS_BAD_ARGUMENT, "of a sweep of 3");
         unlink("rows.sqlite");
@@ -283,7 +294,8 @@ TEST(a_failed_run_is_a_row_with_its_message)
     fault f = {0};
     must_sweep(&s, SWEEP_GRID, 0, "arm.hub_joint=rigid,spring", NULL);
     KEPT_STORE(store) = must_open(NULL, &s);
-    summary good = {.peak_force_N = 2, .impacts = (double)NAN}, bad = {.peak_force_N = 1e9};
+    summary good = {.peak_force_N = 2, .impacts = (double)NAN},
+            bad = {.peak_force_N = 1e9};
     bad.status = STATUS_UNSTABLE;
     strcpy(bad.message, "went off, \"far\"");
     assert_int_equal(sweep_store_put(store, 1, &bad, &f), STATUS_OK);
@@ -292,9 +304,9 @@ TEST(a_failed_run_is_a_row_with_its_message)
     assert_int_not_equal(sweep_store_put(store, 0, &good, &f), STATUS_OK);
     double values[2];
     size_t failed;
-    assert_int_equal(
-        sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values, &failed, &f),
-        STATUS_OK);
+    assert_int_equal(sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values,
+                                          &failed, &f),
+                     STATUS_OK);
     check_close(values[0], 2, 0);
     assert_true(isnan(values[1]));
     assert_int_equal(failed, 1);

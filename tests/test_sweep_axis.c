@@ -7,8 +7,8 @@ static sweep_axis parsed(const char *path, const char *values, bool drawn)
 {
     sweep_axis axis = {.parameter = parameter_find(path)};
     fault f = {0};
-    fail_if(sweep_axis_parse(&axis, values, drawn, &f) != STATUS_OK, "%s=%s: %s", path, values,
-            f.text);
+    fail_if(sweep_axis_parse(&axis, values, drawn, &f) != STATUS_OK, "%s=%s: %s", path,
+            values, f.text);
     return axis;
 }
 
@@ -67,17 +67,20 @@ TEST(a_grid_has_both_ends)
 
 TEST(what_is_no_axis_is_refused)
 {
-    for (EACH_TEXT(c, "", "1:2", "1:2:0", "1:2:3:lag", "1:2:3:log:4", "0:1:3:log", "x:1:3", "1,,2",
-                   "1:2:1e9", "-1:2:3", "1:2:2.5")) {
-        SCOPED(sweep_axis_finish) sweep_axis axis = {.parameter = parameter_find("arm.k2")};
+    for (EACH_TEXT(c, "", "1:2", "1:2:0", "1:2:3:lag", "1:2:3:log:4", "0:1:3:log",
+                   "x:1:3", "1,,2", "1:2:1e9", "-1:2:3", "1:2:2.5")) {
+        SCOPED(sweep_axis_finish)
+        sweep_axis axis = {.parameter = parameter_find("arm.k2")};
         fault f = {0};
-        fail_if(sweep_axis_parse(&axis, *c, false, &f) == STATUS_OK, "'%s' was accepted", *c);
+        fail_if(sweep_axis_parse(&axis, *c, false, &f) == STATUS_OK, "'%s' was accepted",
+                *c);
         assert_true(strlen(f.text) > 0);
     }
 }
 
 // Refusals are reported: the values of a parameter, and the words of a sentence.
-static void check_refused(const char *name, const char *values, bool drawn, const char *what)
+static void check_refused(const char *name, const char *values, bool drawn,
+                          const char *what)
 {
     SCOPED(sweep_axis_finish) sweep_axis axis = {0};
     fault f = {0};
@@ -93,9 +96,9 @@ TEST(a_refusal_says_what_is_expected)
     check_refused("control.settings", "1:2:3", false, "is a text");
     check_refused("arm.joint_stiffness", "1:2:3", false, "its first number is");
     check_refused("arm.k2[1]", "1:2:3", false, "is no list");
-    for (EACH_TEXT(c, "arm.joint_stiffness[0]", "arm.joint_stiffness[1.5]", "arm.joint_stiffness[]",
-                   "arm.joint_stiffness[1", "arm.joint_stiffness[1]x",
-                   "arm.joint_stiffness[999]")) {
+    for (EACH_TEXT(c, "arm.joint_stiffness[0]", "arm.joint_stiffness[1.5]",
+                   "arm.joint_stiffness[]", "arm.joint_stiffness[1",
+                   "arm.joint_stiffness[1]x", "arm.joint_stiffness[999]")) {
         check_refused(*c, "1:2:3", false, "is no number of a list");
     }
     check_refused("arm.joint_stiffness[1]", "[]:4:2", false, "is no number");
@@ -191,8 +194,8 @@ TEST(values_and_texts_are_those_that_were_asked_for)
         SCOPED(sweep_axis_finish) sweep_axis axis = {0};
         fault f = {0};
         assert_int_equal(sweep_axis_find(&axis, c->path, &f), STATUS_OK);
-        fail_if(sweep_axis_parse(&axis, c->asked, c->drawn, &f) != STATUS_OK, "%s=%s: %s", c->path,
-                c->asked, f.text);
+        fail_if(sweep_axis_parse(&axis, c->asked, c->drawn, &f) != STATUS_OK, "%s=%s: %s",
+                c->path, c->asked, f.text);
         assert_int_equal(axis.count, c->count);
         assert_int_equal(axis.is_range, strchr(c->asked, ':') != NULL);
         for (size_t k = 0; k < axis.count; k++) {

@@ -1,6 +1,6 @@
-// A sweep's database on a disk that fails: every call that SQLite makes of the file system is
-// refused in turn. What was not done is said, what was committed stands, and going on gives the
-// same rows; what cannot be read whole is not taken for less.
+// A sweep's database on a disk that fails: every call that SQLite makes of the file
+// system is refused in turn. What was not done is said, what was committed stands, and
+// going on gives the same rows; what cannot be read whole is not taken for less.
 #include <sqlite3.h>
 
 #include "src/base/text_stream.h"
@@ -14,7 +14,7 @@ static char file[] = "sweep.sqlite";
 static scenario base;
 static sweep swept;
 
-// --- a file system that refuses one call -----------------------------------------------------
+// --- a file system that refuses one call -----------------------------------------------
 
 // A file of it: behind this stands the real one.
 typedef struct refusing_file {
@@ -34,22 +34,25 @@ static sqlite3_file *real_file(sqlite3_file *f)
     return (sqlite3_file *)((refusing_file *)f + 1);
 }
 
-// A method of a file: the real one's, but where the call is refused with a code; 0: it never is.
-#define FILE_METHOD(name, method, code, parameters, arguments)                                     \
-    static int name parameters                                                                     \
-    {                                                                                              \
-        return (code) != 0 && refuses() ? (code) : real_file(f)->pMethods->method arguments;       \
+// A method of a file: the real one's, but where the call is refused with a code; 0: it
+// never is.
+#define FILE_METHOD(name, method, code, parameters, arguments)                           \
+    static int name parameters                                                           \
+    {                                                                                    \
+        return (code) != 0 && refuses() ? (code)                                         \
+                                        : real_file(f)->pMethods->method arguments;      \
     }
 FILE_METHOD(file_close, xClose, 0, (sqlite3_file * f), (real_file(f)))
 FILE_METHOD(file_read, xRead, SQLITE_IOERR_READ,
-            (sqlite3_file * f, void *to, int size, sqlite3_int64 at), (real_file(f), to, size, at))
+            (sqlite3_file * f, void *to, int size, sqlite3_int64 at),
+            (real_file(f), to, size, at))
 FILE_METHOD(file_write, xWrite, SQLITE_FULL,
             (sqlite3_file * f, const void *from, int size, sqlite3_int64 at),
             (real_file(f), from, size, at))
-FILE_METHOD(file_truncate, xTruncate, SQLITE_IOERR_TRUNCATE, (sqlite3_file * f, sqlite3_int64 size),
-            (real_file(f), size))
-FILE_METHOD(file_size, xFileSize, SQLITE_IOERR_FSTAT, (sqlite3_file * f, sqlite3_int64 *size),
-            (real_file(f), size))
+FILE_METHOD(file_truncate, xTruncate, SQLITE_IOERR_TRUNCATE,
+            (sqlite3_file * f, sqlite3_int64 size), (real_file(f), size))
+FILE_METHOD(file_size, xFileSize, SQLITE_IOERR_FSTAT,
+            (sqlite3_file * f, sqlite3_int64 *size), (real_file(f), size))
 FILE_METHOD(file_lock, xLock, SQLITE_IOERR_LOCK, (sqlite3_file * f, int level),
             (real_file(f), level))
 FILE_METHOD(file_unlock, xUnlock, 0, (sqlite3_file * f, int level), (real_file(f), level))
@@ -67,7 +70,8 @@ static int file_sync(sqlite3_file *f, int flags)
     return refuses() ? SQLITE_IOERR_FSYNC : SQLITE_OK;
 }
 
-static int system_open(sqlite3_vfs *v, const char *name, sqlite3_file *f, int flags, int *given)
+static int system_open(sqlite3_vfs *v, const char *name, sqlite3_file *f, int flags,
+                       int *given)
 {
     static const sqlite3_io_methods methods = {
         1,          file_close, file_read,   file_write,       file_truncate, file_sync,
@@ -92,7 +96,8 @@ static int system_delete(sqlite3_vfs *v, const char *name, int sync)
 static int system_access(sqlite3_vfs *v, const char *name, int flags, int *result)
 {
     (void)v;
-    return refuses() ? SQLITE_IOERR_ACCESS : real_system->xAccess(real_system, name, flags, result);
+    return refuses() ? SQLITE_IOERR_ACCESS
+                     : real_system->xAccess(real_system, name, flags, result);
 }
 
 static void report_fault(void *context, const char *sentence)
@@ -115,9 +120,10 @@ static int prepare(void **state)
     refusing_system.xOpen = system_open;
     refusing_system.xDelete = system_delete;
     refusing_system.xAccess = system_access;
-    return sqlite3_vfs_register(&refusing_system, 1) != SQLITE_OK || mkdtemp(folder) == NULL ||
-           chdir(folder) != 0 ||
-           scenario_open(&base, "corrected/first-impact", report_fault, NULL) != STATUS_OK ||
+    return sqlite3_vfs_register(&refusing_system, 1) != SQLITE_OK ||
+           mkdtemp(folder) == NULL || chdir(folder) != 0 ||
+           scenario_open(&base, "corrected/first-impact", report_fault, NULL) !=
+               STATUS_OK ||
            sweep_init(&swept, &base, &request, &f) != STATUS_OK;
 }
 
@@ -129,17 +135,20 @@ static int clean_up(void **state)
     return chdir("/") != 0 || rmdir(folder) != 0;
 }
 
-// --- a sweep on it ---------------------------------------------------------------------------
+// --- a sweep on it ---------------------------------------------------------------------
 
-// All rows of a store in both formats, to be freed, NULL with a fault if they cannot be read.
+// All rows of a store in both formats, to be freed, NULL with a fault if they cannot be
+// read.
 static char *rows_of(sweep_store *store, status *code, fault *f)
 {
     WRITTEN(text, *code = sweep_store_write(store, stream, false, f);
-            *code = *code == STATUS_OK ? sweep_store_write(store, stream, true, f) : *code);
+            *code =
+                *code == STATUS_OK ? sweep_store_write(store, stream, true, f) : *code);
     return text;
 }
 
-// Opens the sweep's database, adds what is missing in commits of a few rows, and gives all rows.
+// Opens the sweep's database, adds what is missing in commits of a few rows, and gives
+// all rows.
 // *kept: how many of the rows were committed, as far as it was told.
 static status complete(char **rows, size_t *kept, fault *f)
 {
@@ -169,8 +178,8 @@ static status complete(char **rows, size_t *kept, fault *f)
 // A failure has a sentence that names the file.
 static void check_said(const fault *f)
 {
-    fail_if(strstr(f->text, file) == NULL, "call %ld: '%s' does not name '%s'", refused, f->text,
-            file);
+    fail_if(strstr(f->text, file) == NULL, "call %ld: '%s' does not name '%s'", refused,
+            f->text, file);
 }
 
 static void remove_files(void)
@@ -208,8 +217,8 @@ TEST(what_was_committed_stands_and_the_rest_is_said)
         }
         free(rows);
 
-        // on a disk that works again the sweep is completed from what it has, by a program that
-        // knows nothing of what was lost
+        // on a disk that works again the sweep is completed from what it has, by a
+        // program that knows nothing of what was lost
         loss_forget();
         sweep_store *store;
         assert_int_equal(sweep_store_open(&store, file, &swept, &f), STATUS_OK);
@@ -232,8 +241,9 @@ static status read_all(const char *whole, fault *f)
     // as its columns, none of which is shorter than the sweep
     double *columns[2];
     size_t count;
-    status code = sweep_table_read(file, (const char *[]){"motor.voltage", "peak_force_N"}, 2,
-                                   columns, &count, f);
+    status code =
+        sweep_table_read(file, (const char *[]){"motor.voltage", "peak_force_N"}, 2,
+                         columns, &count, f);
     if (code == STATUS_OK) {
         assert_int_equal(count, RUNS);
         check_close(columns[1][RUNS - 1], RUNS, 0);
@@ -260,9 +270,9 @@ static status read_all(const char *whole, fault *f)
     KEPT_STORE(store);
     double values[RUNS];
     code = sweep_store_open(&store, file, &swept, f);
-    code = code == STATUS_OK
-               ? sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values, NULL, f)
-               : code;
+    code = code == STATUS_OK ? sweep_store_quantity(store, (sweep_share){0},
+                                                    "peak_force_N", values, NULL, f)
+                             : code;
     KEPT_TEXT(rows) = code == STATUS_OK ? rows_of(store, &code, f) : NULL;
     if (code == STATUS_OK) {
         check_close(values[RUNS - 1], RUNS, 0);

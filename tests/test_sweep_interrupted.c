@@ -4,8 +4,8 @@
 
 #include "tests/sweep_fixture.h"
 
-// What the child of the next test does at each report of progress: at the first one it commits, at
-// the second, with rows that are not committed, it asks to be killed.
+// What the child of the next test does at each report of progress: at the first one it
+// commits, at the second, with rows that are not committed, it asks to be killed.
 typedef struct doomed {
     sweep_store *store;
     int pipe, reports;
@@ -31,7 +31,8 @@ static void commit_then_wait_for_death(void *context, const sweep_progress *p)
     }
 }
 
-// Enough for progress to be reported, every tenth of a second, long before the last of them.
+// Enough for progress to be reported, every tenth of a second, long before the last of
+// them.
 enum { MANY = 24000 };
 #define MANY_RUNS "motor.voltage=0.5:5:24000"
 
@@ -45,7 +46,9 @@ static void sweep_in_a_child_that_is_killed(const sweep *s, const char *path)
         fault f = {0};
         sweep_progress progress;
         doomed d = {.pipe = ends[1]};
-        sweep_options options = {.jobs = 1, .report = commit_then_wait_for_death, .context = &d};
+        sweep_options options = {.jobs = 1,
+                                 .report = commit_then_wait_for_death,
+                                 .context = &d};
         close(ends[0]);
         if (sweep_store_open(&d.store, path, s, &f) == STATUS_OK) {
             sweep_run(s, d.store, &options, &progress, &f);
@@ -112,7 +115,8 @@ TEST(a_stopped_sweep_keeps_what_it_has_and_goes_on)
     DONE(sweep_run(&s, store, &options, &progress, &f));
     sweep_store_close(store);
     assert_in_range(progress.done, 1, MANY - 1);
-    assert_int_equal(number_from("stopped.sqlite", "SELECT count(*) FROM run"), progress.done);
+    assert_int_equal(number_from("stopped.sqlite", "SELECT count(*) FROM run"),
+                     progress.done);
     store = must_open("stopped.sqlite", &s);
     sweep_progress rest = must_run(&s, store, 2);
     assert_int_equal(rest.done_now, MANY - progress.done);

@@ -1,4 +1,5 @@
-// Parts of a sweep computed apart and merged: the rows of one sweep, and nothing else gets in.
+// Parts of a sweep computed apart and merged: the rows of one sweep, and nothing else
+// gets in.
 #include "tests/given_parameters.h"
 #include "tests/sweep_fixture.h"
 
@@ -7,7 +8,8 @@ static void sweep_voltages(sweep *s, const char *values)
     must_sweep(s, SWEEP_GRID, 0, values, NULL);
 }
 
-// Computes a share of a sweep into a file; returns all rows of the store as CSV, to be freed.
+// Computes a share of a sweep into a file; returns all rows of the store as CSV, to be
+// freed.
 static char *compute(const sweep *s, const char *path, sweep_share share)
 {
     KEPT_STORE(store);
@@ -19,8 +21,8 @@ static char *compute(const sweep *s, const char *path, sweep_share share)
     return csv_of(store);
 }
 
-// Computes a sweep in this many parts and merges them: nothing is left to compute, and the rows are
-// those of the whole sweep to the last byte.
+// Computes a sweep in this many parts and merges them: nothing is left to compute, and
+// the rows are those of the whole sweep to the last byte.
 static void check_merge(const sweep *s, char **parts, int count)
 {
     sweep_merged merged;
@@ -76,8 +78,8 @@ SWEEP_TEST(parts_may_vary_several_parameters)
     check_merge(&s, (char *[]){"1", "2"}, 2);
 }
 
-// What a database says of its values gives the plan again to the last bit: every kind of axis,
-// drawn and in a grid.
+// What a database says of its values gives the plan again to the last bit: every kind of
+// axis, drawn and in a grid.
 SWEEP_TEST(the_plan_of_a_merge_is_that_of_the_sweep)
 {
     static char *const drawn[] = {"motor.voltage=1:2.7:log",
@@ -90,8 +92,10 @@ SWEEP_TEST(the_plan_of_a_merge_is_that_of_the_sweep)
     static char *const grid[] = {"motor.voltage=1:2.7:3:log", "wall.kind=point,plane",
                                  "initial.angle=-0.001,-0.1,-1.0000000000000002e-2",
                                  "control.seed=1:1000:2:log"};
-    char *const links[] = {"arm.links=3", "arm.joint_stiffness=10,12", "run.duration=0.02"};
-    assert_int_equal(scenario_override_all(&base, links, 3, print_sentence, NULL), STATUS_OK);
+    char *const links[] = {"arm.links=3", "arm.joint_stiffness=10,12",
+                           "run.duration=0.02"};
+    assert_int_equal(scenario_override_all(&base, links, 3, print_sentence, NULL),
+                     STATUS_OK);
     for (int i = SWEEP_GRID; i <= SWEEP_LATIN; i++) {
         const bool draws = i != SWEEP_GRID;
         sweep_request request = {.vary = draws ? drawn : grid,
@@ -136,10 +140,12 @@ SWEEP_TEST(foreign_parts_are_refused)
 }
 
 // The table without what it lets into its columns.
-#define UNBOUND                                                                                    \
-    "CREATE TABLE bare AS SELECT * FROM run; DROP TABLE run; ALTER TABLE bare RENAME TO run; "
+#define UNBOUND                                                                          \
+    "CREATE TABLE bare AS SELECT * FROM run; DROP TABLE run; ALTER TABLE bare RENAME "   \
+    "TO run; "
 
-// What a file has after others changed it, and why it is refused: as a part, and to go on from.
+// What a file has after others changed it, and why it is refused: as a part, and to go on
+// from.
 SWEEP_TEST(what_others_changed_is_refused)
 {
     static const struct {
@@ -148,7 +154,8 @@ SWEEP_TEST(what_others_changed_is_refused)
     } changes[] = {
         {"DROP TABLE run", "not laid out"},
         {"DROP TABLE sweep", "not laid out"},
-        {"ALTER TABLE run RENAME TO old; CREATE VIEW run AS SELECT * FROM old", "not laid out"},
+        {"ALTER TABLE run RENAME TO old; CREATE VIEW run AS SELECT * FROM old",
+         "not laid out"},
         {"ALTER TABLE run ADD COLUMN more", "columns of runs"},
         {"ALTER TABLE run DROP COLUMN wall_time_s", "expected wall_time_s"},
         {"UPDATE run SET peak_force_N = 'much'", "another kind in run 1"},
@@ -157,29 +164,35 @@ SWEEP_TEST(what_others_changed_is_refused)
         {"UPDATE run SET status = 'splendid'", "another kind"},
         {"UPDATE run SET status = CAST(x'6f6b0078' AS TEXT)", "under status"},
         {"UPDATE run SET message = x'41'", "under message"},
-        {"UPDATE run SET peak_force_N = 9e999 WHERE run = 2", "run 2 than this program writes, "
-                                                              "under peak_force_N"},
+        {"UPDATE run SET peak_force_N = 9e999 WHERE run = 2",
+         "run 2 than this program writes, under peak_force_N"},
         {"UPDATE run SET steps = -9e999", "under steps"},
         {"UPDATE run SET steps = NULL", "under steps"},
         {"UPDATE run SET impacts = NULL WHERE run = 3",
          "run 3 than this program writes, under imp"},
         {"UPDATE run SET status = 'failed', cpu_time_s = NULL", "under cpu_time_s"},
-        {"UPDATE run SET \"motor.voltage\" = 7 WHERE run = 2", "7.0 in run 2, expected 1.5"},
-        {"UPDATE run SET \"motor.voltage\" = 9e999 WHERE run = 1", "Inf in run 1, expected 1"},
+        {"UPDATE run SET \"motor.voltage\" = 7 WHERE run = 2",
+         "7.0 in run 2, expected 1.5"},
+        {"UPDATE run SET \"motor.voltage\" = 9e999 WHERE run = 1",
+         "Inf in run 1, expected 1"},
         {"UPDATE run SET run = -run; UPDATE run SET run = 4 + run", "motor.voltage = "},
-        {UNBOUND "UPDATE run SET \"motor.voltage\" = NULL WHERE run = 3", "nothing in run 3"},
+        {UNBOUND "UPDATE run SET \"motor.voltage\" = NULL WHERE run = 3",
+         "nothing in run 3"},
         {UNBOUND "UPDATE run SET status = NULL", "under status"},
         {UNBOUND "UPDATE run SET run = NULL WHERE run = 1", "run 0 of"},
         {UNBOUND "UPDATE run SET run = 1.5 WHERE run = 1", "run 1 of"},
         {UNBOUND "INSERT INTO run SELECT * FROM run WHERE run = 2", "run 2 twice"},
         {"UPDATE sweep SET value = 'motor.voltage=1:2:4' WHERE key = 'vary 1'", "4"},
-        {"UPDATE sweep SET value = 'motor.voltage=1:3:3' WHERE key = 'vary 1'", "motor.voltage"},
+        {"UPDATE sweep SET value = 'motor.voltage=1:3:3' WHERE key = 'vary 1'",
+         "motor.voltage"},
         {"UPDATE sweep SET value = 'motor.voltage' WHERE key = 'vary 1'", "vary"},
         {"UPDATE sweep SET value = 'spun' WHERE key = 'sample'", "combined"},
         {"UPDATE sweep SET value = '3x' WHERE key = 'runs'", "runs"},
         {"UPDATE sweep SET value = '99999999999999999999999' WHERE key = 'runs'", "runs"},
-        {"UPDATE sweep SET key = printf('%100s', 'x') WHERE key = 'runs'", "without text"},
-        {"UPDATE sweep SET value = CAST(x'330030' AS TEXT) WHERE key = 'runs'", "without text"},
+        {"UPDATE sweep SET key = printf('%100s', 'x') WHERE key = 'runs'",
+         "without text"},
+        {"UPDATE sweep SET value = CAST(x'330030' AS TEXT) WHERE key = 'runs'",
+         "without text"},
         {UNBOUND "DROP TABLE run; CREATE TABLE run AS SELECT 1 AS run; "
                  "ALTER TABLE run ADD COLUMN x AS (zeroblob(100000000))",
          "expected motor.voltage"},
@@ -189,12 +202,14 @@ SWEEP_TEST(what_others_changed_is_refused)
         {"DROP TABLE sweep; CREATE TABLE sweep (key, value); "
          "INSERT INTO sweep VALUES ('runs', '3'), ('runs', '3')",
          "more lines"},
-        {"WITH RECURSIVE n(i) AS (SELECT 1 UNION SELECT i + 1 FROM n WHERE i < 300) "
-         "INSERT INTO sweep SELECT 'line ' || i, i FROM n",
+        {"WITH RECURSIVE n(i) AS (SELECT 1 UNION SELECT i + 1 FROM n WHERE i "
+         "< 300) INSERT INTO sweep SELECT 'line ' || i, i FROM n",
          "more lines"},
-        {"UPDATE sweep SET value = 'arm.nothing=1:2:3' WHERE key = 'vary 1'", "arm.nothing"},
+        {"UPDATE sweep SET value = 'arm.nothing=1:2:3' WHERE key = 'vary 1'",
+         "arm.nothing"},
         {"DELETE FROM sweep WHERE key = 'runs'", "runs"},
-        {"DELETE FROM run; DELETE FROM sweep; DROP TABLE run; DROP TABLE sweep", "is empty"},
+        {"DELETE FROM run; DELETE FROM sweep; DROP TABLE run; DROP TABLE sweep",
+         "is empty"},
     };
     KEPT_SWEEP(s);
     sweep_voltages(&s, "motor.voltage=1:2:3");
@@ -238,7 +253,8 @@ SWEEP_TEST(what_cannot_be_read_is_said)
     assert_int_not_equal(access("out", F_OK), 0);
 }
 
-// The end of a journal that names a file: SQLite's form of a transaction over several databases.
+// The end of a journal that names a file: SQLite's form of a transaction over several
+// databases.
 static void write_journal(const char *database, const char *named)
 {
     static const unsigned char mark[] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
@@ -248,12 +264,14 @@ static void write_journal(const char *database, const char *named)
     const unsigned page = (unsigned char)content[16] * 256u + (unsigned char)content[17];
     const unsigned length = (unsigned)strlen(named), pages = (unsigned)all / page;
 
-    // as SQLite writes it: no pages, then the page of the locks, the name, its length and its sum
+    // as SQLite writes it: no pages, then the page of the locks, the name, its length and
+    // its sum
     unsigned sum = 0;
     for (unsigned i = 0; i < length; i++) {
         sum += (unsigned char)named[i];
     }
-    const unsigned words[] = {0, 0, pages, 512, page, 0x40000000u / page + 1, length, sum};
+    const unsigned words[] = {0,      0,  pages, 512, page, 0x40000000u / page + 1,
+                              length, sum};
     unsigned char bytes[8][4];
     for (int i = 0; i < 8; i++) {
         for (int k = 0; k < 4; k++) {

@@ -40,7 +40,8 @@ TEST(every_kind_of_sweep_can_be_drawn)
     must_draw("motor.voltage=1", NULL, SWEEP_GRID, 0, "a.png", 0);
     must_draw("motor.voltage=1:2", NULL, SWEEP_RANDOM, 30, "a.svg", -1e9);
     must_draw("motor.voltage=2:1:9", "arm.k2=1:1e-5:5:log", SWEEP_GRID, 0, "a.png", 0);
-    must_draw("motor.voltage=1:2:9", "method.name=event,newmark", SWEEP_GRID, 0, "a.pdf", 0);
+    must_draw("motor.voltage=1:2:9", "method.name=event,newmark", SWEEP_GRID, 0, "a.pdf",
+              0);
     must_draw("motor.voltage=1", "arm.k2=3", SWEEP_GRID, 0, "a.png", (double)NAN);
     must_draw("motor.voltage=1:2", "arm.k2=3,4", SWEEP_LATIN, 30, "a.png", 1e-6);
 }
@@ -48,8 +49,10 @@ TEST(every_kind_of_sweep_can_be_drawn)
 // Methods beside a number: a curve for each over the number, whichever was varied first.
 TEST(words_have_a_curve_each)
 {
-    static const char *const varied[2][2] = {{"method.name=event,newmark", "motor.voltage=1,2,4"},
-                                             {"motor.voltage=1,2,4", "method.name=event,newmark"}};
+    static const char *const varied[2][2] = {{"method.name=event,newmark",
+                                              "motor.voltage=1,2,4"},
+                                             {"motor.voltage=1,2,4",
+                                              "method.name=event,newmark"}};
     for (int k = 0; k < 2; k++) {
         KEPT_SWEEP(s);
         double values[6];
@@ -58,7 +61,8 @@ TEST(words_have_a_curve_each)
         for (size_t run = 0; run < 6; run++) {
             // 100 for the second method, and the voltage
             double volts = sweep_value(&s, run, 1 - k);
-            values[run] = volts + (sweep_value(&s, run, k) == s.axes[k].values[1] ? 100 : 0);
+            values[run] =
+                volts + (sweep_value(&s, run, k) == s.axes[k].values[1] ? 100 : 0);
         }
         sweep_picture shown = {.sweep = &s, .key = "peak_force_N", .values = values};
         owned_figure *drawn = sweep_figure_create(&shown);
@@ -69,7 +73,8 @@ TEST(words_have_a_curve_each)
         assert_string_equal(fig->panels[0].series[1].label, "newmark");
         for (int i = 0; i < 3; i++) {
             assert_true(fig->panels[0].series[0].y[i] == fig->panels[0].series[0].x[i]);
-            assert_true(fig->panels[0].series[1].y[i] == 100 + fig->panels[0].series[1].x[i]);
+            assert_true(fig->panels[0].series[1].y[i] ==
+                        100 + fig->panels[0].series[1].x[i]);
         }
         owned_figure_destroy(drawn);
     }

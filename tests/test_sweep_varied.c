@@ -10,7 +10,8 @@ TEST(the_last_parameter_of_a_grid_changes_fastest)
         scenario derived;
         DONE(sweep_scenario(&s, run, &derived, &f));
         check_close(derived.parameters.motor.voltage, voltage[run], 0);
-        assert_int_equal(derived.parameters.method.name, run % 2 ? METHOD_NEWMARK : METHOD_EVENT);
+        assert_int_equal(derived.parameters.method.name,
+                         run % 2 ? METHOD_NEWMARK : METHOD_EVENT);
         check_close(derived.parameters.run.duration, 0.6, 0);
     }
 }
@@ -37,14 +38,16 @@ TEST(ranges_meet_their_ends_and_are_spaced_as_asked)
     check_close(sweep_value(&s, 0, 0), 0.5, 0);
 }
 
-// One number of a list, named with its place from 1 on; the others stay as the scenario has them.
+// One number of a list, named with its place from 1 on; the others stay as the scenario
+// has them.
 TEST(a_number_of_a_list_is_varied_by_its_place)
 {
-    static const char text[] = "title: Springs\narm: {links: 4, joint_stiffness: [12, 10, 8]}\n";
+    static const char text[] =
+        "title: Springs\narm: {links: 4, joint_stiffness: [12, 10, 8]}\n";
     KEPT_SCENARIO(springs);
     sweep s;
-    assert_int_equal(scenario_parse(&springs, text, strlen(text), "springs.yaml", "springs",
-                                    print_sentence, NULL),
+    assert_int_equal(scenario_parse(&springs, text, strlen(text), "springs.yaml",
+                                    "springs", print_sentence, NULL),
                      STATUS_OK);
     char *vary[] = {(char[]){"arm.joint_stiffness[2]=0.1:0.3:3"},
                     (char[]){"arm.joint_stiffness[3]=7 N m/rad,8.5"}};
@@ -59,7 +62,8 @@ TEST(a_number_of_a_list_is_varied_by_its_place)
         scenario derived;
         double numbers[PARAMETER_LIST_MOST];
         DONE(sweep_scenario(&s, run, &derived, &f));
-        assert_int_equal(parameter_list_numbers(derived.parameters.arm.joint_stiffness, numbers),
+        assert_int_equal(parameter_list_numbers(derived.parameters.arm.joint_stiffness,
+                                                numbers),
                          3);
         check_close(numbers[0], 12, 0);
         check_close(numbers[1], sweep_value(&s, run, 0), 0);
@@ -105,7 +109,8 @@ TEST(bad_requests_are_refused_with_a_sentence)
         {"arm.k2[1]=1,2", NULL, SWEEP_GRID, 0, "no list"},
         {"arm.links=1:4:3", NULL, SWEEP_GRID, 0, "not a whole number"},
         {"arm.links=1:4:9:log", NULL, SWEEP_GRID, 0, "twice"},
-        {"method.name=event:newmark:2", NULL, SWEEP_GRID, 0, "event,newmark,generalized-alpha"},
+        {"method.name=event:newmark:2", NULL, SWEEP_GRID, 0,
+         "event,newmark,generalized-alpha"},
         {"method.name=event,newmrk", NULL, SWEEP_GRID, 0, "newmrk"},
         {"arm.model=corrected,printed", "arm.links=2,3", SWEEP_GRID, 0,
          "run 4 (arm.model = printed, arm.links = 3): the printed model has two links"},
@@ -118,7 +123,8 @@ TEST(bad_requests_are_refused_with_a_sentence)
         fault f = {0};
         assert_int_equal(sweep_of(&s, c->sampling, c->runs, 0, &f, c->a, c->b),
                          STATUS_BAD_ARGUMENT);
-        fail_if(strstr(f.text, c->says) == NULL, "'%s' does not say '%s'", f.text, c->says);
+        fail_if(strstr(f.text, c->says) == NULL, "'%s' does not say '%s'", f.text,
+                c->says);
     }
 }
 
@@ -146,7 +152,8 @@ TEST(what_no_run_takes_is_refused_by_its_axis)
     }
 
     // a row in which it idles says so, the next one does not
-    SWEPT(s, SWEEP_GRID, 0, "wall.stiffness=1000,2000", "wall.contact=rigid,kelvin-voigt");
+    SWEPT(s, SWEEP_GRID, 0, "wall.stiffness=1000,2000",
+          "wall.contact=rigid,kelvin-voigt");
     assert_non_null(sweep_idle(&s, 0, 0));
     assert_null(sweep_idle(&s, 1, 0));
 }
@@ -158,7 +165,8 @@ TEST(a_latin_hypercube_meets_every_part_of_every_range_once)
     unsigned char seen[2][RUNS] = {{0}};
     double together = 0;
     for (size_t run = 0; run < RUNS; run++) {
-        double share[] = {sweep_value(&s, run, 0) - 1, (log10(sweep_value(&s, run, 1)) + 1) / 4};
+        double share[] = {sweep_value(&s, run, 0) - 1,
+                          (log10(sweep_value(&s, run, 1)) + 1) / 4};
         for (int i = 0; i < 2; i++) {
             int part = (int)(share[i] * RUNS);
             assert_in_range(part, 0, RUNS - 1);
@@ -167,7 +175,8 @@ TEST(a_latin_hypercube_meets_every_part_of_every_range_once)
         }
         together += (share[0] - 0.5) * (share[1] - 0.5) * 12;
     }
-    // the two are independent of each other: five standard deviations of their correlation
+    // the two are independent of each other: five standard deviations of their
+    // correlation
     check_close(together / RUNS, 0, 5 / sqrt(RUNS));
 }
 

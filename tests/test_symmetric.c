@@ -77,7 +77,8 @@ TEST(equal_values_and_zero_matrices_are_fine)
 TEST(vectors_of_a_pair_make_both_diagonal)
 {
     for (int n = 1; n <= LARGEST; n++) {
-        double matrix[LARGEST * LARGEST], mass[LARGEST * LARGEST], vectors[LARGEST * LARGEST];
+        double matrix[LARGEST * LARGEST], mass[LARGEST * LARGEST],
+            vectors[LARGEST * LARGEST];
         double lost[LARGEST * LARGEST], values[LARGEST], scratch[2 * LARGEST];
         fill(n, 0, matrix);
         fill(n, n, mass);

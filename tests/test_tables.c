@@ -38,7 +38,8 @@ TEST(every_row_is_there_once)
         check_close(tables.voltage[i], voltage[i], 0);
     }
     for (int i = 0; i < 3; i++) {
-        check_close(row_of(names[i], "corrected", "delay_dynamics")->k2_factor, factor[i], 0);
+        check_close(row_of(names[i], "corrected", "delay_dynamics")->k2_factor, factor[i],
+                    0);
     }
     // the thesis's numbers, the same for both models
     check_close(row_of("4.1", "printed", "max_force_energy")->printed[3], 82.92, 0);
@@ -54,7 +55,8 @@ TEST(printed_model_reproduces_the_forces_of_the_thesis)
     // the mean does not hide a cell that is far off
     for (int i = 0; i < tables.row_count; i++) {
         const table_row *row = &tables.rows[i];
-        if (strcmp(row->model, "printed") == 0 && strncmp(row->quantity, "max_", 4) == 0) {
+        if (strcmp(row->model, "printed") == 0 &&
+            strncmp(row->quantity, "max_", 4) == 0) {
             for (int v = 0; v < TABLE_VOLTAGES; v++) {
                 check_relative(row->computed[v], row->printed[v], 0.12);
             }
@@ -69,8 +71,8 @@ TEST(printed_delays_are_of_the_right_size)
     check_below(tables_mean_error(&tables, "printed", "delay_simulation"), 0.30);
 }
 
-// What docs/explanation/thesis.md says of the delays: one set fits forces and delays of all cells,
-// and the impact dynamics are late by one factor.
+// What docs/explanation/thesis.md says of the delays: one set fits forces and delays of
+// all cells, and the impact dynamics are late by one factor.
 TEST(one_set_of_numbers_fits_the_delays)
 {
     thesis_tables fitted;
@@ -90,8 +92,8 @@ TEST(a_touch_that_does_not_hold_leaves_its_cell_empty_in_all_rows)
         for (int v = 0; v < TABLE_VOLTAGES; v++) {
             bool holds = isfinite(seen->computed[v]);
             held += holds;
-            for (EACH_TEXT(c, "delay_simulation", "max_force_energy", "max_force_dynamics",
-                           "delay_dynamics")) {
+            for (EACH_TEXT(c, "delay_simulation", "max_force_energy",
+                           "max_force_dynamics", "delay_dynamics")) {
                 const table_row *other = row_of(names[i], "corrected", *c);
                 assert_true(isfinite(other->computed[v]) == holds);
             }
@@ -123,10 +125,11 @@ TEST(mean_error_leaves_empty_cells_out)
                             .quantity = "q",
                             .printed = {10, 10, 10, 10},
                             .computed = {11, (double)NAN, 8, 10}};
-    t.rows[1] = (table_row){.model = "corrected",
-                            .quantity = "q",
-                            .printed = {1, 1, 1, 1},
-                            .computed = {(double)NAN, (double)NAN, (double)NAN, (double)NAN}};
+    t.rows[1] =
+        (table_row){.model = "corrected",
+                    .quantity = "q",
+                    .printed = {1, 1, 1, 1},
+                    .computed = {(double)NAN, (double)NAN, (double)NAN, (double)NAN}};
     check_close(tables_mean_error(&t, "printed", "q"), 0.1, 1e-12);
     assert_true(isnan(tables_mean_error(&t, "corrected", "q")));
     assert_true(isnan(tables_mean_error(&t, "printed", "unknown")));

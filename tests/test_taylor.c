@@ -1,5 +1,5 @@
-// The two-link arm by power series: that they solve the equations of chain.h all over the stride,
-// that the bounds hold, and that whole runs through events come out of it.
+// The two-link arm by power series: that they solve the equations of chain.h all over the
+// stride, that the bounds hold, and that whole runs through events come out of it.
 #include "src/engines/pair/taylor_integrator.h"
 #include "tests/arm_fixture.h"
 
@@ -20,7 +20,8 @@ static moving_arm started(const char *const *settings)
     return made;
 }
 
-static moving_arm some_motion(const char *const *settings, bool contact, random_generator *g)
+static moving_arm some_motion(const char *const *settings, bool contact,
+                              random_generator *g)
 {
     moving_arm made = started(settings);
     motion *m = made.motion;
@@ -55,12 +56,13 @@ static const char *const *const arms[] = {
     SETTINGS("wall.kind=plane"),
     SETTINGS("wall.kind=point", "arm.damping_ratio=0.05"),
     SETTINGS("wall.kind=plane", "arm.hub_joint=spring", "arm.k1=90"),
-    SETTINGS("wall.kind=point", "arm.hub_joint=spring", "arm.k1=20000", "arm.damping_ratio=0.01"),
+    SETTINGS("wall.kind=point", "arm.hub_joint=spring", "arm.k1=20000",
+             "arm.damping_ratio=0.01"),
 };
 enum { ARM_COUNT = sizeof arms / sizeof arms[0], STATES = 40, PLACES = 8 };
 
-// What the series give at a place of the stride is what the chain's sweeps give for its angles and
-// velocities.
+// What the series give at a place of the stride is what the chain's sweeps give for its
+// angles and velocities.
 static void check_place(moving_arm *moving, double h)
 {
     const arm *a = &moving->arm;
@@ -92,7 +94,8 @@ TEST(the_series_solve_the_equations_all_over_the_stride)
         // strides that something cuts short take lower orders
         for (double remaining = 0.1; remaining > 1e-4; remaining /= 3) {
             motion_end_internal_step(moving.motion);
-            double h = moving.motion->engine->advance(&moving.arm, moving.motion, remaining, 1e-3);
+            double h = moving.motion->engine->advance(&moving.arm, moving.motion,
+                                                      remaining, 1e-3);
             assert_true(h > 0 && h <= remaining);
             for (int k = 0; k <= PLACES; k++) {
                 check_place(&moving, h * k / PLACES);
@@ -102,7 +105,8 @@ TEST(the_series_solve_the_equations_all_over_the_stride)
     }
 }
 
-// Several instants side by side, in vectors of any width, are those that are taken one by one.
+// Several instants side by side, in vectors of any width, are those that are taken one by
+// one.
 TEST(instants_together_are_those_one_by_one)
 {
     random_generator g = seeded(3);
@@ -162,7 +166,8 @@ TEST(orders_agree_and_the_ledger_closes)
                 double left = h * k / 8 - m->state[SLOT_TIME];
                 motion_end_internal_step(m);
                 double step = m->engine->advance(&moving.arm, m, left, 1e-3);
-                assert_int_equal(motion_try_step(&moving.arm, m, step, STATE_WHOLE), STATUS_OK);
+                assert_int_equal(motion_try_step(&moving.arm, m, step, STATE_WHOLE),
+                                 STATUS_OK);
                 memcpy(m->state, m->trial, (size_t)m->size * sizeof(double));
                 strides++;
             }
@@ -185,9 +190,9 @@ static motion_event step_cut(const moving_arm *moving, double until, double afte
     return report.event;
 }
 
-// A motion that is cut where nothing happens goes on in the same stride: it comes to where one does
-// that nobody cuts, but for rounding. One that is handed over at each cut, to a motion that knows
-// the state alone, comes there to the last bit.
+// A motion that is cut where nothing happens goes on in the same stride: it comes to
+// where one does that nobody cuts, but for rounding. One that is handed over at each cut,
+// to a motion that knows the state alone, comes there to the last bit.
 TEST(cut_strides_go_on)
 {
     enum { UNTIL = 1 };
@@ -206,7 +211,8 @@ TEST(cut_strides_go_on)
         motion_report report;
         motion_event met = MOTION_REACHED, handed = MOTION_REACHED;
         int turn = 2;
-        assert_int_equal(motion_advance(&made[0].arm, whole, UNTIL, 1e-3, &report), STATUS_OK);
+        assert_int_equal(motion_advance(&made[0].arm, whole, UNTIL, 1e-3, &report),
+                         STATUS_OK);
         while (met == MOTION_REACHED && cut->state[SLOT_TIME] < UNTIL) {
             const double after = 1e-4 + 0.01 * random_uniform(&g);
             const long steps = cut->record.steps;
@@ -224,7 +230,8 @@ TEST(cut_strides_go_on)
         assert_memory_equal(cut->state, made[turn].motion->state, size);
         for (int k = 0; k < 2 * cut->dof + QUADRATURE_COUNT; k++) {
             const double scale = 1 + fabs(whole->state[SLOT_COUNT + k]);
-            check_close(cut->state[SLOT_COUNT + k], whole->state[SLOT_COUNT + k], 1e-12 * scale);
+            check_close(cut->state[SLOT_COUNT + k], whole->state[SLOT_COUNT + k],
+                        1e-12 * scale);
         }
         for (int k = 0; k < 4; k++) {
             motion_destroy(made[k].motion);
@@ -232,9 +239,9 @@ TEST(cut_strides_go_on)
     }
 }
 
-// No watched function is anywhere below what its ends and the bound on its bend leave room for, and
-// none falls in a stride over which the kernel has it stay above zero, nor is the force above the
-// kernel's bound.
+// No watched function is anywhere below what its ends and the bound on its bend leave
+// room for, and none falls in a stride over which the kernel has it stay above zero, nor
+// is the force above the kernel's bound.
 TEST(the_bounds_hold)
 {
     random_generator g = seeded(3);
@@ -249,7 +256,8 @@ TEST(the_bounds_hold)
         }
         double h = m->engine->advance(&moving.arm, m, 0.1, 1e-3);
         looked_at++;
-        bool contact = m->state[SLOT_CONTACT] != 0, stuck = m->state[SLOT_FRICTION] == HUB_STICK;
+        bool contact = m->state[SLOT_CONTACT] != 0,
+             stuck = m->state[SLOT_FRICTION] == HUB_STICK;
         const event_function watched[] = {contact ? EVENT_OF_FORCE : EVENT_OF_GAP,
                                           stuck ? EVENT_OF_STICTION : EVENT_OF_HUB};
         for (int n = 0; n < 2; n++) {
@@ -262,7 +270,8 @@ TEST(the_bounds_hold)
                     e->second_derivative(&moving.arm, m, w, from, to) * width * width / 8;
                 for (int k = 1; k < 16; k++) {
                     double t = from + width * k / 16;
-                    check_below(lower, e->event_function(&moving.arm, m, w, t).value + 1e-12);
+                    check_below(lower,
+                                e->event_function(&moving.arm, m, w, t).value + 1e-12);
                 }
             }
         }
@@ -299,20 +308,24 @@ TEST(known_roots_are_the_first)
         const double h = m->engine->advance(&moving.arm, m, 0.1, 1e-3);
         const taylor_integrator *s = m->memory;
         const bool contact = m->state[SLOT_CONTACT] != 0;
-        const event_function watched[] = {contact ? EVENT_OF_FORCE : EVENT_OF_GAP, EVENT_OF_HUB};
+        const event_function watched[] = {contact ? EVENT_OF_FORCE : EVENT_OF_GAP,
+                                          EVENT_OF_HUB};
         const double roots[] = {s->lane.block[AT_WALL_ROOT], s->lane.block[AT_HUB_ROOT]};
         for (int n = 0; n < 2; n++) {
             const double root = roots[n], near = 1e-9 * h;
             for (int k = 1; k < LOOKS && root > 0; k++) {
                 const double t = root * k / LOOKS;
-                assert_true(m->engine->event_function(&moving.arm, m, watched[n], t).value > 0);
+                assert_true(
+                    m->engine->event_function(&moving.arm, m, watched[n], t).value > 0);
             }
             if (root > near) {
                 known++;
                 assert_true(
-                    m->engine->event_function(&moving.arm, m, watched[n], root - near).value > 0);
+                    m->engine->event_function(&moving.arm, m, watched[n], root - near)
+                        .value > 0);
                 assert_true(
-                    m->engine->event_function(&moving.arm, m, watched[n], root + near).value < 0);
+                    m->engine->event_function(&moving.arm, m, watched[n], root + near)
+                        .value < 0);
             }
         }
     }
@@ -322,7 +335,8 @@ TEST(known_roots_are_the_first)
 // Rows so near each other that none of them misses the peak by more than rounding.
 TEST(peaks_are_the_largest_force_there_is)
 {
-    for (EACH_TEXT(c, "motor.voltage=0.5537109375", "motor.voltage=1", "motor.voltage=3.3")) {
+    for (EACH_TEXT(c, "motor.voltage=0.5537109375", "motor.voltage=1",
+                   "motor.voltage=3.3")) {
         RUN(r, *c, "method.step=2e-6", "run.duration=0.7");
         double largest = 0;
         for (EACH_ROW(row, &r.trace)) {
@@ -372,29 +386,33 @@ TEST(random_runs_neither_fail_nor_lose_energy)
         p->wall.kind = i % 2 ? WALL_POINT : WALL_PLANE;
         p->arm.damping_ratio = u[5] < 0.5 ? 0 : 0.1 * (u[5] - 0.5);
         KEPT_RUN(r);
-        fail_if(run_scenario(&s, false, &r) != STATUS_OK, "run %d: %s", i, r.summary.message);
+        fail_if(run_scenario(&s, false, &r) != STATUS_OK, "run %d: %s", i,
+                r.summary.message);
         check_below(r.summary.energy_residual_J, 1e-11 * (1 + r.summary.motor_work_J));
     }
 }
 
-// The next event of an arm, at the latest at an instant `until`; MOTION_REACHED if there is none.
+// The next event of an arm, at the latest at an instant `until`; MOTION_REACHED if there
+// is none.
 static motion_event next_event(moving_arm *moving, double until)
 {
     motion_report report;
-    assert_int_equal(motion_advance(&moving->arm, moving->motion, until, 1e-3, &report), STATUS_OK);
+    assert_int_equal(motion_advance(&moving->arm, moving->motion, until, 1e-3, &report),
+                     STATUS_OK);
     motion_apply(&moving->arm, moving->motion, &report);
     return report.event;
 }
 
-// An arm that starts on the wall and goes into it, however slowly, strikes it at once, though the
-// motor throws it back.
+// An arm that starts on the wall and goes into it, however slowly, strikes it at once,
+// though the motor throws it back.
 TEST(a_slow_start_into_the_wall_is_an_impact)
 {
     for (EACH_TEXT(c, "wall.kind=point", "wall.kind=plane")) {
         for (double speed = 1e-8; speed < 1e-3; speed *= 10) {
-            moving_arm moving = started(SETTINGS(
-                *c, "arm.k2=20000", "motor.voltage=10", "motor.amplifier_gain=1000", "wall.angle=3",
-                "initial.angle=3", formatted("initial.velocity=%g", speed)));
+            moving_arm moving = started(
+                SETTINGS(*c, "arm.k2=20000", "motor.voltage=10",
+                         "motor.amplifier_gain=1000", "wall.angle=3", "initial.angle=3",
+                         formatted("initial.velocity=%g", speed)));
             assert_int_equal(next_event(&moving, 1e-3), MOTION_IMPACT);
             assert_true(moving.motion->state[SLOT_TIME] == 0);
             motion_destroy(moving.motion);
@@ -417,22 +435,24 @@ static int count_releases(moving_arm moving, double until)
     return releases;
 }
 
-// Light arms that turn at a hundred rad/s leave the wall once for each time that they have touched
-// it: what the series leave out is no force that holds them.
+// Light arms that turn at a hundred rad/s leave the wall once for each time that they
+// have touched it: what the series leave out is no force that holds them.
 TEST(an_arm_in_fast_rotation_is_released_once)
 {
     int releases = 0;
     for (int i = 0; i < 60; i++) {
-        moving_arm moving = started(SETTINGS(
-            formatted("motor.voltage=%g", 8 + 0.1 * i), "arm.length=2.4", "arm.mass=0.022",
-            "arm.hub_inertia=0.0096", "motor.torque_constant=9", "motor.back_emf=0",
-            "motor.resistance=8", "motor.stiction=0", "wall.angle=0.8", "initial.angle=-0.3"));
+        moving_arm moving = started(
+            SETTINGS(formatted("motor.voltage=%g", 8 + 0.1 * i), "arm.length=2.4",
+                     "arm.mass=0.022", "arm.hub_inertia=0.0096",
+                     "motor.torque_constant=9", "motor.back_emf=0", "motor.resistance=8",
+                     "motor.stiction=0", "wall.angle=0.8", "initial.angle=-0.3"));
         releases += count_releases(moving, 0.2);
     }
     assert_true(releases >= 60);
 }
 
-// So do random arms with an amplifier a hundred times too strong, whose last bits count for more.
+// So do random arms with an amplifier a hundred times too strong, whose last bits count
+// for more.
 TEST(a_strong_motor_releases_once)
 {
     const char *const *const strong[] = {
@@ -445,7 +465,8 @@ TEST(a_strong_motor_releases_once)
                  "motor.stiction=0.000139851492901509", "wall.angle=-0.90540409675491051",
                  "wall.restitution=0.32090749280125364", "arm.length=2.5058063083989945",
                  "arm.mass=0.1091521425349667", "arm.k2=0.71729569257682524",
-                 "arm.damping_ratio=0.00098877030493864739", "initial.angle=-2.3385806938907905",
+                 "arm.damping_ratio=0.00098877030493864739",
+                 "initial.angle=-2.3385806938907905",
                  "initial.velocity=-1.6613505629975811"),
     };
     for (int i = 0; i < 2; i++) {

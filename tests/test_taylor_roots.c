@@ -1,5 +1,5 @@
-// Where a watched function first falls below zero (taylor_roots.h): of functions that come back
-// above zero and fall again the first fall is found, or none.
+// Where a watched function first falls below zero (taylor_roots.h): of functions that
+// come back above zero and fall again the first fall is found, or none.
 #define LANES 1
 #include "src/engines/pair/taylor_roots.h"
 
@@ -21,7 +21,8 @@ static void sort_three(double *x)
     }
 }
 
-// (r0 - t) (r1 - t) (r2 - t), times the sign, for times from 0 to 1: what is found of its roots.
+// (r0 - t) (r1 - t) (r2 - t), times the sign, for times from 0 to 1: what is found of its
+// roots.
 static double root_found(const double *r, double sign)
 {
     const double terms[TERMS] = {sign * r[0] * r[1] * r[2],

@@ -81,18 +81,21 @@ TEST(words_are_set_as_printers_set_them)
 // However narrow the page, no line begins with what belongs to the end of the one before.
 TEST(numbers_keep_their_units)
 {
-    const char *caption = "At 1 V and 10 ms, <i>β</i> = 0.4, <i>h</i> = 10\u2009ms, a peak of "
-                          "5.40\u2009N after 12.5 ms, <i>k</i><sub>1</sub> = 0.4 at "
-                          "4.92\u2009N·m/rad, 3\u2009V·s/rad. impactlab 0.1.0.";
+    const char *caption =
+        "At 1 V and 10 ms, <i>β</i> = 0.4, <i>h</i> = 10\u2009ms, a peak of "
+        "5.40\u2009N after 12.5 ms, <i>k</i><sub>1</sub> = 0.4 at "
+        "4.92\u2009N·m/rad, 3\u2009V·s/rad. impactlab 0.1.0.";
     PangoContext *context = text_context_create();
     for (double width = 60; width < 300; width += 7) {
-        PangoLayout *layout = text_layout_create(
-            context, &(text_block){.markup = caption, .size = 8, .width = width});
+        PangoLayout *layout = text_layout_create(context, &(text_block){.markup = caption,
+                                                                        .size = 8,
+                                                                        .width = width});
         const char *text = pango_layout_get_text(layout);
         for (int i = 1; i < pango_layout_get_line_count(layout); i++) {
-            const char *line =
-                text + pango_layout_line_get_start_index(pango_layout_get_line_readonly(layout, i));
-            for (EACH_TEXT(c, "V", "ms", "= ", "=\u00a0", "rad", "0.4", "N", "0.1.0", "10 ms,")) {
+            const char *line = text + pango_layout_line_get_start_index(
+                                          pango_layout_get_line_readonly(layout, i));
+            for (EACH_TEXT(c, "V", "ms", "= ", "=\u00a0", "rad", "0.4", "N", "0.1.0",
+                           "10 ms,")) {
                 fail_if(strncmp(line, *c, strlen(*c)) == 0,
                         "at %g points a line begins with '%.12s'", width, line);
             }
@@ -102,8 +105,8 @@ TEST(numbers_keep_their_units)
     g_object_unref(context);
 }
 
-// An index can be read where it is printed, however the page of a diagram is scaled: its letters
-// have 6 points there, or those of the text about it.
+// An index can be read where it is printed, however the page of a diagram is scaled: its
+// letters have 6 points there, or those of the text about it.
 TEST(indices_can_be_read_on_scaled_pages)
 {
     PangoContext *context = text_context_create();
@@ -119,8 +122,8 @@ TEST(indices_can_be_read_on_scaled_pages)
     g_object_unref(context);
 }
 
-// A title of two lines ends with more than a word, and lines are as far apart with an exponent in
-// one of them as without.
+// A title of two lines ends with more than a word, and lines are as far apart with an
+// exponent in one of them as without.
 TEST(lines_are_even)
 {
     PangoContext *context = text_context_create();
@@ -133,14 +136,16 @@ TEST(lines_are_even)
     assert_int_equal(pango_layout_get_line_count(layout), 2);
     for (int i = 0; i < 2; i++) {
         PangoRectangle logical;
-        pango_layout_line_get_extents(pango_layout_get_line_readonly(layout, i), NULL, &logical);
+        pango_layout_line_get_extents(pango_layout_get_line_readonly(layout, i), NULL,
+                                      &logical);
         widths[i] = logical.width;
     }
     check_close(widths[1] / widths[0], 1, 0.35);
     g_object_unref(layout);
 
     double plain = text_measure(context, &(text_block){"one\ntwo\nthree", 8}).height;
-    double raised = text_measure(context, &(text_block){"one\n10<sup>−5</sup>\nthree", 8}).height;
+    double raised =
+        text_measure(context, &(text_block){"one\n10<sup>−5</sup>\nthree", 8}).height;
     check_close(raised, plain, 0.01);
     g_object_unref(context);
 }

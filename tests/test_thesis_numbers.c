@@ -1,5 +1,5 @@
-// The numbers of docs/explanation/thesis.md and claims.tsv are those that the program computes:
-// each is computed anew and, in their own words and digits, looked up in them.
+// The numbers of docs/explanation/thesis.md and claims.tsv are those that the program
+// computes: each is computed anew and, in their own words and digits, looked up in them.
 #include "src/study/thesis_tables.h"
 #include "tests/session_fixture.h"
 
@@ -8,7 +8,8 @@ static char *page; // the text of both
 // Fails unless the page has these words.
 static void must_say(const char *words)
 {
-    fail_if(strstr(page, words) == NULL, "neither thesis.md nor claims.tsv says '%s'", words);
+    fail_if(strstr(page, words) == NULL, "neither thesis.md nor claims.tsv says '%s'",
+            words);
 }
 #define page_says(...) must_say(formatted(__VA_ARGS__))
 
@@ -45,12 +46,15 @@ TEST(numbers_of_the_first_chapters)
 {
     const double pulse = number("corrected/first-impact", "", "first_pulse_s");
     const double stiff = number("corrected/stiff-beam", "", "first_pulse_s");
-    page_says("lasts %.0f times as long as that of one a hundred times as stiff", pulse / stiff);
-    page_says("agrees: %.0f ms at the nominal $k_2$, %.1f ms at a hundred times that", 1e3 * pulse,
+    page_says("lasts %.0f times as long as that of one a hundred times as stiff",
+              pulse / stiff);
+    page_says("agrees: %.0f ms at the nominal $k_2$, %.1f ms at a hundred times that",
+              1e3 * pulse,
               1e3 * number("corrected/first-impact", "arm.k2=492", "first_pulse_s"));
-    page_says("it loses contact once and hits with %.2f N, a constant voltage with %.2f N",
-              number("compare/reverse-torque", "", "peak_force_N"),
-              number("corrected/first-impact", "", "peak_force_N"));
+    page_says(
+        "it loses contact once and hits with %.2f N, a constant voltage with %.2f N",
+        number("compare/reverse-torque", "", "peak_force_N"),
+        number("corrected/first-impact", "", "peak_force_N"));
     check_close(number("compare/reverse-torque", "", "separations"), 1, 0);
 
     // where the hub turns back
@@ -58,24 +62,27 @@ TEST(numbers_of_the_first_chapters)
     const summary *m = &first.result.summary;
     const event *turns = find_event(&first.result, EVENT_REVERSAL, 0);
     page_says("(%.1f ms after the touch; the hub turns at %.1f ms)",
-              1e3 * m->first_pulse_time_to_peak_s, 1e3 * (turns->time - m->first_contact_s));
+              1e3 * m->first_pulse_time_to_peak_s,
+              1e3 * (turns->time - m->first_contact_s));
 }
 
 // ---- the single run of 3.1.3
 
 TEST(the_table_of_the_single_run)
 {
-    static const char *const pairs[][2] = {
-        {"0.2", "0.5"}, {"0.3", "0.5"}, {"0.4", "0.5"}, {"0.4", "0.6"}, {"0.5", "0.5"},
-        {"0.5", "0.7"}, {"0.6", "0.5"}, {"0.6", "0.9"}, {"0.7", "0.5"}, {"0.7", "0.9"}};
+    static const char *const pairs[][2] = {{"0.2", "0.5"}, {"0.3", "0.5"}, {"0.4", "0.5"},
+                                           {"0.4", "0.6"}, {"0.5", "0.5"}, {"0.5", "0.7"},
+                                           {"0.6", "0.5"}, {"0.6", "0.9"}, {"0.7", "0.5"},
+                                           {"0.7", "0.9"}};
     for (EACH(one, pairs)) {
         const char *row = formatted("| %s, %s |", (*one)[0], (*one)[1]);
         for (EACH_TEXT(each, "1e-3", "1e-4", "1e-5")) {
             SCOPED(forget)
-            computed c = run_with("thesis/fig-3-4",
-                                  "printed.reevaluation=none run.duration=0.6 method.beta=%s "
-                                  "method.gamma=%s method.step=%s",
-                                  (*one)[0], (*one)[1], *each);
+            computed c =
+                run_with("thesis/fig-3-4",
+                         "printed.reevaluation=none run.duration=0.6 method.beta=%s "
+                         "method.gamma=%s method.step=%s",
+                         (*one)[0], (*one)[1], *each);
             const summary *m = &c.result.summary;
             row = m->status == STATUS_OK ? formatted("%s %.0f |", row, m->peak_force_N)
                                          : formatted("%s fails |", row);
@@ -89,9 +96,11 @@ TEST(the_table_of_the_single_run)
 
 // ---- tables 4.1 to 4.3
 
-static const char *const tables[] = {"thesis/table-4-1", "thesis/table-4-2", "thesis/table-4-3"};
+static const char *const tables[] = {"thesis/table-4-1", "thesis/table-4-2",
+                                     "thesis/table-4-3"};
 
-// Largest force of the printed model within 0.12 s of the touch, and its delay from there.
+// Largest force of the printed model within 0.12 s of the touch, and its delay from
+// there.
 static void run_cell(const char *table, const char *more, double voltage, double *peak,
                      double *delay)
 {
@@ -109,7 +118,8 @@ static void run_cell(const char *table, const char *more, double voltage, double
     }
 }
 
-// Mean |relative error| of forces and delays against what the thesis prints, over some tables.
+// Mean |relative error| of forces and delays against what the thesis prints, over some
+// tables.
 static void errors_of(int from, int to, const char *sets, double later, double error[2])
 {
     static const double voltages[TABLE_VOLTAGES] = {1, 2, 5, 10};
@@ -132,8 +142,8 @@ static void errors_of(int from, int to, const char *sets, double later, double e
     error[1] *= 100.0 / cells;
 }
 
-static const table_row *row_of(const thesis_tables *t, const char *table, const char *model,
-                               const char *quantity)
+static const table_row *row_of(const thesis_tables *t, const char *table,
+                               const char *model, const char *quantity)
 {
     for (int i = 0; i < t->row_count; i++) {
         const table_row *r = &t->rows[i];
@@ -162,7 +172,8 @@ TEST(errors_of_the_tables)
 
     // the cells run one by one are those of the tables
     errors_of(0, 2, "", 0, error);
-    check_close(error[0], 100 * tables_mean_error(&printed, "printed", "max_force_simulation"),
+    check_close(error[0],
+                100 * tables_mean_error(&printed, "printed", "max_force_simulation"),
                 0.05);
     check_close(error[1], 100 * mean, 0.05);
     errors_of(0, 2, "", 1e-3, error);
@@ -189,19 +200,22 @@ TEST(errors_of_the_tables)
             off += fabs(error_of_cell) / 12;
             bias += error_of_cell / 12;
             outside += fabs(r->computed[v] - r->printed[v]) > 0.5e-3;
-            outside_best += fabs(r->computed[v] * 0.865 / (sqrt(3) / 2) - r->printed[v]) > 0.5e-3;
+            outside_best +=
+                fabs(r->computed[v] * 0.865 / (sqrt(3) / 2) - r->printed[v]) > 0.5e-3;
             page_says("%.0f / %.1f ms", 1e3 * r->printed[v], 1e3 * r->computed[v]);
             page_says("%.2f N, %.0f ms", force->computed[v], 1e3 * delay->computed[v]);
         }
     }
-    page_says("are %.1f %% off on average, with hardly any bias (%.1f %%)", 100 * off, 100 * bias);
+    page_says("are %.1f %% off on average, with hardly any bias (%.1f %%)", 100 * off,
+              100 * bias);
     assert_int_equal(outside, 8);
     assert_int_equal(outside_best, 7);
-    page_says("but eight of the twelve cells are further off than their rounding to a millisecond, "
-              "and seven with the factor");
+    page_says("but eight of the twelve cells are further off than their rounding "
+              "to a millisecond, and seven with the factor");
 }
 
-// The listing's slips, one by one and both: one switch stands for two, and what it changes is said.
+// The listing's slips, one by one and both: one switch stands for two, and what it
+// changes is said.
 TEST(what_equations_and_listing_differ_in)
 {
     static const struct {
@@ -219,7 +233,8 @@ TEST(what_equations_and_listing_differ_in)
     for (EACH(row, rows)) {
         double error[2];
         errors_of(0, 2, row->sets, 0, error);
-        const char *line = formatted("| %s | %.1f %% | %.1f %% |", row->name, error[0], error[1]);
+        const char *line =
+            formatted("| %s | %.1f %% | %.1f %% |", row->name, error[0], error[1]);
         for (EACH(c, cells)) {
             double peak = 0, delay = 0;
             run_cell(tables[c->table], row->sets, c->voltage, &peak, &delay);
@@ -227,9 +242,9 @@ TEST(what_equations_and_listing_differ_in)
         }
         page_says("%s", line);
     }
-    page_says(
-        "shows %.0f N in a later bounce",
-        number("thesis/table-4-1", "motor.voltage=5 printed.program=listing", "peak_force_N"));
+    page_says("shows %.0f N in a later bounce",
+              number("thesis/table-4-1", "motor.voltage=5 printed.program=listing",
+                     "peak_force_N"));
 
     // a peak is one of the program's samples
     SCOPED(forget) computed c = run_of("thesis/table-4-2", "");
@@ -257,7 +272,8 @@ TEST(what_was_tried_on_the_delays)
         }
     }
     const double *off = error;
-    for (EACH_TEXT(tried, "$T$ cut to whole steps", "$T$ less one step", "$T$ less two steps",
+    for (EACH_TEXT(tried, "$T$ cut to whole steps", "$T$ less one step",
+                   "$T$ less two steps",
                    "$\\frac{\\pi}{4}T$, the true quarter oscillation",
                    "$\\frac{\\pi}{4}T$ and a step", "$\\frac23T$", "$T/\\sqrt2$")) {
         page_says("| %s | %.1f %% |", *tried, *off++);
@@ -266,13 +282,14 @@ TEST(what_was_tried_on_the_delays)
 
 // ---- chapter 5
 
-// Root mean square of a signal less the plan's while the impact mode lasts, in percent of what the
-// plan spans.
+// Root mean square of a signal less the plan's while the impact mode lasts, in percent of
+// what the plan spans.
 static double off_the_plan(const trace *t, size_t signal, size_t plan)
 {
     double low = HUGE_VAL, high = -HUGE_VAL, squares = 0, time = 0;
     for (size_t i = 0; i + 1 < t->row_count; i++) {
-        const char *row = (const char *)&t->rows[i], *next = (const char *)&t->rows[i + 1];
+        const char *row = (const char *)&t->rows[i],
+                   *next = (const char *)&t->rows[i + 1];
         double a[2], b[2];
         memcpy(&a[0], row + signal, sizeof a[0]);
         memcpy(&a[1], next + signal, sizeof a[1]);
@@ -302,7 +319,8 @@ static double rise_time(const computed *c)
         i++;
     }
     const sample *a = &t->rows[i - 1], *b = &t->rows[i];
-    return a->time + (goal - a->force) / (b->force - a->force) * (b->time - a->time) - touch;
+    return a->time + (goal - a->force) / (b->force - a->force) * (b->time - a->time) -
+           touch;
 }
 
 TEST(figures_of_the_hybrid_controller)
@@ -312,9 +330,10 @@ TEST(figures_of_the_hybrid_controller)
         SCOPED(forget)
         computed c = run_with("thesis/fig-5-2", "arm.links=%d", i == 0 ? 2 : 8);
         const trace *t = &c.result.trace;
-        off[i][0] = off_the_plan(t, offsetof(sample, encoder), offsetof(sample, desired_angle));
-        off[i][1] =
-            off_the_plan(t, offsetof(sample, tachometer), offsetof(sample, desired_velocity));
+        off[i][0] =
+            off_the_plan(t, offsetof(sample, encoder), offsetof(sample, desired_angle));
+        off[i][1] = off_the_plan(t, offsetof(sample, tachometer),
+                                 offsetof(sample, desired_velocity));
         if (i == 1) {
             page_says("they hit %.0f times", c.result.summary.impacts);
         }
@@ -326,23 +345,24 @@ TEST(figures_of_the_hybrid_controller)
     SCOPED(forget)
     computed one = run_of("thesis/fig-5-1", ""), two = run_of("thesis/fig-5-7", "");
     SCOPED(forget) computed angle = run_of("thesis/fig-5-6", "");
-    assert_true(one.scenario.parameters.initial.angle == two.scenario.parameters.initial.angle &&
-                one.scenario.parameters.initial.angle == angle.scenario.parameters.initial.angle);
+    assert_true(
+        one.scenario.parameters.initial.angle == two.scenario.parameters.initial.angle &&
+        one.scenario.parameters.initial.angle == angle.scenario.parameters.initial.angle);
     SCOPED(forget) computed far = run_of("thesis/fig-5-7", "initial.angle=-0.1");
-    page_says(
-        "agrees at 1 N: one contact, 90 %% of the steady force after %.3f s, settled after %.2f "
-        "s; at 2 N one contact, settled after %.2f s, but 90 %% only after %.3f s, and after "
-        "%.3f s from 0.1 rad",
-        rise_time(&one), one.result.summary.settling_time_s, two.result.summary.settling_time_s,
-        rise_time(&two), rise_time(&far));
-    assert_true(one.result.summary.separations == 0 && two.result.summary.separations == 0);
+    page_says("agrees at 1 N: one contact, 90 %% of the steady force after %.3f s, "
+              "settled after %.2f s; at 2 N one contact, settled after %.2f s, but "
+              "90 %% only after %.3f s, and after %.3f s from 0.1 rad",
+              rise_time(&one), one.result.summary.settling_time_s,
+              two.result.summary.settling_time_s, rise_time(&two), rise_time(&far));
+    assert_true(one.result.summary.separations == 0 &&
+                two.result.summary.separations == 0);
 }
 
 TEST(numbers_of_the_control_laws)
 {
     const double hybrid = number("compare/hybrid", "", "peak_force_N");
-    page_says("agrees: %.2f N against %.2f N", number("compare/bang-bang", "", "peak_force_N"),
-              hybrid);
+    page_says("agrees: %.2f N against %.2f N",
+              number("compare/bang-bang", "", "peak_force_N"), hybrid);
     page_says("agrees: %.2f N instead of %.2f N, and %.2f s later at the wall",
               number("compare/speed-limit", "", "peak_force_N"), hybrid,
               number("compare/speed-limit", "", "first_contact_s") -
@@ -353,38 +373,47 @@ TEST(numbers_of_the_control_laws)
     page_says("steady force %.2f of the command as printed, %.2f corrected",
               number("compare/hybrid-printed", "", "steady_force_N"),
               number("compare/hybrid", "", "steady_force_N"));
-    assert_int_equal(
-        (int)number("compare/force-integral-soft-wall", "wall.contact=rigid", "impacts"), 9);
-    assert_int_equal((int)number("compare/force-integral-soft-wall", "", "separations"), 0);
+    assert_int_equal((int)number("compare/force-integral-soft-wall", "wall.contact=rigid",
+                                 "impacts"),
+                     9);
+    assert_int_equal((int)number("compare/force-integral-soft-wall", "", "separations"),
+                     0);
 
     // told where the wall is by different means
-    const double told = number("compare/hybrid", "belief.wall_error=0.02", "steady_force_N");
-    const double film = number("compare/hybrid", "belief.wall_error=0.02 control.impact_angle=film",
-                               "steady_force_N");
-    const double measured =
-        number("compare/hybrid", "belief.wall_error=0.02 control.impact_angle=accelerometer",
+    const double told =
+        number("compare/hybrid", "belief.wall_error=0.02", "steady_force_N");
+    const double film =
+        number("compare/hybrid", "belief.wall_error=0.02 control.impact_angle=film",
                "steady_force_N");
-    page_says("the force is %.2f N off when told, %.2f N by film, below 0.003 N by [accelerometer]",
+    const double measured =
+        number("compare/hybrid",
+               "belief.wall_error=0.02 control.impact_angle=accelerometer",
+               "steady_force_N");
+    page_says("the force is %.2f N off when told, %.2f N by film, below 0.003 N by "
+              "[accelerometer]",
               fabs(told - 1), fabs(film - 1));
     check_below(fabs(measured - 1), 0.003);
 
-    // gains from which on the proportional law bounces, and rates at which the hybrid fails
+    // gains from which on the proportional law bounces, and rates at which the hybrid
+    // fails
     static const int gains[] = {1, 3, 4, 6};
     for (int i = 0; i < 4; i++) {
-        SCOPED(forget) computed c = run_with("compare/force-pd", "control.force_gain=%d", gains[i]);
+        SCOPED(forget)
+        computed c = run_with("compare/force-pd", "control.force_gain=%d", gains[i]);
         const summary *m = &c.result.summary;
         assert_true(i == 0   ? m->separations == 0 && m->settling_time_s > 0
                     : i == 1 ? m->separations == 1 && m->settling_time_s > 0
                              : m->separations > 1 && isnan(m->settling_time_s));
     }
-    page_says(
-        "at 1 V/N one contact, at 3 V/N a bounce, from 4 V/N on it bounces and never settles");
+    page_says("at 1 V/N one contact, at 3 V/N a bounce, from 4 V/N on it bounces and "
+              "never settles");
     static const int rates[] = {30, 50, 55, 100, 160, 170, 200};
     for (int i = 0; i < 7; i++) {
         const char *rate = formatted("control.rate=%d", rates[i]);
         const double on_spring = number("compare/sampling-rate", rate, "settling_time_s");
-        const double rigid = number("compare/sampling-rate",
-                                    formatted("%s arm.hub_joint=rigid", rate), "settling_time_s");
+        const double rigid =
+            number("compare/sampling-rate", formatted("%s arm.hub_joint=rigid", rate),
+                   "settling_time_s");
         assert_int_equal(isnan(on_spring), i == 0 || (i >= 2 && i <= 4));
         assert_int_equal(isnan(rigid), i == 0);
     }

@@ -1,5 +1,5 @@
-// An arm in a tilted plane, whose weight acts along the angle -pi/2: pendulum, sag and frequencies
-// of beams.
+// An arm in a tilted plane, whose weight acts along the angle -pi/2: pendulum, sag and
+// frequencies of beams.
 #include "src/base/dense.h"
 #include "tests/passage.h"
 
@@ -7,11 +7,12 @@
 
 enum { LINKS = 64 };
 
-// Deflection of the tip of a clamped beam under its weight w: w L^3/8EI; where the tip is held the
-// wall bears 3/8 of w.
+// Deflection of the tip of a clamped beam under its weight w: w L^3/8EI; where the tip is
+// held the wall bears 3/8 of w.
 TEST(a_level_beam_sags_as_eulers_does)
 {
-    const arm a = arm_with(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1e-3"));
+    const arm a =
+        arm_with(SETTINGS("arm.links=64", "arm.hub_joint=beam", "arm.tilt=1e-3"));
     const double length = a.link_length * LINKS, weight = a.link_mass * LINKS * a.gravity;
     const double EI = a.joint_stiffness * a.link_length;
     double q[LINKS + 1], x, y, force;
@@ -32,8 +33,8 @@ TEST(a_level_beam_sags_as_eulers_does)
     check_relative(-force, 3.0 / 8 * weight, 1e-3);
 }
 
-// The first frequencies of a beam that hangs from a clamp, by Ritz with x^2, x^3, ...: the weight
-// below a place x is a tension there.
+// The first frequencies of a beam that hangs from a clamp, by Ritz with x^2, x^3, ...:
+// the weight below a place x is a tension there.
 static void frequencies_of_a_hanging_beam(const arm *a, double *frequency, int count)
 {
     enum { TERMS = 7 };
@@ -43,8 +44,9 @@ static void frequencies_of_a_hanging_beam(const arm *a, double *frequency, int c
     for (int i = 0; i < TERMS; i++) {
         for (int j = 0; j < TERMS; j++) {
             const double p = i + 2, r = j + 2, both = p * r, sum = p + r;
-            k[i * TERMS + j] = EI / pow(length, 3) * both * (p - 1) * (r - 1) / (sum - 3) +
-                               density * a->gravity * both * (1 / (sum - 1) - 1 / sum);
+            k[i * TERMS + j] =
+                EI / pow(length, 3) * both * (p - 1) * (r - 1) / (sum - 3) +
+                density * a->gravity * both * (1 / (sum - 1) - 1 / sum);
             m[i * TERMS + j] = density * length / (sum + 1);
         }
     }
@@ -57,14 +59,15 @@ static void frequencies_of_a_hanging_beam(const arm *a, double *frequency, int c
 TEST(a_hanging_beam_has_its_frequencies)
 {
     enum { COUNT = 3 };
-    const arm a = arm_with(SETTINGS("arm.links=64", "arm.hub_joint=beam",
-                                    "arm.tilt=1.5707963267949", "initial.angle=-1.5707963267949"));
+    const arm a =
+        arm_with(SETTINGS("arm.links=64", "arm.hub_joint=beam",
+                          "arm.tilt=1.5707963267949", "initial.angle=-1.5707963267949"));
     double expected[COUNT];
     const arm_modes m = modes_of(&a, HUB_LOCKED, TIP_FREE);
     frequencies_of_a_hanging_beam(&a, expected, COUNT);
     for (int i = 0; i < COUNT; i++) {
-        printf("mode %d: %.9g rad/s, the beam's %.9g, off by %.2g\n", i, m.w[i], expected[i],
-               m.w[i] / expected[i] - 1);
+        printf("mode %d: %.9g rad/s, the beam's %.9g, off by %.2g\n", i, m.w[i],
+               expected[i], m.w[i] / expected[i] - 1);
         check_relative(m.w[i], expected[i], 1e-3);
     }
 
@@ -79,17 +82,20 @@ TEST(a_hanging_beam_has_its_frequencies)
 // One link without friction swings through the lowest point at the speed of its fall.
 TEST(a_single_link_is_a_pendulum)
 {
-    const parameters p = fixture_parameters(SETTINGS(
-        "arm.links=1", "wall.kind=none", "motor.voltage=0", "motor.stiction=0",
-        "motor.viscous_friction=0", "motor.back_emf=0", "arm.tilt=-0.6", "initial.angle=0.3"));
+    const parameters p = fixture_parameters(
+        SETTINGS("arm.links=1", "wall.kind=none", "motor.voltage=0", "motor.stiction=0",
+                 "motor.viscous_friction=0", "motor.back_emf=0", "arm.tilt=-0.6",
+                 "initial.angle=0.3"));
     STARTED(a, m, &p, NULL, 0.3, 0);
     assert_ptr_equal(m->engine, &stiff_engine);
-    const double inertia = a.hub_inertia + a.link_mass * a.link_length * a.link_length / 3;
+    const double inertia =
+        a.hub_inertia + a.link_mass * a.link_length * a.link_length / 3;
     const double torque = a.link_mass * a.link_length / 2 * GRAVITY * sin(0.6);
     double fastest = 0;
     while (m->state[SLOT_TIME] < 6) {
         step_on(&a, m, 6, 1e-3);
-        const double q = state_angles(m, m->state)[0], w = state_velocities(m, m->state)[0];
+        const double q = state_angles(m, m->state)[0],
+                     w = state_velocities(m, m->state)[0];
         check_relative(w * w / 2 * inertia + 1, torque * (sin(q) - sin(0.3)) + 1, 1e-11);
         check_close(motion_energy_residual(&a, m, m->state), 0, 1e-11);
         fastest = fmax(fastest, fabs(w));
@@ -97,8 +103,8 @@ TEST(a_single_link_is_a_pendulum)
     check_below(0.98 * sqrt(2 * torque * (1 - sin(0.3)) / inertia), fastest);
 }
 
-// No law knows of the weight, which may hold its arm off: a run of one says so, one without does
-// not.
+// No law knows of the weight, which may hold its arm off: a run of one says so, one
+// without does not.
 TEST(a_law_is_not_told_the_weight)
 {
     static const struct {
@@ -129,6 +135,7 @@ TEST(what_knows_no_weight_says_so)
         if (*c != NULL) {
             give(&p, "method.engine", *c);
         }
-        REFUSED(STATUS_BAD_SCENARIO, *c == NULL ? "arm.tilt" : "level", parameters_resolve(&p, &f));
+        REFUSED(STATUS_BAD_SCENARIO, *c == NULL ? "arm.tilt" : "level",
+                parameters_resolve(&p, &f));
     }
 }

@@ -1,5 +1,6 @@
-// The force that the rig predicts for a touch at every sample: from hub readings alone it says what
-// the predictor says of the true state, and a law that keeps to it keeps the impact below a limit.
+// The force that the rig predicts for a touch at every sample: from hub readings alone it
+// says what the predictor says of the true state, and a law that keeps to it keeps the
+// impact below a limit.
 
 #include "src/predict/predict.h"
 #include "src/rig/estimation/touch_forecast.h"
@@ -11,16 +12,19 @@ static double predicted_of(const parameters *p, const sample *row)
     parameters now = *p;
     prediction touch;
     const three_body_state state = {{row->hub_angle, row->first_angle, row->last_angle},
-                                    {row->hub_velocity, row->first_velocity, row->last_velocity}};
+                                    {row->hub_velocity, row->first_velocity,
+                                     row->last_velocity}};
     now.motor.voltage = row->voltage;
     assert_int_equal(predict_impact_dynamics(&now, &state, &touch, NULL), STATUS_OK);
     return touch.impulse > 0 && touch.force > 0 ? touch.force : 0;
 }
 
-// At a constant command the beam swings in flight; the rig derives it from the hub's readings.
+// At a constant command the beam swings in flight; the rig derives it from the hub's
+// readings.
 TEST(readings_of_the_hub_say_what_the_state_says)
 {
-    const char *const volts[] = {"control.approach_voltage=1", "control.approach_voltage=4"};
+    const char *const volts[] = {"control.approach_voltage=1",
+                                 "control.approach_voltage=4"};
     const char *const ways[] = {"initial.angle=-0.1", "initial.angle=-0.3"};
     for (int i = 0; i < 4; i++) {
         const char *const *const settings =
@@ -32,21 +36,22 @@ TEST(readings_of_the_hub_say_what_the_state_says)
         double worst = 0, largest = 0;
         int compared = 0, turns = 0;
 
-        // a row stands at each sample, whose answer the next row has; the tip of a beam that is set
-        // off goes back at first, and the force begins where it turns
+        // a row stands at each sample, whose answer the next row has; the tip of a beam
+        // that is set off goes back at first, and the force begins where it turns
         for (size_t k = 2; k + 1 < r.trace.row_count; k++) {
             const sample *row = &r.trace.rows[k];
             if (row[1].time < r.summary.first_contact_s) {
                 const double truth = predicted_of(&p, row);
                 const bool strikes = truth > 0, told = row[1].predicted_force > 0;
                 turns += strikes != told;
-                worst = fmax(worst, strikes && told ? fabs(row[1].predicted_force - truth) : 0);
+                worst = fmax(worst,
+                             strikes && told ? fabs(row[1].predicted_force - truth) : 0);
                 largest = fmax(largest, truth);
                 compared++;
             }
         }
-        print_message("%s, %s: at most %.3g N off in %d samples, up to %.3g N\n", volts[i & 1],
-                      ways[i >> 1], worst, compared, largest);
+        print_message("%s, %s: at most %.3g N off in %d samples, up to %.3g N\n",
+                      volts[i & 1], ways[i >> 1], worst, compared, largest);
         assert_true(compared > 100);
         assert_true(turns <= 1);
         check_below(worst, 0.01 * largest);
@@ -78,7 +83,8 @@ TEST(there_is_none_in_contact_or_without_a_limit)
 // An arm that swings back is not on its way to the wall.
 TEST(a_receding_tip_predicts_nothing)
 {
-    const parameters p = rig_parameters_with("control.law=open-loop control.force_limit=1");
+    const parameters p =
+        rig_parameters_with("control.law=open-loop control.force_limit=1");
     const controller_setup setup = {.torque_per_volt = 1,
                                     .hub_damping = 0.1,
                                     .stiction = p.motor.stiction,
@@ -92,7 +98,10 @@ TEST(a_receding_tip_predicts_nothing)
     touch_forecast_tell(&t, &p, &setup);
     const controller_input away = {.encoder = -0.1, .tachometer = -0.5};
     const controller_input towards = {.time = 0.005, .encoder = -0.1, .tachometer = 0.5};
-    const controller_input touching = {.time = 0.01, .encoder = 0, .tachometer = 0.5, .force = 1};
+    const controller_input touching = {.time = 0.01,
+                                       .encoder = 0,
+                                       .tachometer = 0.5,
+                                       .force = 1};
     assert_true(touch_forecast_sample(&t, &away) == 0);
     t.flies = false; // another flight, with a straight beam
     assert_true(touch_forecast_sample(&t, &towards) > 0);
@@ -100,23 +109,26 @@ TEST(a_receding_tip_predicts_nothing)
     assert_false(t.flies);
 }
 
-// From near and far, with noise: the first 0.15 s of contact stay below the limit, and without one
-// they do not.
+// From near and far, with noise: the first 0.15 s of contact stay below the limit, and
+// without one they do not.
 TEST(the_speed_limit_law_keeps_to_a_force)
 {
     const char *const limits[] = {"control.force_limit=1", "control.force_limit=2"};
     const double bound[] = {1, 2};
-    const char *const ways[] = {"initial.angle=-0.1", "initial.angle=-0.2", "initial.angle=-0.4"};
+    const char *const ways[] = {"initial.angle=-0.1", "initial.angle=-0.2",
+                                "initial.angle=-0.4"};
     const char *const seeds[] = {"control.seed=3", "control.seed=4"};
     for (int i = 0; i < 12; i++) {
         const int limit = i & 1;
         double peak[2] = {0};
         for (int without = 0; without < 2; without++) {
-            KEPT_RUN(r) = rig_run(
-                SETTINGS("control.law=speed-limit", "control.force=0.3", "control.speed_limit=100",
-                         "control.approach_voltage=5", "run.duration=1.6", seeds[i / 6],
-                         without ? "control.force_limit=0" : limits[limit], ways[i / 2 % 3]),
-                true);
+            KEPT_RUN(r) =
+                rig_run(SETTINGS("control.law=speed-limit", "control.force=0.3",
+                                 "control.speed_limit=100", "control.approach_voltage=5",
+                                 "run.duration=1.6", seeds[i / 6],
+                                 without ? "control.force_limit=0" : limits[limit],
+                                 ways[i / 2 % 3]),
+                        true);
             const double touch = r.summary.first_contact_s;
             assert_true(touch > 0);
             for (EACH_ROW(row, &r.trace)) {
@@ -125,21 +137,22 @@ TEST(the_speed_limit_law_keeps_to_a_force)
                 }
             }
         }
-        print_message("%s, %s: %.3g N, without %.3g N\n", limits[limit], ways[i / 2 % 3], peak[0],
-                      peak[1]);
+        print_message("%s, %s: %.3g N, without %.3g N\n", limits[limit], ways[i / 2 % 3],
+                      peak[0], peak[1]);
         check_below(peak[0], 1.05 * bound[limit]);
         check_below(2 * bound[limit], peak[1] * (limit ? 1.2 : 1));
     }
 }
 
-// What is told is what the predictor is asked with, and the bend between samples is that of its
-// equation, whatever the hub does.
+// What is told is what the predictor is asked with, and the bend between samples is that
+// of its equation, whatever the hub does.
 TEST(the_bend_obeys_its_equation)
 {
     for (int kind = 0; kind < 4; kind++) {
         const bool spring = kind % 2;
-        parameters p = rig_parameters_with("control.law=open-loop control.force_limit=1 "
-                                           "belief.torque_factor=1.1 belief.friction_factor=0.7");
+        parameters p =
+            rig_parameters_with("control.law=open-loop control.force_limit=1 "
+                                "belief.torque_factor=1.1 belief.friction_factor=0.7");
         const controller_setup setup = {.stiction = 0.03,
                                         .hub_inertia = 6e-3,
                                         .link_mass = 0.19,
@@ -164,7 +177,8 @@ TEST(the_bend_obeys_its_equation)
         check_close(a->link_inertia, 5e-3, 0);
         check_close(a->hub_inertia, 6e-3, 0);
         check_relative(t.arm.motor.torque_constant, 1.1 * p.motor.torque_constant, 1e-15);
-        check_relative(t.arm.motor.viscous_friction, 0.7 * p.motor.viscous_friction, 1e-15);
+        check_relative(t.arm.motor.viscous_friction, 0.7 * p.motor.viscous_friction,
+                       1e-15);
         check_close(t.arm.motor.stiction, 0.03, 0);
 
         // samples at uneven times; between them many small steps of the equation
@@ -175,7 +189,8 @@ TEST(the_bend_obeys_its_equation)
             const controller_input in = {.time = time,
                                          .encoder = -0.1 + 0.001 * k,
                                          .tachometer = hub,
-                                         .force = k % 3 == 0 ? p.control.contact_threshold : 0,
+                                         .force =
+                                             k % 3 == 0 ? p.control.contact_threshold : 0,
                                          .voltage = 0.5 + 0.01 * k};
             const double told = touch_forecast_sample(&t, &in);
             check_close(t.bend, bend, kind > 1 ? 1e-14 : 1e-6);
@@ -186,9 +201,11 @@ TEST(the_bend_obeys_its_equation)
             prediction touch;
             parameters asked = t.arm;
             asked.motor.voltage = in.voltage;
-            const three_body_state now = {.angle = {in.encoder, in.encoder, in.encoder + t.bend},
+            const three_body_state now = {.angle = {in.encoder, in.encoder,
+                                                    in.encoder + t.bend},
                                           .velocity = {hub, hub, hub + t.bend_rate}};
-            assert_int_equal(predict_impact_dynamics(&asked, &now, &touch, NULL), STATUS_OK);
+            assert_int_equal(predict_impact_dynamics(&asked, &now, &touch, NULL),
+                             STATUS_OK);
             check_close(told, touch.impulse > 0 && touch.force > 0 ? touch.force : 0, 0);
 
             // a second look at the same instant changes nothing
@@ -198,14 +215,17 @@ TEST(the_bend_obeys_its_equation)
             hub = 0.5 + 0.3 * sin(0.4 * k);
             for (int step = 0; step < 4000 && kind < 2; step++) {
                 const double s = h / 4000;
-                rate += s * (-t.lag * (hub - before) / h - t.frequency * t.frequency * bend);
+                rate +=
+                    s * (-t.lag * (hub - before) / h - t.frequency * t.frequency * bend);
                 bend += s * rate;
             }
 
             // damping shrinks the turn about the bend that the acceleration holds
             if (kind > 1) {
-                const double f = t.frequency, held = -t.lag * (hub - before) / (h * f * f);
-                const double left = exp(-t.decay * h), away = bend - held, turn = rate / f;
+                const double f = t.frequency,
+                             held = -t.lag * (hub - before) / (h * f * f);
+                const double left = exp(-t.decay * h), away = bend - held,
+                             turn = rate / f;
                 bend = held + left * (away * cos(f * h) + turn * sin(f * h));
                 rate = f * left * (turn * cos(f * h) - away * sin(f * h));
             }

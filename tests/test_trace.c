@@ -1,11 +1,13 @@
-// Rows and events of a run: where an instant lies among them, copies, and shared beginnings.
+// Rows and events of a run: where an instant lies among them, copies, and shared
+// beginnings.
 #include "src/run/trace.h"
 
 #include "tests/check.h"
 
 enum { ROWS = 5000, ANGLES = 3, EVENTS = 40 };
 
-// Rows at 0, 1, 1, 2, 3, 3, 4 ...: every second instant has one on either side of an event.
+// Rows at 0, 1, 1, 2, 3, 3, 4 ...: every second instant has one on either side of an
+// event.
 static double time_of(int row)
 {
     return (2 * row + 1) / 3;
@@ -19,7 +21,8 @@ static void fill(trace *t)
         assert_int_equal(trace_add_row(t, &row, angles, velocities), STATUS_OK);
     }
     for (int i = 0; i < EVENTS; i++) {
-        assert_int_equal(trace_add_event(t, (event){.time = i, .impulse = 0.1 * i}), STATUS_OK);
+        assert_int_equal(trace_add_event(t, (event){.time = i, .impulse = 0.1 * i}),
+                         STATUS_OK);
     }
 }
 
@@ -134,7 +137,8 @@ TEST(a_signal_is_there_if_one_row_has_it)
     }
 }
 
-// Each row of an instant is found again by its side; of a run with fewer rows there, its nearest.
+// Each row of an instant is found again by its side; of a run with fewer rows there, its
+// nearest.
 TEST(a_row_is_found_by_its_instant_and_side)
 {
     enum { COUNT = 6 };
@@ -143,7 +147,8 @@ TEST(a_row_is_found_by_its_instant_and_side)
     for (int i = 0; i < COUNT; i++) {
         rows[i] = (sample){.time = times[i], .force = i};
     }
-    const trace t = {.rows = rows, .row_count = COUNT}, pair = {.rows = rows, .row_count = 3};
+    const trace t = {.rows = rows, .row_count = COUNT},
+                pair = {.rows = rows, .row_count = 3};
     const trace line = {.rows = single, .row_count = 2};
     static const int in_pair[COUNT] = {0, 1, 1, 2};
     for (size_t i = 0; i < COUNT; i++) {

@@ -1,5 +1,5 @@
-// Questions to a program and its answers: found again in any number, on every way that was gone,
-// and not without a transcript.
+// Questions to a program and its answers: found again in any number, on every way that
+// was gone, and not without a transcript.
 #include "src/rig/external/process_lines.h"
 
 #include "tests/check.h"

@@ -7,7 +7,7 @@
 #include "src/study/store/sweep_store.h"
 #include "tests/rig_fixture.h"
 
-// --- expressions ----------------------------------------------------------------------------
+// --- expressions -----------------------------------------------------------------------
 
 static int find(void *context, const char *name, const char **near)
 {
@@ -70,9 +70,10 @@ TEST(faults_of_expressions_name_the_column)
     for (EACH(c, wrong)) {
         expression e;
         fault f = {0};
-        assert_int_equal(expression_read(&e, c->text, find, NULL, &f), STATUS_BAD_ARGUMENT);
-        fail_if(f.column != c->column || strstr(f.text, c->says) == NULL, "'%s': column %d, %s",
-                c->text, f.column, f.text);
+        assert_int_equal(expression_read(&e, c->text, find, NULL, &f),
+                         STATUS_BAD_ARGUMENT);
+        fail_if(f.column != c->column || strstr(f.text, c->says) == NULL,
+                "'%s': column %d, %s", c->text, f.column, f.text);
     }
 
     // as many brackets or numbers as anybody wants, and no stack without end
@@ -83,11 +84,12 @@ TEST(faults_of_expressions_name_the_column)
         for (size_t k = 0; k < sizeof deep; k++) {
             deep[k] = k + 1 < sizeof deep ? endless[i][k % strlen(endless[i])] : '\0';
         }
-        assert_int_equal(expression_read(&e, deep, find, NULL, NULL), STATUS_BAD_ARGUMENT);
+        assert_int_equal(expression_read(&e, deep, find, NULL, NULL),
+                         STATUS_BAD_ARGUMENT);
     }
 }
 
-// --- the search -----------------------------------------------------------------------------
+// --- the search ------------------------------------------------------------------------
 
 // Searches, and returns what was found; t is to be finished.
 static void search(tuning *t, const tune_request *asked, int jobs)
@@ -99,8 +101,9 @@ static void search(tuning *t, const tune_request *asked, int jobs)
     DONE(tune_run(t, store, &options, &f));
 }
 
-// The force of a stiff arm that strikes is proportional to the voltage's effect on its speed: a
-// peak is asked for, and that voltage is sought which the search by halves finds, too.
+// The force of a stiff arm that strikes is proportional to the voltage's effect on its
+// speed: a peak is asked for, and that voltage is sought which the search by halves
+// finds, too.
 TEST(one_parameter_is_that_of_bisection)
 {
     char *vary[] = {"motor.voltage=0.5:3"};
@@ -139,16 +142,16 @@ static status count_told(void *context, const tuning *t, fault *f)
     return STATUS_OK;
 }
 
-static status count_looked(sweep_store *store, sweep_share share, const char *key, double *values,
-                           size_t *failed, fault *f)
+static status count_looked(sweep_store *store, sweep_share share, const char *key,
+                           double *values, size_t *failed, fault *f)
 {
     const size_t runs = sweep_share_count(share, 40);
     most_looked = runs > most_looked ? runs : most_looked;
     return sweep_store_quantity(store, share, key, values, failed, f);
 }
 
-// A search that goes on in its store tells no value before it computes one, as the best of those is
-// told already, and looks at the runs of each evaluation only.
+// A search that goes on in its store tells no value before it computes one, as the best
+// of those is told already, and looks at the runs of each evaluation only.
 TEST(a_replay_tells_nothing_and_reads_each_run_once)
 {
     char *vary[] = {"motor.voltage=0.5:3"};
@@ -208,15 +211,17 @@ TEST(a_condition_binds)
     assert_true(t.found[0] < 1);
 }
 
-// The hub's velocity gain whose sampled pole in contact decays fastest, kp = 20 at 200 Hz: 2.162 by
-// the matrix exponential of M x'' + D x' + 4 k2 x = K u, on a grid of 0.0005.
+// The hub's velocity gain whose sampled pole in contact decays fastest, kp = 20 at 200
+// Hz: 2.162 by the matrix exponential of M x'' + D x' + 4 k2 x = K u, on a grid of
+// 0.0005.
 TEST(the_most_damped_pole_is_that_of_eigenvalues)
 {
     char *vary[] = {"control.kv=0.5:3.5"};
     scenario base = {.name = "hold",
                      .parameters = rig_parameters(
-                         SETTINGS("control.law=hybrid", "control.lock=force", "control.kp=20",
-                                  "control.rate=200", "control.force=0.001", "motor.stiction=0",
+                         SETTINGS("control.law=hybrid", "control.lock=force",
+                                  "control.kp=20", "control.rate=200",
+                                  "control.force=0.001", "motor.stiction=0",
                                   "sensor.ideal=true", "run.duration=0.02"))};
     const tune_request asked = {.base = &base,
                                 .vary = vary,
@@ -240,7 +245,8 @@ TEST(what_cannot_be_asked_is_refused)
         {"motor.voltage=1:2", "cpu_time_s", NULL, "--minimise 'cpu_time_s', column 1: "},
         {"motor.voltage=1:2", "steps", "steps<3", "--subject 'steps<3' is no condition"},
         {"motor.voltage=1:2", "steps", "steps<=", "--subject '', column 1: "},
-        {"motor.voltage=1:2", "settled_percent", NULL, "there is no quantity 'settled_percent'"},
+        {"motor.voltage=1:2", "settled_percent", NULL,
+         "there is no quantity 'settled_percent'"},
     };
     scenario base = {.name = "touch", .parameters = rig_parameters(NULL)};
     for (EACH(c, wrong)) {

@@ -1,12 +1,12 @@
-// Parameters of the rig that change during a run: they hold from the next sample on, and nothing
-// before it is any different.
+// Parameters of the rig that change during a run: they hold from the next sample on, and
+// nothing before it is any different.
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 #include "tests/session_fixture.h"
 
 // Rows before an instant are the same to the last bit, and some after it differ.
-static void assert_changes_from(const run_result *before, const run_result *after, double time,
-                                double until)
+static void assert_changes_from(const run_result *before, const run_result *after,
+                                double time, double until)
 {
     const trace *a = &before->trace, *b = &after->trace;
     bool differ = false;
@@ -38,8 +38,10 @@ TEST(test_a_gain_holds_from_the_next_sample_on)
         change(&s, c->path, c->value);
         assert_int_equal(s.inputs[0].kind, SESSION_INPUT_TIMED);
 
-        // the change itself has a row; then nothing is felt before a sample, at most two periods on
-        assert_changes_from(&s.other, &s.run, s.inputs[0].time, s.inputs[0].time + 0.0101);
+        // the change itself has a row; then nothing is felt before a sample, at most two
+        // periods on
+        assert_changes_from(&s.other, &s.run, s.inputs[0].time,
+                            s.inputs[0].time + 0.0101);
     }
 }
 
@@ -65,14 +67,15 @@ TEST(test_another_rate_samples_at_its_own_period)
     assert_true(samples >= 3);
 }
 
-// The rate changes again and again. A sample comes one period of the rate that holds then after the
-// one before; an equal rate moves nothing.
+// The rate changes again and again. A sample comes one period of the rate that holds then
+// after the one before; an equal rate moves nothing.
 TEST(test_rates_that_change_again_and_again)
 {
     static const struct {
         double time, rate;
-    } changes[] = {{0.0137, 50},   {0.0503, 200}, {0.0588, 125}, {0.0652, 40}, {0.0653, 40},
-                   {0.1401, 62.5}, {0.1523, 30},  {0.2411, 45},  {0.3009, 20}, {0.5201, 25}};
+    } changes[] = {{0.0137, 50}, {0.0503, 200},  {0.0588, 125}, {0.0652, 40},
+                   {0.0653, 40}, {0.1401, 62.5}, {0.1523, 30},  {0.2411, 45},
+                   {0.3009, 20}, {0.5201, 25}};
     enum { CHANGES = sizeof changes / sizeof changes[0] };
     parameters p = rig_parameters(SETTINGS("control.law=hybrid", "sensor.ideal=true"));
     rig *r;
@@ -105,8 +108,8 @@ TEST(test_rates_that_change_again_and_again)
     }
     assert_true(samples > 25);
 
-    // where that period is over already, the next sample is at the change, and those after it
-    // follow in the new period
+    // where that period is over already, the next sample is at the change, and those
+    // after it follow in the new period
     p.control.rate = 1000;
     assert_true(last + 1e-3 < 0.8);
     DONE(rig_retune(r, &p, 0.8, &f));
@@ -131,8 +134,8 @@ static const char *count_telling(void *memory, const controller_setup *setup)
     return NULL;
 }
 
-// A controller hears of what concerns it, once, and of nothing else: not of the arm, its sensors or
-// parameters that are what they were.
+// A controller hears of what concerns it, once, and of nothing else: not of the arm, its
+// sensors or parameters that are what they were.
 TEST(test_a_controller_is_told_what_changed_for_it)
 {
     static const struct {
@@ -214,14 +217,15 @@ static void extremes_of(const trace *t, double from, double to, double *low, dou
     }
 }
 
-// In contact every law that feeds anything back follows a step of half a newton within 0.15 s and a
-// tenth (admittance an eighth) of overshoot, a ramp within 12 %, a wave of 1 Hz within 15 % and six
-// degrees, and holds its force on a wall that comes and goes by a millimetre.
+// In contact every law that feeds anything back follows a step of half a newton within
+// 0.15 s and a tenth (admittance an eighth) of overshoot, a ramp within 12 %, a wave of 1
+// Hz within 15 % and six degrees, and holds its force on a wall that comes and goes by a
+// millimetre.
 TEST(test_every_law_follows_its_set_point)
 {
-    for (EACH_TEXT(c, "hybrid", "recovering", "speed-limit", "reverse-torque", "bang-bang",
-                   "force-pd", "impedance", "admittance", "discontinuous", "optimal", "predictive",
-                   "observer")) {
+    for (EACH_TEXT(c, "hybrid", "recovering", "speed-limit", "reverse-torque",
+                   "bang-bang", "force-pd", "impedance", "admittance", "discontinuous",
+                   "optimal", "predictive", "observer")) {
         session step, ramp, wave, wall;
         session *all[] = {&step, &ramp, &wave, &wall};
         for (int k = 0; k < 4; k++) {
@@ -232,13 +236,15 @@ TEST(test_every_law_follows_its_set_point)
         change(&wall, "wall.motion", "sine");
         session_seek(&wall, 6);
         extremes_of(&wall.run.trace, 3, 6, &low, &high);
-        fail_if(low < 0.9 || high > 1.1, "%s: %g to %g N on a moving wall", *c, low, high);
+        fail_if(low < 0.9 || high > 1.1, "%s: %g to %g N on a moving wall", *c, low,
+                high);
 
         session_seek(&step, 2);
         change(&step, "control.force", "1.5");
         session_seek(&step, 4);
         extremes_of(&step.run.trace, 2.15, 4, &low, &high);
-        fail_if(low < 1.425 || high > 1.575, "%s: %g to %g N after a step", *c, low, high);
+        fail_if(low < 1.425 || high > 1.575, "%s: %g to %g N after a step", *c, low,
+                high);
         extremes_of(&step.run.trace, 2, 4, &low, &high);
         fail_if(high > 1.565, "%s: over by %g N", *c, high - 1.5);
 
@@ -248,9 +254,10 @@ TEST(test_every_law_follows_its_set_point)
         session_seek(&ramp, 3);
         const trace *t = &ramp.run.trace;
         for (double time = 2.1; time < 2.4; time += 5e-3) {
-            const double is = t->rows[trace_row_at(t, time)].force, wanted = 1 + 5 * (time - 2);
-            fail_if(fabs(is - wanted) > 0.12 * wanted, "%s: %g N at %g s for %g N", *c, is, time,
-                    wanted);
+            const double is = t->rows[trace_row_at(t, time)].force,
+                         wanted = 1 + 5 * (time - 2);
+            fail_if(fabs(is - wanted) > 0.12 * wanted, "%s: %g N at %g s for %g N", *c,
+                    is, time, wanted);
         }
 
         change(&wave, "control.force_amplitude", "0.2");
@@ -264,7 +271,8 @@ TEST(test_every_law_follows_its_set_point)
             across += part * cos(2 * M_PI * row->time);
             before = row->time;
         }
-        fail_if(fabs(hypot(in_phase, across) - 1) > 0.15 || fabs(atan2(across, in_phase)) > 0.1,
+        fail_if(fabs(hypot(in_phase, across) - 1) > 0.15 ||
+                    fabs(atan2(across, in_phase)) > 0.1,
                 "%s: a wave of %g, %g", *c, in_phase, across);
         for (int k = 0; k < 4; k++) {
             session_finish(all[k]);
@@ -272,14 +280,14 @@ TEST(test_every_law_follows_its_set_point)
     }
 }
 
-// The force that is wanted at an instant: as far along the ramp as its rate allows, up or down, the
-// wave upon it, and never below zero.
+// The force that is wanted at an instant: as far along the ramp as its rate allows, up or
+// down, the wave upon it, and never below zero.
 TEST(test_the_wanted_force_is_its_ramp_and_its_wave)
 {
     for (int kind = 0; kind < 4; kind++) {
         const double rate = kind & 1 ? 2 : 0, amplitude = kind & 2 ? 0.4 : 0;
-        parameters p = rig_parameters(
-            SETTINGS("control.law=hybrid", "control.force=1", "control.force_frequency=3"));
+        parameters p = rig_parameters(SETTINGS("control.law=hybrid", "control.force=1",
+                                               "control.force_frequency=3"));
         p.control.force_rate = rate;
         p.control.force_amplitude = amplitude;
         rig *r;
@@ -292,7 +300,8 @@ TEST(test_the_wanted_force_is_its_ramp_and_its_wave)
                 p.control.force = k == 50 ? 2.5 : 0.2;
                 DONE(rig_retune(r, &p, time, &f));
             }
-            const double way = p.control.force - ramp, most = rate * (k > 0 ? time - before : 0);
+            const double way = p.control.force - ramp,
+                         most = rate * (k > 0 ? time - before : 0);
             ramp = rate == 0 || fabs(way) <= most ? p.control.force
                    : way > 0                      ? ramp + most
                                                   : ramp - most;
@@ -309,8 +318,9 @@ TEST(test_the_wanted_force_is_its_ramp_and_its_wave)
 // What a change of the rig's own numbers makes of delay, jitter, limits and periods.
 TEST(test_delays_and_limits_follow_a_change)
 {
-    parameters p = rig_parameters(SETTINGS("control.law=hybrid", "control.delay=1e-3",
-                                           "control.delay_periods=0.25", "control.rate=200"));
+    parameters p =
+        rig_parameters(SETTINGS("control.law=hybrid", "control.delay=1e-3",
+                                "control.delay_periods=0.25", "control.rate=200"));
     rig *r;
     DONE(rig_create(&r, &p, NULL, &f));
     check_close(r->delay, 1e-3 + 0.25 / 200, 1e-15);
@@ -361,7 +371,8 @@ TEST(test_a_saved_tuned_run_is_the_same)
     free(save_and_compare(&s));
 }
 
-// Without a law, or under one that hears of every change, all of control.* may change at any time.
+// Without a law, or under one that hears of every change, all of control.* may change at
+// any time.
 TEST(what_nobody_took_at_the_start_can_change)
 {
     parameters p = fresh(ARM_CORRECTED);
@@ -374,7 +385,8 @@ TEST(what_nobody_took_at_the_start_can_change)
     p.control.law = LAW_PLUGIN; // whose parameters are not known
     assert_false(rig_can_change(&p, force));
 
-    // one that plans at its start has taken the limit of its command; of the arm it takes no note
+    // one that plans at its start has taken the limit of its command; of the arm it takes
+    // no note
     p.control.law = LAW_INVERSE_DYNAMICS;
     assert_false(rig_can_change(&p, PARAMETER_INDEX(motor.voltage_limit)));
     assert_true(rig_can_change(&p, PARAMETER_INDEX(arm.k2)));

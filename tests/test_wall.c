@@ -38,7 +38,8 @@ static link_motion after(link_motion l, double t)
 
 static wall_contact contact_of(const wall_model *w, link_motion l)
 {
-    return wall_contact_at(w, 0.5, l.x, l.y, l.vx, l.vy, cos(l.angle), sin(l.angle), l.omega);
+    return wall_contact_at(w, 0.5, l.x, l.y, l.vx, l.vy, cos(l.angle), sin(l.angle),
+                           l.omega);
 }
 
 static double rate_of(const wall_model *w, link_motion l)
@@ -56,12 +57,14 @@ TEST(rates_are_the_derivatives_of_the_penetration)
         const double h = 1e-5;
         link_motion before = after(now, -h), later = after(now, h);
         wall_contact at = contact_of(&w, now);
-        double slope = (contact_of(&w, later).penetration - contact_of(&w, before).penetration);
+        double slope =
+            (contact_of(&w, later).penetration - contact_of(&w, before).penetration);
         check_close(rate_of(&w, now), slope / (2 * h), 1e-8);
 
         // d2g/dt2 = J alpha + (base acceleration)'e + the velocity terms
         double lever = wall_last_lever(&at, 0.5, cos(now.angle), sin(now.angle));
-        double second = lever * now.alpha + at.ex * now.ax + at.ey * now.ay + at.convective;
+        double second =
+            lever * now.alpha + at.ex * now.ax + at.ey * now.ay + at.convective;
         check_close(second, (rate_of(&w, later) - rate_of(&w, before)) / (2 * h), 1e-7);
     }
 }
@@ -101,8 +104,8 @@ TEST(slow_impacts_are_plastic)
 TEST(a_soft_walls_force_has_its_energy)
 {
     for (EACH_TEXT(c, "wall.contact=kelvin-voigt", "wall.contact=hunt-crossley")) {
-        const wall_model w =
-            wall_of(SETTINGS(*c, "wall.stiffness=2e4", "wall.damping=30", "wall.exponent=1.7"));
+        const wall_model w = wall_of(
+            SETTINGS(*c, "wall.stiffness=2e4", "wall.damping=30", "wall.exponent=1.7"));
         const double depth = 2e-3;
 
         // the midpoint rule over the depth, without the damper
@@ -120,21 +123,23 @@ TEST(a_soft_walls_force_has_its_energy)
 // A face swings back at its own rate; one that rests in its place does nothing.
 TEST(a_face_at_rest_has_no_rate)
 {
-    const wall_model w = wall_of(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=1e4",
-                                          "wall.damping=1", "wall.mass=0.04"));
+    const wall_model w =
+        wall_of(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=1e4",
+                         "wall.damping=1", "wall.mass=0.04"));
     check_close(wall_face_rate(&w, (wall_face){0, 0}), 0, 0);
     check_relative(wall_face_rate(&w, (wall_face){0, 0.1}), 500.0, 1e-12);
     check_relative(wall_face_rate(&w, (wall_face){1e-3, 0}), 500.0, 1e-12);
 }
 
-// A mass that meets the wall: its rate is that of the wall's spring where it is deepest, or of its
-// damper where that is faster; the deepest point is found by following the mass.
+// A mass that meets the wall: its rate is that of the wall's spring where it is deepest,
+// or of its damper where that is faster; the deepest point is found by following the
+// mass.
 TEST(the_rate_is_that_at_the_deepest_point)
 {
     const double mass = 0.04, speeds[] = {0.1, 0.7, 3};
     for (EACH(c, speeds)) {
-        wall_model w =
-            wall_of(SETTINGS("wall.contact=hunt-crossley", "wall.stiffness=1e5", "wall.damping=0"));
+        wall_model w = wall_of(SETTINGS("wall.contact=hunt-crossley",
+                                        "wall.stiffness=1e5", "wall.damping=0"));
         double depth = 0, speed = *c, step = 1e-7;
         while (speed > 0) {
             // the midpoint's force, from energy conserved over half a step
@@ -149,25 +154,25 @@ TEST(the_rate_is_that_at_the_deepest_point)
         const double left = 1.5 * wall_spring_force(&w, 1e-3) / 1e-3;
         check_relative(wall_rate(&w, 1 / mass, 1e-3, -*c), sqrt(left / mass), 1e-12);
     }
-    wall_model damped =
-        wall_of(SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=10", "wall.damping=500"));
+    wall_model damped = wall_of(
+        SETTINGS("wall.contact=kelvin-voigt", "wall.stiffness=10", "wall.damping=500"));
     check_relative(wall_rate(&damped, 1 / mass, 0, 1), 500 / mass, 1e-12);
 }
 
-// Where a damper that grows with the depth stops the mass, the rate is that of the damper there,
-// whether the mass has just met the wall or is in it already.
+// Where a damper that grows with the depth stops the mass, the rate is that of the damper
+// there, whether the mass has just met the wall or is in it already.
 TEST(a_damper_that_grows_stops_the_mass)
 {
     const double mass = 0.04, speed = 0.7, begins[] = {0, 1e-3};
-    const wall_model w =
-        wall_of(SETTINGS("wall.contact=hunt-crossley", "wall.stiffness=1", "wall.damping=1e6"));
+    const wall_model w = wall_of(
+        SETTINGS("wall.contact=hunt-crossley", "wall.stiffness=1", "wall.damping=1e6"));
     for (int i = 0; i < 2; i++) {
         // the mass loses damping * depth^exponent of its momentum on each part of its way
         double depth = begins[i], left = mass * speed;
         const double part = 1e-8;
         for (; left > 0; depth += part) {
-            left -=
-                part * (wall_force(&w, depth + part / 2, 1) - wall_force(&w, depth + part / 2, 0));
+            left -= part * (wall_force(&w, depth + part / 2, 1) -
+                            wall_force(&w, depth + part / 2, 0));
         }
         const double damping = wall_force(&w, depth, 1) - wall_force(&w, depth, 0);
         check_relative(wall_rate(&w, 1 / mass, begins[i], speed), damping / mass, 1e-4);

@@ -167,7 +167,8 @@ TEST_IN_FOLDER(a_reader_that_left_is_told_from_a_full_disk)
     fclose(stream);
 }
 
-// Who reads the standard output may leave when he has enough; of any other pipe it is a failure.
+// Who reads the standard output may leave when he has enough; of any other pipe it is a
+// failure.
 TEST_IN_FOLDER(only_the_reader_of_the_standard_output_may_leave)
 {
     int ends[2];
@@ -206,8 +207,8 @@ TEST_IN_FOLDER(a_failure_before_the_last_flush_is_one)
     fclose(stream);
 }
 
-// The stream loses the reason of an earlier failed write; it is still reported when the file is
-// closed.
+// The stream loses the reason of an earlier failed write; it is still reported when the
+// file is closed.
 TEST_IN_FOLDER(why_a_write_failed_is_known_at_the_end)
 {
     struct rlimit before;
@@ -231,8 +232,8 @@ TEST_IN_FOLDER(why_a_write_failed_is_known_at_the_end)
     assert_holds("kept", "old");
 }
 
-// A run that was killed leaves its temporary; the next one removes it, but none of a run that
-// lives.
+// A run that was killed leaves its temporary; the next one removes it, but none of a run
+// that lives.
 TEST_IN_FOLDER(what_killed_runs_left_goes)
 {
     int told[2];
@@ -276,7 +277,8 @@ TEST_IN_FOLDER(what_killed_runs_left_goes)
     close(told[1]);
 }
 
-// A run in another process that opens a file at that moment looks for what killed ones left.
+// A run in another process that opens a file at that moment looks for what killed ones
+// left.
 static bool cleans_before_rename;
 static struct rlimit descriptors;
 int rename(const char *from, const char *to)
@@ -288,7 +290,8 @@ int rename(const char *from, const char *to)
     return renameat(AT_FDCWD, from, AT_FDCWD, to);
 }
 
-// Until a file has its name its temporary is nobody's to remove, be there descriptors left or not.
+// Until a file has its name its temporary is nobody's to remove, be there descriptors
+// left or not.
 TEST_IN_FOLDER(a_temporary_is_locked_until_it_has_its_name)
 {
     whole_file w;
@@ -316,7 +319,8 @@ TEST_IN_FOLDER(a_strangers_link_is_not_followed)
     // only root can make a link somebody else's
     if (geteuid() == 0) {
         assert_int_equal(lchown("shared/link", 12345, 12345), 0);
-        REFUSED(STATUS_CANNOT_WRITE, strerror(EACCES), whole_file_open(&file, "shared/link", &f));
+        REFUSED(STATUS_CANNOT_WRITE, strerror(EACCES),
+                whole_file_open(&file, "shared/link", &f));
         assert_int_equal(whole_file_check("shared/link", NULL), STATUS_CANNOT_WRITE);
         assert_int_equal(chmod("shared", 0755), 0);
         begin(&file, "shared/link", "");
@@ -441,7 +445,8 @@ TEST_IN_FOLDER(what_only_looks_left_behind_stays)
     whole_file_clean_folder(".");
     assert_false(is_there(".impactlab-1-6.part"));
     assert_int_equal(files(), before + 8);
-    for (EACH_TEXT(c, ".impactlab-1-5.part", ".impactlab-1-4.part", ".impactlab-1-3.part")) {
+    for (EACH_TEXT(c, ".impactlab-1-5.part", ".impactlab-1-4.part",
+                   ".impactlab-1-3.part")) {
         assert_int_equal(remove(*c), 0);
     }
     for (EACH(one, others)) {
@@ -465,7 +470,8 @@ TEST_IN_FOLDER(a_folder_without_a_free_name_is_said)
     DONE(whole_file_commit(&first, &f));
     assert_holds("kept", "whole");
     for (int i = 1; i < NAMES; i++) {
-        assert_int_equal(rmdir(formatted(".impactlab-%ld-%d.part", (long)getpid(), i)), 0);
+        assert_int_equal(rmdir(formatted(".impactlab-%ld-%d.part", (long)getpid(), i)),
+                         0);
     }
 }
 
@@ -490,8 +496,8 @@ TEST_IN_FOLDER(a_link_to_itself_leads_nowhere)
     REFUSED(STATUS_CANNOT_WRITE, "", whole_file_open(&w, "itself", &f));
 }
 
-// A program that was started without a standard input has its number for the next file, which is
-// written all the same, whole or in its place.
+// A program that was started without a standard input has its number for the next file,
+// which is written all the same, whole or in its place.
 TEST_IN_FOLDER(a_file_may_have_the_number_of_the_standard_input)
 {
     const int input = dup(STDIN_FILENO);

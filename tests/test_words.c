@@ -18,7 +18,8 @@ TEST(distances_count_single_edits)
 
 TEST(distances_are_symmetric_and_obey_the_triangle)
 {
-    static const char *const words[] = {"arm.k2", "arm.k1", "wall.angle", "motor.voltage", ""};
+    static const char *const words[] = {"arm.k2", "arm.k1", "wall.angle", "motor.voltage",
+                                        ""};
     enum { COUNT = sizeof words / sizeof words[0] };
     for (int i = 0; i < COUNT; i++) {
         for (int j = 0; j < COUNT; j++) {
@@ -98,7 +99,8 @@ TEST(lines_keep_their_ends)
     assert_string_equal(text, "one\ntwo?\n?three");
 }
 
-// U+0080 is a control character; the others of the shortest forms are not, and one less is broken.
+// U+0080 is a control character; the others of the shortest forms are not, and one less
+// is broken.
 TEST(the_first_characters_of_each_length_are_whole)
 {
     check_printable("\u07ff", "\u07ff");
@@ -112,12 +114,16 @@ TEST(the_first_characters_of_each_length_are_whole)
     check_printable("\xf4\x8f\xbf\xbd", "\xf4\x8f\xbf\xbd");
 }
 
-// Every character there is, written in UTF-8: as long as it is, but for those that a terminal must
-// not get; cut short anywhere or with a byte that is none of its own it is none.
+// Every character there is, written in UTF-8: as long as it is, but for those that a
+// terminal must not get; cut short anywhere or with a byte that is none of its own it is
+// none.
 TEST(every_character_is_whole_or_hidden)
 {
     for (uint32_t number = 1; number < 0x110400; number++) {
-        const int length = number < 0x80 ? 1 : number < 0x800 ? 2 : number < 0x10000 ? 3 : 4;
+        const int length = number < 0x80      ? 1
+                           : number < 0x800   ? 2
+                           : number < 0x10000 ? 3
+                                              : 4;
         char text[5] = "";
         for (int i = length - 1, left = (int)number; i >= 0; i--, left >>= 6) {
             const int mark = i > 0 ? 0x80 : length == 1 ? 0 : 0xf00 >> length & 0xff;
@@ -130,8 +136,8 @@ TEST(every_character_is_whole_or_hidden)
         const bool hidden = control || turning || number == 0x2028 || number == 0x2029;
         const bool none = (number >= 0xd800 && number <= 0xdfff) || number > 0x10ffff;
         assert_int_equal(is_unprintable(number), hidden);
-        fail_if(printable_length(text) != (hidden || none ? 0 : length), "U+%04X has %d bytes",
-                number, printable_length(text));
+        fail_if(printable_length(text) != (hidden || none ? 0 : length),
+                "U+%04X has %d bytes", number, printable_length(text));
 
         // of some of them: cut short, and with another byte in each place
         for (int i = 1; i < length && number % 509 == 0; i++) {
@@ -188,10 +194,11 @@ TEST(all_short_words_have_their_distance)
     assert_int_equal(count, WORDS);
     for (int i = 0; i < WORDS; i++) {
         for (int j = 0; j < WORDS; j++) {
-            const int distance =
-                distance_of(words[i], (int)strlen(words[i]), words[j], (int)strlen(words[j]));
+            const int distance = distance_of(words[i], (int)strlen(words[i]), words[j],
+                                             (int)strlen(words[j]));
             assert_int_equal(edit_distance(words[i], words[j], 9), distance);
-            assert_int_equal(edit_distance(words[i], words[j], 2), distance < 2 ? distance : 2);
+            assert_int_equal(edit_distance(words[i], words[j], 2),
+                             distance < 2 ? distance : 2);
         }
     }
 

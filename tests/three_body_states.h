@@ -39,9 +39,11 @@ static inline three_body_state state_at_wall(const parameters *p, unsigned *seed
 }
 
 // Of the hub and both links [J].
-static inline double kinetic_energy(const parameters *p, const double q[3], const double w[3])
+static inline double kinetic_energy(const parameters *p, const double q[3],
+                                    const double w[3])
 {
-    double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2, in = p->arm.link_inertia;
+    double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2,
+           in = p->arm.link_inertia;
     double x = -l * sin(q[1]) * w[1] - e * sin(q[2]) * w[2];
     double y = l * cos(q[1]) * w[1] + e * cos(q[2]) * w[2];
     return 0.5 * (p->arm.hub_inertia * w[0] * w[0] + (in + m * e * e) * w[1] * w[1] +

@@ -4,8 +4,8 @@
 #include "src/run/trace.h"
 #include "tests/check.h"
 
-// Fails unless the first `count` events of both traces have the same bits in every field; the bytes
-// between fields mean nothing.
+// Fails unless the first `count` events of both traces have the same bits in every field;
+// the bytes between fields mean nothing.
 static inline void check_same_events(const trace *a, const trace *b, size_t count)
 {
     for (size_t i = 0; i < count; i++) {

@@ -21,8 +21,9 @@ static int print_welcome(void)
 {
     const command *list = command_find("list");
     const arguments none = {.command = list};
-    printf("impactlab %s: impact and force control of a flexible robot arm\n\nScenarios:\n",
-           lab_version());
+    printf(
+        "impactlab %s: impact and force control of a flexible robot arm\n\nScenarios:\n",
+        lab_version());
     int result = list->run(&none);
     printf("\nRun one:        impactlab run SCENARIO\n"
            "Its parameters: impactlab show SCENARIO\n"
@@ -79,7 +80,10 @@ static int dispatch(int argc, char **argv)
     // without a command, or with options of its own, it is the lab
     if (word == NULL) {
         char *call[] = {"lab", NULL};
-        return terminal_usable(&f) ? run_command(&lab_command, 1, call) : print_welcome();
+        if (terminal_usable(&f)) {
+            return run_command(&lab_command, 1, call);
+        }
+        return print_welcome();
     }
     if (is_lab_option(word)) {
         return run_command(&lab_command, argc, argv);
@@ -95,10 +99,14 @@ static int dispatch(int argc, char **argv)
         return EXIT_DONE;
     }
     const command *found = command_find(word);
-    return found != NULL ? run_command(found, argc - 1, argv + 1) : complain_command(word);
+    if (found != NULL) {
+        return run_command(found, argc - 1, argv + 1);
+    }
+    return complain_command(word);
 }
 
-// What was printed must be whole and have arrived, unless its reader went away first (impactlab
+// What was printed must be whole and have arrived, unless its reader went away first
+// (impactlab
 // list | head).
 static int close_output(int result)
 {
@@ -118,8 +126,8 @@ static void end_cleanly(int number)
     raise(number);
 }
 
-// GLib found no memory for a picture, or Pango no font: our sentence, no half-written file, no
-// signal.
+// GLib found no memory for a picture, or Pango no font: our sentence, no half-written
+// file, no signal.
 static void end_without_picture(const char *reason)
 {
     whole_file_remove_unfinished();
@@ -134,8 +142,9 @@ static void end_crashed(int number)
 {
     static const char drawing[] =
         "impactlab: a library crashed, as it does where it finds no memory\n";
-    static const char own[] = "impactlab: crashed, for want of memory in a library or by a "
-                              "fault of its own; no half-written file is left\n";
+    static const char own[] =
+        "impactlab: crashed, for want of memory in a library or by a "
+        "fault of its own; no half-written file is left\n";
     const bool in_libraries = page_in_libraries() || linear_is_loading();
     ssize_t ignored = in_libraries ? write(STDERR_FILENO, drawing, sizeof drawing - 1)
                                    : write(STDERR_FILENO, own, sizeof own - 1);
@@ -147,8 +156,8 @@ static void end_crashed(int number)
     end_cleanly(number);
 }
 
-// Ends the program by `handler` unless the signal is ignored, as nohup and shells' background jobs
-// ask for, or a sanitizer or a debugger has a handler of its own.
+// Ends the program by `handler` unless the signal is ignored, as nohup and shells'
+// background jobs ask for, or a sanitizer or a debugger has a handler of its own.
 static void catch_ending(int number, void (*handler)(int))
 {
     struct sigaction before;
@@ -170,8 +179,8 @@ static void catch_endings(void)
     }
 }
 
-// Standard descriptors that whoever started the program left closed become /dev/null, or else the
-// first file opened would take their number and what is printed would end in it.
+// Standard descriptors that whoever started the program left closed become /dev/null, or
+// else the first file opened would take their number and what is printed would end in it.
 static bool open_missing_descriptors(void)
 {
     int opened;

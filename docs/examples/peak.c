@@ -1,6 +1,7 @@
 // The peak force of a scenario in C, and as it stands in C++.
 //
-//     cc -o peak peak.c $(pkg-config --cflags --libs impactlab) && ./peak corrected/first-impact
+//     cc -o peak peak.c $(pkg-config --cflags --libs impactlab) && ./peak
+//     corrected/first-impact
 #include <impactlab/impactlab.h>
 #include <stdio.h>
 

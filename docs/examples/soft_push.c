@@ -1,6 +1,7 @@
 // A controller as a plug-in: control.law: plugin, control.plugin: ./soft_push.so
 //
-//     cc -std=c17 -shared -fPIC -o soft_push.so soft_push.c $(pkg-config --cflags impactlab)
+//     cc -std=c17 -shared -fPIC -o soft_push.so soft_push.c $(pkg-config --cflags
+//     impactlab)
 #include <impactlab/controller.h>
 
 typedef struct memory {

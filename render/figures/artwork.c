@@ -15,9 +15,13 @@ status make_folder(const char *folder, fault *f)
 
 status artwork_paint(const artwork *a, cairo_t *cr, figure_report *report, fault *f)
 {
-    return a->table != NULL     ? table_paint(cr, a->table, report, f)
-           : a->plotted != NULL ? figure_paint(cr, a->plotted, report, f)
-                                : a->paint(cr, a->owner, report, f);
+    if (a->table != NULL) {
+        return table_paint(cr, a->table, report, f);
+    }
+    if (a->plotted != NULL) {
+        return figure_paint(cr, a->plotted, report, f);
+    }
+    return a->paint(cr, a->owner, report, f);
 }
 
 status artwork_write_csv(const artwork *a, const char *path, fault *f)
@@ -70,8 +74,9 @@ void artwork_finish(artwork *a)
 
 artwork artwork_of_table(table_page *t)
 {
-    artwork a = {t->title,   .caption = t->caption,   .parameters = t->parameters, .table = t,
-                 .owner = t, .release = table_destroy};
+    artwork a = {
+        t->title,   .caption = t->caption,   .parameters = t->parameters, .table = t,
+        .owner = t, .release = table_destroy};
     table_size(t, &a.width, &a.height);
     return a;
 }
@@ -115,7 +120,9 @@ static char *describe_figure(const figure *fig)
         const char *before = ", curves: ";
         for (int k = 0; k < p->series_count; k++) {
             append_plain(out, before, p->series[k].label);
-            before = p->series[k].label != NULL ? ", " : before;
+            if (p->series[k].label != NULL) {
+                before = ", ";
+            }
         }
     }
 
@@ -145,18 +152,21 @@ artwork artwork_of_owned(owned_figure *o)
 
 // What is written otherwise in LaTeX, and how, by turns; longer beginnings come first.
 static const char replacements[] =
-    "<i>|\\textit{|</i>|}|<b>|\\textbf{|</b>|}|<sub>|\\textsubscript{|</sub>|}|"
-    "<sup>|\\textsuperscript{|</sup>|}|&amp;|\\&|&lt;|$<$|&gt;|$>$|&quot;|\"|&apos;|'|"
-    "&#39;|'|θ\u0307|$\\dot\\theta$|θ\u0308|$\\ddot\\theta$|F\u0302|$\\hat F$|"
-    "X\u0302|$\\hat X$|Ŷ|$\\hat Y$|Δ|$\\Delta$|α|$\\alpha$|β|$\\beta$|γ|$\\gamma$|"
-    "δ|$\\delta$|ε|$\\varepsilon$|θ|$\\theta$|μ|$\\mu$|µ|$\\mu$|ρ|$\\rho$|τ|$\\tau$|"
-    "ω|$\\omega$|Ω|$\\Omega$|Ω|$\\Omega$|−|$-$|·|$\\cdot$|×|$\\times$|≥|$\\geq$|≤|$\\leq$|"
-    "∞|$\\infty$|∫|$\\int$|\u2009|\\,|\u202f|\\,|\u00a0|~|½|$\\frac12$|¼|$\\frac14$|"
-    "²|\\textsuperscript{2}|³|\\textsuperscript{3}|⁻|\\textsuperscript{$-$}|"
-    "¹|\\textsuperscript{1}|’|'|\\|\\textbackslash{}|#|\\#|$|\\$|%|\\%|_|\\_|{|\\{|}|\\}|"
-    "~|\\textasciitilde{}|^|\\textasciicircum{}|\u2060|";
+    "<i>|\\textit{|</i>|}|<b>|\\textbf{|</b>|}|<sub>|\\textsubscript{|</"
+    "sub>|}|<sup>|\\textsuperscript{|</"
+    "sup>|}|&amp;|\\&|&lt;|$<$|&gt;|$>$|&quot;|\"|&apos;|'|&#39;|'|θ\u0307|$\\dot\\theta$"
+    "|θ\u0308|$\\ddot\\theta$|F\u0302|$\\hat "
+    "F$|X\u0302|$\\hat X$|Ŷ|$\\hat "
+    "Y$|Δ|$\\Delta$|α|$\\alpha$|β|$\\beta$|γ|$\\gamma$|δ|$\\delta$|ε|$\\varepsilon$|θ|$"
+    "\\theta$|μ|$\\mu$|µ|$\\mu$|ρ|$\\rho$|τ|$\\tau$|ω|$\\omega$|Ω|$\\Omega$|Ω|$\\Omega$|"
+    "−|$-$|·|$\\cdot$|×|$\\times$|≥|$\\geq$|≤|$\\leq$|∞|$\\infty$|∫|$\\int$|\u2009|\\,|"
+    "\u202f|\\,|\u00a0|~|½|$\\frac12$|¼|$\\frac14$|²|\\textsuperscript{2}|³|"
+    "\\textsuperscript{3}|⁻|\\textsuperscript{$-$}|¹|\\textsuperscript{1}|’|'|\\|"
+    "\\textbackslash{}|#|\\#|$|\\$|%|\\%|_|\\_|{|\\{|}|\\}|~|\\textasciitilde{}|^|"
+    "\\textasciicircum{}|\u2060|";
 
-// Pango markup as LaTeX: italics, indices, Greek letters and signs. Free the result with g_free.
+// Pango markup as LaTeX: italics, indices, Greek letters and signs. Free the result with
+// g_free.
 static char *latex_of_markup(const char *markup)
 {
     GString *out = g_string_new(NULL);
@@ -172,7 +182,8 @@ static char *latex_of_markup(const char *markup)
         if (found[0] != NULL) {
             g_string_append(out, found[1]);
             markup += strlen(found[0]);
-        } else if (strncmp(markup, "<span", 5) == 0 || strncmp(markup, "</span", 6) == 0) {
+        } else if (strncmp(markup, "<span", 5) == 0 ||
+                   strncmp(markup, "</span", 6) == 0) {
             // what only sizes letters has no meaning in a caption
             markup += strcspn(markup, ">");
             markup += *markup == '>';
@@ -183,8 +194,8 @@ static char *latex_of_markup(const char *markup)
     return g_string_free(out, FALSE);
 }
 
-// Plain text with LaTeX's own signs escaped and all others as they are: what a reader is told
-// aloud.
+// Plain text with LaTeX's own signs escaped and all others as they are: what a reader is
+// told aloud.
 static char *latex_escape(const char *plain)
 {
     GString *out = g_string_new(NULL);
@@ -199,13 +210,16 @@ static char *latex_escape(const char *plain)
 
 char *latex_environment(const artwork *a, const char *tex, const char *file)
 {
-    g_autofree char *tex_folder = g_path_get_dirname(tex), *folder = g_path_get_dirname(file);
+    g_autofree char *tex_folder = g_path_get_dirname(tex),
+                    *folder = g_path_get_dirname(file);
     g_autofree char *name = g_path_get_basename(file);
-    const int dot = (int)(picture_ending(name) - name), stem = dot > 0 ? dot : (int)strlen(name);
+    const int dot = (int)(picture_ending(name) - name),
+              stem = dot > 0 ? dot : (int)strlen(name);
     g_autofree char *title = text_escape(a->title != NULL ? a->title : ""),
                     *heading = latex_of_markup(title);
     g_autofree char *caption = latex_of_markup(a->caption != NULL ? a->caption : "");
-    g_autofree char *alt = latex_escape(a->alternative != NULL ? a->alternative : a->title);
+    g_autofree char *alt =
+        latex_escape(a->alternative != NULL ? a->alternative : a->title);
 
     return text_printf("\\begin{figure}\n"
                        "  \\centering\n"
@@ -213,8 +227,9 @@ char *latex_environment(const artwork *a, const char *tex, const char *file)
                        "  \\caption{%s%s%s}\n"
                        "  \\label{fig:%.*s}\n"
                        "\\end{figure}\n",
-                       a->width * 25.4 / 72, alt, strcmp(tex_folder, folder) == 0 ? name : file,
-                       heading, caption[0] != '\0' ? ". " : "", caption, stem, name);
+                       a->width * 25.4 / 72, alt,
+                       strcmp(tex_folder, folder) == 0 ? name : file, heading,
+                       caption[0] != '\0' ? ". " : "", caption, stem, name);
 }
 
 // ---- what stands beside a picture
@@ -243,13 +258,14 @@ status artwork_publish_csv(const artwork *a, const char *path, fault *f)
         fclose(there);
     }
     FAULT_IF(written && strcmp(start, heading) != 0, f, STATUS_CANNOT_WRITE,
-             "'%s' holds other numbers and is kept, so that those of the picture are not written",
+             "'%s' holds other numbers and is kept, so that those of the picture are not "
+             "written",
              csv);
     return artwork_write_csv(a, csv, f);
 }
 
-status artwork_publish(const artwork *a, const figure_options *o, const char *path, bool with_csv,
-                       fault *f)
+status artwork_publish(const artwork *a, const figure_options *o, const char *path,
+                       bool with_csv, fault *f)
 {
     picture p = artwork_picture(a, o);
     TRY(picture_write(&p, path, f));
@@ -266,7 +282,10 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
         g_autofree char *text = latex_environment(a, o->latex, path);
         TRY(write_text(o->latex, text, f));
     }
-    return with_csv ? artwork_publish_csv(a, path, f) : STATUS_OK;
+    if (with_csv) {
+        return artwork_publish_csv(a, path, f);
+    }
+    return STATUS_OK;
 }
 
 void figure_take_range(figure *fig, const figure_options *o)
@@ -277,12 +296,12 @@ void figure_take_range(figure *fig, const figure_options *o)
     }
 }
 
-status figure_publish(const figure *fig, const figure_options *o, const char *path, bool with_csv,
-                      fault *f)
+status figure_publish(const figure *fig, const figure_options *o, const char *path,
+                      bool with_csv, fault *f)
 {
     FAULT_IF(o->overlay != NULL || o->signals != NULL, f, STATUS_BAD_ARGUMENT,
-             "%s: the picture shows no recorded signals that %s could choose or lie over", path,
-             o->overlay != NULL ? "--overlay" : "--signals");
+             "%s: the picture shows no recorded signals that %s could choose or lie over",
+             path, o->overlay != NULL ? "--overlay" : "--signals");
 
     // a copy with the look and the range asked for
     figure shown = *fig;

@@ -11,10 +11,12 @@
 typedef struct figure_options {
     page_look look;
     const char *overlay; // data over recorded signals (overlay_read), NULL for none
-    const char *signals; // recorded signals to show instead of the usual ones, NULL for those
-    double from, to;     // ends of the horizontal axis; from >= to: automatic
-    const char *latex;   // file for the figure environment, NULL for none
-    const char *command; // command that makes the picture, for its metadata; NULL if not known
+    const char
+        *signals;    // recorded signals to show instead of the usual ones, NULL for those
+    double from, to; // ends of the horizontal axis; from >= to: automatic
+    const char *latex; // file for the figure environment, NULL for none
+    const char
+        *command; // command that makes the picture, for its metadata; NULL if not known
 } figure_options;
 
 typedef struct artwork {
@@ -33,8 +35,8 @@ typedef struct artwork {
     void (*release)(void *owner); // NULL: nothing to free
 } artwork;
 
-// Draws it with the page's top left corner at the origin of cr, in points; *report (may be NULL) is
-// filled. Writes the numbers that are drawn.
+// Draws it with the page's top left corner at the origin of cr, in points; *report (may
+// be NULL) is filled. Writes the numbers that are drawn.
 status artwork_paint(const artwork *a, cairo_t *cr, figure_report *report, fault *f);
 status artwork_write_csv(const artwork *a, const char *path, fault *f);
 
@@ -54,29 +56,32 @@ artwork artwork_of_table(table_page *t);
 // Creates a folder unless it exists. STATUS_CANNOT_WRITE with the reason.
 status make_folder(const char *folder, fault *f);
 
-// --- publications: the file, a file with its caption if the picture has none, and LaTeX for both
+// --- publications: the file, a file with its caption if the picture has none, and LaTeX
+// for both
 
 // The path of a picture with another ending, to be freed with g_free.
 char *artwork_beside(const char *file, const char *ending);
 
-// Writes a plotted figure according to the options: the picture at path, with a bare look a .txt
-// with its caption, the figure environment at o->latex, and with `with_csv` its numbers. Returns
-// the status of figure_write; STATUS_BAD_ARGUMENT also if the options name recorded signals,
-// because the figure has none.
-status figure_publish(const figure *fig, const figure_options *o, const char *path, bool with_csv,
-                      fault *f);
+// Writes a plotted figure according to the options: the picture at path, with a bare look
+// a .txt with its caption, the figure environment at o->latex, and with `with_csv` its
+// numbers. Returns the status of figure_write; STATUS_BAD_ARGUMENT also if the options
+// name recorded signals, because the figure has none.
+status figure_publish(const figure *fig, const figure_options *o, const char *path,
+                      bool with_csv, fault *f);
 
 // The same for any artwork that was opened with o.
-status artwork_publish(const artwork *a, const figure_options *o, const char *path, bool with_csv,
-                       fault *f);
+status artwork_publish(const artwork *a, const figure_options *o, const char *path,
+                       bool with_csv, fault *f);
 
-// Writes its numbers beside the picture at `path`. Nobody named this CSV: where there is one of
-// other numbers than a figure's, measured ones maybe, it is kept; STATUS_CANNOT_WRITE.
+// Writes its numbers beside the picture at `path`. Nobody named this CSV: where there is
+// one of other numbers than a figure's, measured ones maybe, it is kept;
+// STATUS_CANNOT_WRITE.
 status artwork_publish_csv(const artwork *a, const char *path, fault *f);
 
 // Sets the ends of a figure's horizontal axis to --from and --to.
 void figure_take_range(figure *fig, const figure_options *o);
 
-// A figure environment: the path of the picture relative to the folder of the .tex file, its width,
-// alternative text, caption and the label fig:NAME with the name of the picture. Free with g_free.
+// A figure environment: the path of the picture relative to the folder of the .tex file,
+// its width, alternative text, caption and the label fig:NAME with the name of the
+// picture. Free with g_free.
 char *latex_environment(const artwork *a, const char *tex, const char *file);

@@ -1,5 +1,6 @@
-// Figures 3.1, 4.6 and 4.2: the arm in contact, at two successive steps and at its largest
-// deformation; as it hits, and its last body cut free, with the impulses of (4.1)-(4.5).
+// Figures 3.1, 4.6 and 4.2: the arm in contact, at two successive steps and at its
+// largest deformation; as it hits, and its last body cut free, with the impulses of
+// (4.1)-(4.5).
 #include <math.h>
 
 #include "render/figures/diagram.h"
@@ -15,8 +16,8 @@ static arm_shape shape_of(const sample *row)
 
 // ---- what both draw
 
-// Positions of hub, joint and tip on the page, in a view in which `base` is the direction to the
-// right.
+// Positions of hub, joint and tip on the page, in a view in which `base` is the direction
+// to the right.
 typedef struct arm_places {
     point hub, joint, end;
 } arm_places;
@@ -51,17 +52,21 @@ static void draw_full_arm(const sketch *s, arm_places a)
     sketch_disc(s, a.hub, 2, SKETCH_INK, true);
 }
 
-// Wall and contact force at a place, across a link that has the given direction on the page.
-static void draw_wall(sketch *s, point at, double direction, const char *symbol, double force)
+// Wall and contact force at a place, across a link that has the given direction on the
+// page.
+static void draw_wall(sketch *s, point at, double direction, const char *symbol,
+                      double force)
 {
     g_autofree char *quantity = text_quantity(force, 3, "N");
-    double ux = cos(direction), uy = -sin(direction), nx = -sin(direction), ny = -cos(direction);
+    double ux = cos(direction), uy = -sin(direction), nx = -sin(direction),
+           ny = -cos(direction);
     point wall = {at.x + 4 * nx, at.y + 4 * ny};
     sketch_wall(s, shifted(wall, 16 * ux, 16 * uy), shifted(wall, -16 * ux, -16 * uy));
 
     point start = {at.x + (FORCE_LENGTH + 4) * nx, at.y + (FORCE_LENGTH + 4) * ny};
     sketch_arrow(s, start, shifted(at, 4 * nx, 4 * ny), 5);
-    sketch_label(s, shifted(start, 4 * nx, 4 * ny), (anchor){0.5, 1}, "%s = %s", symbol, quantity);
+    sketch_label(s, shifted(start, 4 * nx, 4 * ny), (anchor){0.5, 1}, "%s = %s", symbol,
+                 quantity);
 }
 
 // ---- 3.1: two successive steps
@@ -79,7 +84,8 @@ static void draw_contact(sketch *s, const diagram *d)
     sketch_dashed(s, one.hub, shifted(foot, 46, 0), SKETCH_FAINT);
     sketch_dashed(s, contact, shifted(contact, 46, 0), SKETCH_FAINT);
     sketch_measure(s, (point){one.hub.x, foot.y + 16}, shifted(foot, 0, 16));
-    sketch_label(s, (point){(one.hub.x + foot.x) / 2, foot.y + 18}, (anchor){0.5, 0}, "<i>a</i>");
+    sketch_label(s, (point){(one.hub.x + foot.x) / 2, foot.y + 18}, (anchor){0.5, 0},
+                 "<i>a</i>");
     sketch_measure(s, (point){contact.x + 38, foot.y}, shifted(contact, 38, 0));
     sketch_label(s, (point){contact.x + 42, (foot.y + contact.y) / 2}, (anchor){0, 0.5},
                  "<i>b</i>");
@@ -88,11 +94,17 @@ static void draw_contact(sketch *s, const diagram *d)
     // both configurations, and the angles of the first
     draw_full_arm(s, one);
     draw_dashed_arm(s, other, 0);
-    diagram_link_angle(s, one.hub, 84, direction_of(one.hub, one.joint), "<i>θ</i><sub>2</sub>");
-    diagram_link_angle(s, one.joint, 62, direction_of(one.joint, one.end), "<i>θ</i><sub>3</sub>");
-    sketch_label(s, (point){(one.hub.x + one.joint.x) / 2 - 10, (one.hub.y + one.joint.y) / 2 - 6},
+    diagram_link_angle(s, one.hub, 84, direction_of(one.hub, one.joint),
+                       "<i>θ</i><sub>2</sub>");
+    diagram_link_angle(s, one.joint, 62, direction_of(one.joint, one.end),
+                       "<i>θ</i><sub>3</sub>");
+    sketch_label(s,
+                 (point){(one.hub.x + one.joint.x) / 2 - 10,
+                         (one.hub.y + one.joint.y) / 2 - 6},
                  (anchor){1, 1}, "<i>l</i>");
-    sketch_label(s, (point){(one.joint.x + one.end.x) / 2 - 8, (one.joint.y + one.end.y) / 2 - 8},
+    sketch_label(s,
+                 (point){(one.joint.x + one.end.x) / 2 - 8,
+                         (one.joint.y + one.end.y) / 2 - 8},
                  (anchor){1, 1}, "<i>l</i>");
 
     draw_wall(s, contact, direction_of(one.joint, contact), "<i>f</i>", of->one.force);
@@ -100,8 +112,8 @@ static void draw_contact(sketch *s, const diagram *d)
     // which is which
     double key = s->top + 14;
     sketch_bar(s, (point){s->left + 4, key}, (point){s->left + 26, key}, 5);
-    sketch_small(s, (point){s->left + 32, key}, (anchor){0, 0.5}, "<i>t</i> = %.2f\u2009s",
-                 of->one.time);
+    sketch_small(s, (point){s->left + 32, key}, (anchor){0, 0.5},
+                 "<i>t</i> = %.2f\u2009s", of->one.time);
     sketch_dashed(s, (point){s->left + 4, key + 14}, (point){s->left + 26, key + 14}, 0);
     sketch_small(s, (point){s->left + 32, key + 14}, (anchor){0, 0.5},
                  "the next step, <i>t</i> = %.2f\u2009s", of->other.time);
@@ -133,8 +145,11 @@ static void add_shape_values(diagram *d, const arm_shape *a)
 
 status diagram_contact(const figure_order *order, artwork *out, fault *f)
 {
-    g_autoptr(diagram) d = diagram_create(order, "method.step=0.01", 232, draw_contact, f);
-    FAIL_IF(d == NULL, f->code);
+    g_autoptr(diagram) d =
+        diagram_create(order, "method.step=0.01", 232, draw_contact, f);
+    if (d == NULL) {
+        return f->code;
+    }
 
     // two steps during contact
     const trace *t = &d->run->result.trace;
@@ -144,7 +159,8 @@ status diagram_contact(const figure_order *order, artwork *out, fault *f)
     of->other = shape_of(&t->rows[first + 1 < t->row_count ? first + 1 : first]);
 
     // the numbers, and what is left of the constraint (3.9)
-    double a = d->p.arm.length * cos(d->p.wall.angle), b = d->p.arm.length * sin(d->p.wall.angle);
+    double a = d->p.arm.length * cos(d->p.wall.angle),
+           b = d->p.arm.length * sin(d->p.wall.angle);
     diagram_add_value(d, "a", a, "m");
     diagram_add_value(d, "b", b, "m");
     add_shape_values(d, &of->one);
@@ -156,11 +172,12 @@ status diagram_contact(const figure_order *order, artwork *out, fault *f)
 
     return diagram_open(
         &d, out,
-        "The printed model in contact, 1\u2009V, at two successive steps of 10\u2009ms: "
-        "<i>θ</i><sub>2</sub> = %.4f and %.4f, <i>θ</i><sub>3</sub> = %.4f and %.4f\u2009rad. The "
-        "line of the last link always passes through the contact point (<i>a</i>, <i>b</i>) = "
-        "(%.4f, %.4f)\u2009m, (3.9). <i>k</i><sub>1</sub> = %g\u2009N·m/rad. Enlarged %g times "
-        "across the reference line, angles with it.",
+        "The printed model in contact, 1\u2009V, at two successive steps of "
+        "10\u2009ms: <i>θ</i><sub>2</sub> = %.4f and %.4f, "
+        "<i>θ</i><sub>3</sub> = %.4f and %.4f\u2009rad. The line of the last "
+        "link always passes through the contact point (<i>a</i>, <i>b</i>) = "
+        "(%.4f, %.4f)\u2009m, (3.9). <i>k</i><sub>1</sub> = %g\u2009N·m/rad. "
+        "Enlarged %g times across the reference line, angles with it.",
         of->one.first, of->other.first, of->one.last, of->other.last, a, b, d->p.arm.k1,
         CONTACT_ACROSS);
 }
@@ -173,7 +190,8 @@ static void draw_deformation(sketch *s, const diagram *d)
     double wall = d->p.wall.angle;
     view v = {s->left + 34, s->bottom - 42, 265, PEAK_ACROSS};
     point contact = view_place(&v, (point){d->p.arm.length, 0});
-    arm_places peak = places_of(&v, d, of->one, wall), touch = places_of(&v, d, of->other, wall);
+    arm_places peak = places_of(&v, d, of->one, wall),
+               touch = places_of(&v, d, of->other, wall);
     arm_places assumed = places_of(&v, d, of->assumed, wall);
 
     // the line to the contact point, and the three shapes
@@ -197,7 +215,8 @@ static void draw_deformation(sketch *s, const diagram *d)
     // a name at each joint
     sketch_small(s, shifted(assumed.joint, 0, -5), (anchor){0.5, 1}, "energy principle");
     sketch_small(s, shifted(peak.joint, 0, 14), (anchor){0.5, 0}, "at the peak");
-    sketch_small(s, (point){touch.joint.x, peak.hub.y + 4}, (anchor){0.5, 0}, "at first contact");
+    sketch_small(s, (point){touch.joint.x, peak.hub.y + 4}, (anchor){0.5, 0},
+                 "at first contact");
 }
 
 // The row nearest to an instant.
@@ -227,9 +246,13 @@ static const sample *row_before(const trace *t, double contact)
 status diagram_deformation(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d = diagram_create(order, NULL, 148, draw_deformation, f);
-    FAIL_IF(d == NULL, f->code);
+    if (d == NULL) {
+        return f->code;
+    }
     const summary *m = &d->run->result.summary;
-    FAIL_IF(!isfinite(m->first_pulse_time_to_peak_s), diagram_lacks(d, "pulse", f));
+    if (!isfinite(m->first_pulse_time_to_peak_s)) {
+        return diagram_lacks(d, "pulse", f);
+    }
 
     // first contact and the peak
     const trace *t = &d->run->result.trace;
@@ -251,14 +274,15 @@ status diagram_deformation(const figure_order *order, artwork *out, fault *f)
 
     return diagram_open(
         &d, out,
-        "The arm of corrected/first-impact %.1f\u2009ms after first contact, at its peak force of "
-        "%.3g\u2009N: <i>θ</i><sub>2</sub> = %.4f, <i>θ</i><sub>3</sub> = %.4f\u2009rad, bend "
-        "\u2212%.4f\u2009rad; <i>θ</i><sub>0</sub> = %g\u2009rad is the line to the contact point. "
-        "The energy principle puts the %.3g\u2009mJ before contact into the spring, half the bend "
-        "on either side of the line, \u2212%.4f\u2009rad, because it leaves out what the impact "
-        "itself takes. Enlarged %g times across the line, angles with it.",
-        1e3 * delay, of->one.force, of->one.first, of->one.last, fabs(of->one.last - of->one.first),
-        wall, 1e3 * energy, bend, PEAK_ACROSS);
+        "The arm of corrected/first-impact %.1f\u2009ms after first contact, at its "
+        "peak force of %.3g\u2009N: <i>θ</i><sub>2</sub> = %.4f, <i>θ</i><sub>3</sub> "
+        "= %.4f\u2009rad, bend \u2212%.4f\u2009rad; <i>θ</i><sub>0</sub> = %g\u2009rad "
+        "is the line to the contact point. The energy principle puts the %.3g\u2009mJ "
+        "before contact into the spring, half the bend on either side of the line, "
+        "\u2212%.4f\u2009rad, because it leaves out what the impact itself takes. "
+        "Enlarged %g times across the line, angles with it.",
+        1e3 * delay, of->one.force, of->one.first, of->one.last,
+        fabs(of->one.last - of->one.first), wall, 1e3 * energy, bend, PEAK_ACROSS);
 }
 
 // ---- 4.2: the collision
@@ -269,11 +293,11 @@ status diagram_deformation(const figure_order *order, artwork *out, fault *f)
 #define BODY_LENGTH    220.0 // of the cut body on the page [pt]
 #define BODY_HEIGHT    116.0 // of the space that it has [pt]
 
-// The last body at the impact: what (4.3)-(4.5) say of it. Vectors are given by their part across
-// the body, to the left of the way from its hinge to its end.
+// The last body at the impact: what (4.3)-(4.5) say of it. Vectors are given by their
+// part across the body, to the left of the way from its hinge to its end.
 typedef struct cut_body {
     double mass, inertia; // m [kg], J about its centre of mass [kg m2]
-    double half, rho;     // from the centre to the hinge, and to the point of collision [m]
+    double half, rho; // from the centre to the hinge, and to the point of collision [m]
     double wall_impulse;  // F [N s]
     double hinge_impulse; // X [N s]
     double hinge_torque;  // Y, about the centre of mass [N m s]
@@ -339,14 +363,14 @@ static void draw_arm(sketch *s, const diagram *d)
                  (point){joint_page.x - 6, y - SPEED_LENGTH * joint_before}, 2);
     sketch_dashed_arrow(s, (point){joint_page.x + 6, y},
                         (point){joint_page.x + 6, y - SPEED_LENGTH * joint_after}, 1);
-    sketch_small(s, (point){joint_page.x - 12, y - 4}, (anchor){1, 1}, "before\n%.3f\u2009m/s",
-                 joint_before);
-    sketch_small(s, (point){joint_page.x + 12, y - 4}, (anchor){0, 1}, "after\n%.3f\u2009m/s",
-                 joint_after);
+    sketch_small(s, (point){joint_page.x - 12, y - 4}, (anchor){1, 1},
+                 "before\n%.3f\u2009m/s", joint_before);
+    sketch_small(s, (point){joint_page.x + 12, y - 4}, (anchor){0, 1},
+                 "after\n%.3f\u2009m/s", joint_after);
 
     // the tip arrives, and is stopped by the wall's impulse
-    sketch_arrow(s, shifted(contact, -8, 6 + SPEED_LENGTH * tip_before), shifted(contact, -8, 6),
-                 2);
+    sketch_arrow(s, shifted(contact, -8, 6 + SPEED_LENGTH * tip_before),
+                 shifted(contact, -8, 6), 2);
     sketch_small(s, shifted(contact, -14, 14), (anchor){1, 0},
                  "before\n%.3f\u2009m/s\nafter: at rest", tip_before);
     sketch_arrow(s, shifted(contact, 0, -50), shifted(contact, 0, -6), 5);
@@ -354,7 +378,8 @@ static void draw_arm(sketch *s, const diagram *d)
                  d->impulse);
 
     // where the last body is cut free
-    sketch_dashed(s, shifted(joint_page, 0, -12), shifted(joint_page, 0, 34), SKETCH_FAINT);
+    sketch_dashed(s, shifted(joint_page, 0, -12), shifted(joint_page, 0, 34),
+                  SKETCH_FAINT);
     sketch_small(s, shifted(joint_page, -4, 34), (anchor){1, 1}, "cut");
 }
 
@@ -376,19 +401,20 @@ static void draw_cut_body(sketch *s, const diagram *d)
     double wall = IMPULSE_LENGTH * fabs(b.wall_impulse);
     double pin = IMPULSE_LENGTH * b.hinge_impulse;
     sketch_arrow(s, (point){hit.x, y - 6 - wall}, (point){hit.x, y - 6}, 5);
-    write_value(s, (point){hit.x, y - 14 - wall}, 0.5, "<i>F̂</i><sup>c</sup>", b.wall_impulse,
-                "N s");
+    write_value(s, (point){hit.x, y - 14 - wall}, 0.5, "<i>F̂</i><sup>c</sup>",
+                b.wall_impulse, "N s");
     sketch_arrow(s, (point){hinge.x, pin > 0 ? y - 6 : y - 6 + pin},
                  (point){hinge.x, pin > 0 ? y - 6 - pin : y - 6}, 5);
     write_value(s, (point){hinge.x, y - 14 - fabs(pin)}, 0.5, "<i>X̂</i><sup>c</sup>",
                 b.hinge_impulse, "N s");
 
     // the hinge's torque about C, and how the body's motion jumps
-    sketch_arc(
-        s, (arc){hinge, 18, b.hinge_torque < 0 ? 3.7 : 2.6, b.hinge_torque < 0 ? 2.6 : 3.7, true},
-        0);
-    write_value(s, (point){hinge.x - 4, y + 44}, 0.5, "<i>Ŷ</i><sup>c</sup>", b.hinge_torque,
-                "N m s");
+    sketch_arc(s,
+               (arc){hinge, 18, b.hinge_torque < 0 ? 3.7 : 2.6,
+                     b.hinge_torque < 0 ? 2.6 : 3.7, true},
+               0);
+    write_value(s, (point){hinge.x - 4, y + 44}, 0.5, "<i>Ŷ</i><sup>c</sup>",
+                b.hinge_torque, "N m s");
     double jump = SPEED_LENGTH * b.centre_jump, from = b.centre_jump < 0 ? y + 7 : y - 7;
     sketch_dashed_arrow(s, (point){centre.x, from}, (point){centre.x, from - jump}, 1);
     write_value(s, (point){centre.x - 8, from - 0.7 * jump}, 1, "Δ<i>v</i><sub>C</sub>",
@@ -397,7 +423,8 @@ static void draw_cut_body(sketch *s, const diagram *d)
                (arc){(point){centre.x, y}, 30, b.angular_jump < 0 ? -0.5 : -1.6,
                      b.angular_jump < 0 ? -1.6 : -0.5, true},
                1);
-    write_value(s, (point){centre.x + 30, y + 22}, 0, "Δ<i>ω</i>", b.angular_jump, "rad/s");
+    write_value(s, (point){centre.x + 30, y + 22}, 0, "Δ<i>ω</i>", b.angular_jump,
+                "rad/s");
 
     // the lever of the wall's impulse
     sketch_measure(s, (point){centre.x, y + 42}, (point){hit.x, y + 42});
@@ -412,8 +439,11 @@ static void draw_collision(sketch *s, const diagram *d)
 
 status diagram_collision(const figure_order *order, artwork *out, fault *f)
 {
-    g_autoptr(diagram) d = diagram_create(order, NULL, 140 + BODY_HEIGHT, draw_collision, f);
-    FAIL_IF(d == NULL, f->code);
+    g_autoptr(diagram) d =
+        diagram_create(order, NULL, 140 + BODY_HEIGHT, draw_collision, f);
+    if (d == NULL) {
+        return f->code;
+    }
 
     // the impact, and what the links do after it
     double speed = 0, impulse = 0;
@@ -438,16 +468,19 @@ status diagram_collision(const figure_order *order, artwork *out, fault *f)
     diagram_add_value(d, "hinge impulse X", b.hinge_impulse, "N s");
     diagram_add_value(d, "hinge torque impulse Y", b.hinge_torque, "N m s");
     diagram_add_value(d, "jump of the centre's velocity", b.centre_jump, "m/s");
-    diagram_add_value(d, "jump of the point of collision's velocity", b.point_jump, "m/s");
+    diagram_add_value(d, "jump of the point of collision's velocity", b.point_jump,
+                      "m/s");
 
     return diagram_open(
         &d, out,
-        "Above: the arm of corrected/first-impact at the instant of its first contact, seen along "
-        "the line to the contact point and enlarged %g times across it; the links' angular "
-        "velocities jump from %.3f and %.3f\u2009rad/s to %.3f and \u2212%.3f\u2009rad/s. Below: "
-        "its last body cut free, with the impulse <i>F̂</i><sup>c</sup> of the wall, impulse "
-        "<i>X̂</i><sup>c</sup> and torque <i>Ŷ</i><sup>c</sup> about <i>C</i> of the hinge, and the "
-        "jumps that they make, (4.3) to (4.5). Parts across the body, up and counterclockwise "
+        "Above: the arm of corrected/first-impact at the instant of its first contact, "
+        "seen along the line to the contact point and enlarged %g times across it; the "
+        "links' angular velocities jump from %.3f and %.3f\u2009rad/s to %.3f and "
+        "\u2212%.3f\u2009rad/s. Below: its last body cut free, with the impulse "
+        "<i>F̂</i><sup>c</sup> of the wall, impulse <i>X̂</i><sup>c</sup> and torque "
+        "<i>Ŷ</i><sup>c</sup> about <i>C</i> of the hinge, and the jumps that they "
+        "make, (4.3) to (4.5). Parts across the body, up and counterclockwise "
         "positive; solid arrows act, dashed ones follow.",
-        ACROSS, d->before.velocity[1], d->before.velocity[2], d->after[1], fabs(d->after[2]));
+        ACROSS, d->before.velocity[1], d->before.velocity[2], d->after[1],
+        fabs(d->after[2]));
 }

@@ -8,7 +8,8 @@ void diagram_add_value(diagram *d, const char *name, double value, const char *u
     g_array_append_val(d->values, added);
 }
 
-static status paint_diagram(cairo_t *cr, const void *what, figure_report *report, fault *f)
+static status paint_diagram(cairo_t *cr, const void *what, figure_report *report,
+                            fault *f)
 {
     sketch s;
     const diagram *d = what;
@@ -52,12 +53,16 @@ diagram *diagram_create(const figure_order *order, const char *change, double bo
     d->draw = draw;
     d->values = g_array_new(FALSE, FALSE, sizeof(diagram_value));
     d->title = g_strdup(order->title);
-    d->frame = (sketch_frame){.title = d->title, .body_height = body, .look = order->options->look};
+    d->frame = (sketch_frame){.title = d->title,
+                              .body_height = body,
+                              .look = order->options->look};
     parameters_defaults(&d->p, ARM_CORRECTED);
     parameters_resolve(&d->p, NULL);
     if (order->which->scenario != NULL) {
         d->run = run_open(order->which->scenario, change, f);
-        FAIL_IF(d->run == NULL, NULL);
+        if (d->run == NULL) {
+            return NULL;
+        }
         d->p = d->run->scenario.parameters;
         d->parameters = parameters_line(&d->run->scenario);
     }
@@ -66,7 +71,8 @@ diagram *diagram_create(const figure_order *order, const char *change, double bo
 
 status diagram_lacks(const diagram *d, const char *what, fault *f)
 {
-    return fault_set(f, STATUS_BAD_SCENARIO, "%s: no %s to draw", d->run->scenario.name, what);
+    return fault_set(f, STATUS_BAD_SCENARIO, "%s: no %s to draw", d->run->scenario.name,
+                     what);
 }
 
 status diagram_take_impact(diagram *d, double *speed, fault *f)
@@ -97,8 +103,8 @@ void diagram_angle(sketch *s, point at, angle_arc a)
 {
     double middle = (a.from + a.to) / 2, away = a.radius + 3;
     sketch_arc(s, (arc){at, a.radius, a.from, a.to, true}, SKETCH_INK);
-    sketch_label(s, shifted(at, away * cos(middle), -away * sin(middle)), (anchor){0, 0.5}, "%s",
-                 a.markup);
+    sketch_label(s, shifted(at, away * cos(middle), -away * sin(middle)),
+                 (anchor){0, 0.5}, "%s", a.markup);
 }
 
 void diagram_link_angle(sketch *s, point at, double radius, double to, const char *markup)

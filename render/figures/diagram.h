@@ -37,8 +37,8 @@ typedef struct diagram {
     arm_shapes shapes;       // 3.1, 4.6
 } diagram;
 
-// The transformation from metres of the model, y upwards, to the page. `across` enlarges distances
-// from the line to the right.
+// The transformation from metres of the model, y upwards, to the page. `across` enlarges
+// distances from the line to the right.
 typedef struct view {
     double x, y, metre, across;
 } view;
@@ -49,8 +49,8 @@ point view_place(const view *v, point at);
 // End of a piece of length `length` at `angle` [rad] from a point of the model.
 point view_end(point from, double length, double angle);
 
-// An angle at a point, from one direction on the page to another, counterclockwise [rad], with its
-// symbol at the middle of the arc.
+// An angle at a point, from one direction on the page to another, counterclockwise [rad],
+// with its symbol at the middle of the arc.
 typedef struct angle_arc {
     double radius, from, to;
     const char *markup;
@@ -58,18 +58,19 @@ typedef struct angle_arc {
 void diagram_angle(sketch *s, point at, angle_arc a);
 
 // An angle from a dashed line to the right.
-void diagram_link_angle(sketch *s, point at, double radius, double to, const char *markup);
+void diagram_link_angle(sketch *s, point at, double radius, double to,
+                        const char *markup);
 
-// A diagram of the run of the order's scenario, with one parameter changed if `change` is not NULL,
-// or without a scenario of the corrected arm's default parameters. It is drawn by `draw`; `body` is
-// the drawing's height [pt]. NULL with the reason if the run fails.
+// A diagram of the run of the order's scenario, with one parameter changed if `change` is
+// not NULL, or without a scenario of the corrected arm's default parameters. It is drawn
+// by `draw`; `body` is the drawing's height [pt]. NULL with the reason if the run fails.
 diagram *diagram_create(const figure_order *order, const char *change, double body,
                         void (*draw)(sketch *s, const diagram *d), fault *f);
 void diagram_release(void *what);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(diagram, diagram_release)
 
-// The first impact of the run: its impulse, the arm the instant before, and *speed that of the
-// contact point [m/s]. Fails as diagram_lacks if there is none.
+// The first impact of the run: its impulse, the arm the instant before, and *speed that
+// of the contact point [m/s]. Fails as diagram_lacks if there is none.
 status diagram_take_impact(diagram *d, double *speed, fault *f);
 
 // STATUS_BAD_SCENARIO for a diagram whose run has not what it shows.
@@ -78,7 +79,8 @@ status diagram_lacks(const diagram *d, const char *what, fault *f);
 // Adds a number to those that the diagram's CSV lists.
 void diagram_add_value(diagram *d, const char *name, double value, const char *unit);
 
-// Gives the diagram its caption, printed as by text_printf, and opens it: the artwork owns it, and
+// Gives the diagram its caption, printed as by text_printf, and opens it: the artwork
+// owns it, and
 // *held is NULL.
 status diagram_open(diagram **held, artwork *out, const char *caption, ...)
     __attribute__((format(printf, 3, 4)));

@@ -22,7 +22,8 @@ static void draw_length(sketch *s, point from, point to, double away, anchor par
     double beyond = away < 0 ? -3 : 3;
     sketch_measure(s, start, end);
     sketch_label(s,
-                 (point){(start.x + end.x) / 2 + beyond * nx, (start.y + end.y) / 2 + beyond * ny},
+                 (point){(start.x + end.x) / 2 + beyond * nx,
+                         (start.y + end.y) / 2 + beyond * ny},
                  part, "%s", markup);
 }
 
@@ -48,14 +49,16 @@ static void draw_links(sketch *s, const diagram *d)
     // the hub's own direction, which the spring k1 parts from the first link
     point rim = view_end(o, radius, hub - 40 * DEGREE), rim_page = view_place(&v, rim);
     sketch_line(s, hub_page, rim_page, 0.8, SKETCH_INK);
-    sketch_arc(s, (arc){hub_page, v.metre * radius + 8, -75 * DEGREE, hub - 40 * DEGREE, true},
+    sketch_arc(s,
+               (arc){hub_page, v.metre * radius + 8, -75 * DEGREE, hub - 40 * DEGREE,
+                     true},
                SKETCH_INK);
     sketch_label(s, shifted(rim_page, 12, 6), (anchor){0, 0.5},
                  "<i>θ</i><sub>1</sub>, <i>I</i><sub>1</sub>");
     sketch_spiral(s, hub_page, 13, 0);
     sketch_spiral(s, joint_page, 11, 0);
-    sketch_label(s, (point){hub_page.x - v.metre * radius - 4, hub_page.y}, (anchor){1, 0.5},
-                 "<i>k</i><sub>1</sub>");
+    sketch_label(s, (point){hub_page.x - v.metre * radius - 4, hub_page.y},
+                 (anchor){1, 0.5}, "<i>k</i><sub>1</sub>");
     sketch_label(s, shifted(joint_page, 0, 14), (anchor){0.5, 0}, "<i>k</i><sub>2</sub>");
     draw_length(s, hub_page, c1_page, 35, (anchor){0.5, 1}, "<i>ε</i><sub>2</sub>");
     draw_length(s, joint_page, c2_page, 17, (anchor){1, 1}, "<i>ε</i><sub>3</sub>");
@@ -87,14 +90,15 @@ status diagram_links(const figure_order *order, artwork *out, fault *f)
 
     return diagram_open(
         &d, out,
-        "Hub (body 1) and two rigid links (bodies 2 and 3) in the proportions of the model, bent "
-        "far more than in use. <i>l</i> = %g\u2009m, <i>ε</i> = %g\u2009m, <i>m</i> = "
-        "%.4g\u2009kg, <i>I</i> = %.3g\u2009kg·m², <i>I</i><sub>1</sub> = %.3g\u2009kg·m², "
-        "<i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>k</i><sub>2</sub> = %g\u2009N·m/rad: the "
-        "corrected model's own; the printed runs of chapter 3 have <i>k</i><sub>1</sub> = "
-        "90\u2009N·m/rad and <i>I</i> = 1.67·10<sup>−5</sup>\u2009kg·m². Angles are absolute.",
-        d->p.arm.length / 2, d->p.arm.length / 4, d->p.arm.mass / 2, d->p.arm.link_inertia,
-        d->p.arm.hub_inertia, d->p.arm.k1, d->p.arm.k2);
+        "Hub (body 1) and two rigid links (bodies 2 and 3) in the proportions of the "
+        "model, bent far more than in use. <i>l</i> = %g\u2009m, <i>ε</i> = %g\u2009m, "
+        "<i>m</i> = %.4g\u2009kg, <i>I</i> = %.3g\u2009kg·m², <i>I</i><sub>1</sub> = "
+        "%.3g\u2009kg·m², <i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, "
+        "<i>k</i><sub>2</sub> = %g\u2009N·m/rad: the corrected model's own; the "
+        "printed runs of chapter 3 have <i>k</i><sub>1</sub> = 90\u2009N·m/rad and "
+        "<i>I</i> = 1.67·10<sup>−5</sup>\u2009kg·m². Angles are absolute.",
+        d->p.arm.length / 2, d->p.arm.length / 4, d->p.arm.mass / 2,
+        d->p.arm.link_inertia, d->p.arm.hub_inertia, d->p.arm.k1, d->p.arm.k2);
 }
 
 // ---- 2.3: free bodies
@@ -122,7 +126,8 @@ static void draw_free_bodies(sketch *s, const diagram *d)
     sketch_arc(s, (arc){h, 11, 200 * DEGREE, 40 * DEGREE, true}, 0);
     sketch_label(s, shifted(h, 19, -14), (anchor){0, 1}, "\u2212<i>τ</i><sub>1</sub>");
     sketch_arc(s, (arc){h, 30, -150 * DEGREE, -40 * DEGREE, true}, 2);
-    sketch_small(s, shifted(h, 0, 36), (anchor){0.5, 0}, "motor <i>τ</i><sub>m</sub>, friction");
+    sketch_small(s, shifted(h, 0, 36), (anchor){0.5, 0},
+                 "motor <i>τ</i><sub>m</sub>, friction");
     sketch_small(s, shifted(h, 0, -40), (anchor){0.5, 1}, "body 1");
 
     sketch_bar(s, a, b, 7);
@@ -135,7 +140,8 @@ static void draw_free_bodies(sketch *s, const diagram *d)
     sketch_label(s, shifted(a, 12, 37), (anchor){0, 0.5}, "<i>f</i><sub>1</sub>");
     sketch_arrow(s, b, shifted(b, -8, 36), 5);
     sketch_label(s, shifted(b, -12, 37), (anchor){1, 0.5}, "<i>f</i><sub>2</sub>");
-    sketch_small(s, (point){(a.x + b.x) / 2, (a.y + b.y) / 2 + 9}, (anchor){0.5, 0}, "body 2");
+    sketch_small(s, (point){(a.x + b.x) / 2, (a.y + b.y) / 2 + 9}, (anchor){0.5, 0},
+                 "body 2");
 
     sketch_bar(s, c, t, 7);
     sketch_mass_point(s, (point){(c.x + t.x) / 2, (c.y + t.y) / 2});
@@ -145,10 +151,12 @@ static void draw_free_bodies(sketch *s, const diagram *d)
     sketch_label(s, shifted(c, 12, -37), (anchor){0, 0.5}, "\u2212<i>f</i><sub>2</sub>");
     // the wall pushes back, across the last link
     double away = 40;
-    sketch_arrow(s, shifted(t, -away * sin(second), -away * cos(second)), shifted(t, 0, -4), 5);
+    sketch_arrow(s, shifted(t, -away * sin(second), -away * cos(second)),
+                 shifted(t, 0, -4), 5);
     sketch_label(s, (point){t.x - away * sin(second) - 5, t.y - away * cos(second)},
                  (anchor){1, 0.5}, "<i>f</i>");
-    sketch_small(s, (point){(c.x + t.x) / 2 + 8, (c.y + t.y) / 2 + 10}, (anchor){0, 0}, "body 3");
+    sketch_small(s, (point){(c.x + t.x) / 2 + 8, (c.y + t.y) / 2 + 10}, (anchor){0, 0},
+                 "body 3");
 }
 
 status diagram_free_bodies(const figure_order *order, artwork *out, fault *f)
@@ -157,12 +165,13 @@ status diagram_free_bodies(const figure_order *order, artwork *out, fault *f)
     add_arm_values(d);
     return diagram_open(
         &d, out,
-        "Each body on its own with what its neighbours do to it: torques <i>τ</i> of the springs "
-        "<i>k</i><sub>1</sub>, <i>k</i><sub>2</sub> and forces <i>f</i><sub>1</sub>, "
-        "<i>f</i><sub>2</sub> of the hinges, equal and opposite on both sides of a joint. Added up "
-        "over bodies 2 and 3, <i>τ</i><sub>2</sub> and <i>f</i><sub>2</sub> cancel; the printed "
-        "(2.16) keeps <i>k</i><sub>2</sub> all the same. The contact force <i>f</i> acts across "
-        "the last link.");
+        "Each body on its own with what its neighbours do to it: torques "
+        "<i>τ</i> of the springs <i>k</i><sub>1</sub>, <i>k</i><sub>2</sub> "
+        "and forces <i>f</i><sub>1</sub>, <i>f</i><sub>2</sub> of the "
+        "hinges, equal and opposite on both sides of a joint. Added up over "
+        "bodies 2 and 3, <i>τ</i><sub>2</sub> and <i>f</i><sub>2</sub> "
+        "cancel; the printed (2.16) keeps <i>k</i><sub>2</sub> all the same. "
+        "The contact force <i>f</i> acts across the last link.");
 }
 
 // ---- 4.1: springs in series
@@ -172,7 +181,8 @@ static void draw_springs(sketch *s, const diagram *d)
     double y = s->top + 46, wall = s->right - 40, mass = s->left + 74;
 
     // the floor and the mass on it
-    sketch_line(s, (point){s->left + 20, y + 20}, (point){wall, y + 20}, 0.5, SKETCH_FAINT);
+    sketch_line(s, (point){s->left + 20, y + 20}, (point){wall, y + 20}, 0.5,
+                SKETCH_FAINT);
     set_colour(s->cr, s->colours->shade);
     cairo_rectangle(s->cr, mass - 26, y - 20, 52, 40);
     cairo_fill_preserve(s->cr);
@@ -199,8 +209,8 @@ static void draw_springs(sketch *s, const diagram *d)
 
     double k1 = d->p.arm.k1, k2 = d->p.arm.k2;
     sketch_label(s, (point){(s->left + s->right) / 2, y + 50}, (anchor){0.5, 0},
-                 "1/<i>k</i><sub>eq</sub> = 1/<i>k</i><sub>1</sub> + 1/<i>k</i><sub>2</sub>,   "
-                 "<i>k</i><sub>eq</sub> = %.5g\u2009N·m/rad",
+                 "1/<i>k</i><sub>eq</sub> = 1/<i>k</i><sub>1</sub> + "
+                 "1/<i>k</i><sub>2</sub>,   <i>k</i><sub>eq</sub> = %.5g\u2009N·m/rad",
                  k1 * k2 / (k1 + k2));
 }
 
@@ -208,7 +218,9 @@ status diagram_springs(const figure_order *order, artwork *out, fault *f)
 {
     g_autoptr(diagram) d = diagram_create(order, NULL, 108, draw_springs, f);
     double speed = 0;
-    FAIL_IF(d == NULL, f->code);
+    if (d == NULL) {
+        return f->code;
+    }
     TRY(diagram_take_impact(d, &speed, f));
 
     // drawn with the defaults, not with the run's wall
@@ -224,16 +236,17 @@ status diagram_springs(const figure_order *order, artwork *out, fault *f)
 
     return diagram_open(
         &d, out,
-        "What the wall feels: a mass on the arm's springs in series. The stiff hub joint hardly "
-        "counts, the beam's spring takes almost all the energy. At 1\u2009V the contact point "
-        "arrives with <i>v</i><sub>0</sub> = %.3g\u2009m/s and the impact of %.3g\u2009N·s shows a "
-        "mass <i>m</i><sub>c</sub> = %.3g\u2009kg there, of the beam's %.3g\u2009kg. "
-        "<i>k</i><sub>1</sub> as the thesis prints it; its tables need 90\u2009N·m/rad.",
+        "What the wall feels: a mass on the arm's springs in series. The stiff hub "
+        "joint hardly counts, the beam's spring takes almost all the energy. At "
+        "1\u2009V the contact point arrives with <i>v</i><sub>0</sub> = %.3g\u2009m/s "
+        "and the impact of %.3g\u2009N·s shows a mass <i>m</i><sub>c</sub> = "
+        "%.3g\u2009kg there, of the beam's %.3g\u2009kg. <i>k</i><sub>1</sub> as the "
+        "thesis prints it; its tables need 90\u2009N·m/rad.",
         speed, d->impulse, d->impulse / speed, d->p.arm.mass);
 }
 
-// The circuit's resistors are the thesis's. Supply and sensor, which it does not print, are the
-// rig's.
+// The circuit's resistors are the thesis's. Supply and sensor, which it does not print,
+// are the rig's.
 #define R_GAIN     10e3 // both of the gain stage [ohm]
 #define MOST_FORCE 12.0 // [N]
 
@@ -280,8 +293,8 @@ static void draw_divider(sketch *s, const sensor_parameters *p, double x, double
 
     // measuring resistor to ground; the divider's output between them
     sketch_resistor(s, (point){x, y + 62}, (point){x, y + 116});
-    sketch_small(s, (point){x - 9, y + 92}, (anchor){1, 0.5}, "<i>R</i><sub>M</sub>\n%g\u2009kΩ",
-                 p->fsr_divider / 1e3);
+    sketch_small(s, (point){x - 9, y + 92}, (anchor){1, 0.5},
+                 "<i>R</i><sub>M</sub>\n%g\u2009kΩ", p->fsr_divider / 1e3);
     draw_ground(s, x, y + 112);
     sketch_disc(s, (point){x, y + 62}, 1.7, SKETCH_INK, true);
 }
@@ -326,7 +339,8 @@ static void draw_stages(sketch *s, double x, double y)
     // output
     wire(s, second + 40, y + 20, second + 86, y + 20);
     sketch_disc(s, (point){second + 88, y + 20}, 1.8, SKETCH_INK, false);
-    sketch_label(s, (point){second + 92, y + 12}, (anchor){1, 1}, "<i>V</i><sub>out</sub>");
+    sketch_label(s, (point){second + 92, y + 12}, (anchor){1, 1},
+                 "<i>V</i><sub>out</sub>");
 }
 
 // A plot as a part of the page, laid out in the page's own points.
@@ -369,23 +383,25 @@ static void draw_sensor(sketch *s, const diagram *d)
                                 .series = &curve,
                                 .series_count = 1};
 
-    const figure plot = {
-        .x = {.name = "force", .label = "Force on the sensor <i>f</i>", .unit = "N"},
-        .panels = &panel,
-        .panel_count = 1,
-        .width = s->scale * (s->right - s->left) * 25.4 / 72,
-        .height = 52 * s->scale,
-        .letters = s->frame->look.letters,
-        .transparent = s->frame->look.transparent,
-        .font = s->frame->look.font,
-        .theme = s->theme};
+    const figure plot = {.x = {.name = "force",
+                               .label = "Force on the sensor <i>f</i>",
+                               .unit = "N"},
+                         .panels = &panel,
+                         .panel_count = 1,
+                         .width = s->scale * (s->right - s->left) * 25.4 / 72,
+                         .height = 52 * s->scale,
+                         .letters = s->frame->look.letters,
+                         .transparent = s->frame->look.transparent,
+                         .font = s->frame->look.font,
+                         .theme = s->theme};
 
     paint_part(s, &plot, s->left, s->top + 186);
 }
 
 status diagram_sensor(const figure_order *order, artwork *out, fault *f)
 {
-    g_autoptr(diagram) d = diagram_create(order, NULL, 186 + 52 / 25.4 * 72, draw_sensor, f);
+    g_autoptr(diagram) d =
+        diagram_create(order, NULL, 186 + 52 / 25.4 * 72, draw_sensor, f);
     const sensor_parameters *p = &d->p.sensor;
     diagram_add_value(d, "measuring resistor", p->fsr_divider, "ohm");
     diagram_add_value(d, "gain resistor R5", R_GAIN, "ohm");
@@ -406,9 +422,10 @@ status diagram_sensor(const figure_order *order, artwork *out, fault *f)
 
     return diagram_open(
         &d, out,
-        "The sheet sensor (FSR) and the measuring resistor divide the supply; a buffer keeps the "
-        "divider unloaded, a second amplifier doubles its output. Resistors as in the thesis; "
-        "supply and sensor are not printed there and are the rig's: %g\u2009V, %g\u2009kΩ at "
-        "1\u2009N, resistance falling with the power %g of the force up to %g\u2009N.",
+        "The sheet sensor (FSR) and the measuring resistor divide the supply; a buffer "
+        "keeps the divider unloaded, a second amplifier doubles its output. Resistors "
+        "as in the thesis; supply and sensor are not printed there and are the rig's: "
+        "%g\u2009V, %g\u2009kΩ at 1\u2009N, resistance falling with the power %g of "
+        "the force up to %g\u2009N.",
         p->fsr_supply, p->fsr_resistance / 1e3, p->fsr_exponent, p->fsr_saturation);
 }

@@ -33,8 +33,8 @@ opened_run *run_open_changed(const char *name, const char *const *changes, int c
 
     // changes lie above what the file says
     if (code == STATUS_OK && count > 0) {
-        code = scenario_override_all(&r->scenario, (char *const *)changes, count, keep_first_fault,
-                                     &first);
+        code = scenario_override_all(&r->scenario, (char *const *)changes, count,
+                                     keep_first_fault, &first);
     }
     if (code != STATUS_OK) {
         fault_set(f, code, "%s", first.text);
@@ -53,7 +53,9 @@ owned_figure *run_plot_create(const figure_order *order, const char *change, int
                               const opened_run **run, fault *f)
 {
     opened_run *opened = run_open(order->which->scenario, change, f);
-    FAIL_IF(opened == NULL, NULL);
+    if (opened == NULL) {
+        return NULL;
+    }
     owned_figure *o = owned_figure_create(panels, "%s", order->title);
     *run = owned_figure_own(o, opened, run_close);
     o->figure.parameters = owned_figure_keep(o, parameters_line(&opened->scenario));
@@ -68,7 +70,10 @@ const char *nearest_signal(const char *name)
     for (int i = 1; i < signal_count; i++) {
         nearest_try(&near, signal_table[i].name);
     }
-    return near.best != NULL ? near.best : "force";
+    if (near.best != NULL) {
+        return near.best;
+    }
+    return "force";
 }
 
 // One panel, "hub_angle+last_angle".
@@ -80,15 +85,17 @@ static status read_panel(const char *text, trace_panel *p, fault *f)
         int index = signal_find(name);
 
         // known, with room, and of the panel's one unit
-        FAULT_IF(index <= 0, f, STATUS_BAD_ARGUMENT, "there is no signal '%s', did you mean '%s'?",
-                 name, nearest_signal(name));
+        FAULT_IF(index <= 0, f, STATUS_BAD_ARGUMENT,
+                 "there is no signal '%s', did you mean '%s'?", name,
+                 nearest_signal(name));
         FAULT_IF(i == TRACE_SIGNALS, f, STATUS_BAD_ARGUMENT,
                  "'%s': a panel shows at most %d signals", text, TRACE_SIGNALS);
         p->signals[i] = signal_table[index].name;
-        FAULT_IF(strcmp(signal_table[index].unit, signal_table[signal_index(p->signals[0])].unit) !=
-                     0,
+        FAULT_IF(strcmp(signal_table[index].unit,
+                        signal_table[signal_index(p->signals[0])].unit) != 0,
                  f, STATUS_BAD_ARGUMENT,
-                 "'%s': the signals of a panel have one unit, expected a comma between %s and %s",
+                 "'%s': the signals of a panel have one unit, expected a comma between "
+                 "%s and %s",
                  text, p->signals[0], name);
     }
     return STATUS_OK;
@@ -110,28 +117,39 @@ static status read_signals(const char *text, trace_panel *panels, int *count, fa
         p->with_zero = strcmp(signal->unit, "N") == 0 || strcmp(signal->unit, "V") == 0;
         p->wall = strcmp(signal->unit, "rad") == 0;
         p->impulses = *count == 0 && strcmp(signal->name, "force") == 0;
-        p->label = p->signals[1] != NULL ? signal->quantity : NULL;
+        if (p->signals[1] != NULL) {
+            p->label = signal->quantity;
+        } else {
+            p->label = NULL;
+        }
     }
     return STATUS_OK;
 }
 
 // ---- figures of runs
 
-owned_figure *run_figure_create(const char *title, const trace_panel *panels, int panel_count,
-                                const trace_run *runs, int run_count, const figure_options *o,
-                                fault *f)
+owned_figure *run_figure_create(const char *title, const trace_panel *panels,
+                                int panel_count, const trace_run *runs, int run_count,
+                                const figure_options *o, fault *f)
 {
     assert(run_count >= 1);
     trace_run all[TRACE_RUNS];
     trace_panel asked[FIGURE_PANELS];
-    panel_count = panels != NULL ? panel_count : USUAL_PANELS;
-    panels = panels != NULL ? panels : usual_panels;
+    if (panels == NULL) {
+        panel_count = USUAL_PANELS;
+    }
+    if (panels == NULL) {
+        panels = usual_panels;
+    }
     if (o->signals != NULL) {
-        FAIL_IF(read_signals(o->signals, asked, &panel_count, f) != STATUS_OK, NULL);
+        if (read_signals(o->signals, asked, &panel_count, f) != STATUS_OK) {
+            return NULL;
+        }
         panels = asked;
     }
     if (run_count + (o->overlay != NULL) > TRACE_RUNS) {
-        fault_set(f, STATUS_BAD_ARGUMENT, "a figure shows at most %d runs and data", TRACE_RUNS);
+        fault_set(f, STATUS_BAD_ARGUMENT, "a figure shows at most %d runs and data",
+                  TRACE_RUNS);
         return NULL;
     }
 
@@ -146,7 +164,8 @@ owned_figure *run_figure_create(const char *title, const trace_panel *panels, in
             run_close(overlay);
             return NULL;
         }
-        all[run_count++] = (trace_run){runs[0].scenario, &overlay->result, name, .points = true};
+        all[run_count++] =
+            (trace_run){runs[0].scenario, &overlay->result, name, .points = true};
     }
 
     owned_figure *drawn = trace_figure_create(title, panels, panel_count, all, run_count);

@@ -10,20 +10,24 @@
 #define VELOCITY(body)     .signals = {body "_velocity"}
 #define ANGLE(body)        .signals = {body "_angle"}, .wall = true
 #define ACCELERATION(body) .signals = {body "_acceleration"}
-#define ENCODER(other)                                                                             \
+#define ENCODER(other)                                                                   \
     .label = "Hub angle", .signals = {"encoder", other}, .wall = true, .weight = 1.2
-#define TACHOMETER(other) .label = "Hub velocity", .signals = {"tachometer", other}, .weight = 1.2
-#define CONTACT(reading)                                                                           \
-    .label = "Contact force", .signals = {reading, "force"}, .with_zero = true, .weight = 1.4
-#define COMMAND                                                                                    \
+#define TACHOMETER(other)                                                                \
+    .label = "Hub velocity", .signals = {"tachometer", other}, .weight = 1.2
+#define CONTACT(reading)                                                                 \
+    .label = "Contact force", .signals = {reading, "force"}, .with_zero = true,          \
+    .weight = 1.4
+#define COMMAND                                                                          \
     .label = "Command <i>u</i>", .signals = {"command"}, .with_zero = true, .weight = 1.2
 
 // A figure of chapter 3, and one of the virtual rig; each has a scenario of its own name.
-#define RUN(number, name)                                                                          \
-    .id = number, .file = name, .scenario = "thesis/" name, .model = "printed; corrected dashed",  \
-    .beside = "arm.model=corrected", .names = {"printed", "corrected"}
-#define RIG(number, name)                                                                          \
-    .id = number, .file = name, .scenario = "thesis/" name, .model = "corrected, on the rig"
+#define RUN(number, name)                                                                \
+    .id = number, .file = name, .scenario = "thesis/" name,                              \
+    .model = "printed; corrected dashed", .beside = "arm.model=corrected",               \
+    .names = {"printed", "corrected"}
+#define RIG(number, name)                                                                \
+    .id = number, .file = name, .scenario = "thesis/" name,                              \
+    .model = "corrected, on the rig"
 
 // The time axis of chapter 2 is that of the simulations in figures 3.2 to 3.11.
 #define BENCH(number, name) RIG(number, name), .from = 0, .to = 1
@@ -48,7 +52,10 @@ int thesis_figure_count(void)
 const thesis_figure *thesis_figure_at(int i)
 {
     assert(i >= 0);
-    return i < FIGURES ? &thesis_figures[i] : NULL;
+    if (i < FIGURES) {
+        return &thesis_figures[i];
+    }
+    return NULL;
 }
 
 const thesis_figure *thesis_figure_find(const char *id)
@@ -64,9 +71,10 @@ const thesis_figure *thesis_figure_find(const char *id)
 
 // ---- recorded signals of the catalogue
 
-// The peak that the thesis prints for the run, as a point; its residual goes into the caption.
-static void add_printed_peak(owned_figure *o, const summary *m, const thesis_figure *which,
-                             GString *caption)
+// The peak that the thesis prints for the run, as a point; its residual goes into the
+// caption.
+static void add_printed_peak(owned_figure *o, const summary *m,
+                             const thesis_figure *which, GString *caption)
 {
     double forces[TABLE_VOLTAGES], delays[TABLE_VOLTAGES];
     int column = which->printed_voltage - 1;
@@ -80,17 +88,20 @@ static void add_printed_peak(owned_figure *o, const summary *m, const thesis_fig
     peak[0] = m->first_contact_s + delays[column];
     peak[1] = forces[column];
     owned_figure_add(o, 0,
-                     (figure_series){"Table 4.3", "Table 4.3", peak, peak + 1, 1, .colour = 5,
-                                     .no_line = true, .marker = MARKER_DIAMOND, .radius = 2.6});
+                     (figure_series){"Table 4.3", "Table 4.3", peak, peak + 1, 1,
+                                     .colour = 5, .no_line = true,
+                                     .marker = MARKER_DIAMOND, .radius = 2.6});
 
     // how far the run is from it
     double more = m->first_pulse_peak_N - forces[column];
     double late = m->first_pulse_time_to_peak_s - delays[column];
     text_append(caption,
-                " Diamond: the peak of Table 4.3, %.2f\u2009N after %.0f\u2009ms; that of the "
-                "printed run's first pulse is %.2f\u2009N %s and comes %.0f\u2009ms %s.",
-                forces[column], 1e3 * delays[column], fabs(more), more < 0 ? "lower" : "higher",
-                1e3 * fabs(late), late < 0 ? "earlier" : "later");
+                " Diamond: the peak of Table 4.3, %.2f\u2009N after %.0f\u2009ms; "
+                "that of the printed run's first pulse is %.2f\u2009N %s and comes "
+                "%.0f\u2009ms %s.",
+                forces[column], 1e3 * delays[column], fabs(more),
+                more < 0 ? "lower" : "higher", 1e3 * fabs(late),
+                late < 0 ? "earlier" : "later");
 }
 
 // What the catalogue adds to a figure of recorded signals.
@@ -118,12 +129,14 @@ static void add_facts(owned_figure *drawn, const summary *m, const thesis_figure
 }
 
 // Opens it; *of (may be NULL) is the scenario, which the artwork owns.
-static status open_signals(const figure_order *order, artwork *out, const scenario **of, fault *f)
+static status open_signals(const figure_order *order, artwork *out, const scenario **of,
+                           fault *f)
 {
     const thesis_figure *which = order->which;
     trace_run runs[2];
     trace_panel panels[THESIS_PANELS];
-    opened_run *opened[2] = {run_open_changed(which->scenario, NULL, 0, order->monitor, f)};
+    opened_run *opened[2] = {
+        run_open_changed(which->scenario, NULL, 0, order->monitor, f)};
     owned_figure *drawn = NULL;
 
     // the scenario, and again with the change of the second run
@@ -135,8 +148,9 @@ static status open_signals(const figure_order *order, artwork *out, const scenar
     // the same panels for each
     if (opened[count - 1] != NULL) {
         for (int i = 0; i < count; i++) {
-            runs[i] = (trace_run){&opened[i]->scenario, &opened[i]->result, which->names[i],
-                                  .steps = which->steps && i == 0, .brief = i == 1};
+            runs[i] =
+                (trace_run){&opened[i]->scenario, &opened[i]->result, which->names[i],
+                            .steps = which->steps && i == 0, .brief = i == 1};
         }
         memcpy(panels, which->panels, sizeof panels);
         panels[0].modes = which->modes;
@@ -168,26 +182,33 @@ status scenario_figure_open(const char *name, run_monitor *monitor, artwork *out
 
 // ---- any figure
 
-status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f)
+status figure_open(const thesis_figure *which, const figure_options *o, artwork *out,
+                   fault *f)
 {
     FAULT_IF(which->open != NULL && (o->overlay != NULL || o->signals != NULL), f,
-             STATUS_BAD_ARGUMENT, "%s shows no recorded signals that %s could choose or lie over",
-             which->id, o->overlay != NULL ? o->overlay : o->signals);
+             STATUS_BAD_ARGUMENT,
+             "%s shows no recorded signals that %s could choose or lie over", which->id,
+             o->overlay != NULL ? o->overlay : o->signals);
     // "Fig. 3.4  ...", "Table 4.1  ...", or the caption alone
-    const bool table = which->id[0] == 'T', numbered = table || g_ascii_isdigit(which->id[0]);
+    const bool table = which->id[0] == 'T',
+               numbered = table || g_ascii_isdigit(which->id[0]);
     g_autofree char *title = numbered ? text_printf("%s %s  %s", table ? "Table" : "Fig.",
                                                     which->id + table, which->caption)
                                       : g_strdup(which->caption);
     const figure_order order = {which, title, o, NULL};
-    return which->open != NULL ? which->open(&order, out, f) : open_signals(&order, out, NULL, f);
+    if (which->open != NULL) {
+        return which->open(&order, out, f);
+    }
+    return open_signals(&order, out, NULL, f);
 }
 
-status figure_draw(const char *id, const figure_options *o, const char *folder, const char *formats,
-                   FILE *tex, fault *f)
+status figure_draw(const char *id, const figure_options *o, const char *folder,
+                   const char *formats, FILE *tex, fault *f)
 {
     const thesis_figure *which = thesis_figure_find(id);
-    FAULT_IF(which == NULL, f, STATUS_BAD_ARGUMENT, "there is no figure '%s', expected %s to %s",
-             id, thesis_figures[0].id, thesis_figures[FIGURES - 1].id);
+    FAULT_IF(which == NULL, f, STATUS_BAD_ARGUMENT,
+             "there is no figure '%s', expected %s to %s", id, thesis_figures[0].id,
+             thesis_figures[FIGURES - 1].id);
 
     // every format is known before anything is computed
     g_auto(GStrv) list = g_strsplit(formats, ",", -1);

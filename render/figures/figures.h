@@ -1,5 +1,5 @@
-// The catalogue of figures and tables: those of the thesis and additional maps. Each is drawn from
-// runs of the program.
+// The catalogue of figures and tables: those of the thesis and additional maps. Each is
+// drawn from runs of the program.
 #pragma once
 
 #include "src/scenario/scenario.h"
@@ -17,14 +17,17 @@ typedef struct thesis_figure {
     const char *caption;  // plain, one line
     const char *scenario; // "thesis/fig-3-4"; NULL: it needs no run
     const char *model;    // plain, the model used: "printed; corrected dashed"
-    const char *note;     // markup, appended to the caption's description of the run; NULL for none
-    const char *beside;   // recorded signals: a second run with this change, "arm.links=8", or NULL
+    const char
+        *note; // markup, appended to the caption's description of the run; NULL for none
+    const char *
+        beside; // recorded signals: a second run with this change, "arm.links=8", or NULL
     const char *names[2]; // of both runs
-    double from, to;      // recorded signals: ends of the time axis [s]; from >= to: automatic
-    bool steps;           // a point at every step of the first run
-    bool modes;           // the controller's second mode is shaded instead of contact
-    bool slow;            // takes as long as all others, so it is started first
-    int printed_voltage;  // the peak of Table 4.3 in this column as a point, 1 to 4; 0: none
+    double from, to; // recorded signals: ends of the time axis [s]; from >= to: automatic
+    bool steps;      // a point at every step of the first run
+    bool modes;      // the controller's second mode is shaded instead of contact
+    bool slow;       // takes as long as all others, so it is started first
+    int printed_voltage; // the peak of Table 4.3 in this column as a point, 1 to 4; 0:
+                         // none
     // opens it; NULL for recorded signals in `panels`
     status (*open)(const figure_order *order, artwork *out, fault *f);
     int variant; // of what one function opens in several ways
@@ -40,10 +43,11 @@ struct figure_order {
     run_monitor *monitor; // of recorded signals: of the first run; NULL: nobody looks on
 };
 
-// The functions that open drawn figures: each makes the runs it needs and fails as they do; the
-// title is copied.
+// The functions that open drawn figures: each makes the runs it needs and fails as they
+// do; the title is copied.
 #define TRACED(...)
-#define DRAWN(function, ...) status function(const figure_order *order, artwork *out, fault *f);
+#define DRAWN(function, ...)                                                             \
+    status function(const figure_order *order, artwork *out, fault *f);
 #include "render/figures/catalogue.inc"
 #undef TRACED
 #undef DRAWN
@@ -55,38 +59,40 @@ const thesis_figure *thesis_figure_at(int i);
 // A figure by its id or the name of its files, or NULL.
 const thesis_figure *thesis_figure_find(const char *id);
 
-// Makes the runs that the figure needs and opens it. Figures of recorded signals run their scenario
-// twice unless they stand alone, with the corrected model as a thin dashed line. To be ended with
-// artwork_finish. Returns the status of the runs.
-status figure_open(const thesis_figure *which, const figure_options *o, artwork *out, fault *f);
+// Makes the runs that the figure needs and opens it. Figures of recorded signals run
+// their scenario twice unless they stand alone, with the corrected model as a thin dashed
+// line. To be ended with artwork_finish. Returns the status of the runs.
+status figure_open(const thesis_figure *which, const figure_options *o, artwork *out,
+                   fault *f);
 
-// Opens the usual panels of a scenario's run, whose name and arm stay valid as long as the artwork.
-// Returns the status of the run, STATUS_STOPPED if `monitor` (may be NULL) requested it.
+// Opens the usual panels of a scenario's run, whose name and arm stay valid as long as
+// the artwork. Returns the status of the run, STATUS_STOPPED if `monitor` (may be NULL)
+// requested it.
 status scenario_figure_open(const char *name, run_monitor *monitor, artwork *out,
                             const scenario **s, fault *f);
 
-// Draws a figure to FOLDER/fig-3-4.png and so on for every format in the list ("png,pdf,svg") and
-// writes FOLDER/fig-3-4.csv; with `tex` (may be NULL) it prints the figure environment of the first
-// format's file there. The folder is created if it does not exist. Options that are all zero: in
-// colour, at its own width, 200 dpi. STATUS_BAD_ARGUMENT for an unknown id or format, otherwise the
-// status of the run or of writing: STATUS_STOPPED, and nothing is written, once stop_everything is
-// set.
-status figure_draw(const char *id, const figure_options *o, const char *folder, const char *formats,
-                   FILE *tex, fault *f);
+// Draws a figure to FOLDER/fig-3-4.png and so on for every format in the list
+// ("png,pdf,svg") and writes FOLDER/fig-3-4.csv; with `tex` (may be NULL) it prints the
+// figure environment of the first format's file there. The folder is created if it does
+// not exist. Options that are all zero: in colour, at its own width, 200 dpi.
+// STATUS_BAD_ARGUMENT for an unknown id or format, otherwise the status of the run or of
+// writing: STATUS_STOPPED, and nothing is written, once stop_everything is set.
+status figure_draw(const char *id, const figure_options *o, const char *folder,
+                   const char *formats, FILE *tex, fault *f);
 
 // --- Tables 4.1 to 4.3, computed once for all pages that show them
 
-// All rows, computed at the first call, on any thread; valid until the program ends. NULL with a
-// reason if they cannot be computed.
+// All rows, computed at the first call, on any thread; valid until the program ends. NULL
+// with a reason if they cannot be computed.
 const thesis_tables *computed_tables(fault *f);
 
-// The row of a table ("4.1"), model ("printed") and quantity ("max_force_energy"), which must
-// exist.
-const table_row *computed_row(const thesis_tables *t, const char *table, const char *model,
-                              const char *quantity);
+// The row of a table ("4.1"), model ("printed") and quantity ("max_force_energy"), which
+// must exist.
+const table_row *computed_row(const thesis_tables *t, const char *table,
+                              const char *model, const char *quantity);
 
-// The defaults of both models, of the parameters from *next on that are of its group, "arm" or
-// "motor", as a table; *next is the first of another group then.
+// The defaults of both models, of the parameters from *next on that are of its group,
+// "arm" or "motor", as a table; *next is the first of another group then.
 table_page *defaults_table(int *next);
 
 // --- scenarios run for figures
@@ -97,18 +103,19 @@ typedef struct opened_run {
     run_result result; // with its trace
 } opened_run;
 
-// Opens and runs a scenario, with one parameter changed if `change` ("arm.model=corrected") is not
-// NULL. NULL with the reason if that fails. To be ended with run_close, which accepts NULL.
+// Opens and runs a scenario, with one parameter changed if `change`
+// ("arm.model=corrected") is not NULL. NULL with the reason if that fails. To be ended
+// with run_close, which accepts NULL.
 opened_run *run_open(const char *name, const char *change, fault *f);
 void run_close(void *run);
 
-// The same with several changes, each "PATH=VALUE". STATUS_STOPPED if `monitor` (may be NULL)
-// requested it.
+// The same with several changes, each "PATH=VALUE". STATUS_STOPPED if `monitor` (may be
+// NULL) requested it.
 opened_run *run_open_changed(const char *name, const char *const *changes, int count,
                              run_monitor *monitor, fault *f);
 
-// A figure of empty panels with an order's title and a run of its scenario, which it owns: *run.
-// NULL with the reason if the run fails.
+// A figure of empty panels with an order's title and a run of its scenario, which it
+// owns: *run. NULL with the reason if the run fails.
 owned_figure *run_plot_create(const figure_order *order, const char *change, int panels,
                               const opened_run **run, fault *f);
 
@@ -117,32 +124,34 @@ const char *nearest_signal(const char *name);
 
 // --- their figures
 
-// A figure of the runs, which it borrows: o->signals in place of `panels` (NULL: the usual ones of
-// a run), o->overlay as points with a panel of residuals, o->from to o->to, and the look. NULL with
-// the status of overlay_read, or STATUS_BAD_ARGUMENT for an unknown signal or too many runs.
-owned_figure *run_figure_create(const char *title, const trace_panel *panels, int panel_count,
-                                const trace_run *runs, int run_count, const figure_options *o,
-                                fault *f);
+// A figure of the runs, which it borrows: o->signals in place of `panels` (NULL: the
+// usual ones of a run), o->overlay as points with a panel of residuals, o->from to o->to,
+// and the look. NULL with the status of overlay_read, or STATUS_BAD_ARGUMENT for an
+// unknown signal or too many runs.
+owned_figure *run_figure_create(const char *title, const trace_panel *panels,
+                                int panel_count, const trace_run *runs, int run_count,
+                                const figure_options *o, fault *f);
 
 // --- from recipes: files that define which runs, data and tables a figure shows, and how
 
-// Opens the recipe at `path`: reads it, makes its runs and describes its figure with the look of
-// the options. Faults in the recipe are reported with file:line:column. To be ended with
-// artwork_finish. STATUS_BAD_SCENARIO if any was reported (*f is then empty), otherwise the status
-// of runs and files.
-status recipe_open(const char *path, const figure_options *o, fault_handler report, void *context,
-                   artwork *out, fault *f);
+// Opens the recipe at `path`: reads it, makes its runs and describes its figure with the
+// look of the options. Faults in the recipe are reported with file:line:column. To be
+// ended with artwork_finish. STATUS_BAD_SCENARIO if any was reported (*f is then empty),
+// otherwise the status of runs and files.
+status recipe_open(const char *path, const figure_options *o, fault_handler report,
+                   void *context, artwork *out, fault *f);
 
 // Whether a file is a recipe: YAML with panels. False for a file that cannot be read.
 bool recipe_is(const char *path);
 
-// --- the report: every figure and table of the catalogue, or the given runs and recipes, each with
-// its origin and the command that makes it, as one web page and one PDF
+// --- the report: every figure and table of the catalogue, or the given runs and recipes,
+// each with its origin and the command that makes it, as one web page and one PDF
 
-// Writes FOLDER/report.html, which needs no other file and no network, and FOLDER/report.pdf.
-// `names` are `count` scenarios and recipe files; without any the catalogue is shown. The folder is
-// created if it does not exist. Returns the status of runs and writing; STATUS_STOPPED if `monitor`
-// (may be NULL) requested it, with both files unchanged. Counts in the monitor each item when it is
-// computed and again when it is drawn on the page.
-status report_write(const char *folder, char *const *names, int count, run_monitor *monitor,
-                    fault *f);
+// Writes FOLDER/report.html, which needs no other file and no network, and
+// FOLDER/report.pdf. `names` are `count` scenarios and recipe files; without any the
+// catalogue is shown. The folder is created if it does not exist. Returns the status of
+// runs and writing; STATUS_STOPPED if `monitor` (may be NULL) requested it, with both
+// files unchanged. Counts in the monitor each item when it is computed and again when it
+// is drawn on the page.
+status report_write(const char *folder, char *const *names, int count,
+                    run_monitor *monitor, fault *f);

@@ -1,4 +1,5 @@
-// Figures of one impact: the force pulse, and what the thesis's predictors assume of the motion.
+// Figures of one impact: the force pulse, and what the thesis's predictors assume of the
+// motion.
 #include "render/figures/figures.h"
 
 #include <math.h>
@@ -12,13 +13,15 @@ typedef struct impact_figure {
     double contact, peak_time, peak; // first pulse [s], [s], [N]
 } impact_figure;
 
-// Runs the scenario and describes what all these figures share, of `panels` panels. Without a plot
-// if it fails.
+// Runs the scenario and describes what all these figures share, of `panels` panels.
+// Without a plot if it fails.
 static impact_figure open_impact(const figure_order *order, int panels, fault *f)
 {
     impact_figure fig = {.plot = NULL};
     owned_figure *o = run_plot_create(order, NULL, panels, &fig.run, f);
-    FAIL_IF(o == NULL, fig);
+    if (o == NULL) {
+        return fig;
+    }
 
     // the pulse that the figure is about
     const summary *m = &fig.run->result.summary;
@@ -37,12 +40,15 @@ static impact_figure open_impact(const figure_order *order, int panels, fault *f
 }
 
 // A recorded signal over time, in the rows' own numbers.
-static figure_series *add_signal(impact_figure *fig, int panel, const char *name, const char *label)
+static figure_series *add_signal(impact_figure *fig, int panel, const char *name,
+                                 const char *label)
 {
-    const trace_run rows = {
-        .scenario = &fig->run->scenario, .result = &fig->run->result, .points = true};
+    const trace_run rows = {.scenario = &fig->run->scenario,
+                            .result = &fig->run->result,
+                            .points = true};
     const int index = signal_index(name);
-    figure_series *s = owned_figure_add(fig->plot, panel, trace_series(&rows, index, fig->plot));
+    figure_series *s =
+        owned_figure_add(fig->plot, panel, trace_series(&rows, index, fig->plot));
     s->label = label;
     s->style = LINE_SOLID;
     fig->plot->panels[panel].y.name = name;
@@ -67,11 +73,14 @@ static void show_pulse(impact_figure *fig, double low, double high)
 status figure_force_profile(const figure_order *order, artwork *out, fault *f)
 {
     impact_figure fig = open_impact(order, 1, f);
-    FAIL_IF(fig.plot == NULL, f->code);
+    if (fig.plot == NULL) {
+        return f->code;
+    }
     owned_figure *o = fig.plot;
     figure_panel *panel = &o->panels[0];
     const summary *m = &fig.run->result.summary;
-    double pulse = isfinite(m->first_pulse_s) ? m->first_pulse_s : fig.peak_time - fig.contact;
+    double pulse =
+        isfinite(m->first_pulse_s) ? m->first_pulse_s : fig.peak_time - fig.contact;
     add_signal(&fig, 0, "force", NULL);
     panel->y.label = "Contact force <i>f</i>";
     panel->weight = 1.7;
@@ -84,8 +93,9 @@ status figure_force_profile(const figure_order *order, artwork *out, fault *f)
     panel->impulse_label = "Impulse <i>p</i>";
     panel->impulse_unit = "N s";
 
-    panel->levels = OWNED(o, figure_level, fig.peak,
-                          owned_figure_printf(o, "<i>f</i><sub>max</sub> = %.3g\u2009N", fig.peak));
+    panel->levels =
+        OWNED(o, figure_level, fig.peak,
+              owned_figure_printf(o, "<i>f</i><sub>max</sub> = %.3g\u2009N", fig.peak));
     panel->level_count = 1;
 
     // the contact is shaded; its labels stand above the measure of T
@@ -93,14 +103,16 @@ status figure_force_profile(const figure_order *order, artwork *out, fault *f)
     o->figure.intervals = OWNED(o, figure_interval, fig.contact, fig.contact + pulse);
     o->figure.interval_count = 1;
     show_pulse(&fig, fig.contact - 0.25 * pulse, fig.contact + 1.25 * pulse);
-    o->figure.caption = "First pulse of corrected/first-impact, 1\u2009V. The impact is an impulse "
-                        "that takes no time (arrow, its own axis); the force that follows is "
-                        "finite and grows to its peak while the beam bends. Shaded: contact.";
+    o->figure.caption =
+        "First pulse of corrected/first-impact, 1\u2009V. The impact is an impulse "
+        "that takes no time (arrow, its own axis); the force that follows is finite "
+        "and grows to its peak while the beam bends. Shaded: contact.";
 
     // T stands above the peak, from contact to it
-    o->figure.measure = OWNED(
-        o, figure_measure, fig.contact, fig.peak_time, 1.13 * fig.peak,
-        owned_figure_printf(o, "<i>T</i> = %.1f\u2009ms", 1e3 * (fig.peak_time - fig.contact)));
+    o->figure.measure =
+        OWNED(o, figure_measure, fig.contact, fig.peak_time, 1.13 * fig.peak,
+              owned_figure_printf(o, "<i>T</i> = %.1f\u2009ms",
+                                  1e3 * (fig.peak_time - fig.contact)));
     *out = artwork_of_owned(o);
     g_clear_pointer(&out->alternative, g_free); // its title says it
     return STATUS_OK;
@@ -119,8 +131,8 @@ static const sample *row_after(const trace *t)
     return &t->rows[0];
 }
 
-// What (4.19) assumes of a body from contact to peak: a velocity that falls to zero in a straight
-// line, and the angle that goes with it.
+// What (4.19) assumes of a body from contact to peak: a velocity that falls to zero in a
+// straight line, and the angle that goes with it.
 typedef struct assumption {
     double angle, velocity; // just after the impact [rad], [rad/s]
     double period;          // from contact to peak [s]
@@ -130,11 +142,14 @@ typedef struct assumption {
 // The assumed angle or velocity, `since` seconds after first contact.
 static double assumed_at(const assumption *a, double since)
 {
-    return a->of_angle ? a->angle + a->velocity * (since - since * since / (2 * a->period))
-                       : a->velocity * (1 - since / a->period);
+    if (a->of_angle) {
+        return a->angle + a->velocity * (since - since * since / (2 * a->period));
+    }
+    return a->velocity * (1 - since / a->period);
 }
 
-static void add_assumption(impact_figure *fig, int panel, const assumption *a, const char *label)
+static void add_assumption(impact_figure *fig, int panel, const assumption *a,
+                           const char *label)
 {
     double *x = owned_figure_numbers(fig->plot, ASSUMED_POINTS);
     double *y = owned_figure_numbers(fig->plot, ASSUMED_POINTS);
@@ -148,8 +163,9 @@ static void add_assumption(impact_figure *fig, int panel, const assumption *a, c
 
     // dashed, as it is no result of the run
     owned_figure_add(fig->plot, panel,
-                     (figure_series){"assumed", label, .x = x, .y = y, .count = ASSUMED_POINTS,
-                                     .colour = 5, .style = LINE_DASHED});
+                     (figure_series){"assumed", label, .x = x, .y = y,
+                                     .count = ASSUMED_POINTS, .colour = 5,
+                                     .style = LINE_DASHED});
 }
 
 // Largest distance of a recorded signal from the assumption between contact and peak.
@@ -161,7 +177,8 @@ static double departure(const impact_figure *fig, const char *name, const assump
     for (size_t i = 0; i < t->row_count; i++) {
         double since = t->rows[i].time - fig->contact;
         if (t->rows[i].contact > 0.5 && since >= 0 && since <= a->period) {
-            most = fmax(most, fabs(signal_value(&t->rows[i], index) - assumed_at(a, since)));
+            most =
+                fmax(most, fabs(signal_value(&t->rows[i], index) - assumed_at(a, since)));
         }
     }
     return most;
@@ -172,11 +189,14 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
     static const char *const signals[2][PANELS] = {{"first_velocity", "last_velocity"},
                                                    {"first_angle", "last_angle"}};
     static const char *const labels[2][PANELS] = {
-        {"Angular velocity <i>θ̇</i><sub>2</sub>", "Angular velocity <i>θ̇</i><sub>3</sub>"},
+        {"Angular velocity <i>θ̇</i><sub>2</sub>",
+         "Angular velocity <i>θ̇</i><sub>3</sub>"},
         {"Angle <i>θ</i><sub>2</sub>", "Angle <i>θ</i><sub>3</sub>"}};
     const bool of_angle = order->which->variant == 1;
     impact_figure fig = open_impact(order, PANELS, f);
-    FAIL_IF(fig.plot == NULL, f->code);
+    if (fig.plot == NULL) {
+        return f->code;
+    }
 
     // where the assumed motion starts
     const sample *after = row_after(&fig.run->result.trace);
@@ -201,12 +221,13 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
     show_pulse(&fig, fig.contact - 0.4 * period, fig.contact + 1.4 * period);
     fig.plot->figure.caption = owned_figure_printf(
         fig.plot,
-        "First and last link of corrected/first-impact from first contact to the peak of the "
-        "force, <i>T</i> = %.1f\u2009ms. %s. Largest departure between them: %.2g and "
-        "%.2g\u2009%s.",
+        "First and last link of corrected/first-impact from first contact to "
+        "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
+        "departure between them: %.2g and %.2g\u2009%s.",
         1e3 * period,
-        of_angle ? "The angles that belong to velocities falling to zero in a straight line"
-                 : "The predictors assume that velocities fall to zero in a straight line",
+        of_angle
+            ? "The angles that belong to velocities falling to zero in a straight line"
+            : "The predictors assume that velocities fall to zero in a straight line",
         most[0], most[1], of_angle ? "rad" : "rad/s");
     *out = artwork_of_owned(fig.plot);
     return STATUS_OK;

@@ -1,5 +1,5 @@
-// What the thesis prints in Tables 4.1 to 4.3 as points, the printed model as lines, and below them
-// how far each point is from its line.
+// What the thesis prints in Tables 4.1 to 4.3 as points, the printed model as lines, and
+// below them how far each point is from its line.
 #include "render/figures/figures.h"
 
 #include "render/plot/drawing.h"
@@ -29,14 +29,17 @@ static const printed_quantity forces[] = {
     {"max_force_energy", "energy principle", MARKER_CIRCLE, 0},
     {"max_force_dynamics", "impact dynamics", MARKER_SQUARE, 5},
     {"max_force_simulation", "simulation", MARKER_TRIANGLE, 2}};
-static const printed_quantity delays[] = {{"delay_dynamics", "impact dynamics", MARKER_SQUARE, 5},
-                                          {"delay_simulation", "simulation", MARKER_TRIANGLE, 2}};
+static const printed_quantity delays[] = {{"delay_dynamics", "impact dynamics",
+                                           MARKER_SQUARE, 5},
+                                          {"delay_simulation", "simulation",
+                                           MARKER_TRIANGLE, 2}};
 static const printed_kind kinds[] = {{"force", "Peak force", "N", 1, forces, 3},
                                      {"delay", "Delay", "ms", 1e3, delays, 2}};
 
 // The points and lines of a table, and the panel of their distances.
 static void add_table(owned_figure *plot, const printed_kind *kind, const double *voltage,
-                      const table_row *const *rows, figure_panel *shown, figure_panel *distances)
+                      const table_row *const *rows, figure_panel *shown,
+                      figure_panel *distances)
 {
     static const figure_level zero = {0};
     int panel = (int)(shown - plot->panels), below = (int)(distances - plot->panels);
@@ -45,7 +48,8 @@ static void add_table(owned_figure *plot, const printed_kind *kind, const double
         const printed_quantity *of = &kind->quantities[q];
         double *printed = owned_figure_numbers(plot, TABLE_VOLTAGES);
         double *computed = owned_figure_numbers(plot, TABLE_VOLTAGES);
-        double *residual = owned_figure_numbers(plot, TABLE_VOLTAGES); // [% of the thesis's]
+        double *residual =
+            owned_figure_numbers(plot, TABLE_VOLTAGES); // [% of the thesis's]
         for (int i = 0; i < TABLE_VOLTAGES; i++) {
             printed[i] = kind->scale * rows[q]->printed[i];
             computed[i] = kind->scale * rows[q]->computed[i];
@@ -77,20 +81,24 @@ static void add_table(owned_figure *plot, const printed_kind *kind, const double
 
     // 1, 2, 5, 10 V are nearly even on a logarithmic axis
     *shown = (figure_panel){
-        owned_figure_printf(plot, "Table %s: <i>k</i><sub>2</sub> × %g", rows[0]->table, factor),
+        owned_figure_printf(plot, "Table %s: <i>k</i><sub>2</sub> × %g", rows[0]->table,
+                            factor),
         .weight = VALUES_WEIGHT,
         .keyless = true,
         .y = {.name = name, .label = kind->axis, .unit = kind->unit, .with_zero = true},
         .series = lines,
         .series_count = 2 * kind->count};
-    *distances = (figure_panel){
-        .weight = RESIDUALS_WEIGHT,
-        .keyless = true,
-        .levels = &zero,
-        .level_count = 1,
-        .y = {.name = distance, .label = "Residual", .unit = "%", .with_zero = true, .room = 0.12},
-        .series = plot->series[below],
-        .series_count = kind->count};
+    *distances = (figure_panel){.weight = RESIDUALS_WEIGHT,
+                                .keyless = true,
+                                .levels = &zero,
+                                .level_count = 1,
+                                .y = {.name = distance,
+                                      .label = "Residual",
+                                      .unit = "%",
+                                      .with_zero = true,
+                                      .room = 0.12},
+                                .series = plot->series[below],
+                                .series_count = kind->count};
 }
 
 status printed_values_figure(const figure_order *order, artwork *out, fault *f)
@@ -99,15 +107,18 @@ status printed_values_figure(const figure_order *order, artwork *out, fault *f)
     static const figure_tick voltages[] = {{1, "1"}, {2, "2"}, {5, "5"}, {10, "10"}};
     const printed_kind *kind = &kinds[order->which->variant];
     const thesis_tables *all = computed_tables(f);
-    FAIL_IF(all == NULL, f->code);
+    if (all == NULL) {
+        return f->code;
+    }
 
     owned_figure *plot = owned_figure_create(PANELS, "%s", order->title);
     figure *fig = &plot->figure;
     fig->caption = owned_figure_printf(
         plot,
-        "Points: printed in Tables 4.1 to 4.3. Dashed: the printed model, whose constants were "
-        "inferred from these tables (docs/explanation/model.md). Residual: what the model gives "
-        "beyond what is printed, in per cent of that. %s.",
+        "Points: printed in Tables 4.1 to 4.3. Dashed: the printed model, "
+        "whose constants were inferred from these tables "
+        "(docs/explanation/model.md). Residual: what the model gives beyond "
+        "what is printed, in per cent of that. %s.",
         picture_software());
     fig->columns = TABLES;
     fig->common_legend = true;
@@ -120,7 +131,8 @@ status printed_values_figure(const figure_order *order, artwork *out, fault *f)
                            .tick_count = (int)G_N_ELEMENTS(voltages)};
     figure_take_look(fig, &order->options->look);
 
-    // panels side by side have their residuals in a row below, panels in a column next to them
+    // panels side by side have their residuals in a row below, panels in a column next to
+    // them
     bool rows_of_tables = figure_columns(fig) == TABLES;
     for (int t = 0; t < TABLES; t++) {
         const table_row *rows[QUANTITIES];

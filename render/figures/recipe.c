@@ -12,7 +12,10 @@
 static char *path_of(const char *recipe_path, const char *name)
 {
     g_autofree char *folder = g_path_get_dirname(recipe_path);
-    return g_path_is_absolute(name) ? g_strdup(name) : g_build_filename(folder, name, NULL);
+    if (g_path_is_absolute(name)) {
+        return g_strdup(name);
+    }
+    return g_build_filename(folder, name, NULL);
 }
 
 static status open_data(recipe *r, recipe_source *s, const char *path, fault *f)
@@ -29,37 +32,41 @@ static status open_data(recipe *r, recipe_source *s, const char *path, fault *f)
     g_autofree char *name = NULL;
     opened_run *data = owned_figure_own(r->plot, g_new0(opened_run, 1), run_close);
     s->run = data;
-    return overlay_read_column(&data->result.trace, path, s->column, s->shift, shown, count, &name,
-                               f);
+    return overlay_read_column(&data->result.trace, path, s->column, s->shift, shown,
+                               count, &name, f);
 }
 
 static status open_source(recipe *r, recipe_source *s, const char *recipe_path, fault *f)
 {
     fault why = {0};
     status code = STATUS_OK;
-    g_autofree char *path = path_of(recipe_path, s->kind == SOURCE_RUN ? s->scenario : s->file);
+    g_autofree char *path =
+        path_of(recipe_path, s->kind == SOURCE_RUN ? s->scenario : s->file);
 
     if (s->kind == SOURCE_RUN) {
         bool own = g_file_test(path, G_FILE_TEST_IS_REGULAR);
-        s->run = owned_figure_own(
-            r->plot,
-            run_open_changed(own ? path : s->scenario, s->change, s->change_count, NULL, &why),
-            run_close);
+        s->run = owned_figure_own(r->plot,
+                                  run_open_changed(own ? path : s->scenario, s->change,
+                                                   s->change_count, NULL, &why),
+                                  run_close);
         code = why.code;
     } else if (s->kind == SOURCE_DATA) {
         code = open_data(r, s, path, &why);
     } else {
         const char *const keys[] = {s->x, s->y, s->z};
-        code = sweep_table_read(path, keys, s->z != NULL ? 3 : 2, s->columns, &s->count, &why);
+        code = sweep_table_read(path, keys, s->z != NULL ? 3 : 2, s->columns, &s->count,
+                                &why);
         for (int i = 0; i < SWEEP_TABLE_COLUMNS; i++) {
             owned_figure_own(r->plot, s->columns[i], free);
         }
     }
 
     // the place in the recipe stands before what went wrong
-    return code == STATUS_OK ? code
-                             : fault_set(f, code, "%s:%d:%d: %s", recipe_path, s->at.line,
-                                         s->at.column, why.text);
+    if (code == STATUS_OK) {
+        return code;
+    }
+    return fault_set(f, code, "%s:%d:%d: %s", recipe_path, s->at.line, s->at.column,
+                     why.text);
 }
 
 // ---- labels
@@ -74,7 +81,10 @@ static const char *label_of(recipe *r, const recipe_source *s)
 static const scenario *first_scenario(const recipe *r)
 {
     static const scenario none;
-    return r->sources[0].run != NULL ? &r->sources[0].run->scenario : &none;
+    if (r->sources[0].run != NULL) {
+        return &r->sources[0].run->scenario;
+    }
+    return &none;
 }
 
 // The colour of curve number `index` of a panel; the first ones differ most.
@@ -84,14 +94,19 @@ static int colour_of(int index)
     return colours[index % (int)G_N_ELEMENTS(colours)];
 }
 
-// The axis of a table's column: label and unit of a parameter or summary quantity, otherwise the
-// key itself.
+// The axis of a table's column: label and unit of a parameter or summary quantity,
+// otherwise the key itself.
 static figure_axis column_axis(recipe *r, const char *key)
 {
     int parameter = parameter_find(key), quantity = summary_find(key);
-    const char *words = parameter >= 0  ? parameter_table[parameter].description
-                        : quantity >= 0 ? summary_table[quantity].label
-                                        : NULL;
+    const char *words;
+    if (parameter >= 0) {
+        words = parameter_table[parameter].description;
+    } else if (quantity >= 0) {
+        words = summary_table[quantity].label;
+    } else {
+        words = NULL;
+    }
 
     // what neither table describes goes by its own name, without a unit
     return described_axis(r->plot, key, words,
@@ -111,18 +126,21 @@ static void add_curve(recipe *r, int panel, const recipe_source *s)
     }
 
     // points are marked while they are few enough to be told apart
-    owned_figure_add(
-        r->plot, panel,
-        (figure_series){s->name, label_of(r, s), s->columns[0], s->columns[1], s->count,
-                        .colour = colour_of(index),
-                        .marker = s->count > 80 ? MARKER_NONE : MARKER_CIRCLE + index % 4});
+    owned_figure_add(r->plot, panel,
+                     (figure_series){s->name, label_of(r, s), s->columns[0],
+                                     s->columns[1], s->count, .colour = colour_of(index),
+                                     .marker = s->count > 80
+                                                   ? MARKER_NONE
+                                                   : MARKER_CIRCLE + index % 4});
 }
 
 static void add_map(recipe *r, int panel, const recipe_source *s)
 {
     figure_panel *p = &r->plot->panels[panel];
-    p->colours = OWNED(r->plot, figure_colours, .axis = column_axis(r, s->z), .bar = true);
-    figure_map *map = figure_grid(r->plot, s->columns[0], s->columns[1], s->columns[2], s->count);
+    p->colours =
+        OWNED(r->plot, figure_colours, .axis = column_axis(r, s->z), .bar = true);
+    figure_map *map =
+        figure_grid(r->plot, s->columns[0], s->columns[1], s->columns[2], s->count);
 
     // values that were drawn at random make no grid: dots with their shade
     if (map != NULL && map->columns > 1 && map->rows > 1) {
@@ -130,33 +148,40 @@ static void add_map(recipe *r, int panel, const recipe_source *s)
         return;
     }
     owned_figure_add(r->plot, panel,
-                     (figure_series){s->name, NULL, s->columns[0], s->columns[1], s->count,
-                                     .shade = s->columns[2], .no_line = true,
+                     (figure_series){s->name, NULL, s->columns[0], s->columns[1],
+                                     s->count, .shade = s->columns[2], .no_line = true,
                                      .marker = MARKER_CIRCLE, .radius = 2.4});
 }
 
 // ---- curves
 
-static void add_signal(recipe *r, int panel, const recipe_source *s, int index, int signals)
+static void add_signal(recipe *r, int panel, const recipe_source *s, int index,
+                       int signals)
 {
     figure_panel *p = &r->plot->panels[panel];
     const bool data = s->kind == SOURCE_DATA;
 
     // no room, or nothing measured
-    if (p->series_count == PANEL_SERIES || (data && !trace_has(&s->run->result.trace, index))) {
+    if (p->series_count == PANEL_SERIES ||
+        (data && !trace_has(&s->run->result.trace, index))) {
         return;
     }
 
     const trace_run run = {&s->run->scenario, &s->run->result, .points = data};
     const int slot = data ? 6 : colour_of(p->series_count);
-    figure_series *out = owned_figure_add(r->plot, panel, trace_series(&run, index, r->plot));
+    figure_series *out =
+        owned_figure_add(r->plot, panel, trace_series(&run, index, r->plot));
 
     // several signals of one run are told by their symbols, several runs by their labels
     const char *label = label_of(r, s);
     if (signals > 1) {
-        g_autofree char *symbol = trace_symbol(data ? first_scenario(r) : run.scenario, index);
-        label = r->source_count > 1 ? owned_figure_printf(r->plot, "%s %s", label, symbol)
-                                    : owned_figure_keep(r->plot, g_steal_pointer(&symbol));
+        g_autofree char *symbol =
+            trace_symbol(data ? first_scenario(r) : run.scenario, index);
+        if (r->source_count > 1) {
+            label = owned_figure_printf(r->plot, "%s %s", label, symbol);
+        } else {
+            label = owned_figure_keep(r->plot, g_steal_pointer(&symbol));
+        }
     }
 
     // measured data are points without a line
@@ -165,7 +190,11 @@ static void add_signal(recipe *r, int panel, const recipe_source *s, int index, 
     out->style = LINE_SOLID;
     out->colour = slot;
     out->no_line = data;
-    out->marker = data ? MARKER_CIRCLE : MARKER_NONE;
+    if (data) {
+        out->marker = MARKER_CIRCLE;
+    } else {
+        out->marker = MARKER_NONE;
+    }
 }
 
 // One signal of one source less that of another, at the instants of the first.
@@ -175,21 +204,30 @@ static void add_difference(recipe *r, int panel)
     const recipe_source *of = &r->sources[from->of], *less = &r->sources[from->less];
     figure_series *s =
         owned_figure_add(r->plot, panel,
-                         trace_difference(&of->run->result.trace, &less->run->result.trace,
+                         trace_difference(&of->run->result.trace,
+                                          &less->run->result.trace,
                                           signal_index(from->signals[0]), r->plot));
 
     // points where data are compared, else a line
     const bool data = of->kind == SOURCE_DATA;
     s->name = "difference";
-    s->colour = data ? 6 : 7;
+    if (data) {
+        s->colour = 6;
+    } else {
+        s->colour = 7;
+    }
     s->no_line = data;
-    s->marker = data ? MARKER_CIRCLE : MARKER_NONE;
+    if (data) {
+        s->marker = MARKER_CIRCLE;
+    } else {
+        s->marker = MARKER_NONE;
+    }
 }
 
 // ---- panels
 
-// "Contact force f (N)" of a signal, or the names of a table's columns, unless the recipe has a
-// word of its own.
+// "Contact force f (N)" of a signal, or the names of a table's columns, unless the recipe
+// has a word of its own.
 static void describe_axis(recipe *r, const recipe_panel *from, figure_axis *y)
 {
     figure_axis told = {0};
@@ -199,22 +237,36 @@ static void describe_axis(recipe *r, const recipe_panel *from, figure_axis *y)
         g_autofree char *symbol = trace_symbol(first_scenario(r), index);
         told.name = signal->name;
         told.unit = signal->unit;
-        told.label = from->compared ? owned_figure_printf(r->plot, "Difference of %s", symbol)
-                     : from->signal_count > 1
-                         ? signal->quantity
-                         : owned_figure_printf(r->plot, "%s %s", signal->quantity, symbol);
+        if (from->compared) {
+            told.label = owned_figure_printf(r->plot, "Difference of %s", symbol);
+        } else if (from->signal_count > 1) {
+            told.label = signal->quantity;
+        } else {
+            told.label = owned_figure_printf(r->plot, "%s %s", signal->quantity, symbol);
+        }
         if (from->signal_count == 1) {
-            y->symbol = owned_figure_printf(r->plot, "%s%s", from->compared ? "Δ" : "", symbol);
+            y->symbol =
+                owned_figure_printf(r->plot, "%s%s", from->compared ? "Δ" : "", symbol);
         }
     } else if (from->source_count > 0) {
         const recipe_source *table = &r->sources[from->sources[0]];
         told = column_axis(r, table->y);
-        y->room = table->z != NULL ? 0 : 0.05;
+        if (table->z != NULL) {
+            y->room = 0;
+        } else {
+            y->room = 0.05;
+        }
     }
     y->name = told.name;
     y->unit = told.unit;
-    y->label = y->label != NULL ? y->label : told.label;
-    y->scale = from->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR;
+    if (y->label == NULL) {
+        y->label = told.label;
+    }
+    if (from->logarithmic) {
+        y->scale = SCALE_LOGARITHMIC;
+    } else {
+        y->scale = SCALE_LINEAR;
+    }
 }
 
 // Describes a panel with its curves.
@@ -255,20 +307,32 @@ static void describe_panel(recipe *r, int panel)
 
 // ---- the page
 
-// The axis below all panels: time, or the first column of the first table; and what the recipe says
-// of it.
+// The axis below all panels: time, or the first column of the first table; and what the
+// recipe says of it.
 static void describe_horizontal(recipe *r, figure_axis *x)
 {
     const recipe_source *first = &r->sources[0];
     figure_axis told = {.name = "time", .label = "Time <i>t</i>", .unit = "s"};
     if (first->kind == SOURCE_TABLE) {
         told = column_axis(r, first->x);
-        x->room = first->z != NULL ? 0 : 0.03;
+        if (first->z != NULL) {
+            x->room = 0;
+        } else {
+            x->room = 0.03;
+        }
     }
     x->name = told.name;
-    x->label = x->label != NULL ? x->label : told.label;
-    x->unit = x->unit != NULL ? x->unit : told.unit;
-    x->scale = r->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR;
+    if (x->label == NULL) {
+        x->label = told.label;
+    }
+    if (x->unit == NULL) {
+        x->unit = told.unit;
+    }
+    if (r->logarithmic) {
+        x->scale = SCALE_LOGARITHMIC;
+    } else {
+        x->scale = SCALE_LINEAR;
+    }
 }
 
 static void describe(recipe *r, const figure_options *o)
@@ -301,18 +365,22 @@ static void describe(recipe *r, const figure_options *o)
     figure_take_range(shown, o);
 }
 
-status recipe_open(const char *path, const figure_options *o, fault_handler report, void *context,
-                   artwork *out, fault *f)
+status recipe_open(const char *path, const figure_options *o, fault_handler report,
+                   void *context, artwork *out, fault *f)
 {
     size_t length;
     fault why = {0};
     char *text = whole_file_read(path, TREE_MAX_BYTES + 1, &length, &why);
-    FAIL_IF(text == NULL, whole_file_unread(path, &why, f));
+    if (text == NULL) {
+        return whole_file_unread(path, &why, f);
+    }
 
     // what it says, and what it names
     recipe *r = g_new0(recipe, 1);
-    status code =
-        recipe_read(r, path, text, length, report, context) ? STATUS_OK : STATUS_BAD_SCENARIO;
+    status code = STATUS_OK;
+    if (!recipe_read(r, path, text, length, report, context)) {
+        code = STATUS_BAD_SCENARIO;
+    }
     owned_figure_keep(r->plot, r);
     free(text);
     for (int i = 0; i < r->source_count && code == STATUS_OK; i++) {
@@ -334,11 +402,14 @@ bool recipe_is(const char *path)
     size_t length;
     fault unused = {0};
     char *text = whole_file_read(path, TREE_MAX_BYTES, &length, &unused);
-    FAIL_IF(text == NULL, false);
+    if (text == NULL) {
+        return false;
+    }
 
     // its faults are reported when it is opened
     tree_node *root = tree_parse(text, length, &unused);
-    bool is = root != NULL && root->kind == TREE_MAP && recipe_child(root, "panels") != NULL;
+    bool is =
+        root != NULL && root->kind == TREE_MAP && recipe_child(root, "panels") != NULL;
     tree_free(root);
     free(text);
     return is;

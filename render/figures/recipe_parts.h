@@ -35,7 +35,8 @@ typedef struct recipe_source {
 } recipe_source;
 
 typedef struct recipe_panel {
-    figure_panel shown; // heading, weight, number of notes; label, zero and ends of its axis
+    figure_panel
+        shown; // heading, weight, number of notes; label, zero and ends of its axis
     bool logarithmic;
     figure_note notes[RECIPE_NOTES];
     const char *signals[TRACE_SIGNALS];
@@ -58,10 +59,10 @@ typedef struct recipe {
     owned_figure *plot; // the figure made of it, which owns its texts
 } recipe;
 
-// Reads a recipe's text. Every fault is reported with file:line:column; false if there is one. In
-// both cases r->plot is to be destroyed.
-bool recipe_read(recipe *r, const char *path, const char *text, size_t length, fault_handler report,
-                 void *context);
+// Reads a recipe's text. Every fault is reported with file:line:column; false if there is
+// one. In both cases r->plot is to be destroyed.
+bool recipe_read(recipe *r, const char *path, const char *text, size_t length,
+                 fault_handler report, void *context);
 
 // --- reading: values, maps and lists, used by every section: recipe_sources.c
 
@@ -90,8 +91,8 @@ typedef struct recipe_form recipe_form;
 typedef struct recipe_key {
     const char *key;
     value_kind kind;
-    size_t offset;           // of its field, or of the array of items, in the object of the map
-    size_t second;           // of a pair's second number, or of the number of items
+    size_t offset; // of its field, or of the array of items, in the object of the map
+    size_t second; // of a pair's second number, or of the number of items
     recipe_taker *take;      // VALUE_OWN
     const recipe_form *form; // VALUE_ITEMS, VALUE_MAP
     // of a number: its unit (NULL: none), and between what it must lie (NULL: anywhere)
@@ -102,12 +103,13 @@ typedef struct recipe_key {
 
 enum { RECIPE_KEYS = 13 }; // most keys of a map, with one that is NULL after the last
 
-// A map: what sentences call it, an example of a line, and its keys, which are read in this order.
+// A map: what sentences call it, an example of a line, and its keys, which are read in
+// this order.
 struct recipe_form {
     const char *what, *example;
     recipe_key keys[RECIPE_KEYS];
-    // of the items of a list: "a figure" and its "panels", their size and most, and what looks at
-    // one as a whole (NULL: nothing)
+    // of the items of a list: "a figure" and its "panels", their size and most, and what
+    // looks at one as a whole (NULL: nothing)
     const char *holder, *things;
     size_t size;
     int most;
@@ -115,25 +117,26 @@ struct recipe_form {
     const void *blank; // what an item is before it is read; NULL: zeros
 };
 
-#define FIELD_KEY(name, value, type, field)                                                        \
-    {                                                                                              \
-        name, value, offsetof(type, field)                                                         \
+#define FIELD_KEY(name, value, type, field)                                              \
+    {                                                                                    \
+        name, value, offsetof(type, field)                                               \
     }
-#define PAIR_KEY(name, type, one, other)                                                           \
-    {                                                                                              \
-        name, VALUE_PAIR, offsetof(type, one), offsetof(type, other)                               \
+#define PAIR_KEY(name, type, one, other)                                                 \
+    {                                                                                    \
+        name, VALUE_PAIR, offsetof(type, one), offsetof(type, other)                     \
     }
-#define ITEMS_KEY(name, items, type, array, count)                                                 \
-    {                                                                                              \
-        name, VALUE_ITEMS, offsetof(type, array), offsetof(type, count), .form = items             \
+#define ITEMS_KEY(name, items, type, array, count)                                       \
+    {                                                                                    \
+        name, VALUE_ITEMS, offsetof(type, array), offsetof(type, count), .form = items   \
     }
-#define OWN_KEY(name, taker)                                                                       \
-    {                                                                                              \
-        name, .take = taker                                                                        \
+#define OWN_KEY(name, taker)                                                             \
+    {                                                                                    \
+        name, .take = taker                                                              \
     }
 
 // A function that reads or looks at a value; its object gets a name for readability.
-#define TAKE(name, what) static void name(recipe_context *c, const tree_node *node, void *into)
+#define TAKE(name, what)                                                                 \
+    static void name(recipe_context *c, const tree_node *node, void *into)
 
 // Keeps a text from g_malloc with the recipe, and returns it.
 const char *recipe_keep(recipe_context *c, char *text);
@@ -144,8 +147,10 @@ const char *recipe_text(recipe_context *c, const tree_node *node, const char *wh
 // The first item of a list; NULL if there is none, or after a fault.
 const tree_node *recipe_first(recipe_context *c, const tree_node *list, const char *what);
 
-// Reads every key of a map by its form; unknown keys are reported with the most similar one.
-void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form, void *into);
+// Reads every key of a map by its form; unknown keys are reported with the most similar
+// one.
+void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form,
+                void *into);
 
 // The node under a key of a map, or NULL.
 const tree_node *recipe_child(const tree_node *map, const char *key);

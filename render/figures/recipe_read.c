@@ -8,8 +8,9 @@
 //
 //     multiples: {vary: motor.voltage, values: [1 V, 2 V, 5 V]}
 //
-// Every run is made again with the parameter at each value, every panel is drawn again from the
-// runs of that value; data and tables stay. Panels of one kind stand side by side.
+// Every run is made again with the parameter at each value, every panel is drawn again
+// from the runs of that value; data and tables stay. Panels of one kind stand side by
+// side.
 
 enum { MULTIPLES_MOST = FIGURE_PANELS };
 
@@ -31,7 +32,8 @@ TAKE(take_values, multiples)
     // as texts, so that a heading can show them the way they were written
     for (const tree_node *item = node->first; item != NULL; item = item->next) {
         if (m->count == MULTIPLES_MOST) {
-            report_node(&c->reader, item, "there are more than %d values", MULTIPLES_MOST);
+            report_node(&c->reader, item, "there are more than %d values",
+                        MULTIPLES_MOST);
             return;
         }
         const char *value = recipe_text(c, item, "a value");
@@ -52,8 +54,12 @@ static const char *heading_of(recipe_context *c, const multiples *m, int index)
     // the name of the parameter says what a number without any unit is
     const char *dot = strrchr(info->path, '.');
     bool bare = rest[0] == '\0' && unit[0] == '\0';
-    char *heading = bare ? text_printf("%s = %s", dot != NULL ? dot + 1 : info->path, escaped)
-                         : text_printf("%s%s%s", escaped, unit[0] != '\0' ? "\u2009" : "", unit);
+    char *heading;
+    if (bare) {
+        heading = text_printf("%s = %s", dot != NULL ? dot + 1 : info->path, escaped);
+    } else {
+        heading = text_printf("%s%s%s", escaped, unit[0] != '\0' ? "\u2009" : "", unit);
+    }
     return recipe_keep(c, heading);
 }
 
@@ -64,7 +70,9 @@ static bool add_run(recipe_context *c, const multiples *m, int index, recipe_sou
     if (r->source_count == RECIPE_SOURCES || run.change_count == RECIPE_CHANGES) {
         return false;
     }
-    run.label = run.label != NULL ? run.label : run.name;
+    if (run.label == NULL) {
+        run.label = run.name;
+    }
     run.name = recipe_keep(c, text_printf("%s %s", run.name, m->value[index]));
     run.change[run.change_count++] =
         recipe_keep(c, text_printf("%s=%s", m->parameter, m->value[index]));
@@ -72,8 +80,8 @@ static bool add_run(recipe_context *c, const multiples *m, int index, recipe_sou
     return true;
 }
 
-// The sources of the first value take the place of the runs themselves; those of later values
-// follow. at[k][i] is the index of source i for value k.
+// The sources of the first value take the place of the runs themselves; those of later
+// values follow. at[k][i] is the index of source i for value k.
 static bool repeat_runs(recipe_context *c, const multiples *m, int at[][RECIPE_SOURCES])
 {
     recipe *r = c->recipe;
@@ -84,7 +92,11 @@ static bool repeat_runs(recipe_context *c, const multiples *m, int at[][RECIPE_S
     for (int k = 0; k < m->count; k++) {
         for (int i = 0; i < read.source_count; i++) {
             bool again = read.sources[i].kind == SOURCE_RUN;
-            at[k][i] = k > 0 && !again ? at[0][i] : r->source_count;
+            if (k > 0 && !again) {
+                at[k][i] = at[0][i];
+            } else {
+                at[k][i] = r->source_count;
+            }
             if (again && !add_run(c, m, k, read.sources[i])) {
                 return false;
             }
@@ -114,20 +126,23 @@ static bool repeat_panels(recipe_context *c, const multiples *m, int at[][RECIPE
             }
             panel.of = at[k][panel.of];
             panel.less = at[k][panel.less];
-            panel.shown.heading = p == 0 ? heading_of(c, m, k) : panel.shown.heading;
+            if (p == 0) {
+                panel.shown.heading = heading_of(c, m, k);
+            }
             r->panels[r->shown.panel_count++] = panel;
         }
     }
     return true;
 }
 
-// Reads `multiples` and repeats runs and panels for each of its values, after both are read.
+// Reads `multiples` and repeats runs and panels for each of its values, after both are
+// read.
 TAKE(take_multiples, recipe)
 {
-    static const recipe_form form = {
-        "multiples",
-        "vary: motor.voltage",
-        {FIELD_KEY("vary", VALUE_TEXT, multiples, parameter), OWN_KEY("values", take_values)}};
+    static const recipe_form form = {"multiples",
+                                     "vary: motor.voltage",
+                                     {FIELD_KEY("vary", VALUE_TEXT, multiples, parameter),
+                                      OWN_KEY("values", take_values)}};
     recipe *r = into;
     multiples m = {0};
     int at[MULTIPLES_MOST][RECIPE_SOURCES];
@@ -141,19 +156,25 @@ TAKE(take_multiples, recipe)
         return;
     }
     if (m.parameter == NULL || m.count == 0) {
-        report_node(&c->reader, node, "multiples needs 'vary', a parameter, and 'values'");
+        report_node(&c->reader, node,
+                    "multiples needs 'vary', a parameter, and 'values'");
         return;
     }
 
     // the first run's contact is not that of the others
     r->contact = false;
-    r->columns = r->shown.panel_count > 1 ? m.count : r->columns > 1 ? r->columns : MIN(m.count, 3);
+    if (r->shown.panel_count > 1) {
+        r->columns = m.count;
+    } else if (!(r->columns > 1)) {
+        r->columns = MIN(m.count, 3);
+    }
     if (!repeat_runs(c, &m, at)) {
-        report_node(&c->reader, node, "%d values make more than %d runs, or more than %d changes",
-                    m.count, RECIPE_SOURCES, RECIPE_CHANGES);
+        report_node(&c->reader, node,
+                    "%d values make more than %d runs, or more than %d changes", m.count,
+                    RECIPE_SOURCES, RECIPE_CHANGES);
     } else if (!repeat_panels(c, &m, at)) {
-        report_node(&c->reader, node, "%d values of %d panels make more than %d panels", m.count,
-                    r->shown.panel_count, FIGURE_PANELS);
+        report_node(&c->reader, node, "%d values of %d panels make more than %d panels",
+                    m.count, r->shown.panel_count, FIGURE_PANELS);
     }
 }
 
@@ -176,15 +197,18 @@ TAKE(take_signals, panel)
 
         // known, with room, and of the panel's unit
         if (index <= 0) {
-            report_node(&c->reader, item, "there is no signal '%.60s', did you mean '%s'?", name,
+            report_node(&c->reader, item,
+                        "there is no signal '%.60s', did you mean '%s'?", name,
                         nearest_signal(name));
         } else if (p->signal_count == TRACE_SIGNALS) {
-            report_node(&c->reader, item, "a panel shows at most %d signals", TRACE_SIGNALS);
-        } else if (p->signal_count > 0 && strcmp(signal_table[signal_find(p->signals[0])].unit,
-                                                 signal_table[index].unit) != 0) {
+            report_node(&c->reader, item, "a panel shows at most %d signals",
+                        TRACE_SIGNALS);
+        } else if (p->signal_count > 0 &&
+                   strcmp(signal_table[signal_find(p->signals[0])].unit,
+                          signal_table[index].unit) != 0) {
             report_node(&c->reader, item,
-                        "'%s' has another unit than '%s', expected a panel of its own", name,
-                        p->signals[0]);
+                        "'%s' has another unit than '%s', expected a panel of its own",
+                        name, p->signals[0]);
         } else {
             p->signals[p->signal_count++] = signal_table[index].name;
         }
@@ -207,7 +231,8 @@ TAKE(take_difference, panel)
     recipe_panel *p = into;
     const tree_node *first = node->kind == TREE_LIST ? node->first : NULL;
     if (first == NULL || first->next == NULL || first->next->next != NULL) {
-        report_node(&c->reader, node, "difference is %s, expected two names: [this, less that]",
+        report_node(&c->reader, node,
+                    "difference is %s, expected two names: [this, less that]",
                     node_kind_name(node));
         return;
     }
@@ -217,7 +242,8 @@ TAKE(take_difference, panel)
     for (const tree_node *item = first; item != NULL; item = item->next) {
         const int index = item == first ? p->of : p->less;
         if (index >= 0 && c->recipe->sources[index].kind == SOURCE_TABLE) {
-            report_node(&c->reader, item, "'%s' is a table, expected a run or data", item->text);
+            report_node(&c->reader, item, "'%s' is a table, expected a run or data",
+                        item->text);
         }
     }
 }
@@ -248,7 +274,8 @@ TAKE(end_panel, panel)
         tables = tables && r->sources[p->sources[i]].kind == SOURCE_TABLE;
     }
     if (p->signal_count == 0 && !tables) {
-        report_node(&c->reader, node, "a panel of runs or data needs 'signals', such as [force]");
+        report_node(&c->reader, node,
+                    "a panel of runs or data needs 'signals', such as [force]");
     }
     if (p->signal_count > 1 && p->compared) {
         report_node(&c->reader, node, "a difference is that of one signal");
@@ -257,15 +284,15 @@ TAKE(end_panel, panel)
 
 // ---- the forms
 
-static const recipe_form notes = {
-    "a note",
-    "text: here",
-    {FIELD_KEY("text", VALUE_TEXT, figure_note, text), PAIR_KEY("at", figure_note, x, y)},
-    "a panel",
-    "notes",
-    sizeof(figure_note),
-    RECIPE_NOTES,
-    end_note};
+static const recipe_form notes = {"a note",
+                                  "text: here",
+                                  {FIELD_KEY("text", VALUE_TEXT, figure_note, text),
+                                   PAIR_KEY("at", figure_note, x, y)},
+                                  "a panel",
+                                  "notes",
+                                  sizeof(figure_note),
+                                  RECIPE_NOTES,
+                                  end_note};
 
 static const recipe_form panels = {
     "a panel",
@@ -275,8 +302,8 @@ static const recipe_form panels = {
      OWN_KEY("difference", take_difference),
      FIELD_KEY("heading", VALUE_TEXT, recipe_panel, shown.heading),
      FIELD_KEY("label", VALUE_TEXT, recipe_panel, shown.y.label),
-     {"weight", VALUE_NUMBER, offsetof(recipe_panel, shown.weight), .low = DBL_MIN, .high = 20,
-      .expected = "a number above 0, up to 20"},
+     {"weight", VALUE_NUMBER, offsetof(recipe_panel, shown.weight), .low = DBL_MIN,
+      .high = 20, .expected = "a number above 0, up to 20"},
      FIELD_KEY("zero", VALUE_TRUTH, recipe_panel, shown.y.with_zero),
      FIELD_KEY("log", VALUE_TRUTH, recipe_panel, logarithmic),
      PAIR_KEY("range", recipe_panel, shown.y.low, shown.y.high),
@@ -287,12 +314,13 @@ static const recipe_form panels = {
     FIGURE_PANELS,
     end_panel};
 
-static const recipe_form horizontal = {"x",
-                                       "range: [0, 1]",
-                                       {PAIR_KEY("range", recipe, shown.x.low, shown.x.high),
-                                        FIELD_KEY("label", VALUE_TEXT, recipe, shown.x.label),
-                                        FIELD_KEY("unit", VALUE_TEXT, recipe, shown.x.unit),
-                                        FIELD_KEY("log", VALUE_TRUTH, recipe, logarithmic)}};
+static const recipe_form horizontal = {
+    "x",
+    "range: [0, 1]",
+    {PAIR_KEY("range", recipe, shown.x.low, shown.x.high),
+     FIELD_KEY("label", VALUE_TEXT, recipe, shown.x.label),
+     FIELD_KEY("unit", VALUE_TEXT, recipe, shown.x.unit),
+     FIELD_KEY("log", VALUE_TRUTH, recipe, logarithmic)}};
 
 static const recipe_form marks = {"a mark",
                                   "at: 0.36",
@@ -314,8 +342,8 @@ static const recipe_form whole = {
      FIELD_KEY("title", VALUE_TEXT, recipe, shown.title),
      FIELD_KEY("caption", VALUE_TEXT, recipe, shown.caption),
      {"x", VALUE_MAP, .form = &horizontal},
-     {"columns", VALUE_NUMBER, offsetof(recipe, columns), .low = 1, .high = 8, .whole = true,
-      .expected = "a whole number from 1 to 8"},
+     {"columns", VALUE_NUMBER, offsetof(recipe, columns), .low = 1, .high = 8,
+      .whole = true, .expected = "a whole number from 1 to 8"},
      FIELD_KEY("shared", VALUE_TRUTH, recipe, shown.shared_y),
      FIELD_KEY("contact", VALUE_TRUTH, recipe, contact),
      ITEMS_KEY("marks", &marks, recipe, marks, shown.mark_count),
@@ -332,8 +360,8 @@ static void take_recipe(recipe_context *c, const tree_node *root)
     }
 }
 
-bool recipe_read(recipe *r, const char *path, const char *text, size_t length, fault_handler report,
-                 void *report_context)
+bool recipe_read(recipe *r, const char *path, const char *text, size_t length,
+                 fault_handler report, void *report_context)
 {
     fault f = {0};
     recipe_context c = {.reader = {.path = path}, .recipe = r};

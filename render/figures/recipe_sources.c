@@ -1,4 +1,5 @@
-// Reading of recipes, its lower half: values, maps and lists, and where the curves come from.
+// Reading of recipes, its lower half: values, maps and lists, and where the curves come
+// from.
 #include <stddef.h>
 #include <string.h>
 
@@ -15,20 +16,21 @@ const char *recipe_keep(recipe_context *c, char *text)
 const char *recipe_text(recipe_context *c, const tree_node *node, const char *what)
 {
     if (!node_is_scalar(node) || node_is_empty(node)) {
-        report_node(&c->reader, node, "%s is %s, expected text", what, node_kind_name(node));
+        report_node(&c->reader, node, "%s is %s, expected text", what,
+                    node_kind_name(node));
         return NULL;
     }
     return recipe_keep(c, g_strdup(node->text));
 }
 
-static void read_pair(recipe_context *c, const tree_node *node, const char *what, double *a,
-                      double *b)
+static void read_pair(recipe_context *c, const tree_node *node, const char *what,
+                      double *a, double *b)
 {
-    bool pair = node->kind == TREE_LIST && node->first != NULL && node->first->next != NULL &&
-                node->first->next->next == NULL;
+    bool pair = node->kind == TREE_LIST && node->first != NULL &&
+                node->first->next != NULL && node->first->next->next == NULL;
     if (!pair) {
-        report_node(&c->reader, node, "%s is %s, expected two numbers such as [0, 1]", what,
-                    node_kind_name(node));
+        report_node(&c->reader, node, "%s is %s, expected two numbers such as [0, 1]",
+                    what, node_kind_name(node));
         return;
     }
     reader_quantity(&c->reader, node->first, what, "", a);
@@ -38,7 +40,8 @@ static void read_pair(recipe_context *c, const tree_node *node, const char *what
 const tree_node *recipe_first(recipe_context *c, const tree_node *list, const char *what)
 {
     if (list->kind != TREE_LIST) {
-        report_node(&c->reader, list, "%s is %s, expected a list", what, node_kind_name(list));
+        report_node(&c->reader, list, "%s is %s, expected a list", what,
+                    node_kind_name(list));
         return NULL;
     }
     return list->first;
@@ -48,14 +51,18 @@ static void read_number(recipe_context *c, const tree_node *node, const recipe_k
                         double *value)
 {
     const char *unit = key->unit != NULL ? key->unit : "";
-    if (reader_quantity(&c->reader, node, key->key, unit, value) && key->expected != NULL &&
-        !(*value >= key->low && *value <= key->high && (!key->whole || *value == (int)*value))) {
-        report_node(&c->reader, node, "%s is %g, expected %s", key->key, *value, key->expected);
+    if (reader_quantity(&c->reader, node, key->key, unit, value) &&
+        key->expected != NULL &&
+        !(*value >= key->low && *value <= key->high &&
+          (!key->whole || *value == (int)*value))) {
+        report_node(&c->reader, node, "%s is %g, expected %s", key->key, *value,
+                    key->expected);
     }
 }
 
 // Reads an item of a list into the next place of its array.
-static void take_item(recipe_context *c, const tree_node *node, const recipe_key *key, void *into)
+static void take_item(recipe_context *c, const tree_node *node, const recipe_key *key,
+                      void *into)
 {
     const recipe_form *form = key->form;
     int *count = (int *)(void *)((char *)into + key->second);
@@ -75,7 +82,8 @@ static void take_item(recipe_context *c, const tree_node *node, const recipe_key
 }
 
 // Takes the value under a key.
-static void take_value(recipe_context *c, const tree_node *node, const recipe_key *key, void *into)
+static void take_value(recipe_context *c, const tree_node *node, const recipe_key *key,
+                       void *into)
 {
     void *field = (char *)into + key->offset;
     switch (key->kind) {
@@ -83,7 +91,8 @@ static void take_value(recipe_context *c, const tree_node *node, const recipe_ke
         key->take(c, node, into);
         break;
     case VALUE_ITEMS:
-        for (const tree_node *i = recipe_first(c, node, key->key); i != NULL; i = i->next) {
+        for (const tree_node *i = recipe_first(c, node, key->key); i != NULL;
+             i = i->next) {
             take_item(c, i, key, into);
         }
         break;
@@ -95,7 +104,8 @@ static void take_value(recipe_context *c, const tree_node *node, const recipe_ke
         break;
     case VALUE_TRUTH:
         *(bool *)field = node_is_scalar(node) && strcmp(node->text, "true") == 0;
-        if (!*(bool *)field && !(node_is_scalar(node) && strcmp(node->text, "false") == 0)) {
+        if (!*(bool *)field &&
+            !(node_is_scalar(node) && strcmp(node->text, "false") == 0)) {
             report_node(&c->reader, node, "%s is not true or false", key->key);
         }
         break;
@@ -103,12 +113,14 @@ static void take_value(recipe_context *c, const tree_node *node, const recipe_ke
         read_number(c, node, key, field);
         break;
     case VALUE_PAIR:
-        read_pair(c, node, key->key, field, (double *)(void *)((char *)into + key->second));
+        read_pair(c, node, key->key, field,
+                  (double *)(void *)((char *)into + key->second));
         break;
     }
 }
 
-void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form, void *into)
+void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form,
+                void *into)
 {
     const recipe_key *keys = form->keys;
     if (!reader_expect_map(&c->reader, map, form->what, form->example)) {
@@ -125,8 +137,9 @@ void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form
             found = strcmp(keys[i].key, key) == 0;
         }
         if (!found) {
-            report_node(&c->reader, child->key, "unknown key '%.60s' in %s, did you mean '%s'?",
-                        key, form->what, near.best != NULL ? near.best : keys[0].key);
+            report_node(&c->reader, child->key,
+                        "unknown key '%.60s' in %s, did you mean '%s'?", key, form->what,
+                        near.best != NULL ? near.best : keys[0].key);
         }
     }
 
@@ -159,8 +172,8 @@ bool recipe_knows_parameter(recipe_context *c, const tree_node *node, const char
         nearest_try(&near, parameter_table[i].path);
     }
     if (!known) {
-        report_node(&c->reader, node, "there is no parameter '%.60s', did you mean '%s'?", path,
-                    near.best != NULL ? near.best : "motor.voltage");
+        report_node(&c->reader, node, "there is no parameter '%.60s', did you mean '%s'?",
+                    path, near.best != NULL ? near.best : "motor.voltage");
     }
     return known;
 }
@@ -183,12 +196,14 @@ TAKE(take_set, source)
             continue;
         }
         if (s->change_count == RECIPE_CHANGES) {
-            report_node(&c->reader, child->key, "a run has more than %d changes", RECIPE_CHANGES);
+            report_node(&c->reader, child->key, "a run has more than %d changes",
+                        RECIPE_CHANGES);
         } else if (!node_is_scalar(child)) {
             report_node(&c->reader, child, "%s is %s, expected a value", path,
                         node_kind_name(child));
         } else {
-            s->change[s->change_count++] = recipe_keep(c, text_printf("%s=%s", path, child->text));
+            s->change[s->change_count++] =
+                recipe_keep(c, text_printf("%s=%s", path, child->text));
         }
     }
 }
@@ -206,7 +221,8 @@ TAKE(end_source, source)
     }
 
     if (s->kind == SOURCE_TABLE && (s->x == NULL || s->y == NULL)) {
-        report_node(&c->reader, node, "a table needs 'x' and 'y', the names of its columns");
+        report_node(&c->reader, node,
+                    "a table needs 'x' and 'y', the names of its columns");
     }
 
     // a run is more than its scenario's name
@@ -219,40 +235,49 @@ TAKE(end_source, source)
     }
 
     // a name that only it has
-    s->name = s->name != NULL ? s->name : needed != NULL ? needed : "";
+    if (s->name == NULL) {
+        if (needed != NULL) {
+            s->name = needed;
+        } else {
+            s->name = "";
+        }
+    }
     for (const recipe_source *other = c->recipe->sources; other != s; other++) {
         if (strcmp(other->name, s->name) == 0) {
-            report_node(&c->reader, node, "the name '%s' is there twice (first at line %d)",
-                        s->name, other->at.line);
+            report_node(&c->reader, node,
+                        "the name '%s' is there twice (first at line %d)", s->name,
+                        other->at.line);
         }
     }
 }
 
 #define SOURCE_TEXT(name) FIELD_KEY(#name, VALUE_TEXT, recipe_source, name)
-#define SOURCE_ROOM       "a recipe", "runs, data and tables", sizeof(recipe_source), RECIPE_SOURCES
+#define SOURCE_ROOM                                                                      \
+    "a recipe", "runs, data and tables", sizeof(recipe_source), RECIPE_SOURCES
 
-const recipe_form recipe_runs = {
-    "a run",
-    "scenario: thesis/fig-3-4",
-    {SOURCE_TEXT(scenario), SOURCE_TEXT(name), SOURCE_TEXT(label), OWN_KEY("set", take_set)},
-    SOURCE_ROOM,
-    end_source,
-    &(const recipe_source){SOURCE_RUN}};
-const recipe_form recipe_data = {
-    "data",
-    "file: bench.csv",
-    {SOURCE_TEXT(file),
-     SOURCE_TEXT(name),
-     SOURCE_TEXT(label),
-     SOURCE_TEXT(column),
-     {"shift", VALUE_NUMBER, offsetof(recipe_source, shift), .unit = "s"}},
-    SOURCE_ROOM,
-    end_source,
-    &(const recipe_source){SOURCE_DATA}};
+const recipe_form recipe_runs = {"a run",
+                                 "scenario: thesis/fig-3-4",
+                                 {SOURCE_TEXT(scenario), SOURCE_TEXT(name),
+                                  SOURCE_TEXT(label), OWN_KEY("set", take_set)},
+                                 SOURCE_ROOM,
+                                 end_source,
+                                 &(const recipe_source){SOURCE_RUN}};
+const recipe_form recipe_data = {"data",
+                                 "file: bench.csv",
+                                 {SOURCE_TEXT(file),
+                                  SOURCE_TEXT(name),
+                                  SOURCE_TEXT(label),
+                                  SOURCE_TEXT(column),
+                                  {"shift", VALUE_NUMBER, offsetof(recipe_source, shift),
+                                   .unit = "s"}},
+                                 SOURCE_ROOM,
+                                 end_source,
+                                 &(const recipe_source){SOURCE_DATA}};
 const recipe_form recipe_tables = {"a table",
                                    "file: sweep.sqlite",
-                                   {SOURCE_TEXT(file), SOURCE_TEXT(name), SOURCE_TEXT(label),
-                                    SOURCE_TEXT(x), SOURCE_TEXT(y), SOURCE_TEXT(z)},
+                                   {SOURCE_TEXT(file), SOURCE_TEXT(name),
+                                    SOURCE_TEXT(label), SOURCE_TEXT(x), SOURCE_TEXT(y),
+                                    SOURCE_TEXT(z)},
                                    SOURCE_ROOM,
                                    end_source,
                                    &(const recipe_source){SOURCE_TABLE}};
@@ -268,7 +293,8 @@ int recipe_find_source(recipe_context *c, const tree_node *node)
     }
 
     report_node(&c->reader, node, "no run, data or table is named '%.60s'%s%s%s",
-                node_is_scalar(node) ? node->text : "", near.best ? ", did you mean '" : "",
-                near.best ? near.best : "", near.best ? "'?" : "");
+                node_is_scalar(node) ? node->text : "",
+                near.best ? ", did you mean '" : "", near.best ? near.best : "",
+                near.best ? "'?" : "");
     return -1;
 }

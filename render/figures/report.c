@@ -1,5 +1,5 @@
-// The report: as a PDF with outline, links and page numbers, and as a web page that needs no other
-// file and no network.
+// The report: as a PDF with outline, links and page numbers, and as a web page that needs
+// no other file and no network.
 #include "render/figures/figures.h"
 
 #include <assert.h>
@@ -33,7 +33,8 @@ static report_item *report_item_at(const report_content *r, guint index)
 }
 
 // Appends what an item is made of, and the command for it in an element of its own.
-static void add_facts(GString *out, const report_item *item, const char *gap, const char *tag)
+static void add_facts(GString *out, const report_item *item, const char *gap,
+                      const char *tag)
 {
     text_append(out, "Model: %s.", item->model);
     if (item->scenario != NULL) {
@@ -48,9 +49,10 @@ static void add_facts(GString *out, const report_item *item, const char *gap, co
 static status item_done(const report_content *r, fault *f)
 {
     run_monitor_count(r->monitor);
-    return run_monitor_stops(r->monitor)
-               ? fault_set(f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED))
-               : STATUS_OK;
+    if (run_monitor_stops(r->monitor)) {
+        return fault_set(f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
+    }
+    return STATUS_OK;
 }
 
 // ==== the PDF
@@ -82,8 +84,8 @@ static double item_height(const report_item *item)
     return item->drawn.height * item_scale(item) + FACTS_SPACE;
 }
 
-static void put_text(cairo_t *cr, PangoContext *context, const char *markup, double size, bool bold,
-                     double x, double y)
+static void put_text(cairo_t *cr, PangoContext *context, const char *markup, double size,
+                     bool bold, double x, double y)
 {
     text_block t = {markup, size, .bold = bold, .width = PAGE_WIDTH - PAGE_MARGIN - x};
     text_put(cr, context, &t, x, y, (anchor){0, 0}, palette_of(THEME_COLOUR)->text);
@@ -105,7 +107,8 @@ static void put_title_page(cairo_t *cr, PangoContext *context, const report_cont
         g_autofree char *target = text_printf("dest='item-%u'", i);
         cairo_tag_begin(cr, CAIRO_TAG_LINK, target);
         put_text(cr, context, title, fmin(8, 0.7 * step), false, PAGE_MARGIN, y);
-        put_text(cr, context, page, fmin(8, 0.7 * step), false, PAGE_WIDTH - PAGE_MARGIN - 14, y);
+        put_text(cr, context, page, fmin(8, 0.7 * step), false,
+                 PAGE_WIDTH - PAGE_MARGIN - 14, y);
         cairo_tag_end(cr, CAIRO_TAG_LINK);
     }
 }
@@ -131,8 +134,8 @@ static status paint_page(cairo_t *cr, const void *what, fault *f)
         cairo_tag_begin(cr, CAIRO_TAG_DEST, place);
         cairo_tag_end(cr, CAIRO_TAG_DEST);
         if (cairo_surface_get_type(surface) == CAIRO_SURFACE_TYPE_PDF) {
-            cairo_pdf_surface_add_outline(surface, CAIRO_PDF_OUTLINE_ROOT, item->drawn.title,
-                                          target, 0);
+            cairo_pdf_surface_add_outline(surface, CAIRO_PDF_OUTLINE_ROOT,
+                                          item->drawn.title, target, 0);
         }
         cairo_save(cr);
         cairo_translate(cr, PAGE_MARGIN, y);
@@ -182,9 +185,10 @@ static status write_pdf(const report_content *r, const char *path, fault *f)
     g_autofree picture *pictures = g_new0(picture, pages->len);
 
     for (guint i = 0; i < pages->len; i++) {
-        pictures[i] = (picture){r->heading,          PAGE_WIDTH,
-                                PAGE_HEIGHT,         .software = r->heading,
-                                .paint = paint_page, .what = &g_array_index(pages, report_page, i)};
+        pictures[i] =
+            (picture){r->heading,          PAGE_WIDTH,
+                      PAGE_HEIGHT,         .software = r->heading,
+                      .paint = paint_page, .what = &g_array_index(pages, report_page, i)};
     }
 
     return picture_write_pages(pictures, (int)pages->len, path, f);
@@ -211,19 +215,22 @@ static void add_lines(GString *html, const char *const *lines, size_t count)
 
 static void add_head(const report_content *r, GString *html)
 {
-    text_append(html,
-                "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                "<meta name=\"viewport\" content=\"width=device-width\">\n<title>%s</title>\n"
-                "<style>\n",
-                r->heading);
-    add_lines(html, style, G_N_ELEMENTS(style));
     text_append(
         html,
-        "</style>\n</head>\n<body>\n<h1>%s</h1>\n<p>%s <q>Printed</q> is the thesis's model with "
-        "its slips, <q>corrected</q> the mechanics derived anew.</p>\n"
-        "<p class=\"note\">Point at a curve for its values; Ctrl or Shift and the wheel zoom, "
-        "dragging moves, a double click shows all again; the buttons take curves away.</p>\n",
-        r->heading, r->preface);
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width\">\n<title>%s</title>\n"
+        "<style>\n",
+        r->heading);
+    add_lines(html, style, G_N_ELEMENTS(style));
+    text_append(html,
+                "</style>\n</head>\n<body>\n<h1>%s</h1>\n<p>%s <q>Printed</q> is the "
+                "thesis's model with "
+                "its slips, <q>corrected</q> the mechanics derived anew.</p>\n"
+                "<p class=\"note\">Point at a curve for its values; Ctrl or Shift and "
+                "the wheel zoom, "
+                "dragging moves, a double click shows all again; the buttons take curves "
+                "away.</p>\n",
+                r->heading, r->preface);
 }
 
 // A picture with many cells, which would be many thousand paths: as a PNG in the page.
@@ -231,13 +238,18 @@ static status add_png(GString *html, const picture *p, const char *alternative, 
 {
     text_stream stream;
     size_t length = 0;
-    TRY_MEMORY(text_stream_open(&stream), f);
+    if (!text_stream_open(&stream)) {
+        return fault_no_memory(f);
+    }
     status code = picture_write_png(p, stream.stream, f);
     char *bytes = text_stream_close(&stream, &length);
-    code = code == STATUS_OK && bytes == NULL ? fault_no_memory(f) : code;
+    if (code == STATUS_OK && bytes == NULL) {
+        code = fault_no_memory(f);
+    }
     if (code == STATUS_OK) {
         g_autofree char *text = g_base64_encode((const guchar *)bytes, length);
-        text_append(html, "<img alt=\"%s\" src=\"data:image/png;base64,%s\">\n", alternative, text);
+        text_append(html, "<img alt=\"%s\" src=\"data:image/png;base64,%s\">\n",
+                    alternative, text);
     }
     free(bytes);
     return code;
@@ -259,7 +271,8 @@ static json_t *series_json(const figure_panel *panel)
         if (!s->no_line) {
             // in bytes, for the script that compares it with the strokes of the drawing
             const colour c = palette_series(THEME_COLOUR, s->colour, i);
-            const double ink[] = {round(255 * c.red), round(255 * c.green), round(255 * c.blue)};
+            const double ink[] = {round(255 * c.red), round(255 * c.green),
+                                  round(255 * c.blue)};
             json_add(all, json_of("ink:o dashed:b label:o", json_numbers(ink, 3),
                                   s->secondary || s->style != LINE_SOLID,
                                   plain_json(s->label != NULL ? s->label : s->name)));
@@ -268,8 +281,8 @@ static json_t *series_json(const figure_panel *panel)
     return all;
 }
 
-// Places, ranges and curves of all panels as JSON in an attribute, for the script: to turn a place
-// into values.
+// Places, ranges and curves of all panels as JSON in an attribute, for the script: to
+// turn a place into values.
 static void add_panels(GString *html, const figure *fig, const figure_report *seen)
 {
     json_t *all = json_array();
@@ -277,11 +290,14 @@ static void add_panels(GString *html, const figure *fig, const figure_report *se
         const figure_rect *box = &seen->panels[i];
         const figure_range *range = &seen->ranges[i];
         const double place[] = {box->x, box->y, box->width, box->height};
-        const double x[] = {range->x_low, range->x_high}, y[] = {range->y_low, range->y_high};
-        json_add(all, json_of("box:o x:o y:o xlog:b ylog:b xname:o unit:o series:o",
-                              json_numbers(place, 4), json_numbers(x, 2), json_numbers(y, 2),
-                              range->x_logarithmic, range->y_logarithmic, plain_json(fig->x.name),
-                              plain_json(fig->panels[i].y.unit), series_json(&fig->panels[i])));
+        const double x[] = {range->x_low, range->x_high},
+                     y[] = {range->y_low, range->y_high};
+        json_add(all,
+                 json_of("box:o x:o y:o xlog:b ylog:b xname:o unit:o series:o",
+                         json_numbers(place, 4), json_numbers(x, 2), json_numbers(y, 2),
+                         range->x_logarithmic, range->y_logarithmic,
+                         plain_json(fig->x.name), plain_json(fig->panels[i].y.unit),
+                         series_json(&fig->panels[i])));
     }
     char *json = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(9));
     loss_unless(json != NULL);
@@ -292,8 +308,8 @@ static void add_panels(GString *html, const figure *fig, const figure_report *se
 }
 
 // The figure with what it shows in words, and for the script what its axes mean.
-static status add_figure(GString *html, const report_item *item, guint index, GHashTable *letters,
-                         fault *f)
+static status add_figure(GString *html, const report_item *item, guint index,
+                         GHashTable *letters, fault *f)
 {
     const figure_options options = {0};
     artwork drawn = item->drawn;
@@ -309,7 +325,9 @@ static status add_figure(GString *html, const report_item *item, guint index, GH
     } else {
         // where its panels are is known once it has been painted
         g_autofree char *svg = picture_svg(&p, f), *prefix = text_printf("i%u-", index);
-        FAIL_IF(svg == NULL, f->code);
+        if (svg == NULL) {
+            return f->code;
+        }
         if (drawn.plotted != NULL) {
             add_panels(html, drawn.plotted, seen);
         }
@@ -320,8 +338,8 @@ static status add_figure(GString *html, const report_item *item, guint index, GH
     return STATUS_OK;
 }
 
-static status add_section(const report_content *r, guint index, GString *html, GHashTable *letters,
-                          fault *f)
+static status add_section(const report_content *r, guint index, GString *html,
+                          GHashTable *letters, fault *f)
 {
     const report_item *item = report_item_at(r, index);
     g_autofree char *title = text_escape(item->drawn.title);
@@ -345,7 +363,8 @@ static status write_html(const report_content *r, const char *path, fault *f)
 {
     whole_file file;
     g_autoptr(GString) html = g_string_new(NULL);
-    g_autoptr(GHashTable) letters = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+    g_autoptr(GHashTable) letters =
+        g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
 
     // the whole page first: nothing is written of one that fails
     add_head(r, html);
@@ -357,7 +376,9 @@ static status write_html(const report_content *r, const char *path, fault *f)
     g_string_append(html, "</ol></nav>\n");
     for (guint i = 0; i < r->items->len; i++) {
         TRY(add_section(r, i, html, letters, f));
-        TRY(report_item_at(r, i)->command != NULL ? item_done(r, f) : STATUS_OK);
+        if (report_item_at(r, i)->command != NULL) {
+            TRY(item_done(r, f));
+        }
     }
     g_string_append(html, "<script>\n");
     add_lines(html, script, G_N_ELEMENTS(script));
@@ -403,12 +424,17 @@ static void clear_item(gpointer data)
 
 // ---- scenarios and recipes of one's own
 
-static status open_scenario(report_item *item, const char *name, run_monitor *monitor, fault *f)
+static status open_scenario(report_item *item, const char *name, run_monitor *monitor,
+                            fault *f)
 {
     const scenario *s;
     TRY(scenario_figure_open(name, monitor, &item->drawn, &s, f));
     item->scenario = s->name;
-    item->model = s->parameters.arm.model == ARM_PRINTED ? "printed" : "corrected";
+    if (s->parameters.arm.model == ARM_PRINTED) {
+        item->model = "printed";
+    } else {
+        item->model = "corrected";
+    }
     item->command = text_printf("impactlab run %s --plot FILE.pdf", name);
     return STATUS_OK;
 }
@@ -419,7 +445,10 @@ static status open_recipe(report_item *item, const char *path, fault *f)
     fault first = {0};
     status code = recipe_open(path, &options, keep_first_fault, &first, &item->drawn, f);
     if (code != STATUS_OK) {
-        return first.code != STATUS_OK ? fault_set(f, code, "%s", first.text) : code;
+        if (first.code != STATUS_OK) {
+            return fault_set(f, code, "%s", first.text);
+        }
+        return code;
     }
     item->model = "as the recipe says";
     item->command = text_printf("impactlab plot %s -o FILE.pdf", path);
@@ -430,8 +459,11 @@ static status add_own(report_content *r, char *const *names, int count, fault *f
 {
     for (int i = 0; i < count; i++) {
         report_item item = {0};
-        TRY(recipe_is(names[i]) ? open_recipe(&item, names[i], f)
-                                : open_scenario(&item, names[i], r->monitor, f));
+        if (recipe_is(names[i])) {
+            TRY(open_recipe(&item, names[i], f));
+        } else {
+            TRY(open_scenario(&item, names[i], r->monitor, f));
+        }
         g_array_append_val(r->items, item);
         TRY(item_done(r, f));
     }
@@ -441,11 +473,15 @@ static status add_own(report_content *r, char *const *names, int count, fault *f
 // ---- the whole
 
 // Fills the report and writes both files.
-static status write_both(report_content *r, const char *folder, char *const *names, int count,
-                         fault *f)
+static status write_both(report_content *r, const char *folder, char *const *names,
+                         int count, fault *f)
 {
     // what was asked for, or all there is
-    TRY(count > 0 ? add_own(r, names, count, f) : add_figures(r, f));
+    if (count > 0) {
+        TRY(add_own(r, names, count, f));
+    } else {
+        TRY(add_figures(r, f));
+    }
     if (count == 0) {
         add_parameters(r);
     }
@@ -456,20 +492,27 @@ static status write_both(report_content *r, const char *folder, char *const *nam
     return write_pdf(r, pdf, f);
 }
 
-status report_write(const char *folder, char *const *names, int count, run_monitor *monitor,
-                    fault *f)
+status report_write(const char *folder, char *const *names, int count,
+                    run_monitor *monitor, fault *f)
 {
     assert(names != NULL || count == 0);
     fault why = {0};
     g_autoptr(GArray) items = g_array_new(FALSE, TRUE, sizeof(report_item));
     g_autofree char *heading = g_strconcat("impactlab ", lab_version(), ": report", NULL);
     report_content r = {.monitor = monitor, .items = items, .heading = heading};
-    r.preface = count > 0 ? "Runs and recipes, drawn by the lab. Under each stand the scenario, "
-                            "the model and the one command that makes it again."
-                          : "Every figure and table of the thesis on impact and force control of a "
-                            "flexible arm, drawn by the lab from its own runs. Under each stand "
-                            "the scenario, the model and the one command that makes it again.";
+    if (count > 0) {
+        r.preface = "Runs and recipes, drawn by the lab. Under each stand the scenario, "
+                    "the model and the one command that makes it again.";
+    } else {
+        r.preface = "Every figure and table of the thesis on impact and force control of "
+                    "a flexible arm, drawn by the lab from its own runs. Under each "
+                    "stand the scenario, the model and the one command that makes it "
+                    "again.";
+    }
     g_array_set_clear_func(items, clear_item);
     const status code = write_both(&r, folder, names, count, &why);
-    return code == STATUS_OK ? code : fault_set(f, code, "%s", why.text);
+    if (code == STATUS_OK) {
+        return code;
+    }
+    return fault_set(f, code, "%s", why.text);
 }

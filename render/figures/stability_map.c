@@ -1,5 +1,5 @@
-// Maps over Newmark's two parameters: one number of a run for every pair, at three settings side by
-// side.
+// Maps over Newmark's two parameters: one number of a run for every pair, at three
+// settings side by side.
 #include <assert.h>
 #include <math.h>
 
@@ -17,13 +17,13 @@ typedef struct newmark_map newmark_map;
 
 // What a map shows.
 typedef struct newmark_kind {
-    const char *change;               // of the figure's scenario, for the run of reference
-    double beyond;                    // that the cells' runs go on beyond the window [s]
-    int columns, rows;                // of cells
+    const char *change; // of the figure's scenario, for the run of reference
+    double beyond;      // that the cells' runs go on beyond the window [s]
+    int columns, rows;  // of cells
     const char *headings[MAP_PANELS]; // markup
     figure_axis scale;                // of the numbers; low values are bright
-    // the number of a pair in a panel, from a run of its own on any thread; not finite if the run
-    // failed
+    // the number of a pair in a panel, from a run of its own on any thread; not finite if
+    // the run failed
     double (*value)(const newmark_map *m, int panel, double beta, double gamma);
 } newmark_kind;
 
@@ -57,7 +57,11 @@ struct newmark_map {
 static void add_layer(newmark_map *m, figure_series layer)
 {
     for (int panel = 0; panel < MAP_PANELS; panel++) {
-        layer.shade = layer.shade != NULL ? m->ring_value[panel] : NULL;
+        if (layer.shade != NULL) {
+            layer.shade = m->ring_value[panel];
+        } else {
+            layer.shade = NULL;
+        }
         owned_figure_add(m->plot, panel, layer);
     }
 }
@@ -67,7 +71,8 @@ static void add_layer(newmark_map *m, figure_series layer)
 static gpointer compute_cells(gpointer data)
 {
     newmark_map *m = data;
-    const int rows = m->kind->rows, cells = m->kind->columns * rows, count = MAP_PANELS * cells;
+    const int rows = m->kind->rows, cells = m->kind->columns * rows,
+              count = MAP_PANELS * cells;
 
     // the longest runs, of the last panel, first: so both threads end together
     for (int taken = g_atomic_int_add(&m->next, 1); taken < count;
@@ -90,20 +95,21 @@ static void compute(newmark_map *m)
         m->gamma[i] = GAMMA_LOW + (GAMMA_HIGH - GAMMA_LOW) * (i + 0.5) / rows;
     }
 
-    // Table 3.1: gamma = 1/2 and 2 beta = gamma; beta = 1/4, where contact sets its own bound; and
-    // the pair of the thesis
+    // Table 3.1: gamma = 1/2 and 2 beta = gamma; beta = 1/4, where contact sets its own
+    // bound; and the pair of the thesis
     static const double bound_x[] = {0, 0.5, (double)NAN, 0.25, 0.5};
     static const double bound_y[] = {0.5, 0.5, (double)NAN, 0.5, 1};
     static const double quarter_x[] = {0.25, 0.25}, quarter_y[] = {GAMMA_LOW, GAMMA_HIGH};
     static const double thesis_x[] = {0.4}, thesis_y[] = {0.5};
 
-    add_layer(m, (figure_series){"bounds", "Table 3.1", .x = bound_x, .y = bound_y, .count = 5,
-                                 .colour = 6, .rim = true});
-    add_layer(m, (figure_series){"contact", "<i>β</i> = ¼", .x = quarter_x, .y = quarter_y,
-                                 .count = 2, .colour = 6, .style = LINE_DASHED, .rim = true});
-    add_layer(m, (figure_series){"thesis", "the thesis: 0.4, 0.5", .x = thesis_x, .y = thesis_y,
-                                 .count = 1, .marker = MARKER_CROSS, .radius = 3, .no_line = true,
-                                 .rim = true});
+    add_layer(m, (figure_series){"bounds", "Table 3.1", .x = bound_x, .y = bound_y,
+                                 .count = 5, .colour = 6, .rim = true});
+    add_layer(m, (figure_series){"contact", "<i>β</i> = ¼", .x = quarter_x,
+                                 .y = quarter_y, .count = 2, .colour = 6,
+                                 .style = LINE_DASHED, .rim = true});
+    add_layer(m, (figure_series){"thesis", "the thesis: 0.4, 0.5", .x = thesis_x,
+                                 .y = thesis_y, .count = 1, .marker = MARKER_CROSS,
+                                 .radius = 3, .no_line = true, .rim = true});
     GThread *helper = g_thread_new("map", compute_cells, m);
     compute_cells(m);
     g_thread_join(helper);
@@ -119,26 +125,31 @@ static void describe(newmark_map *m, const figure_options *o)
         p->heading = kind->headings[panel];
         p->y = (figure_axis){"gamma", "<i>γ</i>", .low = GAMMA_LOW, .high = GAMMA_HIGH};
         p->weight = WEIGHT;
-        p->map = OWNED(m->plot, figure_map, m->beta, m->gamma, .columns = (size_t)kind->columns,
-                       .rows = (size_t)kind->rows, .z = m->values[panel]);
+        p->map = OWNED(m->plot, figure_map, m->beta, m->gamma,
+                       .columns = (size_t)kind->columns, .rows = (size_t)kind->rows,
+                       .z = m->values[panel]);
         p->colours = OWNED(m->plot, figure_colours, .axis = kind->scale, .reversed = true,
                            .bar = panel == MAP_PANELS - 1);
     }
 
     figure *fig = &m->plot->figure;
-    fig->x = (figure_axis){.name = "beta", .label = "<i>β</i>", .low = 0, .high = BETA_HIGH};
+    fig->x =
+        (figure_axis){.name = "beta", .label = "<i>β</i>", .low = 0, .high = BETA_HIGH};
     fig->columns = MAP_PANELS;
     fig->common_legend = fig->shared_y = true;
     figure_take_look(fig, &o->look);
 }
 
-// A map without its cells, and the run of reference; NULL with STATUS_BAD_SCENARIO if that has no
-// pulse, or with the run's status.
-static newmark_map *newmark_map_create(const newmark_kind *kind, const figure_order *order,
-                                       const opened_run **run, fault *f)
+// A map without its cells, and the run of reference; NULL with STATUS_BAD_SCENARIO if
+// that has no pulse, or with the run's status.
+static newmark_map *newmark_map_create(const newmark_kind *kind,
+                                       const figure_order *order, const opened_run **run,
+                                       fault *f)
 {
     owned_figure *o = run_plot_create(order, kind->change, MAP_PANELS, run, f);
-    FAIL_IF(o == NULL, NULL);
+    if (o == NULL) {
+        return NULL;
+    }
     newmark_map *m = owned_figure_keep(o, g_new0(newmark_map, 1));
     m->plot = o;
     m->kind = kind;
@@ -167,7 +178,8 @@ static const double radii[MAP_RINGS] = {1, 0.8, 0.5};       // generalised-alpha
 static void sample_force(const trace *t, double from, double *out)
 {
     for (int i = 0; i < SAMPLES; i++) {
-        out[i] = trace_value(t, SIGNAL_INDEX(force), from + WINDOW * (i + 0.5) / SAMPLES, 0);
+        out[i] =
+            trace_value(t, SIGNAL_INDEX(force), from + WINDOW * (i + 0.5) / SAMPLES, 0);
     }
 }
 
@@ -204,7 +216,8 @@ static double newmark_error(const newmark_map *m, int panel, double beta, double
     return force_error(m, &method);
 }
 
-// Generalised-alpha's own errors, as rings at the pairs (beta, gamma) of its spectral radii.
+// Generalised-alpha's own errors, as rings at the pairs (beta, gamma) of its spectral
+// radii.
 static void add_rings(newmark_map *m)
 {
     method_parameters method = m->base.parameters.method;
@@ -220,39 +233,44 @@ static void add_rings(newmark_map *m)
         }
     }
 
-    add_layer(m, (figure_series){
-                     "generalized-alpha", "generalised-alpha, <i>ρ</i> = 1, 0.8, 0.5 from below",
-                     m->ring_beta, m->ring_gamma, MAP_RINGS, .shade = m->ring_value[0],
-                     .marker = MARKER_CIRCLE, .radius = 3.6, .no_line = true, .rim = true});
+    add_layer(m, (figure_series){"generalized-alpha",
+                                 "generalised-alpha, <i>ρ</i> = 1, 0.8, 0.5 from below",
+                                 m->ring_beta, m->ring_gamma, MAP_RINGS,
+                                 .shade = m->ring_value[0], .marker = MARKER_CIRCLE,
+                                 .radius = 3.6, .no_line = true, .rim = true});
 }
 
 status stability_map(const figure_order *order, artwork *out, fault *f)
 {
-    static const newmark_kind kind = {
-        .change = "method.name=event",
-        .beyond = 0.01,
-        .columns = MAP_COLUMNS,
-        .rows = MAP_ROWS,
-        .headings = {"<i>h</i> = 5\u2009ms", "<i>h</i> = 1\u2009ms", "<i>h</i> = 0.2\u2009ms"},
-        .scale = {.name = "force_error",
-                  .label = "Error of the force",
-                  .unit = "%",
-                  .scale = SCALE_LOGARITHMIC,
-                  .low = 0.01,
-                  .high = 100},
-        .value = newmark_error};
+    static const newmark_kind kind = {.change = "method.name=event",
+                                      .beyond = 0.01,
+                                      .columns = MAP_COLUMNS,
+                                      .rows = MAP_ROWS,
+                                      .headings = {"<i>h</i> = 5\u2009ms",
+                                                   "<i>h</i> = 1\u2009ms",
+                                                   "<i>h</i> = 0.2\u2009ms"},
+                                      .scale = {.name = "force_error",
+                                                .label = "Error of the force",
+                                                .unit = "%",
+                                                .scale = SCALE_LOGARITHMIC,
+                                                .low = 0.01,
+                                                .high = 100},
+                                      .value = newmark_error};
     const opened_run *run;
     newmark_map *m = newmark_map_create(&kind, order, &run, f);
-    FAIL_IF(m == NULL, f->code);
+    if (m == NULL) {
+        return f->code;
+    }
     m->plot->figure.caption = owned_figure_printf(
         m->plot,
-        "Newmark's method on the corrected arm (corrected/first-impact, 1\u2009V). Error: root of "
-        "the mean square difference of the contact force from the event method's over the "
-        "%g\u2009ms after first contact, in per cent of its peak. Lines: <i>γ</i> = ½ and "
-        "2<i>β</i> = <i>γ</i>, between which Table 3.1 promises stability at any step; dashed: "
-        "<i>β</i> = ¼, below which the constraint of the contact makes accelerations grow from "
-        "step to step, whatever <i>γ</i>. Hatched: the run was stopped because its "
-        "energy no longer balanced. Rings have the colour of their own method's error.",
+        "Newmark's method on the corrected arm (corrected/first-impact, 1\u2009V). "
+        "Error: root of the mean square difference of the contact force from the event "
+        "method's over the %g\u2009ms after first contact, in per cent of its peak. "
+        "Lines: <i>γ</i> = ½ and 2<i>β</i> = <i>γ</i>, between which Table 3.1 "
+        "promises stability at any step; dashed: <i>β</i> = ¼, below which the "
+        "constraint of the contact makes accelerations grow from step to step, "
+        "whatever <i>γ</i>. Hatched: the run was stopped because its energy no longer "
+        "balanced. Rings have the colour of their own method's error.",
         1e3 * WINDOW);
 
     sample_force(&run->result.trace, m->from, m->force);
@@ -268,8 +286,9 @@ status stability_map(const figure_order *order, artwork *out, fault *f)
 static const struct {
     listing_reevaluation reevaluation;
     double step;
-} printed_settings[MAP_PANELS] = {
-    {REEVALUATE_RHS, 1e-3}, {REEVALUATE_NONE, 1e-3}, {REEVALUATE_NONE, 2e-4}};
+} printed_settings[MAP_PANELS] = {{REEVALUATE_RHS, 1e-3},
+                                  {REEVALUATE_NONE, 1e-3},
+                                  {REEVALUATE_NONE, 2e-4}};
 
 // The largest force in times that of Fig. 3.4.
 static double printed_force(const newmark_map *m, int panel, double beta, double gamma)
@@ -281,7 +300,8 @@ static double printed_force(const newmark_map *m, int panel, double beta, double
     s.parameters.method.beta = beta;
     s.parameters.method.gamma = gamma;
     status code = run_scenario(&s, false, &result);
-    double force = code == STATUS_OK ? result.summary.peak_force_N / m->peak : (double)INFINITY;
+    double force =
+        code == STATUS_OK ? result.summary.peak_force_N / m->peak : (double)INFINITY;
     run_finish(&result);
     return force;
 }
@@ -291,7 +311,8 @@ status printed_stability_map(const figure_order *order, artwork *out, fault *f)
     static const newmark_kind kind = {.columns = 20,
                                       .rows = 15,
                                       .headings = {"two runs, <i>h</i> = 1\u2009ms",
-                                                   "one run, 1\u2009ms", "one run, 0.2\u2009ms"},
+                                                   "one run, 1\u2009ms",
+                                                   "one run, 0.2\u2009ms"},
                                       .scale = {.name = "largest_force",
                                                 .label = "Peak over that of Fig. 3.4",
                                                 .scale = SCALE_LOGARITHMIC,
@@ -300,15 +321,18 @@ status printed_stability_map(const figure_order *order, artwork *out, fault *f)
                                       .value = printed_force};
     const opened_run *run;
     newmark_map *m = newmark_map_create(&kind, order, &run, f);
-    FAIL_IF(m == NULL, f->code);
+    if (m == NULL) {
+        return f->code;
+    }
     m->plot->figure.caption = owned_figure_printf(
         m->plot,
-        "The printed model (thesis/fig-3-4, 1\u2009V), largest contact force of the %g\u2009ms "
-        "after first contact, in times the %.3g\u2009N of Fig. 3.4. Two runs: accelerations and "
-        "force are computed once more from the constraint's second derivative (3.13), the thesis's "
-        "remedy. One run: without it no pair gives a usable force, and a shorter step "
-        "makes it worse, because the impulse of the impact is delivered within one step. Lines as "
-        "in the map of the corrected arm. Hatched: the equations of a step became singular.",
+        "The printed model (thesis/fig-3-4, 1\u2009V), largest contact force of the "
+        "%g\u2009ms after first contact, in times the %.3g\u2009N of Fig. 3.4. Two "
+        "runs: accelerations and force are computed once more from the constraint's "
+        "second derivative (3.13), the thesis's remedy. One run: without it no pair "
+        "gives a usable force, and a shorter step makes it worse, because the impulse "
+        "of the impact is delivered within one step. Lines as in the map of the "
+        "corrected arm. Hatched: the equations of a step became singular.",
         1e3 * WINDOW, m->peak);
 
     compute(m);

@@ -8,7 +8,8 @@
 
 G_LOCK_DEFINE_STATIC(tables);
 
-// Computing the tables takes a while, and six pages want them, perhaps on several threads.
+// Computing the tables takes a while, and six pages want them, perhaps on several
+// threads.
 const thesis_tables *computed_tables(fault *f)
 {
     static thesis_tables tables;
@@ -20,8 +21,8 @@ const thesis_tables *computed_tables(fault *f)
     return computed;
 }
 
-const table_row *computed_row(const thesis_tables *t, const char *table, const char *model,
-                              const char *quantity)
+const table_row *computed_row(const thesis_tables *t, const char *table,
+                              const char *model, const char *quantity)
 {
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i];
@@ -36,7 +37,8 @@ const table_row *computed_row(const thesis_tables *t, const char *table, const c
 
 // ==== pages
 
-static table_page *new_table(const figure_order *order, const table_column *columns, size_t count)
+static table_page *new_table(const figure_order *order, const table_column *columns,
+                             size_t count)
 {
     table_page *t = table_create(order->title, columns, count);
     t->look = order->options->look;
@@ -44,8 +46,8 @@ static table_page *new_table(const figure_order *order, const table_column *colu
 }
 
 // Gives a table its caption, printed as by text_printf, and opens it.
-__attribute__((format(printf, 3, 4))) static status open_table(table_page *t, artwork *out,
-                                                               const char *caption, ...)
+__attribute__((format(printf, 3, 4))) static status
+open_table(table_page *t, artwork *out, const char *caption, ...)
 {
     va_list list;
     va_start(list, caption);
@@ -67,7 +69,8 @@ static const struct {
     {"<i>k</i><sub>B</sub>", "2.443\u2009V·s/rad", "motor.back_emf"},
     {"<i>k</i><sub>T</sub>", "0.249092\u2009kg·m/A", "motor.torque_constant"},
     {"<i>R</i><sub>a</sub>", "33.6\u2009Ω", "motor.resistance"},
-    {"<i>k</i><sub>fr</sub>", "5.4192·10<sup>−3</sup>\u2009N·m·s/rad", "motor.viscous_friction"},
+    {"<i>k</i><sub>fr</sub>", "5.4192·10<sup>−3</sup>\u2009N·m·s/rad",
+     "motor.viscous_friction"},
     {"<i>k</i><sub>st</sub>", "0.045\u2009N·m", "motor.stiction"},
     {"", "6.02 (section 2.3)", "motor.amplifier_gain"},
     {"", "10\u2009V (section 2.3)", "motor.voltage_limit"},
@@ -75,8 +78,10 @@ static const struct {
 
 status table_motor(const figure_order *order, artwork *out, fault *f)
 {
-    static const table_column columns[] = {
-        {"Symbol", 0.75}, {"Thesis", 1.75}, {"As used", 1.75}, {"Parameter", 3.2}};
+    static const table_column columns[] = {{"Symbol", 0.75},
+                                           {"Thesis", 1.75},
+                                           {"As used", 1.75},
+                                           {"Parameter", 3.2}};
     parameters p;
     parameters_defaults(&p, ARM_CORRECTED);
     TRY(parameters_resolve(&p, f));
@@ -95,17 +100,20 @@ status table_motor(const figure_order *order, artwork *out, fault *f)
         if (above) {
             table_add_group(t, name);
         }
-        table_add_row(t, (const char *[]){constants[i].symbol, constants[i].printed, used, name});
+        table_add_row(t, (const char *[]){constants[i].symbol, constants[i].printed, used,
+                                          name});
     }
     return open_table(t, out,
                       "The printed <i>k</i><sub>T</sub> counts kilograms of force; times "
-                      "9.80665\u2009m/s² it is equal to <i>k</i><sub>B</sub>, as it must be.");
+                      "9.80665\u2009m/s² it is equal to <i>k</i><sub>B</sub>, as it must "
+                      "be.");
 }
 
 // ---- 3.1: stability
 
 // One pair (beta, gamma): where it stands in the table and what it means for this arm.
-static void add_pair(table_page *t, const char *name, double beta, double gamma, double fastest)
+static void add_pair(table_page *t, const char *name, double beta, double gamma,
+                     double fastest)
 {
     bool always = 2 * beta >= gamma;
     // a pair with a bound has a longest step, that of the fastest mode
@@ -113,8 +121,8 @@ static void add_pair(table_page *t, const char *name, double beta, double gamma,
     g_autofree char *pair = text_printf("%.4g, %.4g", beta, gamma);
     g_autofree char *bound = text_printf("%.4g", critical);
     g_autofree char *step = text_printf("%.3g\u2009ms", 1e3 * critical / fastest);
-    table_add_row(t, (const char *[]){name, pair, always ? "none" : bound, always ? "any" : step,
-                                      gamma > 0.5 ? "1" : "2"});
+    table_add_row(t, (const char *[]){name, pair, always ? "none" : bound,
+                                      always ? "any" : step, gamma > 0.5 ? "1" : "2"});
 }
 
 status table_stability(const figure_order *order, artwork *out, fault *f)
@@ -128,7 +136,8 @@ status table_stability(const figure_order *order, artwork *out, fault *f)
     double frequencies[3], shapes[9];
     int count = 0;
     arm_init(&a, &p);
-    FAULT_IF(modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes) != STATUS_OK ||
+    FAULT_IF(modes_compute(&a, HUB_FREE, TIP_FREE, &count, frequencies, shapes) !=
+                     STATUS_OK ||
                  count < 1,
              f, STATUS_SINGULAR, "the modes of the two-link arm cannot be computed");
     double fastest = frequencies[count - 1];
@@ -144,17 +153,18 @@ status table_stability(const figure_order *order, artwork *out, fault *f)
     add_pair(t, "the thesis's choice", 0.4, 0.5, fastest);
     add_pair(t, "with damping of fast modes", 0.36, 0.7, fastest);
 
-    table_add_group(t, "Stable up to <i>ωh</i> = (<i>γ</i>/2 − <i>β</i>)<sup>−1/2</sup>: <i>γ</i> "
-                       "≥ ½, <i>β</i> &lt; <i>γ</i>/2");
+    table_add_group(t, "Stable up to <i>ωh</i> = (<i>γ</i>/2 − <i>β</i>)<sup>−1/2</sup>: "
+                       "<i>γ</i> ≥ ½, <i>β</i> &lt; <i>γ</i>/2");
     add_pair(t, "linear acceleration", 1.0 / 6, 0.5, fastest);
     add_pair(t, "Fox and Goodwin", 1.0 / 12, 0.5, fastest);
     add_pair(t, "central differences", 0, 0.5, fastest);
 
     return open_table(
         t, out,
-        "Without damping; <i>ω</i> is the fastest mode, for the two-link arm with the printed hub "
-        "spring %.4g\u2009rad/s. <i>γ</i> > ½ damps fast modes and costs one order. In contact "
-        "<i>β</i> has to exceed ¼ as well, whatever the step: figure beta-gamma.",
+        "Without damping; <i>ω</i> is the fastest mode, for the two-link arm "
+        "with the printed hub spring %.4g\u2009rad/s. <i>γ</i> > ½ damps "
+        "fast modes and costs one order. In contact <i>β</i> has to exceed ¼ "
+        "as well, whatever the step: figure beta-gamma.",
         fastest);
 }
 
@@ -168,21 +178,23 @@ status table_algorithm(const figure_order *order, artwork *out, fault *f)
         {"2", "Not in contact in the step before: would a free step end behind the wall?",
          "solve_step"},
         {"2.1",
-         "It would not: Newmark's rule and Newton's method for the three bodies; the next state is "
-         "found.",
+         "It would not: Newmark's rule and Newton's method for the three "
+         "bodies; the next state is found.",
          "solve_step"},
         {"2.2",
-         "It would: take it back and do it again with the constraint (3.9) and the force as a "
-         "fourth unknown; then accelerations and force once more, out of the linear system with "
-         "(3.13), the constraint's second derivative.",
+         "It would: take it back and do it again with the constraint (3.9) and the "
+         "force as a fourth unknown; then accelerations and force once more, out of "
+         "the linear system with (3.13), the constraint's second derivative.",
          "solve_step, printed_reevaluate"},
-        {"3", "In contact in the step before: does the force still push?", "printed_motion_step"},
+        {"3", "In contact in the step before: does the force still push?",
+         "printed_motion_step"},
         {"3.1", "It does: as in 2.2.", "printed_motion_step"},
         {"3.2", "It would pull, contact is over: as in 2.1.", "printed_motion_step"},
         {"4", "The next time step.", "printed_motion_step"},
     };
-    static const table_column columns[] = {
-        {"", 0.35}, {"What happens in a step", 4}, {"In the lab", 1.2}};
+    static const table_column columns[] = {{"", 0.35},
+                                           {"What happens in a step", 4},
+                                           {"In the lab", 1.2}};
     (void)f;
 
     table_page *t = new_table(order, columns, G_N_ELEMENTS(columns));
@@ -192,8 +204,9 @@ status table_algorithm(const figure_order *order, artwork *out, fault *f)
 
     return open_table(
         t, out,
-        "Numbered as in the thesis, told as the lab runs it for the printed model. The corrected "
-        "model locates contact and release in time instead (docs/explanation/model.md).");
+        "Numbered as in the thesis, told as the lab runs it for the printed "
+        "model. The corrected model locates contact and release in time "
+        "instead (docs/explanation/model.md).");
 }
 
 // ---- 4.1 to 4.3: predictions
@@ -218,8 +231,8 @@ static char *cell_text(const char *format, double value)
 }
 
 // A row of four values, each times `scale`.
-static void add_values(table_page *t, const char *name, const double *values, double scale,
-                       const char *format)
+static void add_values(table_page *t, const char *name, const double *values,
+                       double scale, const char *format)
 {
     g_auto(GStrv) cells = g_new0(char *, TABLE_VOLTAGES + 2);
     cells[0] = g_strdup(name);
@@ -229,7 +242,8 @@ static void add_values(table_page *t, const char *name, const double *values, do
     table_add_row(t, (const char *const *)cells);
 }
 
-static void add_model(table_page *t, const table_row *row, double scale, const char *format)
+static void add_model(table_page *t, const table_row *row, double scale,
+                      const char *format)
 {
     double difference[TABLE_VOLTAGES];
     for (int i = 0; i < TABLE_VOLTAGES; i++) {
@@ -245,20 +259,25 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
 {
     const char *table = order->which->id + 1;
     const thesis_tables *all = computed_tables(f);
-    FAIL_IF(all == NULL, f->code);
+    if (all == NULL) {
+        return f->code;
+    }
 
     // a column for each voltage
     static const table_column columns[TABLE_VOLTAGES + 1] = {{"Command", 2.2},
                                                              {"1\u2009V", 1, TEXT_RIGHT},
                                                              {"2\u2009V", 1, TEXT_RIGHT},
                                                              {"5\u2009V", 1, TEXT_RIGHT},
-                                                             {"10\u2009V", 1, TEXT_RIGHT}};
+                                                             {"10\u2009V", 1,
+                                                              TEXT_RIGHT}};
     table_page *t = new_table(order, columns, G_N_ELEMENTS(columns));
 
     // a group for each quantity
     for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
-        const table_row *printed = computed_row(all, table, "printed", quantities[q].quantity);
-        const table_row *corrected = computed_row(all, table, "corrected", quantities[q].quantity);
+        const table_row *printed =
+            computed_row(all, table, "printed", quantities[q].quantity);
+        const table_row *corrected =
+            computed_row(all, table, "corrected", quantities[q].quantity);
         bool delay = strncmp(quantities[q].quantity, "delay", 5) == 0;
         double scale = delay ? 1e3 : 1;
         const char *format = delay ? "%.1f" : "%.2f";
@@ -272,10 +291,11 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
     t->parameters = text_printf("table=%s", table);
     return open_table(
         t, out,
-        "<i>k</i><sub>2</sub> = %g\u2009N·m/rad, wall at 0.1\u2009rad. Differences are from what "
-        "the thesis prints. The printed model has the constants inferred from these tables "
-        "(docs/explanation/model.md); the corrected one has the mechanics derived anew and is not "
-        "meant to agree. –: the arm swings away as it touches, there is no pulse.",
+        "<i>k</i><sub>2</sub> = %g\u2009N·m/rad, wall at 0.1\u2009rad. Differences are "
+        "from what the thesis prints. The printed model has the constants inferred "
+        "from these tables (docs/explanation/model.md); the corrected one has the "
+        "mechanics derived anew and is not meant to agree. –: the arm swings away as "
+        "it touches, there is no pulse.",
         4.92 * computed_row(all, table, "printed", "max_force_energy")->k2_factor);
 }
 
@@ -284,30 +304,39 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
 status table_errors(const figure_order *order, artwork *out, fault *f)
 {
     const thesis_tables *all = computed_tables(f);
-    FAIL_IF(all == NULL, f->code);
+    if (all == NULL) {
+        return f->code;
+    }
 
-    static const table_column columns[] = {
-        {"Row", 3}, {"Printed (%)", 1.2, TEXT_RIGHT}, {"Corrected (%)", 1.2, TEXT_RIGHT}};
+    static const table_column columns[] = {{"Row", 3},
+                                           {"Printed (%)", 1.2, TEXT_RIGHT},
+                                           {"Corrected (%)", 1.2, TEXT_RIGHT}};
     table_page *t = new_table(order, columns, G_N_ELEMENTS(columns));
     for (size_t q = 0; q < G_N_ELEMENTS(quantities); q++) {
         g_autofree char *printed =
-            cell_text("%.1f", 100 * tables_mean_error(all, "printed", quantities[q].quantity));
+            cell_text("%.1f",
+                      100 * tables_mean_error(all, "printed", quantities[q].quantity));
         g_autofree char *corrected =
-            cell_text("%.1f", 100 * tables_mean_error(all, "corrected", quantities[q].quantity));
+            cell_text("%.1f",
+                      100 * tables_mean_error(all, "corrected", quantities[q].quantity));
         table_add_row(t, (const char *[]){quantities[q].label, printed, corrected});
     }
 
-    return open_table(t, out,
-                      "Mean size of the difference from the thesis over the cells of a row that "
-                      "have a value, three stiffnesses at four voltages.");
+    return open_table(
+        t, out,
+        "Mean size of the difference from the thesis over the cells of a row "
+        "that have a value, three stiffnesses at four voltages.");
 }
 
 // ---- the lab's own parameters
 
 table_page *defaults_table(int *next)
 {
-    static const table_column columns[] = {
-        {"Parameter", 3.7}, {"Corrected", 1.1}, {"Printed", 1.1}, {"Unit", 0.9}, {"Meaning", 3.2}};
+    static const table_column columns[] = {{"Parameter", 3.7},
+                                           {"Corrected", 1.1},
+                                           {"Printed", 1.1},
+                                           {"Unit", 0.9},
+                                           {"Meaning", 3.2}};
     parameters corrected, printed;
     parameters_defaults(&corrected, ARM_CORRECTED);
     parameters_defaults(&printed, ARM_PRINTED);
@@ -319,7 +348,8 @@ table_page *defaults_table(int *next)
     const size_t length = strcspn(group, ".");
     g_autofree char *title = text_printf("Parameters: %.*s", (int)length, group);
     table_page *t = table_create(title, columns, G_N_ELEMENTS(columns));
-    for (; *next < parameter_count && strncmp(parameter_table[*next].path, group, length + 1) == 0;
+    for (; *next < parameter_count &&
+           strncmp(parameter_table[*next].path, group, length + 1) == 0;
          ++*next) {
         const parameter_info *info = &parameter_table[*next];
         char own[128], theirs[128];

@@ -14,19 +14,22 @@
 
 // ---- one text in place of another
 
-char *text_replaced(text_pattern *p, const char *text, GRegexEvalCallback give, gpointer context)
+char *text_replaced(text_pattern *p, const char *text, GRegexEvalCallback give,
+                    gpointer context)
 {
     page_libraries++;
     // compiled by whichever thread comes first
     if (g_once_init_enter(&p->compiled)) {
         GRegex *regex =
-            g_regex_new(p->expression, G_REGEX_RAW | G_REGEX_DOTALL | G_REGEX_OPTIMIZE, 0, NULL);
+            g_regex_new(p->expression, G_REGEX_RAW | G_REGEX_DOTALL | G_REGEX_OPTIMIZE, 0,
+                        NULL);
         if (regex == NULL) {
             g_error("out of memory");
         }
         g_once_init_leave(&p->compiled, (gsize)regex);
     }
-    char *out = g_regex_replace_eval((GRegex *)p->compiled, text, -1, 0, 0, give, context, NULL);
+    char *out =
+        g_regex_replace_eval((GRegex *)p->compiled, text, -1, 0, 0, give, context, NULL);
     if (out == NULL) {
         g_error("out of memory");
     }
@@ -35,16 +38,17 @@ char *text_replaced(text_pattern *p, const char *text, GRegexEvalCallback give, 
 }
 
 // A unit, neither the start of a longer word nor the numerator of a longer unit.
-#define UNIT                                                                                       \
-    "(?:N|N·s|N·m|V|A|s|ms|µs|Hz|kHz|mm|m|kg|J|mJ|rad|dB|%|Ω|W|N s|kΩ|rad/s|m/s)"             \
+#define UNIT                                                                             \
+    "(?:N|N·s|N·m|V|A|s|ms|µs|Hz|kHz|mm|m|kg|J|mJ|rad|dB|%|Ω|W|N s|kΩ|rad/s|m/s)"   \
     "(?![A-Za-z0-9/\\x80-\\xff])"
 
-// Spaces that join what must stay in one line: both sides of an equals sign, a number and its unit,
-// a name and the version or the number after it.
-#define JOINT " (?== )|(?<= =) |(?<=[0-9]) (?=" UNIT ")|(?<=[A-Za-z]) (?=[0-9]+\\.)|(?<=Fig\\.) "
+// Spaces that join what must stay in one line: both sides of an equals sign, a number and
+// its unit, a name and the version or the number after it.
+#define JOINT                                                                            \
+    " (?== )|(?<= =) |(?<=[0-9]) (?=" UNIT ")|(?<=[A-Za-z]) (?=[0-9]+\\.)|(?<=Fig\\.) "
 
-// A typewriter's apostrophe within a word, also as g_markup_escape_text writes it; the slash before
-// the last part of a unit, "N·m/rad", for a path has longer words.
+// A typewriter's apostrophe within a word, also as g_markup_escape_text writes it; the
+// slash before the last part of a unit, "N·m/rad", for a path has longer words.
 #define APOSTROPHE "(?<=[A-Za-z])(?:'|&apos;|&#39;)(?=[A-Za-z])"
 #define SLASH      "(?<=[A-Za-z])/(?=(?:rad|s|m|V|A|N)(?![A-Za-z]))"
 
@@ -60,9 +64,10 @@ typedef struct line_letters {
 
 static gboolean translate(const GMatchInfo *match, GString *out, gpointer context)
 {
-    // a thin space stands between a number and its unit: its twin does not break, and behind a word
-    // joiner no line ends
-    static const char *const instead[] = {[3] = "</span>", "\u202f", "\u00a0", "\u2019", "/\u2060"};
+    // a thin space stands between a number and its unit: its twin does not break, and
+    // behind a word joiner no line ends
+    static const char *const instead[] = {
+        [3] = "</span>", "\u202f", "\u00a0", "\u2019", "/\u2060"};
     const int group = g_match_info_get_match_count(match) - 1;
     if (group == 0) {
         // any other tag stays as it is
@@ -90,12 +95,14 @@ char *text_translate(const char *markup, double size, double scale)
 
 char *text_unit(const char *unit)
 {
-    static const char *const powers[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
-                                         "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+    static const char *const powers[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3",
+                                         "\u2074", "\u2075", "\u2076", "\u2077",
+                                         "\u2078", "\u2079"};
 
     GString *shown = g_string_new(NULL);
     for (const char *c = unit; *c != '\0'; c++) {
-        bool after_letter = c > unit && (g_ascii_isalpha(c[-1]) || g_ascii_isdigit(c[-1]));
+        bool after_letter =
+            c > unit && (g_ascii_isalpha(c[-1]) || g_ascii_isdigit(c[-1]));
         if (*c == ' ') {
             g_string_append(shown, "\u00b7");
         } else if (g_ascii_isdigit(*c)) {
@@ -137,8 +144,8 @@ char *text_number(double value, int digits)
     int power = atoi(exponent + 1);
     *exponent = '\0';
     bool one = strcmp(number, "1") == 0;
-    return text_printf("%s%s%s10<sup>%s%d</sup>", sign, one ? "" : number, one ? "" : "\u00b7",
-                       power < 0 ? "\u2212" : "", abs(power));
+    return text_printf("%s%s%s10<sup>%s%d</sup>", sign, one ? "" : number,
+                       one ? "" : "\u00b7", power < 0 ? "\u2212" : "", abs(power));
 }
 
 char *text_label(const char *description)
@@ -178,8 +185,8 @@ char *text_escape(const char *bytes)
     return g_markup_escape_text(valid, -1);
 }
 
-// Without memory GLib ends the program, and so does this; GLib's own printing leaves the text out
-// and says nothing.
+// Without memory GLib ends the program, and so does this; GLib's own printing leaves the
+// text out and says nothing.
 char *text_vprintf(const char *format, va_list list)
 {
     char *printed = decimal_vtext(format, list);

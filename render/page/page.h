@@ -1,4 +1,5 @@
-// Common to all pages: theme, rectangles on the page, a report of what was drawn where, colours.
+// Common to all pages: theme, rectangles on the page, a report of what was drawn where,
+// colours.
 #pragma once
 
 #include <cairo.h>
@@ -33,8 +34,8 @@ typedef struct page_look {
 #define LETTERS_NORMAL 8.0 // of labels
 #define LETTERS_LEAST  6.0 // of anything
 
-// Size of letters that are `size` where labels have 8 pt, for labels of `letters` (0: 8); never
-// less than is readable.
+// Size of letters that are `size` where labels have 8 pt, for labels of `letters` (0: 8);
+// never less than is readable.
 double page_letters(double letters, double size);
 
 // A rectangle on the page [pt], y downwards.
@@ -44,8 +45,8 @@ typedef struct figure_rect {
 
 typedef struct figure_text {
     figure_rect place; // upright, also round a rotated text
-    double size;       // of its letters on the page [pt], of the smallest if it has indices
-    char text[64];     // its beginning, without markup
+    double size;   // of its letters on the page [pt], of the smallest if it has indices
+    char text[64]; // its beginning, without markup
 } figure_text;
 
 // The values at the edges of a panel.
@@ -66,16 +67,17 @@ typedef struct figure_report {
     int text_count;
 } figure_report;
 
-// Adds a text with letters of a size on the page [pt] and its place on the page to a report (may be
-// NULL).
-void report_add_text(figure_report *report, const char *markup, double size, figure_rect place);
+// Adds a text with letters of a size on the page [pt] and its place on the page to a
+// report (may be NULL).
+void report_add_text(figure_report *report, const char *markup, double size,
+                     figure_rect place);
 
-// How deep this thread is in libraries that crash without memory: fontconfig and Pango, cairo's
-// strokes and files, GLib's regular expressions.
+// How deep this thread is in libraries that crash without memory: fontconfig and Pango,
+// cairo's strokes and files, GLib's regular expressions.
 extern _Thread_local volatile sig_atomic_t page_libraries;
 
-// Whether this thread is in one of them, or is not the program's first while Pango is at work. For
-// a signal handler.
+// Whether this thread is in one of them, or is not the program's first while Pango is at
+// work. For a signal handler.
 bool page_in_libraries(void);
 
 // --- colours and line patterns of figures: palette.c
@@ -97,10 +99,10 @@ colour palette_series(figure_theme theme, int slot, int place);
 // The slots in the order in which they differ most, again from the eighth on.
 int palette_slot(int index);
 
-// The colour at share 0 ... 1 of the colour scale. Mono: greys from dark to nearly white. Else
-// viridis of van der Walt and Smith (2015, public domain), straight lines between nine of its
-// colours. Perceptually uniform, from dark blue to yellow, with lightness increasing throughout, so
-// that it is readable when printed in grey.
+// The colour at share 0 ... 1 of the colour scale. Mono: greys from dark to nearly white.
+// Else viridis of van der Walt and Smith (2015, public domain), straight lines between
+// nine of its colours. Perceptually uniform, from dark blue to yellow, with lightness
+// increasing throughout, so that it is readable when printed in grey.
 colour palette_shade(figure_theme theme, double share);
 
 // The colour at a share of the way from a to b.

@@ -3,14 +3,15 @@
 #include <assert.h>
 #include <math.h>
 
-#define RGB(r, g, b)                                                                               \
-    {                                                                                              \
-        (r) / 255.0, (g) / 255.0, (b) / 255.0                                                      \
+#define RGB(r, g, b)                                                                     \
+    {                                                                                    \
+        (r) / 255.0, (g) / 255.0, (b) / 255.0                                            \
     }
 
 enum { SLOTS = 8 };
 
-// Okabe and Ito 2008; their yellow is too faint for lines on white and gives way to a grey.
+// Okabe and Ito 2008; their yellow is too faint for lines on white and gives way to a
+// grey.
 static const colour on_white[SLOTS] = {
     RGB(0, 114, 178),   // blue
     RGB(230, 159, 0),   // orange
@@ -29,12 +30,14 @@ static const colour greys[] = {RGB(0, 0, 0), RGB(90, 90, 90), RGB(140, 140, 140)
 
 static const palette themes[] = {
     // page, text, faint text, axis, grid, shade, mark
-    [THEME_COLOUR] = {RGB(255, 255, 255), RGB(25, 25, 25), RGB(95, 95, 95), RGB(60, 60, 60),
-                      RGB(228, 228, 228), RGB(240, 243, 247), RGB(130, 130, 130)},
+    [THEME_COLOUR] = {RGB(255, 255, 255), RGB(25, 25, 25), RGB(95, 95, 95),
+                      RGB(60, 60, 60), RGB(228, 228, 228), RGB(240, 243, 247),
+                      RGB(130, 130, 130)},
     [THEME_MONO] = {RGB(255, 255, 255), RGB(0, 0, 0), RGB(80, 80, 80), RGB(40, 40, 40),
                     RGB(226, 226, 226), RGB(241, 241, 241), RGB(120, 120, 120)},
-    [THEME_DARK] = {RGB(20, 22, 26), RGB(230, 230, 230), RGB(165, 165, 165), RGB(170, 170, 170),
-                    RGB(52, 55, 60), RGB(34, 39, 48), RGB(135, 135, 135)},
+    [THEME_DARK] = {RGB(20, 22, 26), RGB(230, 230, 230), RGB(165, 165, 165),
+                    RGB(170, 170, 170), RGB(52, 55, 60), RGB(34, 39, 48),
+                    RGB(135, 135, 135)},
 };
 
 const palette *palette_of(figure_theme theme)
@@ -49,7 +52,10 @@ colour palette_series(figure_theme theme, int slot, int place)
         return greys[place / 2 % 3];
     }
     slot = (slot % SLOTS + SLOTS) % SLOTS;
-    return theme == THEME_DARK ? on_black[slot] : on_white[slot];
+    if (theme == THEME_DARK) {
+        return on_black[slot];
+    }
+    return on_white[slot];
 }
 
 int palette_slot(int index)
@@ -82,7 +88,8 @@ colour palette_shade(figure_theme theme, double share)
 
 colour colour_between(colour a, colour b, double share)
 {
-    return (colour){a.red + share * (b.red - a.red), a.green + share * (b.green - a.green),
+    return (colour){a.red + share * (b.red - a.red),
+                    a.green + share * (b.green - a.green),
                     a.blue + share * (b.blue - a.blue)};
 }
 
@@ -94,14 +101,27 @@ void set_colour(cairo_t *cr, colour c)
 void set_line_style(cairo_t *cr, line_style style, double width)
 {
     assert(width > 0);
-    static const double dashed[] = {5, 2.2}, dotted[] = {1.2, 1.8}, dash_dot[] = {7, 2, 1.4, 2};
+    static const double dashed[] = {5, 2.2}, dotted[] = {1.2, 1.8},
+                        dash_dot[] = {7, 2, 1.4, 2};
     double scaled[4];
 
     // lengths are multiples of the line's width
-    const double *pattern = style == LINE_DASHED   ? dashed
-                            : style == LINE_DOTTED ? dotted
-                                                   : dash_dot;
-    int count = style == LINE_SOLID ? 0 : style == LINE_DASH_DOT ? 4 : 2;
+    const double *pattern;
+    if (style == LINE_DASHED) {
+        pattern = dashed;
+    } else if (style == LINE_DOTTED) {
+        pattern = dotted;
+    } else {
+        pattern = dash_dot;
+    }
+    int count = 0;
+    if (style != LINE_SOLID) {
+        if (style == LINE_DASH_DOT) {
+            count = 4;
+        } else {
+            count = 2;
+        }
+    }
     for (int i = 0; i < count; i++) {
         scaled[i] = pattern[i] * width;
     }
@@ -109,5 +129,6 @@ void set_line_style(cairo_t *cr, line_style style, double width)
     cairo_set_dash(cr, scaled, count, 0);
     cairo_set_line_width(cr, width);
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
-    cairo_set_line_cap(cr, style == LINE_SOLID ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+    cairo_set_line_cap(cr,
+                       style == LINE_SOLID ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
 }

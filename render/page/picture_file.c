@@ -53,9 +53,10 @@ static void set_notes(png_structp png, png_infop info, const png_note *notes, in
     }
 }
 
-// cairo's native-endian 0xAARRGGBB as bytes R, G, B and A where there is one; cairo's colours are
-// multiplied by A, those of a PNG are not.
-static void convert_row(const unsigned char *from, unsigned char *to, int width, bool alpha)
+// cairo's native-endian 0xAARRGGBB as bytes R, G, B and A where there is one; cairo's
+// colours are multiplied by A, those of a PNG are not.
+static void convert_row(const unsigned char *from, unsigned char *to, int width,
+                        bool alpha)
 {
     for (int i = 0; i < width; i++) {
         uint32_t pixel;
@@ -91,8 +92,8 @@ static void write_rows(png_structp png, cairo_surface_t *surface, unsigned char 
     }
 }
 
-status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const png_note *notes,
-                      int note_count, fault *f)
+status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi,
+                      const png_note *notes, int note_count, fault *f)
 {
     assert(dpi > 0);
     fault own = {STATUS_OK, ""};
@@ -116,9 +117,11 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const 
         png_set_IHDR(png, info, (png_uint_32)width,
                      (png_uint_32)cairo_image_surface_get_height(surface), 8,
                      has_alpha(surface) ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
-                     PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+                     PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                     PNG_FILTER_TYPE_DEFAULT);
         png_set_pHYs(png, info, per_metre, per_metre, PNG_RESOLUTION_METER);
-        // flat colours and thin lines: filters would cost twice the time and make larger files
+        // flat colours and thin lines: filters would cost twice the time and make larger
+        // files
         png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_NONE);
         png_set_compression_level(png, COMPRESSION);
         set_notes(png, info, notes, note_count);
@@ -129,7 +132,10 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const 
 
     png_destroy_write_struct(&png, &info);
     free(row);
-    return own.code == STATUS_OK ? STATUS_OK : fault_set(f, own.code, "%s", own.text);
+    if (own.code != STATUS_OK) {
+        return fault_set(f, own.code, "%s", own.text);
+    }
+    return STATUS_OK;
 }
 
 // ==== pictures
@@ -143,7 +149,10 @@ const char *picture_ending(const char *path)
 {
     // only in the last part of the path: a dot in a folder's name begins no ending
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    return dot != NULL ? dot : path + strlen(path);
+    if (dot != NULL) {
+        return dot;
+    }
+    return path + strlen(path);
 }
 
 picture_format picture_format_of(const char *path)
@@ -154,7 +163,14 @@ picture_format picture_format_of(const char *path)
     } known[] = {{"png", FORMAT_PNG}, {"pdf", FORMAT_PDF}, {"svg", FORMAT_SVG}};
 
     const char *ending = picture_ending(path), *slash = strrchr(path, '/');
-    const char *word = ending[0] == '.' ? ending + 1 : slash ? slash + 1 : path;
+    const char *word;
+    if (ending[0] == '.') {
+        word = ending + 1;
+    } else if (slash) {
+        word = slash + 1;
+    } else {
+        word = path;
+    }
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
         if (strcasecmp(word, known[i].name) == 0) {
             return known[i].format;
@@ -165,9 +181,11 @@ picture_format picture_format_of(const char *path)
 
 static status check_extension(const char *path, fault *f)
 {
-    FAULT_IF(picture_format_of(path) == FORMAT_NONE || strchr(path, '.') == NULL, f,
-             STATUS_BAD_ARGUMENT,
-             "'%s' is no name for a picture: expected one that ends in .png, .pdf or .svg", path);
+    FAULT_IF(
+        picture_format_of(path) == FORMAT_NONE || strchr(path, '.') == NULL, f,
+        STATUS_BAD_ARGUMENT,
+        "'%s' is no name for a picture: expected one that ends in .png, .pdf or .svg",
+        path);
     return STATUS_OK;
 }
 
@@ -190,19 +208,23 @@ const char *picture_software(void)
 
 static cairo_status_t to_stream(void *stream, const unsigned char *bytes, unsigned length)
 {
-    return fwrite(bytes, 1, length, stream) == length ? CAIRO_STATUS_SUCCESS
-                                                      : CAIRO_STATUS_WRITE_ERROR;
+    if (fwrite(bytes, 1, length, stream) == length) {
+        return CAIRO_STATUS_SUCCESS;
+    }
+    return CAIRO_STATUS_WRITE_ERROR;
 }
 
 // What cairo met on the way, where drawing itself came to `code`.
 static status drawn(status code, cairo_status_t state, fault *f)
 {
-    const bool well = state == CAIRO_STATUS_SUCCESS || state == CAIRO_STATUS_WRITE_ERROR ||
+    const bool well = state == CAIRO_STATUS_SUCCESS ||
+                      state == CAIRO_STATUS_WRITE_ERROR ||
                       state == CAIRO_STATUS_SURFACE_FINISHED;
-    return code != STATUS_OK || well
-               ? code
-               : fault_set(f, STATUS_NO_MEMORY, "a picture could not be drawn: %s",
-                           cairo_status_to_string(state));
+    if (code != STATUS_OK || well) {
+        return code;
+    }
+    return fault_set(f, STATUS_NO_MEMORY, "a picture could not be drawn: %s",
+                     cairo_status_to_string(state));
 }
 
 // Where a drawing keeps that a line of it lacks a piece.
@@ -246,7 +268,8 @@ static void write_out(cairo_surface_t *surface, void (*call)(cairo_surface_t *su
 }
 
 // Draws on a surface and finishes it.
-static status paint_surface(cairo_surface_t *surface, const picture *p, bool finish, fault *f)
+static status paint_surface(cairo_surface_t *surface, const picture *p, bool finish,
+                            fault *f)
 {
     // libraries without memory may draw another letter, or none, and say nothing
     errno = 0;
@@ -266,18 +289,21 @@ status picture_write_png(const picture *p, FILE *stream, fault *f)
     double dpi = p->dpi != 0 ? p->dpi : DEFAULT_DPI;
     FAULT_IF(!(dpi >= LEAST_DPI && dpi <= MOST_DPI), f, STATUS_BAD_ARGUMENT,
              "a PNG of %g dpi, expected %g to %g", dpi, LEAST_DPI, MOST_DPI);
-    double pixels_across = round(p->width * dpi / 72), pixels_down = round(p->height * dpi / 72);
+    double pixels_across = round(p->width * dpi / 72),
+           pixels_down = round(p->height * dpi / 72);
     FAULT_IF(!(pixels_across >= 1 && pixels_across <= MOST_PIXELS && pixels_down >= 1 &&
                pixels_down <= MOST_PIXELS),
              f, STATUS_BAD_ARGUMENT,
-             "a PNG of %.0f x %.0f pixels, expected 1 to %g along each edge", pixels_across,
-             pixels_down, MOST_PIXELS);
+             "a PNG of %.0f x %.0f pixels, expected 1 to %g along each edge",
+             pixels_across, pixels_down, MOST_PIXELS);
 
     g_autoptr(cairo_surface_t) surface =
-        cairo_image_surface_create(p->transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24,
+        cairo_image_surface_create(p->transparent ? CAIRO_FORMAT_ARGB32
+                                                  : CAIRO_FORMAT_RGB24,
                                    (int)pixels_across, (int)pixels_down);
     // the page ends exactly where the pixels do
-    cairo_surface_set_device_scale(surface, pixels_across / p->width, pixels_down / p->height);
+    cairo_surface_set_device_scale(surface, pixels_across / p->width,
+                                   pixels_down / p->height);
     TRY(paint_surface(surface, p, false, f));
     const png_note notes[] = {{"Title", p->title},
                               {"Software", p->software},
@@ -287,7 +313,8 @@ status picture_write_png(const picture *p, FILE *stream, fault *f)
     return png_file_write(stream, surface, dpi, notes, 5, f);
 }
 
-static void set_metadata(cairo_surface_t *surface, cairo_pdf_metadata_t what, const char *value)
+static void set_metadata(cairo_surface_t *surface, cairo_pdf_metadata_t what,
+                         const char *value)
 {
     if (value != NULL) {
         g_autofree char *valid = g_utf8_make_valid(value, -1);
@@ -300,7 +327,8 @@ static status write_pages(FILE *stream, const picture *p, int count, fault *f)
     cairo_surface_t *surface =
         cairo_pdf_surface_create_for_stream(to_stream, stream, p->width, p->height);
     // without a date of ours cairo writes the present one, and no two files are alike
-    cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "2000-01-01T00:00:00Z");
+    cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE,
+                                   "2000-01-01T00:00:00Z");
 
     set_metadata(surface, CAIRO_PDF_METADATA_TITLE, p->title);
     set_metadata(surface, CAIRO_PDF_METADATA_CREATOR, p->software);
@@ -325,7 +353,8 @@ static cairo_status_t to_string(void *string, const unsigned char *bytes, unsign
     return CAIRO_STATUS_SUCCESS;
 }
 
-static void add_element(GString *out, const char *indent, const char *name, const char *content)
+static void add_element(GString *out, const char *indent, const char *name,
+                        const char *content)
 {
     if (content != NULL) {
         g_autofree char *escaped = text_escape(content);
@@ -340,10 +369,11 @@ static GString *svg_metadata(const picture *p)
 
     add_element(out, "", "title", p->title);
     add_element(out, "", "desc", p->alternative);
-    g_string_append(out, "<metadata>\n"
-                         "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\" "
-                         "xmlns:dc=\"http://purl.org/dc/elements/1.1/\">\n"
-                         "<rdf:Description>\n");
+    g_string_append(out,
+                    "<metadata>\n"
+                    "<rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\" "
+                    "xmlns:dc=\"http://purl.org/dc/elements/1.1/\">\n"
+                    "<rdf:Description>\n");
 
     // Dublin Core, which viewers read
     add_element(out, "  ", "dc:title", p->title);
@@ -402,8 +432,13 @@ status picture_write(const picture *p, const char *path, fault *f)
     TRY(check_extension(path, f));
     TRY(whole_file_open(&file, path, f));
     const picture_format format = picture_format_of(path);
-    const status code = format == FORMAT_PNG   ? picture_write_png(p, file.stream, f)
-                        : format == FORMAT_SVG ? write_svg(p, file.stream, f)
-                                               : write_pages(file.stream, p, 1, f);
+    status code;
+    if (format == FORMAT_PNG) {
+        code = picture_write_png(p, file.stream, f);
+    } else if (format == FORMAT_SVG) {
+        code = write_svg(p, file.stream, f);
+    } else {
+        code = write_pages(file.stream, p, 1, f);
+    }
     return whole_file_close(&file, code, f);
 }

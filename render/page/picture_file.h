@@ -1,5 +1,5 @@
-// Pictures as files: PNG, PDF or SVG of anything that cairo can draw. A file is written completely
-// or not at all, and the same picture gives the same bytes.
+// Pictures as files: PNG, PDF or SVG of anything that cairo can draw. A file is written
+// completely or not at all, and the same picture gives the same bytes.
 #pragma once
 
 #include <cairo.h>
@@ -9,12 +9,18 @@
 
 #include "src/base/fault.h"
 
-typedef enum picture_format { FORMAT_NONE, FORMAT_PNG, FORMAT_PDF, FORMAT_SVG } picture_format;
+typedef enum picture_format {
+    FORMAT_NONE,
+    FORMAT_PNG,
+    FORMAT_PDF,
+    FORMAT_SVG
+} picture_format;
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(cairo_surface_t, cairo_surface_destroy)
 
 typedef struct picture {
-    const char *title;       // this and other texts: for the file's metadata, plain, NULL for none
+    const char
+        *title; // this and other texts: for the file's metadata, plain, NULL for none
     double width, height;    // of the page [pt]
     double dpi;              // of a PNG; 0: 200
     const char *software;    // "impactlab 0.1.0"
@@ -30,16 +36,17 @@ typedef struct picture {
 // The program and its version, as files of pictures name what made them.
 const char *picture_software(void);
 
-// Strokes and clears the path, as cairo_stroke does. If cairo gets no memory for the outline of a
-// long line, it omits a piece of it without reporting an error; picture_end_drawing reports it.
+// Strokes and clears the path, as cairo_stroke does. If cairo gets no memory for the
+// outline of a long line, it omits a piece of it without reporting an error;
+// picture_end_drawing reports it.
 void picture_stroke(cairo_t *cr);
 
 // Strokes a straight line so.
 void picture_line(cairo_t *cr, double x0, double y0, double x1, double y1);
 
-// Ends a drawing: destroys cr and returns `code`, the status of drawing, or STATUS_NO_MEMORY if
-// cairo met an error, after which it draws nothing, or if a piece of a line is missing. Errors of
-// writing are found by the caller when closing the stream.
+// Ends a drawing: destroys cr and returns `code`, the status of drawing, or
+// STATUS_NO_MEMORY if cairo met an error, after which it draws nothing, or if a piece of
+// a line is missing. Errors of writing are found by the caller when closing the stream.
 status picture_end_drawing(cairo_t *cr, status code, fault *f);
 
 // The ending of a path's last part with its dot; without one its end.
@@ -48,52 +55,55 @@ const char *picture_ending(const char *path);
 // The format that a path's extension (.png, .pdf, .svg) or a bare word (png) names.
 picture_format picture_format_of(const char *path);
 
-// Checks in advance whether picture_write can write to path: STATUS_BAD_ARGUMENT for an unknown
-// extension, STATUS_CANNOT_WRITE for a folder that does not exist.
+// Checks in advance whether picture_write can write to path: STATUS_BAD_ARGUMENT for an
+// unknown extension, STATUS_CANNOT_WRITE for a folder that does not exist.
 status picture_check_path(const char *path, fault *f);
 
-// Draws the picture into a file; the extension chooses the format. Returns the status of paint,
-// STATUS_BAD_ARGUMENT for an unknown extension or a resolution out of range, STATUS_CANNOT_WRITE
-// with path and reason.
+// Draws the picture into a file; the extension chooses the format. Returns the status of
+// paint, STATUS_BAD_ARGUMENT for an unknown extension or a resolution out of range,
+// STATUS_CANNOT_WRITE with path and reason.
 status picture_write(const picture *p, const char *path, fault *f);
 
 // Draws the picture as a PNG into a stream, which keeps its own errors.
 status picture_write_png(const picture *p, FILE *stream, fault *f);
 
-// The picture as the text of an SVG file, to be freed with g_free; NULL if it cannot be drawn.
+// The picture as the text of an SVG file, to be freed with g_free; NULL if it cannot be
+// drawn.
 char *picture_svg(const picture *p, fault *f);
 
-// Draws pictures as the pages of one PDF with the metadata of the first. Returns the same as
-// picture_write.
+// Draws pictures as the pages of one PDF with the metadata of the first. Returns the same
+// as picture_write.
 status picture_write_pages(const picture *pages, int count, const char *path, fault *f);
 
 // --- PNG files with resolution and metadata
 
-// A text of a PNG: keyword as in the PNG specification ("Title"), text in UTF-8 (NULL: left out).
+// A text of a PNG: keyword as in the PNG specification ("Title"), text in UTF-8 (NULL:
+// left out).
 typedef struct png_note {
     const char *keyword;
     const char *text;
 } png_note;
 
-// Writes an image surface (RGB24, or ARGB32 for a PNG with transparency) with `dpi` dots per inch
-// in a pHYs chunk and the notes in iTXt chunks. The same picture gives the same bytes. Errors of
-// the stream stay in the stream (ferror); others are returned.
-status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi, const png_note *notes,
-                      int note_count, fault *f);
+// Writes an image surface (RGB24, or ARGB32 for a PNG with transparency) with `dpi` dots
+// per inch in a pHYs chunk and the notes in iTXt chunks. The same picture gives the same
+// bytes. Errors of the stream stay in the stream (ferror); others are returned.
+status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi,
+                      const png_note *notes, int note_count, fault *f);
 
 // --- SVG text: ids that do not depend on what was drawn before, and fewer bytes: svg.c
 
-// cairo makes ids from counters of the whole process ("surface96"), so that the second figure of a
-// program differs from the first. Returns the SVG with the number in every id="name<number>", and
-// in every reference to it, replaced by its place in the order of the ids, and with a prefix before
-// it. Free the result with g_free.
+// cairo makes ids from counters of the whole process ("surface96"), so that the second
+// figure of a program differs from the first. Returns the SVG with the number in every
+// id="name<number>", and in every reference to it, replaced by its place in the order of
+// the ids, and with a prefix before it. Free the result with g_free.
 char *svg_renumber_ids(const char *svg, const char *prefix);
 
-// The SVG as an element of a page with others, in fewer bytes: without the XML declaration and
-// metadata; with a prefix before every id; lengths to a hundredth of a point (those of lines to a
-// tenth), colours as #rrggbb, without default attributes, successive lines of one style in one
-// path. Outlines of letters (symbols) that an earlier SVG of the page contains are omitted and
-// referred to there: `known` has outline to id, both owned by it; new ones are added. Texts between
-// tags stay as they are. The report of the whole thesis has 1.9 MB by it instead of 6
-// (tests/test_figures.c). Free the result with g_free.
+// The SVG as an element of a page with others, in fewer bytes: without the XML
+// declaration and metadata; with a prefix before every id; lengths to a hundredth of a
+// point (those of lines to a tenth), colours as #rrggbb, without default attributes,
+// successive lines of one style in one path. Outlines of letters (symbols) that an
+// earlier SVG of the page contains are omitted and referred to there: `known` has outline
+// to id, both owned by it; new ones are added. Texts between tags stay as they are. The
+// report of the whole thesis has 1.9 MB by it instead of 6 (tests/test_figures.c). Free
+// the result with g_free.
 char *svg_for_page(const char *svg, const char *prefix, GHashTable *known);

@@ -26,17 +26,24 @@ point shifted(point from, double right, double down)
 
 static double design_width(const sketch_frame *frame)
 {
-    return frame->design_width > 0 ? frame->design_width : SKETCH_WIDTH;
+    if (frame->design_width > 0) {
+        return frame->design_width;
+    }
+    return SKETCH_WIDTH;
 }
 
 static double page_scale(const sketch_frame *frame)
 {
-    return frame->look.width > 0 ? frame->look.width * MM / design_width(frame) : 1;
+    if (frame->look.width > 0) {
+        return frame->look.width * MM / design_width(frame);
+    }
+    return 1;
 }
 
 double sketch_letters(const sketch_frame *frame, double size)
 {
-    // a smaller page has smaller letters, though not as small as its lines; a larger one has not
+    // a smaller page has smaller letters, though not as small as its lines; a larger one
+    // has not
     double scale = page_scale(frame), shrunk = size * fmin(1, fmax(scale, LEAST_SHRINK));
     return page_letters(frame->look.letters, shrunk) / scale;
 }
@@ -104,8 +111,8 @@ static void draw_block(sketch *s, const text_block *t, point at, anchor part, co
                     (figure_rect){k * r.x, k * r.y, k * r.width, k * r.height});
 }
 
-status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_report *report,
-                    fault *f)
+status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame,
+                    figure_report *report, fault *f)
 {
     double above, below, width, height;
     TRY(text_check_font(f));
@@ -147,7 +154,8 @@ status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_re
     // title above, caption below
     g_autofree char *title = text_escape(frame->title);
     const text_block heading = title_block(frame, title);
-    draw_block(s, &heading, (point){s->left, SKETCH_MARGIN}, (anchor){0, 0}, s->colours->text);
+    draw_block(s, &heading, (point){s->left, SKETCH_MARGIN}, (anchor){0, 0},
+               s->colours->text);
     if (frame->caption != NULL) {
         const text_block caption = caption_block(frame);
         draw_block(s, &caption, (point){s->left, s->bottom + TITLE_SPACE}, (anchor){0, 0},
@@ -170,8 +178,10 @@ static colour sketch_colour(const sketch *s, int slot)
     if (slot == SKETCH_FAINT) {
         return s->colours->mark;
     }
-    return slot < 0 || s->theme == THEME_MONO ? s->colours->text
-                                              : palette_series(s->theme, slot, 0);
+    if (slot < 0 || s->theme == THEME_MONO) {
+        return s->colours->text;
+    }
+    return palette_series(s->theme, slot, 0);
 }
 
 static void set_pen(const sketch *s, double width, int slot)
@@ -277,7 +287,8 @@ void sketch_arc(const sketch *s, arc a, int slot)
 
     if (a.head) {
         double direction = -(a.to - bit / 2) - turn * G_PI / 2;
-        draw_head(s, shifted(c, a.radius * cos(a.to), -a.radius * sin(a.to)), direction, ARC_HEAD);
+        draw_head(s, shifted(c, a.radius * cos(a.to), -a.radius * sin(a.to)), direction,
+                  ARC_HEAD);
     }
 }
 
@@ -338,7 +349,8 @@ void sketch_spiral(const sketch *s, point centre, double radius, int slot)
     picture_stroke(s->cr);
 }
 
-// A line from one point to another, in lengths along it and across it to the right on the page.
+// A line from one point to another, in lengths along it and across it to the right on the
+// page.
 typedef struct guide {
     point from;
     double length, ux, uy; // [pt], and its unit vector
@@ -352,7 +364,8 @@ static guide guide_of(point from, point to)
 
 static point guide_at(const guide *g, double along, double across)
 {
-    return shifted(g->from, along * g->ux - across * g->uy, along * g->uy + across * g->ux);
+    return shifted(g->from, along * g->ux - across * g->uy,
+                   along * g->uy + across * g->ux);
 }
 
 static void line_to_point(const sketch *s, point p)
@@ -361,7 +374,8 @@ static void line_to_point(const sketch *s, point p)
 }
 
 // A zigzag with straight leads at both ends.
-static void draw_zigzag(const sketch *s, const guide *g, int turns, double height, double lead)
+static void draw_zigzag(const sketch *s, const guide *g, int turns, double height,
+                        double lead)
 {
     double step = (g->length - 2 * lead) / (2 * turns);
     line_to_point(s, g->from);
@@ -437,7 +451,11 @@ void sketch_wrapped(sketch *s, point at, const text_block *text)
         text_block line = t;
         line.width = 0;
         if (text_measure(s->context, &line).width <= t.width) {
-            part.x = t.align == TEXT_RIGHT ? 1 : 0.5;
+            if (t.align == TEXT_RIGHT) {
+                part.x = 1;
+            } else {
+                part.x = 0.5;
+            }
             at.x += part.x * t.width;
             t.width = 0;
         }

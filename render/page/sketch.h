@@ -1,6 +1,7 @@
-// Pages that are drawn rather than plotted: diagrams and tables, with a title above and a caption
-// below. Lengths are in points of the page as designed. On a page of another width lengths are
-// scaled, while letters and lines keep their size as far as needed to be readable.
+// Pages that are drawn rather than plotted: diagrams and tables, with a title above and a
+// caption below. Lengths are in points of the page as designed. On a page of another
+// width lengths are scaled, while letters and lines keep their size as far as needed to
+// be readable.
 #pragma once
 
 #include "render/page/page.h"
@@ -14,7 +15,8 @@ typedef struct sketch_frame {
     const char *title;   // plain
     const char *caption; // markup, wrapped; NULL for none
     double body_height;  // of the drawing itself [pt]
-    double design_width; // of the page on which the drawing is designed [pt]; 0: SKETCH_WIDTH
+    double design_width; // of the page on which the drawing is designed [pt]; 0:
+                         // SKETCH_WIDTH
     page_look look;
 } sketch_frame;
 
@@ -30,7 +32,8 @@ typedef struct sketch {
     double top, bottom;
 } sketch;
 
-// Size of letters in designed points for `size` points on the page; they shrink less than the page.
+// Size of letters in designed points for `size` points on the page; they shrink less than
+// the page.
 double sketch_letters(const sketch_frame *frame, double size);
 
 // Size of the page in its own points.
@@ -38,8 +41,8 @@ void sketch_size(const sketch_frame *frame, double *width, double *height);
 
 // Paints page, title and caption and begins the drawing, to be ended with sketch_end.
 // STATUS_CANNOT_READ if the font is missing.
-status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame, figure_report *report,
-                    fault *f);
+status sketch_begin(sketch *s, cairo_t *cr, const sketch_frame *frame,
+                    figure_report *report, fault *f);
 void sketch_end(sketch *s);
 
 // Instead of a palette slot: the colours of axes and text, and of secondary parts.
@@ -90,13 +93,13 @@ void sketch_resistor(const sketch *s, point from, point to);
 // A fixed surface: a line, hatched on its right-hand side as seen from its start.
 void sketch_wall(const sketch *s, point from, point to);
 
-// A text with its anchor at a place, printed as by text_printf, in letters of a size; those of
-// labels and smaller ones.
+// A text with its anchor at a place, printed as by text_printf, in letters of a size;
+// those of labels and smaller ones.
 void sketch_text(sketch *s, double size, point at, anchor part, const char *format, ...)
     __attribute__((format(printf, 5, 6)));
 #define sketch_label(s, ...) sketch_text(s, 8, __VA_ARGS__)
 #define sketch_small(s, ...) sketch_text(s, 7, __VA_ARGS__)
 
-// A text that begins at a point, wrapped at its width; its size is that of a designed page. The
-// frame's family replaces the block's.
+// A text that begins at a point, wrapped at its width; its size is that of a designed
+// page. The frame's family replaces the block's.
 void sketch_wrapped(sketch *s, point at, const text_block *text);

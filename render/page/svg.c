@@ -25,15 +25,17 @@ static gboolean collect_id(const GMatchInfo *match, GString *out, gpointer conte
     const id_names *n = context;
     char *id = g_match_info_fetch(match, 2);
     const int letters = (int)strcspn(id, "0123456789");
-    g_hash_table_insert(
-        n->names, id, text_printf("%s%.*s%u", n->prefix, letters, id, g_hash_table_size(n->names)));
+    g_hash_table_insert(n->names, id,
+                        text_printf("%s%.*s%u", n->prefix, letters, id,
+                                    g_hash_table_size(n->names)));
     return FALSE;
 }
 
 // The id's name in the table, where it has one.
 static gboolean rename_id(const GMatchInfo *match, GString *out, gpointer names)
 {
-    g_autofree char *before = g_match_info_fetch(match, 1), *id = g_match_info_fetch(match, 2);
+    g_autofree char *before = g_match_info_fetch(match, 1),
+                    *id = g_match_info_fetch(match, 2);
     const char *name = g_hash_table_lookup(names, id);
     text_append(out, "%s%s", before, name != NULL ? name : id);
     return FALSE;
@@ -41,7 +43,8 @@ static gboolean rename_id(const GMatchInfo *match, GString *out, gpointer names)
 
 char *svg_renumber_ids(const char *svg, const char *prefix)
 {
-    g_autoptr(GHashTable) names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+    g_autoptr(GHashTable) names =
+        g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
     g_free(text_replaced(&set_id, svg, collect_id, &(id_names){names, prefix}));
     return text_replaced(&any_id, svg, rename_id, names);
 }
@@ -71,22 +74,25 @@ static gboolean drop_known(const GMatchInfo *match, GString *out, gpointer conte
 // Omits letters that an earlier SVG has.
 static char *share_symbols(const char *svg, GHashTable *known)
 {
-    g_autoptr(GHashTable) renamed = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+    g_autoptr(GHashTable) renamed =
+        g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
     static text_pattern symbol = {"<symbol [^>]*? id=\"([^\"')]*)[^>]*>(.*?)</symbol>"};
-    g_autofree char *kept = text_replaced(&symbol, svg, drop_known, &(letters){known, renamed});
+    g_autofree char *kept =
+        text_replaced(&symbol, svg, drop_known, &(letters){known, renamed});
     return text_replaced(&any_id, kept, rename_id, renamed);
 }
 
 // ==== fewer bytes
 
-// What a tag says with too many digits or needlessly: a colour in per cent becomes "#0072b2", of a
-// number zeros at its end go, and so does what goes without saying.
+// What a tag says with too many digits or needlessly: a colour in per cent becomes
+// "#0072b2", of a number zeros at its end go, and so does what goes without saying.
 #define PER_CENT "([-+.\\d]+)%"
 #define NUMBER   "(-?\\d+(?:\\.\\d+)?)"
-static text_pattern verbose = {
-    "rgb\\(" PER_CENT ", *" PER_CENT ", *" PER_CENT "\\)"
-    "|(?:stroke-opacity:1|fill-opacity:1|stroke-miterlimit:10|fill-rule:nonzero);|xlink:(?=href)"
-    "| (?=[MLCZ])|(?<=[MLCZ]) |(?<= )" NUMBER "|(?<=[\"(,:])" NUMBER};
+static text_pattern verbose = {"rgb\\(" PER_CENT ", *" PER_CENT ", *" PER_CENT
+                               "\\)|(?:stroke-opacity:1|fill-opacity:1|stroke-miterlimit:"
+                               "10|fill-rule:nonzero);|xlink:(?=href)| "
+                               "(?=[MLCZ])|(?<=[MLCZ]) |(?<= )" NUMBER
+                               "|(?<=[\"(,:])" NUMBER};
 
 // How the tag of a line begins.
 #define LINE_TAG "<path style=\"fill:none;"
@@ -116,15 +122,18 @@ static gboolean shorten(const GMatchInfo *match, GString *out, gpointer of_lines
     return FALSE;
 }
 
-// A tag in fewer bytes. Outlines of letters are small and keep their hundredths, lines do not.
+// A tag in fewer bytes. Outlines of letters are small and keep their hundredths, lines do
+// not.
 static char *short_tag(const char *tag)
 {
     const char *data = strstr(tag, " d=\"");
-    bool lines = g_str_has_prefix(tag, LINE_TAG) && data != NULL && strchr(data, 'C') == NULL;
+    bool lines =
+        g_str_has_prefix(tag, LINE_TAG) && data != NULL && strchr(data, 'C') == NULL;
     return text_replaced(&verbose, tag, shorten, &lines);
 }
 
-// Whether two tags are lines of one style, so that the data of the second can go on the first.
+// Whether two tags are lines of one style, so that the data of the second can go on the
+// first.
 static bool are_one(const char *a, const char *b)
 {
     const char *data = strstr(b, "d=\"M");
@@ -132,20 +141,26 @@ static bool are_one(const char *a, const char *b)
            strncmp(a, b, (size_t)(data - b) + 3) == 0 && strstr(b, "transform=") == NULL;
 }
 
-// A tag and the text after it, which stays but for line feeds. *last is where the last path was
-// written, if the next one may join it, else SIZE_MAX.
+// A tag and the text after it, which stays but for line feeds. *last is where the last
+// path was written, if the next one may join it, else SIZE_MAX.
 static gboolean compact(const GMatchInfo *match, GString *out, gpointer context)
 {
     size_t *last = context;
-    g_autofree char *tag = g_match_info_fetch(match, 1), *text = g_match_info_fetch(match, 2);
+    g_autofree char *tag = g_match_info_fetch(match, 1),
+                    *text = g_match_info_fetch(match, 2);
     g_autofree char *brief = short_tag(tag);
     if (*last != SIZE_MAX && are_one(out->str + *last, brief)) {
         // in place of the quote and slash of the path before
         g_string_truncate(out, out->len - strlen("\"/>"));
         g_string_append(out, strstr(brief, "d=\"") + 3);
     } else {
-        const bool path = g_str_has_prefix(brief, "<path") && g_str_has_suffix(brief, "\"/>");
-        *last = path ? out->len : SIZE_MAX;
+        const bool path =
+            g_str_has_prefix(brief, "<path") && g_str_has_suffix(brief, "\"/>");
+        if (path) {
+            *last = out->len;
+        } else {
+            *last = SIZE_MAX;
+        }
         g_string_append(out, brief);
     }
 
@@ -153,7 +168,9 @@ static gboolean compact(const GMatchInfo *match, GString *out, gpointer context)
     for (const char *t = text; *t != '\0'; t++) {
         if (*t != '\n') {
             g_string_append_c(out, *t);
-            *last = *t == ' ' ? *last : SIZE_MAX;
+            if (*t != ' ') {
+                *last = SIZE_MAX;
+            }
         }
     }
     return FALSE;
@@ -165,7 +182,8 @@ char *svg_for_page(const char *svg, const char *prefix, GHashTable *known)
     g_autofree char *own = svg_renumber_ids(root ? root : svg, prefix);
 
     // the page that holds the picture says what it is
-    char *from = strstr(own, "<metadata>"), *to = from ? strstr(from, "</metadata>") : NULL;
+    char *from = strstr(own, "<metadata>"),
+         *to = from ? strstr(from, "</metadata>") : NULL;
     if (to != NULL) {
         to += strlen("</metadata>");
         memmove(from, to, strlen(to) + 1);

@@ -54,7 +54,10 @@ static int row_count(const table_page *t)
 static const char *cell_at(const table_page *t, int row, int column)
 {
     char *const *cells = row != HEADING ? g_ptr_array_index(t->rows, row) : NULL;
-    return cells != NULL ? cells[column] : t->columns[column].label;
+    if (cells != NULL) {
+        return cells[column];
+    }
+    return t->columns[column].label;
 }
 
 static bool table_row_is_group(const table_page *t, int row)
@@ -73,13 +76,13 @@ typedef struct table_layout {
 
 static text_block cell_block(const sketch_frame *frame, const char *markup, bool bold)
 {
-    return (text_block){markup, sketch_letters(frame, CELL_SIZE), .family = frame->look.font,
-                        .bold = bold};
+    return (text_block){markup, sketch_letters(frame, CELL_SIZE),
+                        .family = frame->look.font, .bold = bold};
 }
 
 // Width of the widest word of a cell, which should not be broken.
-static double widest_word(PangoContext *context, const sketch_frame *frame, const char *markup,
-                          bool bold)
+static double widest_word(PangoContext *context, const sketch_frame *frame,
+                          const char *markup, bool bold)
 {
     double widest = 0;
     g_autofree char *plain = text_plain(markup);
@@ -94,18 +97,20 @@ static double widest_word(PangoContext *context, const sketch_frame *frame, cons
     return widest;
 }
 
-// Widths of the columns: their shares, but none narrower than its widest word where the others can
-// spare the room.
-static void choose_columns(PangoContext *context, const table_page *t, const sketch_frame *frame,
-                           double widths[TABLE_COLUMNS])
+// Widths of the columns: their shares, but none narrower than its widest word where the
+// others can spare the room.
+static void choose_columns(PangoContext *context, const table_page *t,
+                           const sketch_frame *frame, double widths[TABLE_COLUMNS])
 {
-    double room = frame->design_width - 2 * SKETCH_MARGIN, least[TABLE_COLUMNS], sum = 0, need = 0;
+    double room = frame->design_width - 2 * SKETCH_MARGIN, least[TABLE_COLUMNS], sum = 0,
+           need = 0;
     for (int i = 0; i < t->column_count; i++) {
         least[i] = 0;
         for (int row = HEADING; row < row_count(t); row++) {
             if (!table_row_is_group(t, row)) {
                 const char *text = cell_at(t, row, i);
-                least[i] = fmax(least[i], widest_word(context, frame, text, row == HEADING));
+                least[i] =
+                    fmax(least[i], widest_word(context, frame, text, row == HEADING));
             }
         }
         least[i] += 2 * CELL_SPACE + 0.5;
@@ -120,13 +125,17 @@ static void choose_columns(PangoContext *context, const table_page *t, const ske
     }
     for (int i = 0; i < t->column_count; i++) {
         double more = fmax(0, room * t->columns[i].share / sum - least[i]);
-        widths[i] = need > room
-                        ? room * least[i] / need
-                        : least[i] + (asked > 0 ? spare * more / asked : spare / t->column_count);
+        if (need > room) {
+            widths[i] = room * least[i] / need;
+        } else {
+            widths[i] =
+                least[i] + (asked > 0 ? spare * more / asked : spare / t->column_count);
+        }
     }
 }
 
-static double text_height(const table_layout *l, const char *markup, double width, bool bold)
+static double text_height(const table_layout *l, const char *markup, double width,
+                          bool bold)
 {
     text_block t = cell_block(&l->frame, markup, bold);
     t.width = width - 2 * CELL_SPACE;
@@ -137,7 +146,8 @@ static double row_height(const table_layout *l, const table_page *t, int row)
 {
     double most = 0;
     if (table_row_is_group(t, row)) {
-        most = text_height(l, cell_at(t, row, 0), l->frame.design_width - 2 * SKETCH_MARGIN, true);
+        most = text_height(l, cell_at(t, row, 0),
+                           l->frame.design_width - 2 * SKETCH_MARGIN, true);
         return most + 2 * CELL_SPACE;
     }
     for (int i = 0; i < t->column_count; i++) {
@@ -151,7 +161,11 @@ static void lay_out(table_layout *l, const table_page *t, PangoContext *context)
 {
     // the frame is laid out at its own width: nothing is scaled
     *l = (table_layout){context, {t->title, t->caption, .look = t->look}};
-    l->frame.design_width = t->look.width > 0 ? t->look.width * 72 / 25.4 : SKETCH_WIDTH;
+    if (t->look.width > 0) {
+        l->frame.design_width = t->look.width * 72 / 25.4;
+    } else {
+        l->frame.design_width = SKETCH_WIDTH;
+    }
     choose_columns(l->context, t, &l->frame, l->widths);
     l->frame.body_height = CELL_SPACE;
     for (int row = HEADING; row < row_count(t); row++) {
@@ -167,7 +181,8 @@ void table_size(const table_page *t, double *width, double *height)
     sketch_size(&l.frame, width, height);
 }
 
-static void draw_cells(sketch *s, const table_layout *l, const table_page *t, int row, double y)
+static void draw_cells(sketch *s, const table_layout *l, const table_page *t, int row,
+                       double y)
 {
     double x = s->left;
     for (int i = 0; i < t->column_count; i++) {
@@ -202,15 +217,16 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
                            &(text_block){cell_at(t, row, 0), CELL_SIZE, .bold = true,
                                          .width = s.right - s.left - 2 * CELL_SPACE});
         } else {
-            draw_cells(&s, &l, t, row, y + (row == HEADING ? CELL_SPACE : CELL_SPACE / 2));
+            draw_cells(&s, &l, t, row,
+                       y + (row == HEADING ? CELL_SPACE : CELL_SPACE / 2));
         }
         y += height;
         if (row == HEADING) {
             sketch_line(&s, (point){s.left, y}, (point){s.right, y}, 0.5, SKETCH_INK);
         }
     }
-    sketch_line(&s, (point){s.left, y + CELL_SPACE}, (point){s.right, y + CELL_SPACE}, 0.9,
-                SKETCH_INK);
+    sketch_line(&s, (point){s.left, y + CELL_SPACE}, (point){s.right, y + CELL_SPACE},
+                0.9, SKETCH_INK);
     sketch_end(&s);
     return STATUS_OK;
 }
@@ -252,8 +268,8 @@ static void add_html_cells(GString *html, const table_page *t, int row)
     const char *tag = row == HEADING ? "th" : "td";
     for (int i = 0; i < t->column_count; i++) {
         text_append(html, "<%s%s>%s</%s>", tag,
-                    t->columns[i].align == TEXT_LEFT ? "" : " class=\"number\"", cell_at(t, row, i),
-                    tag);
+                    t->columns[i].align == TEXT_LEFT ? "" : " class=\"number\"",
+                    cell_at(t, row, i), tag);
     }
 }
 
@@ -267,8 +283,8 @@ void table_add_html(const table_page *t, GString *html)
         // a group's heading spans all columns
         g_string_append(html, "<tr>");
         if (table_row_is_group(t, row)) {
-            text_append(html, "<th class=\"group\" colspan=\"%d\">%s</th>", t->column_count,
-                        cell_at(t, row, 0));
+            text_append(html, "<th class=\"group\" colspan=\"%d\">%s</th>",
+                        t->column_count, cell_at(t, row, 0));
         } else {
             add_html_cells(html, t, row);
         }

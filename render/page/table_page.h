@@ -19,7 +19,8 @@ typedef struct table_page {
     char *parameters; // plain, for the file's metadata; NULL for none
     const table_column *columns;
     int column_count; // at most TABLE_COLUMNS
-    GPtrArray *rows;  // of char **: column_count cells, or one cell and NULL for a group's heading
+    GPtrArray *rows; // of char **: column_count cells, or one cell and NULL for a group's
+                     // heading
     page_look look;
 } table_page;
 
@@ -34,7 +35,8 @@ void table_add_group(table_page *t, const char *heading);
 void table_size(const table_page *t, double *width, double *height);
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f);
 
-// Writes the texts of the cells without markup; a group's heading is the first column of its rows.
+// Writes the texts of the cells without markup; a group's heading is the first column of
+// its rows.
 void table_write_csv(const table_page *t, csv_writer *csv);
 
 // Appends the table as HTML.

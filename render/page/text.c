@@ -35,7 +35,8 @@ static bool family_is_there(const char *family)
 
 status text_check_font(fault *f)
 {
-    // asked once, by whichever thread comes first: a process does not see fonts come and go
+    // asked once, by whichever thread comes first: a process does not see fonts come and
+    // go
     enum { THERE = 1, MISSING };
     static gsize known;
     if (g_once_init_enter(&known)) {
@@ -65,14 +66,16 @@ PangoContext *text_context_create(void)
 {
     page_libraries++;
     atomic_store(&has_context, true);
-    PangoContext *context = pango_font_map_create_context(pango_cairo_font_map_get_default());
+    PangoContext *context =
+        pango_font_map_create_context(pango_cairo_font_map_get_default());
     cairo_font_options_t *options = cairo_font_options_create();
     cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
     cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
     cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
     pango_cairo_context_set_font_options(context, options);
 
-    // without memory for its copy the context would draw with other options, and say nothing
+    // without memory for its copy the context would draw with other options, and say
+    // nothing
     const cairo_font_options_t *taken = pango_cairo_context_get_font_options(context);
     if (cairo_font_options_status(options) != CAIRO_STATUS_SUCCESS || taken == NULL ||
         !cairo_font_options_equal(taken, options)) {
@@ -112,7 +115,8 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     PangoFontDescription *font = pango_font_description_new();
     pango_font_description_set_family(font, t->family != NULL ? t->family : TEXT_FAMILY);
     pango_font_description_set_size(font, (int)(t->size * PANGO_SCALE));
-    pango_font_description_set_weight(font, t->bold ? PANGO_WEIGHT_BOLD : PANGO_WEIGHT_NORMAL);
+    pango_font_description_set_weight(font,
+                                      t->bold ? PANGO_WEIGHT_BOLD : PANGO_WEIGHT_NORMAL);
     pango_layout_set_font_description(layout, font);
     pango_font_description_free(font);
 
@@ -139,8 +143,9 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     return layout;
 }
 
-// HarfBuzz sets letters elsewhere where it finds no memory, and tells nobody: what an allocation
-// leaves in errno does. Shaping stands between the two; without memory the program ends as by GLib.
+// HarfBuzz sets letters elsewhere where it finds no memory, and tells nobody: what an
+// allocation leaves in errno does. Shaping stands between the two; without memory the
+// program ends as by GLib.
 static void begin_shaping(void)
 {
     page_libraries++;
@@ -163,11 +168,12 @@ text_size text_measure(PangoContext *context, const text_block *t)
     pango_layout_get_extents(layout, NULL, &logical);
     end_shaping();
     g_object_unref(layout);
-    return (text_size){(double)logical.width / PANGO_SCALE, (double)logical.height / PANGO_SCALE};
+    return (text_size){(double)logical.width / PANGO_SCALE,
+                       (double)logical.height / PANGO_SCALE};
 }
 
-figure_rect text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x, double y,
-                     anchor part, colour c)
+figure_rect text_put(cairo_t *cr, PangoContext *context, const text_block *t, double x,
+                     double y, anchor part, colour c)
 {
     assert(isfinite(x) && isfinite(y));
     PangoRectangle logical;
@@ -193,10 +199,14 @@ figure_rect text_put(cairo_t *cr, PangoContext *context, const text_block *t, do
 double page_letters(double letters, double size)
 {
     double scaled = size * (letters > 0 ? letters / LETTERS_NORMAL : 1);
-    return scaled > LETTERS_LEAST ? scaled : LETTERS_LEAST;
+    if (scaled > LETTERS_LEAST) {
+        return scaled;
+    }
+    return LETTERS_LEAST;
 }
 
-void report_add_text(figure_report *report, const char *markup, double size, figure_rect place)
+void report_add_text(figure_report *report, const char *markup, double size,
+                     figure_rect place)
 {
     if (report == NULL || report->text_count == FIGURE_TEXTS) {
         return;
@@ -209,7 +219,11 @@ void report_add_text(figure_report *report, const char *markup, double size, fig
 
     // as it is on the page
     t->place = place;
-    t->size = indexed ? text_index_letters(size) : size;
+    if (indexed) {
+        t->size = text_index_letters(size);
+    } else {
+        t->size = size;
+    }
     g_strlcpy(t->text, plain, sizeof t->text);
 
     // a character that was cut in two is removed
@@ -220,7 +234,8 @@ void report_add_text(figure_report *report, const char *markup, double size, fig
 
 static void (*end_of_program)(const char *reason);
 
-static void on_log(const char *domain, GLogLevelFlags level, const char *reason, void *context)
+static void on_log(const char *domain, GLogLevelFlags level, const char *reason,
+                   void *context)
 {
     if ((level & G_LOG_LEVEL_ERROR) != 0) {
         end_of_program(reason);
@@ -228,15 +243,19 @@ static void on_log(const char *domain, GLogLevelFlags level, const char *reason,
     g_log_default_handler(domain, level, reason, context);
 }
 
-// Pango warns where it draws text as well as it can, without the font or letters elsewhere: such a
-// picture is none.
-static GLogWriterOutput on_warning(GLogLevelFlags level, const GLogField *fields, gsize count,
-                                   void *context)
+// Pango warns where it draws text as well as it can, without the font or letters
+// elsewhere: such a picture is none.
+static GLogWriterOutput on_warning(GLogLevelFlags level, const GLogField *fields,
+                                   gsize count, void *context)
 {
     const char *domain = "", *reason = "";
     for (gsize i = 0; i < count; i++) {
-        domain = strcmp(fields[i].key, "GLIB_DOMAIN") == 0 ? fields[i].value : domain;
-        reason = strcmp(fields[i].key, "MESSAGE") == 0 ? fields[i].value : reason;
+        if (strcmp(fields[i].key, "GLIB_DOMAIN") == 0) {
+            domain = fields[i].value;
+        }
+        if (strcmp(fields[i].key, "MESSAGE") == 0) {
+            reason = fields[i].value;
+        }
     }
     if ((level & (G_LOG_LEVEL_CRITICAL | G_LOG_LEVEL_WARNING)) != 0 &&
         strcmp(domain, "Pango") == 0) {

@@ -12,12 +12,18 @@
 
 double scale_coordinate(scale_kind kind, double value)
 {
-    return kind == SCALE_LOGARITHMIC ? log10(value) : value;
+    if (kind == SCALE_LOGARITHMIC) {
+        return log10(value);
+    }
+    return value;
 }
 
 double scale_value(scale_kind kind, double coordinate)
 {
-    return kind == SCALE_LOGARITHMIC ? pow(10, coordinate) : coordinate;
+    if (kind == SCALE_LOGARITHMIC) {
+        return pow(10, coordinate);
+    }
+    return coordinate;
 }
 
 double scale_share(const axis_scale *s, double value)
@@ -91,11 +97,14 @@ void scale_widen(axis_scale *s, double share)
 
 // ---- ticks
 
-// "0.01", "20", "2·10<sup>−6</sup>" for mantissa times the power of ten, alike all along an axis.
-static void format_decade(const axis_scale *s, int mantissa, int power, char text[AXIS_LABEL])
+// "0.01", "20", "2·10<sup>−6</sup>" for mantissa times the power of ten, alike all along
+// an axis.
+static void format_decade(const axis_scale *s, int mantissa, int power,
+                          char text[AXIS_LABEL])
 {
     if (s->low > -2.5 && s->high < 4.5) {
-        decimal_print(text, AXIS_LABEL, "%.*f", power < 0 ? -power : 0, mantissa * pow(10, power));
+        decimal_print(text, AXIS_LABEL, "%.*f", power < 0 ? -power : 0,
+                      mantissa * pow(10, power));
         return;
     }
     char factor[16] = "";
@@ -106,7 +115,8 @@ static void format_decade(const axis_scale *s, int mantissa, int power, char tex
              abs(power));
 }
 
-// Powers of ten, as far apart as room asks for, or 1, 2, 5 of every decade where they fit.
+// Powers of ten, as far apart as room asks for, or 1, 2, 5 of every decade where they
+// fit.
 static void choose_decades(axis *a, int wanted)
 {
     static const int mantissas[] = {1, 2, 5};
@@ -123,7 +133,8 @@ static void choose_decades(axis *a, int wanted)
 
     // all that lie on the axis
     for (int power = (int)floor(s->low); power <= (int)ceil(s->high); power++) {
-        for (int i = 0; i < per_decade && power % spacing == 0 && a->count < TICKS_MOST; i++) {
+        for (int i = 0; i < per_decade && power % spacing == 0 && a->count < TICKS_MOST;
+             i++) {
             double at = power + log10(mantissas[i]);
             if (at >= s->low - 1e-9 && at <= s->high + 1e-9) {
                 format_decade(s, mantissas[i], power, a->own[a->count]);
@@ -160,7 +171,13 @@ void axis_choose_ticks(axis *a, const figure_axis *from, int wanted)
 int axis_wish(double length, double spacing, int least, int most)
 {
     double count = length / spacing;
-    return count < least ? least : count > most ? most : (int)count;
+    if (count < least) {
+        return least;
+    }
+    if (count > most) {
+        return most;
+    }
+    return (int)count;
 }
 
 // ---- minor ticks
@@ -175,7 +192,8 @@ static int minor_even(const axis *a, double length, double *at)
     }
 
     // inside the axis, between the major ones
-    double part = t->step / t->minor, spacing = part / (a->scale.high - a->scale.low) * length;
+    double part = t->step / t->minor,
+           spacing = part / (a->scale.high - a->scale.low) * length;
     for (int k = -t->minor; k <= t->minor * t->count && spacing > MINOR_SPACING; k++) {
         double value = t->value[0] + k * part;
         if (k % t->minor != 0 && scale_holds(&a->scale, value) && count < AXIS_MINOR) {
@@ -222,7 +240,8 @@ static char *unit_markup(const char *unit, int exponent)
     // Pango would break the line after a slash
     g_auto(GStrv) parts = g_strsplit(shown, "/", -1);
     g_autofree char *unbroken = g_strjoinv("\u2060/\u2060", parts);
-    return text_printf("(%s%s%s)", power, has_unit && factor[0] ? "\u2009" : "", unbroken);
+    return text_printf("(%s%s%s)", power, has_unit && factor[0] ? "\u2009" : "",
+                       unbroken);
 }
 
 char *axis_label(const char *label, const char *unit, int exponent)

@@ -1,5 +1,5 @@
-// Scales, from values to positions between the two ends of an axis; axes ready to be drawn, with
-// their ticks; and the lines of a series between them.
+// Scales, from values to positions between the two ends of an axis; axes ready to be
+// drawn, with their ticks; and the lines of a series between them.
 #pragma once
 
 #include <stdbool.h>
@@ -32,8 +32,8 @@ bool scale_is_empty(const axis_scale *s);
 // An axis' own ends; false if it takes those of the data, with an empty scale.
 bool scale_take_ends(axis_scale *s, const figure_axis *from);
 
-// Separates equal ends (0 and 1 if there are none; at least half a decade on a logarithmic scale)
-// and then moves them outwards by a share of the range.
+// Separates equal ends (0 and 1 if there are none; at least half a decade on a
+// logarithmic scale) and then moves them outwards by a share of the range.
 void scale_widen(axis_scale *s, double share);
 
 // --- axes
@@ -56,7 +56,8 @@ void axis_choose_ticks(axis *a, const figure_axis *from, int wanted);
 // The number of ticks of an axis of the given length, one every `spacing` [pt].
 int axis_wish(double length, double spacing, int least, int most);
 
-// Values of the minor ticks of an axis of the given length [pt]; none if they would be too close.
+// Values of the minor ticks of an axis of the given length [pt]; none if they would be
+// too close.
 int axis_minor_ticks(const axis *a, double length, double at[AXIS_MINOR]);
 
 // Label, unit and factor of the axis, as markup. To be freed with g_free.
@@ -92,7 +93,7 @@ double series_shade(const figure_series *s, size_t index);
 // Widens a scale to include every y of a series at an x inside *within.
 void series_include_y(const figure_series *s, const axis_scale *within, axis_scale *y);
 
-// Passes the series' line to the sink, in page coordinates, clipped to the plane with a small
-// margin. Where many points fall on one column of 1/600 inch, the first, lowest, highest and last
-// of them are kept, so that no spike is lost.
+// Passes the series' line to the sink, in page coordinates, clipped to the plane with a
+// small margin. Where many points fall on one column of 1/600 inch, the first, lowest,
+// highest and last of them are kept, so that no spike is lost.
 void curve_trace(const plane *p, const figure_series *s, stroke_sink sink, void *context);

@@ -72,8 +72,10 @@ static bool inside(const pen *p, point q)
     return q.x >= p->left && q.x <= p->right && q.y >= p->top && q.y <= p->bottom;
 }
 
-// Narrows [*from, *to] to the part of a line where start + t delta lies within low and high.
-static bool narrow(double start, double delta, double low, double high, double *from, double *to)
+// Narrows [*from, *to] to the part of a line where start + t delta lies within low and
+// high.
+static bool narrow(double start, double delta, double low, double high, double *from,
+                   double *to)
 {
     if (delta == 0) {
         return start >= low && start <= high;
@@ -109,7 +111,8 @@ static void pen_to(pen *p, point q)
                         a.y + from * (q.y - a.y));
             }
             // exactly q where nothing is cut off
-            point end = to == 1 ? q : (point){a.x + to * (q.x - a.x), a.y + to * (q.y - a.y)};
+            point end =
+                to == 1 ? q : (point){a.x + to * (q.x - a.x), a.y + to * (q.y - a.y)};
             p->sink(p->context, STROKE_LINE, end.x, end.y);
             p->moved = to == 1;
         } else {
@@ -140,8 +143,12 @@ static void column_add(column *c, numbered q)
 {
     c->count++;
     c->last = q;
-    c->low = q.at.y > c->low.at.y ? q : c->low;
-    c->high = q.at.y < c->high.at.y ? q : c->high;
+    if (q.at.y > c->low.at.y) {
+        c->low = q;
+    }
+    if (q.at.y < c->high.at.y) {
+        c->high = q;
+    }
 }
 
 static void column_flush(column *c, pen *p)
@@ -152,8 +159,8 @@ static void column_flush(column *c, pen *p)
 
     // first, lowest and highest in their order, last: each once
     const bool low_first = c->low.number < c->high.number;
-    const numbered all[] = {c->first, low_first ? c->low : c->high, low_first ? c->high : c->low,
-                            c->last};
+    const numbered all[] = {c->first, low_first ? c->low : c->high,
+                            low_first ? c->high : c->low, c->last};
     for (int i = 0; i < 4; i++) {
         if (i == 0 || all[i].number > all[i - 1].number) {
             pen_to(p, all[i].at);
@@ -171,7 +178,9 @@ static bool x_ascends(const figure_series *s)
         if (x < last) {
             return false;
         }
-        last = isnan(x) ? last : x;
+        if (!isnan(x)) {
+            last = x;
+        }
     }
     return true;
 }

@@ -29,7 +29,8 @@ void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c
     report_add_text(d->report, t.markup, t.size, place);
 }
 
-void draw_label(drawing *d, const char *markup, double size, double x, double y, anchor at)
+void draw_label(drawing *d, const char *markup, double size, double x, double y,
+                anchor at)
 {
     draw_text(d, figure_text_of(d, markup, size), x, y, at, d->style.colours->text);
 }
@@ -85,8 +86,8 @@ double widest_tick(const drawing *d, const axis *a, double size)
     return widest;
 }
 
-// The axis' title as it fits beside an axis of the given length: with the label, or with its symbol
-// alone where the label would need two lines. Give it to g_free.
+// The axis' title as it fits beside an axis of the given length: with the label, or with
+// its symbol alone where the label would need two lines. Give it to g_free.
 static char *fitting_title(const drawing *d, const axis *a, double length)
 {
     char *title = axis_title(a);
@@ -102,16 +103,20 @@ double axis_title_height(const drawing *d, const axis *a, double length)
     g_autofree char *title = fitting_title(d, a, length);
     text_block t = figure_text_of(d, title, d->style.label);
     t.width = length;
-    return title[0] == '\0' ? 0 : height_of(d, t);
+    if (title[0] == '\0') {
+        return 0;
+    }
+    return height_of(d, t);
 }
 
 // Lines at values of an axis, across it, from one place on the page to another.
-static void draw_lines(const drawing *d, const plane *p, bool of_x, const double *values, int count,
-                       double from, double to)
+static void draw_lines(const drawing *d, const plane *p, bool of_x, const double *values,
+                       int count, double from, double to)
 {
     for (int i = 0; i < count; i++) {
         const double at = of_x ? plane_x(p, values[i]) : plane_y(p, values[i]);
-        picture_line(d->cr, of_x ? at : from, of_x ? from : at, of_x ? at : to, of_x ? to : at);
+        picture_line(d->cr, of_x ? at : from, of_x ? from : at, of_x ? at : to,
+                     of_x ? to : at);
     }
 }
 
@@ -121,7 +126,8 @@ void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y)
     set_plain_line(d->cr, d->style.colours->grid, GRID_WIDTH);
     draw_lines(d, p, false, y->at, y->count, box->x, box->x + box->width);
     // where steps are not even the eye needs help across, too
-    draw_lines(d, p, true, x->at, x->even.count == 0 ? x->count : 0, box->y, box->y + box->height);
+    draw_lines(d, p, true, x->at, x->even.count == 0 ? x->count : 0, box->y,
+               box->y + box->height);
 }
 
 // A label that would touch the one before it is left out, unless ticks are even.
@@ -134,8 +140,8 @@ static void draw_tick_labels(drawing *d, const plane *p, const axis *x, const ax
     for (int i = 0; look->x_labels && i < x->count; i++) {
         double at = plane_x(p, x->at[i]), half = width_of(d, x->text[i], look->size) / 2;
         if (x->even.count > 0 || at - half > taken + LABEL_GAP) {
-            draw_label(d, x->text[i], look->size, at, bottom + TICK_LENGTH + TICK_SPACE - 1,
-                       (anchor){0.5, 0});
+            draw_label(d, x->text[i], look->size, at,
+                       bottom + TICK_LENGTH + TICK_SPACE - 1, (anchor){0.5, 0});
             taken = at + half;
         }
     }

@@ -1,4 +1,5 @@
-// Internal to the figure library: the layout of a figure, and the strokes used by all layers.
+// Internal to the figure library: the layout of a figure, and the strokes used by all
+// layers.
 #pragma once
 
 #include "render/page/page.h"
@@ -76,12 +77,12 @@ typedef struct panel_layout {
     axis y;
     axis colours;                             // of the colour scale, if the panel has one
     figure_rect level_place[LEVELS_LABELLED]; // of the labels of levels; width 0: none
-    double strip_top;                         // of the strip for impulses, if there are any
-    bool legend_row;                          // the legend stands above the panel
-    bool legend_column;                       // it does, with its entries one above the other
-    bool legend_inside;                       // it stands within the panel
-    figure_rect legend;                       // width 0: none
-    figure_rect inset;                        // with its labels; width 0: none
+    double strip_top;   // of the strip for impulses, if there are any
+    bool legend_row;    // the legend stands above the panel
+    bool legend_column; // it does, with its entries one above the other
+    bool legend_inside; // it stands within the panel
+    figure_rect legend; // width 0: none
+    figure_rect inset;  // with its labels; width 0: none
     plane inset_plane;
     axis inset_x, inset_y;
     bool busy[PANEL_SERIES]; // lines that turn too often for dashes
@@ -104,28 +105,30 @@ typedef struct drawing {
     double left, right; // of all panels
     column_layout column[FIGURE_PANELS];
     double title_y, legend_y, caption_y, x_label_y;
-    double marks_bottom;                     // of the lowest row of event labels
-    int mark_row[MARKS_LABELLED];            // counted upwards; -1: no label
-    bool marks_inside;                       // labels of marks are inside the first panel
-    bool mark_away[MARKS_LABELLED];          // there is no room for its label at its point
+    double marks_bottom;            // of the lowest row of event labels
+    int mark_row[MARKS_LABELLED];   // counted upwards; -1: no label
+    bool marks_inside;              // labels of marks are inside the first panel
+    bool mark_away[MARKS_LABELLED]; // there is no room for its label at its point
     figure_rect point_label[MARKS_LABELLED]; // of a label at its point; width 0: none
     double mark_text_x[MARKS_LABELLED];      // in the first column
     double mark_text_y[MARKS_LABELLED];      // inside the panel
     panel_layout panels[FIGURE_PANELS];
 } drawing;
 
-// Title and caption as wide as the panels, on a narrow page as the page; *left is their left end.
-// The title's markup is freed by the caller. Without markup there is none.
+// Title and caption as wide as the panels, on a narrow page as the page; *left is their
+// left end. The title's markup is freed by the caller. Without markup there is none.
 text_block frame_title(const drawing *d, double *left);
 text_block frame_caption(const drawing *d, double *left);
 
 // The number of columns of panels that fit the page.
 int figure_columns(const figure *fig);
 
-// Computes the layout. STATUS_BAD_ARGUMENT if the page is too small or an axis has no values.
+// Computes the layout. STATUS_BAD_ARGUMENT if the page is too small or an axis has no
+// values.
 status layout_figure(drawing *d, fault *f);
 
-// Whether the panel's vertical axis has labels of its own, not only those of the first column.
+// Whether the panel's vertical axis has labels of its own, not only those of the first
+// column.
 bool has_y_labels(const drawing *d, const panel_layout *l);
 
 // --- text: drawing.c
@@ -137,8 +140,10 @@ double width_of(const drawing *d, const char *markup, double size);
 double height_of(const drawing *d, text_block t);
 
 void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c);
-void draw_label(drawing *d, const char *markup, double size, double x, double y, anchor at);
-// Draws t vertically, upwards; (x, y) is the middle of its upper edge, which is on the left.
+void draw_label(drawing *d, const char *markup, double size, double x, double y,
+                anchor at);
+// Draws t vertically, upwards; (x, y) is the middle of its upper edge, which is on the
+// left.
 void draw_rotated(drawing *d, text_block t, double x, double y, colour c);
 
 // --- strokes: drawing.c
@@ -200,17 +205,19 @@ void draw_levels(drawing *d, const panel_layout *l);
 void draw_notes(drawing *d, const panel_layout *l);
 // Adds the ink of levels and marks to the placement.
 void ink_of_marks(const drawing *d, panel_layout *l, placement *grid);
-// Finds places for labels at the points of their marks; false if one that had one has none now.
+// Finds places for labels at the points of their marks; false if one that had one has
+// none now.
 bool place_pointed_marks(drawing *d, placement *grid);
-// Finds places for the labels of all other marks free of curves of the first panel; false if there
-// is none for one of them.
+// Finds places for the labels of all other marks free of curves of the first panel; false
+// if there is none for one of them.
 bool place_marks_inside(drawing *d, placement *grid);
 
 // --- impulses: series.c
 
 void draw_impulses(drawing *d, const panel_layout *l);
 
-// Quantity and unit of the strip, in two lines, to be freed; the panel must have an impulse_label.
+// Quantity and unit of the strip, in two lines, to be freed; the panel must have an
+// impulse_label.
 char *impulse_strip_label(const figure_panel *panel);
 
 // --- legends: legend.c
@@ -218,8 +225,8 @@ char *impulse_strip_label(const figure_panel *panel);
 // Returns false if there is no room inside the panel.
 bool place_legend(drawing *d, panel_layout *l, const placement *grid);
 void draw_legend(drawing *d, const panel_layout *l);
-// The legend for all panels, in rows that are wrapped where they are too long, drawn or only
-// measured. Returns its height; 0: none.
+// The legend for all panels, in rows that are wrapped where they are too long, drawn or
+// only measured. Returns its height; 0: none.
 double common_legend(drawing *d, bool draw);
 
 // --- the inset: legend.c
@@ -234,8 +241,8 @@ typedef struct contour_piece {
     double x0, y0, x1, y1;
 } contour_piece;
 
-// The contour of z = level within the square of four neighbouring grid points, by marching squares
-// with straight lines: z[0] at (0, 0), z[1] at (1, 0), z[2] at (0, 1), z[3] at (1, 1). A saddle is
-// decided by the mean of the four. Returns the number of pieces, 0 to 2; 0 if a corner is not
-// finite.
+// The contour of z = level within the square of four neighbouring grid points, by
+// marching squares with straight lines: z[0] at (0, 0), z[1] at (1, 0), z[2] at (0, 1),
+// z[3] at (1, 1). A saddle is decided by the mean of the four. Returns the number of
+// pieces, 0 to 2; 0 if a corner is not finite.
 int contour_square(const double z[4], double level, contour_piece pieces[2]);

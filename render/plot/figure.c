@@ -1,4 +1,5 @@
-// A figure: its look and size, its layers painted from the lowest to the uppermost, and its files.
+// A figure: its look and size, its layers painted from the lowest to the uppermost, and
+// its files.
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -84,17 +85,30 @@ const char *owned_figure_printf(owned_figure *o, const char *format, ...)
 void figure_take_look(figure *fig, const page_look *look)
 {
     fig->theme = look->theme;
-    fig->width = look->width > 0 ? look->width : fig->width;
-    fig->height = look->height > 0 ? look->height : look->width > 0 ? 0 : fig->height;
-    fig->dpi = look->dpi > 0 ? look->dpi : fig->dpi;
-    fig->font = look->font != NULL ? look->font : fig->font;
-    fig->letters = look->letters > 0 ? look->letters : fig->letters;
+    if (look->width > 0) {
+        fig->width = look->width;
+    }
+    if (look->height > 0) {
+        fig->height = look->height;
+    } else if (look->width > 0) {
+        fig->height = 0;
+    }
+    if (look->dpi > 0) {
+        fig->dpi = look->dpi;
+    }
+    if (look->font != NULL) {
+        fig->font = look->font;
+    }
+    if (look->letters > 0) {
+        fig->letters = look->letters;
+    }
     fig->bare = fig->bare || look->bare;
     fig->transparent = fig->transparent || look->transparent;
 }
 
 // Height of a wrapped text above or below the panels, with its distance from them [pt].
-static double wrapped_height(const figure *fig, const char *markup, double size, bool bold)
+static double wrapped_height(const figure *fig, const char *markup, double size,
+                             bool bold)
 {
     const double page = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM;
     g_autoptr(PangoContext) context = text_context_create();
@@ -120,8 +134,12 @@ void figure_size(const figure *fig, double *width, double *height)
     for (int i = 0; i < fig->panel_count; i += columns) {
         const figure_panel *p = &fig->panels[i];
         points += (p->weight > 0 ? p->weight : 1) * panel + PANEL_SPACE;
-        points += p->impulse_count > 0 ? STRIP_HEIGHT + STRIP_SPACE : 0;
-        points += p->heading != NULL ? HEADING_ROW : 0;
+        if (p->impulse_count > 0) {
+            points += STRIP_HEIGHT + STRIP_SPACE;
+        }
+        if (p->heading != NULL) {
+            points += HEADING_ROW;
+        }
     }
 
     // the axis below, title and caption
@@ -135,7 +153,11 @@ void figure_size(const figure *fig, double *width, double *height)
     }
 
     *width = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM;
-    *height = fig->height > 0 ? fig->height * POINTS_PER_MM : points;
+    if (fig->height > 0) {
+        *height = fig->height * POINTS_PER_MM;
+    } else {
+        *height = points;
+    }
 }
 
 // ---- the whole
@@ -144,12 +166,13 @@ static void draw_panel_texts(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
     if (l->panel->heading != NULL) {
-        draw_label(d, l->panel->heading, d->style.label, box->x + box->width / 2, box->y - 2,
-                   (anchor){0.5, 1});
+        draw_label(d, l->panel->heading, d->style.label, box->x + box->width / 2,
+                   box->y - 2, (anchor){0.5, 1});
     }
     if (l->panel->remark != NULL) {
-        draw_text(d, figure_text_of(d, l->panel->remark, d->style.label), box->x + box->width / 2,
-                  box->y + box->height / 2, (anchor){0.5, 0.5}, d->style.colours->faint_text);
+        draw_text(d, figure_text_of(d, l->panel->remark, d->style.label),
+                  box->x + box->width / 2, box->y + box->height / 2, (anchor){0.5, 0.5},
+                  d->style.colours->faint_text);
     }
 }
 
@@ -214,7 +237,8 @@ static void draw_all(drawing *d)
         draw_text(d, title, left, d->title_y, (anchor){0, 0}, d->style.colours->text);
     }
     if (caption.markup != NULL) {
-        draw_text(d, caption, left, d->caption_y, (anchor){0, 0}, d->style.colours->faint_text);
+        draw_text(d, caption, left, d->caption_y, (anchor){0, 0},
+                  d->style.colours->faint_text);
     }
     g_free((char *)title.markup);
 
@@ -222,8 +246,8 @@ static void draw_all(drawing *d)
     g_autofree char *x_title = axis_title(&d->x);
     if (fig->x.label != NULL) {
         draw_label(d, x_title, d->style.label,
-                   (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y,
-                   (anchor){0.5, 0});
+                   (d->column[0].left + d->column[d->columns - 1].right) / 2,
+                   d->x_label_y, (anchor){0.5, 0});
     }
     common_legend(d, true);
     for (int i = 0; i < fig->panel_count; i++) {
@@ -235,13 +259,16 @@ static void draw_all(drawing *d)
 
 static status check_description(const figure *fig, fault *f)
 {
-    FAULT_IF(fig->panel_count < 1 || fig->panel_count > FIGURE_PANELS, f, STATUS_BAD_ARGUMENT,
-             "a figure has %d panels, expected 1 to %d", fig->panel_count, FIGURE_PANELS);
+    FAULT_IF(fig->panel_count < 1 || fig->panel_count > FIGURE_PANELS, f,
+             STATUS_BAD_ARGUMENT, "a figure has %d panels, expected 1 to %d",
+             fig->panel_count, FIGURE_PANELS);
 
     for (int i = 0; i < fig->panel_count; i++) {
-        FAULT_IF(fig->panels[i].series_count < 0 || fig->panels[i].series_count > PANEL_SERIES, f,
-                 STATUS_BAD_ARGUMENT, "panel %d of a figure has %d series, expected at most %d",
-                 i + 1, fig->panels[i].series_count, PANEL_SERIES);
+        FAULT_IF(fig->panels[i].series_count < 0 ||
+                     fig->panels[i].series_count > PANEL_SERIES,
+                 f, STATUS_BAD_ARGUMENT,
+                 "panel %d of a figure has %d series, expected at most %d", i + 1,
+                 fig->panels[i].series_count, PANEL_SERIES);
     }
     return STATUS_OK;
 }
@@ -310,7 +337,8 @@ typedef struct long_form {
 } long_form;
 
 // A name, or without one the label without markup, with its unit.
-static void write_name(long_form *t, const char *name, const char *label, const char *unit)
+static void write_name(long_form *t, const char *name, const char *label,
+                       const char *unit)
 {
     g_autofree char *plain = name ? g_strdup(name) : text_plain(label ? label : "");
     csv_heading(t->csv, plain, unit != NULL && unit[0] != '\0' ? unit : NULL);
@@ -385,7 +413,8 @@ static void write_instant(long_form *t, const char *panel, const char *series, d
 static void write_marks(long_form *t, const figure *fig)
 {
     for (int i = 0; i < fig->mark_count; i++) {
-        g_autofree char *label = text_plain(fig->marks[i].label ? fig->marks[i].label : "");
+        g_autofree char *label =
+            text_plain(fig->marks[i].label ? fig->marks[i].label : "");
         write_instant(t, "mark", label, fig->marks[i].x);
     }
     for (int i = 0; i < fig->interval_count; i++) {

@@ -1,5 +1,5 @@
-// Where everything on a page goes: ranges of the axes, columns, rows, and what stands in the
-// panels.
+// Where everything on a page goes: ranges of the axes, columns, rows, and what stands in
+// the panels.
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +10,8 @@
 #define POINT_ROOM   0.14 // of the data's range, above the point of a mark
 #define RANGE_SPACE  0.06 // of the data's range, kept free above and below them
 #define RIGHT_SPACE  10.0 // of a panel without labels next to it
-#define SHARED_SPACE 6.0  // of a panel whose vertical axis is labelled in the first column
+// of a panel whose vertical axis is labelled in the first column
+#define SHARED_SPACE 6.0
 #define BAR_TICK     16.0 // of a colour bar to a tick
 #define COLUMN_WIDTH 42.0 // least width of a column of panels [mm]
 #define FIRST_LEFT   40.0 // where the panels begin before anything is known
@@ -75,7 +76,8 @@ static status choose_y_range(const drawing *d, panel_layout *l, fault *f)
     if (panel->y.with_zero && !scale_is_empty(y)) {
         scale_include(y, 0);
     }
-    for (int i = 0; i < d->fig->mark_count && l == d->panels && y->kind == SCALE_LINEAR; i++) {
+    for (int i = 0; i < d->fig->mark_count && l == d->panels && y->kind == SCALE_LINEAR;
+         i++) {
         // the label of a peak stands above it
         const figure_mark *m = &d->fig->marks[i];
         if (m->pointed && !scale_is_empty(y)) {
@@ -105,7 +107,13 @@ int figure_columns(const figure *fig)
 {
     double width = fig->width > 0 ? fig->width : DEFAULT_WIDTH;
     int columns = fig->columns > 0 ? fig->columns : 1, most = (int)(width / COLUMN_WIDTH);
-    return columns <= most || most < 1 ? columns : most == 2 && columns == 3 ? 1 : most;
+    if (columns <= most || most < 1) {
+        return columns;
+    }
+    if (most == 2 && columns == 3) {
+        return 1;
+    }
+    return most;
 }
 
 static double left_space(const drawing *d, const panel_layout *l)
@@ -116,8 +124,9 @@ static double left_space(const drawing *d, const panel_layout *l)
     }
 
     // title, tick labels and ticks
-    double left = axis_title_height(d, &l->y, l->plane.box.height + PANEL_SPACE) + LABEL_SPACE +
-                  widest_tick(d, &l->y, d->style.tick) + TICK_SPACE + TICK_LENGTH;
+    double left = axis_title_height(d, &l->y, l->plane.box.height + PANEL_SPACE) +
+                  LABEL_SPACE + widest_tick(d, &l->y, d->style.tick) + TICK_SPACE +
+                  TICK_LENGTH;
     if (l->panel->impulse_count > 0 && l->panel->impulse_label != NULL) {
         g_autofree char *label = impulse_strip_label(l->panel);
         left = fmax(left, width_of(d, label, d->style.small) + TICK_SPACE + TICK_LENGTH);
@@ -126,7 +135,8 @@ static double left_space(const drawing *d, const panel_layout *l)
     return left;
 }
 
-// Left and right ends of the panels, from the labels next to them: all panels have the same width.
+// Left and right ends of the panels, from the labels next to them: all panels have the
+// same width.
 static void place_columns(drawing *d)
 {
     double left[FIGURE_PANELS] = {0}, right[FIGURE_PANELS], between = 0;
@@ -153,8 +163,8 @@ static void place_columns(drawing *d)
     double width = (d->right - d->left - between) / d->columns, x = d->left;
     for (int c = 0; c < d->columns; c++) {
         bool last = c + 1 == d->columns;
-        d->column[c] =
-            (column_layout){c == 0 ? PAGE_MARGIN : x - left[c], x, last ? d->right : x + width};
+        d->column[c] = (column_layout){c == 0 ? PAGE_MARGIN : x - left[c], x,
+                                       last ? d->right : x + width};
         x += width + right[c] + (last ? 0 : left[c + 1]);
     }
 
@@ -173,22 +183,39 @@ static void place_columns(drawing *d)
 static void row_needs(const drawing *d, int row, double *above, double *weight)
 {
     *above = *weight = 0;
-    for (int i = row * d->columns; i < d->fig->panel_count && i < (row + 1) * d->columns; i++) {
+    for (int i = row * d->columns; i < d->fig->panel_count && i < (row + 1) * d->columns;
+         i++) {
         const panel_layout *l = &d->panels[i];
-        double space = l->legend_column ? l->legend.height + 2 : l->legend_row ? 11 : 0;
-        space += l->panel->heading != NULL ? HEADING_ROW : 0;
-        space += l->panel->impulse_count > 0 ? STRIP_HEIGHT + STRIP_SPACE : 0;
+        double space;
+        if (l->legend_column) {
+            space = l->legend.height + 2;
+        } else if (l->legend_row) {
+            space = 11;
+        } else {
+            space = 0;
+        }
+        if (l->panel->heading != NULL) {
+            space += HEADING_ROW;
+        }
+        if (l->panel->impulse_count > 0) {
+            space += STRIP_HEIGHT + STRIP_SPACE;
+        }
         *above = fmax(*above, space);
         double own = d->fig->panels[i].weight;
         *weight = fmax(*weight, own > 0 ? own : 1);
     }
 }
 
-static text_block frame_text(const drawing *d, const char *markup, double size, double *left)
+static text_block frame_text(const drawing *d, const char *markup, double size,
+                             double *left)
 {
     const bool narrow = d->page.width < NARROW_PAGE;
     text_block t = figure_text_of(d, markup, size);
-    *left = narrow ? PAGE_MARGIN : d->left;
+    if (narrow) {
+        *left = PAGE_MARGIN;
+    } else {
+        *left = d->left;
+    }
     t.width = (narrow ? d->page.width - PAGE_MARGIN : d->right) - *left;
     return t;
 }
@@ -215,11 +242,15 @@ static void place_texts(drawing *d, int mark_rows, double *top, double *bottom)
 
     // from the top: title, legend, labels of marks
     d->title_y = y;
-    y += title.markup != NULL ? height_of(d, title) + 3 : 0;
+    if (title.markup != NULL) {
+        y += height_of(d, title) + 3;
+    }
     g_free((char *)title.markup);
     d->legend_y = y;
     double legend = common_legend(d, false);
-    y += legend > 0 ? legend + 2 : 0;
+    if (legend > 0) {
+        y += legend + 2;
+    }
     d->marks_bottom = y += MARK_ROW * mark_rows + 2;
 
     // from the bottom: caption, title of the axis, labels of its ticks
@@ -254,7 +285,8 @@ static void place_rows(drawing *d, int mark_rows)
         y += above;
 
         double height = free_height * weight / weights;
-        for (int i = row * d->columns; i < d->fig->panel_count && i < (row + 1) * d->columns; i++) {
+        for (int i = row * d->columns;
+             i < d->fig->panel_count && i < (row + 1) * d->columns; i++) {
             panel_layout *l = &d->panels[i];
             l->strip_top = y - STRIP_HEIGHT - STRIP_SPACE;
             l->plane.box.y = y;
@@ -325,7 +357,8 @@ static bool fill_panels(drawing *d, placement *grid)
 
 static void place_all(drawing *d, int *mark_rows)
 {
-    // sides depend on heights through the ticks, and heights on sides through wrapped texts
+    // sides depend on heights through the ticks, and heights on sides through wrapped
+    // texts
     for (int pass = 0; pass < 3; pass++) {
         place_rows(d, *mark_rows);
 
@@ -334,9 +367,10 @@ static void place_all(drawing *d, int *mark_rows)
             panel_layout *l = &d->panels[i];
             double height = l->plane.box.height;
             l->y.scale = l->plane.y;
-            axis_choose_ticks(
-                &l->y, &l->panel->y,
-                axis_wish(height, l->plane.y.kind == SCALE_LOGARITHMIC ? 14 : 20, 2, 8));
+            axis_choose_ticks(&l->y, &l->panel->y,
+                              axis_wish(height,
+                                        l->plane.y.kind == SCALE_LOGARITHMIC ? 14 : 20, 2,
+                                        8));
             if (l->panel->colours != NULL) {
                 axis_choose_ticks(&l->colours, &l->panel->colours->axis,
                                   axis_wish(height, BAR_TICK, 2, 8));
@@ -347,7 +381,11 @@ static void place_all(drawing *d, int *mark_rows)
         axis_choose_ticks(&d->x, &d->fig->x, axis_wish(width, 42, 2, 12));
 
         // labels of marks above the panels
-        *mark_rows = d->marks_inside ? 0 : place_marks(d);
+        if (d->marks_inside) {
+            *mark_rows = 0;
+        } else {
+            *mark_rows = place_marks(d);
+        }
     }
 }
 
@@ -358,10 +396,12 @@ static status check_room(const drawing *d, fault *f)
     // one panel without room spoils the figure; its size is told as it was given
     for (int i = 0; i < panels; i++) {
         const figure_rect *box = &d->panels[i].plane.box;
-        FAULT_IF(
-            !(box->width >= LEAST_WIDTH && box->height >= LEAST_HEIGHT), f, STATUS_BAD_ARGUMENT,
-            "a figure of %.0f x %.0f mm has no room for its %d panel%s, expected a larger page",
-            d->page.width / 72 * 25.4, d->page.height / 72 * 25.4, panels, panels == 1 ? "" : "s");
+        FAULT_IF(!(box->width >= LEAST_WIDTH && box->height >= LEAST_HEIGHT), f,
+                 STATUS_BAD_ARGUMENT,
+                 "a figure of %.0f x %.0f mm has no room for its %d panel%s, expected a "
+                 "larger page",
+                 d->page.width / 72 * 25.4, d->page.height / 72 * 25.4, panels,
+                 panels == 1 ? "" : "s");
     }
     return STATUS_OK;
 }

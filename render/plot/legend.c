@@ -1,5 +1,5 @@
-// What takes a free place in a panel: legends (also in a row or column above it, or one for all
-// panels), and the inset, a short stretch of the panel once more, larger.
+// What takes a free place in a panel: legends (also in a row or column above it, or one
+// for all panels), and the inset, a short stretch of the panel once more, larger.
 #include <math.h>
 
 #include "render/page/picture_file.h"
@@ -16,17 +16,19 @@ static double corner_cost(const placement *g, const figure_rect *r, double margi
     return 0.4 * across + 0.4 * down;
 }
 
-// The place of a width x height rectangle, `margin` from the box's edges, with the least ink under
-// it; among equal ones the nearest to a corner, preferring the right to the left and the top to the
-// bottom. Returns the ink under it (INFINITY if the box is too small).
-static double placement_find(const placement *g, double width, double height, double margin,
-                             figure_rect *found)
+// The place of a width x height rectangle, `margin` from the box's edges, with the least
+// ink under it; among equal ones the nearest to a corner, preferring the right to the
+// left and the top to the bottom. Returns the ink under it (INFINITY if the box is too
+// small).
+static double placement_find(const placement *g, double width, double height,
+                             double margin, figure_rect *found)
 {
     placement sums = *g;
     // sums over everything above and left of each cell
     for (int r = 1; r <= PLACEMENT_ROWS; r++) {
         for (int c = 1; c <= PLACEMENT_COLUMNS; c++) {
-            sums.ink[r][c] += sums.ink[r - 1][c] + sums.ink[r][c - 1] - sums.ink[r - 1][c - 1];
+            sums.ink[r][c] +=
+                sums.ink[r - 1][c] + sums.ink[r][c - 1] - sums.ink[r - 1][c - 1];
         }
     }
 
@@ -46,10 +48,11 @@ static double placement_find(const placement *g, double width, double height, do
             double slack_y = rows * cell_height - height - 2 * margin;
 
             // against the nearer edge what rounding to cells left over is not wasted
-            bool right = 2 * c > PLACEMENT_COLUMNS - columns, low = 2 * r > PLACEMENT_ROWS - rows;
-            figure_rect place = {g->box.x + c * cell_width + margin + (right ? slack_x : 0),
-                                 g->box.y + r * cell_height + margin + (low ? slack_y : 0), width,
-                                 height};
+            bool right = 2 * c > PLACEMENT_COLUMNS - columns,
+                 low = 2 * r > PLACEMENT_ROWS - rows;
+            figure_rect place = {
+                g->box.x + c * cell_width + margin + (right ? slack_x : 0),
+                g->box.y + r * cell_height + margin + (low ? slack_y : 0), width, height};
             double cost = ink + corner_cost(g, &place, margin);
             if (cost < best) {
                 best = cost;
@@ -95,7 +98,9 @@ static void divide_inset(const drawing *d, panel_layout *l)
     double space = l->inset_x.even.step / (p->x.high - p->x.low) * width;
     int every = space > 0 ? (int)ceil((wide + LABEL_GAP) / space) : 1;
     for (int i = 0; i < l->inset_x.count; i++) {
-        l->inset_x.text[i] = i % every == 0 ? l->inset_x.text[i] : "";
+        if (i % every != 0) {
+            l->inset_x.text[i] = "";
+        }
     }
     p->box = (figure_rect){l->inset.x + left, l->inset.y + 3, width,
                            l->inset.height - 3 - line - TICK_SPACE - 2};
@@ -117,7 +122,8 @@ void place_inset(const drawing *d, panel_layout *l, placement *grid)
     // one too small to read is rather left out
     for (int i = 0; i < 3; i++) {
         figure_rect found;
-        double width = 0.4 * scales[i] * box->width, height = 0.66 * scales[i] * box->height;
+        double width = 0.4 * scales[i] * box->width,
+               height = 0.66 * scales[i] * box->height;
         if (height < 36 || width < 60) {
             return;
         }
@@ -148,7 +154,8 @@ void draw_inset(drawing *d, const panel_layout *l)
     // the part of the panel that the inset shows
     double left = plane_x(&l->plane, scale_value(p->x.kind, p->x.low));
     double right = plane_x(&l->plane, scale_value(p->x.kind, p->x.high));
-    double top = fmax(plane_y(&l->plane, scale_value(p->y.kind, p->y.high)), l->plane.box.y);
+    double top =
+        fmax(plane_y(&l->plane, scale_value(p->y.kind, p->y.high)), l->plane.box.y);
     double bottom = fmin(plane_y(&l->plane, scale_value(p->y.kind, p->y.low)),
                          l->plane.box.y + l->plane.box.height);
     cairo_save(d->cr);
@@ -251,7 +258,8 @@ bool place_legend(drawing *d, panel_layout *l, const placement *grid)
     }
 
     l->legend_inside = true;
-    return placement_find(grid, size.width, size.height, LEGEND_MARGIN, &l->legend) < INK_CURVE;
+    return placement_find(grid, size.width, size.height, LEGEND_MARGIN, &l->legend) <
+           INK_CURVE;
 }
 
 // ---- strokes
@@ -265,7 +273,8 @@ void draw_legend(drawing *d, const panel_layout *l)
     if (l->legend.width > 0) {
         lay_entries(d, l,
                     (legend_run){l->legend.x, l->legend.y, .right = (double)INFINITY,
-                                 .column = l->legend_inside || l->legend_column, .draw = true});
+                                 .column = l->legend_inside || l->legend_column,
+                                 .draw = true});
     }
 }
 
@@ -274,9 +283,11 @@ void draw_legend(drawing *d, const panel_layout *l)
 double common_legend(drawing *d, bool draw)
 {
     const panel_layout key = {.panel = d->fig->key};
-    const legend_run run = {d->left, d->legend_y, d->right - d->left - SWATCH - SWATCH_SPACE,
-                            .right = d->right, .draw = draw};
-    return d->fig->common_legend
-               ? lay_entries(d, key.panel != NULL ? &key : &d->panels[0], run).height
-               : 0;
+    const legend_run run = {d->left, d->legend_y,
+                            d->right - d->left - SWATCH - SWATCH_SPACE, .right = d->right,
+                            .draw = draw};
+    if (d->fig->common_legend) {
+        return lay_entries(d, key.panel != NULL ? &key : &d->panels[0], run).height;
+    }
+    return 0;
 }

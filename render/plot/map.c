@@ -1,5 +1,5 @@
-// Maps: coloured cells over a grid of points, contour lines, and the bar that says what the colours
-// mean.
+// Maps: coloured cells over a grid of points, contour lines, and the bar that says what
+// the colours mean.
 #include <assert.h>
 #include <math.h>
 
@@ -9,7 +9,8 @@
 int contour_square(const double z[4], double level, contour_piece pieces[2])
 {
     assert(isfinite(level));
-    // corners in the order of going round, and the crossing of the side that begins at each
+    // corners in the order of going round, and the crossing of the side that begins at
+    // each
     static const int corner[4] = {0, 1, 3, 2};
     static const double corner_x[4] = {0, 1, 1, 0}, corner_y[4] = {0, 0, 1, 1};
     double cross_x[4] = {0}, cross_y[4] = {0};
@@ -37,7 +38,8 @@ int contour_square(const double z[4], double level, contour_piece pieces[2])
     int first = count == 4 && (z[0] >= level) != middle ? 3 : 0;
     for (int i = 0; i < count / 2; i++) {
         int from = side[(first + 2 * i) % count], to = side[(first + 2 * i + 1) % count];
-        pieces[i] = (contour_piece){cross_x[from], cross_y[from], cross_x[to], cross_y[to]};
+        pieces[i] =
+            (contour_piece){cross_x[from], cross_y[from], cross_x[to], cross_y[to]};
     }
     return count / 2;
 }
@@ -50,28 +52,36 @@ int contour_square(const double z[4], double level, contour_piece pieces[2])
 
 // ---- scales
 
-// The border between points i - 1 and i in coordinates; i = 0 and i = count are the outer ends.
+// The border between points i - 1 and i in coordinates; i = 0 and i = count are the outer
+// ends.
 static double cell_edge(scale_kind kind, const double *points, size_t count, size_t i)
 {
     if (count == 1) {
         return scale_coordinate(kind, points[0]) + (i == 0 ? -0.5 : 0.5);
     }
 
-    // the middle between neighbours; the outer ends are as far from the last points as the borders
+    // the middle between neighbours; the outer ends are as far from the last points as
+    // the borders
     const size_t k = CLAMP(i, 1, count - 1);
     double before = scale_coordinate(kind, points[k - 1]);
     double after = scale_coordinate(kind, points[k]);
-    return i == 0       ? before - 0.5 * (after - before)
-           : i == count ? after + 0.5 * (after - before)
-                        : 0.5 * (before + after);
+    if (i == 0) {
+        return before - 0.5 * (after - before);
+    }
+    if (i == count) {
+        return after + 0.5 * (after - before);
+    }
+    return 0.5 * (before + after);
 }
 
 void map_include(const figure_map *map, axis_scale *x, axis_scale *y)
 {
     for (int end = 0; end < 2; end++) {
         size_t column = end == 0 ? 0 : map->columns, row = end == 0 ? 0 : map->rows;
-        scale_include(x, scale_value(x->kind, cell_edge(x->kind, map->x, map->columns, column)));
-        scale_include(y, scale_value(y->kind, cell_edge(y->kind, map->y, map->rows, row)));
+        scale_include(x, scale_value(x->kind,
+                                     cell_edge(x->kind, map->x, map->columns, column)));
+        scale_include(y,
+                      scale_value(y->kind, cell_edge(y->kind, map->y, map->rows, row)));
     }
 }
 
@@ -84,11 +94,13 @@ void map_choose_scale(panel_layout *l)
     }
 
     // the values of cells and markers
-    for (size_t i = 0; panel->map != NULL && i < panel->map->columns * panel->map->rows; i++) {
+    for (size_t i = 0; panel->map != NULL && i < panel->map->columns * panel->map->rows;
+         i++) {
         scale_include(s, panel->map->z[i]);
     }
     for (int k = 0; k < panel->series_count; k++) {
-        for (size_t i = 0; panel->series[k].shade != NULL && i < panel->series[k].count; i++) {
+        for (size_t i = 0; panel->series[k].shade != NULL && i < panel->series[k].count;
+             i++) {
             scale_include(s, series_shade(&panel->series[k], i));
         }
     }
@@ -101,7 +113,10 @@ void map_choose_scale(panel_layout *l)
 static double shade_share(const panel_layout *l, double value)
 {
     double share = fmin(1, fmax(0, scale_share(&l->colours.scale, value)));
-    return l->panel->colours->reversed ? 1 - share : share;
+    if (l->panel->colours->reversed) {
+        return 1 - share;
+    }
+    return share;
 }
 
 void set_shade(const drawing *d, const panel_layout *l, double value)
@@ -122,7 +137,8 @@ static void fill_missing(const drawing *d, const figure_rect *r)
     // hatched
     set_plain_line(d->cr, d->style.colours->mark, GRID_WIDTH);
     // lines at fixed places of the page, so that they run on from cell to cell
-    double from = floor((r->x + r->y) / HATCH) * HATCH, to = r->x + r->width + r->y + r->height;
+    double from = floor((r->x + r->y) / HATCH) * HATCH,
+           to = r->x + r->width + r->y + r->height;
     for (double sum = from; sum <= to; sum += HATCH) {
         picture_line(d->cr, sum - r->y, r->y, sum - r->y - r->height, r->y + r->height);
     }
@@ -144,8 +160,8 @@ static void draw_cells(const drawing *d, const panel_layout *l)
 {
     const figure_map *map = l->panel->map;
     const plane *p = &l->plane;
-    // neighbours would show a hairline between them if edges were smoothed, or if a viewer smooths
-    // them: every cell reaches a little under its later neighbours
+    // neighbours would show a hairline between them if edges were smoothed, or if a
+    // viewer smooths them: every cell reaches a little under its later neighbours
     cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_NONE);
 
     // column by column
@@ -153,7 +169,8 @@ static void draw_cells(const drawing *d, const panel_layout *l)
         double left = page_x(p, cell_edge(p->x.kind, map->x, map->columns, i));
         double right = page_x(p, cell_edge(p->x.kind, map->x, map->columns, i + 1));
         for (size_t j = 0; j < map->rows; j++) {
-            double top = page_y(p, cell_edge(p->y.kind, map->y, map->rows, j + 1)) - OVERLAP;
+            double top =
+                page_y(p, cell_edge(p->y.kind, map->y, map->rows, j + 1)) - OVERLAP;
             double bottom = page_y(p, cell_edge(p->y.kind, map->y, map->rows, j));
             figure_rect r = {left, top, right - left + OVERLAP, bottom - top};
             double value = map->z[i * map->rows + j];
@@ -187,7 +204,8 @@ static void draw_contour(const drawing *d, const panel_layout *l, double level)
         for (size_t j = 0; j + 1 < map->rows; j++) {
             contour_piece pieces[2];
             const double *a = &map->z[i * map->rows + j], *b = a + map->rows;
-            int count = contour_square((const double[]){a[0], b[0], a[1], b[1]}, level, pieces);
+            int count =
+                contour_square((const double[]){a[0], b[0], a[1], b[1]}, level, pieces);
             double x0 = plane_x(p, map->x[i]), x1 = plane_x(p, map->x[i + 1]);
             double y0 = plane_y(p, map->y[j]), y1 = plane_y(p, map->y[j + 1]);
             for (int k = 0; k < count; k++) {
@@ -243,9 +261,11 @@ static void fill_bar(const drawing *d, const panel_layout *l, const figure_rect 
     enum { STRIPES = 256 };
     cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_NONE);
     for (int i = 0; i < STRIPES; i++) {
-        double share = (i + 0.5) / STRIPES, height = bar->height * (1 - (double)i / STRIPES);
+        double share = (i + 0.5) / STRIPES,
+               height = bar->height * (1 - (double)i / STRIPES);
         fill_box(d->cr, &(figure_rect){bar->x, bar->y, bar->width, height},
-                 palette_shade(d->style.theme, l->panel->colours->reversed ? 1 - share : share));
+                 palette_shade(d->style.theme,
+                               l->panel->colours->reversed ? 1 - share : share));
     }
     cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_DEFAULT);
 }
@@ -257,13 +277,15 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
         return;
     }
 
-    const figure_rect bar = {box->x + box->width + BAR_DISTANCE, box->y, BAR_WIDTH, box->height};
+    const figure_rect bar = {box->x + box->width + BAR_DISTANCE, box->y, BAR_WIDTH,
+                             box->height};
     double right = bar.x + bar.width;
     fill_bar(d, l, &bar);
 
     // ticks with labels; with contour lines those of the lines
     for (int i = 0; i < l->colours.count; i++) {
-        double y = bar.y + bar.height * (1 - scale_share(&l->colours.scale, l->colours.at[i]));
+        double y =
+            bar.y + bar.height * (1 - scale_share(&l->colours.scale, l->colours.at[i]));
         if (l->panel->map != NULL && l->panel->map->contours) {
             set_contour_line(d, l, l->colours.at[i]);
             picture_line(d->cr, bar.x, y, right, y);
@@ -271,8 +293,8 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
 
         set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
         picture_line(d->cr, right, y, right + TICK_LENGTH, y);
-        draw_label(d, l->colours.text[i], d->style.tick, right + TICK_LENGTH + TICK_SPACE, y,
-                   (anchor){0, 0.5});
+        draw_label(d, l->colours.text[i], d->style.tick, right + TICK_LENGTH + TICK_SPACE,
+                   y, (anchor){0, 0.5});
     }
     set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
     cairo_rectangle(d->cr, bar.x, bar.y, bar.width, bar.height);
@@ -284,7 +306,7 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
     t.align = TEXT_CENTRE;
     t.width = box->height;
     draw_rotated(d, t,
-                 right + TICK_LENGTH + TICK_SPACE + widest_tick(d, &l->colours, d->style.tick) +
-                     LABEL_SPACE,
+                 right + TICK_LENGTH + TICK_SPACE +
+                     widest_tick(d, &l->colours, d->style.tick) + LABEL_SPACE,
                  box->y + box->height / 2, d->style.colours->text);
 }

@@ -28,16 +28,19 @@ static bool at_point(const drawing *d, int index)
 static bool has_point(const drawing *d, const figure_mark *m)
 {
     const plane *p = &d->panels[0].plane;
-    return m->pointed && m->label != NULL && scale_holds(&p->x, m->x) && scale_holds(&p->y, m->y);
+    return m->pointed && m->label != NULL && scale_holds(&p->x, m->x) &&
+           scale_holds(&p->y, m->y);
 }
 
 // ---- where labels go
 
-// Labels of marks stand like flags at the right of their lines. Where one would meet the next flag
-// or its line it goes a row higher, so that no line crosses a label. Returns the number of rows.
+// Labels of marks stand like flags at the right of their lines. Where one would meet the
+// next flag or its line it goes a row higher, so that no line crosses a label. Returns
+// the number of rows.
 int place_marks(drawing *d)
 {
-    int rows = 0, count = d->fig->mark_count < MARKS_LABELLED ? d->fig->mark_count : MARKS_LABELLED;
+    int rows = 0,
+        count = d->fig->mark_count < MARKS_LABELLED ? d->fig->mark_count : MARKS_LABELLED;
     double begins[MARKS_LABELLED], ends[MARKS_LABELLED];
     bool done[MARKS_LABELLED] = {false};
     for (int n = 0; n < count; n++) {
@@ -60,21 +63,33 @@ int place_marks(drawing *d)
         double x = plane_x(&d->panels[0].plane, m->x),
                width = width_of(d, m->label, d->style.small);
         bool fits = x + 2 + width <= d->page.width - PAGE_MARGIN;
-        width += !fits && m->onwards ? width_of(d, ARROW, d->style.small) : 0;
-        begins[next] = fits ? x + 2 : x - 2 - width;
+        if (!fits && m->onwards) {
+            width += width_of(d, ARROW, d->style.small);
+        }
+        if (fits) {
+            begins[next] = x + 2;
+        } else {
+            begins[next] = x - 2 - width;
+        }
         ends[next] = begins[next] + width;
 
         // above every label it would meet
         int row = 0;
         for (int i = 0; i < count; i++) {
-            if (i != next && done[i] && d->mark_row[i] >= row && ends[next] + 3 > begins[i] - 2 &&
-                begins[next] < ends[i] + 3) {
+            if (i != next && done[i] && d->mark_row[i] >= row &&
+                ends[next] + 3 > begins[i] - 2 && begins[next] < ends[i] + 3) {
                 row = d->mark_row[i] + 1;
             }
         }
-        d->mark_row[next] = row < MARK_ROWS ? row : -1;
+        if (row < MARK_ROWS) {
+            d->mark_row[next] = row;
+        } else {
+            d->mark_row[next] = -1;
+        }
         d->mark_text_x[next] = begins[next];
-        rows = row < MARK_ROWS && row + 1 > rows ? row + 1 : rows;
+        if (row < MARK_ROWS && row + 1 > rows) {
+            rows = row + 1;
+        }
     }
     return rows;
 }
@@ -93,14 +108,15 @@ static bool crosses_line(const drawing *d, const figure_rect *r, int index)
     return false;
 }
 
-// Whether a label of mark `index` can stand at a place of the first panel: off curves, and off the
-// lines of other marks unless it may lie over them.
-static bool is_free(const drawing *d, const placement *grid, const figure_rect *r, int index,
-                    bool over_lines)
+// Whether a label of mark `index` can stand at a place of the first panel: off curves,
+// and off the lines of other marks unless it may lie over them.
+static bool is_free(const drawing *d, const placement *grid, const figure_rect *r,
+                    int index, bool over_lines)
 {
     const figure_rect *box = &d->panels[0].plane.box;
-    return r->x >= box->x + 1 && r->x + r->width <= box->x + box->width && r->y >= box->y &&
-           r->y + r->height <= box->y + box->height && placement_ink(grid, *r) < INK_CURVE &&
+    return r->x >= box->x + 1 && r->x + r->width <= box->x + box->width &&
+           r->y >= box->y && r->y + r->height <= box->y + box->height &&
+           placement_ink(grid, *r) < INK_CURVE &&
            (over_lines || !crosses_line(d, r, index));
 }
 
@@ -113,7 +129,8 @@ static bool find_inside(const drawing *d, const placement *grid, int index,
     double width = width_of(d, d->fig->marks[index].label, d->style.small);
 
     // from above, at the right of its line, then at the left
-    for (double y = box->y + 1; y + MARK_ROW < box->y + INSIDE_SHARE * box->height; y += MARK_ROW) {
+    for (double y = box->y + 1; y + MARK_ROW < box->y + INSIDE_SHARE * box->height;
+         y += MARK_ROW) {
         for (int side = 0; side < (d->fig->marks[index].onwards ? 1 : 2); side++) {
             figure_rect r = {side == 0 ? x + 2 : x - 2 - width, y, width, MARK_ROW};
             bool fits = is_free(d, grid, &r, index, false);
@@ -129,9 +146,11 @@ static bool find_inside(const drawing *d, const placement *grid, int index,
     return false;
 }
 
-// A place for a label beside the point of its mark: above, at its height or below, on either side,
-// as near as can be, rather not over another mark's line; false if there is none.
-static bool find_at_point(const drawing *d, const placement *grid, int index, figure_rect *found)
+// A place for a label beside the point of its mark: above, at its height or below, on
+// either side, as near as can be, rather not over another mark's line; false if there is
+// none.
+static bool find_at_point(const drawing *d, const placement *grid, int index,
+                          figure_rect *found)
 {
     const figure_mark *m = &d->fig->marks[index];
     const plane *p = &d->panels[0].plane;
@@ -142,8 +161,8 @@ static bool find_at_point(const drawing *d, const placement *grid, int index, fi
         bool left = k % 2, over_lines = k / 6 % 2;
         double away = POINT_SPACE + k / 12 * MARK_ROW;
         double tops[] = {y - away - MARK_ROW, y - MARK_ROW / 2, y + away};
-        figure_rect r = {left ? x - POINT_SPACE - width : x + POINT_SPACE, tops[k / 2 % 3], width,
-                         MARK_ROW};
+        figure_rect r = {left ? x - POINT_SPACE - width : x + POINT_SPACE,
+                         tops[k / 2 % 3], width, MARK_ROW};
         if (is_free(d, grid, &r, index, over_lines)) {
             *found = r;
             return true;
@@ -180,11 +199,12 @@ bool place_marks_inside(drawing *d, placement *grid)
 
     // a place for every label, or none
     for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
-        if (d->fig->marks[i].label == NULL || !scale_holds(&d->x.scale, d->fig->marks[i].x) ||
-            at_point(d, i)) {
+        if (d->fig->marks[i].label == NULL ||
+            !scale_holds(&d->x.scale, d->fig->marks[i].x) || at_point(d, i)) {
             continue;
         }
-        if (count == INSIDE_MOST || !find_inside(d, grid, i, taken, count, &taken[count])) {
+        if (count == INSIDE_MOST ||
+            !find_inside(d, grid, i, taken, count, &taken[count])) {
             return false;
         }
         index[count++] = i;
@@ -205,8 +225,8 @@ bool place_marks_inside(drawing *d, placement *grid)
 
 // ---- levels
 
-// Where the label of a level stands: at the right or left end of its line, above or below, where no
-// curve runs.
+// Where the label of a level stands: at the right or left end of its line, above or
+// below, where no curve runs.
 static figure_rect level_label(const drawing *d, const panel_layout *l, int index,
                                const placement *grid)
 {
@@ -221,15 +241,18 @@ static figure_rect level_label(const drawing *d, const panel_layout *l, int inde
         figure_rect r = {left ? box->x + 3 : box->x + box->width - 2 - width,
                          below ? y : y - LEVEL_ROOM, width, LEVEL_ROOM};
         bool fits = r.y >= box->y && r.y + r.height <= box->y + box->height;
-        if (fits && (best.width == 0 || placement_ink(grid, r) < placement_ink(grid, best))) {
+        if (fits &&
+            (best.width == 0 || placement_ink(grid, r) < placement_ink(grid, best))) {
             best = r;
         }
     }
     return best;
 }
 
-// Where a note stands: at the right of its point, at the left where the panel ends, or below.
-static figure_rect note_place(const drawing *d, const panel_layout *l, const figure_note *n)
+// Where a note stands: at the right of its point, at the left where the panel ends, or
+// below.
+static figure_rect note_place(const drawing *d, const panel_layout *l,
+                              const figure_note *n)
 {
     const figure_rect *box = &l->plane.box;
     double x = plane_x(&l->plane, n->x), y = plane_y(&l->plane, n->y);
@@ -247,8 +270,8 @@ static figure_rect note_place(const drawing *d, const panel_layout *l, const fig
         left = fmax(box->x + 2, box->x + box->width - width - 2);
         top = y + NOTE_SPACE;
     }
-    return (figure_rect){left, fmax(box->y, fmin(box->y + box->height - height, top)), width,
-                         height};
+    return (figure_rect){left, fmax(box->y, fmin(box->y + box->height - height, top)),
+                         width, height};
 }
 
 void ink_of_marks(const drawing *d, panel_layout *l, placement *grid)
@@ -296,10 +319,12 @@ void draw_intervals(const drawing *d, const plane *p)
     // each as far as the axis shows it
     for (int i = 0; i < d->fig->interval_count; i++) {
         const figure_interval *v = &d->fig->intervals[i];
-        double low = scale_value(p->x.kind, p->x.low), high = scale_value(p->x.kind, p->x.high);
+        double low = scale_value(p->x.kind, p->x.low),
+               high = scale_value(p->x.kind, p->x.high);
         double from = plane_x(p, fmax(v->from, low)), to = plane_x(p, fmin(v->to, high));
         if (to >= from) {
-            cairo_rectangle(d->cr, from, box->y, fmax(to - from, GRID_WIDTH), box->height);
+            cairo_rectangle(d->cr, from, box->y, fmax(to - from, GRID_WIDTH),
+                            box->height);
         }
     }
 
@@ -321,7 +346,8 @@ void clip_out_labels(const drawing *d)
     for (int i = 0; i < d->fig->panel_count; i++) {
         const panel_layout *l = &d->panels[i];
         if (l->legend_inside && l->legend.width > 0) {
-            cairo_rectangle(d->cr, l->legend.x, l->legend.y, l->legend.width, l->legend.height);
+            cairo_rectangle(d->cr, l->legend.x, l->legend.y, l->legend.width,
+                            l->legend.height);
         }
     }
     for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
@@ -394,7 +420,8 @@ void draw_measure(drawing *d)
 }
 
 // The marks of a column of panels, `shift` to the right of the first column.
-static void draw_column_marks(drawing *d, const plane *first, const plane *last, double shift)
+static void draw_column_marks(drawing *d, const plane *first, const plane *last,
+                              double shift)
 {
     for (int i = 0; i < d->fig->mark_count; i++) {
         const figure_mark *m = &d->fig->marks[i];
@@ -408,9 +435,14 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
             const double row = d->marks_bottom - MARK_ROW * (d->mark_row[i] + 1);
             const bool before = !d->marks_inside && m->onwards && d->mark_text_x[i] < x;
             g_autofree char *towards = before ? g_strconcat(m->label, ARROW, NULL) : NULL;
-            draw_label(d, before ? towards : m->label, d->style.small, d->mark_text_x[i] + shift,
+            draw_label(d, before ? towards : m->label, d->style.small,
+                       d->mark_text_x[i] + shift,
                        d->marks_inside ? d->mark_text_y[i] : row, (anchor){0, 0});
-            top = d->marks_inside ? first->box.y : row + 1;
+            if (d->marks_inside) {
+                top = first->box.y;
+            } else {
+                top = row + 1;
+            }
         }
         draw_hairline(d, x, top, last->box.y + last->box.height);
     }

@@ -42,15 +42,26 @@ static void set_pen(cairo_t *cr, const pane_frame *f, const pane_curve *c)
 // What lies in one column of pixels.
 typedef struct column {
     long at;
-    double first, low, high, last; // y [pixels], in the order of the rows but for low and high
+    double first, low, high,
+        last; // y [pixels], in the order of the rows but for low and high
     bool any;
 } column;
 
 static void add_to_column(column *c, double y)
 {
-    c->first = c->any ? c->first : y;
-    c->low = c->any ? fmin(c->low, y) : y;
-    c->high = c->any ? fmax(c->high, y) : y;
+    if (!c->any) {
+        c->first = y;
+    }
+    if (c->any) {
+        c->low = fmin(c->low, y);
+    } else {
+        c->low = y;
+    }
+    if (c->any) {
+        c->high = fmax(c->high, y);
+    } else {
+        c->high = y;
+    }
     c->last = y;
     c->any = true;
 }
@@ -71,11 +82,13 @@ static void end_column(cairo_t *cr, const column *c)
 }
 
 // Many rows: column by column, whole blocks at once where they lie in one.
-static void trace_columns(cairo_t *cr, const pane_frame *f, const pane_curve *c, double until)
+static void trace_columns(cairo_t *cr, const pane_frame *f, const pane_curve *c,
+                          double until)
 {
     const trace *t = c->rows;
     column here = {.at = -1};
-    for (size_t r = trace_row_at(t, f->from); r < t->row_count && t->rows[r].time <= until;) {
+    for (size_t r = trace_row_at(t, f->from);
+         r < t->row_count && t->rows[r].time <= until;) {
         const long at = lround(floor(pixel_x(f, t->rows[r].time)));
         const size_t end = r + c->block;
         if (at != here.at) {
@@ -91,7 +104,9 @@ static void trace_columns(cairo_t *cr, const pane_frame *f, const pane_curve *c,
             add_to_column(&here, pixel_y(f, c->pairs[2 * (r / c->block) + 1]));
             add_to_column(&here, pixel_y(f, c->pairs[2 * (r / c->block)]));
         }
-        r = whole ? end - 1 : r;
+        if (whole) {
+            r = end - 1;
+        }
         const double value = signal_value(&t->rows[r], c->signal);
         if (isfinite(value)) {
             add_to_column(&here, pixel_y(f, value));
@@ -106,7 +121,8 @@ static void trace_columns(cairo_t *cr, const pane_frame *f, const pane_curve *c,
 }
 
 // Few rows: a point for each.
-static void trace_rows(cairo_t *cr, const pane_frame *f, const pane_curve *c, double until)
+static void trace_rows(cairo_t *cr, const pane_frame *f, const pane_curve *c,
+                       double until)
 {
     const trace *t = c->rows;
     for (size_t r = trace_row_at(t, f->from); r < t->row_count; r++) {

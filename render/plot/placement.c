@@ -47,9 +47,11 @@ double placement_ink(const placement *g, figure_rect r)
     int last_row = row_of(g, r.y + r.height), last_column = column_of(g, r.x + r.width);
     for (int row = row_of(g, r.y); row <= last_row; row++) {
         for (int column = column_of(g, r.x); column <= last_column; column++) {
-            bool inside =
-                row >= 0 && row < PLACEMENT_ROWS && column >= 0 && column < PLACEMENT_COLUMNS;
-            sum += inside ? g->ink[row + 1][column + 1] : 0;
+            bool inside = row >= 0 && row < PLACEMENT_ROWS && column >= 0 &&
+                          column < PLACEMENT_COLUMNS;
+            if (inside) {
+                sum += g->ink[row + 1][column + 1];
+            }
         }
     }
     return sum;

@@ -8,18 +8,21 @@
 #define RUN_WIDER     0.7 // of the runs that have a grey for the second or third time
 #define RIM           0.8 // of the page's colour, at either side of what needs one
 
-// A line that turns up and down more often than this is busy: no pattern of dashes would show [pt].
+// A line that turns up and down more often than this is busy: no pattern of dashes would
+// show [pt].
 #define LEAST_TURN    0.5  // height of a turn that counts
 #define MOST_TURNS    12   // of a line that is never busy
 #define BUSY_DISTANCE 16.0 // from turn to turn, some three dashes
 
 enum { STYLES = 4 };
 
-// The style of the series `index` among a panel's: its own, or the next that no earlier one has.
+// The style of the series `index` among a panel's: its own, or the next that no earlier
+// one has.
 static line_style free_style(const figure_series *series, int index)
 {
     // the orders in which styles give way keep the lines as plain as possible
-    static const line_style others[] = {LINE_SOLID, LINE_DASHED, LINE_DASH_DOT, LINE_DOTTED};
+    static const line_style others[] = {LINE_SOLID, LINE_DASHED, LINE_DASH_DOT,
+                                        LINE_DOTTED};
 
     bool taken[STYLES] = {false};
     line_style style = LINE_SOLID;
@@ -30,12 +33,17 @@ static line_style free_style(const figure_series *series, int index)
             continue;
         }
         for (int k = 0; k < STYLES && taken[style]; k++) {
-            style = taken[others[k]] ? style : others[k];
+            if (!taken[others[k]]) {
+                style = others[k];
+            }
         }
         taken[style] = true;
     }
 
-    return series[index].secondary ? LINE_DASHED : style;
+    if (series[index].secondary) {
+        return LINE_DASHED;
+    }
+    return style;
 }
 
 double set_series(const drawing *d, const panel_layout *l, int index)
@@ -48,7 +56,11 @@ double set_series(const drawing *d, const panel_layout *l, int index)
     if (s->run > 0) {
         // its style is the signal's and its colour the run's; there are three greys
         const int rank = s->run - 1;
-        width *= d->style.theme == THEME_MONO ? 1 + RUN_WIDER * (rank / 3) : 1;
+        if (d->style.theme == THEME_MONO) {
+            width *= 1 + RUN_WIDER * (rank / 3);
+        } else {
+            width *= 1;
+        }
         ink = palette_series(d->style.theme, s->colour, 2 * rank);
     } else if (l->busy[index]) {
         // no pattern shows in it; without colours a lighter and wider line does
@@ -57,8 +69,14 @@ double set_series(const drawing *d, const panel_layout *l, int index)
         for (int i = 0; i < index; i++) {
             second = second || l->busy[i];
         }
-        width *= wide && !second ? 1.7 : 1;
-        ink = wide ? palette_series(THEME_MONO, 0, second ? 0 : 4) : ink;
+        if (wide && !second) {
+            width *= 1.7;
+        } else {
+            width *= 1;
+        }
+        if (wide) {
+            ink = palette_series(THEME_MONO, 0, second ? 0 : 4);
+        }
         style = LINE_SOLID;
     } else if (!s->rim) {
         // a line over a map keeps the pattern it asks for
@@ -146,8 +164,8 @@ static void add_marker(cairo_t *cr, marker_kind kind, double x, double y, double
 }
 
 // A marker in the series' colour; one with a shade has that inside and an outline.
-static void draw_marker(const drawing *d, const panel_layout *l, const figure_series *s, double x,
-                        double y, double shade)
+static void draw_marker(const drawing *d, const panel_layout *l, const figure_series *s,
+                        double x, double y, double shade)
 {
     bool open = s->shade != NULL || s->marker == MARKER_CROSS;
     add_marker(d->cr, s->marker, x, y, s->radius > 0 ? s->radius : MARKER_RADIUS);
@@ -231,7 +249,8 @@ void draw_series(const drawing *d, const panel_layout *l, const plane *p)
             double x = plane_x(p, series_x(s, k)), y = plane_y(p, series_y(s, k));
             if (x >= box->x && x <= box->x + box->width && y >= box->y &&
                 y <= box->y + box->height) {
-                draw_marker(d, l, s, x, y, s->shade != NULL ? series_shade(s, k) : (double)NAN);
+                draw_marker(d, l, s, x, y,
+                            s->shade != NULL ? series_shade(s, k) : (double)NAN);
             }
         }
     }
@@ -282,32 +301,39 @@ static double largest_impulse(const figure_panel *panel)
 static int impulse_exponent(const figure_panel *panel)
 {
     double largest = largest_impulse(panel);
-    return largest > 0 && largest < 1e-2 ? 3 * (int)floor(log10(largest) / 3) : 0;
+    if (largest > 0 && largest < 1e-2) {
+        return 3 * (int)floor(log10(largest) / 3);
+    }
+    return 0;
 }
 
 char *impulse_strip_label(const figure_panel *panel)
 {
-    g_autofree char *unit = axis_label(NULL, panel->impulse_unit, impulse_exponent(panel));
+    g_autofree char *unit =
+        axis_label(NULL, panel->impulse_unit, impulse_exponent(panel));
     return text_printf("%s\n%s", panel->impulse_label, unit);
 }
 
 enum { IMPULSES_LABELLED = 24 };
 
-// Writes the size of an impulse next to its arrow unless it would cover another label or arrow.
+// Writes the size of an impulse next to its arrow unless it would cover another label or
+// arrow.
 static void label_impulse(drawing *d, const panel_layout *l, int index, double base,
                           figure_rect *taken, int *count)
 {
     const figure_impulse *all = l->panel->impulses, *p = &all[index];
-    g_autofree char *markup = text_number(p->size / pow(10, impulse_exponent(l->panel)), 3);
+    g_autofree char *markup =
+        text_number(p->size / pow(10, impulse_exponent(l->panel)), 3);
     text_block t = figure_text_of(d, markup, d->style.small);
     const double width = text_measure(d->context, &t).width, height = height_of(d, t);
     double x = plane_x(&l->plane, p->x);
 
     // at its right or at its left, on the page, off other labels, arrows and marks
     for (int side = 0; side < 2 && *count < IMPULSES_LABELLED; side++) {
-        figure_rect place = {side == 0 ? x + 4 : x - 4 - width, base - STRIP_HEIGHT + 3, width,
-                             height};
-        bool free_place = place.x >= d->left && place.x + width <= d->page.width - PAGE_MARGIN;
+        figure_rect place = {side == 0 ? x + 4 : x - 4 - width, base - STRIP_HEIGHT + 3,
+                             width, height};
+        bool free_place =
+            place.x >= d->left && place.x + width <= d->page.width - PAGE_MARGIN;
         for (int i = 0; i < *count && free_place; i++) {
             free_place = !rects_meet(&place, &taken[i], 0);
         }
@@ -332,8 +358,8 @@ static bool impulse_shows(const drawing *d, const figure_impulse *p)
     return isfinite(p->size) && p->size != 0 && scale_holds(&d->x.scale, p->x);
 }
 
-// The largest impulse that shows after the one at `last` (-1: of all), of two alike the first; -1
-// if none is left.
+// The largest impulse that shows after the one at `last` (-1: of all), of two alike the
+// first; -1 if none is left.
 static int next_impulse(const drawing *d, const figure_panel *panel, int last)
 {
     const figure_impulse *all = panel->impulses;
@@ -342,7 +368,8 @@ static int next_impulse(const drawing *d, const figure_panel *panel, int last)
     for (int i = 0; i < panel->impulse_count; i++) {
         const double size = fabs(all[i].size);
         const bool left = size < most || (size == most && i > last);
-        if (left && impulse_shows(d, &all[i]) && (next < 0 || size > fabs(all[next].size))) {
+        if (left && impulse_shows(d, &all[i]) &&
+            (next < 0 || size > fabs(all[next].size))) {
             next = i;
         }
     }
@@ -387,7 +414,11 @@ void draw_impulses(drawing *d, const panel_layout *l)
         g_autofree char *label = impulse_strip_label(panel);
         text_block t = figure_text_of(d, label, d->style.small);
         t.align = TEXT_RIGHT;
-        t.leading = impulse_exponent(panel) != 0 ? STRIP_LEADING : 0;
+        if (impulse_exponent(panel) != 0) {
+            t.leading = STRIP_LEADING;
+        } else {
+            t.leading = 0;
+        }
         draw_text(d, t, left - TICK_LENGTH - TICK_SPACE, base + 1.5, (anchor){1, 1},
                   d->style.colours->text);
     }

@@ -13,35 +13,38 @@
 // The largest number of laws in a picture.
 enum { ROBUST_MOST_CURVES = 8 };
 
-// Describes the picture: the share of runs (upwards) whose overshoot is at most x. Its title
-// ends with what was changed of the scenario. The table is borrowed; at most ROBUST_MOST_CURVES
-// laws. To be freed with owned_figure_destroy.
+// Describes the picture: the share of runs (upwards) whose overshoot is at most x. Its
+// title ends with what was changed of the scenario. The table is borrowed; at most
+// ROBUST_MOST_CURVES laws. To be freed with owned_figure_destroy.
 owned_figure *robust_figure_create(const robust_table *t, const char *changes);
 
-// --- tune: what each evaluation came to, and the least so far, over the evaluations. The title
-// ends with what was changed of the scenario. To be freed with owned_figure_destroy.
+// --- tune: what each evaluation came to, and the least so far, over the evaluations. The
+// title ends with what was changed of the scenario. To be freed with
+// owned_figure_destroy.
 owned_figure *tune_figure_create(const tuning *t, const char *changes);
 
 // --- Pictures of a sweep: one quantity over one or two varied parameters.
 //
-// One parameter: a line with markers (dots alone if the values were drawn at random or are words).
-// Two: a map with contour lines and a colour bar (coloured dots if the values were drawn at
-// random). A logarithmic range has a logarithmic axis.
+// One parameter: a line with markers (dots alone if the values were drawn at random or
+// are words). Two: a map with contour lines and a colour bar (coloured dots if the values
+// were drawn at random). A logarithmic range has a logarithmic axis.
 
 typedef struct sweep_picture {
     const sweep *sweep;
-    const char *key;          // of the summary, "peak_force_N"
-    const summary_info *info; // of a quantity that the summary does not have; NULL: the key's
-    const double *values;     // of each run, NaN where there is none
+    const char *key; // of the summary, "peak_force_N"
+    const summary_info
+        *info;            // of a quantity that the summary does not have; NULL: the key's
+    const double *values; // of each run, NaN where there is none
 } sweep_picture;
 
-// Checks in advance whether a picture of the sweep can be written to path: STATUS_BAD_ARGUMENT if
-// more than two parameters are varied or for an unknown extension, STATUS_CANNOT_WRITE if the path
-// cannot be written, STATUS_CANNOT_READ if the font is missing.
+// Checks in advance whether a picture of the sweep can be written to path:
+// STATUS_BAD_ARGUMENT if more than two parameters are varied or for an unknown extension,
+// STATUS_CANNOT_WRITE if the path cannot be written, STATUS_CANNOT_READ if the font is
+// missing.
 status sweep_plot_check(const sweep *s, const char *path, fault *f);
 
-// Describes the picture, to be freed with owned_figure_destroy. The sweep and the values are
-// borrowed.
+// Describes the picture, to be freed with owned_figure_destroy. The sweep and the values
+// are borrowed.
 owned_figure *sweep_figure_create(const sweep_picture *p);
 
 // --- of numbers over varied parameters, in any picture
@@ -49,20 +52,21 @@ owned_figure *sweep_figure_create(const sweep_picture *p);
 // The radius of markers of so many points [pt].
 double marker_radius(size_t points);
 
-// An axis with a name, its label the beginning of a description (NULL: the name); name and unit
-// are borrowed.
+// An axis with a name, its label the beginning of a description (NULL: the name); name
+// and unit are borrowed.
 figure_axis described_axis(owned_figure *o, const char *name, const char *description,
                            const char *unit);
 
-// The map of z over the grid that points make, with contours and hatched where there is no point,
-// kept by the figure. NULL if most of the grid would be: the points make none.
-figure_map *figure_grid(owned_figure *o, const double *x, const double *y, const double *z,
-                        size_t count);
+// The map of z over the grid that points make, with contours and hatched where there is
+// no point, kept by the figure. NULL if most of the grid would be: the points make none.
+figure_map *figure_grid(owned_figure *o, const double *x, const double *y,
+                        const double *z, size_t count);
 
 // --- identify: what the fit leaves of the readings
 
-// Describes the picture: a panel for each trace, the residuals of every channel over time in
-// standard deviations. At most FIGURE_PANELS traces. To be freed with owned_figure_destroy.
+// Describes the picture: a panel for each trace, the residuals of every channel over time
+// in standard deviations. At most FIGURE_PANELS traces. To be freed with
+// owned_figure_destroy.
 owned_figure *identify_figure_create(const identification *id);
 
 // --- linear: answers over frequency, and a loop gain in the plane
@@ -72,7 +76,9 @@ typedef struct linear_curve {
     linear_response response;
 } linear_curve;
 
-// Describe gain and phase of at most FIGURE_PANELS curves, and the loop gain with the points of
-// size 1 and -1; the title ends with what was changed. To be freed with owned_figure_destroy.
-owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, int count);
+// Describe gain and phase of at most FIGURE_PANELS curves, and the loop gain with the
+// points of size 1 and -1; the title ends with what was changed. To be freed with
+// owned_figure_destroy.
+owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves,
+                                 int count);
 owned_figure *nyquist_figure_create(const scenario *s, const linear_response *loop);

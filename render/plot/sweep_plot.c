@@ -30,13 +30,20 @@ typedef struct varied {
 
 double marker_radius(size_t points)
 {
-    return points > 500 ? 1.1 : points > 12 ? 1.9 : 2.4;
+    if (points > 500) {
+        return 1.1;
+    }
+    if (points > 12) {
+        return 1.9;
+    }
+    return 2.4;
 }
 
 figure_axis described_axis(owned_figure *o, const char *name, const char *description,
                            const char *unit)
 {
-    g_autofree char *label = description != NULL ? text_label(description) : g_strdup(name);
+    g_autofree char *label =
+        description != NULL ? text_label(description) : g_strdup(name);
     return (figure_axis){name, owned_figure_keep(o, text_escape(label)), unit};
 }
 
@@ -62,15 +69,18 @@ static size_t place_among(const double *values, size_t count, double value)
     return (size_t)(found - values);
 }
 
-figure_map *figure_grid(owned_figure *o, const double *x, const double *y, const double *z,
-                        size_t count)
+figure_map *figure_grid(owned_figure *o, const double *x, const double *y,
+                        const double *z, size_t count)
 {
-    double *columns = owned_figure_numbers(o, count), *rows = owned_figure_numbers(o, count);
+    double *columns = owned_figure_numbers(o, count),
+           *rows = owned_figure_numbers(o, count);
     figure_map *map = OWNED(o, figure_map, columns, rows, .contours = true,
                             .columns = different_values(x, count, columns),
                             .rows = different_values(y, count, rows));
     const size_t cells = map->columns * map->rows;
-    FAIL_IF(cells > 2 * count, NULL);
+    if (cells > 2 * count) {
+        return NULL;
+    }
 
     // the map goes column by column; cells that no point fills keep no number
     double *values = owned_figure_numbers(o, cells);
@@ -89,7 +99,8 @@ figure_map *figure_grid(owned_figure *o, const double *x, const double *y, const
 
 static int compare_values(const void *a, const void *b, void *context)
 {
-    const double *values = context, x = values[*(const size_t *)a], y = values[*(const size_t *)b];
+    const double *values = context, x = values[*(const size_t *)a],
+                 y = values[*(const size_t *)b];
     return (x > y) - (x < y);
 }
 
@@ -106,10 +117,15 @@ static void order_points(owned_figure *o, varied *v)
 
     // numbers ascend
     if (!v->words) {
-        g_qsort_with_data(v->order, (int)v->count, sizeof *v->order, compare_values, axis->values);
+        g_qsort_with_data(v->order, (int)v->count, sizeof *v->order, compare_values,
+                          axis->values);
     }
     for (size_t i = 0; i < v->count; i++) {
-        v->place[i] = v->words ? (double)i : axis->values[v->order[i]];
+        if (v->words) {
+            v->place[i] = (double)i;
+        } else {
+            v->place[i] = axis->values[v->order[i]];
+        }
     }
 }
 
@@ -117,13 +133,14 @@ static void order_points(owned_figure *o, varied *v)
 static bool points_are_good_ticks(const varied *v)
 {
     const sweep_axis *axis = v->axis;
-    bool good =
-        (axis->logarithmic || !axis->is_range) && v->count > 0 && v->count <= LABELLED_VALUES;
+    bool good = (axis->logarithmic || !axis->is_range) && v->count > 0 &&
+                v->count <= LABELLED_VALUES;
 
     for (size_t i = 0; i < v->count && good; i++) {
         char digits[32];
         decimal_print(digits, sizeof digits, "%.3g", axis->values[i]);
-        good = fabs(decimal_parse(digits, NULL) - axis->values[i]) <= 1e-9 * fabs(axis->values[i]);
+        good = fabs(decimal_parse(digits, NULL) - axis->values[i]) <=
+               1e-9 * fabs(axis->values[i]);
     }
     return good;
 }
@@ -146,11 +163,16 @@ static figure_axis describe_axis(owned_figure *o, varied *v, const sweep_axis *a
 {
     const parameter_info *info = sweep_axis_parameter(axis);
     *v = (varied){.axis = axis,
-                  .words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN};
+                  .words =
+                      info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN};
     const bool own_name = axis->element > 0 || info == &setting_info;
     figure_axis out =
         described_axis(o, axis->name, own_name ? NULL : info->description, info->unit);
-    out.scale = axis->logarithmic ? SCALE_LOGARITHMIC : SCALE_LINEAR;
+    if (axis->logarithmic) {
+        out.scale = SCALE_LOGARITHMIC;
+    } else {
+        out.scale = SCALE_LINEAR;
+    }
     out.room = DOTS_ROOM;
 
     // words are counted
@@ -208,13 +230,15 @@ static void describe_line(owned_figure *o, const sweep_picture *p, const varied 
     }
     owned_figure_add(
         o, 0,
-        (figure_series){p->key, NULL, grid ? v->place : run_places(o, p->sweep, v, 0), y, count,
-                        .no_line = !joined, .radius = marker_radius(count),
-                        .marker = joined && count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE});
+        (figure_series){p->key, NULL, grid ? v->place : run_places(o, p->sweep, v, 0), y,
+                        count, .no_line = !joined, .radius = marker_radius(count),
+                        .marker = joined && count > MOST_MARKERS ? MARKER_NONE
+                                                                 : MARKER_CIRCLE});
 }
 
 // A parameter of words and one of numbers: a curve for each word, over the numbers.
-static void describe_words(owned_figure *o, const sweep_picture *p, const varied *both, int words)
+static void describe_words(owned_figure *o, const sweep_picture *p, const varied *both,
+                           int words)
 {
     const varied *word = &both[words], *number = &both[1 - words];
     const size_t inner = both[1].count, count = number->count;
@@ -225,11 +249,13 @@ static void describe_words(owned_figure *o, const sweep_picture *p, const varied
             y[i] = p->values[words == 0 ? w * inner + n : n * inner + w];
         }
         const char *name = point_label(o, word, k);
-        owned_figure_add(
-            o, 0,
-            (figure_series){name, name, number->place, y, count, .colour = palette_slot((int)k),
-                            .radius = marker_radius(count),
-                            .marker = count > MOST_MARKERS ? MARKER_NONE : MARKER_CIRCLE + k % 4});
+        owned_figure_add(o, 0,
+                         (figure_series){name, name, number->place, y, count,
+                                         .colour = palette_slot((int)k),
+                                         .radius = marker_radius(count),
+                                         .marker = count > MOST_MARKERS
+                                                       ? MARKER_NONE
+                                                       : MARKER_CIRCLE + k % 4});
     }
 }
 
@@ -253,7 +279,14 @@ static void describe_map(owned_figure *o, const sweep_picture *p, const varied *
     const double *y = run_places(o, p->sweep, &both[1], 1);
     o->panels[0].colours = OWNED(o, figure_colours, .axis = quantity, .bar = true);
     if (p->sweep->sampling != SWEEP_GRID) {
-        const double radius = count > 1000 ? 1.5 : count > 200 ? 2.2 : 3.2;
+        double radius = 1.5;
+        if (!(count > 1000)) {
+            if (count > 200) {
+                radius = 2.2;
+            } else {
+                radius = 3.2;
+            }
+        }
         owned_figure_add(o, 0,
                          (figure_series){p->key, NULL, x, y, count, .shade = p->values,
                                          .no_line = true, .marker = MARKER_CIRCLE,
@@ -276,7 +309,8 @@ static char *caption_of(const sweep *s, size_t missing)
         text_append(out, "%s%s", i > 0 ? ", " : "", s->axes[i].name);
     }
     if (missing > 0) {
-        text_append(out, "; %zu %s without a value%s", missing, missing == 1 ? "run" : "runs",
+        text_append(out, "; %zu %s without a value%s", missing,
+                    missing == 1 ? "run" : "runs",
                     s->axis_count == 1          ? ""
                     : s->sampling == SWEEP_GRID ? " (hatched, or a gap)"
                                                 : " (empty)");
@@ -291,8 +325,8 @@ static char *command_of(const sweep *s)
     GString *command = g_string_new(NULL);
     for (int i = 0; i < s->axis_count; i++) {
         const sweep_axis *axis = &s->axes[i];
-        text_append(command, "%s--vary %s%s=%s", i > 0 ? " " : "", axis->together ? "with " : "",
-                    axis->name, axis->text);
+        text_append(command, "%s--vary %s%s=%s", i > 0 ? " " : "",
+                    axis->together ? "with " : "", axis->name, axis->text);
     }
     return g_string_free(command, FALSE);
 }
@@ -300,22 +334,26 @@ static char *command_of(const sweep *s)
 status sweep_plot_check(const sweep *s, const char *path, fault *f)
 {
     FAULT_IF(s->axis_count > 2, f, STATUS_BAD_ARGUMENT,
-             "--plot shows one or two varied parameters, but %d are varied", s->axis_count);
+             "--plot shows one or two varied parameters, but %d are varied",
+             s->axis_count);
     TRY(picture_check_path(path, f));
     return text_check_font(f);
 }
 
 owned_figure *sweep_figure_create(const sweep_picture *p)
 {
-    static const char *const how[] = {
-        [SWEEP_GRID] = "", [SWEEP_RANDOM] = " at random", [SWEEP_LATIN] = " of a Latin hypercube"};
+    static const char *const how[] = {[SWEEP_GRID] = "",
+                                      [SWEEP_RANDOM] = " at random",
+                                      [SWEEP_LATIN] = " of a Latin hypercube"};
     const sweep *from = p->sweep;
-    const summary_info *info = p->info != NULL ? p->info : &summary_table[summary_index(p->key)];
+    const summary_info *info =
+        p->info != NULL ? p->info : &summary_table[summary_index(p->key)];
     char changes[SCENARIO_CHANGES];
     assert(from->axis_count >= 1 && from->axis_count <= 2);
-    owned_figure *o = owned_figure_create(1, "%s: %s of %zu runs%s%s", from->base->name,
-                                          info->label, from->run_count, how[from->sampling],
-                                          scenario_changes(from->base, changes));
+    owned_figure *o =
+        owned_figure_create(1, "%s: %s of %zu runs%s%s", from->base->name, info->label,
+                            from->run_count, how[from->sampling],
+                            scenario_changes(from->base, changes));
     size_t missing = 0;
     for (size_t i = 0; i < from->run_count; i++) {
         missing += !isfinite(p->values[i]);
@@ -343,7 +381,11 @@ owned_figure *sweep_figure_create(const sweep_picture *p)
     }
 
     // the page
-    panel->remark = missing == from->run_count ? "the quantity did not occur in any run" : NULL;
+    if (missing == from->run_count) {
+        panel->remark = "the quantity did not occur in any run";
+    } else {
+        panel->remark = NULL;
+    }
     panel->weight = PANEL_WEIGHT;
     o->figure.caption = owned_figure_keep(o, caption_of(from, missing));
     o->figure.parameters = owned_figure_keep(o, command_of(from));

@@ -36,13 +36,16 @@ static double tick_value(const labelling *l, double number)
 {
     double whole = number * nice_tenths[l->nice];
     int power = l->power - 1;
-    return power < 0 ? whole / pow(10, -power) : whole * pow(10, power);
+    if (power < 0) {
+        return whole / pow(10, -power);
+    }
+    return whole * pow(10, power);
 }
 
 static double combined(double simplicity, double coverage, double density)
 {
-    return weight_simplicity * simplicity + weight_coverage * coverage + weight_density * density +
-           weight_legibility;
+    return weight_simplicity * simplicity + weight_coverage * coverage +
+           weight_density * density + weight_legibility;
 }
 
 // Early in the list, few skipped, and 0 among the ticks.
@@ -67,10 +70,14 @@ static double coverage(double low, double high, double first, double last)
 static double coverage_most(double low, double high, double span)
 {
     double range = high - low, half = (span - range) / 2;
-    return span > range ? 1 - half * half / pow(0.1 * range, 2) : 1;
+    if (span > range) {
+        return 1 - half * half / pow(0.1 * range, 2);
+    }
+    return 1;
 }
 
-static double density(int count, int wanted, double low, double high, double first, double last)
+static double density(int count, int wanted, double low, double high, double first,
+                      double last)
 {
     double have = (count - 1) / (last - first);
     double want = (wanted - 1) / (fmax(last, high) - fmin(low, first));
@@ -79,14 +86,18 @@ static double density(int count, int wanted, double low, double high, double fir
 
 static double density_most(int count, int wanted)
 {
-    return count >= wanted ? 2 - (double)(count - 1) / (wanted - 1) : 1;
+    if (count >= wanted) {
+        return 2 - (double)(count - 1) / (wanted - 1);
+    }
+    return 1;
 }
 
 // Tries every start for the given step and count.
 static void try_starts(labelling l, const wish *w, labelling *best)
 {
     double unit = step_unit(&l), step = unit * l.j;
-    double from = (floor(w->high / step) - (l.count - 1)) * l.j, to = ceil(w->low / step) * l.j;
+    double from = (floor(w->high / step) - (l.count - 1)) * l.j,
+           to = ceil(w->low / step) * l.j;
     double slack = 1e-9 * (w->high - w->low);
 
     // only whole multiples of the step: 0.04, 0.05 and never 0.045, 0.055
@@ -109,8 +120,9 @@ static void try_powers(labelling l, const wish *w, labelling *best)
     // until not even the best of this power could win
     for (;; l.power++) {
         double span = l.j * step_unit(&l) * (l.count - 1);
-        double most = combined(simplicity_most(l.nice, l.j), coverage_most(w->low, w->high, span),
-                               density_most(l.count, w->count));
+        double most =
+            combined(simplicity_most(l.nice, l.j), coverage_most(w->low, w->high, span),
+                     density_most(l.count, w->count));
         if (most < best->score) {
             return;
         }
@@ -129,7 +141,8 @@ static labelling best_labelling(const wish *w)
             if (combined(simple, 1, 1) < best.score) {
                 return best;
             }
-            for (int count = 2; combined(simple, 1, density_most(count, w->count)) >= best.score;
+            for (int count = 2;
+                 combined(simple, 1, density_most(count, w->count)) >= best.score;
                  count++) {
                 try_powers((labelling){.j = j, .nice = nice, .count = count}, w, &best);
             }
@@ -156,7 +169,8 @@ static int decimals_needed(const ticks *t)
     return 15;
 }
 
-#define FARTHEST 1e100 // limit that has labels: steps of ten have their powers without overflow
+// limit that has labels: steps of ten have their powers without overflow
+#define FARTHEST 1e100
 
 // Puts the limits in order and apart; false if they are no numbers, or too large ones.
 static bool straighten(wish *w)
@@ -178,7 +192,11 @@ static bool straighten(wish *w)
         w->high += half;
     }
 
-    w->count = w->count < 2 ? 2 : w->count > TICKS_MOST / 2 ? TICKS_MOST / 2 : w->count;
+    if (w->count < 2) {
+        w->count = 2;
+    } else if (w->count > TICKS_MOST / 2) {
+        w->count = TICKS_MOST / 2;
+    }
     return true;
 }
 
@@ -203,18 +221,35 @@ void ticks_between(ticks *t, double low, double high, int wanted)
     }
 
     const int count = (int)floor((w.high + slack - first * unit) / (best.j * unit)) + 1;
-    t->count = count < TICKS_MOST ? count : TICKS_MOST;
+    if (count < TICKS_MOST) {
+        t->count = count;
+    } else {
+        t->count = TICKS_MOST;
+    }
     double largest = 0;
     for (int i = 0; i < t->count; i++) {
         double value = tick_value(&best, first + (double)i * best.j);
-        t->value[i] = value == 0 ? 0 : value; // no minus zero
+        if (value == 0) {
+            t->value[i] = 0;
+        } else {
+            t->value[i] = value;
+        } // no minus zero
         largest = fmax(largest, fabs(t->value[i]));
     }
-    t->step = t->count > 1 ? tick_value(&best, best.j) : 0;
+    if (t->count > 1) {
+        t->step = tick_value(&best, best.j);
+    } else {
+        t->step = 0;
+    }
 
-    // minor ticks fall on rounder numbers than the step itself; long rows of zeros go into a factor
+    // minor ticks fall on rounder numbers than the step itself; long rows of zeros go
+    // into a factor
     static const int parts[NICE] = {5, 5, 4, 5, 4, 3};
-    t->minor = best.j == 1 ? parts[best.nice] : 1;
+    if (best.j == 1) {
+        t->minor = parts[best.nice];
+    } else {
+        t->minor = 1;
+    }
     if (largest > 0 && (largest >= 1e5 || largest < 1e-2)) {
         t->exponent = 3 * (int)floor(log10(largest) / 3);
     }

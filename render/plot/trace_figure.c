@@ -7,11 +7,12 @@
 #include "render/page/page.h"
 #include "render/page/text.h"
 
-// Whether a run has a signal of a panel to show: not the first link's where it equals the hub's,
-// and of data only what was measured.
+// Whether a run has a signal of a panel to show: not the first link's where it equals the
+// hub's, and of data only what was measured.
 static bool shows(const trace_run *run, const trace_panel *panel, int index)
 {
-    bool twin = panel->signals[1] != NULL && signal_table[index].body == BODY_FIRST_LINK &&
+    bool twin = panel->signals[1] != NULL &&
+                signal_table[index].body == BODY_FIRST_LINK &&
                 trace_hub_is_first_link(run->scenario);
     return !twin && !(run->points && !trace_has(&run->result->trace, index));
 }
@@ -31,7 +32,10 @@ typedef struct trace_key {
 static int meaning_of(int index)
 {
     const signal_body body = signal_table[index].body;
-    return body != BODY_NONE ? -(int)body : index;
+    if (body != BODY_NONE) {
+        return -(int)body;
+    }
+    return index;
 }
 
 // The key's entry for a signal, or -1.
@@ -46,11 +50,11 @@ static int find_entry(const trace_key *key, int meaning)
 }
 
 // The plainest line that no signal has with which this one shares a panel.
-static line_style free_line(const trace_key *key, const trace_panel *panels, int panel_count,
-                            int meaning)
+static line_style free_line(const trace_key *key, const trace_panel *panels,
+                            int panel_count, int meaning)
 {
-    static const line_style lines[TRACE_SIGNALS] = {LINE_SOLID, LINE_DASHED, LINE_DASH_DOT,
-                                                    LINE_DOTTED};
+    static const line_style lines[TRACE_SIGNALS] = {LINE_SOLID, LINE_DASHED,
+                                                    LINE_DASH_DOT, LINE_DOTTED};
     bool taken[TRACE_SIGNALS] = {false};
 
     for (int p = 0; p < panel_count; p++) {
@@ -91,34 +95,37 @@ static char *signal_label(const trace_run *runs, int run_count, int index)
     for (int run = 0; run < run_count; run++) {
         joined = joined && trace_hub_is_first_link(runs[run].scenario);
     }
-    return body == BODY_NONE
-               ? trace_series_label(runs[0].scenario, index, false)
-               : g_strconcat(signal_body_name(body), joined ? " and first link" : "", NULL);
+    if (body == BODY_NONE) {
+        return trace_series_label(runs[0].scenario, index, false);
+    }
+    return g_strconcat(signal_body_name(body), joined ? " and first link" : "", NULL);
 }
 
 // The signals of panels that have several, in the colour of texts.
 static void add_signals(owned_figure *o, trace_key *key, const trace_panel *panels,
                         const trace_panel *p, const trace_run *runs, int run_count)
 {
-    for (int i = 0; i < TRACE_SIGNALS && p->signals[1] != NULL && p->signals[i] != NULL; i++) {
+    for (int i = 0; i < TRACE_SIGNALS && p->signals[1] != NULL && p->signals[i] != NULL;
+         i++) {
         int index = signal_index(p->signals[i]), meaning = meaning_of(index);
         bool shown = false;
         for (int run = 0; run < run_count; run++) {
-            shown = shown ||
-                    (shows(&runs[run], p, index) && trace_has(&runs[run].result->trace, index));
+            shown = shown || (shows(&runs[run], p, index) &&
+                              trace_has(&runs[run].result->trace, index));
         }
         if (shown && find_entry(key, meaning) < 0) {
-            const line_style style = free_line(key, panels, o->figure.panel_count, meaning);
-            add_entry(o, key, (figure_series){.run = 1, .colour = 6, .style = style}, meaning,
-                      signal_label(runs, run_count, index));
+            const line_style style =
+                free_line(key, panels, o->figure.panel_count, meaning);
+            add_entry(o, key, (figure_series){.run = 1, .colour = 6, .style = style},
+                      meaning, signal_label(runs, run_count, index));
         }
     }
 }
 
-// Gives signals that stand in one panel different lines, and the figure one key for all panels of
-// both runs and signals; empty where no run has a rank.
-static trace_key *make_key(owned_figure *o, const trace_panel *panels, const trace_run *runs,
-                           int run_count)
+// Gives signals that stand in one panel different lines, and the figure one key for all
+// panels of both runs and signals; empty where no run has a rank.
+static trace_key *make_key(owned_figure *o, const trace_panel *panels,
+                           const trace_run *runs, int run_count)
 {
     trace_key *key = owned_figure_keep(o, g_new0(trace_key, 1));
     for (int run = 0; run < run_count; run++) {
@@ -141,8 +148,10 @@ static trace_key *make_key(owned_figure *o, const trace_panel *panels, const tra
     }
     for (int run = 0; run < run_count; run++) {
         if (runs[run].points) {
-            const figure_series points = {
-                .run = 1, .no_line = true, .marker = MARKER_CIRCLE, .colour = 6};
+            const figure_series points = {.run = 1,
+                                          .no_line = true,
+                                          .marker = MARKER_CIRCLE,
+                                          .colour = 6};
             add_entry(o, key, points, 0, text_escape(runs[run].name));
         }
     }
@@ -159,11 +168,13 @@ static trace_key *make_key(owned_figure *o, const trace_panel *panels, const tra
 
 // The series of one run.
 static void add_series(owned_figure *o, const trace_key *key, int panel_index,
-                       const trace_panel *from, const trace_run *runs, int run, int run_count)
+                       const trace_panel *from, const trace_run *runs, int run,
+                       int run_count)
 {
     figure_panel *panel = &o->panels[panel_index];
     const scenario *s = runs[run].scenario;
-    bool alone = from->signals[1] == NULL, points = run > 0 && runs[run].points, named = false;
+    bool alone = from->signals[1] == NULL, points = run > 0 && runs[run].points,
+         named = false;
 
     for (int i = 0; i < TRACE_SIGNALS && from->signals[i] != NULL; i++) {
         int index = signal_index(from->signals[i]);
@@ -175,10 +186,13 @@ static void add_series(owned_figure *o, const trace_key *key, int panel_index,
         }
 
         // as the signal table has it
-        figure_series *out = owned_figure_add(o, panel_index, trace_series(&runs[run], index, o));
+        figure_series *out =
+            owned_figure_add(o, panel_index, trace_series(&runs[run], index, o));
         for (int k = 0; k + 1 < panel->series_count && run == 0; k++) {
             // two readings of one quantity: the second in grey
-            out->colour = o->series[panel_index][k].colour == out->colour ? 7 : out->colour;
+            if (o->series[panel_index][k].colour == out->colour) {
+                out->colour = 7;
+            }
         }
 
         // the second run stands back
@@ -188,8 +202,13 @@ static void add_series(owned_figure *o, const trace_key *key, int panel_index,
             out->radius = STEP_RADIUS;
         }
         if (run > 0) {
-            out->name = owned_figure_keep(o, g_strconcat(out->name, " ", runs[run].name, NULL));
-            out->colour = alone ? 6 : runs[run].brief ? 7 : out->colour;
+            out->name =
+                owned_figure_keep(o, g_strconcat(out->name, " ", runs[run].name, NULL));
+            if (alone) {
+                out->colour = 6;
+            } else if (runs[run].brief) {
+                out->colour = 7;
+            }
         }
 
         // runs side by side have a colour each, the same signal has one line in all
@@ -198,7 +217,11 @@ static void add_series(owned_figure *o, const trace_key *key, int panel_index,
             out->run = runs[run].rank;
             out->colour = palette_slot(runs[run].rank - 1);
             const int entry = find_entry(key, meaning_of(index));
-            out->style = entry >= 0 ? key->series[entry].style : LINE_SOLID;
+            if (entry >= 0) {
+                out->style = key->series[entry].style;
+            } else {
+                out->style = LINE_SOLID;
+            }
             continue;
         }
 
@@ -208,7 +231,11 @@ static void add_series(owned_figure *o, const trace_key *key, int panel_index,
             out->secondary = false;
             out->marker = MARKER_CIRCLE;
             out->colour = 6;
-            out->label = named ? NULL : owned_figure_keep(o, text_escape(runs[run].name));
+            if (named) {
+                out->label = NULL;
+            } else {
+                out->label = owned_figure_keep(o, text_escape(runs[run].name));
+            }
             named = true;
         } else if (alone && run_count > 1 && panel_index == 0) {
             // the first panel's legend holds for all
@@ -238,9 +265,16 @@ static void describe_panel(owned_figure *o, const trace_key *key, int index,
         owned_figure_keep(o, trace_symbol(runs[0].scenario, signal_index(first->name)));
     panel->y.name = first->name;
     panel->y.unit = first->unit;
-    panel->y.label = from->label != NULL ? from->label
-                                         : owned_figure_printf(o, "%s %s", first->quantity, symbol);
-    panel->y.symbol = from->signals[1] == NULL ? symbol : NULL;
+    if (from->label != NULL) {
+        panel->y.label = from->label;
+    } else {
+        panel->y.label = owned_figure_printf(o, "%s %s", first->quantity, symbol);
+    }
+    if (from->signals[1] == NULL) {
+        panel->y.symbol = symbol;
+    } else {
+        panel->y.symbol = NULL;
+    }
     panel->weight = from->weight;
     panel->y.with_zero = from->with_zero;
 
@@ -251,7 +285,8 @@ static void describe_panel(owned_figure *o, const trace_key *key, int index,
 
     // what is drawn with them
     if (from->impulses) {
-        panel->impulses = trace_impulses(&runs[0].result->trace, &panel->impulse_count, o);
+        panel->impulses =
+            trace_impulses(&runs[0].result->trace, &panel->impulse_count, o);
         panel->impulse_label = "Impulse";
         panel->impulse_unit = signal_table[SIGNAL_INDEX(impulse)].unit;
     }
@@ -261,17 +296,20 @@ static void describe_panel(owned_figure *o, const trace_key *key, int index,
     }
     if (from->inset) {
         const summary *m = &runs[0].result->summary;
-        double pulse = m->first_pulse_s, duration = runs[0].scenario->parameters.run.duration;
+        double pulse = m->first_pulse_s,
+               duration = runs[0].scenario->parameters.run.duration;
         if (pulse > 0 && pulse < SHORT_PULSE * duration) {
             panel->zoom_from = fmax(0, m->first_contact_s - INSET_SPACE * pulse);
-            panel->zoom_to = fmin(duration, m->first_contact_s + (1 + INSET_SPACE) * pulse);
+            panel->zoom_to =
+                fmin(duration, m->first_contact_s + (1 + INSET_SPACE) * pulse);
         }
     }
 }
 
-// A panel of what was measured less what was computed, for the first signal that has data.
-static void add_residuals(owned_figure *o, const trace_panel *panels, const trace_run *computed,
-                          const trace_run *measured)
+// A panel of what was measured less what was computed, for the first signal that has
+// data.
+static void add_residuals(owned_figure *o, const trace_panel *panels,
+                          const trace_run *computed, const trace_run *measured)
 {
     const trace *data = &measured->result->trace;
 
@@ -286,19 +324,20 @@ static void add_residuals(owned_figure *o, const trace_panel *panels, const trac
 
     int index = signal_index(panels[panel].signals[0]);
     figure_series *s =
-        owned_figure_add(o, last, trace_difference(data, &computed->result->trace, index, o));
+        owned_figure_add(o, last,
+                         trace_difference(data, &computed->result->trace, index, o));
     s->name = "residual";
     s->colour = 6;
     s->marker = MARKER_CIRCLE;
     s->no_line = true;
-    o->panels[last].y =
-        (figure_axis){"residual", "Residual", signal_table[index].unit, "Δ", .with_zero = true};
+    o->panels[last].y = (figure_axis){"residual", "Residual", signal_table[index].unit,
+                                      "Δ", .with_zero = true};
     o->panels[last].weight = 0.6;
     o->figure.panel_count++;
 }
 
-owned_figure *trace_figure_create(const char *title, const trace_panel *panels, int panel_count,
-                                  const trace_run *runs, int run_count)
+owned_figure *trace_figure_create(const char *title, const trace_panel *panels,
+                                  int panel_count, const trace_run *runs, int run_count)
 {
     assert(panel_count >= 1 && panel_count <= FIGURE_PANELS);
     assert(run_count >= 1 && run_count <= TRACE_RUNS);
@@ -309,17 +348,19 @@ owned_figure *trace_figure_create(const char *title, const trace_panel *panels, 
         modes = modes || panels[i].modes;
     }
     const char *mode = modes ? trace_mode_name(runs[0].scenario, 1) : NULL;
-    g_autofree char *shading =
-        mode != NULL ? text_printf("%s mode", mode) : g_strdup(modes ? "second mode" : "contact");
+    g_autofree char *shading = mode != NULL ? text_printf("%s mode", mode)
+                                            : g_strdup(modes ? "second mode" : "contact");
 
     // the page
     g_autofree char *own_title = title == NULL ? scenario_title(runs[0].scenario) : NULL;
-    owned_figure *o = owned_figure_create(panel_count, "%s", title != NULL ? title : own_title);
+    owned_figure *o =
+        owned_figure_create(panel_count, "%s", title != NULL ? title : own_title);
     o->figure.caption = owned_figure_keep(o, trace_caption(runs, run_count, shading));
     o->figure.x = (figure_axis){"time", "Time <i>t</i>", .unit = "s"};
     o->figure.parameters = owned_figure_keep(o, parameters_line(runs[0].scenario));
 
-    // panels with their curves; side by side, runs are told by colours and signals by lines
+    // panels with their curves; side by side, runs are told by colours and signals by
+    // lines
     const trace_key *key = make_key(o, panels, runs, run_count);
     for (int i = 0; i < panel_count; i++) {
         describe_panel(o, key, i, &panels[i], runs, run_count);
@@ -337,10 +378,20 @@ owned_figure *trace_figure_create(const char *title, const trace_panel *panels, 
 }
 
 const trace_panel usual_panels[USUAL_PANELS] = {
-    {.signals = {"force"}, .with_zero = true, .impulses = true, .inset = true, .weight = 1.2},
-    {.label = "Angle", .signals = {"hub_angle", "first_angle", "last_angle"}, .wall = true},
-    {.label = "Angular velocity", .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
-    {.label = "Voltage <i>v</i>", .signals = {"voltage"}, .with_zero = true, .weight = 0.5},
+    {.signals = {"force"},
+     .with_zero = true,
+     .impulses = true,
+     .inset = true,
+     .weight = 1.2},
+    {.label = "Angle",
+     .signals = {"hub_angle", "first_angle", "last_angle"},
+     .wall = true},
+    {.label = "Angular velocity",
+     .signals = {"hub_velocity", "first_velocity", "last_velocity"}},
+    {.label = "Voltage <i>v</i>",
+     .signals = {"voltage"},
+     .with_zero = true,
+     .weight = 0.5},
 };
 
 status plot_run(const scenario *s, const run_result *result, const run_result *old,
@@ -352,7 +403,8 @@ status plot_run(const scenario *s, const run_result *result, const run_result *o
 
     // notes behind the figure's marks
     const int count = o->figure.mark_count;
-    figure_mark *all = owned_figure_keep(o, g_new0(figure_mark, (gsize)(count + note_count) + 1));
+    figure_mark *all =
+        owned_figure_keep(o, g_new0(figure_mark, (gsize)(count + note_count) + 1));
     for (int i = 0; i < count; i++) {
         all[i] = o->figure.marks[i];
     }

@@ -7,8 +7,8 @@
 #include "src/base/shipped.h"
 #include "src/rig/rig.h"
 
-// A quantity's symbol is set italic, its index upright, and so is a word. The index of the last
-// link is that of the body: 3 of two links, 21 of twenty.
+// A quantity's symbol is set italic, its index upright, and so is a word. The index of
+// the last link is that of the body: 3 of two links, 21 of twenty.
 char *trace_symbol(const scenario *s, int index)
 {
     const signal_info *signal = &signal_table[index];
@@ -28,7 +28,8 @@ char *trace_symbol(const scenario *s, int index)
 
 bool trace_hub_is_first_link(const scenario *s)
 {
-    return s->parameters.arm.model == ARM_CORRECTED && s->parameters.arm.hub_joint == HUB_RIGID;
+    return s->parameters.arm.model == ARM_CORRECTED &&
+           s->parameters.arm.hub_joint == HUB_RIGID;
 }
 
 // The first link's signal of the same quantity as the hub's, or -1.
@@ -49,14 +50,18 @@ char *trace_series_symbol(const scenario *s, int index)
     int twin = trace_hub_is_first_link(s) ? first_link_twin(index) : -1;
     g_autofree char *symbol = trace_symbol(s, index);
     g_autofree char *other = twin >= 0 ? trace_symbol(s, twin) : NULL;
-    return twin >= 0 ? text_printf("%s = %s", symbol, other) : g_steal_pointer(&symbol);
+    if (twin >= 0) {
+        return text_printf("%s = %s", symbol, other);
+    }
+    return g_steal_pointer(&symbol);
 }
 
 char *trace_series_label(const scenario *s, int index, bool joined)
 {
     const signal_info *signal = &signal_table[index];
     bool both = joined && trace_hub_is_first_link(s) && first_link_twin(index) >= 0;
-    g_autofree char *symbol = both ? trace_series_symbol(s, index) : trace_symbol(s, index);
+    g_autofree char *symbol =
+        both ? trace_series_symbol(s, index) : trace_symbol(s, index);
 
     // what belongs to no body is described as a whole
     return text_printf("%s  %s", symbol,
@@ -67,7 +72,14 @@ char *trace_series_label(const scenario *s, int index, bool joined)
 
 static char *duration_text(double seconds)
 {
-    const double factor = seconds < 1e-3 ? 1e6 : seconds < 1 ? 1e3 : 1;
+    double factor = 1e6;
+    if (!(seconds < 1e-3)) {
+        if (seconds < 1) {
+            factor = 1e3;
+        } else {
+            factor = 1;
+        }
+    }
     return text_printf("%g\u2009%s", seconds * factor,
                        seconds < 1e-3 ? "\u00b5s"
                        : seconds < 1  ? "ms"
@@ -103,9 +115,10 @@ static void add_drive(GString *out, const parameters *p)
     }
 }
 
-// The meaning of the shading and, of several runs, the run it belongs to; points of data have no
-// contact.
-static void add_shading(GString *out, const trace_run *runs, int run_count, const char *shaded)
+// The meaning of the shading and, of several runs, the run it belongs to; points of data
+// have no contact.
+static void add_shading(GString *out, const trace_run *runs, int run_count,
+                        const char *shaded)
 {
     int full = 0;
     for (int i = 0; i < run_count; i++) {
@@ -118,7 +131,8 @@ static void add_shading(GString *out, const trace_run *runs, int run_count, cons
 
     // several could be meant, so it is named
     g_autofree char *name = text_escape(runs[0].name);
-    text_append(out, "Shaded: %s of the first run (%s), whose marks are shown.", shaded, name);
+    text_append(out, "Shaded: %s of the first run (%s), whose marks are shown.", shaded,
+                name);
 }
 
 char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
@@ -129,24 +143,29 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
     const parameters *p = &run->scenario->parameters;
 
     // the arm and what drives it
-    GString *out = g_string_new(p->arm.model == ARM_PRINTED ? "Printed model" : "Corrected model");
+    GString *out =
+        g_string_new(p->arm.model == ARM_PRINTED ? "Printed model" : "Corrected model");
     g_autofree char *step = duration_text(p->method.step);
     text_append(out, ", %d link%s, %s hub", p->arm.links, p->arm.links == 1 ? "" : "s",
                 hub_texts[p->arm.hub_joint]);
     if (p->arm.model == ARM_PRINTED) {
-        // the constants in which it departs from the thesis's own numbers or from the beam's
+        // the constants in which it departs from the thesis's own numbers or from the
+        // beam's
         g_autofree char *inertia = text_number(p->arm.link_inertia, 3);
-        text_append(out, ", <i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>I</i> = %s\u2009kg·m²",
-                    p->arm.k1, inertia);
+        text_append(
+            out, ", <i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>I</i> = %s\u2009kg·m²",
+            p->arm.k1, inertia);
     }
     add_drive(out, p);
 
     // the method and its step, which for the event method is but the spacing of rows
     const bool located = p->arm.model != ARM_PRINTED && p->method.name == METHOD_EVENT;
     if (p->arm.model == ARM_PRINTED || p->method.name == METHOD_NEWMARK) {
-        text_append(out, "Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta, p->method.gamma);
+        text_append(out, "Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta,
+                    p->method.gamma);
     } else if (p->method.name == METHOD_GENERALIZED_ALPHA) {
-        text_append(out, "generalised α, <i>ρ</i><sub>∞</sub> = %g", p->method.spectral_radius);
+        text_append(out, "generalised α, <i>ρ</i><sub>∞</sub> = %g",
+                    p->method.spectral_radius);
     } else {
         text_append(out, "%s engine, located events", run->result->summary.method);
     }

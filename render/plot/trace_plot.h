@@ -11,82 +11,91 @@ enum { TRACE_SIGNALS = 4, TRACE_RUNS = 8 };
 
 // A panel: signals of one unit over time.
 typedef struct trace_panel {
-    const char *label;                  // of the axis, markup; NULL: the first signal's own
+    const char *label; // of the axis, markup; NULL: the first signal's own
     const char *signals[TRACE_SIGNALS]; // names in the signal table, unused ones NULL
     double weight;                      // share of the height, 0 counts as 1
     bool with_zero;                     // the axis includes 0
     bool impulses;                      // impulses of impacts in a strip above the panel
     bool inset;                         // the first pulse enlarged, if it is short
     bool wall;                          // the wall's angle as a line
-    bool modes;                         // shade the controller's second mode instead of contact
+    bool modes; // shade the controller's second mode instead of contact
 } trace_panel;
 
-// A run to draw. The first one gives marks, shading, impulses and caption; further ones are thin
-// dashed lines in the same panels.
+// A run to draw. The first one gives marks, shading, impulses and caption; further ones
+// are thin dashed lines in the same panels.
 typedef struct trace_run {
     const scenario *scenario;
     const run_result *result; // with its trace
     const char *name;         // "corrected"; shown only if there are several runs
-    bool brief;               // further runs only: the first signal of each panel, in grey
-    bool steps;               // a small point at every row: the steps of the method
-    bool points;              // further runs only: reference data, points where it has a number
-    int rank; // 0: as above; otherwise a colour of its own, 1 to 8, and lines tell signals
+    bool brief;  // further runs only: the first signal of each panel, in grey
+    bool steps;  // a small point at every row: the steps of the method
+    bool points; // further runs only: reference data, points where it has a number
+    int rank;    // 0: as above; otherwise a colour of its own, 1 to 8, and lines tell
+                 // signals
 } trace_run;
 
 // The scenario's title, and what was changed of what it speaks of. Free with g_free.
 char *scenario_title(const scenario *s);
 
-// The scenario's name and every parameter in one line, for a file's metadata. Free with g_free.
+// The scenario's name and every parameter in one line, for a file's metadata. Free with
+// g_free.
 char *parameters_line(const scenario *s);
 
-// A signal's symbol as markup, with the index of its body in the scenario. To be freed with g_free.
+// A signal's symbol as markup, with the index of its body in the scenario. To be freed
+// with g_free.
 char *trace_symbol(const scenario *s, int index);
 
-// A signal of a run over time; for the force the peaks are added to the rows. Storage made for it,
-// and for the following, is kept by the figure.
+// A signal of a run over time; for the force the peaks are added to the rows. Storage
+// made for it, and for the following, is kept by the figure.
 figure_series trace_series(const trace_run *run, int index, owned_figure *o);
 
 // The value of a signal at an instant of a run, on a side of an event there (trace_side),
 // interpolated linearly between rows; NaN outside the run.
 double trace_value(const trace *t, int index, double time, size_t side);
 
-// A signal at the instants of one run less that of another, interpolated linearly between its rows.
-figure_series trace_difference(const trace *of, const trace *less, int index, owned_figure *o);
+// A signal at the instants of one run less that of another, interpolated linearly between
+// its rows.
+figure_series trace_difference(const trace *of, const trace *less, int index,
+                               owned_figure *o);
 
 // Shades a run's contact, or where the controller was in its second mode.
 void trace_shade(owned_figure *o, const trace *rows, bool modes);
 
-// A figure of panels (1 to FIGURE_PANELS, of known signals) of runs (1 to TRACE_RUNS), which must
-// outlive it, with an additional last panel of residuals if there are reference data. `title` is
-// plain, NULL for the first scenario's.
-owned_figure *trace_figure_create(const char *title, const trace_panel *panels, int panel_count,
-                                  const trace_run *runs, int run_count);
+// A figure of panels (1 to FIGURE_PANELS, of known signals) of runs (1 to TRACE_RUNS),
+// which must outlive it, with an additional last panel of residuals if there are
+// reference data. `title` is plain, NULL for the first scenario's.
+owned_figure *trace_figure_create(const char *title, const trace_panel *panels,
+                                  int panel_count, const trace_run *runs, int run_count);
 
 // The default panels of a run.
 enum { USUAL_PANELS = 4 };
 extern const trace_panel usual_panels[USUAL_PANELS];
 
-// The picture of `run --plot`: contact force with the impulses, angles, angular velocities and the
-// voltage over time, together with an older run of the scenario (`old`, may be NULL) and with
-// notes, marks with plain texts, written to path by figure_write.
+// The picture of `run --plot`: contact force with the impulses, angles, angular
+// velocities and the voltage over time, together with an older run of the scenario
+// (`old`, may be NULL) and with notes, marks with plain texts, written to path by
+// figure_write.
 status plot_run(const scenario *s, const run_result *result, const run_result *old,
                 const figure_mark *notes, int note_count, const char *path, fault *f);
 
 // --- reference data: trace_series.c
 
-// Reads measured data, FILE.csv[:COLUMN][@SHIFT]. The file's first line names its columns, with or
-// without unit ("time[s],force[N]"): "time" and at least one more. A column with the name of a
-// recorded signal is drawn over that signal. COLUMN selects a single column; if its name is not a
-// signal, it is drawn over the first signal of the panels with its unit. SHIFT [s] is added to
-// every time. Empty cells are not drawn, columns with other names are ignored. Fills an empty
-// trace, to be freed with trace_finish also on failure, and a name for the legend, to be freed with
-// g_free. STATUS_CANNOT_READ for the file, STATUS_BAD_ARGUMENT with path and line for its contents.
-status overlay_read(trace *t, const char *spec, const trace_panel *panels, int panel_count,
-                    char **name, fault *f);
+// Reads measured data, FILE.csv[:COLUMN][@SHIFT]. The file's first line names its
+// columns, with or without unit ("time[s],force[N]"): "time" and at least one more. A
+// column with the name of a recorded signal is drawn over that signal. COLUMN selects a
+// single column; if its name is not a signal, it is drawn over the first signal of the
+// panels with its unit. SHIFT [s] is added to every time. Empty cells are not drawn,
+// columns with other names are ignored. Fills an empty trace, to be freed with
+// trace_finish also on failure, and a name for the legend, to be freed with g_free.
+// STATUS_CANNOT_READ for the file, STATUS_BAD_ARGUMENT with path and line for its
+// contents.
+status overlay_read(trace *t, const char *spec, const trace_panel *panels,
+                    int panel_count, char **name, fault *f);
 
 // The same with separate path, column (NULL: all that are signals) and shift.
 status overlay_read_column(trace *t, const char *path, const char *column, double shift,
-                           const trace_panel *panels, int panel_count, char **name, fault *f);
+                           const trace_panel *panels, int panel_count, char **name,
+                           fault *f);
 
 // --- internal to these figures: labels, marks and events
 
@@ -98,14 +107,15 @@ bool trace_hub_is_first_link(const scenario *s);
 // Name of a mode of the scenario's controller, NULL if it is not known.
 const char *trace_mode_name(const scenario *s, int mode);
 
-// "θ1  hub" for a legend; with `joined` a hub that is part of the first link is named as both.
+// "θ1  hub" for a legend; with `joined` a hub that is part of the first link is named as
+// both.
 char *trace_series_label(const scenario *s, int index, bool joined);
 
 // The same without words.
 char *trace_series_symbol(const scenario *s, int index);
 
-// Model, links, drive, method and what is shaded in one line; of several runs, which of them the
-// shading and the marks belong to.
+// Model, links, drive, method and what is shaded in one line; of several runs, which of
+// them the shading and the marks belong to.
 char *trace_caption(const trace_run *runs, int run_count, const char *shaded);
 
 // --- what happened: trace_series.c

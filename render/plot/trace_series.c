@@ -1,4 +1,5 @@
-// Recorded runs as the layers of a figure: series with located peaks, marks, stretches, impulses.
+// Recorded runs as the layers of a figure: series with located peaks, marks, stretches,
+// impulses.
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -11,7 +12,9 @@
 
 // ==== what happened
 
-enum { TRACE_MARKS = 19 }; // most of a figure: the first pulse and 16 actions of the script
+enum {
+    TRACE_MARKS = 19
+}; // most of a figure: the first pulse and 16 actions of the script
 
 // What the script did at an event, "voltage 2 V"; NULL if the event is no action.
 static char *action_label(const scenario *s, const event *e)
@@ -51,18 +54,22 @@ static void mark_modes(owned_figure *o, GArray *marks, const trace_run *run)
         double now = rows->rows[i].controller_mode;
         if (isfinite(now) && isfinite(mode) && now != mode && marks->len < TRACE_MARKS) {
             const char *name = trace_mode_name(run->scenario, (int)now);
-            g_autofree char *escaped = name != NULL ? text_escape(name) : text_printf("%g", now);
+            g_autofree char *escaped =
+                name != NULL ? text_escape(name) : text_printf("%g", now);
             const char *label = name != NULL ? owned_figure_printf(o, "%s mode", escaped)
                                              : owned_figure_printf(o, "mode %s", escaped);
-            add_mark(marks,
-                     (figure_mark){.x = rows->rows[i].time, .label = label, .onwards = true});
+            add_mark(marks, (figure_mark){.x = rows->rows[i].time,
+                                          .label = label,
+                                          .onwards = true});
         }
-        mode = isfinite(now) ? now : mode;
+        if (isfinite(now)) {
+            mode = now;
+        }
     }
 }
 
-// The first pulse, its peak at its point where the first panel shows forces, and what the script
-// did.
+// The first pulse, its peak at its point where the first panel shows forces, and what the
+// script did.
 static void mark_contact(owned_figure *o, GArray *marks, const trace_run *run)
 {
     const trace *rows = &run->result->trace;
@@ -73,10 +80,11 @@ static void mark_contact(owned_figure *o, GArray *marks, const trace_run *run)
     }
     if (isfinite(m->first_pulse_time_to_peak_s)) {
         g_autofree char *force = text_quantity(peak, 3, "N");
-        add_mark(marks, (figure_mark){.x = from + m->first_pulse_time_to_peak_s,
-                                      .label = owned_figure_printf(o, "peak %s", force),
-                                      .pointed = strcmp(o->panels[0].y.name, "force") == 0,
-                                      .y = peak});
+        add_mark(marks,
+                 (figure_mark){.x = from + m->first_pulse_time_to_peak_s,
+                               .label = owned_figure_printf(o, "peak %s", force),
+                               .pointed = strcmp(o->panels[0].y.name, "force") == 0,
+                               .y = peak});
     }
     if (isfinite(m->first_pulse_s)) {
         add_mark(marks, (figure_mark){.x = from + m->first_pulse_s, .label = "release"});
@@ -141,8 +149,8 @@ figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o)
 
 // ==== series
 
-// The force with its peaks, of the first pulse and of the whole run, among the rows that they lie
-// between, so that no mark stands above the curve.
+// The force with its peaks, of the first pulse and of the whole run, among the rows that
+// they lie between, so that no mark stands above the curve.
 static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
 {
     const double first = m->first_contact_s + m->first_pulse_time_to_peak_s;
@@ -155,8 +163,8 @@ static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
         // the whole run's comes later, or it is the first pulse's
         for (int k = 0; k < 2 && i > 0; k++) {
             const bool again = k == 1 && at[1] <= first;
-            if (at[k] > series_x(s, i - 1) && at[k] < series_x(s, i) && isfinite(height[k]) &&
-                !again) {
+            if (at[k] > series_x(s, i - 1) && at[k] < series_x(s, i) &&
+                isfinite(height[k]) && !again) {
                 x[out] = at[k];
                 y[out++] = height[k];
             }
@@ -202,23 +210,25 @@ double trace_value(const trace *t, int index, double time, size_t side)
     return signal_value(&there, index);
 }
 
-figure_series trace_difference(const trace *of, const trace *less, int index, owned_figure *o)
+figure_series trace_difference(const trace *of, const trace *less, int index,
+                               owned_figure *o)
 {
     double *x = owned_figure_numbers(o, of->row_count + 1);
     double *y = owned_figure_numbers(o, of->row_count + 1);
     for (size_t i = 0; i < of->row_count; i++) {
         x[i] = of->rows[i].time;
-        y[i] =
-            signal_value(&of->rows[i], index) - trace_value(less, index, x[i], trace_side(of, i));
+        y[i] = signal_value(&of->rows[i], index) -
+               trace_value(less, index, x[i], trace_side(of, i));
     }
     return (figure_series){.x = x, .y = y, .count = of->row_count};
 }
 
 // ==== measured data
 
-// The signal that the spec's column stands for: the one of its name, or of its unit; -1 for none.
-static int signal_of(const csv_table *table, const char *column, const trace_panel *panels,
-                     int count)
+// The signal that the spec's column stands for: the one of its name, or of its unit; -1
+// for none.
+static int signal_of(const csv_table *table, const char *column,
+                     const trace_panel *panels, int count)
 {
     const int named = signal_find(column), at = csv_table_find(table, column);
     if (named >= 0 || at < 0) {
@@ -238,7 +248,8 @@ static int signal_of(const csv_table *table, const char *column, const trace_pan
 }
 
 status overlay_read_column(trace *t, const char *path, const char *column, double shift,
-                           const trace_panel *panels, int panel_count, char **name, fault *f)
+                           const trace_panel *panels, int panel_count, char **name,
+                           fault *f)
 {
     csv_table table;
     trace_init(t, 0);
@@ -247,15 +258,23 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
 
     // named by its file
     g_autofree char *file = g_path_get_basename(path);
-    *name = column != NULL ? text_printf("%s: %s", file, column) : g_strdup(file);
+    if (column != NULL) {
+        *name = text_printf("%s: %s", file, column);
+    } else {
+        *name = g_strdup(file);
+    }
 
-    const int signal = column != NULL ? signal_of(&table, column, panels, panel_count) : 0;
-    const status code =
-        column == NULL || (signal > 0 && csv_table_find(&table, column) >= 0)
-            ? measured_rows(t, &table, column, signal, f)
-            : fault_set(f, STATUS_BAD_ARGUMENT,
-                        "%s:1: there is no column '%s' with the unit of a signal that is shown",
-                        path, column);
+    const int signal =
+        column != NULL ? signal_of(&table, column, panels, panel_count) : 0;
+    status code;
+    if (column == NULL || (signal > 0 && csv_table_find(&table, column) >= 0)) {
+        code = measured_rows(t, &table, column, signal, f);
+    } else {
+        code = fault_set(
+            f, STATUS_BAD_ARGUMENT,
+            "%s:1: there is no column '%s' with the unit of a signal that is shown", path,
+            column);
+    }
     csv_table_finish(&table);
 
     // as the clocks were apart
@@ -265,8 +284,8 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
     return code;
 }
 
-status overlay_read(trace *t, const char *text, const trace_panel *panels, int panel_count,
-                    char **name, fault *f)
+status overlay_read(trace *t, const char *text, const trace_panel *panels,
+                    int panel_count, char **name, fault *f)
 {
     g_autofree char *path = g_strdup(text);
     const char *column = NULL, *rest;
@@ -281,9 +300,10 @@ status overlay_read(trace *t, const char *text, const trace_panel *panels, int p
         if (at != NULL && (!decimal_read(at + 1, &shift, &rest) || *rest != '\0')) {
             trace_init(t, 0);
             *name = NULL;
-            return fault_set(f, STATUS_BAD_ARGUMENT,
-                             "'%s': '%s' is no shift in seconds, expected FILE.csv:COLUMN@SHIFT",
-                             text, at + 1);
+            return fault_set(
+                f, STATUS_BAD_ARGUMENT,
+                "'%s': '%s' is no shift in seconds, expected FILE.csv:COLUMN@SHIFT", text,
+                at + 1);
         }
         char *colon = strrchr(path, ':');
         if (colon != NULL) {

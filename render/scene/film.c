@@ -8,14 +8,16 @@
 
 static status check_options(const film_options *o, fault *f)
 {
-    FAULT_IF(o->width < 320 || o->width > 4096 || o->height < 240 || o->height > 4096 ||
-                 o->width % 2 != 0 || o->height % 2 != 0,
-             f, STATUS_BAD_ARGUMENT,
-             "a film of %d x %d pixels, expected even numbers from 320 x 240 to 4096 x 4096",
-             o->width, o->height);
+    FAULT_IF(
+        o->width < 320 || o->width > 4096 || o->height < 240 || o->height > 4096 ||
+            o->width % 2 != 0 || o->height % 2 != 0,
+        f, STATUS_BAD_ARGUMENT,
+        "a film of %d x %d pixels, expected even numbers from 320 x 240 to 4096 x 4096",
+        o->width, o->height);
 
-    FAULT_IF(o->frames_per_second < 1 || o->frames_per_second > 120, f, STATUS_BAD_ARGUMENT,
-             "%d frames per second, expected 1 to 120", o->frames_per_second);
+    FAULT_IF(o->frames_per_second < 1 || o->frames_per_second > 120, f,
+             STATUS_BAD_ARGUMENT, "%d frames per second, expected 1 to 120",
+             o->frames_per_second);
 
     FAULT_IF(!(o->seconds >= 0.1 && o->seconds <= 3600), f, STATUS_BAD_ARGUMENT,
              "a film of %g s, expected 0.1 to 3600", o->seconds);

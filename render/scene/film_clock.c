@@ -28,7 +28,8 @@ static void add_impacts(film_clock *c, const trace *t)
 {
     double largest = 0;
     for (size_t i = 0; i < t->event_count; i++) {
-        largest = fmax(largest, t->events[i].kind == EVENT_IMPACT ? t->events[i].impulse : 0);
+        largest =
+            fmax(largest, t->events[i].kind == EVENT_IMPACT ? t->events[i].impulse : 0);
     }
 
     for (size_t i = 0; i < t->event_count && largest > 0; i++) {
@@ -54,10 +55,14 @@ static void set_windows(film_clock *c)
     c->taper = TAPER * span;
 }
 
-film_clock film_clock_of(const run_result *const *results, int count, double seconds, double slow)
+film_clock film_clock_of(const run_result *const *results, int count, double seconds,
+                         double slow)
 {
     assert(count > 0 && seconds > 0 && slow >= 1);
-    film_clock c = {.start = -HUGE_VAL, .end = HUGE_VAL, .slow = slow, .seconds = seconds};
+    film_clock c = {.start = -HUGE_VAL,
+                    .end = HUGE_VAL,
+                    .slow = slow,
+                    .seconds = seconds};
 
     // what all of them have
     for (int i = 0; i < count; i++) {
@@ -85,7 +90,8 @@ double film_clock_slowness(const film_clock *c, double t)
 {
     double outside = HUGE_VAL;
     for (int i = 0; i < c->impact_count; i++) {
-        double until = c->impacts[i] - c->before - t, since = t - c->impacts[i] - c->after;
+        double until = c->impacts[i] - c->before - t,
+               since = t - c->impacts[i] - c->after;
         outside = fmin(outside, fmax(fmax(until, since), 0));
     }
     if (outside >= c->taper) {

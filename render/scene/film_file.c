@@ -1,4 +1,5 @@
-// Films as files: frames go to the standard input of the ffmpeg program, or to a folder as PNG.
+// Films as files: frames go to the standard input of the ffmpeg program, or to a folder
+// as PNG.
 #include "render/scene/film.h"
 
 #include <assert.h>
@@ -24,35 +25,36 @@ enum {
 typedef struct film_format {
     const char *ending; // of its files' names
     const char *codec;  // ffmpeg's arguments for it
-    bool palette;       // the first frame defines the colours of all others and is not shown
-    const char *mark;   // that a complete file has at an offset
+    bool palette; // the first frame defines the colours of all others and is not shown
+    const char *mark; // that a complete file has at an offset
     long offset;
 } film_format;
 
-// Fixed numbers of threads and bitexact keep the bytes alike. Marks: ISO/IEC 14496-12, an ftyp box
-// first; RFC 8794, the EBML mark; GIF89a; RFC 9649, WEBP in a RIFF file.
+// Fixed numbers of threads and bitexact keep the bytes alike. Marks: ISO/IEC 14496-12, an
+// ftyp box first; RFC 8794, the EBML mark; GIF89a; RFC 9649, WEBP in a RIFF file.
 static const film_format formats[] = {
     {.ending = ".mp4",
-     .codec = "-vf scale=out_color_matrix=bt709 -c:v libx264 -preset veryfast -crf 18 -threads 2 "
-              "-pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 -color_trc bt709 "
-              "-movflags +faststart -f mp4",
+     .codec = "-vf scale=out_color_matrix=bt709 -c:v libx264 -preset veryfast -crf "
+              "18 -threads 2 -pix_fmt yuv420p -colorspace bt709 -color_primaries "
+              "bt709 -color_trc bt709 -movflags +faststart -f mp4",
      .mark = "ftyp",
      .offset = 4},
     {.ending = ".webm",
-     .codec = "-vf scale=out_color_matrix=bt709 -c:v libvpx-vp9 -b:v 0 -crf 24 -deadline "
-              "realtime -cpu-used 7 -row-mt 1 -threads 2 -pix_fmt yuv420p -colorspace bt709 "
-              "-color_primaries bt709 -color_trc bt709 -f webm",
+     .codec = "-vf scale=out_color_matrix=bt709 -c:v libvpx-vp9 -b:v 0 -crf 24 "
+              "-deadline realtime -cpu-used 7 -row-mt 1 -threads 2 -pix_fmt yuv420p "
+              "-colorspace bt709 -color_primaries bt709 -color_trc bt709 -f webm",
      .mark = "\x1a\x45\xdf\xa3"},
     // the first frame only gives the palette: no later one has to wait for the film's end
     {.ending = ".gif",
-     .codec = "-filter_complex split[a][b];"
-              "[a]trim=end_frame=1,palettegen[p];[b]trim=start_frame=1,"
+     .codec = "-filter_complex "
+              "split[a][b];[a]trim=end_frame=1,palettegen[p];[b]trim=start_frame=1,"
               "setpts=PTS-STARTPTS[c];[c][p]paletteuse=dither=none:diff_mode=rectangle "
               "-loop 0 -f gif",
      .palette = true,
      .mark = "GIF8"},
     {.ending = ".webp",
-     .codec = "-c:v libwebp_anim -lossless 0 -q:v 82 -compression_level 4 -loop 0 -f webp",
+     .codec =
+         "-c:v libwebp_anim -lossless 0 -q:v 82 -compression_level 4 -loop 0 -f webp",
      .mark = "WEBP",
      .offset = 8},
 };
@@ -90,14 +92,14 @@ static status check_folder(const char *path, fault *f)
         return whole_file_check(path, f);
     }
     FAULT_IF(!g_file_test(path, G_FILE_TEST_IS_DIR), f, STATUS_CANNOT_WRITE,
-             "%s is a file: expected the name of a folder, or one that ends in .mp4, "
-             ".webm, .gif or .webp",
+             "%s is a file: expected the name of a folder, or one that ends in "
+             ".mp4, .webm, .gif or .webp",
              path);
     whole_file_clean_folder(path);
     g_autoptr(GDir) folder = g_dir_open(path, 0, NULL);
     FAULT_IF(folder == NULL || g_dir_read_name(folder) != NULL, f, STATUS_CANNOT_WRITE,
-             "the folder %s is not empty: frames of two films would mix, empty it or "
-             "name another",
+             "the folder %s is not empty: frames of two films would mix, empty it "
+             "or name another",
              path);
     return STATUS_OK;
 }
@@ -118,8 +120,8 @@ status film_file_check(const char *path, fault *f)
     }
     g_autofree char *program = g_find_program_in_path("ffmpeg");
     FAULT_IF(program == NULL, f, STATUS_CANNOT_WRITE,
-             "%s needs the program ffmpeg, which is not installed: install the package "
-             "ffmpeg, or give a folder to get PNG frames",
+             "%s needs the program ffmpeg, which is not installed: install the "
+             "package ffmpeg, or give a folder to get PNG frames",
              path);
     return whole_file_check(path, f);
 }
@@ -129,10 +131,16 @@ status film_file_check(const char *path, fault *f)
 // The containers know few keys; a comment takes the parameters.
 static const char *key_of(const char *keyword)
 {
-    return strcmp(keyword, "Title") == 0        ? "title"
-           : strcmp(keyword, "Parameters") == 0 ? "comment"
-           : strcmp(keyword, "Software") == 0   ? "artist"
-                                                : "description";
+    if (strcmp(keyword, "Title") == 0) {
+        return "title";
+    }
+    if (strcmp(keyword, "Parameters") == 0) {
+        return "comment";
+    }
+    if (strcmp(keyword, "Software") == 0) {
+        return "artist";
+    }
+    return "description";
 }
 
 // To be freed with g_strfreev.
@@ -142,11 +150,13 @@ static char **list_arguments(const film_file *film, const char *target)
     GPtrArray *list = g_ptr_array_new();
 
     // raw frames from the pipe
-    g_autofree char *words = text_printf(
-        "ffmpeg -hide_banner -loglevel error -nostats -y -f rawvideo -pix_fmt bgr0 -s %dx%d -r %d "
-        "-i pipe:0 -an %s -fflags +bitexact -flags:v +bitexact",
-        o->width, o->height, o->frames_per_second, film->format->codec);
-    g_autofree char **each = g_strsplit(words, " ", -1); // the list takes the words themselves
+    g_autofree char *words =
+        text_printf("ffmpeg -hide_banner -loglevel error -nostats -y -f rawvideo "
+                    "-pix_fmt bgr0 -s %dx%d -r %d -i pipe:0 -an %s -fflags +bitexact "
+                    "-flags:v +bitexact",
+                    o->width, o->height, o->frames_per_second, film->format->codec);
+    g_autofree char **each =
+        g_strsplit(words, " ", -1); // the list takes the words themselves
     for (int i = 0; each[i] != NULL; i++) {
         g_ptr_array_add(list, each[i]);
     }
@@ -154,7 +164,8 @@ static char **list_arguments(const film_file *film, const char *target)
         const png_note *note = &film->notes[i];
         if (note->text != NULL) {
             g_ptr_array_add(list, g_strdup("-metadata"));
-            g_ptr_array_add(list, text_printf("%s=%s", key_of(note->keyword), note->text));
+            g_ptr_array_add(list,
+                            text_printf("%s=%s", key_of(note->keyword), note->text));
         }
     }
 
@@ -166,11 +177,14 @@ static char **list_arguments(const film_file *film, const char *target)
 // Where the film is written before it is whole.
 static const char *target_of(const film_file *film)
 {
-    return film->file.temporary != NULL ? film->file.temporary : film->file.path;
+    if (film->file.temporary != NULL) {
+        return film->file.temporary;
+    }
+    return film->file.path;
 }
 
-// In the child: a group of its own, as an interrupt of the terminal reaches us, and we end it in
-// order.
+// In the child: a group of its own, as an interrupt of the terminal reaches us, and we
+// end it in order.
 static void part_from_us(gpointer context)
 {
     (void)context;
@@ -178,27 +192,30 @@ static void part_from_us(gpointer context)
     signal(SIGPIPE, SIG_DFL);
 }
 
-// Starts the encoder: raw frames (0xAARRGGBB without the alpha) become the film, complaints go to a
-// file of ours.
+// Starts the encoder: raw frames (0xAARRGGBB without the alpha) become the film,
+// complaints go to a file of ours.
 static status start_encoder(film_file *film, fault *f)
 {
     int ends[2];
     g_autoptr(GError) error = NULL;
     g_auto(GStrv) words = list_arguments(film, target_of(film));
     film->words = tmpfile();
-    FAULT_IF(film->words == NULL || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0,
+    FAULT_IF(film->words == NULL ||
+                 socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0,
              f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
              strerror(errno));
-    const bool started = g_spawn_async_with_fds(
-        NULL, words, NULL,
-        G_SPAWN_SEARCH_PATH | G_SPAWN_DO_NOT_REAP_CHILD | G_SPAWN_STDOUT_TO_DEV_NULL, part_from_us,
-        NULL, &film->encoder, ends[0], -1, fileno(film->words), &error);
+    const bool started =
+        g_spawn_async_with_fds(NULL, words, NULL,
+                               G_SPAWN_SEARCH_PATH | G_SPAWN_DO_NOT_REAP_CHILD |
+                                   G_SPAWN_STDOUT_TO_DEV_NULL,
+                               part_from_us, NULL, &film->encoder, ends[0], -1,
+                               fileno(film->words), &error);
     close(ends[0]);
     film->pipe = ends[1];
     if (!started) {
         film->encoder = 0;
-        return fault_set(f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
-                         error->message);
+        return fault_set(f, STATUS_CANNOT_WRITE,
+                         "the program ffmpeg could not be started: %s", error->message);
     }
     whole_file_set_writer(film->encoder);
     return STATUS_OK;
@@ -217,8 +234,8 @@ static void close_pipe(film_file *film)
     }
 }
 
-// Waits for the encoder's end and returns its status. One that hangs is ended when we are asked to
-// stop.
+// Waits for the encoder's end and returns its status. One that hangs is ended when we are
+// asked to stop.
 static int wait_for_encoder(film_file *film)
 {
     const struct timespec moment = {.tv_nsec = 5000000};
@@ -236,8 +253,8 @@ static int wait_for_encoder(film_file *film)
     return result;
 }
 
-// Ends the frames, waits for the encoder and reads what it complained about first: that is the
-// cause, later complaints follow from it. True if it succeeded without any.
+// Ends the frames, waits for the encoder and reads what it complained about first: that
+// is the cause, later complaints follow from it. True if it succeeded without any.
 static bool end_encoder(film_file *film, char *said, size_t size)
 {
     close_pipe(film);
@@ -250,8 +267,8 @@ static bool end_encoder(film_file *film, char *said, size_t size)
     return WIFEXITED(result) && WEXITSTATUS(result) == 0 && said[0] == '\0';
 }
 
-// Sends bytes of a frame. STATUS_CANNOT_WRITE if the program accepts no more, STATUS_STOPPED if
-// stop became true while it accepted nothing; no fault is set.
+// Sends bytes of a frame. STATUS_CANNOT_WRITE if the program accepts no more,
+// STATUS_STOPPED if stop became true while it accepted nothing; no fault is set.
 static status send_bytes(const film_file *film, const unsigned char *bytes, size_t length)
 {
     while (length > 0) {
@@ -267,8 +284,12 @@ static status send_bytes(const film_file *film, const unsigned char *bytes, size
         if (sent < 0 && errno != EINTR && errno != EAGAIN) {
             return STATUS_CANNOT_WRITE;
         }
-        bytes += sent > 0 ? sent : 0;
-        length -= sent > 0 ? (size_t)sent : 0;
+        if (sent > 0) {
+            bytes += sent;
+        }
+        if (sent > 0) {
+            length -= (size_t)sent;
+        }
     }
     return STATUS_OK;
 }
@@ -278,7 +299,9 @@ static bool looks_whole(const film_file *film)
 {
     char found[4];
     FILE *file = fopen(target_of(film), "rb");
-    FAIL_IF(file == NULL, false);
+    if (file == NULL) {
+        return false;
+    }
     const bool whole = fseek(file, film->format->offset, SEEK_SET) == 0 &&
                        fread(found, 1, sizeof found, file) == sizeof found &&
                        memcmp(found, film->format->mark, sizeof found) == 0;
@@ -323,7 +346,8 @@ status film_file_open(film_file **out, const char *path, const film_options *opt
     *out = NULL;
     TRY(film_file_check(path, f));
     g_autoptr(film_file) film = g_new0(film_file, 1);
-    *film = (film_file){format_of(path), options, notes, note_count, g_strdup(path), .pipe = -1};
+    *film = (film_file){format_of(path), options,        notes,
+                        note_count,      g_strdup(path), .pipe = -1};
     TRY(open_target(film, f));
     *out = g_steal_pointer(&film);
     return STATUS_OK;
@@ -332,9 +356,11 @@ status film_file_open(film_file **out, const char *path, const film_options *opt
 static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
 {
     whole_file file;
-    g_autofree char *path = text_printf("%s/frame-%05d.png", film->path, film->frames + 1);
+    g_autofree char *path =
+        text_printf("%s/frame-%05d.png", film->path, film->frames + 1);
     TRY(whole_file_open(&file, path, f));
-    status code = png_file_write(file.stream, frame, FRAME_DPI, film->notes, film->note_count, f);
+    status code =
+        png_file_write(file.stream, frame, FRAME_DPI, film->notes, film->note_count, f);
     return whole_file_close(&file, code, f);
 }
 
@@ -345,14 +371,14 @@ bool film_file_wants_palette(const film_file *film)
 
 static status stopped(const film_file *film, fault *f)
 {
-    return fault_set(f, STATUS_STOPPED, "stopped: %d frames were painted, no film is left",
-                     film->frames);
+    return fault_set(f, STATUS_STOPPED,
+                     "stopped: %d frames were painted, no film is left", film->frames);
 }
 
 static status complain_encoder(const film_file *film, const char *said, fault *f)
 {
-    return fault_set(f, STATUS_CANNOT_WRITE, "%s could not be made, ffmpeg says: %s", film->path,
-                     said[0] ? said : "nothing");
+    return fault_set(f, STATUS_CANNOT_WRITE, "%s could not be made, ffmpeg says: %s",
+                     film->path, said[0] ? said : "nothing");
 }
 
 // Row by row, as a surface's rows may be longer than the picture.
@@ -367,7 +393,10 @@ static status send_frame(film_file *film, cairo_surface_t *frame, fault *f)
         code = send_bytes(film, data + row * stride, 4 * (size_t)film->options->width);
     }
     if (code == STATUS_OK || code == STATUS_STOPPED) {
-        return code == STATUS_OK ? code : stopped(film, f);
+        if (code == STATUS_OK) {
+            return code;
+        }
+        return stopped(film, f);
     }
     end_encoder(film, said, sizeof said);
     return complain_encoder(film, said, f);
@@ -375,7 +404,12 @@ static status send_frame(film_file *film, cairo_surface_t *frame, fault *f)
 
 status film_file_add(film_file *film, cairo_surface_t *frame, fault *f)
 {
-    status code = film->format == NULL ? add_to_folder(film, frame, f) : send_frame(film, frame, f);
+    status code;
+    if (film->format == NULL) {
+        code = add_to_folder(film, frame, f);
+    } else {
+        code = send_frame(film, frame, f);
+    }
     film->frames++;
     return code;
 }
@@ -389,7 +423,8 @@ status film_file_commit(film_file *film, fault *f)
         return STATUS_OK;
     }
 
-    // only an encoder can fail this late; a stop also makes it fail, so that is asked for first
+    // only an encoder can fail this late; a stop also makes it fail, so that is asked for
+    // first
     status code = STATUS_OK;
     const bool content = end_encoder(film, said, sizeof said);
     if (is_asked_to_stop(film)) {
@@ -397,9 +432,9 @@ status film_file_commit(film_file *film, fault *f)
     } else if (!content) {
         code = complain_encoder(film, said, f);
     } else if (film->file.temporary != NULL && !looks_whole(film)) {
-        code =
-            fault_set(f, STATUS_CANNOT_WRITE,
-                      "%s could not be made: ffmpeg left a file that is no such film", film->path);
+        code = fault_set(f, STATUS_CANNOT_WRITE,
+                         "%s could not be made: ffmpeg left a file that is no such film",
+                         film->path);
     }
     return whole_file_close(&film->file, code, f);
 }

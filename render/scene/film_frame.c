@@ -41,7 +41,8 @@ static void place_views(film_painter *p)
     }
 
     int rows = (p->run_count + 1) / 2, strip = (int)(height * STRIP_SHARE);
-    int view_width = (width - GAP) / 2, view_height = (height - strip - (rows - 1) * GAP) / rows;
+    int view_width = (width - GAP) / 2,
+        view_height = (height - strip - (rows - 1) * GAP) / rows;
     for (int i = 0; i < p->run_count; i++) {
         p->views[i] = (pixel_box){i % 2 * (view_width + GAP), i / 2 * (view_height + GAP),
                                   view_width, view_height};
@@ -61,8 +62,10 @@ static owned_figure *describe_traces(const film_painter *p)
         runs[i] = (trace_run){p->runs[i].scenario, p->runs[i].result, p->runs[i].name,
                               .rank = p->run_count > 1 ? i + 1 : 0};
     }
-    return p->run_count == 1 ? trace_figure_create(NULL, one, (int)G_N_ELEMENTS(one), runs, 1)
-                             : trace_figure_create(NULL, &several, 1, runs, p->run_count);
+    if (p->run_count == 1) {
+        return trace_figure_create(NULL, one, (int)G_N_ELEMENTS(one), runs, 1);
+    }
+    return trace_figure_create(NULL, &several, 1, runs, p->run_count);
 }
 
 // Paints all of the traces once; frames veil what has not happened yet.
@@ -83,7 +86,8 @@ static status paint_traces(film_painter *p, fault *f)
     t->width = strip->width / p->trace_scale * 25.4 / 72;
     t->height = strip->height / p->trace_scale * 25.4 / 72;
 
-    p->traces = cairo_image_surface_create(CAIRO_FORMAT_RGB24, strip->width, strip->height);
+    p->traces =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, strip->width, strip->height);
     cairo_t *cr = cairo_create(p->traces);
     set_colour(cr, page_of(p));
     cairo_paint(cr);
@@ -104,17 +108,26 @@ static status create_scenes(film_painter *p, fault *f)
         view.transparent = false;
 
         // what moves needs fewer samples than what stands still
-        view.samples = view.samples > 0 ? view.samples : SAMPLES_QUICK;
+        if (!(view.samples > 0)) {
+            view.samples = SAMPLES_QUICK;
+        }
 
-        // left to choose, the lab's own painter: of few samples it takes half of OpenGL's time
+        // left to choose, the lab's own painter: of few samples it takes half of OpenGL's
+        // time
         if (view.renderer == RENDER_AUTO) {
             view.renderer = RENDER_CAIRO;
         }
 
         // small views have the letters of the whole
-        view.letters = p->run_count > 1 ? film_scale(p) : 0;
-        TRY(scene_create(&p->scenes[i], p->runs[i].scenario, p->runs[i].result, &view, f));
-        p->pictures[i] = cairo_image_surface_create(CAIRO_FORMAT_RGB24, view.width, view.height);
+        if (p->run_count > 1) {
+            view.letters = film_scale(p);
+        } else {
+            view.letters = 0;
+        }
+        TRY(scene_create(&p->scenes[i], p->runs[i].scenario, p->runs[i].result, &view,
+                         f));
+        p->pictures[i] =
+            cairo_image_surface_create(CAIRO_FORMAT_RGB24, view.width, view.height);
     }
     return STATUS_OK;
 }
@@ -224,8 +237,9 @@ static void draw_traces(const film_painter *p, cairo_t *cr, double time)
     // keys are of the past and the future
     for (int i = 0; i < r->panel_count; i++) {
         figure_rect key = r->legends[i];
-        cairo_rectangle(cr, strip->x + key.x * p->trace_scale, strip->y + key.y * p->trace_scale,
-                        key.width * p->trace_scale, key.height * p->trace_scale);
+        cairo_rectangle(cr, strip->x + key.x * p->trace_scale,
+                        strip->y + key.y * p->trace_scale, key.width * p->trace_scale,
+                        key.height * p->trace_scale);
     }
 
     cairo_set_source_surface(cr, p->traces, strip->x, strip->y);
@@ -237,14 +251,15 @@ static void draw_speed(const film_painter *p, cairo_t *cr, double speed)
     const double scale = film_scale(p), times = 1 / speed;
 
     // the number that is larger than one
-    g_autofree char *text =
-        speed < 1 ? text_printf("%.*f times slower than real", times < 9.95 ? 1 : 0, times)
-                  : text_printf("%.1f times faster than real", speed);
+    g_autofree char *text = speed < 1 ? text_printf("%.*f times slower than real",
+                                                    times < 9.95 ? 1 : 0, times)
+                                      : text_printf("%.1f times faster than real", speed);
     const text_block t = {.markup = text, .size = LABELS_LEAST * scale};
     // with several arms there is a free corner next to the axis of the traces
     const bool alone = p->run_count == 1;
-    text_put(cr, p->context, &t, 22 * scale, alone ? 20 * scale : p->options.height - 6 * scale,
-             (anchor){0, !alone}, palette_of(p->options.view.theme)->faint_text);
+    text_put(cr, p->context, &t, 22 * scale,
+             alone ? 20 * scale : p->options.height - 6 * scale, (anchor){0, !alone},
+             palette_of(p->options.view.theme)->faint_text);
 }
 
 // ---- frames
@@ -284,7 +299,8 @@ static status paint_frame(film_painter *p, double time, double present, double s
     return picture_end_drawing(cr, code, f);
 }
 
-status film_painter_frame(film_painter *p, double film_time, cairo_surface_t *onto, fault *f)
+status film_painter_frame(film_painter *p, double film_time, cairo_surface_t *onto,
+                          fault *f)
 {
     double speed;
     const double time = film_clock_time(&p->clock, film_time, &speed);

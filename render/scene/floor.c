@@ -22,23 +22,31 @@ static double line_cover(double place, double grid, double across)
 {
     double lines = place / grid, off = fabs(lines - floor(lines + 0.5)) * grid;
     double cover = 0.5 + (fmax(LINE_WIDTH * grid, across) / 2 - off) / across;
-    return cover < 0 ? 0 : cover > 1 ? 1 : cover;
+    if (cover < 0) {
+        return 0;
+    }
+    if (cover > 1) {
+        return 1;
+    }
+    return cover;
 }
 
-// What decides at a pixel whether a value between two levels goes to the upper one: Bayer's matrix
-// of 8 x 8 (1973), 1/128 to 127/128. Gradients of few levels show no bands then.
+// What decides at a pixel whether a value between two levels goes to the upper one:
+// Bayer's matrix of 8 x 8 (1973), 1/128 to 127/128. Gradients of few levels show no bands
+// then.
 static double threshold_at(int column, int row)
 {
     unsigned x = (unsigned)column & 7, y = (unsigned)row & 7, z = x ^ y;
-    unsigned rank =
-        (z & 1) << 5 | (y & 1) << 4 | (z & 2) << 2 | (y & 2) << 1 | (z & 4) >> 1 | (y & 4) >> 2;
+    unsigned rank = (z & 1) << 5 | (y & 1) << 4 | (z & 2) << 2 | (y & 2) << 1 |
+                    (z & 4) >> 1 | (y & 4) >> 2;
     return (rank + 0.5) / 64;
 }
 
 static uint32_t rgb_of(colour c, double threshold)
 {
     return 0xFF000000U | (uint32_t)(255 * c.red + threshold) << 16 |
-           (uint32_t)(255 * c.green + threshold) << 8 | (uint32_t)(255 * c.blue + threshold);
+           (uint32_t)(255 * c.green + threshold) << 8 |
+           (uint32_t)(255 * c.blue + threshold);
 }
 
 static double floor_level(const scene *sc)
@@ -65,7 +73,8 @@ static colour floor_colour(const scene *sc, double x, double y, double wide, dou
     return colour_between(sc->around->page, c, fade);
 }
 
-// Rays through pixels: of the first one's centre, and how they change to the right and downwards.
+// Rays through pixels: of the first one's centre, and how they change to the right and
+// downwards.
 typedef struct ray_field {
     vector first, right, down;
 } ray_field;
@@ -81,19 +90,32 @@ static void paint_pixel(scene *sc, const ray_field *rays, vector ray, int column
     double x = c->eye.x + along * ray.x, y = c->eye.y + along * ray.y;
     double away_x = x - floor->middle.x, away_y = y - floor->middle.y;
 
-    // a ray towards the sky meets the floor behind the eye, and none beyond its reach is seen
-    bool meets = ray.z < 0 && away_x * away_x + away_y * away_y < floor->reach * floor->reach;
-    floor->x[at] = meets ? (float)x : 1e30F;
-    floor->y[at] = meets ? (float)y : 1e30F;
+    // a ray towards the sky meets the floor behind the eye, and none beyond its reach is
+    // seen
+    bool meets =
+        ray.z < 0 && away_x * away_x + away_y * away_y < floor->reach * floor->reach;
+    if (meets) {
+        floor->x[at] = (float)x;
+    } else {
+        floor->x[at] = 1e30F;
+    }
+    if (meets) {
+        floor->y[at] = (float)y;
+    } else {
+        floor->y[at] = 1e30F;
+    }
     floor->ground[at] = rgb_of(sc->around->page, 0.5);
 
     // how far a pixel reaches on the floor along both directions
     if (meets) {
         double slope_x = ray.x / ray.z, slope_y = ray.y / ray.z;
         const vector *r = &rays->right, *d = &rays->down;
-        double wide = fabs(along * (r->x - slope_x * r->z)) + fabs(along * (d->x - slope_x * d->z));
-        double deep = fabs(along * (r->y - slope_y * r->z)) + fabs(along * (d->y - slope_y * d->z));
-        floor->ground[at] = rgb_of(floor_colour(sc, x, y, wide, deep), threshold_at(column, row));
+        double wide =
+            fabs(along * (r->x - slope_x * r->z)) + fabs(along * (d->x - slope_x * d->z));
+        double deep =
+            fabs(along * (r->y - slope_y * r->z)) + fabs(along * (d->y - slope_y * d->z));
+        floor->ground[at] =
+            rgb_of(floor_colour(sc, x, y, wide, deep), threshold_at(column, row));
     }
 }
 
@@ -129,8 +151,8 @@ status scene_floor_init(scene *sc, vector middle, double reach, fault *f)
                            .map_low = middle.y - reach,
                            .map_cell = 2 * reach / MAP};
     FAULT_IF(!floor->ground || !floor->x || !floor->y || !floor->mask || !floor->spare, f,
-             STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", sc->options.width,
-             sc->options.height);
+             STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels",
+             sc->options.width, sc->options.height);
     paint_ground(sc);
     return STATUS_OK;
 }
@@ -150,8 +172,8 @@ typedef struct cell_box {
     int left, right, low, high;
 } cell_box;
 
-// One smoothing pass along rows of the box, outside which all is empty; the result is stored turned
-// round, so that two passes do both directions.
+// One smoothing pass along rows of the box, outside which all is empty; the result is
+// stored turned round, so that two passes do both directions.
 static void blur_turned(const unsigned char *from, unsigned char *to, cell_box cells)
 {
     for (int row = cells.low; row < cells.high; row++) {
@@ -163,20 +185,30 @@ static void blur_turned(const unsigned char *from, unsigned char *to, cell_box c
 
         // the sum runs along: a cell enters ahead, another leaves behind
         for (int i = cells.left; i < cells.right; i++) {
-            sum += i + BLUR < cells.right ? line_from[i + BLUR] : 0;
+            if (i + BLUR < cells.right) {
+                sum += line_from[i + BLUR];
+            }
             to[(ptrdiff_t)i * MAP + row] = (unsigned char)(sum / (2 * BLUR + 1));
-            sum -= i >= cells.left + BLUR ? line_from[i - BLUR] : 0;
+            if (i >= cells.left + BLUR) {
+                sum -= line_from[i - BLUR];
+            }
         }
     }
 }
 
 static int within_map(double cell)
 {
-    return cell < 0 ? 0 : cell > MAP ? MAP : (int)cell;
+    if (cell < 0) {
+        return 0;
+    }
+    if (cell > MAP) {
+        return MAP;
+    }
+    return (int)cell;
 }
 
-// Draws the mesh's triangles, thrown onto the floor along the light, into the map. *covered is what
-// they and their soft edge may cover.
+// Draws the mesh's triangles, thrown onto the floor along the light, into the map.
+// *covered is what they and their soft edge may cover.
 static status cast_shadow(scene *sc, cell_box *covered, fault *f)
 {
     scene_floor *floor = &sc->floor;
@@ -240,7 +272,8 @@ static float shadow_at(const scene_floor *floor, float x, float y)
     int i = (int)u, j = (int)v;
     float a = u - (float)i, b = v - (float)j;
     const unsigned char *at = floor->mask + (ptrdiff_t)j * MAP + i;
-    return (1 - b) * ((1 - a) * at[0] + a * at[1]) + b * ((1 - a) * at[MAP] + a * at[MAP + 1]);
+    return (1 - b) * ((1 - a) * at[0] + a * at[1]) +
+           b * ((1 - a) * at[MAP] + a * at[MAP + 1]);
 }
 
 // The pixels that show a box of the map, some to spare.
@@ -250,9 +283,11 @@ static cell_box seen_box(const scene *sc, cell_box cells)
     const int width = sc->options.width, height = sc->options.height;
     double left = width, right = 0, top = height, bottom = 0;
     for (int i = 0; i < 4; i++) {
-        const vector corner = {
-            floor->map_left + (i & 1 ? cells.left : cells.right) * floor->map_cell,
-            floor->map_low + (i & 2 ? cells.low : cells.high) * floor->map_cell, floor_level(sc)};
+        const vector corner = {floor->map_left +
+                                   (i & 1 ? cells.left : cells.right) * floor->map_cell,
+                               floor->map_low +
+                                   (i & 2 ? cells.low : cells.high) * floor->map_cell,
+                               floor_level(sc)};
         const vector at = camera_project(&sc->camera, corner);
         if (at.z < sc->camera.nearest) {
             // it reaches behind the eye
@@ -265,8 +300,8 @@ static cell_box seen_box(const scene *sc, cell_box cells)
     }
 
     // one pixel more on each side
-    return (cell_box){(int)fmax(0, left - 1), (int)fmin(width, right + 2), (int)fmax(0, top - 1),
-                      (int)fmin(height, bottom + 2)};
+    return (cell_box){(int)fmax(0, left - 1), (int)fmin(width, right + 2),
+                      (int)fmax(0, top - 1), (int)fmin(height, bottom + 2)};
 }
 
 // A colour under a shadow of 0 to 255; threshold [1/65536] as of threshold_at.
@@ -307,7 +342,8 @@ status scene_floor_paint(scene *sc, cairo_surface_t *onto, fault *f)
             size_t pixel = at + (size_t)column;
             float shadow = shadow_at(floor, floor->x[pixel], floor->y[pixel]);
             if (shadow > 0) {
-                to[column] = darkened(floor->ground[pixel], shadow, thresholds[column & 7]);
+                to[column] =
+                    darkened(floor->ground[pixel], shadow, thresholds[column & 7]);
             }
         }
     }

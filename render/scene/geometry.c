@@ -38,7 +38,10 @@ double vector_dot(vector a, vector b)
 vector vector_unit(vector a)
 {
     double length = sqrt(vector_dot(a, a));
-    return length > 0 ? vector_scaled(a, 1 / length) : (vector){1, 0, 0};
+    if (length > 0) {
+        return vector_scaled(a, 1 / length);
+    }
+    return (vector){1, 0, 0};
 }
 
 void mesh_finish(mesh *m)
@@ -54,14 +57,19 @@ static void *grown(void *items, size_t count, size_t more, size_t *capacity, siz
     if (count + more <= *capacity) {
         return items;
     }
-    *capacity = *capacity > 0 ? 2 * *capacity : 4096 * more;
+    if (*capacity > 0) {
+        *capacity = 2 * *capacity;
+    } else {
+        *capacity = 4096 * more;
+    }
     return g_realloc_n(items, *capacity, size);
 }
 
 // Adds a vertex and returns its number.
 static unsigned add_vertex(mesh *m, vector place, vector normal, material of)
 {
-    m->vertices = grown(m->vertices, m->vertex_count, 1, &m->vertex_capacity, sizeof *m->vertices);
+    m->vertices =
+        grown(m->vertices, m->vertex_count, 1, &m->vertex_capacity, sizeof *m->vertices);
     m->vertices[m->vertex_count] = (mesh_vertex){place, normal, of};
     return (unsigned)m->vertex_count++;
 }
@@ -70,7 +78,8 @@ static unsigned add_vertex(mesh *m, vector place, vector normal, material of)
 static void add_quad(mesh *m, unsigned a, unsigned b, unsigned c, unsigned d)
 {
     const unsigned corners[] = {a, b, c, a, c, d};
-    m->corners = grown(m->corners, m->corner_count, 6, &m->corner_capacity, sizeof *m->corners);
+    m->corners =
+        grown(m->corners, m->corner_count, 6, &m->corner_capacity, sizeof *m->corners);
     memcpy(m->corners + m->corner_count, corners, sizeof corners);
     m->corner_count += 6;
 }
@@ -100,7 +109,8 @@ static vector circle_at(vector across, vector other, int i, int sides)
     return vector_sum(vector_scaled(across, cos(angle)), sin(angle), other);
 }
 
-void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count, material of)
+void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count,
+                material of)
 {
     vector across, other;
     assert(count > 1);
@@ -115,12 +125,15 @@ void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int 
 
         for (int i = 0; i <= LATHE_SIDES; i++) {
             vector out = circle_at(across, other, i, LATHE_SIDES);
-            vector normal = vector_unit(vector_sum(vector_scaled(out, rise), taper, axis));
+            vector normal =
+                vector_unit(vector_sum(vector_scaled(out, rise), taper, axis));
 
             vector foot = vector_sum(base, low->along, axis);
             vector head = vector_sum(base, high->along, axis);
-            unsigned at_low = add_vertex(m, vector_sum(foot, low->radius, out), normal, of);
-            unsigned at_high = add_vertex(m, vector_sum(head, high->radius, out), normal, of);
+            unsigned at_low =
+                add_vertex(m, vector_sum(foot, low->radius, out), normal, of);
+            unsigned at_high =
+                add_vertex(m, vector_sum(head, high->radius, out), normal, of);
 
             if (i > 0) {
                 add_quad(m, before_low, at_low, at_high, before_high);
@@ -134,7 +147,13 @@ void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int 
 static int cells_along(vector half, double cell)
 {
     double cells = ceil(2 * sqrt(vector_dot(half, half)) / cell);
-    return cells < 1 ? 1 : cells > BOX_CELLS ? BOX_CELLS : (int)cells;
+    if (cells < 1) {
+        return 1;
+    }
+    if (cells > BOX_CELLS) {
+        return BOX_CELLS;
+    }
+    return (int)cells;
 }
 
 // The face of a box that `out` points at.
@@ -150,7 +169,8 @@ static void add_face(mesh *m, vector centre, vector out, vector u, vector v, dou
             static const int di[] = {0, 1, 1, 0}, dj[] = {0, 0, 1, 1};
             vector corners[4];
             for (int k = 0; k < 4; k++) {
-                double a = 2.0 * (i + di[k]) / across - 1, b = 2.0 * (j + dj[k]) / down - 1;
+                double a = 2.0 * (i + di[k]) / across - 1,
+                       b = 2.0 * (j + dj[k]) / down - 1;
                 corners[k] = vector_sum(vector_sum(middle, a, u), b, v);
             }
             add_flat(m, corners, normal, of);
@@ -163,7 +183,8 @@ void mesh_box(mesh *m, const box *b, double cell, material of)
     assert(cell > 0);
     const vector half[] = {b->u, b->v, b->w};
     for (int face = 0; face < 3; face++) {
-        vector out = half[face], along = half[(face + 1) % 3], across = half[(face + 2) % 3];
+        vector out = half[face], along = half[(face + 1) % 3],
+               across = half[(face + 2) % 3];
         add_face(m, b->centre, out, along, across, cell, of);
         add_face(m, b->centre, vector_scaled(out, -1), across, along, cell, of);
     }
@@ -187,7 +208,8 @@ static section broken_rectangle(double thickness, double height)
 // Direction of a polyline at a place, by its neighbours.
 static vector direction_at(const vector *places, int count, int i)
 {
-    const vector *before = &places[i > 0 ? i - 1 : i], *after = &places[i + 1 < count ? i + 1 : i];
+    const vector *before = &places[i > 0 ? i - 1 : i],
+                 *after = &places[i + 1 < count ? i + 1 : i];
     return vector_unit(vector_sum(*after, -1, *before));
 }
 
@@ -198,10 +220,10 @@ static vector section_point(const section *s, int corner, vector place, vector a
     return p;
 }
 
-// Closes a ribbon's end: the eight-sided section as three quadrilaterals. `forward`: the one that
-// looks along the ribbon.
-static void cap_ribbon(mesh *m, const section *s, vector place, vector along, bool forward,
-                       material of)
+// Closes a ribbon's end: the eight-sided section as three quadrilaterals. `forward`: the
+// one that looks along the ribbon.
+static void cap_ribbon(mesh *m, const section *s, vector place, vector along,
+                       bool forward, material of)
 {
     static const int quads[3][4] = {{0, 1, 4, 5}, {1, 2, 3, 4}, {5, 6, 7, 0}};
     vector across = {-along.y, along.x, 0};
@@ -214,8 +236,8 @@ static void cap_ribbon(mesh *m, const section *s, vector place, vector along, bo
     }
 }
 
-void mesh_ribbon(mesh *m, const vector *places, int count, double height, double thickness,
-                 material of)
+void mesh_ribbon(mesh *m, const vector *places, int count, double height,
+                 double thickness, material of)
 {
     assert(count > 0);
     const section s = broken_rectangle(thickness, height);
@@ -224,12 +246,15 @@ void mesh_ribbon(mesh *m, const vector *places, int count, double height, double
     for (int edge = 0; edge < 8; edge++) {
         unsigned before_low = 0, before_high = 0;
         for (int i = 0; i < count; i++) {
-            vector along = direction_at(places, count, i), across = {-along.y, along.x, 0};
+            vector along = direction_at(places, count, i),
+                   across = {-along.y, along.x, 0};
             vector normal = vector_scaled(across, s.normal_across[edge]);
             normal.z = s.normal_up[edge];
-            unsigned low = add_vertex(m, section_point(&s, edge, places[i], across), normal, of);
+            unsigned low =
+                add_vertex(m, section_point(&s, edge, places[i], across), normal, of);
             unsigned high =
-                add_vertex(m, section_point(&s, (edge + 1) % 8, places[i], across), normal, of);
+                add_vertex(m, section_point(&s, (edge + 1) % 8, places[i], across),
+                           normal, of);
 
             if (i > 0) {
                 add_quad(m, before_low, before_high, high, low);
@@ -242,11 +267,13 @@ void mesh_ribbon(mesh *m, const vector *places, int count, double height, double
     // the ends
     if (count > 1) {
         cap_ribbon(m, &s, places[0], direction_at(places, count, 0), false, of);
-        cap_ribbon(m, &s, places[count - 1], direction_at(places, count, count - 1), true, of);
+        cap_ribbon(m, &s, places[count - 1], direction_at(places, count, count - 1), true,
+                   of);
     }
 }
 
-void mesh_tube(mesh *m, const vector *places, const material *of, int count, double radius)
+void mesh_tube(mesh *m, const vector *places, const material *of, int count,
+               double radius)
 {
     unsigned before = 0;
     for (int i = 0; i < count; i++) {
@@ -268,10 +295,12 @@ void mesh_tube(mesh *m, const vector *places, const material *of, int count, dou
     }
 }
 
-void mesh_arrow(mesh *m, vector start, vector direction, double length, double radius, material of)
+void mesh_arrow(mesh *m, vector start, vector direction, double length, double radius,
+                material of)
 {
     assert(length >= 0 && radius > 0);
-    double head = fmin(7 * radius, 0.6 * length), broad = 2.6 * radius * head / (7 * radius);
+    double head = fmin(7 * radius, 0.6 * length),
+           broad = 2.6 * radius * head / (7 * radius);
     double shaft = fmin(radius, 0.5 * broad);
     const lathe_ring rings[] = {
         {0, 0}, {0, shaft}, {length - head, shaft}, {length - head, broad}, {length, 0}};
@@ -280,8 +309,8 @@ void mesh_arrow(mesh *m, vector start, vector direction, double length, double r
 
 // ==== the camera
 
-// Names, and where each camera stands: to the left of the arm's heading, and above the floor.
-// Narrow views keep parallels parallel; a plan is nearly without perspective.
+// Names, and where each camera stands: to the left of the arm's heading, and above the
+// floor. Narrow views keep parallels parallel; a plan is nearly without perspective.
 static const struct {
     const char *name;
     double azimuth, elevation; // [degrees]
@@ -317,11 +346,12 @@ bool camera_read(const char *text, camera_view *view)
     return true;
 }
 
-// The smallest distance, and the sideways place, from which all points lie between two planes:
-// |x_i - side| focal <= distance - z_i needs distance + side focal >= max(x_i focal + z_i) and
-// distance - side focal >= max(z_i - x_i focal).
-static double fit_axis(const vector *points, int count, vector axis, vector back, double focal,
-                       double *side)
+// The smallest distance, and the sideways place, from which all points lie between two
+// planes:
+// |x_i - side| focal <= distance - z_i needs distance + side focal >= max(x_i focal +
+// z_i) and distance - side focal >= max(z_i - x_i focal).
+static double fit_axis(const vector *points, int count, vector axis, vector back,
+                       double focal, double *side)
 {
     double right = -HUGE_VAL, left = -HUGE_VAL;
     for (int i = 0; i < count; i++) {
@@ -333,13 +363,14 @@ static double fit_axis(const vector *points, int count, vector axis, vector back
     return (right + left) / 2;
 }
 
-camera camera_fit(camera_view view, double heading, const vector *points, int count, int width,
-                  int height, camera_window window)
+camera camera_fit(camera_view view, double heading, const vector *points, int count,
+                  int width, int height, camera_window window)
 {
     assert(count > 0 && width > 0 && height > 0);
     // three axes of the view; the half angle is that of the shorter edge
     bool own = view.kind == CAMERA_FREE;
-    double azimuth = heading + (own ? view.azimuth : kinds[view.kind].azimuth) * M_PI / 180;
+    double azimuth =
+        heading + (own ? view.azimuth : kinds[view.kind].azimuth) * M_PI / 180;
     double elevation = (own ? view.elevation : kinds[view.kind].elevation) * M_PI / 180;
     double c = cos(elevation), s = sin(elevation);
     camera out = {.right = {-sin(azimuth), cos(azimuth), 0},
@@ -354,7 +385,8 @@ camera camera_fit(camera_view view, double heading, const vector *points, int co
     // within the window the view is narrower, and its middle is not the picture's
     double share_x = window.right - window.left, share_y = window.bottom - window.top;
 
-    double x, y, far_x = fit_axis(points, count, out.right, out.back, out.focal_x / share_x, &x);
+    double x, y,
+        far_x = fit_axis(points, count, out.right, out.back, out.focal_x / share_x, &x);
     double far_y = fit_axis(points, count, out.up, out.back, out.focal_y / share_y, &y);
     double distance = fmax(far_x, far_y), low = HUGE_VAL, high = -HUGE_VAL, middle;
 
@@ -367,7 +399,8 @@ camera camera_fit(camera_view view, double heading, const vector *points, int co
     middle = (low + high) / 2;
     x -= (window.left + window.right - 1) * middle / out.focal_x;
     y += (window.top + window.bottom - 1) * middle / out.focal_y;
-    out.eye = vector_sum(vector_sum(vector_scaled(out.right, x), y, out.up), distance, out.back);
+    out.eye = vector_sum(vector_sum(vector_scaled(out.right, x), y, out.up), distance,
+                         out.back);
 
     // the points are only the outermost ones of what is seen
     out.nearest = fmax(0.1 * low, low - (high - low));
@@ -380,12 +413,14 @@ vector camera_project(const camera *c, vector point)
     vector to = vector_sum(point, -1, c->eye);
     double depth = -vector_dot(to, c->back);
     return (vector){(1 + c->focal_x * vector_dot(to, c->right) / depth) * c->width / 2,
-                    (1 - c->focal_y * vector_dot(to, c->up) / depth) * c->height / 2, depth};
+                    (1 - c->focal_y * vector_dot(to, c->up) / depth) * c->height / 2,
+                    depth};
 }
 
 vector camera_ray(const camera *c, double x, double y)
 {
-    double across = (2 * x / c->width - 1) / c->focal_x, up = (1 - 2 * y / c->height) / c->focal_y;
+    double across = (2 * x / c->width - 1) / c->focal_x,
+           up = (1 - 2 * y / c->height) / c->focal_y;
     vector ray = vector_scaled(c->back, -1);
     return vector_sum(vector_sum(ray, across, c->right), up, c->up);
 }

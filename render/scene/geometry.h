@@ -1,7 +1,8 @@
-// Geometry of scenes: vectors, solids of arm, wall and arrow as triangles, and the camera.
+// Geometry of scenes: vectors, solids of arm, wall and arrow as triangles, and the
+// camera.
 //
-// Lengths are in metres. Triangles are opaque; solids are closed, so that back faces are not
-// needed.
+// Lengths are in metres. Triangles are opaque; solids are closed, so that back faces are
+// not needed.
 #pragma once
 
 #include <stdbool.h>
@@ -44,27 +45,32 @@ typedef struct lathe_ring {
     double along, radius; // [m]
 } lathe_ring;
 
-// A solid of revolution about the axis (a unit vector) through base, from one circle to the next.
-void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count, material of);
+// A solid of revolution about the axis (a unit vector) through base, from one circle to
+// the next.
+void mesh_lathe(mesh *m, vector base, vector axis, const lathe_ring *rings, int count,
+                material of);
 
 // A box: its centre and half edges.
 typedef struct box {
     vector centre, u, v, w; // [m]
 } box;
 
-// A box whose faces are divided into cells of about the given size, because light is computed only
-// at vertices.
+// A box whose faces are divided into cells of about the given size, because light is
+// computed only at vertices.
 void mesh_box(mesh *m, const box *b, double cell, material of);
 
-// A strip standing on its edge along the points: thickness in the x-y plane, height along z.
-void mesh_ribbon(mesh *m, const vector *places, int count, double height, double thickness,
-                 material of);
+// A strip standing on its edge along the points: thickness in the x-y plane, height along
+// z.
+void mesh_ribbon(mesh *m, const vector *places, int count, double height,
+                 double thickness, material of);
 
 // A tube along the points, with a material for each.
-void mesh_tube(mesh *m, const vector *places, const material *of, int count, double radius);
+void mesh_tube(mesh *m, const vector *places, const material *of, int count,
+               double radius);
 
 // An arrow from start along a unit vector.
-void mesh_arrow(mesh *m, vector start, vector direction, double length, double radius, material of);
+void mesh_arrow(mesh *m, vector start, vector direction, double length, double radius,
+                material of);
 
 // --- the viewpoint, and the projection of points onto the picture
 
@@ -79,8 +85,8 @@ typedef enum camera_kind {
 // The viewpoint of a scene.
 typedef struct camera_view {
     camera_kind kind;
-    double azimuth, elevation; // of CAMERA_FREE: from the arm's heading to the left, and above the
-                               // floor [degrees]
+    double azimuth, elevation; // of CAMERA_FREE: from the arm's heading to the left, and
+                               // above the floor [degrees]
 } camera_view;
 
 typedef struct camera {
@@ -96,16 +102,18 @@ typedef struct camera_window {
     double left, top, right, bottom;
 } camera_window;
 
-// "three-quarter", "top", "side", "tip", or two angles "-60,40" (azimuth -360 to 360, elevation 1
-// to 90); false if it is neither.
+// "three-quarter", "top", "side", "tip", or two angles "-60,40" (azimuth -360 to 360,
+// elevation 1 to 90); false if it is neither.
 bool camera_read(const char *text, camera_view *view);
 
-// The camera of a view that shows all points inside the window, as large as possible. `heading`
-// [rad] is the direction of the arm, so that every arm is seen from the same side.
-camera camera_fit(camera_view view, double heading, const vector *points, int count, int width,
-                  int height, camera_window window);
+// The camera of a view that shows all points inside the window, as large as possible.
+// `heading` [rad] is the direction of the arm, so that every arm is seen from the same
+// side.
+camera camera_fit(camera_view view, double heading, const vector *points, int count,
+                  int width, int height, camera_window window);
 
-// The position of a point on the picture: x to the right and y down [pixels], and its depth [m].
+// The position of a point on the picture: x to the right and y down [pixels], and its
+// depth [m].
 vector camera_project(const camera *c, vector point);
 
 // The ray through a point of the picture: eye + s * returned vector, s > 0.

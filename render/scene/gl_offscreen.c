@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The few names of OpenGL, EGL and OSMesa that are needed, so that no header of theirs is. Values
-// from the Khronos registry and Mesa's GL/osmesa.h.
+// The few names of OpenGL, EGL and OSMesa that are needed, so that no header of theirs
+// is. Values from the Khronos registry and Mesa's GL/osmesa.h.
 enum {
     GL_TRIANGLES = 0x0004,
     GL_DEPTH_TEST = 0x0B71,
@@ -43,27 +43,28 @@ enum {
 };
 
 // Every function of OpenGL that is called: result, name, arguments.
-#define GL_FUNCTIONS(X)                                                                            \
-    X(const unsigned char *, GetString, (unsigned name))                                           \
-    X(void, Viewport, (int x, int y, int width, int height))                                       \
-    X(void, Scissor, (int x, int y, int width, int height))                                        \
-    X(void, Enable, (unsigned what))                                                               \
-    X(void, ClearColor, (float red, float green, float blue, float alpha))                         \
-    X(void, Clear, (unsigned what))                                                                \
-    X(void, ReadPixels,                                                                            \
-      (int x, int y, int width, int height, unsigned format, unsigned type, void *to))             \
-    X(unsigned, GetError, (void))                                                                  \
-    X(void, GenFramebuffers, (int count, unsigned *names))                                         \
-    X(void, BindFramebuffer, (unsigned target, unsigned name))                                     \
-    X(unsigned, CheckFramebufferStatus, (unsigned target))                                         \
-    X(void, GenRenderbuffers, (int count, unsigned *names))                                        \
-    X(void, BindRenderbuffer, (unsigned target, unsigned name))                                    \
-    X(void, RenderbufferStorage, (unsigned target, unsigned format, int width, int height))        \
-    X(void, FramebufferRenderbuffer,                                                               \
-      (unsigned target, unsigned attachment, unsigned kind, unsigned name))                        \
-    X(void, EnableClientState, (unsigned what))                                                    \
-    X(void, VertexPointer, (int size, unsigned type, int stride, const void *from))                \
-    X(void, ColorPointer, (int size, unsigned type, int stride, const void *from))                 \
+#define GL_FUNCTIONS(X)                                                                  \
+    X(const unsigned char *, GetString, (unsigned name))                                 \
+    X(void, Viewport, (int x, int y, int width, int height))                             \
+    X(void, Scissor, (int x, int y, int width, int height))                              \
+    X(void, Enable, (unsigned what))                                                     \
+    X(void, ClearColor, (float red, float green, float blue, float alpha))               \
+    X(void, Clear, (unsigned what))                                                      \
+    X(void, ReadPixels,                                                                  \
+      (int x, int y, int width, int height, unsigned format, unsigned type, void *to))   \
+    X(unsigned, GetError, (void))                                                        \
+    X(void, GenFramebuffers, (int count, unsigned *names))                               \
+    X(void, BindFramebuffer, (unsigned target, unsigned name))                           \
+    X(unsigned, CheckFramebufferStatus, (unsigned target))                               \
+    X(void, GenRenderbuffers, (int count, unsigned *names))                              \
+    X(void, BindRenderbuffer, (unsigned target, unsigned name))                          \
+    X(void, RenderbufferStorage,                                                         \
+      (unsigned target, unsigned format, int width, int height))                         \
+    X(void, FramebufferRenderbuffer,                                                     \
+      (unsigned target, unsigned attachment, unsigned kind, unsigned name))              \
+    X(void, EnableClientState, (unsigned what))                                          \
+    X(void, VertexPointer, (int size, unsigned type, int stride, const void *from))      \
+    X(void, ColorPointer, (int size, unsigned type, int stride, const void *from))       \
     X(void, DrawElements, (unsigned mode, int count, unsigned type, const void *offset))
 
 typedef void (*any_function)(void);
@@ -83,8 +84,8 @@ struct gl_offscreen {
 
 enum { SMALL = 16 }; // edge of the surface that a context insists on [pixels]
 
-// A function of a library; ISO C has no other conversion from an object pointer to a function
-// pointer.
+// A function of a library; ISO C has no other conversion from an object pointer to a
+// function pointer.
 static bool load(void *handle, const char *name, void *function)
 {
     void *found = dlsym(handle, name);
@@ -113,13 +114,14 @@ static status open_osmesa(gl_offscreen *g, fault *f)
     void *(*create)(unsigned, int, int, int, void *);
     g->handle = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
     FAULT_IF(g->handle == NULL, f, STATUS_CANNOT_WRITE,
-             "OSMesa is not installed (libOSMesa.so.8): install libosmesa6, or choose --gl=egl or "
-             "--gl=cairo");
+             "OSMesa is not installed (libOSMesa.so.8): install libosmesa6, or "
+             "choose --gl=egl or --gl=cairo");
 
     // a context without a window
     FAULT_IF(!load(g->handle, "OSMesaCreateContextExt", &create) ||
                  !load(g->handle, "OSMesaGetProcAddress", &g->find),
-             f, STATUS_CANNOT_WRITE, "libOSMesa.so.8 is too old: expected one of Mesa 17 or later");
+             f, STATUS_CANNOT_WRITE,
+             "libOSMesa.so.8 is too old: expected one of Mesa 17 or later");
     g->small = g_malloc0_n(SMALL * SMALL, 4);
     g->context = create(GL_RGBA, 0, 0, 0, NULL);
     FAULT_IF(g->context == NULL || !make_current(g), f, STATUS_CANNOT_WRITE,
@@ -131,13 +133,14 @@ static status open_osmesa(gl_offscreen *g, fault *f)
 
 static status complain_egl(fault *f, const char *what)
 {
-    return fault_set(
-        f, STATUS_CANNOT_WRITE,
-        "EGL %s: install libegl1 and libgl1-mesa-dri, or choose --gl=osmesa or --gl=cairo", what);
+    return fault_set(f, STATUS_CANNOT_WRITE,
+                     "EGL %s: install libegl1 and libgl1-mesa-dri, or choose --gl=osmesa "
+                     "or --gl=cairo",
+                     what);
 }
 
-// The display without a screen. It is kept until the end of the process: closing it would unload
-// drivers that hold memory.
+// The display without a screen. It is kept until the end of the process: closing it would
+// unload drivers that hold memory.
 static void *egl_display(void *handle)
 {
     static void *display;
@@ -165,8 +168,8 @@ static void *egl_display(void *handle)
 
 static status open_egl(gl_offscreen *g, fault *f)
 {
-    static const int config_wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
-                                        EGL_OPENGL_BIT, EGL_NONE};
+    static const int config_wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT,
+                                        EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
     static const int surface_wanted[] = {EGL_WIDTH, SMALL, EGL_HEIGHT, SMALL, EGL_NONE};
     unsigned (*bind)(unsigned), (*choose)(void *, const int *, void **, int, int *);
     void *(*create_context)(void *, void *, void *, const int *);
@@ -175,12 +178,17 @@ static status open_egl(gl_offscreen *g, fault *f)
 
     // the library and its display
     g->handle = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);
-    FAIL_IF(g->handle == NULL, complain_egl(f, "is not installed (libEGL.so.1)"));
+    if (g->handle == NULL) {
+        return complain_egl(f, "is not installed (libEGL.so.1)");
+    }
     g->display = egl_display(g->handle);
-    FAIL_IF(g->display == NULL, complain_egl(f, "gives no display without a screen"));
+    if (g->display == NULL) {
+        return complain_egl(f, "gives no display without a screen");
+    }
 
     // OpenGL and a configuration for small surfaces
-    if (!load(g->handle, "eglBindAPI", &bind) || !load(g->handle, "eglChooseConfig", &choose) ||
+    if (!load(g->handle, "eglBindAPI", &bind) ||
+        !load(g->handle, "eglChooseConfig", &choose) ||
         !load(g->handle, "eglCreateContext", &create_context) ||
         !load(g->handle, "eglCreatePbufferSurface", &create_surface) ||
         !load(g->handle, "eglGetProcAddress", &g->find) || !bind(EGL_OPENGL_API) ||
@@ -190,8 +198,9 @@ static status open_egl(gl_offscreen *g, fault *f)
 
     g->surface = create_surface(g->display, config, surface_wanted);
     g->context = create_context(g->display, config, NULL, NULL);
-    FAIL_IF(g->surface == NULL || g->context == NULL || !make_current(g),
-            complain_egl(f, "gives no context of OpenGL"));
+    if (g->surface == NULL || g->context == NULL || !make_current(g)) {
+        return complain_egl(f, "gives no context of OpenGL");
+    }
     return STATUS_OK;
 }
 
@@ -201,9 +210,9 @@ static bool load_functions(gl_offscreen *g)
 {
     any_function found;
     bool all = true;
-#define GL_LOAD(result, name, arguments)                                                           \
-    found = g->find("gl" #name);                                                                   \
-    memcpy(&g->name, &found, sizeof found);                                                        \
+#define GL_LOAD(result, name, arguments)                                                 \
+    found = g->find("gl" #name);                                                         \
+    memcpy(&g->name, &found, sizeof found);                                              \
     all = all && found != NULL;
     GL_FUNCTIONS(GL_LOAD)
 #undef GL_LOAD
@@ -222,7 +231,8 @@ static bool make_framebuffer(gl_offscreen *g)
     for (int i = 0; i < 2; i++) {
         g->BindRenderbuffer(GL_RENDERBUFFER, buffers[i]);
         g->RenderbufferStorage(GL_RENDERBUFFER, formats[i], g->width, g->height);
-        g->FramebufferRenderbuffer(GL_FRAMEBUFFER, places[i], GL_RENDERBUFFER, buffers[i]);
+        g->FramebufferRenderbuffer(GL_FRAMEBUFFER, places[i], GL_RENDERBUFFER,
+                                   buffers[i]);
     }
     return g->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
@@ -232,14 +242,20 @@ static status set_up(gl_offscreen *g, char name[RENDERER_NAME], fault *f)
     const char *library = g->library == RENDER_OSMESA ? "OSMesa" : "EGL";
 
     // a context with OpenGL's functions
-    TRY(g->library == RENDER_OSMESA ? open_osmesa(g, f) : open_egl(g, f));
-    FAULT_IF(!load_functions(g), f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3", library);
+    if (g->library == RENDER_OSMESA) {
+        TRY(open_osmesa(g, f));
+    } else {
+        TRY(open_egl(g, f));
+    }
+    FAULT_IF(!load_functions(g), f, STATUS_CANNOT_WRITE, "%s lacks functions of OpenGL 3",
+             library);
     FAULT_IF(!make_framebuffer(g), f, STATUS_CANNOT_WRITE,
              "%s cannot draw a picture of %d x %d pixels", library, g->width, g->height);
 
     // what draws, as the picture's notes name it
     snprintf(name, RENDERER_NAME, "%s, %s, OpenGL %s", library,
-             (const char *)g->GetString(GL_RENDERER), (const char *)g->GetString(GL_VERSION));
+             (const char *)g->GetString(GL_RENDERER),
+             (const char *)g->GetString(GL_VERSION));
     g->Enable(GL_DEPTH_TEST);
     g->Enable(GL_SCISSOR_TEST);
     g->EnableClientState(GL_VERTEX_ARRAY);
@@ -248,8 +264,8 @@ static status set_up(gl_offscreen *g, char name[RENDERER_NAME], fault *f)
     return STATUS_OK;
 }
 
-status gl_offscreen_create(gl_offscreen **out, scene_renderer library, int width, int height,
-                           char name[RENDERER_NAME], fault *f)
+status gl_offscreen_create(gl_offscreen **out, scene_renderer library, int width,
+                           int height, char name[RENDERER_NAME], fault *f)
 {
     assert(width > 0 && height > 0);
     g_autoptr(gl_offscreen) g = g_new0(gl_offscreen, 1);
@@ -292,8 +308,8 @@ void gl_offscreen_destroy(gl_offscreen *g)
     g_free(g);
 }
 
-status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box region, uint32_t *pixels,
-                         fault *f)
+status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box region,
+                         uint32_t *pixels, fault *f)
 {
     FAULT_IF(!make_current(g), f, STATUS_CANNOT_WRITE, "OpenGL's context is lost");
 
@@ -311,6 +327,7 @@ status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box regio
 
     // one question for all calls
     unsigned error = g->GetError();
-    FAULT_IF(error != 0, f, STATUS_CANNOT_WRITE, "OpenGL refused to draw (error 0x%x)", error);
+    FAULT_IF(error != 0, f, STATUS_CANNOT_WRITE, "OpenGL refused to draw (error 0x%x)",
+             error);
     return STATUS_OK;
 }

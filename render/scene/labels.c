@@ -13,7 +13,10 @@
 double labels_scale(const scene *sc)
 {
     const double own = sc->options.letters;
-    return own > 0 ? own : fmin(sc->camera.height / 720, sc->camera.width / 800);
+    if (own > 0) {
+        return own;
+    }
+    return fmin(sc->camera.height / 720, sc->camera.width / 800);
 }
 
 // A line of facts.
@@ -22,7 +25,8 @@ static text_block fact(const scene *sc, const char *markup)
     return (text_block){.markup = markup, .size = FACT_LETTERS * labels_scale(sc)};
 }
 
-static void draw_text(const scene *sc, cairo_t *cr, text_block t, double x, double y, colour ink)
+static void draw_text(const scene *sc, cairo_t *cr, text_block t, double x, double y,
+                      colour ink)
 {
     text_put(cr, sc->context, &t, x, y, (anchor){0, 0}, ink);
 }
@@ -32,7 +36,8 @@ double labels_pixels(const camera *c, vector place, double length)
     return length * c->focal_y * c->height / 2 / camera_project(c, place).z;
 }
 
-void labels_flash(const scene *sc, cairo_t *cr, vector place, double radius, double strength)
+void labels_flash(const scene *sc, cairo_t *cr, vector place, double radius,
+                  double strength)
 {
     assert(radius > 0);
     enum { RAYS = 12 };
@@ -65,11 +70,16 @@ void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double 
 {
     static const colour light = {0.70, 0.28, 0}, dark = {1, 0.62, 0.30};
     // text and its size
-    g_autofree char *text = text_printf("%.*f\u2009N", force < 10 ? 2 : force < 100 ? 1 : 0, force);
+    g_autofree char *text = text_printf("%.*f\u2009N",
+                                        force < 10    ? 2
+                                        : force < 100 ? 1
+                                                      : 0,
+                                        force);
     const double scale = labels_scale(sc);
     const text_block t = {.markup = text, .size = TITLE_LETTERS * scale, .bold = true};
     const text_size size = text_measure(sc->context, &t);
-    vector start = camera_project(&sc->camera, from), tip = camera_project(&sc->camera, end);
+    vector start = camera_project(&sc->camera, from),
+           tip = camera_project(&sc->camera, end);
     double dx = tip.x - start.x, dy = tip.y - start.y, length = fmax(1e-9, hypot(dx, dy));
 
     // beyond the arrow's point, the box touching a circle round it
@@ -105,14 +115,16 @@ void labels_inset(const scene *sc, cairo_t *cr, double left, double bottom, doub
 {
     assert(larger > 0);
     g_autofree char *text = text_printf("contact, %.1f times", larger);
-    draw_text(sc, cr, fact(sc, text), left, bottom + 4 * labels_scale(sc), sc->around->faint);
+    draw_text(sc, cr, fact(sc, text), left, bottom + 4 * labels_scale(sc),
+              sc->around->faint);
 }
 
-void labels_instants(const scene *sc, cairo_t *cr, const double *times, const colour *inks,
-                     int count)
+void labels_instants(const scene *sc, cairo_t *cr, const double *times,
+                     const colour *inks, int count)
 {
     assert(count > 0);
-    const double scale = labels_scale(sc), swatch = 26 * scale, step = FACT_LETTERS * 1.55 * scale;
+    const double scale = labels_scale(sc), swatch = 26 * scale,
+                 step = FACT_LETTERS * 1.55 * scale;
     double bottom = sc->camera.height - MARGIN * scale, width = 0;
     double right = sc->camera.width - MARGIN * scale;
 
@@ -130,8 +142,8 @@ void labels_instants(const scene *sc, cairo_t *cr, const double *times, const co
         const text_size own = text_measure(sc->context, &t);
         draw_text(sc, cr, t, right - own.width, y, sc->around->faint);
         set_colour(cr, inks[i]);
-        cairo_rectangle(cr, right - width - 10 * scale - swatch, y + own.height / 2 - 2.5 * scale,
-                        swatch, 5 * scale);
+        cairo_rectangle(cr, right - width - 10 * scale - swatch,
+                        y + own.height / 2 - 2.5 * scale, swatch, 5 * scale);
         cairo_fill(cr);
     }
 }

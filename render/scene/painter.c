@@ -16,26 +16,30 @@ bool scene_renderer_find(const char *name, scene_renderer *which)
     return false;
 }
 
-status scene_painter_create(scene_painter **out, scene_renderer which, int width, int height,
-                            int samples, fault *f)
+status scene_painter_create(scene_painter **out, scene_renderer which, int width,
+                            int height, int samples, fault *f)
 {
     assert(width > 0 && height > 0 && samples > 0);
     g_autoptr(scene_painter) p = g_new0(scene_painter, 1);
     status code = STATUS_OK;
     *out = NULL;
-    snprintf(p->name, sizeof p->name, "cairo %s, own depth buffer", cairo_version_string());
+    snprintf(p->name, sizeof p->name, "cairo %s, own depth buffer",
+             cairo_version_string());
 
     // the renderer asked for, or the first that is there; OSMesa needs no driver
     for (scene_renderer r = RENDER_OSMESA; r <= RENDER_EGL && p->gl == NULL; r++) {
         if (which == r || which == RENDER_AUTO) {
-            code = gl_offscreen_create(&p->gl, r, samples * width, samples * height, p->name, f);
+            code = gl_offscreen_create(&p->gl, r, samples * width, samples * height,
+                                       p->name, f);
         }
     }
 
     // drawing by hand needs only memory
-    TRY(which == RENDER_AUTO ? STATUS_OK : code);
-    FAULT_IF(!samples_init(&p->samples, width, height, samples, p->gl == NULL), f, STATUS_NO_MEMORY,
-             "no memory for a scene of %d x %d pixels", width, height);
+    if (which != RENDER_AUTO) {
+        TRY(code);
+    }
+    FAULT_IF(!samples_init(&p->samples, width, height, samples, p->gl == NULL), f,
+             STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", width, height);
     *out = g_steal_pointer(&p);
     return STATUS_OK;
 }
@@ -69,9 +73,10 @@ static float to_screen(double light)
     return (float)pow(fmin(1, fmax(0, light)), 1 / 2.2);
 }
 
-// The colour in which the camera sees a vertex: light from the sky, a lamp and a weaker one across,
-// and the lamp's highlight (Blinn 1977).
-static void light_vertex(const mesh_vertex *v, const camera *c, vector light, float rgba[4])
+// The colour in which the camera sees a vertex: light from the sky, a lamp and a weaker
+// one across, and the lamp's highlight (Blinn 1977).
+static void light_vertex(const mesh_vertex *v, const camera *c, vector light,
+                         float rgba[4])
 {
     vector view = vector_unit(vector_sum(c->eye, -1, v->place));
 
@@ -80,10 +85,12 @@ static void light_vertex(const mesh_vertex *v, const camera *c, vector light, fl
     vector across = vector_unit((vector){-light.x, -light.y, 0.4});
     double fill = fmax(0, vector_dot(v->normal, across));
     double sky = 0.5 + 0.5 * v->normal.z;
-    double sum = AMBIENT_GROUND + (AMBIENT_SKY - AMBIENT_GROUND) * sky + LAMP * lamp + FILL * fill;
+    double sum =
+        AMBIENT_GROUND + (AMBIENT_SKY - AMBIENT_GROUND) * sky + LAMP * lamp + FILL * fill;
 
     // brightest where the normal halves the angle between lamp and eye
-    double highlight = fmax(0, vector_dot(v->normal, vector_unit(vector_add(light, view))));
+    double highlight =
+        fmax(0, vector_dot(v->normal, vector_unit(vector_add(light, view))));
     double shine = HIGHLIGHT * v->material.shine * pow(highlight, HIGHLIGHT_EDGE);
 
     // lights add up in linear colours only
@@ -95,8 +102,8 @@ static void light_vertex(const mesh_vertex *v, const camera *c, vector light, fl
 
 // ---- pictures
 
-// Lights the vertices and finds their places: clip coordinates whose w is the depth. Returns the
-// pixels that they cover.
+// Lights the vertices and finds their places: clip coordinates whose w is the depth.
+// Returns the pixels that they cover.
 static pixel_box project(scene_painter *p, const mesh *m, const camera *c, vector light)
 {
     double left = p->samples.width, right = 0, top = p->samples.height, bottom = 0;
@@ -110,7 +117,8 @@ static pixel_box project(scene_painter *p, const mesh *m, const camera *c, vecto
         v->place[0] = (float)((2 * at.x / c->width - 1) * at.z);
         v->place[1] = (float)((2 * at.y / c->height - 1) * at.z);
         v->place[2] =
-            (float)(((c->farthest + c->nearest) * at.z - 2 * c->farthest * c->nearest) / span);
+            (float)(((c->farthest + c->nearest) * at.z - 2 * c->farthest * c->nearest) /
+                    span);
         v->place[3] = (float)at.z;
         light_vertex(&m->vertices[i], c, light, v->colour);
 
@@ -128,7 +136,8 @@ static pixel_box project(scene_painter *p, const mesh *m, const camera *c, vecto
     return (pixel_box){x, y, x_end - x, y_end - y};
 }
 
-status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface_t *onto, fault *f)
+status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface_t *onto,
+                           fault *f)
 {
     assert(what->opacity >= 0 && what->opacity <= 1);
     const mesh *m = what->mesh;

@@ -67,7 +67,8 @@ static colour paler(const painter *g, colour c, double share)
 }
 
 // A disc with a rim of the present colour, paler inside.
-static void disc(const painter *g, double x, double y, double radius, colour c, double share)
+static void disc(const painter *g, double x, double y, double radius, colour c,
+                 double share)
 {
     cairo_new_path(g->cr);
     cairo_arc(g->cr, x, y, radius, 0, 2 * M_PI);
@@ -77,7 +78,7 @@ static void disc(const painter *g, double x, double y, double radius, colour c, 
     picture_stroke(g->cr);
 }
 
-// --- what stands still ------------------------------------------------------------------------
+// --- what stands still -----------------------------------------------------------------
 
 // Short strokes behind a line, from (x, y) on along (dx, dy) [pixels].
 static void hatch(const painter *g, double x, double y, double dx, double dy)
@@ -92,8 +93,8 @@ static void hatch(const painter *g, double x, double y, double dx, double dy)
     picture_stroke(g->cr);
 }
 
-// A flat wall lies along the arm, on the far side of it; any wall has the place where the tip meets
-// it.
+// A flat wall lies along the arm, on the far side of it; any wall has the place where the
+// tip meets it.
 static void paint_wall(const painter *g)
 {
     const parameters *p = g->plan->parameters;
@@ -109,12 +110,14 @@ static void paint_wall(const painter *g)
     const double hub_x = plan_x(g->view, shift.x), hub_y = plan_y(g->view, shift.y);
     const double tip_x = plan_x(g->view, l * cos(p->wall.angle) + shift.x);
     const double tip_y = plan_y(g->view, l * sin(p->wall.angle) + shift.y);
-    const double along_x = tip_x - hub_x, along_y = tip_y - hub_y, length = hypot(along_x, along_y);
+    const double along_x = tip_x - hub_x, along_y = tip_y - hub_y,
+                 length = hypot(along_x, along_y);
     const double nx = along_y / length, ny = -along_x / length;
     if (p->wall.kind == WALL_PLANE) {
         const double from_x = hub_x + SLAB_FROM * along_x + off * nx;
         const double from_y = hub_y + SLAB_FROM * along_y + off * ny;
-        const double dx = (SLAB_TO - SLAB_FROM) * along_x, dy = (SLAB_TO - SLAB_FROM) * along_y;
+        const double dx = (SLAB_TO - SLAB_FROM) * along_x,
+                     dy = (SLAB_TO - SLAB_FROM) * along_y;
         pen(g, wall, 1);
         hatch(g, from_x, from_y, dx, dy);
         pen(g, wall, 2);
@@ -128,7 +131,7 @@ static void paint_wall(const painter *g)
     disc(g, tip_x + (off + radius) * nx, tip_y + (off + radius) * ny, radius, wall, 0.5);
 }
 
-// --- the arm ----------------------------------------------------------------------------------
+// --- the arm ---------------------------------------------------------------------------
 
 // The beam's curve at an instant of a run as cairo's path; returns the row there.
 static sample beam_path(const painter *g, const trace *rows)
@@ -139,16 +142,20 @@ static sample beam_path(const painter *g, const trace *rows)
     const int count = scene_curve(g->joints, links, g->curve);
     cairo_new_path(g->cr);
     for (int i = 0; i < count; i++) {
-        cairo_line_to(g->cr, plan_x(g->view, g->curve[i].x), plan_y(g->view, g->curve[i].y));
+        cairo_line_to(g->cr, plan_x(g->view, g->curve[i].x),
+                      plan_y(g->view, g->curve[i].y));
     }
     return row;
 }
 
-// The wall's force on the tip: an arrow that points at it, as long as its share of the peak.
+// The wall's force on the tip: an arrow that points at it, as long as its share of the
+// peak.
 static void paint_force(const painter *g, double x, double y, const sample *row)
 {
-    const double share = row->contact > 0 && g->plan->peak > 0 ? row->force / g->plan->peak : 0;
-    const double length = 0.42 * g->view->height * fmin(share, 1), head = fmin(10, length);
+    const double share =
+        row->contact > 0 && g->plan->peak > 0 ? row->force / g->plan->peak : 0;
+    const double length = 0.42 * g->view->height * fmin(share, 1),
+                 head = fmin(10, length);
     const double off = 0.5 * size_of(g, BEAM_WIDTH, 3) + 1;
     if (!(length > 1)) {
         return;
@@ -166,17 +173,26 @@ static void paint_force(const painter *g, double x, double y, const sample *row)
 // The spring that pulls at the tip: a zigzag between straight ends.
 static void paint_pull(const painter *g, double x, double y)
 {
-    const double to_x = plan_x(g->view, g->plan->pull_x), to_y = plan_y(g->view, g->plan->pull_y);
+    const double to_x = plan_x(g->view, g->plan->pull_x),
+                 to_y = plan_y(g->view, g->plan->pull_y);
     const double length = hypot(to_x - x, to_y - y);
     if (!g->plan->pulled || !(length > 1)) {
         return;
     }
-    const double ux = (to_x - x) / length, uy = (to_y - y) / length, wide = fmin(6, 0.2 * length);
+    const double ux = (to_x - x) / length, uy = (to_y - y) / length,
+                 wide = fmin(6, 0.2 * length);
     pen(g, g->plan->colours.force, 1.5);
     cairo_move_to(g->cr, x, y);
     for (int i = 0; i <= COIL_TURNS; i++) {
         const double along = length * (0.1 + 0.8 * i / COIL_TURNS);
-        const double across = i == 0 || i == COIL_TURNS ? 0 : i % 2 ? wide : -wide;
+        double across = 0;
+        if (!(i == 0 || i == COIL_TURNS)) {
+            if (i % 2) {
+                across = wide;
+            } else {
+                across = -wide;
+            }
+        }
         cairo_line_to(g->cr, x + along * ux - across * uy, y + along * uy + across * ux);
     }
     cairo_line_to(g->cr, to_x, to_y);
@@ -191,7 +207,8 @@ static void paint_all(const painter *g)
     const int links = p->parameters->arm.links;
     const double beam = size_of(g, BEAM_WIDTH, 3);
 
-    // from the back to the front: the wall, the other run, the hub, the beam and its forces
+    // from the back to the front: the wall, the other run, the hub, the beam and its
+    // forces
     paint_wall(g);
     if (p->other != NULL) {
         beam_path(g, p->other);
@@ -218,7 +235,8 @@ static void paint_all(const painter *g)
     pen(g, paler(g, p->colours.arm, 0.45), fmax(1, beam - 3));
     picture_stroke(g->cr);
 
-    const double x = plan_x(g->view, g->joints[links].x), y = plan_y(g->view, g->joints[links].y);
+    const double x = plan_x(g->view, g->joints[links].x),
+                 y = plan_y(g->view, g->joints[links].y);
     paint_force(g, x, y, &row);
     paint_pull(g, x, y);
 }

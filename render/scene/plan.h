@@ -31,8 +31,8 @@ typedef struct plan {
 // Paints the plan over the whole picture, from the origin of the cairo context.
 void plan_paint(cairo_t *cr, const plan *p, const plan_view *v);
 
-// A close-up of the contact: the point where the tip meets the wall is in the middle of a picture
-// of this size [pixels], undistorted.
+// A close-up of the contact: the point where the tip meets the wall is in the middle of a
+// picture of this size [pixels], undistorted.
 plan_view plan_close_up(const parameters *p, double width, double height);
 
 // The position of a point [m] on the picture [pixels, down from its upper edge].

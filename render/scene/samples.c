@@ -24,7 +24,11 @@ bool samples_init(sample_buffer *b, int width, int height, int samples, bool dep
     const size_t count = (size_t)(samples * width) * (size_t)(samples * height) + FOUR;
     b->pixels = calloc(count, sizeof *b->pixels);
     b->touched = malloc((size_t)b->tiles_across * (size_t)b->tiles_down);
-    b->depths = depths ? malloc(count * sizeof *b->depths) : NULL;
+    if (depths) {
+        b->depths = malloc(count * sizeof *b->depths);
+    } else {
+        b->depths = NULL;
+    }
     for (size_t i = 0; i < count && b->depths != NULL; i++) {
         b->depths[i] = FARTHEST;
     }
@@ -46,15 +50,18 @@ typedef struct flat_triangle {
     float x[3], y[3], twice_area;
 } flat_triangle;
 
-// A quantity that is linear over the picture: value at the first corner and growth per sample.
+// A quantity that is linear over the picture: value at the first corner and growth per
+// sample.
 typedef struct ramp {
     float start, right, down;
 } ramp;
 
 static ramp ramp_of(const flat_triangle *t, float a, float b, float c)
 {
-    float right = ((b - a) * (t->y[2] - t->y[0]) - (c - a) * (t->y[1] - t->y[0])) / t->twice_area;
-    float down = ((c - a) * (t->x[1] - t->x[0]) - (b - a) * (t->x[2] - t->x[0])) / t->twice_area;
+    float right =
+        ((b - a) * (t->y[2] - t->y[0]) - (c - a) * (t->y[1] - t->y[0])) / t->twice_area;
+    float down =
+        ((c - a) * (t->x[1] - t->x[0]) - (b - a) * (t->x[2] - t->x[0])) / t->twice_area;
     return (ramp){a - right * t->x[0] - down * t->y[0], right, down};
 }
 
@@ -65,7 +72,13 @@ static float ramp_at(ramp r, float x, float y)
 
 static int bounded(float value, int most)
 {
-    return value <= 0 ? 0 : value >= (float)most ? most : (int)value;
+    if (value <= 0) {
+        return 0;
+    }
+    if (value >= (float)most) {
+        return most;
+    }
+    return (int)value;
 }
 
 static float least(const float v[3])
@@ -78,7 +91,8 @@ static float greatest(const float v[3])
     return fmaxf(v[0], fmaxf(v[1], v[2]));
 }
 
-// Corners of a triangle in samples; false if it is seen from behind, or edge-on, and shows nothing.
+// Corners of a triangle in samples; false if it is seen from behind, or edge-on, and
+// shows nothing.
 static bool flatten(const sample_buffer *b, const gl_vertex *const v[3], flat_triangle *t)
 {
     for (size_t k = 0; k < 3; k++) {
@@ -86,8 +100,8 @@ static bool flatten(const sample_buffer *b, const gl_vertex *const v[3], flat_tr
         t->x[k] = (at[0] / at[3] + 1) * (float)(b->width * b->samples) / 2;
         t->y[k] = (at[1] / at[3] + 1) * (float)(b->height * b->samples) / 2;
     }
-    t->twice_area =
-        (t->x[1] - t->x[0]) * (t->y[2] - t->y[0]) - (t->x[2] - t->x[0]) * (t->y[1] - t->y[0]);
+    t->twice_area = (t->x[1] - t->x[0]) * (t->y[2] - t->y[0]) -
+                    (t->x[2] - t->x[0]) * (t->y[1] - t->y[0]);
     // corners run counterclockwise as seen from outside, and y points down
     return t->twice_area < -1e-6F;
 }
@@ -101,15 +115,17 @@ static void touch_tiles(sample_buffer *b, const flat_triangle *t)
     int top = bounded(least(t->y) / tile, b->tiles_down - 1);
     int bottom = bounded(greatest(t->y) / tile, b->tiles_down - 1);
     for (int row = top; row <= bottom; row++) {
-        memset(b->touched + (ptrdiff_t)row * b->tiles_across + left, 1, (size_t)(right - left + 1));
+        memset(b->touched + (ptrdiff_t)row * b->tiles_across + left, 1,
+               (size_t)(right - left + 1));
     }
 }
 
-// What changes linearly over a triangle: its corners' shares, colour and depth; and where a share
-// crosses zero in a row, from its value in the first column.
+// What changes linearly over a triangle: its corners' shares, colour and depth; and where
+// a share crosses zero in a row, from its value in the first column.
 typedef struct triangle_ramps {
     ramp share[3], tint[3], depth;
-    float column[3]; // columns per unit of the share, away from its value; 0: it never crosses
+    float column[3]; // columns per unit of the share, away from its value; 0: it never
+                     // crosses
 } triangle_ramps;
 
 static triangle_ramps ramps_of(const flat_triangle *t, const gl_vertex *const v[3])
@@ -117,7 +133,11 @@ static triangle_ramps ramps_of(const flat_triangle *t, const gl_vertex *const v[
     triangle_ramps r;
     for (int k = 0; k < 3; k++) {
         r.share[k] = ramp_of(t, k == 0, k == 1, k == 2);
-        r.column[k] = r.share[k].right != 0 ? -1 / r.share[k].right : 0;
+        if (r.share[k].right != 0) {
+            r.column[k] = -1 / r.share[k].right;
+        } else {
+            r.column[k] = 0;
+        }
         r.tint[k] = ramp_of(t, v[0]->colour[k], v[1]->colour[k], v[2]->colour[k]);
     }
     r.depth = ramp_of(t, v[0]->place[2] / v[0]->place[3], v[1]->place[2] / v[1]->place[3],
@@ -125,8 +145,8 @@ static triangle_ramps ramps_of(const flat_triangle *t, const gl_vertex *const v[
     return r;
 }
 
-// Narrows the columns [*from, *to) of a row to those that may be inside the triangle, some to
-// spare.
+// Narrows the columns [*from, *to) of a row to those that may be inside the triangle,
+// some to spare.
 static void narrow(const triangle_ramps *r, float y, int *from, int *to)
 {
     for (int k = 0; k < 3; k++) {
@@ -134,17 +154,22 @@ static void narrow(const triangle_ramps *r, float y, int *from, int *to)
         const float crossing = value * r->column[k];
         if (right > 0) {
             int first = bounded(crossing - 1, *to);
-            *from = first > *from ? first : *from;
+            if (first > *from) {
+                *from = first;
+            }
         } else if (right < 0) {
             int end = bounded(crossing + 3, *to);
-            *to = end < *to ? end : *to;
+            if (end < *to) {
+                *to = end;
+            }
         } else if (value < 0) {
             *to = *from;
         }
     }
 }
 
-// Four columns at once: numbers, and whole numbers or what holds (all bits) and what does not.
+// Four columns at once: numbers, and whole numbers or what holds (all bits) and what does
+// not.
 typedef float four __attribute__((vector_size(16)));
 typedef int32_t four_bits __attribute__((vector_size(16)));
 
@@ -167,10 +192,10 @@ static inline four_bits channels(four shade)
     return __builtin_convertvector(shade * 255 + 0.5F, four_bits);
 }
 
-// Fills the columns [from, to) of a row that are inside the triangle and nearer than what is there.
-// Up to three columns after them are read, and written as they were.
-static void fill_columns(uint32_t *pixels, float *depths, const triangle_ramps *r, float y,
-                         int from, int to)
+// Fills the columns [from, to) of a row that are inside the triangle and nearer than what
+// is there. Up to three columns after them are read, and written as they were.
+static void fill_columns(uint32_t *pixels, float *depths, const triangle_ramps *r,
+                         float y, int from, int to)
 {
     const four_bits steps = {0, 1, 2, 3};
     const int opaque = (int)0xFF000000U;
@@ -184,8 +209,8 @@ static void fill_columns(uint32_t *pixels, float *depths, const triangle_ramps *
         // inside, and nearer than what is there
         four z = four_at(r->depth, x, y);
         four_bits seen = (columns < to) & (four_at(r->share[0], x, y) >= 0) &
-                         (four_at(r->share[1], x, y) >= 0) & (four_at(r->share[2], x, y) >= 0) &
-                         (z < there);
+                         (four_at(r->share[1], x, y) >= 0) &
+                         (four_at(r->share[2], x, y) >= 0) & (z < there);
 
         four_bits rgb = opaque | channels(four_at(r->tint[0], x, y)) << 16 |
                         channels(four_at(r->tint[1], x, y)) << 8 |
@@ -197,8 +222,10 @@ static void fill_columns(uint32_t *pixels, float *depths, const triangle_ramps *
     }
 }
 
-// Fills the samples with centres inside the triangle that are nearer than their present depth.
-static void fill_triangle(sample_buffer *b, const flat_triangle *t, const gl_vertex *const v[3])
+// Fills the samples with centres inside the triangle that are nearer than their present
+// depth.
+static void fill_triangle(sample_buffer *b, const flat_triangle *t,
+                          const gl_vertex *const v[3])
 {
     const int width = b->samples * b->width, height = b->samples * b->height;
     const triangle_ramps ramps = ramps_of(t, v);
@@ -211,8 +238,8 @@ static void fill_triangle(sample_buffer *b, const flat_triangle *t, const gl_ver
         float y = (float)row + 0.5F;
         int from = left, to = right;
         narrow(&ramps, y, &from, &to);
-        fill_columns(b->pixels + (ptrdiff_t)row * width, b->depths + (ptrdiff_t)row * width, &ramps,
-                     y, from, to);
+        fill_columns(b->pixels + (ptrdiff_t)row * width,
+                     b->depths + (ptrdiff_t)row * width, &ramps, y, from, to);
     }
 }
 
@@ -221,7 +248,8 @@ void samples_take(sample_buffer *b, const gl_triangles *t)
     memset(b->touched, 0, (size_t)b->tiles_across * (size_t)b->tiles_down);
     for (size_t i = 0; i + 2 < t->corner_count; i += 3) {
         flat_triangle flat;
-        const gl_vertex *const v[3] = {&t->vertices[t->corners[i]], &t->vertices[t->corners[i + 1]],
+        const gl_vertex *const v[3] = {&t->vertices[t->corners[i]],
+                                       &t->vertices[t->corners[i + 1]],
                                        &t->vertices[t->corners[i + 2]]};
         if (flatten(b, v, &flat)) {
             touch_tiles(b, &flat);
@@ -243,8 +271,8 @@ typedef struct column_sums {
 } column_sums;
 
 // Adds up `samples` rows of `count` columns.
-static void add_rows(column_sums *sums, const uint32_t *first, ptrdiff_t across, int samples,
-                     int count)
+static void add_rows(column_sums *sums, const uint32_t *first, ptrdiff_t across,
+                     int samples, int count)
 {
     for (int i = 0; i < count; i++) {
         sums->even[i] = first[i] & PAIR;
@@ -289,44 +317,55 @@ static uint32_t over(uint32_t upper, uint32_t below)
 }
 
 // Lays the means of a tile's samples over the picture.
-static void lay_tile(const sample_buffer *b, pixel_box region, pixel_box tile, uint32_t opacity,
-                     cairo_surface_t *onto)
+static void lay_tile(const sample_buffer *b, pixel_box region, pixel_box tile,
+                     uint32_t opacity, cairo_surface_t *onto)
 {
     unsigned char *data = cairo_image_surface_get_data(onto);
-    ptrdiff_t stride = cairo_image_surface_get_stride(onto), across = b->samples * region.width;
+    ptrdiff_t stride = cairo_image_surface_get_stride(onto),
+              across = b->samples * region.width;
     column_sums sums;
 
     for (int row = 0; row < tile.height; row++) {
         uint32_t *to = (uint32_t *)(void *)(data + (tile.y + row) * stride) + tile.x;
-        const uint32_t *first = b->pixels + b->samples * (tile.y + row - region.y) * across +
+        const uint32_t *first = b->pixels +
+                                b->samples * (tile.y + row - region.y) * across +
                                 (ptrdiff_t)b->samples * (tile.x - region.x);
         add_rows(&sums, first, across, b->samples, b->samples * tile.width);
         for (int i = 0; i < tile.width; i++) {
             uint32_t mean = mean_of(&sums, b->samples * i, b->samples, opacity);
-            to[i] = mean != 0 ? over(mean, to[i]) : to[i];
+            if (mean != 0) {
+                to[i] = over(mean, to[i]);
+            }
         }
     }
 }
 
-void samples_lay_over(sample_buffer *b, pixel_box region, double opacity, cairo_surface_t *onto)
+void samples_lay_over(sample_buffer *b, pixel_box region, double opacity,
+                      cairo_surface_t *onto)
 {
     assert(opacity >= 0 && opacity <= 1);
     const uint32_t share = (uint32_t)(256 * opacity + 0.5);
     cairo_surface_flush(onto);
     for (int i = 0; i < b->tiles_across * b->tiles_down; i++) {
         // the part of the tile within the region
-        const int x = i % b->tiles_across * SAMPLE_TILE, y = i / b->tiles_across * SAMPLE_TILE;
-        const int left = MAX(x, region.x), right = MIN(x + SAMPLE_TILE, region.x + region.width);
-        const int top = MAX(y, region.y), bottom = MIN(y + SAMPLE_TILE, region.y + region.height);
+        const int x = i % b->tiles_across * SAMPLE_TILE,
+                  y = i / b->tiles_across * SAMPLE_TILE;
+        const int left = MAX(x, region.x),
+                  right = MIN(x + SAMPLE_TILE, region.x + region.width);
+        const int top = MAX(y, region.y),
+                  bottom = MIN(y + SAMPLE_TILE, region.y + region.height);
         if (!b->touched[i] || right <= left || bottom <= top) {
             continue;
         }
-        lay_tile(b, region, (pixel_box){left, top, right - left, bottom - top}, share, onto);
+        lay_tile(b, region, (pixel_box){left, top, right - left, bottom - top}, share,
+                 onto);
 
         // its samples are empty and far again
         const size_t count = (size_t)(b->samples * (right - left));
-        for (int row = b->samples * top; row < b->samples * bottom && b->depths != NULL; row++) {
-            ptrdiff_t at = (ptrdiff_t)row * b->samples * b->width + (ptrdiff_t)b->samples * left;
+        for (int row = b->samples * top; row < b->samples * bottom && b->depths != NULL;
+             row++) {
+            ptrdiff_t at =
+                (ptrdiff_t)row * b->samples * b->width + (ptrdiff_t)b->samples * left;
             memset(b->pixels + at, 0, count * sizeof *b->pixels);
             for (size_t k = 0; k < count; k++) {
                 b->depths[at + (ptrdiff_t)k] = FARTHEST;

@@ -1,4 +1,5 @@
-// A scene: the arm's shape over time, the meshes of arm, wall and arrow, camera, light and floor.
+// A scene: the arm's shape over time, the meshes of arm, wall and arrow, camera, light
+// and floor.
 #include <assert.h>
 #include <math.h>
 
@@ -30,7 +31,8 @@ sample scene_joints(const trace *t, const parameters *p, double time, vector *jo
     joints[0] = (vector){0};
     for (size_t k = 0; k < links; k++) {
         double angle = between(a[k], b[k], share);
-        joints[k + 1] = vector_sum(joints[k], lengths[k], (vector){cos(angle), sin(angle), 0});
+        joints[k + 1] =
+            vector_sum(joints[k], lengths[k], (vector){cos(angle), sin(angle), 0});
     }
 
     // the row between the two
@@ -65,7 +67,10 @@ void scene_exaggerate(vector *joints, int links, double factor)
 static int pieces_of_span(int links)
 {
     int spans = links > 1 ? links - 1 : 1, pieces = CURVE_PIECES / spans;
-    return pieces > 1 ? pieces : 1;
+    if (pieces > 1) {
+        return pieces;
+    }
+    return 1;
 }
 
 int scene_curve_length(int links)
@@ -79,11 +84,13 @@ int scene_curve(const vector *joints, int links, vector *curve)
     int spans = links > 1 ? links - 1 : 1, pieces = pieces_of_span(links), count = 0;
 
     for (int span = 0; span < spans; span++) {
-        // a parabola from a link's middle to the next one's, with the joint as its control point
-        vector bend =
-            links > 1 ? joints[span + 1] : vector_scaled(vector_add(joints[0], joints[1]), 0.5);
+        // a parabola from a link's middle to the next one's, with the joint as its
+        // control point
+        vector bend = links > 1 ? joints[span + 1]
+                                : vector_scaled(vector_add(joints[0], joints[1]), 0.5);
 
-        // it starts at a joint of its own only where the arm starts, and ends at one where it ends
+        // it starts at a joint of its own only where the arm starts, and ends at one
+        // where it ends
         vector from = joints[span], to = joints[links];
         if (span > 0) {
             from = vector_scaled(vector_add(joints[span], bend), 0.5);
@@ -111,8 +118,9 @@ void scene_instants(const run_result *result, double *times, int count)
 
     // until the force is largest, or the end of a run without contact
     if (!isnan(m->first_contact_s)) {
-        double delay = isnan(m->first_pulse_time_to_peak_s) ? m->time_to_peak_s
-                                                            : m->first_pulse_time_to_peak_s;
+        double delay = isnan(m->first_pulse_time_to_peak_s)
+                           ? m->time_to_peak_s
+                           : m->first_pulse_time_to_peak_s;
         end = fmin(end, m->first_contact_s + (isnan(delay) ? 0 : delay));
     }
 
@@ -131,7 +139,11 @@ void scene_instants(const run_result *result, double *times, int count)
             row++;
             done += fabs(t->rows[row].last_angle - t->rows[row - 1].last_angle);
         }
-        times[k] = path > 0 ? t->rows[row].time : end * k / (count - 1);
+        if (path > 0) {
+            times[k] = t->rows[row].time;
+        } else {
+            times[k] = end * k / (count - 1);
+        }
     }
     times[count - 1] = end;
 }
@@ -210,7 +222,8 @@ void scene_build_wall(scene *sc, const sample *row)
     const vector shift = scene_wall_shift(&sc->scenario->parameters, row);
 
     if (w->kind == WALL_POINT) {
-        double off = (PIN_RADIUS + BEAM_THICKNESS / 2) * l, r = PIN_RADIUS * l, top = PIN_TOP * l;
+        double off = (PIN_RADIUS + BEAM_THICKNESS / 2) * l, r = PIN_RADIUS * l,
+               top = PIN_TOP * l;
         const vector foot = vector_add(at_angle(w->angle, l, off, 0), shift);
         const lathe_ring rings[] = {{floor_z, 3.4 * r},
                                     {floor_z + 0.7 * r, 3.4 * r},
@@ -224,12 +237,13 @@ void scene_build_wall(scene *sc, const sample *row)
     } else if (w->kind == WALL_PLANE) {
         double off = (SLAB_THICKNESS / 2 + BEAM_THICKNESS / 2) * l;
         double half = (SLAB_TO - SLAB_FROM) / 2 * l, rise = (SLAB_TOP * l - floor_z) / 2;
-        const box slab = {
-            .centre = vector_add(
-                at_angle(w->angle, (SLAB_FROM + SLAB_TO) / 2 * l, off, floor_z + rise), shift),
-            .u = at_angle(w->angle, half, 0, 0),
-            .v = at_angle(w->angle, 0, SLAB_THICKNESS / 2 * l, 0),
-            .w = {0, 0, rise}};
+        const box slab = {.centre =
+                              vector_add(at_angle(w->angle, (SLAB_FROM + SLAB_TO) / 2 * l,
+                                                  off, floor_z + rise),
+                                         shift),
+                          .u = at_angle(w->angle, half, 0, 0),
+                          .v = at_angle(w->angle, 0, SLAB_THICKNESS / 2 * l, 0),
+                          .w = {0, 0, rise}};
         mesh_box(&sc->mesh, &slab, 0.03 * l, wall_stone);
     }
 }
@@ -237,9 +251,11 @@ void scene_build_wall(scene *sc, const sample *row)
 vector scene_contact(const scene *sc, const sample *row)
 {
     const parameters *p = &sc->scenario->parameters;
-    return p->wall.kind == WALL_POINT
-               ? vector_add(at_angle(p->wall.angle, sc->length, 0, 0), scene_wall_shift(p, row))
-               : sc->joints[sc->links];
+    if (p->wall.kind == WALL_POINT) {
+        return vector_add(at_angle(p->wall.angle, sc->length, 0, 0),
+                          scene_wall_shift(p, row));
+    }
+    return sc->joints[sc->links];
 }
 
 bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector *end)
@@ -255,7 +271,8 @@ bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector
 
 sample scene_shape(scene *sc, double time)
 {
-    sample row = scene_joints(&sc->result->trace, &sc->scenario->parameters, time, sc->joints);
+    sample row =
+        scene_joints(&sc->result->trace, &sc->scenario->parameters, time, sc->joints);
     scene_exaggerate(sc->joints, sc->links, sc->options.exaggerate);
     return row;
 }
@@ -294,7 +311,8 @@ void scene_build_trail(scene *sc, double from, double time)
         // a tip at rest leaves one point, not a knot of them
         if (count == 0 || vector_dot(step, step) > 1e-6 * sc->length * sc->length) {
             sc->trail[count] = tip;
-            sc->trail_of[count++] = scene_paler(sc, trail_paint, 0.85 * (1 - share) * (1 - share));
+            sc->trail_of[count++] =
+                scene_paler(sc, trail_paint, 0.85 * (1 - share) * (1 - share));
         }
     }
 
@@ -310,7 +328,8 @@ enum {
     EXTENT_POINTS = EXTENT_ROWS + 64,
 };
 
-#define TIP_AROUND 0.04 // what the camera at the tip shows round the contact, in beam lengths
+// what the camera at the tip shows round the contact, in beam lengths
+#define TIP_AROUND 0.04
 
 // Points round everything that is ever to be seen. Returns their number.
 static int extent(scene *sc, vector *points)
@@ -322,7 +341,8 @@ static int extent(scene *sc, vector *points)
 
     // the contact alone, or where the tip ends
     if (sc->options.camera.kind == CAMERA_TIP) {
-        const sample last = scene_joints(t, p, t->rows[t->row_count - 1].time, sc->joints);
+        const sample last =
+            scene_joints(t, p, t->rows[t->row_count - 1].time, sc->joints);
         vector tip = scene_contact(sc, &last);
         for (int i = 0; i < 8; i++) {
             double a = i & 1 ? TIP_AROUND * l : -TIP_AROUND * l;
@@ -334,7 +354,8 @@ static int extent(scene *sc, vector *points)
 
     // the motor
     for (int i = 0; i < 8; i++) {
-        vector rim = at_angle(i * M_PI / 4, 1.1 * MOTOR_RADIUS * l, 0, i % 2 ? low : high);
+        vector rim =
+            at_angle(i * M_PI / 4, 1.1 * MOTOR_RADIUS * l, 0, i % 2 ? low : high);
         points[count++] = rim;
     }
 
@@ -378,13 +399,14 @@ static double heading(const scene *sc)
 
 status scene_set_view(scene *sc, fault *f)
 {
-    vector points[EXTENT_POINTS], low = {HUGE_VAL, HUGE_VAL, 0}, high = {-HUGE_VAL, -HUGE_VAL, 0};
+    vector points[EXTENT_POINTS], low = {HUGE_VAL, HUGE_VAL, 0},
+                                  high = {-HUGE_VAL, -HUGE_VAL, 0};
     int count = extent(sc, points);
 
     // text stands below the picture
     camera_window window = {0.05, 0.05, 0.95, sc->options.plain ? 0.95 : 0.88};
-    sc->camera = camera_fit(sc->options.camera, heading(sc), points, count, sc->options.width,
-                            sc->options.height, window);
+    sc->camera = camera_fit(sc->options.camera, heading(sc), points, count,
+                            sc->options.width, sc->options.height, window);
     if (sc->options.camera.kind == CAMERA_TIP) {
         // the rest of the arm lies before and behind what is looked at
         sc->camera.nearest *= 0.2;

@@ -34,10 +34,11 @@ static const surroundings dark_surroundings = {
 static status check_options(const scene *sc, fault *f)
 {
     const scene_options *o = &sc->options;
-    FAULT_IF(o->width < LEAST_PIXELS || o->width > MOST_PIXELS || o->height < LEAST_PIXELS ||
-                 o->height > MOST_PIXELS,
-             f, STATUS_BAD_ARGUMENT, "a scene of %d x %d pixels, expected %d to %d along each edge",
-             o->width, o->height, LEAST_PIXELS, MOST_PIXELS);
+    FAULT_IF(o->width < LEAST_PIXELS || o->width > MOST_PIXELS ||
+                 o->height < LEAST_PIXELS || o->height > MOST_PIXELS,
+             f, STATUS_BAD_ARGUMENT,
+             "a scene of %d x %d pixels, expected %d to %d along each edge", o->width,
+             o->height, LEAST_PIXELS, MOST_PIXELS);
     FAULT_IF(sc->result->trace.row_count == 0, f, STATUS_BAD_ARGUMENT,
              "the run has no rows to draw");
     return text_check_font(f);
@@ -65,7 +66,8 @@ static status prepare(scene *sc, fault *f)
     TRY(scene_set_view(sc, f));
     TRY(scene_painter_create(&sc->painter, sc->options.renderer, sc->options.width,
                              sc->options.height,
-                             sc->options.samples > 0 ? sc->options.samples : SAMPLES_FINE, f));
+                             sc->options.samples > 0 ? sc->options.samples : SAMPLES_FINE,
+                             f));
     if (!sc->options.inset) {
         return STATUS_OK;
     }
@@ -88,7 +90,11 @@ status scene_create(scene **out, const scenario *s, const run_result *result,
     sc->scenario = s;
     sc->result = result;
     sc->options = *options;
-    sc->around = options->theme == THEME_DARK ? &dark_surroundings : &light_surroundings;
+    if (options->theme == THEME_DARK) {
+        sc->around = &dark_surroundings;
+    } else {
+        sc->around = &light_surroundings;
+    }
 
     if (options->width == 0 && options->height == 0) {
         sc->options.width = 1280;
@@ -139,7 +145,8 @@ static void draw_flashes(scene *sc, cairo_t *cr, double time)
         double strength = exp(-(time - e->time) / FLASH_FADE);
         if (e->kind == EVENT_IMPACT && e->impulse > 0 && strength > 0.03) {
             double size = FLASH_RADIUS * sqrt(e->impulse / sc->options.impulse);
-            const sample row = scene_joints(t, &sc->scenario->parameters, e->time, sc->joints);
+            const sample row =
+                scene_joints(t, &sc->scenario->parameters, e->time, sc->joints);
             labels_flash(sc, cr, scene_contact(sc, &row), size * sc->length, strength);
         }
     }
@@ -166,8 +173,9 @@ static status draw_labels(scene *sc, const double *times, const colour *inks, in
             larger > 0 && larger != 1
                 ? text_printf(" \u00b7 bending drawn %g times as large", larger)
                 : g_strdup("");
-        g_autofree char *facts = text_printf("<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m%s",
-                                             1e3 * time, sc->grid, bending);
+        g_autofree char *facts =
+            text_printf("<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m%s", 1e3 * time,
+                        sc->grid, bending);
         g_autofree char *title = scenario_title(sc->scenario);
         labels_caption(sc, cr, title, facts, TITLE_SHARE * sc->camera.width);
         if (count > 1 && !sc->options.keyless) {
@@ -190,19 +198,22 @@ static status paint_ground(scene *sc, cairo_surface_t *onto, fault *f)
 }
 
 // The contact from near by, framed, in the upper right corner.
-static status paint_inset(scene *sc, const double *times, int count, cairo_surface_t *onto,
-                          fault *f)
+static status paint_inset(scene *sc, const double *times, int count,
+                          cairo_surface_t *onto, fault *f)
 {
     scene *tip = sc->tip;
     int width = tip->options.width, height = tip->options.height;
-    g_autoptr(cairo_surface_t) view = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+    g_autoptr(cairo_surface_t) view =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
     TRY(scene_paint(tip, times, count, view, f));
 
     // its frame and how much larger it is than the picture, at the contact
-    double margin = INSET_MARGIN * sc->options.width, left = sc->options.width - width - margin;
+    double margin = INSET_MARGIN * sc->options.width,
+           left = sc->options.width - width - margin;
     const sample row = scene_shape(sc, times[count - 1]);
     const vector at = scene_contact(sc, &row);
-    const double larger = labels_pixels(&tip->camera, at, 1) / labels_pixels(&sc->camera, at, 1);
+    const double larger =
+        labels_pixels(&tip->camera, at, 1) / labels_pixels(&sc->camera, at, 1);
     cairo_t *cr = cairo_create(onto);
     cairo_set_source_surface(cr, view, left, margin);
     cairo_paint(cr);
@@ -216,17 +227,22 @@ static status paint_inset(scene *sc, const double *times, int count, cairo_surfa
     return picture_end_drawing(cr, STATUS_OK, f);
 }
 
-status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *onto, fault *f)
+status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *onto,
+                   fault *f)
 {
     assert(count > 0);
     colour inks[SCENE_INSTANTS];
     double now = times[count - 1];
-    painting full = {.mesh = &sc->mesh, .camera = &sc->camera, .light = sc->light, .opacity = 1};
+    painting full = {.mesh = &sc->mesh,
+                     .camera = &sc->camera,
+                     .light = sc->light,
+                     .opacity = 1};
 
     // what is there now, and its shadow
     sc->mesh.vertex_count = sc->mesh.corner_count = 0;
     scene_build_arm(sc, &sc->mesh, now);
-    sample last = scene_joints(&sc->result->trace, &sc->scenario->parameters, now, sc->joints);
+    sample last =
+        scene_joints(&sc->result->trace, &sc->scenario->parameters, now, sc->joints);
     scene_build_hub(sc, last.hub_angle);
     scene_build_wall(sc, &last);
     TRY(paint_ground(sc, onto, f));
@@ -249,7 +265,10 @@ status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *o
     scene_build_trail(sc, sc->result->trace.rows[0].time, now);
     TRY(scene_painter_paint(sc->painter, &full, onto, f));
     TRY(draw_labels(sc, times, inks, count, onto, f));
-    return sc->tip != NULL ? paint_inset(sc, times, count, onto, f) : STATUS_OK;
+    if (sc->tip != NULL) {
+        return paint_inset(sc, times, count, onto, f);
+    }
+    return STATUS_OK;
 }
 
 // ==== files
@@ -259,8 +278,8 @@ enum { PICTURE_DPI = 144 };
 status scene_check_path(const char *path, fault *f)
 {
     FAULT_IF(picture_format_of(path) != FORMAT_PNG || strchr(path, '.') == NULL, f,
-             STATUS_BAD_ARGUMENT, "'%s' is no name for a scene: expected one that ends in .png",
-             path);
+             STATUS_BAD_ARGUMENT,
+             "'%s' is no name for a scene: expected one that ends in .png", path);
     return whole_file_check(path, f);
 }
 
@@ -273,8 +292,10 @@ static status check_instants(const scene_picture *p, fault *f)
 
     for (int i = 0; i < p->count; i++) {
         double end = t->row_count > 0 ? t->rows[t->row_count - 1].time : 0;
-        FAULT_IF(!(p->times[i] >= 0 && !instant_after(p->times[i], end)), f, STATUS_BAD_ARGUMENT,
-                 "a scene at %g s, expected an instant of the run, 0 to %g s", p->times[i], end);
+        FAULT_IF(!(p->times[i] >= 0 && !instant_after(p->times[i], end)), f,
+                 STATUS_BAD_ARGUMENT,
+                 "a scene at %g s, expected an instant of the run, 0 to %g s",
+                 p->times[i], end);
     }
     return STATUS_OK;
 }
@@ -286,9 +307,10 @@ status scene_write(const scene_picture *p, const char *path, fault *f)
     TRY(check_instants(p, f));
     TRY(scene_create(&sc, p->scenario, p->result, &p->options, f));
 
-    g_autoptr(cairo_surface_t) surface = cairo_image_surface_create(
-        p->options.transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24, sc->options.width,
-        sc->options.height);
+    g_autoptr(cairo_surface_t) surface =
+        cairo_image_surface_create(p->options.transparent ? CAIRO_FORMAT_ARGB32
+                                                          : CAIRO_FORMAT_RGB24,
+                                   sc->options.width, sc->options.height);
     TRY(scene_paint(sc, p->times, p->count, surface, f));
 
     // with what it was made from

@@ -9,7 +9,8 @@
 #include "render/scene/scene.h"
 #include "src/base/fault.h"
 
-// --- the floor: a pale plane with a grid that fades into the page, and soft shadows on it
+// --- the floor: a pale plane with a grid that fades into the page, and soft shadows on
+// it
 
 typedef struct scene_floor {
     vector middle;       // point about which the floor fades out
@@ -21,13 +22,13 @@ typedef struct scene_floor {
     double map_left, map_low, map_cell; // corner of the map and size of its cells [m]
 } scene_floor;
 
-// Prepares the floor of a scene that has its camera and light. STATUS_NO_MEMORY if there is no
-// room.
+// Prepares the floor of a scene that has its camera and light. STATUS_NO_MEMORY if there
+// is no room.
 status scene_floor_init(scene *sc, vector middle, double reach, fault *f);
 void scene_floor_finish(scene_floor *floor);
 
-// Paints the floor with the shadow of the scene's mesh over the whole image surface (RGB24, of the
-// picture's size). STATUS_NO_MEMORY if cairo has none.
+// Paints the floor with the shadow of the scene's mesh over the whole image surface
+// (RGB24, of the picture's size). STATUS_NO_MEMORY if cairo has none.
 status scene_floor_paint(scene *sc, cairo_surface_t *onto, fault *f);
 
 // --- labels, in letters of a scene: labels.c
@@ -38,13 +39,14 @@ status scene_floor_paint(scene *sc, cairo_surface_t *onto, fault *f);
 double labels_scale(const scene *sc);
 
 // A flash at a point, with a radius [m] and a strength of 0 to 1.
-void labels_flash(const scene *sc, cairo_t *cr, vector place, double radius, double strength);
+void labels_flash(const scene *sc, cairo_t *cr, vector place, double radius,
+                  double strength);
 
 // "1.34 N" next to the head of an arrow that starts at `from`.
 void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double force);
 
-// Title, in lines of at most `width` [pixels], and a line of facts at the lower left corner;
-// `facts` is markup, `title` plain.
+// Title, in lines of at most `width` [pixels], and a line of facts at the lower left
+// corner; `facts` is markup, `title` plain.
 void labels_caption(const scene *sc, cairo_t *cr, const char *title, const char *facts,
                     double width);
 
@@ -52,21 +54,23 @@ void labels_caption(const scene *sc, cairo_t *cr, const char *title, const char 
 double labels_pixels(const camera *c, vector place, double length);
 
 // "contact, 1.8 times" below the left corner of an inset [pixels].
-void labels_inset(const scene *sc, cairo_t *cr, double left, double bottom, double larger);
+void labels_inset(const scene *sc, cairo_t *cr, double left, double bottom,
+                  double larger);
 
 // A legend of instants [s] with their colours at the lower right corner.
-void labels_instants(const scene *sc, cairo_t *cr, const double *times, const colour *inks,
-                     int count);
+void labels_instants(const scene *sc, cairo_t *cr, const double *times,
+                     const colour *inks, int count);
 
-// --- lit triangles, painted by OpenGL without a screen, or with a depth buffer of our own
+// --- lit triangles, painted by OpenGL without a screen, or with a depth buffer of our
+// own
 
 typedef struct scene_painter scene_painter;
 
-// A painter of pictures of width by height pixels, each made of samples x samples. RENDER_AUTO
-// takes the first of OSMesa, EGL and cairo that is available. STATUS_CANNOT_WRITE if a named one is
-// not.
-status scene_painter_create(scene_painter **out, scene_renderer which, int width, int height,
-                            int samples, fault *f);
+// A painter of pictures of width by height pixels, each made of samples x samples.
+// RENDER_AUTO takes the first of OSMesa, EGL and cairo that is available.
+// STATUS_CANNOT_WRITE if a named one is not.
+status scene_painter_create(scene_painter **out, scene_renderer which, int width,
+                            int height, int samples, fault *f);
 void scene_painter_destroy(scene_painter *p);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(scene_painter, scene_painter_destroy)
 
@@ -78,9 +82,10 @@ typedef struct painting {
     double opacity; // of the whole mesh, 0 to 1
 } painting;
 
-// Paints the mesh over the contents of the image surface (RGB24 or ARGB32, of the painter's size).
-// STATUS_NO_MEMORY or STATUS_CANNOT_WRITE on failure.
-status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface_t *onto, fault *f);
+// Paints the mesh over the contents of the image surface (RGB24 or ARGB32, of the
+// painter's size). STATUS_NO_MEMORY or STATUS_CANNOT_WRITE on failure.
+status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface_t *onto,
+                           fault *f);
 
 // --- triangles as samples of a picture, filled by OpenGL or without it
 
@@ -94,11 +99,11 @@ typedef struct gl_vertex {
 
 enum { RENDERER_NAME = 300 };
 
-// A renderer of pictures of up to width by height pixels, RENDER_OSMESA or RENDER_EGL, and its
-// name: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), ...". STATUS_CANNOT_WRITE if the library is
-// missing or has no OpenGL 3, with what to install in f.
-status gl_offscreen_create(gl_offscreen **out, scene_renderer library, int width, int height,
-                           char name[RENDERER_NAME], fault *f);
+// A renderer of pictures of up to width by height pixels, RENDER_OSMESA or RENDER_EGL,
+// and its name: "OSMesa, llvmpipe (LLVM 15.0.6, 256 bits), ...". STATUS_CANNOT_WRITE if
+// the library is missing or has no OpenGL 3, with what to install in f.
+status gl_offscreen_create(gl_offscreen **out, scene_renderer library, int width,
+                           int height, char name[RENDERER_NAME], fault *f);
 void gl_offscreen_destroy(gl_offscreen *g);
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(gl_offscreen, gl_offscreen_destroy)
 
@@ -110,37 +115,40 @@ typedef struct gl_triangles {
     size_t corner_count;
 } gl_triangles;
 
-// Draws triangles on a transparent background with a depth test and stores the region as rows of
-// 0xAARRGGBB with premultiplied opacity.
-status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box region, uint32_t *pixels,
-                         fault *f);
+// Draws triangles on a transparent background with a depth test and stores the region as
+// rows of 0xAARRGGBB with premultiplied opacity.
+status gl_offscreen_draw(gl_offscreen *g, const gl_triangles *t, pixel_box region,
+                         uint32_t *pixels, fault *f);
 
 enum { SAMPLE_TILE = 16 }; // edge of a tile [pixels]
 
-// The samples of a picture of width by height pixels. Tiles that nothing touched are skipped.
+// The samples of a picture of width by height pixels. Tiles that nothing touched are
+// skipped.
 typedef struct sample_buffer {
     int width, height; // of the picture [pixels]
     int samples;       // of a pixel along each edge
-    // 0xAARRGGBB; if triangles are filled without OpenGL, 0 and empty depths between pictures
+    // 0xAARRGGBB; if triangles are filled without OpenGL, 0 and empty depths between
+    // pictures
     uint32_t *pixels;
     float *depths; // NULL: OpenGL fills the pixels
     unsigned char *touched;
     int tiles_across, tiles_down;
 } sample_buffer;
 
-// Empty samples, with depths if triangles are filled without OpenGL. False without memory;
-// samples_finish must be called in either case.
+// Empty samples, with depths if triangles are filled without OpenGL. False without
+// memory; samples_finish must be called in either case.
 bool samples_init(sample_buffer *b, int width, int height, int samples, bool depths);
 void samples_finish(sample_buffer *b);
 
-// Adds a new set of triangles, of closed solids: records the tiles that they touch and, if there
-// are depths, fills them. Back faces are omitted.
+// Adds a new set of triangles, of closed solids: records the tiles that they touch and,
+// if there are depths, fills them. Back faces are omitted.
 void samples_take(sample_buffer *b, const gl_triangles *t);
 
-// Paints the means of the samples over the image surface (RGB24 or ARGB32, of the picture's size)
-// with the given opacity (0 to 1). `region` is the part of the picture in `pixels`, with contiguous
-// rows. Samples filled without OpenGL are empty afterwards.
-void samples_lay_over(sample_buffer *b, pixel_box region, double opacity, cairo_surface_t *onto);
+// Paints the means of the samples over the image surface (RGB24 or ARGB32, of the
+// picture's size) with the given opacity (0 to 1). `region` is the part of the picture in
+// `pixels`, with contiguous rows. Samples filled without OpenGL are empty afterwards.
+void samples_lay_over(sample_buffer *b, pixel_box region, double opacity,
+                      cairo_surface_t *onto);
 
 // What paints them.
 struct scene_painter {
@@ -199,20 +207,20 @@ material scene_paler(const scene *sc, material m, double share);
 // The steel of the beam.
 extern const material beam_steel;
 
-// Sets sc->joints to the joints at an instant [s], with the bending as drawn. Returns the row of
-// that instant.
+// Sets sc->joints to the joints at an instant [s], with the bending as drawn. Returns the
+// row of that instant.
 sample scene_shape(scene *sc, double time);
 
-// The point of action of the force in the row of sc->joints: the contact point, on the near side of
-// the beam.
+// The point of action of the force in the row of sc->joints: the contact point, on the
+// near side of the beam.
 vector scene_contact(const scene *sc, const sample *row);
 
-// The wall's force on the beam, as an arrow from the contact point away from the wall, for
-// sc->joints of that row. False if it is not visible.
+// The wall's force on the beam, as an arrow from the contact point away from the wall,
+// for sc->joints of that row. False if it is not visible.
 bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector *end);
 
-// Adds to sc->mesh the motor with the hub at an angle [rad], the wall where a row has it, and the
-// tip's path from one instant [s] to another, paler for earlier times.
+// Adds to sc->mesh the motor with the hub at an angle [rad], the wall where a row has it,
+// and the tip's path from one instant [s] to another, paler for earlier times.
 void scene_build_hub(scene *sc, double angle);
 void scene_build_wall(scene *sc, const sample *row);
 void scene_build_trail(scene *sc, double from, double time);
@@ -220,6 +228,6 @@ void scene_build_trail(scene *sc, double from, double time);
 // Adds the arm at an instant [s] and the wall's force on it to a mesh of the scene.
 void scene_build_arm(scene *sc, mesh *into, double time);
 
-// Places camera, light and floor so that the whole run is visible. STATUS_NO_MEMORY if there is no
-// room for the floor.
+// Places camera, light and floor so that the whole run is visible. STATUS_NO_MEMORY if
+// there is no room for the floor.
 status scene_set_view(scene *sc, fault *f);

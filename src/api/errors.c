@@ -9,13 +9,16 @@
 #include "src/base/words.h"
 
 // The public numbers are those of the program.
-#define SAME_CODE(code, text) _Static_assert((int)IMPACTLAB_##code == (int)STATUS_##code, text);
+#define SAME_CODE(code, text)                                                            \
+    _Static_assert((int)IMPACTLAB_##code == (int)STATUS_##code, text);
 STATUS_LIST(SAME_CODE)
 
 const char *impactlab_status_text(int code)
 {
-    return code >= STATUS_OK && code <= STATUS_IMPOSSIBLE_MEAN ? status_text((status)code)
-                                                               : "not a status of impactlab";
+    if (code >= STATUS_OK && code <= STATUS_IMPOSSIBLE_MEAN) {
+        return status_text((status)code);
+    }
+    return "not a status of impactlab";
 }
 
 // Copies a text, cut to fit.
@@ -29,7 +32,9 @@ static void copy_text(char *to, size_t size, const char *from)
 int api_error(impactlab_error *error, const fault *f)
 {
     if (error != NULL) {
-        *error = (impactlab_error){.status = (int)f->code, .line = f->line, .column = f->column};
+        *error = (impactlab_error){.status = (int)f->code,
+                                   .line = f->line,
+                                   .column = f->column};
         copy_text(error->parameter, sizeof error->parameter, f->path);
         const char *sentence = f->text[0] != '\0' ? f->text : status_text(f->code);
         copy_text(error->sentence, sizeof error->sentence, sentence);
@@ -69,7 +74,8 @@ int api_missing(impactlab_error *error, const char *names, size_t i)
         length = (int)strlen(names);
     }
     return api_fail(error, STATUS_BAD_ARGUMENT,
-                    "the argument %.*s is NULL, expected what it points to", length, names);
+                    "the argument %.*s is NULL, expected what it points to", length,
+                    names);
 }
 
 int api_refused(impactlab_error *error, fault *first, const fault_place *at, status code)
@@ -77,7 +83,11 @@ int api_refused(impactlab_error *error, fault *first, const fault_place *at, sta
     first->code = code;
     first->line = at->line;
     first->column = at->column;
-    first->path = at->path != NULL ? at->path : "";
+    if (at->path != NULL) {
+        first->path = at->path;
+    } else {
+        first->path = "";
+    }
     return api_error(error, first);
 }
 
@@ -135,8 +145,10 @@ int api_text(char **text, void (*write)(FILE *stream, const void *what), const v
         write(stream.stream, what);
         *text = text_stream_close(&stream, NULL);
     }
-    return *text != NULL ? api_done(error)
-                         : api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
+    if (*text != NULL) {
+        return api_done(error);
+    }
+    return api_fail(error, STATUS_NO_MEMORY, "no memory for a text");
 }
 
 void impactlab_text_free(char *text)

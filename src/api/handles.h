@@ -32,44 +32,27 @@ int api_error(impactlab_error *error, const fault *f);
 int api_fail(impactlab_error *error, status code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 int api_done(impactlab_error *error);
-#define API_FAIL_IF(wrong, error, code, ...) FAIL_IF(wrong, api_fail(error, code, __VA_ARGS__))
 
-// A call without something that it cannot do without: `argument`, the i-th of these names. A handle
-// of a scenario is called that.
+// A call without something that it cannot do without: `argument`, the i-th of these
+// names. A handle of a scenario is called that.
 int api_missing(impactlab_error *error, const char *names, size_t i);
-#define API_NEEDS(error, ...)                                                                      \
-    do {                                                                                           \
-        const void *const given_[] = {__VA_ARGS__};                                                \
-        for (size_t i_ = 0; i_ < sizeof given_ / sizeof *given_; i_++) {                           \
-            if (given_[i_] == NULL) {                                                              \
-                return api_missing(error, #__VA_ARGS__, i_);                                       \
-            }                                                                                      \
-        }                                                                                          \
+#define API_NEEDS(error, ...)                                                            \
+    do {                                                                                 \
+        const void *const given_[] = {__VA_ARGS__};                                      \
+        for (size_t i_ = 0; i_ < sizeof given_ / sizeof *given_; i_++) {                 \
+            if (given_[i_] == NULL) {                                                    \
+                return api_missing(error, #__VA_ARGS__, i_);                             \
+            }                                                                            \
+        }                                                                                \
     } while (0)
 
-// The same of a call that makes something: *made is NULL until it is there.
-#define API_MAKES(error, made, ...)                                                                \
-    do {                                                                                           \
-        API_NEEDS(error, made);                                                                    \
-        *(made) = NULL;                                                                            \
-        API_NEEDS(error, __VA_ARGS__);                                                             \
-    } while (0)
-
-// Ends a call with the fault that one within came to, which that writes to `f`.
-#define API_TRY(error, call)                                                                       \
-    do {                                                                                           \
-        fault f = {.text = "", .path = ""};                                                        \
-        if ((call) != STATUS_OK) {                                                                 \
-            return api_error(error, &f);                                                           \
-        }                                                                                          \
-    } while (0)
-
-// Writes the first fault of a scenario that was refused (keep_first_fault) with its place and code,
-// which it returns.
+// Writes the first fault of a scenario that was refused (keep_first_fault) with its place
+// and code, which it returns.
 int api_refused(impactlab_error *error, fault *first, const fault_place *at, status code);
 
-// Index of a parameter as people write it, -1 with an error that names the nearest; *text, what is
-// to give it a value, becomes ".NAME=TEXT" in `room` for one number of control.settings.
+// Index of a parameter as people write it, -1 with an error that names the nearest;
+// *text, what is to give it a value, becomes ".NAME=TEXT" in `room` for one number of
+// control.settings.
 int api_parameter(const char *path, const char **text, char room[PARAMETER_TEXT_SIZE],
                   impactlab_error *error);
 
@@ -79,8 +62,8 @@ int api_axis(const char *path, sweep_axis *axis, impactlab_error *error);
 // Index of a signal, likewise.
 int api_signal(const char *name, impactlab_error *error);
 
-// A run of a copy of the scenario, of which nothing is computed yet; NULL, with an error, without
-// memory.
+// A run of a copy of the scenario, of which nothing is computed yet; NULL, with an error,
+// without memory.
 impactlab_run *api_new_run(const scenario *s, impactlab_error *error);
 
 // A text that is handed to the caller, if all of what `write` writes is there.

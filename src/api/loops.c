@@ -5,14 +5,20 @@
 #include "src/api/handles.h"
 #include "src/base/numbers.h"
 
-int impactlab_loop_create(impactlab_loop **loop, const impactlab_scenario *handle, int flags,
-                          impactlab_error *error)
+int impactlab_loop_create(impactlab_loop **loop, const impactlab_scenario *handle,
+                          int flags, impactlab_error *error)
 {
-    API_MAKES(error, loop, handle);
-    API_FAIL_IF((flags & ~(IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND)) != 0, error,
-                STATUS_BAD_ARGUMENT, "a loop knows no other flags than KEEP_ROWS and COMMAND");
+    API_NEEDS(error, loop);
+    *loop = NULL;
+    API_NEEDS(error, handle);
+    if ((flags & ~(IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND)) != 0) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "a loop knows no other flags than KEEP_ROWS and COMMAND");
+    }
     impactlab_loop *made = calloc(1, sizeof *made);
-    API_FAIL_IF(made == NULL, error, STATUS_NO_MEMORY, "no memory for a loop");
+    if (made == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a loop");
+    }
 
     fault f = {.text = "", .path = ""};
     const loop_options options = {.keep_trace = (flags & IMPACTLAB_KEEP_ROWS) != 0,
@@ -36,27 +42,38 @@ void impactlab_loop_destroy(impactlab_loop *loop)
     }
 }
 
-// --- going on ---------------------------------------------------------------------------------
+// --- going on --------------------------------------------------------------------------
 
 int impactlab_loop_step(impactlab_loop *loop, impactlab_error *error)
 {
     API_NEEDS(error, loop);
-    API_TRY(error, loop_step(loop->loop, &f));
+    fault f = {.text = "", .path = ""};
+    if (loop_step(loop->loop, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
     return api_done(error);
 }
 
 int impactlab_loop_step_until(impactlab_loop *loop, double time, impactlab_error *error)
 {
     API_NEEDS(error, loop);
-    API_FAIL_IF(!isfinite(time), error, STATUS_BAD_ARGUMENT,
-                "the instant is not finite, expected seconds");
-    API_TRY(error, loop_until(loop->loop, time, &f));
+    if (!isfinite(time)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the instant is not finite, expected seconds");
+    }
+    fault f = {.text = "", .path = ""};
+    if (loop_until(loop->loop, time, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
     return api_done(error);
 }
 
 double impactlab_loop_time(const impactlab_loop *loop)
 {
-    return loop != NULL ? loop_time(loop->loop) : (double)NAN;
+    if (loop != NULL) {
+        return loop_time(loop->loop);
+    }
+    return (double)NAN;
 }
 
 int impactlab_loop_ended(const impactlab_loop *loop)
@@ -64,16 +81,21 @@ int impactlab_loop_ended(const impactlab_loop *loop)
     return loop == NULL || loop_ended(loop->loop);
 }
 
-// --- inputs -----------------------------------------------------------------------------------
+// --- inputs ----------------------------------------------------------------------------
 
 int impactlab_loop_command(impactlab_loop *loop, double volts, impactlab_error *error)
 {
     API_NEEDS(error, loop);
-    API_FAIL_IF(!loop->commanded, error, STATUS_BAD_ARGUMENT,
-                "the loop was created without COMMAND: control.law commands the rig, or "
-                "motor.voltage the bare arm");
-    API_FAIL_IF(!isfinite(volts), error, STATUS_BAD_ARGUMENT,
-                "the command is not finite, expected volts");
+    if (!loop->commanded) {
+        return api_fail(
+            error, STATUS_BAD_ARGUMENT,
+            "the loop was created without COMMAND: control.law commands the rig, "
+            "or motor.voltage the bare arm");
+    }
+    if (!isfinite(volts)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the command is not finite, expected volts");
+    }
     loop_command(loop->loop, volts);
     return api_done(error);
 }
@@ -86,9 +108,14 @@ int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double valu
     const char *text = number;
     number_format_short(number, value);
     const int index = api_parameter(path, &text, room, error);
-    FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
-    API_TRY(error, text != number ? loop_set_text(loop->loop, index, text, &f)
-                                  : loop_set_number(loop->loop, index, value, &f));
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+    fault f = {.text = "", .path = ""};
+    if (text != number ? loop_set_text(loop->loop, index, text, &f)
+                       : loop_set_number(loop->loop, index, value, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
     return api_done(error);
 }
 
@@ -98,21 +125,31 @@ int impactlab_loop_set_text(impactlab_loop *loop, const char *path, const char *
     API_NEEDS(error, loop, path, text);
     char room[PARAMETER_TEXT_SIZE];
     const int index = api_parameter(path, &text, room, error);
-    FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
-    API_TRY(error, loop_set_text(loop->loop, index, text, &f));
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
+    fault f = {.text = "", .path = ""};
+    if (loop_set_text(loop->loop, index, text, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
     return api_done(error);
 }
 
 int impactlab_loop_push(impactlab_loop *loop, double impulse, impactlab_error *error)
 {
     API_NEEDS(error, loop);
-    API_FAIL_IF(!isfinite(impulse), error, STATUS_BAD_ARGUMENT,
-                "the impulse is not finite, expected N s");
-    API_TRY(error, loop_push(loop->loop, impulse, &f));
+    if (!isfinite(impulse)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the impulse is not finite, expected N s");
+    }
+    fault f = {.text = "", .path = ""};
+    if (loop_push(loop->loop, impulse, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
     return api_done(error);
 }
 
-// --- what is known ----------------------------------------------------------------------------
+// --- what is known ---------------------------------------------------------------------
 
 int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading,
                                 impactlab_error *error)
@@ -121,8 +158,10 @@ int impactlab_loop_read_sensors(impactlab_loop *loop, impactlab_reading *reading
 
     // the bare arm has no rig around it
     sensor_reading read;
-    API_FAIL_IF(!loop_sense(loop->loop, &read), error, STATUS_BAD_ARGUMENT,
-                "the bare arm has no sensors, expected a control.law or COMMAND");
+    if (!loop_sense(loop->loop, &read)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the bare arm has no sensors, expected a control.law or COMMAND");
+    }
 
     // field by field, as the layout within may change and this one not
     *reading = (impactlab_reading){.time = loop_time(loop->loop),
@@ -140,13 +179,16 @@ int impactlab_loop_signal(impactlab_loop *loop, const char *name, double *value,
 {
     API_NEEDS(error, loop, name, value);
     int index = api_signal(name, error);
-    FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
     const sample row = loop_row(loop->loop);
     *value = signal_value(&row, index);
     return api_done(error);
 }
 
-int impactlab_loop_state(const impactlab_loop *loop, impactlab_table *table, impactlab_error *error)
+int impactlab_loop_state(const impactlab_loop *loop, impactlab_table *table,
+                         impactlab_error *error)
 {
     API_NEEDS(error, loop, table);
     int freedoms;
@@ -157,14 +199,19 @@ int impactlab_loop_state(const impactlab_loop *loop, impactlab_table *table, imp
 
 int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run, impactlab_error *error)
 {
-    API_MAKES(error, run, loop);
+    API_NEEDS(error, run);
+    *run = NULL;
+    API_NEEDS(error, loop);
 
     // a copy, so that the loop can go on or end
     impactlab_run *made = api_new_run(loop_scenario(loop->loop), error);
-    FAIL_IF(made == NULL, IMPACTLAB_NO_MEMORY);
+    if (made == NULL) {
+        return IMPACTLAB_NO_MEMORY;
+    }
     const trace *rows = &loop_result(loop->loop)->trace;
     trace_init(&made->result.trace, rows->angle_count);
-    if (trace_share(&made->result.trace, rows, rows->row_count, rows->event_count) != STATUS_OK) {
+    if (trace_share(&made->result.trace, rows, rows->row_count, rows->event_count) !=
+        STATUS_OK) {
         impactlab_run_destroy(made);
         return api_fail(error, STATUS_NO_MEMORY, "no memory for the rows of a run");
     }
@@ -175,20 +222,25 @@ int impactlab_loop_run(impactlab_loop *loop, impactlab_run **run, impactlab_erro
     return api_done(error);
 }
 
-// --- states -----------------------------------------------------------------------------------
+// --- states ----------------------------------------------------------------------------
 
 size_t impactlab_loop_state_size(const impactlab_loop *loop)
 {
-    return loop != NULL ? loop_saved_size(loop->loop) : 0;
+    if (loop != NULL) {
+        return loop_saved_size(loop->loop);
+    }
+    return 0;
 }
 
 int impactlab_loop_save_state(const impactlab_loop *loop, void *bytes, size_t size,
                               impactlab_error *error)
 {
     API_NEEDS(error, loop, bytes);
-    API_FAIL_IF(size < loop_saved_size(loop->loop), error, STATUS_BAD_ARGUMENT,
-                "a state of this loop has %zu bytes, but there is room for %zu",
-                loop_saved_size(loop->loop), size);
+    if (size < loop_saved_size(loop->loop)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "a state of this loop has %zu bytes, but there is room for %zu",
+                        loop_saved_size(loop->loop), size);
+    }
     loop_save(loop->loop, bytes);
     return api_done(error);
 }
@@ -197,6 +249,9 @@ int impactlab_loop_restore_state(impactlab_loop *loop, const void *bytes, size_t
                                  impactlab_error *error)
 {
     API_NEEDS(error, loop, bytes);
-    API_TRY(error, loop_restore(loop->loop, bytes, size, &f));
+    fault f = {.text = "", .path = ""};
+    if (loop_restore(loop->loop, bytes, size, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
     return api_done(error);
 }

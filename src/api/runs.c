@@ -10,17 +10,22 @@
 // Whether the rig can call a controller that a program gives.
 static int check_law(const controller *law, impactlab_error *error)
 {
-    API_FAIL_IF(law->interface != CONTROLLER_INTERFACE, error, STATUS_BAD_ARGUMENT,
-                "the controller was made for version %d of the interface, expected %d",
-                law->interface, CONTROLLER_INTERFACE);
+    if (law->interface != CONTROLLER_INTERFACE) {
+        return api_fail(
+            error, STATUS_BAD_ARGUMENT,
+            "the controller was made for version %d of the interface, expected %d",
+            law->interface, CONTROLLER_INTERFACE);
+    }
 
     // what the rig calls or relies on without asking again
-    API_FAIL_IF(law->name == NULL || law->modes == NULL || law->sample == NULL ||
-                    law->memory_size < sizeof(void *) || law->parameter_count < 0 ||
-                    (law->parameter_count > 0 && law->parameters == NULL),
-                error, STATUS_BAD_ARGUMENT,
-                "the controller is not whole, expected a name, modes ended by NULL, `sample`, and "
-                "memory for at least a pointer");
+    if (law->name == NULL || law->modes == NULL || law->sample == NULL ||
+        law->memory_size < sizeof(void *) || law->parameter_count < 0 ||
+        (law->parameter_count > 0 && law->parameters == NULL)) {
+        return api_fail(
+            error, STATUS_BAD_ARGUMENT,
+            "the controller is not whole, expected a name, modes ended by NULL, "
+            "`sample`, and memory for at least a pointer");
+    }
     return IMPACTLAB_OK;
 }
 
@@ -41,18 +46,25 @@ int impactlab_run_create(impactlab_run **run, const impactlab_scenario *handle, 
     return impactlab_run_create_with(run, handle, flags, NULL, NULL, error);
 }
 
-int impactlab_run_create_with(impactlab_run **run, const impactlab_scenario *handle, int flags,
-                              const struct controller *law, void *context, impactlab_error *error)
+int impactlab_run_create_with(impactlab_run **run, const impactlab_scenario *handle,
+                              int flags, const struct controller *law, void *context,
+                              impactlab_error *error)
 {
-    API_MAKES(error, run, handle);
-    API_FAIL_IF((flags & ~IMPACTLAB_KEEP_ROWS) != 0, error, STATUS_BAD_ARGUMENT,
-                "a run knows no other flag than KEEP_ROWS");
+    API_NEEDS(error, run);
+    *run = NULL;
+    API_NEEDS(error, handle);
+    if ((flags & ~IMPACTLAB_KEEP_ROWS) != 0) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "a run knows no other flag than KEEP_ROWS");
+    }
     if (law != NULL && check_law(law, error) != IMPACTLAB_OK) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
 
     impactlab_run *made = api_new_run(&handle->scenario, error);
-    FAIL_IF(made == NULL, IMPACTLAB_NO_MEMORY);
+    if (made == NULL) {
+        return IMPACTLAB_NO_MEMORY;
+    }
     const given_law given = {law, context};
     const run_options options = {.keep_trace = (flags & IMPACTLAB_KEEP_ROWS) != 0,
                                  .law = law != NULL ? &given : NULL,
@@ -60,7 +72,11 @@ int impactlab_run_create_with(impactlab_run **run, const impactlab_scenario *han
                                  .ask_context = handle->ask_context};
     status code = run_scenario_with(&made->scenario, &options, &made->result);
     *run = made;
-    API_TRY(error, code == STATUS_OK ? code : summary_fault(&made->result.summary, &f));
+    fault f = {.text = "", .path = ""};
+    if (code == STATUS_OK ? code
+                          : summary_fault(&made->result.summary, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
     return api_done(error);
 }
 
@@ -73,16 +89,22 @@ void impactlab_run_destroy(impactlab_run *run)
     }
 }
 
-// --- what it came to --------------------------------------------------------------------------
+// --- what it came to -------------------------------------------------------------------
 
 const char *impactlab_run_status(const impactlab_run *run)
 {
-    return run != NULL ? summary_status(&run->result.summary) : "failed";
+    if (run != NULL) {
+        return summary_status(&run->result.summary);
+    }
+    return "failed";
 }
 
 const char *impactlab_run_message(const impactlab_run *run)
 {
-    return run != NULL ? run->result.summary.message : "";
+    if (run != NULL) {
+        return run->result.summary.message;
+    }
+    return "";
 }
 
 int impactlab_run_quantity(const impactlab_run *run, const char *key, double *value,
@@ -92,8 +114,9 @@ int impactlab_run_quantity(const impactlab_run *run, const char *key, double *va
     int index = summary_find(key);
     if (index < 0) {
         const char *near = summary_suggest(key);
-        return api_fail(error, STATUS_BAD_ARGUMENT, "there is no quantity '%.200s'%s%s%s", key,
-                        near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
+        return api_fail(error, STATUS_BAD_ARGUMENT, "there is no quantity '%.200s'%s%s%s",
+                        key, near ? ", did you mean '" : "", near ? near : "",
+                        near ? "'?" : "");
     }
     *value = summary_value(&run->result.summary, index);
     return api_done(error);
@@ -101,19 +124,21 @@ int impactlab_run_quantity(const impactlab_run *run, const char *key, double *va
 
 size_t impactlab_run_quantities(const impactlab_run *run, double *values, size_t count)
 {
-    for (size_t i = 0; run != NULL && values != NULL && i < count && i < (size_t)summary_count;
-         i++) {
+    for (size_t i = 0;
+         run != NULL && values != NULL && i < count && i < (size_t)summary_count; i++) {
         values[i] = summary_value(&run->result.summary, (int)i);
     }
     return (size_t)summary_count;
 }
 
-int impactlab_run_signal(const impactlab_run *run, const char *name, impactlab_series *series,
-                         impactlab_error *error)
+int impactlab_run_signal(const impactlab_run *run, const char *name,
+                         impactlab_series *series, impactlab_error *error)
 {
     API_NEEDS(error, run, name, series);
     int index = api_signal(name, error);
-    FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
 
     // values stay where they are, a row apart
     const trace *t = &run->result.trace;
@@ -125,7 +150,8 @@ int impactlab_run_signal(const impactlab_run *run, const char *name, impactlab_s
     return api_done(error);
 }
 
-int impactlab_run_angles(const impactlab_run *run, impactlab_table *table, impactlab_error *error)
+int impactlab_run_angles(const impactlab_run *run, impactlab_table *table,
+                         impactlab_error *error)
 {
     API_NEEDS(error, run, table);
     const trace *t = &run->result.trace;
@@ -144,7 +170,10 @@ int impactlab_run_velocities(const impactlab_run *run, impactlab_table *table,
 
 size_t impactlab_run_event_count(const impactlab_run *run)
 {
-    return run != NULL ? run->result.trace.event_count : 0;
+    if (run != NULL) {
+        return run->result.trace.event_count;
+    }
+    return 0;
 }
 
 int impactlab_run_event(const impactlab_run *run, size_t index, impactlab_event *told)
@@ -153,11 +182,12 @@ int impactlab_run_event(const impactlab_run *run, size_t index, impactlab_event 
         return 0;
     }
     const event *e = &run->result.trace.events[index];
-    *told = (impactlab_event){e->time, event_name(e->kind), e->impulse, e->speed, e->loss};
+    *told =
+        (impactlab_event){e->time, event_name(e->kind), e->impulse, e->speed, e->loss};
     return 1;
 }
 
-// --- as texts ---------------------------------------------------------------------------------
+// --- as texts --------------------------------------------------------------------------
 
 static void write_json(FILE *stream, const void *what)
 {
@@ -185,7 +215,7 @@ int impactlab_run_csv(const impactlab_run *run, char **csv, impactlab_error *err
     return api_text(csv, write_csv, run, error);
 }
 
-// --- what was predicted -----------------------------------------------------------------------
+// --- what was predicted ----------------------------------------------------------------
 
 int impactlab_run_predictions(const impactlab_run *run, impactlab_prediction *predictions,
                               size_t count, size_t *written, impactlab_error *error)
@@ -193,22 +223,28 @@ int impactlab_run_predictions(const impactlab_run *run, impactlab_prediction *pr
     API_NEEDS(error, run, predictions, written);
     prediction_answer answers[PREDICTOR_COUNT];
     *written = 0;
-    API_FAIL_IF(run->result.trace.row_count == 0, error, STATUS_BAD_ARGUMENT,
-                "the run kept no rows, expected KEEP_ROWS");
-    API_FAIL_IF(predict_first_contact(&run->scenario, &run->result, NULL, answers) == NULL, error,
-                STATUS_BAD_ARGUMENT,
-                "the arm did not touch the wall after a free flight in this run");
+    if (run->result.trace.row_count == 0) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the run kept no rows, expected KEEP_ROWS");
+    }
+    if (predict_first_contact(&run->scenario, &run->result, NULL, answers) == NULL) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the arm did not touch the wall after a free flight in this run");
+    }
 
     for (size_t i = 0; i < count && i < PREDICTOR_COUNT; i++) {
         const prediction_answer *a = &answers[i];
-        FAIL_IF(a->fault.code == STATUS_NO_MEMORY, api_error(error, &a->fault));
+        if (a->fault.code == STATUS_NO_MEMORY) {
+            return api_error(error, &a->fault);
+        }
         predictions[i] = (impactlab_prediction){.method = a->name,
                                                 .known = prediction_known(a),
                                                 .holds = a->outcome == PREDICTION_HOLDS,
                                                 .peak = a->prediction.force,
                                                 .time_to_peak = a->prediction.delay,
                                                 .impulse = a->prediction.impulse};
-        snprintf(predictions[i].message, sizeof predictions[i].message, "%s", prediction_reason(a));
+        snprintf(predictions[i].message, sizeof predictions[i].message, "%s",
+                 prediction_reason(a));
         *written = i + 1;
     }
     return api_done(error);

@@ -7,14 +7,17 @@
 #include "src/base/numbers.h"
 #include "src/rig/rig.h"
 
-// --- opening ----------------------------------------------------------------------------------
+// --- opening ---------------------------------------------------------------------------
 
 int impactlab_scenario_names(char ***names, size_t *count, impactlab_error *error)
 {
     API_NEEDS(error, names, count);
     int found = 0;
     *count = 0;
-    API_TRY(error, scenario_list(names, &found, &f));
+    fault f = {.text = "", .path = ""};
+    if (scenario_list(names, &found, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
     *count = (size_t)found;
     return api_done(error);
 }
@@ -60,10 +63,15 @@ static int finish_reading(impactlab_scenario **handle, status code, fault *first
 int impactlab_scenario_open(impactlab_scenario **handle, const char *name_or_file,
                             impactlab_error *error)
 {
-    API_MAKES(error, handle, name_or_file);
-    FAIL_IF(new_handle(handle, error) == NULL, IMPACTLAB_NO_MEMORY);
+    API_NEEDS(error, handle);
+    *handle = NULL;
+    API_NEEDS(error, name_or_file);
+    if (new_handle(handle, error) == NULL) {
+        return IMPACTLAB_NO_MEMORY;
+    }
     fault first = {.code = STATUS_OK};
-    status code = scenario_open(&(*handle)->scenario, name_or_file, keep_first_fault, &first);
+    status code =
+        scenario_open(&(*handle)->scenario, name_or_file, keep_first_fault, &first);
     return finish_reading(handle, code, &first, error);
 }
 
@@ -73,14 +81,19 @@ int impactlab_scenario_parse(impactlab_scenario **handle, const char *text, size
     return impactlab_scenario_parse_named(handle, text, length, "text", error);
 }
 
-int impactlab_scenario_parse_named(impactlab_scenario **handle, const char *text, size_t length,
-                                   const char *name, impactlab_error *error)
+int impactlab_scenario_parse_named(impactlab_scenario **handle, const char *text,
+                                   size_t length, const char *name,
+                                   impactlab_error *error)
 {
-    API_MAKES(error, handle, text, name);
-    FAIL_IF(new_handle(handle, error) == NULL, IMPACTLAB_NO_MEMORY);
+    API_NEEDS(error, handle);
+    *handle = NULL;
+    API_NEEDS(error, text, name);
+    if (new_handle(handle, error) == NULL) {
+        return IMPACTLAB_NO_MEMORY;
+    }
     fault first = {.code = STATUS_OK};
-    status code =
-        scenario_parse(&(*handle)->scenario, text, length, "text", name, keep_first_fault, &first);
+    status code = scenario_parse(&(*handle)->scenario, text, length, "text", name,
+                                 keep_first_fault, &first);
     return finish_reading(handle, code, &first, error);
 }
 
@@ -93,10 +106,14 @@ int impactlab_scenario_create(impactlab_scenario **handle, impactlab_error *erro
 int impactlab_scenario_copy(impactlab_scenario **handle, const impactlab_scenario *from,
                             impactlab_error *error)
 {
-    API_MAKES(error, handle, from);
+    API_NEEDS(error, handle);
+    *handle = NULL;
+    API_NEEDS(error, from);
 
     // after a fault the caller has nothing to destroy
-    FAIL_IF(new_handle(handle, error) == NULL, IMPACTLAB_NO_MEMORY);
+    if (new_handle(handle, error) == NULL) {
+        return IMPACTLAB_NO_MEMORY;
+    }
     if (scenario_copy(&(*handle)->scenario, &from->scenario) != STATUS_OK) {
         free(*handle);
         *handle = NULL;
@@ -120,8 +137,8 @@ void impactlab_scenario_allow_code(impactlab_scenario *handle, int allowed)
     }
 }
 
-void impactlab_scenario_stop_when(impactlab_scenario *handle, impactlab_stop_question question,
-                                  void *context)
+void impactlab_scenario_stop_when(impactlab_scenario *handle,
+                                  impactlab_stop_question question, void *context)
 {
     if (handle != NULL) {
         handle->ask = question;
@@ -129,25 +146,34 @@ void impactlab_scenario_stop_when(impactlab_scenario *handle, impactlab_stop_que
     }
 }
 
-// --- asking -----------------------------------------------------------------------------------
+// --- asking ----------------------------------------------------------------------------
 
 const char *impactlab_scenario_name(const impactlab_scenario *handle)
 {
-    return handle != NULL ? handle->scenario.name : "";
+    if (handle != NULL) {
+        return handle->scenario.name;
+    }
+    return "";
 }
 
 const char *impactlab_scenario_title(const impactlab_scenario *handle)
 {
-    return handle != NULL ? handle->title : "";
+    if (handle != NULL) {
+        return handle->title;
+    }
+    return "";
 }
 
 const char *impactlab_scenario_description(const impactlab_scenario *handle)
 {
-    return handle != NULL ? handle->scenario.description : "";
+    if (handle != NULL) {
+        return handle->scenario.description;
+    }
+    return "";
 }
 
-int impactlab_scenario_number(const impactlab_scenario *handle, const char *path, double *value,
-                              impactlab_error *error)
+int impactlab_scenario_number(const impactlab_scenario *handle, const char *path,
+                              double *value, impactlab_error *error)
 {
     API_NEEDS(error, handle, path, value);
     sweep_axis axis;
@@ -156,8 +182,8 @@ int impactlab_scenario_number(const impactlab_scenario *handle, const char *path
     return api_done(error);
 }
 
-int impactlab_scenario_text(const impactlab_scenario *handle, const char *path, char *text,
-                            size_t size, impactlab_error *error)
+int impactlab_scenario_text(const impactlab_scenario *handle, const char *path,
+                            char *text, size_t size, impactlab_error *error)
 {
     API_NEEDS(error, handle, path, text);
     sweep_axis axis;
@@ -173,8 +199,11 @@ int impactlab_scenario_text(const impactlab_scenario *handle, const char *path, 
         number_format_short(whole, value);
     }
     size_t length = strlen(whole) + 1;
-    API_FAIL_IF(length > size, error, STATUS_BAD_ARGUMENT,
-                "the value of %s takes %zu bytes, but there is room for %zu", path, length, size);
+    if (length > size) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the value of %s takes %zu bytes, but there is room for %zu",
+                        path, length, size);
+    }
     memcpy(text, whole, length);
     return api_done(error);
 }
@@ -193,13 +222,14 @@ static void write_yaml(FILE *stream, const void *what)
     scenario_write(stream, what);
 }
 
-int impactlab_scenario_yaml(const impactlab_scenario *handle, char **yaml, impactlab_error *error)
+int impactlab_scenario_yaml(const impactlab_scenario *handle, char **yaml,
+                            impactlab_error *error)
 {
     API_NEEDS(error, handle, yaml);
     return api_text(yaml, write_yaml, &handle->scenario, error);
 }
 
-// --- changing ---------------------------------------------------------------------------------
+// --- changing --------------------------------------------------------------------------
 
 int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *assignments,
                                size_t count, impactlab_error *error)
@@ -210,7 +240,9 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
     }
     API_NEEDS(error, assignments);
     SCOPED(free_kept) char **given = calloc(count, sizeof *given);
-    API_FAIL_IF(given == NULL, error, STATUS_NO_MEMORY, "no memory for %zu assignments", count);
+    if (given == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for %zu assignments", count);
+    }
     bool whole = true;
     for (size_t i = 0; i < count; i++) {
         given[i] = (char *)assignments[i];
@@ -220,14 +252,18 @@ int impactlab_scenario_set_all(impactlab_scenario *handle, const char *const *as
     // nothing is changed if one of them is wrong
     const parameters before = handle->scenario.parameters;
     fault first = {.code = STATUS_OK};
-    status code = whole ? scenario_override_all(&handle->scenario, given, (int)count,
-                                                keep_first_fault, &first)
-                        : STATUS_BAD_ARGUMENT;
+    status code = STATUS_BAD_ARGUMENT;
+    if (whole) {
+        code = scenario_override_all(&handle->scenario, given, (int)count,
+                                     keep_first_fault, &first);
+    }
     if (code == STATUS_OK) {
         return retitle(handle, error);
     }
     handle->scenario.parameters = before;
-    FAIL_IF(!whole, api_missing(error, "assignments[i]", 0));
+    if (!whole) {
+        return api_missing(error, "assignments[i]", 0);
+    }
     return api_refused(error, &first, &handle->scenario.refused, code);
 }
 
@@ -237,24 +273,36 @@ int impactlab_scenario_set(impactlab_scenario *handle, const char *path, const c
     API_NEEDS(error, text, handle, path);
     char room[PARAMETER_TEXT_SIZE];
     const int index = api_parameter(path, &text, room, error);
-    FAIL_IF(index < 0, IMPACTLAB_BAD_ARGUMENT);
+    if (index < 0) {
+        return IMPACTLAB_BAD_ARGUMENT;
+    }
 
     // on a copy, so that a refused value changes nothing
     parameters p = handle->scenario.parameters;
-    API_TRY(error, parameter_set_text(&p, index, text, &f));
-    API_TRY(error, scenario_take_parameters(&handle->scenario, &p, &f));
+    fault f = {.text = "", .path = ""};
+    if (parameter_set_text(&p, index, text, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
+    if (scenario_take_parameters(&handle->scenario, &p, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
     return retitle(handle, error);
 }
 
-int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path, double value,
-                                  impactlab_error *error)
+int impactlab_scenario_set_number(impactlab_scenario *handle, const char *path,
+                                  double value, impactlab_error *error)
 {
     API_NEEDS(error, handle, path);
     sweep_axis axis;
     TRY((status)api_axis(path, &axis, error));
     parameters p = handle->scenario.parameters;
-    API_TRY(error, sweep_axis_apply(&axis, value, &p, &f));
-    API_TRY(error, scenario_take_parameters(&handle->scenario, &p, &f));
+    fault f = {.text = "", .path = ""};
+    if (sweep_axis_apply(&axis, value, &p, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
+    if (scenario_take_parameters(&handle->scenario, &p, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
     return retitle(handle, error);
 }
 
@@ -270,14 +318,17 @@ static bool make_room(scenario *s)
 
 static int check_instant(const scenario *s, double time, impactlab_error *error)
 {
-    API_FAIL_IF(!(time >= 0 && time <= s->parameters.run.duration), error, STATUS_BAD_ARGUMENT,
-                "the instant %g s is not within the run, expected 0 to %g s", time,
-                s->parameters.run.duration);
+    if (!(time >= 0 && time <= s->parameters.run.duration)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the instant %g s is not within the run, expected 0 to %g s",
+                        time, s->parameters.run.duration);
+    }
     return IMPACTLAB_OK;
 }
 
-int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const char *path,
-                                  const char *text, impactlab_error *error)
+int impactlab_scenario_add_change(impactlab_scenario *handle, double time,
+                                  const char *path, const char *text,
+                                  impactlab_error *error)
 {
     API_NEEDS(error, handle, path, text);
     scenario *s = &handle->scenario;
@@ -286,17 +337,26 @@ int impactlab_scenario_add_change(impactlab_scenario *handle, double time, const
     if (index < 0 || check_instant(s, time, error) != IMPACTLAB_OK) {
         return IMPACTLAB_BAD_ARGUMENT;
     }
-    API_FAIL_IF(!rig_can_change(&s->parameters, index), error, STATUS_BAD_ARGUMENT,
-                "%s holds from the start and cannot change during a run", path);
+    if (!rig_can_change(&s->parameters, index)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "%s holds from the start and cannot change during a run", path);
+    }
 
     // the value as the parameter takes it
     parameters p = scenario_parameters_at(s, time);
-    API_TRY(error, parameter_may_change(&p, index, &f));
-    API_TRY(error, parameter_set_text(&p, index, text, &f));
+    fault f = {.text = "", .path = ""};
+    if (parameter_may_change(&p, index, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
+    if (parameter_set_text(&p, index, text, &f) != STATUS_OK) {
+        return api_error(error, &f);
+    }
     action a = action_of(time, &p, index, text);
     a.added = true;
 
-    API_FAIL_IF(!make_room(s), error, STATUS_NO_MEMORY, "no memory for the script");
+    if (!make_room(s)) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
+    }
     scenario_insert_action(s, a);
     return retitle(handle, error);
 }
@@ -311,13 +371,18 @@ int impactlab_scenario_add_push(impactlab_scenario *handle, double time, double 
     }
 
     // what the arm can be given
-    API_FAIL_IF(!isfinite(impulse), error, STATUS_BAD_ARGUMENT,
-                "the impulse is not finite, expected N s");
-    API_FAIL_IF(s->parameters.arm.model == ARM_PRINTED, error, STATUS_BAD_SCENARIO,
-                "the printed model takes no pushes");
+    if (!isfinite(impulse)) {
+        return api_fail(error, STATUS_BAD_ARGUMENT,
+                        "the impulse is not finite, expected N s");
+    }
+    if (s->parameters.arm.model == ARM_PRINTED) {
+        return api_fail(error, STATUS_BAD_SCENARIO, "the printed model takes no pushes");
+    }
 
     // with room there is nothing left to fail
-    API_FAIL_IF(!make_room(s), error, STATUS_NO_MEMORY, "no memory for the script");
+    if (!make_room(s)) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for the script");
+    }
     scenario_insert_action(
         s, (action){.time = time, .kind = ACTION_PUSH, .value = impulse, .added = true});
     return retitle(handle, error);

@@ -44,7 +44,8 @@ static status look_up(void *context, bool over, fault *f)
 }
 
 // Tells an outcome to the caller. False if that is enough.
-static bool hand_over(const summary *s, size_t index, impactlab_outcome_taker take, void *context)
+static bool hand_over(const summary *s, size_t index, impactlab_outcome_taker take,
+                      void *context)
 {
     double quantities[SUMMARY_NUMBERS];
     for (int i = 0; i < summary_count; i++) {
@@ -59,14 +60,17 @@ static bool hand_over(const summary *s, size_t index, impactlab_outcome_taker ta
     return take(context, &outcome) == 0;
 }
 
-// Runs all in turns, each handed over before the next begins; of one that was stopped those that
-// were done.
+// Runs all in turns, each handed over before the next begins; of one that was stopped
+// those that were done.
 static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker take,
                       void *context, impactlab_error *error)
 {
     const size_t turn = (size_t)jobs * RUNS_A_TURN;
-    SCOPED(free_kept) summary *summaries = calloc(count < turn ? count : turn, sizeof *summaries);
-    API_FAIL_IF(summaries == NULL, error, STATUS_NO_MEMORY, "no memory for the outcomes");
+    SCOPED(free_kept)
+    summary *summaries = calloc(count < turn ? count : turn, sizeof *summaries);
+    if (summaries == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for the outcomes");
+    }
 
     status code = STATUS_OK;
     for (v->first = 0; code == STATUS_OK && v->first < count; v->first += turn) {
@@ -89,15 +93,20 @@ static int run_varied(varied *v, size_t count, int jobs, impactlab_outcome_taker
             code = STATUS_STOPPED;
         }
     }
-    return code == STATUS_OK ? api_done(error) : api_fail(error, code, "%s", status_text(code));
+    if (code == STATUS_OK) {
+        return api_done(error);
+    }
+    return api_fail(error, code, "%s", status_text(code));
 }
 
-int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, size_t path_count,
-                    const double *values, size_t count, int jobs, impactlab_outcome_taker take,
-                    void *context, impactlab_error *error)
+int impactlab_batch(const impactlab_scenario *handle, const char *const *paths,
+                    size_t path_count, const double *values, size_t count, int jobs,
+                    impactlab_outcome_taker take, void *context, impactlab_error *error)
 {
     API_NEEDS(error, handle);
-    FAIL_IF(take == NULL, api_missing(error, "take", 0));
+    if (take == NULL) {
+        return api_missing(error, "take", 0);
+    }
     if (path_count > 0) {
         API_NEEDS(error, paths);
     }
@@ -105,15 +114,26 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
         API_NEEDS(error, values);
     }
     const long wanted = jobs < 1 ? sysconf(_SC_NPROCESSORS_ONLN) : jobs;
-    jobs = wanted < 1 ? 1 : wanted > POOL_MOST_THREADS ? POOL_MOST_THREADS : (int)wanted;
+    if (wanted < 1) {
+        jobs = 1;
+    } else if (wanted > POOL_MOST_THREADS) {
+        jobs = POOL_MOST_THREADS;
+    } else {
+        jobs = (int)wanted;
+    }
 
     // which parameters
     int code = IMPACTLAB_OK;
     SCOPED(free_kept) sweep_axis *axes = calloc(path_count + 1, sizeof *axes);
-    API_FAIL_IF(axes == NULL, error, STATUS_NO_MEMORY, "no memory for a batch");
+    if (axes == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for a batch");
+    }
     for (size_t k = 0; k < path_count && code == IMPACTLAB_OK; k++) {
-        code = paths[k] != NULL ? api_axis(paths[k], &axes[k], error)
-                                : api_missing(error, "paths[i]", 0);
+        if (paths[k] != NULL) {
+            code = api_axis(paths[k], &axes[k], error);
+        } else {
+            code = api_missing(error, "paths[i]", 0);
+        }
     }
 
     // all values before anything is run
@@ -125,17 +145,22 @@ int impactlab_batch(const impactlab_scenario *handle, const char *const *paths, 
     fault f = {.text = "", .path = ""};
     scenario tried;
     for (size_t i = 0; i < count && code == IMPACTLAB_OK; i++) {
-        code = vary(&v, i, &tried, &f) == STATUS_OK
-                   ? IMPACTLAB_OK
-                   : api_fail(error, f.code, "run %zu: %.900s", i, f.text);
+        if (vary(&v, i, &tried, &f) == STATUS_OK) {
+            code = IMPACTLAB_OK;
+        } else {
+            code = api_fail(error, f.code, "run %zu: %.900s", i, f.text);
+        }
         if (code == IMPACTLAB_OK && stop_requested(&v.stop)) {
             code = api_fail(error, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
         }
     }
-    return code == IMPACTLAB_OK ? run_varied(&v, count, jobs, take, context, error) : code;
+    if (code == IMPACTLAB_OK) {
+        return run_varied(&v, count, jobs, take, context, error);
+    }
+    return code;
 }
 
-// --- modes ------------------------------------------------------------------------------------
+// --- modes -----------------------------------------------------------------------------
 
 size_t impactlab_freedoms(const impactlab_scenario *handle)
 {
@@ -154,18 +179,27 @@ int impactlab_modes(const impactlab_scenario *handle, int hub_locked, int tip_pi
     API_NEEDS(error, handle, frequencies, count);
     const size_t n = impactlab_freedoms(handle);
     *count = 0;
-    API_FAIL_IF(n == 0, error, STATUS_BAD_SCENARIO,
-                "the printed equations have no symmetric stiffness and so no natural frequencies, "
-                "expected arm.model = corrected");
+    if (n == 0) {
+        return api_fail(
+            error, STATUS_BAD_SCENARIO,
+            "the printed equations have no symmetric stiffness and so no natural "
+            "frequencies, expected arm.model = corrected");
+    }
 
     arm a;
     arm_init(&a, &handle->scenario.parameters);
     SCOPED(free_kept) double *all = calloc(n + n * n, sizeof *all);
     int found = 0;
-    API_FAIL_IF(all == NULL, error, STATUS_NO_MEMORY, "no memory for the modes of %zu angles", n);
-    const status code = modes_compute(&a, hub_locked ? HUB_LOCKED : HUB_FREE,
-                                      tip_pinned ? TIP_PINNED : TIP_FREE, &found, all, all + n);
-    API_FAIL_IF(code != STATUS_OK, error, code, "%s", status_text(code));
+    if (all == NULL) {
+        return api_fail(error, STATUS_NO_MEMORY, "no memory for the modes of %zu angles",
+                        n);
+    }
+    const status code =
+        modes_compute(&a, hub_locked ? HUB_LOCKED : HUB_FREE,
+                      tip_pinned ? TIP_PINNED : TIP_FREE, &found, all, all + n);
+    if (code != STATUS_OK) {
+        return api_fail(error, code, "%s", status_text(code));
+    }
 
     // as many as there is room for
     const size_t copied = (size_t)found < most ? (size_t)found : most;

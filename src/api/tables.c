@@ -21,7 +21,8 @@ static impactlab_parameter parameter_row(const parameter_info *info)
     return (impactlab_parameter){.path = info->path,
                                  .type = types[info->type],
                                  .unit = info->unit,
-                                 .choices = info->type == PARAMETER_CHOICE ? info->choices : "",
+                                 .choices =
+                                     info->type == PARAMETER_CHOICE ? info->choices : "",
                                  .description = info->description,
                                  .initial = text ? 0 : info->default_corrected,
                                  .minimum = text ? 0 : info->minimum,
@@ -29,8 +30,8 @@ static impactlab_parameter parameter_row(const parameter_info *info)
                                  .timed = info->timed};
 }
 
-// The rows point into the tables of the program, which say the same under other names; filled in
-// before the program begins.
+// The rows point into the tables of the program, which say the same under other names;
+// filled in before the program begins.
 static __attribute__((constructor)) void fill(void)
 {
     for (int i = 0; i < parameter_count; i++) {
@@ -40,7 +41,8 @@ static __attribute__((constructor)) void fill(void)
     // columns of a run, then what sums it up
     for (int i = 0; i < signal_count; i++) {
         const signal_info *info = &signal_table[i];
-        signal_rows[i] = (impactlab_signal){info->name, info->ascii, info->unit, info->description};
+        signal_rows[i] =
+            (impactlab_signal){info->name, info->ascii, info->unit, info->description};
     }
     for (int i = 0; i < summary_count; i++) {
         const summary_info *info = &summary_table[i];
@@ -51,17 +53,26 @@ static __attribute__((constructor)) void fill(void)
 
 const impactlab_parameter *impactlab_parameter_at(size_t index)
 {
-    return index < (size_t)parameter_count ? &parameter_rows[index] : NULL;
+    if (index < (size_t)parameter_count) {
+        return &parameter_rows[index];
+    }
+    return NULL;
 }
 
 const impactlab_signal *impactlab_signal_at(size_t index)
 {
-    return index < (size_t)signal_count ? &signal_rows[index] : NULL;
+    if (index < (size_t)signal_count) {
+        return &signal_rows[index];
+    }
+    return NULL;
 }
 
 const impactlab_quantity *impactlab_quantity_at(size_t index)
 {
-    return index < (size_t)summary_count ? &quantity_rows[index] : NULL;
+    if (index < (size_t)summary_count) {
+        return &quantity_rows[index];
+    }
+    return NULL;
 }
 
 const char *impactlab_version(void)

@@ -10,8 +10,8 @@
 #include "src/arm/modes.h"
 #include "src/base/sincos.h"
 
-// What a decay counts against a vibration: it dies within a step or two and need not be followed,
-// so that steps may be several times longer.
+// What a decay counts against a vibration: it dies within a step or two and need not be
+// followed, so that steps may be several times longer.
 #define DECAY_WEIGHT     0.125
 
 #define STANDARD_GRAVITY 9.80665 // [m/s2]
@@ -22,20 +22,24 @@ void arm_set_voltage(arm *a, double volts)
     motor_set_voltage(&a->motor, volts);
 }
 
-// First frequency of the straight chain clamped at the hub, from inverse iteration on
-// M x = (1/w^2) K x: bending moments of the inertia forces, summed twice, give the next shape.
-// Uniform rods: force on node and moment per unit acceleration of link k, see chain.h. The clamp
-// holds the first link, or the root where that bends, too: of a beam, and of a link that has no
-// other joint.
+// First frequency of the straight chain clamped at the hub, from inverse iteration on M x
+// = (1/w^2) K x: bending moments of the inertia forces, summed twice, give the next
+// shape. Uniform rods: force on node and moment per unit acceleration of link k, see
+// chain.h. The clamp holds the first link, or the root where that bends, too: of a beam,
+// and of a link that has no other joint.
 static double first_clamped_frequency(const arm *a)
 {
-    // the angles of a quadratic deflection are a fair first shape; Rayleigh's quotient after one
-    // smoothing sweep is right to second order in the error of the shape
+    // the angles of a quadratic deflection are a fair first shape; Rayleigh's quotient
+    // after one smoothing sweep is right to second order in the error of the shape
     enum { LONGEST = 1024, SWEEPS = 6 };
     const bool root = a->root_bends || a->links == 1;
     double shape[LONGEST], next[LONGEST], frequency = 0;
     for (int k = 0; k < a->links; k++) {
-        shape[k] = root ? k + 0.5 : k;
+        if (root) {
+            shape[k] = k + 0.5;
+        } else {
+            shape[k] = k;
+        }
     }
 
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
@@ -62,7 +66,9 @@ static double first_clamped_frequency(const arm *a)
 
         // the next shape, and Rayleigh's quotient on the way
         double sum = 0, numerator = 0, denominator = 0;
-        next[0] = root ? next[0] : 0;
+        if (!root) {
+            next[0] = 0;
+        }
         for (int k = 0; k < a->links; k++) {
             sum += next[k];
             next[k] = sum;
@@ -79,8 +85,9 @@ static double first_clamped_frequency(const arm *a)
     return frequency;
 }
 
-// Largest eigenvalue of M^-1 K of the straight, free chain or, of velocities, of M^-1 C, by power
-// iteration through the contact-free sweeps: the square of a frequency or a decay.
+// Largest eigenvalue of M^-1 K of the straight, free chain or, of velocities, of M^-1 C,
+// by power iteration through the contact-free sweeps: the square of a frequency or a
+// decay.
 static double largest_eigenvalue(const arm *source, bool of_velocities)
 {
     enum { LONGEST = PARAMETER_LINKS_MOST + 1, SWEEPS = 60 };
@@ -89,12 +96,15 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
     // nothing but masses and springs, or dampers
     arm a = *source;
     a.motor.electric = false;
-    a.motor.torque = a.motor.damping = a.motor.stiction = a.joint_damping = a.hub_joint_damping = 0;
+    a.motor.torque = a.motor.damping = a.motor.stiction = a.joint_damping =
+        a.hub_joint_damping = 0;
     for (int k = 0; k < (int)PARAMETER_LIST_MOST; k++) {
         a.each[k].damping = 0;
     }
     a.stiffening = a.air_drag = a.gravity = 0;
-    a.damped_modes = of_velocities ? a.damped_modes : 0;
+    if (!of_velocities) {
+        a.damped_modes = 0;
+    }
     a.wall.kind = WALL_NONE;
     chain_link work[LONGEST];
     double x[LONGEST], still[LONGEST], alpha[LONGEST], value = 0;
@@ -108,8 +118,8 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
         chain_reaction reaction;
         double size = 0;
-        chain_accelerations(&a, work, of_velocities ? still : x, of_velocities ? x : still,
-                            free_mode, alpha, &reaction);
+        chain_accelerations(&a, work, of_velocities ? still : x,
+                            of_velocities ? x : still, free_mode, alpha, &reaction);
         double before = 0;
         for (int k = 0; k < a.dof; k++) {
             size += alpha[k] * alpha[k];
@@ -132,12 +142,13 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
     return value;
 }
 
-// The same of two links on a rigid hub, whose one spring has K = k b b' with b = (-1, 1): k b' M^-1
-// b.
+// The same of two links on a rigid hub, whose one spring has K = k b b' with b = (-1, 1):
+// k b' M^-1 b.
 static double one_spring_eigenvalue(const arm *a)
 {
     const pair_mass m = pair_mass_of(a);
-    return a->joint_stiffness * (m.m11 + 2 * m.m12 + m.m22) / (m.m11 * m.m22 - m.m12 * m.m12);
+    return a->joint_stiffness * (m.m11 + 2 * m.m12 + m.m22) /
+           (m.m11 * m.m22 - m.m12 * m.m12);
 }
 
 // Upper estimate of the highest frequency of the straight, free chain.
@@ -149,12 +160,13 @@ static double highest_frequency(const arm *a)
     return 1.05 * sqrt(largest_eigenvalue(a, false));
 }
 
-// How fast the linear motion can be, for choosing steps: modes vibrate at w; overdamped ones, since
-// stiffness-proportional damping has zeta grow with w, decay at w (zeta + sqrt(zeta^2 - 1)); so
-// does the hub alone.
+// How fast the linear motion can be, for choosing steps: modes vibrate at w; overdamped
+// ones, since stiffness-proportional damping has zeta grow with w, decay at w (zeta +
+// sqrt(zeta^2 - 1)); so does the hub alone.
 static double fastest_decay(const arm *a)
 {
-    double w = a->highest_frequency, stiffest = fmax(a->joint_stiffness, a->hub_stiffness);
+    double w = a->highest_frequency,
+           stiffest = fmax(a->joint_stiffness, a->hub_stiffness);
     double damping = fmax(a->joint_damping, a->hub_joint_damping);
     const double ratio = 0.5 * w * damping / stiffest;
     double decay = ratio > 1 ? w * (ratio + sqrt(ratio * ratio - 1)) : 0;
@@ -171,12 +183,15 @@ static double fastest_decay(const arm *a)
     double braking = motor->damping;
     if (motor->electric) {
         braking += motor->torque_constant * motor->back_emf / motor->resistance;
-        decay = motor->inductance > 0 ? fmax(decay, motor->resistance / motor->inductance) : decay;
+        if (motor->inductance > 0) {
+            decay = fmax(decay, motor->resistance / motor->inductance);
+        }
     }
     return fmax(decay, braking / hub);
 }
 
-// Links and joints one by one, where lists make them differ; equal ones are a chain like any other.
+// Links and joints one by one, where lists make them differ; equal ones are a chain like
+// any other.
 static void set_links(arm *a, const arm_parameters *p)
 {
     double lengths[PARAMETER_LIST_MOST], stiffness[PARAMETER_LIST_MOST];
@@ -195,7 +210,9 @@ static void set_links(arm *a, const arm_parameters *p)
     }
 
     // as it stands in the list; of different ones the largest says how long steps may be
-    a->joint_stiffness = a->links > 1 ? stiffness[a->links - 1] : a->joint_stiffness;
+    if (a->links > 1) {
+        a->joint_stiffness = stiffness[a->links - 1];
+    }
     for (int k = 1; k < a->links; k++) {
         a->joint_stiffness = fmax(a->joint_stiffness, stiffness[k]);
     }
@@ -210,7 +227,11 @@ void arm_init(arm *a, const parameters *p)
     a->links = p->arm.links;
     a->hub_spring = p->arm.hub_joint != HUB_RIGID;
     a->root_bends = p->arm.hub_joint == HUB_BEAM;
-    a->first = a->hub_spring ? 1 : 0;
+    if (a->hub_spring) {
+        a->first = 1;
+    } else {
+        a->first = 0;
+    }
     a->dof = a->links + a->first;
 
     // links, hub, springs
@@ -221,7 +242,11 @@ void arm_init(arm *a, const parameters *p)
     a->tip_mass = p->arm.tip_mass;
     a->held_angle = p->initial.angle;
     a->gravity = STANDARD_GRAVITY * inline_sin(p->arm.tilt);
-    a->hub_stiffness = a->hub_spring ? p->arm.k1 : 0;
+    if (a->hub_spring) {
+        a->hub_stiffness = p->arm.k1;
+    } else {
+        a->hub_stiffness = 0;
+    }
     a->joint_stiffness = p->arm.k2 * a->links / 2;
     set_links(a, &p->arm);
     a->stiffening = p->arm.stiffening * a->links * a->links / 4;
@@ -230,7 +255,8 @@ void arm_init(arm *a, const parameters *p)
 
     // structural damping
     if (p->arm.damping_ratio > 0 && (a->links > 1 || a->hub_spring)) {
-        // torque c dot(bend) in each spring, c = 2 zeta k / w1, damps the first mode by zeta
+        // torque c dot(bend) in each spring, c = 2 zeta k / w1, damps the first mode by
+        // zeta
         double per_stiffness = 2 * p->arm.damping_ratio / first_clamped_frequency(a);
         a->joint_damping = per_stiffness * a->joint_stiffness;
         a->hub_joint_damping = per_stiffness * a->hub_stiffness;
@@ -247,6 +273,7 @@ void arm_init(arm *a, const parameters *p)
     a->fastest_decay = fastest_decay(a);
     a->fastest_rate = fmax(a->highest_frequency, DECAY_WEIGHT * a->fastest_decay);
     if (a->motor.inductance > 0) { // the current is no decay to be passed over
-        a->fastest_rate = fmax(a->fastest_rate, a->motor.resistance / a->motor.inductance);
+        a->fastest_rate =
+            fmax(a->fastest_rate, a->motor.resistance / a->motor.inductance);
     }
 }

@@ -14,8 +14,8 @@ void chain_node(const arm *a, const double *q, int k, double *x, double *y)
     }
 }
 
-// Geometry of contact at q, w: how the wall meets the last link, the link's entry of dg/dq, and the
-// velocity of its base.
+// Geometry of contact at q, w: how the wall meets the last link, the link's entry of
+// dg/dq, and the velocity of its base.
 typedef struct tip_contact {
     wall_contact wall;
     double lever, vx, vy;
@@ -62,7 +62,8 @@ penetration chain_penetration(const arm *a, const double *q, const double *w)
     }
     const tip_contact at = contact_of(a, q, w);
     return (penetration){at.wall.penetration,
-                         wall_penetration_rate(&at.wall, at.vx, at.vy, at.lever, w[a->dof - 1]) +
+                         wall_penetration_rate(&at.wall, at.vx, at.vy, at.lever,
+                                               w[a->dof - 1]) +
                              wall_comes(&a->wall, at.wall.ex, at.wall.ey)};
 }
 
@@ -70,16 +71,18 @@ bool chain_is_folded(const arm *a, const double *q)
 {
     bool folded = a->wall.kind == WALL_PLANE && a->links > 1;
     for (int k = a->first; k < a->dof && folded; k++) {
-        double along = inline_cos(q[k]) * a->wall.cosine + inline_sin(q[k]) * a->wall.sine;
+        double along =
+            inline_cos(q[k]) * a->wall.cosine + inline_sin(q[k]) * a->wall.sine;
         folded = fabs(along) < CHAIN_FOLDED;
     }
     return folded;
 }
 
-// response = M^-1 of the generalised force of a force -(ex, ey) at the tip and a moment -lever on
-// the last link. The same two sweeps as chain_accelerations', without velocities and springs.
-static void unit_response(const arm *a, chain_link *link, const double *q, double ex, double ey,
-                          double lever, bool hub_locked, double *response)
+// response = M^-1 of the generalised force of a force -(ex, ey) at the tip and a moment
+// -lever on the last link. The same two sweeps as chain_accelerations', without
+// velocities and springs.
+static void unit_response(const arm *a, chain_link *link, const double *q, double ex,
+                          double ey, double lever, bool hub_locked, double *response)
 {
     // tip to hub: each link's answer if its base rested
     double pxx = a->tip_mass, pxy = 0, pyy = a->tip_mass, fx = ex, fy = ey;
@@ -98,8 +101,8 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
         if (k == 0 && !a->hub_spring && hub_locked) {
             moment = 0;
         }
-        link[k] =
-            (chain_link){.c = c, .s = s, .inv_d = 1 / d, .ux = ux, .uy = uy, .unit = moment / d};
+        link[k] = (chain_link){
+            .c = c, .s = s, .inv_d = 1 / d, .ux = ux, .uy = uy, .unit = moment / d};
         fx += ux * link[k].unit;
         fy += uy * link[k].unit;
         pxx += m - ux * ux / d;
@@ -118,8 +121,8 @@ static void unit_response(const arm *a, chain_link *link, const double *q, doubl
     }
 }
 
-double chain_contact_response(const arm *a, chain_link *work, const double *q, bool hub_locked,
-                              double *response)
+double chain_contact_response(const arm *a, chain_link *work, const double *q,
+                              bool hub_locked, double *response)
 {
     if (pair_suits(a)) {
         return pair_contact_response(a, q, hub_locked, response);
@@ -132,7 +135,8 @@ double chain_contact_response(const arm *a, chain_link *work, const double *q, b
 void chain_tip_response(const arm *a, chain_link *work, const double *q, double *response)
 {
     int last = a->first + a->links - 1;
-    unit_response(a, work, q, inline_sin(q[last]), -inline_cos(q[last]), 0, false, response);
+    unit_response(a, work, q, inline_sin(q[last]), -inline_cos(q[last]), 0, false,
+                  response);
 }
 
 double chain_kinetic_energy(const arm *a, const double *q, const double *w)

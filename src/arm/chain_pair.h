@@ -1,6 +1,6 @@
-// Two links on a rigid hub against a rigid wall, in closed form: what chain.h has of any chain, for
-// the arm that nearly every run is of. With the bend d = q2 - q1, S and C the sine and cosine of a
-// link's angle from the wall times its reach (taylor_order.h):
+// Two links on a rigid hub against a rigid wall, in closed form: what chain.h has of any
+// chain, for the arm that nearly every run is of. With the bend d = q2 - q1, S and C the
+// sine and cosine of a link's angle from the wall times its reach (taylor_order.h):
 //
 //     m11 a1 + m12 cos d a2 = hub torque + joint + m12 sin d w2^2 - J1 f
 //     m12 cos d a1 + m22 a2 =           - joint - m12 sin d w1^2 - J2 f
@@ -12,12 +12,12 @@
 // Whether an arm is such a pair.
 static inline bool pair_suits(const arm *a)
 {
-    return a->links == 2 && !a->hub_spring && wall_stands(&a->wall) && !wall_gives(&a->wall) &&
-           arm_is_plain(a);
+    return a->links == 2 && !a->hub_spring && wall_stands(&a->wall) &&
+           !wall_gives(&a->wall) && arm_is_plain(a);
 }
 
-// How the wall meets the arm: the gap, the entries of dg/dq for the penetration g = -gap, and what
-// is needed for g's second derivative.
+// How the wall meets the arm: the gap, the entries of dg/dq for the penetration g = -gap,
+// and what is needed for g's second derivative.
 typedef struct pair_contact {
     double sine, cosine; // of the bend
     double gap;          // [m]
@@ -64,8 +64,8 @@ static inline pair_mass pair_mass_of(const arm *a)
 }
 
 // M^-1 of a generalised force; a stuck hub takes what the first entry is.
-static inline void pair_solve(const pair_mass *m, double coupling, bool stuck, double b1, double b2,
-                              double *x1, double *x2)
+static inline void pair_solve(const pair_mass *m, double coupling, bool stuck, double b1,
+                              double b2, double *x1, double *x2)
 {
     if (stuck) {
         *x1 = 0;
@@ -79,7 +79,8 @@ static inline void pair_solve(const pair_mass *m, double coupling, bool stuck, d
 
 // chain_accelerations of a pair.
 static inline void pair_accelerations(const arm *a, const double *q, const double *w,
-                                      contact_state mode, double *alpha, chain_reaction *reaction)
+                                      contact_state mode, double *alpha,
+                                      chain_reaction *reaction)
 {
     const pair_contact at = pair_contact_at(a, q);
     const pair_mass m = pair_mass_of(a);
@@ -91,14 +92,16 @@ static inline void pair_accelerations(const arm *a, const double *q, const doubl
     const double sliding = -mode.friction * a->motor.stiction;
     const double joint = a->joint_stiffness * bend + a->joint_damping * rate;
     const double swing = m.m12 * at.sine;
-    const double b1 = a->motor.torque - a->motor.damping * w[0] + sliding + joint + swing * second;
+    const double b1 =
+        a->motor.torque - a->motor.damping * w[0] + sliding + joint + swing * second;
     const double b2 = -joint - swing * first;
     double a1, a2;
     pair_solve(&m, coupling, stuck, b1, b2, &a1, &a2);
 
     // what the wall answers, so that the arm stays on it
-    const double convective = a->wall.kind == WALL_POINT ? at.s1 * rate * rate - at.s2 * second
-                                                         : -(at.s1 * first + at.s2 * second);
+    const double convective = a->wall.kind == WALL_POINT
+                                  ? at.s1 * rate * rate - at.s2 * second
+                                  : -(at.s1 * first + at.s2 * second);
     double closing = at.j1 * a1 + at.j2 * a2 + convective, force = 0;
     if (mode.contact) {
         double y1, y2;
@@ -128,6 +131,7 @@ static inline double pair_contact_response(const arm *a, const double *q, bool h
 {
     const pair_contact at = pair_contact_at(a, q);
     const pair_mass m = pair_mass_of(a);
-    pair_solve(&m, m.m12 * at.cosine, hub_locked, -at.j1, -at.j2, &response[0], &response[1]);
+    pair_solve(&m, m.m12 * at.cosine, hub_locked, -at.j1, -at.j2, &response[0],
+               &response[1]);
     return -(at.j1 * response[0] + at.j2 * response[1]);
 }

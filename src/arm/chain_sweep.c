@@ -1,5 +1,5 @@
-// Accelerations of the chain by two sweeps; the derivation stands in chain.h. Two plain links have
-// a closed form (chain_pair.h).
+// Accelerations of the chain by two sweeps; the derivation stands in chain.h. Two plain
+// links have a closed form (chain_pair.h).
 #include "src/arm/chain.h"
 
 #include <math.h>
@@ -9,8 +9,8 @@
 
 #define KERNEL static inline __attribute__((always_inline))
 
-// Sums of the rows of the modal damping, g'(bend rates), into sums[damped_modes] [N m s^(1/2)]; the
-// torques are g times them. Returns the power lost [W].
+// Sums of the rows of the modal damping, g'(bend rates), into sums[damped_modes] [N m
+// s^(1/2)]; the torques are g times them. Returns the power lost [W].
 static double modal_rates(const arm *a, const double *w, double *sums)
 {
     double power = 0;
@@ -37,12 +37,14 @@ typedef struct sweep {
     double l_last, vx, vy; // length of the last link [m], velocity of its base [m/s]
     double pressed;        // force of a wall that gives [N]
     double held_back;      // and of the spring behind a face with a mass [N]
-    double hub_joint;      // torque of the joint before the first link, else less the motor's [N m]
-    const double *modal;   // sums of the modal damping's rows
+    double hub_joint; // torque of the joint before the first link, else less the motor's
+                      // [N m]
+    const double *modal;              // sums of the modal damping's rows
     double damping_power, wall_power; // lost [W]
 } sweep;
 
-// Directions of the links, place and velocity of the last one's base, and how the wall meets it.
+// Directions of the links, place and velocity of the last one's base, and how the wall
+// meets it.
 KERNEL void reach_wall(sweep *c)
 {
     const arm *a = c->a;
@@ -60,26 +62,30 @@ KERNEL void reach_wall(sweep *c)
     }
     c->l_last = arm_link_of(a, last).length;
     if (wall_stands(&a->wall)) {
-        c->wall = wall_contact_at(&a->wall, c->l_last, x, y, c->vx, c->vy, c->link[last].c,
-                                  c->link[last].s, c->omega[last]);
+        c->wall = wall_contact_at(&a->wall, c->l_last, x, y, c->vx, c->vy,
+                                  c->link[last].c, c->link[last].s, c->omega[last]);
     }
 }
 
-// The answer of a wall that gives to place and velocity; of one with a mass that of its spring.
+// The answer of a wall that gives to place and velocity; of one with a mass that of its
+// spring.
 KERNEL void press(sweep *c)
 {
     const wall_model *model = &c->a->wall;
     const int last = c->a->links - 1;
-    const double lever = wall_last_lever(&c->wall, c->l_last, c->link[last].c, c->link[last].s);
+    const double lever =
+        wall_last_lever(&c->wall, c->l_last, c->link[last].c, c->link[last].s);
     const double depth = c->wall.penetration;
-    const double rate = wall_penetration_rate(&c->wall, c->vx, c->vy, lever, c->omega[last]) +
-                        wall_comes(model, c->wall.ex, c->wall.ey);
+    const double rate =
+        wall_penetration_rate(&c->wall, c->vx, c->vy, lever, c->omega[last]) +
+        wall_comes(model, c->wall.ex, c->wall.ey);
     if (c->face) {
         c->held_back = wall_force(model, depth, rate);
         c->wall_power = model->damping * rate * rate;
     } else {
         c->pressed = wall_force(model, depth, rate);
-        // a step tries Kelvin-Voigt's law in front of the wall, too, and loses nothing there
+        // a step tries Kelvin-Voigt's law in front of the wall, too, and loses nothing
+        // there
         const bool damper = model->law == WALL_KELVIN_VOIGT;
         c->wall_power = damper ? model->damping * rate * rate
                                : (c->pressed - wall_spring_force(model, depth)) * rate;
@@ -100,7 +106,8 @@ typedef struct beyond {
 KERNEL double drag(sweep *c, int k, double l, beyond *b, double *x, double *y)
 {
     const double air = c->a->air_drag * l, omega = c->omega[k];
-    const double cosine = c->link[k].c, sine = c->link[k].s, half = 0.5 * l, turn = l * omega;
+    const double cosine = c->link[k].c, sine = c->link[k].s, half = 0.5 * l,
+                 turn = l * omega;
     const double turning = c->a->air_drag * l * l * l / 12 * omega;
     *x = air * (b->end_x + half * sine * omega);
     *y = air * (b->end_y - half * cosine * omega);
@@ -129,22 +136,24 @@ KERNEL void eliminate(sweep *c, int k, beyond *b)
     const arm *a = c->a;
     const bool tip = k == a->links - 1, root = k == 0;
     const double l = arm_link_of(a, k).length, m = arm_link_of(a, k).mass, half = 0.5 * l;
-    const double cosine = c->link[k].c, sine = c->link[k].s, w2 = c->omega[k] * c->omega[k];
+    const double cosine = c->link[k].c, sine = c->link[k].s,
+                 w2 = c->omega[k] * c->omega[k];
     const double ptx = -b->pxx * sine + b->pxy * cosine; // P t
     const double pty = -b->pxy * sine + b->pyy * cosine;
     const double prx = b->pxx * cosine + b->pxy * sine; // P r
     const double pry = b->pxy * cosine + b->pyy * sine;
     const double ux = -m * half * sine + l * ptx, uy = m * half * cosine + l * pty;
     const double fx = b->qx - l * w2 * prx, fy = b->qy - l * w2 * pry;
-    double d = arm_link_of(a, k).inertia + m * half * half + l * l * (cosine * pty - sine * ptx);
+    double d =
+        arm_link_of(a, k).inertia + m * half * half + l * l * (cosine * pty - sine * ptx);
     if (root && !a->hub_spring) {
         d += a->hub_inertia;
     }
 
     // the moments on it
-    const double inner =
-        root ? c->hub_joint
-             : joint_torque(c, k, c->theta[k] - c->theta[k - 1], c->omega[k] - c->omega[k - 1]);
+    const double inner = root ? c->hub_joint
+                              : joint_torque(c, k, c->theta[k] - c->theta[k - 1],
+                                             c->omega[k] - c->omega[k - 1]);
     double moment = b->outer - inner - l * (cosine * fy - sine * fx);
     double moment2 = 0, drag_x = 0, drag_y = 0;
     b->outer = inner;
@@ -211,9 +220,10 @@ KERNEL tip_base substitute(const sweep *c, double *out)
     return (tip_base){ax, ay, bx, by};
 }
 
-// The force that d2g/dt2 = 0 gives, or what a face with a mass needs to go along, and what it makes
-// of the accelerations; reactions of the wall.
-KERNEL void close_wall(const sweep *c, tip_base base, double *out, chain_reaction *reaction)
+// The force that d2g/dt2 = 0 gives, or what a face with a mass needs to go along, and
+// what it makes of the accelerations; reactions of the wall.
+KERNEL void close_wall(const sweep *c, tip_base base, double *out,
+                       chain_reaction *reaction)
 {
     const wall_model *model = &c->a->wall;
     const wall_contact *at = &c->wall;
@@ -222,9 +232,11 @@ KERNEL void close_wall(const sweep *c, tip_base base, double *out, chain_reactio
     const double last = wall_last_lever(at, c->l_last, end->c, end->s); // J_N
     const double comes = wall_comes(model, at->ex, at->ey);
     const double comes_faster = wall_comes_faster(model, at->ex, at->ey);
-    double rate2 = at->ex * base.ax + at->ey * base.ay + last * out[N - 1] + at->convective;
+    double rate2 =
+        at->ex * base.ax + at->ey * base.ay + last * out[N - 1] + at->convective;
     double force = c->pressed;
-    rate2 += c->face ? 0 : comes_faster; // the mass of a face feels the acceleration in space
+    rate2 +=
+        c->face ? 0 : comes_faster; // the mass of a face feels the acceleration in space
     if (c->constrained) {
         const double yields = at->ex * base.bx + at->ey * base.by + last * end->unit;
         force = -rate2 / yields;
@@ -239,7 +251,8 @@ KERNEL void close_wall(const sweep *c, tip_base base, double *out, chain_reactio
     }
     rate2 += c->face ? comes_faster : 0;
     reaction->force = force;
-    reaction->wall_work = (c->face ? c->held_back : force) * comes; // a face's foundation works
+    reaction->wall_work =
+        (c->face ? c->held_back : force) * comes; // a face's foundation works
     reaction->wall_power = c->wall_power;
     reaction->gap_acceleration = -rate2;
     reaction->gap = wall_stands(model) ? -at->penetration : HUGE_VAL;
@@ -255,7 +268,11 @@ void chain_accelerations(const arm *a, chain_link *work, const double *q, const 
         return;
     }
     double modal[PARAMETER_MODES_MOST];
-    sweep c = {.a = a, .link = work, .theta = q + a->first, .omega = w + a->first, .modal = modal};
+    sweep c = {.a = a,
+               .link = work,
+               .theta = q + a->first,
+               .omega = w + a->first,
+               .modal = modal};
     c.gives = wall_gives(&a->wall) && wall_stands(&a->wall);
     c.face = c.gives && wall_has_face(&a->wall);
     c.constrained = mode.contact && (!c.gives || c.face);

@@ -6,13 +6,19 @@ impact_result impact_velocity_increments(const arm *a, chain_link *work, const d
 {
     impact_result result;
     double compliance = chain_contact_response(a, work, q, false, increment);
-    compliance += wall_has_face(&a->wall) ? 1 / a->wall.face_mass : 0;
+    if (wall_has_face(&a->wall)) {
+        compliance += 1 / a->wall.face_mass;
+    }
     result.speed = chain_penetration(a, q, w).rate;
     const double comes = result.speed - chain_penetration_rate(a, q, w);
     result.speed -= face;
     result.impulse = (1 + restitution) * result.speed / compliance;
     result.loss = 0.5 * result.impulse * (1 - restitution) * result.speed;
-    result.work = wall_has_face(&a->wall) ? 0 : result.impulse * comes; // its foundation is far
+    if (wall_has_face(&a->wall)) {
+        result.work = 0;
+    } else {
+        result.work = result.impulse * comes;
+    } // its foundation is far
     for (int i = 0; i < a->dof; i++) {
         increment[i] *= result.impulse;
     }

@@ -23,7 +23,8 @@ void modes_matrices(const arm *a, double *mass, double *stiffness)
 {
     const int n = a->dof, N = a->links;
 
-    // straight, all cosines are 1: every link beyond the outer one counts whole, that one half
+    // straight, all cosines are 1: every link beyond the outer one counts whole, that one
+    // half
     double beyond = a->tip_mass;
     for (int j = N - 1; j >= 0; j--) {
         const double l = arm_link_of(a, j).length, m = arm_link_of(a, j).mass;
@@ -43,13 +44,16 @@ void modes_matrices(const arm *a, double *mass, double *stiffness)
     }
 }
 
-// --- the sag of a tilted arm ---------------------------------------------------------------------
+// --- the sag of a tilted arm -----------------------------------------------------------
 
 // Angle of the line that a pinned tip stays on, and at which a hub is held [rad].
 static double line_angle(const arm *a, tip_end tip)
 {
     const bool at_wall = tip == TIP_PINNED && wall_stands(&a->wall);
-    return at_wall ? plain_atan2(a->wall.sine, a->wall.cosine) : a->held_angle;
+    if (at_wall) {
+        return plain_atan2(a->wall.sine, a->wall.cosine);
+    }
+    return a->held_angle;
 }
 
 status modes_sag(const arm *a, tip_end tip, double *q, double *force)
@@ -69,7 +73,8 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
         return STATUS_NO_MEMORY;
     }
 
-    // the weight comes on in portions, each by Newton's method in the angles behind the hub
+    // the weight comes on in portions, each by Newton's method in the angles behind the
+    // hub
     double *change = matrix + size * size, most = 1;
     bool found = true;
     for (int load = 1; load <= LOADS && found; load++) {
@@ -91,7 +96,8 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
                 if (own > 0) {
                     change[own - 1] += torque;
                     matrix[(own - 1) * size + own - 1] += slope;
-                    matrix[(own - 1) * size + own] = matrix[own * size + own - 1] = -slope;
+                    matrix[(own - 1) * size + own] = matrix[own * size + own - 1] =
+                        -slope;
                 }
                 if (tip == TIP_PINNED) {
                     matrix[own * size + last] = matrix[last * size + own] = reach;
@@ -104,18 +110,23 @@ status modes_sag(const arm *a, tip_end tip, double *q, double *force)
                 q[k] += change[k - 1];
                 most = fmax(most, fabs(change[k - 1]));
             }
-            *force += tip == TIP_PINNED ? change[last] : 0;
+            if (tip == TIP_PINNED) {
+                *force += change[last];
+            }
         }
         found = found && most < 1e-9;
     }
     free(matrix);
-    return found ? STATUS_OK : STATUS_SINGULAR;
+    if (found) {
+        return STATUS_OK;
+    }
+    return STATUS_SINGULAR;
 }
 
-// M and K about the sag from those of the straight arm; constraint[n] gets what a pinned tip lets
-// the angles do, sum of constraint x = 0.
-static status add_sag(const arm *a, tip_end tip, double *q, double *mass, double *stiffness,
-                      double *constraint)
+// M and K about the sag from those of the straight arm; constraint[n] gets what a pinned
+// tip lets the angles do, sum of constraint x = 0.
+static status add_sag(const arm *a, tip_end tip, double *q, double *mass,
+                      double *stiffness, double *constraint)
 {
     const int n = a->dof;
     double force;
@@ -131,7 +142,8 @@ static status add_sag(const arm *a, tip_end tip, double *q, double *mass, double
             chain_weight(a, link) * inline_sin(q[k]) + force * l * inline_sin(turned);
         if (k > 0) {
             const double bend = q[k] - q[k - 1];
-            add_spring(n, k, 3 * arm_stiffening_torque(a, link, 1) * bend * bend, stiffness);
+            add_spring(n, k, 3 * arm_stiffening_torque(a, link, 1) * bend * bend,
+                       stiffness);
         }
     }
     return code;
@@ -160,8 +172,8 @@ static int allowed_basis(const arm *a, hub_end hub, tip_end tip, const double *c
 }
 
 // reduced = basis^T matrix basis
-static void reduce(const double *matrix, const double *basis, int n, int columns, double *product,
-                   double *reduced)
+static void reduce(const double *matrix, const double *basis, int n, int columns,
+                   double *product, double *reduced)
 {
     for (int c = 0; c < columns; c++) {
         for (int i = 0; i < n; i++) {
@@ -182,8 +194,8 @@ static void reduce(const double *matrix, const double *basis, int n, int columns
     }
 }
 
-status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double *frequencies,
-                     double *shapes)
+status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count,
+                     double *frequencies, double *shapes)
 {
     assert(a->dof > 0);
     const int n = a->dof;
@@ -210,7 +222,8 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double 
     reduce(stiffness, basis, n, columns, product, k);
     reduce(mass, basis, n, columns, product, m);
     *count = columns;
-    const bool found = columns == 0 || symmetric_eigen_pair(columns, k, m, values, scratch);
+    const bool found =
+        columns == 0 || symmetric_eigen_pair(columns, k, m, values, scratch);
 
     // frequencies, and shapes scaled to a largest angle of one
     for (int i = 0; found && i < columns; i++) {
@@ -225,32 +238,39 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count, double 
                 angle += basis[c * n + j] * k[i * columns + c];
             }
             shapes[i * n + j] = angle;
-            largest = fabs(angle) > fabs(largest) ? angle : largest;
+            if (fabs(angle) > fabs(largest)) {
+                largest = angle;
+            }
         }
         for (int j = 0; j < n; j++) {
             shapes[i * n + j] /= largest;
         }
     }
     free(block);
-    return found ? STATUS_OK : STATUS_SINGULAR;
+    if (found) {
+        return STATUS_OK;
+    }
+    return STATUS_SINGULAR;
 }
 
-// --- damping of modes ------------------------------------------------------------------------
+// --- damping of modes ------------------------------------------------------------------
 
 enum { MOST_BODIES = PARAMETER_LIST_MOST + 1 };
 
-// K^(-1/2) M K^(-1/2) in the bends of the joints, the sum of which up to its own is the angle of a
-// body behind the first.
+// K^(-1/2) M K^(-1/2) in the bends of the joints, the sum of which up to its own is the
+// angle of a body behind the first.
 static void scaled_mass(const arm *a, double *scaled)
 {
     enum { EDGE = MOST_BODIES + 1 };
-    double mass[MOST_BODIES * MOST_BODIES] = {0}, stiffness[MOST_BODIES * MOST_BODIES] = {0};
+    double mass[MOST_BODIES * MOST_BODIES] = {0},
+                              stiffness[MOST_BODIES * MOST_BODIES] = {0};
     double common[EDGE * EDGE] = {0}; // with a row and a column of zeros behind the last
     const int n = a->dof, size = n - 1;
     assert(n <= (int)MOST_BODIES);
     modes_matrices(a, mass, stiffness);
 
-    // what the bodies from i and from j on have in common, less the roots of both stiffnesses
+    // what the bodies from i and from j on have in common, less the roots of both
+    // stiffnesses
     for (int i = n - 1; i >= 1; i--) {
         for (int j = n - 1; j >= 1; j--) {
             double *here = common + i * EDGE + j;
@@ -263,7 +283,8 @@ static void scaled_mass(const arm *a, double *scaled)
     }
 }
 
-int modal_damping_rows(const arm *a, const char *ratios, double rows[][PARAMETER_LIST_MOST])
+int modal_damping_rows(const arm *a, const char *ratios,
+                       double rows[][PARAMETER_LIST_MOST])
 {
     double ratio[PARAMETER_LIST_MOST], scaled[MOST_BODIES * MOST_BODIES];
     double values[MOST_BODIES], scratch[2 * MOST_BODIES];
@@ -273,7 +294,8 @@ int modal_damping_rows(const arm *a, const char *ratios, double rows[][PARAMETER
     }
 
     // the slowest mode has the largest value
-    assert(count <= size && count <= PARAMETER_MODES_MOST && a->links <= PARAMETER_LIST_MOST);
+    assert(count <= size && count <= PARAMETER_MODES_MOST &&
+           a->links <= PARAMETER_LIST_MOST);
     scaled_mass(a, scaled);
     const bool found = symmetric_eigen(size, scaled, values, scratch);
     assert(found);

@@ -74,7 +74,11 @@ void motor_init(motor_model *m, const motor_parameters *p)
         m->back_emf = p->back_emf;
         m->resistance = p->resistance;
         m->inductance = p->inductance;
-        m->current_limit = p->current_limit > 0 ? p->current_limit : HUGE_VAL;
+        if (p->current_limit > 0) {
+            m->current_limit = p->current_limit;
+        } else {
+            m->current_limit = HUGE_VAL;
+        }
     }
     motor_set_voltage(m, p->voltage);
 }

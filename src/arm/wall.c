@@ -7,13 +7,15 @@
 
 // A face that swings less than this is at rest [m].
 #define FACE_AT_REST 1e-15
-// One without a mass that is left behind by less [m], or returns within less [s], has not been.
+// One without a mass that is left behind by less [m], or returns within less [s], has not
+// been.
 #define LEAST_DEPTH  1e-12
 #define LEAST_RETURN 1e-14
-// A bounce slower than this counts as no bounce [m/s]: half of it is what the engines take for
-// rounding of a rate just after an impact (EDGE_RATE in edge_limits.h).
+// A bounce slower than this counts as no bounce [m/s]: half of it is what the engines
+// take for rounding of a rate just after an impact (EDGE_RATE in edge_limits.h).
 #define LEAST_REBOUND 2e-9
-// Below this square of a phase or decay sine and its kin are their series, to the last bit.
+// Below this square of a phase or decay sine and its kin are their series, to the last
+// bit.
 #define SMALL_SQUARE 1e-4
 
 void wall_init(wall_model *w, const parameters *p)
@@ -26,7 +28,8 @@ void wall_init(wall_model *w, const parameters *p)
                       .law = (wall_law)p->wall.contact,
                       .stiffness = p->wall.stiffness,
                       .damping = p->wall.damping,
-                      .exponent = p->wall.contact == WALL_HUNT_CROSSLEY ? p->wall.exponent : 1,
+                      .exponent =
+                          p->wall.contact == WALL_HUNT_CROSSLEY ? p->wall.exponent : 1,
                       .face_mass = p->wall.mass,
                       .motion = wall_motion_of(&p->wall)};
     w->x = p->arm.length * w->cosine;
@@ -36,46 +39,62 @@ void wall_init(wall_model *w, const parameters *p)
 double wall_restitution(const wall_model *w, double approach_speed)
 {
     const bool rests = approach_speed < w->rest_speed;
-    return rests || w->restitution * approach_speed < LEAST_REBOUND ? 0 : w->restitution;
+    if (rests || w->restitution * approach_speed < LEAST_REBOUND) {
+        return 0;
+    }
+    return w->restitution;
 }
 
 double wall_stored_energy(const wall_model *w, double depth)
 {
-    return depth > 0 ? wall_spring_force(w, depth) * depth / (w->exponent + 1) : 0;
+    if (depth > 0) {
+        return wall_spring_force(w, depth) * depth / (w->exponent + 1);
+    }
+    return 0;
 }
 
 double wall_rate(const wall_model *w, double compliance, double depth, double rate)
 {
     assert(compliance > 0);
-    // without its damper the wall stops the mass at the deepest point, and so does a damper that
-    // grows with the depth without the wall's spring
+    // without its damper the wall stops the mass at the deepest point, and so does a
+    // damper that grows with the depth without the wall's spring
     const double n = w->exponent, inward = fmax(rate, 0);
-    const double energy = 0.5 * inward * inward / compliance + wall_stored_energy(w, depth);
+    const double energy =
+        0.5 * inward * inward / compliance + wall_stored_energy(w, depth);
     double deepest = plain_pow((n + 1) * energy / w->stiffness, 1 / (n + 1));
     if (w->law == WALL_HUNT_CROSSLEY && w->damping > 0) {
         const double way = inward * (n + 1) / (w->damping * compliance);
-        const double held = plain_pow(plain_pow(fmax(depth, 0), n + 1) + way, 1 / (n + 1));
+        const double held =
+            plain_pow(plain_pow(fmax(depth, 0), n + 1) + way, 1 / (n + 1));
         deepest = fmin(deepest, held);
     }
-    double stiffness = n == 1 ? w->stiffness : n * w->stiffness * plain_pow(deepest, n - 1);
-    double damping = w->law == WALL_KELVIN_VOIGT ? w->damping : w->damping * plain_pow(deepest, n);
+    double stiffness =
+        n == 1 ? w->stiffness : n * w->stiffness * plain_pow(deepest, n - 1);
+    double damping =
+        w->law == WALL_KELVIN_VOIGT ? w->damping : w->damping * plain_pow(deepest, n);
     return fmax(sqrt(stiffness * compliance), damping * compliance);
 }
 
-// --- a face left alone --------------------------------------------------------------------------
+// --- a face left alone -----------------------------------------------------------------
 
-// How long a face without a mass takes from a depth [m] to its place at rest [s], by a factor of e
-// nearer to it for Kelvin-Voigt's wall.
+// How long a face without a mass takes from a depth [m] to its place at rest [s], by a
+// factor of e nearer to it for Kelvin-Voigt's wall.
 static double return_time(const wall_model *w, double depth)
 {
     const double time = w->damping / w->stiffness;
-    return w->law == WALL_KELVIN_VOIGT ? time : time * depth;
+    if (w->law == WALL_KELVIN_VOIGT) {
+        return time;
+    }
+    return time * depth;
 }
 
 // Such a face on its way back, or at rest where it is next to its place.
 static wall_face returning(const wall_model *w, double depth, double least)
 {
-    return depth > least ? (wall_face){depth, -depth / return_time(w, depth)} : (wall_face){0};
+    if (depth > least) {
+        return (wall_face){depth, -depth / return_time(w, depth)};
+    }
+    return (wall_face){0};
 }
 
 wall_face wall_face_left_behind(const wall_model *w, double depth)
@@ -86,39 +105,45 @@ wall_face wall_face_left_behind(const wall_model *w, double depth)
 
 double wall_face_acceleration(const wall_model *w, wall_face face)
 {
-    return wall_has_face(w)
-               ? w->shift.acceleration -
-                     (w->stiffness * face.position + w->damping * face.velocity) / w->face_mass
-               : -wall_face_rate(w, face) * face.velocity;
+    if (wall_has_face(w)) {
+        return w->shift.acceleration -
+               (w->stiffness * face.position + w->damping * face.velocity) / w->face_mass;
+    }
+    return -wall_face_rate(w, face) * face.velocity;
 }
 
 double wall_face_energy(const wall_model *w, wall_face face)
 {
     const double moves = face.velocity - w->shift.velocity;
-    return 0.5 * w->face_mass * moves * moves + wall_stored_energy(w, fabs(face.position));
+    return 0.5 * w->face_mass * moves * moves +
+           wall_stored_energy(w, fabs(face.position));
 }
 
-// --- one that its foundation shakes -------------------------------------------------------------
+// --- one that its foundation shakes ----------------------------------------------------
 
-// The series of wall_motion.h and of what follows from it are this long; at a phase of one their
-// rest is less than a last bit.
+// The series of wall_motion.h and of what follows from it are this long; at a phase of
+// one their rest is less than a last bit.
 enum { TERMS = 20 };
 
 // The series of what shakes it from the instant of the wall on. False where nothing does.
 static bool is_shaken(const wall_model *w, double *series)
 {
-    return wall_is_shaken(w) && wall_motion_series(&w->motion, w->shift.time, TERMS, series);
+    return wall_is_shaken(w) &&
+           wall_motion_series(&w->motion, w->shift.time, TERMS, series);
 }
 
-// The two decays of a face that creeps back without swinging, d -+ sqrt(d^2 - w0^2) [1/s].
+// The two decays of a face that creeps back without swinging, d -+ sqrt(d^2 - w0^2)
+// [1/s].
 static void find_decays(const wall_model *w, double *slow, double *fast)
 {
-    const double square = w->stiffness / w->face_mass, d = w->damping / (2 * w->face_mass);
+    const double square = w->stiffness / w->face_mass,
+                 d = w->damping / (2 * w->face_mass);
     *fast = d + sqrt(fmax(d * d - square, 0));
     *slow = square / *fast;
 }
 
-// Of y' + fast y = u'', the solution without a transient, as a series: y = (u'' - y')/fast.
+// Of y' + fast y = u'', the solution without a transient, as a series: y = (u'' -
+// y')/fast.
 static void quiet_series(const double *shakes, double fast, double *y)
 {
     y[TERMS - 1] = shakes[TERMS - 1] / fast;
@@ -127,12 +152,13 @@ static void quiet_series(const double *shakes, double fast, double *y)
     }
 }
 
-// The series of the face's place. By the equation of motion; or where its fast decay is over and
-// far faster than all that happens, by x' + slow x = y with y as above.
-static void face_series(const wall_model *w, const double *shakes, bool creeps, wall_face face,
-                        double *x)
+// The series of the face's place. By the equation of motion; or where its fast decay is
+// over and far faster than all that happens, by x' + slow x = y with y as above.
+static void face_series(const wall_model *w, const double *shakes, bool creeps,
+                        wall_face face, double *x)
 {
-    const double square = w->stiffness / w->face_mass, damping = w->damping / w->face_mass;
+    const double square = w->stiffness / w->face_mass,
+                 damping = w->damping / w->face_mass;
     x[0] = face.position;
     if (creeps) {
         double slow, fast, y[TERMS];
@@ -162,14 +188,18 @@ static wall_face sum_up(const double *x, double h)
 }
 
 // The integral of (k x + c x') u' from 0 to h, whose factors are series.
-static double work_by(const wall_model *w, double velocity, const double *shakes, const double *x,
-                      double h)
+static double work_by(const wall_model *w, double velocity, const double *shakes,
+                      const double *x, double h)
 {
     double force[TERMS], moves[TERMS], power = 1, sum = 0;
     for (int n = 0; n < TERMS; n++, power *= h) {
         const double rate = n + 1 < TERMS ? (n + 1) * x[n + 1] : 0;
         force[n] = power * (w->stiffness * x[n] + w->damping * rate);
-        moves[n] = n == 0 ? velocity : power * shakes[n - 1] / n;
+        if (n == 0) {
+            moves[n] = velocity;
+        } else {
+            moves[n] = power * shakes[n - 1] / n;
+        }
     }
     for (int n = 0; n < TERMS; n++) {
         double product = 0;
@@ -212,11 +242,11 @@ double wall_face_work(const wall_model *w, wall_face face, double h)
     return work;
 }
 
-// --- its motion ---------------------------------------------------------------------------------
+// --- its motion ------------------------------------------------------------------------
 
-// Without a mass as wall.h has it. x'' + 2 d x' + w0^2 x = 0 has x(h) = x0 C + (x0' + d x0) S and
-// x'(h) = x0' C - (d x0' + w0^2 x0) S with C = e^-dh cos(sh), S = e^-dh sin(sh)/s, s^2 = w0^2 -
-// d^2; hyperbolic where that is negative.
+// Without a mass as wall.h has it. x'' + 2 d x' + w0^2 x = 0 has x(h) = x0 C + (x0' + d
+// x0) S and x'(h) = x0' C - (d x0' + w0^2 x0) S with C = e^-dh cos(sh), S = e^-dh
+// sin(sh)/s, s^2 = w0^2 - d^2; hyperbolic where that is negative.
 wall_face wall_face_after(const wall_model *w, wall_face face, double h)
 {
     assert(h >= 0);
@@ -229,11 +259,13 @@ wall_face wall_face_after(const wall_model *w, wall_face face, double h)
     if (is_shaken(w, series)) {
         return shake(w, face, h, &work);
     }
-    const double square = w->stiffness / w->face_mass, d = w->damping / (2 * w->face_mass);
+    const double square = w->stiffness / w->face_mass,
+                 d = w->damping / (2 * w->face_mass);
     const double turn = square - d * d, s = sqrt(fabs(turn)), phase = turn * h * h;
     double c, sine;
 
-    // cosine and sine over s with their decay; hyperbolic ones by the slower of their two decays
+    // cosine and sine over s with their decay; hyperbolic ones by the slower of their two
+    // decays
     if (fabs(phase) < SMALL_SQUARE) {
         const double decay = plain_exp(-d * h);
         c = decay * (1 - phase / 2 * (1 - phase / 12 * (1 - phase / 30)));
@@ -244,16 +276,21 @@ wall_face wall_face_after(const wall_model *w, wall_face face, double h)
         c *= decay;
         sine *= decay / s;
     } else {
-        const double slow = plain_exp(-square / (d + s) * h), fast = plain_exp(-(d + s) * h);
+        const double slow = plain_exp(-square / (d + s) * h),
+                     fast = plain_exp(-(d + s) * h);
         c = (slow + fast) / 2;
         sine = (slow - fast) / (2 * s);
     }
 
     // what is left when it has died away is rounding
     wall_face after = {face.position * c + (face.velocity + d * face.position) * sine,
-                       face.velocity * c - (d * face.velocity + square * face.position) * sine};
+                       face.velocity * c -
+                           (d * face.velocity + square * face.position) * sine};
     const double least = 0.5 * w->stiffness * FACE_AT_REST * FACE_AT_REST;
-    return wall_face_energy(w, after) > least ? after : (wall_face){0};
+    if (wall_face_energy(w, after) > least) {
+        return after;
+    }
+    return (wall_face){0};
 }
 
 double wall_face_rate(const wall_model *w, wall_face face)
@@ -264,9 +301,13 @@ double wall_face_rate(const wall_model *w, wall_face face)
         return 0;
     }
     if (!wall_has_face(w)) {
-        return w->law == WALL_KELVIN_VOIGT ? w->stiffness / w->damping : 0;
+        if (w->law == WALL_KELVIN_VOIGT) {
+            return w->stiffness / w->damping;
+        }
+        return 0;
     }
-    const double square = w->stiffness / w->face_mass, d = w->damping / (2 * w->face_mass);
+    const double square = w->stiffness / w->face_mass,
+                 d = w->damping / (2 * w->face_mass);
     if (d * d <= square) {
         return sqrt(square);
     }
@@ -278,11 +319,16 @@ double wall_face_rate(const wall_model *w, wall_face face)
         quiet_series(series, fast, quiet);
     }
     const double share = fabs(face.velocity + slow * face.position - quiet[0]);
-    return share <= FACE_AT_REST * (fast - slow) ? slow : fast;
+    if (share <= FACE_AT_REST * (fast - slow)) {
+        return slow;
+    }
+    return fast;
 }
 
 double wall_face_lasts(const wall_model *w, wall_face face)
 {
-    return w->law == WALL_HUNT_CROSSLEY && face.position > 0 ? return_time(w, face.position)
-                                                             : HUGE_VAL;
+    if (w->law == WALL_HUNT_CROSSLEY && face.position > 0) {
+        return return_time(w, face.position);
+    }
+    return HUGE_VAL;
 }

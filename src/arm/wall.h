@@ -1,58 +1,62 @@
 // The wall: where it stands, how the arm's last link meets it, and what it answers.
 //
-// Geometry. g is the penetration: negative in free flight, zero in contact, gap = -g. With the last
-// link's base at (x, y), its direction r = (c, s), across it t = (-s, c), and d = (a, b) - (x, y):
+// Geometry. g is the penetration: negative in free flight, zero in contact, gap = -g.
+// With the last link's base at (x, y), its direction r = (c, s), across it t = (-s, c),
+// and d = (a, b) - (x, y):
 //
 //   point: the link's line runs against the point (a, b),
 //          g = -t'd (3.9),   dg/dt = s_c w + t'v (3.12),   s_c = r'd,
 //          d2g/dt2 = s_c alpha + t'a - g w^2 - 2 w r'v (3.13)
-// Of a wall that moves by u towards the arm x, v and a are those relative to it: with n of the
-// wall's direction, x + u n, v + u' n and a + u" n.
+// Of a wall that moves by u towards the arm x, v and a are those relative to it: with n
+// of the wall's direction, x + u n, v + u' n and a + u" n.
 //
 //   plane: the tip runs against the plane through the hub's axis,
 //          g = n'tip,   n = (-sin, cos) of the wall's direction
 //
 // Both give dg/dt = J w with J_k = l t_k'e for the inner links and J_N = l t'e + lever.
 //
-// Law. A rigid wall keeps gap >= 0, f >= 0, gap f = 0, and an impact returns the share e of the
-// approach speed (wall_restitution). f is then the constraint's, from d2g/dt2 = 0. A wall that
-// gives has no constraint and no impact. At the depth x = g > 0 and its rate v it answers with
+// Law. A rigid wall keeps gap >= 0, f >= 0, gap f = 0, and an impact returns the share e
+// of the approach speed (wall_restitution). f is then the constraint's, from d2g/dt2 = 0.
+// A wall that gives has no constraint and no impact. At the depth x = g > 0 and its rate
+// v it answers with
 //
 //   Kelvin-Voigt:    f = k x + c v
 //   Hunt-Crossley:   f = x^n (k + c v)
 //
-// as long as that pushes. It stores k x^(n+1)/(n+1) (n = 1 for Kelvin-Voigt) and turns the rest of
-// f v into heat.
+// as long as that pushes. It stores k x^(n+1)/(n+1) (n = 1 for Kelvin-Voigt) and turns
+// the rest of f v into heat.
 //
-// Face. In contact the wall's face is as deep as the arm, x = g. Where the law would pull, the arm
-// leaves it behind, and it returns on its own: with f = 0 the law says its rate,
+// Face. In contact the wall's face is as deep as the arm, x = g. Where the law would
+// pull, the arm leaves it behind, and it returns on its own: with f = 0 the law says its
+// rate,
 //
 //   Kelvin-Voigt:    x' = -k x / c,    x = x_0 exp(-k t / c)
 //   Hunt-Crossley:   x' = -k / c,      x = max(x_0 - k t / c, 0)
 //
-// at once without a damper; what the spring holds goes into the damper. The arm is met where the
-// face is by then, without an impact, since the face has no mass.
+// at once without a damper; what the spring holds goes into the damper. The arm is met
+// where the face is by then, without an impact, since the face has no mass.
 //
-// Mass. A Kelvin-Voigt wall's face may have a mass M. Arm and face then meet as two rigid bodies:
-// an impact returns the share e of their relative speed, and in contact both move as one. With the
-// force f on the face
+// Mass. A Kelvin-Voigt wall's face may have a mass M. Arm and face then meet as two rigid
+// bodies: an impact returns the share e of their relative speed, and in contact both move
+// as one. With the force f on the face
 //
 //   M x'' + c x' + k x = f
 //
-// f is the constraint's once more: were the tip let go, it would move into the wall with g'' = a_f,
-// and a force holds it back by C = J M^-1 J^T for each newton, so that
+// f is the constraint's once more: were the tip let go, it would move into the wall with
+// g'' = a_f, and a force holds it back by C = J M^-1 J^T for each newton, so that
 //
 //   f = (M a_f + k x + c x') / (1 + M C),
 //
-// which is the law above for M = 0 and the rigid wall's a_f / C for M without bound. Contact ends
-// where f falls to zero; the face then swings on its own, f = 0, until the arm meets it again, and
-// for M = 0 that is the return above. On a foundation that moves by u (wall_motion.h) a_f is the
-// acceleration in space, and the face swings, even alone, by
+// which is the law above for M = 0 and the rigid wall's a_f / C for M without bound.
+// Contact ends where f falls to zero; the face then swings on its own, f = 0, until the
+// arm meets it again, and for M = 0 that is the return above. On a foundation that moves
+// by u (wall_motion.h) a_f is the acceleration in space, and the face swings, even alone,
+// by
 //
 //   M x'' + c x' + k x = f + M u''
 //
-// where the foundation does the work (k x + c x') u' on it. Spring and motion in space have the
-// energy k x^2/2 + M (x' - u')^2/2.
+// where the foundation does the work (k x + c x') u' on it. Spring and motion in space
+// have the energy k x^2/2 + M (x' - u')^2/2.
 #pragma once
 
 #include <math.h>
@@ -85,18 +89,19 @@ typedef struct wall_face {
 
 // Where and how the wall acts on the last link.
 typedef struct wall_contact {
-    double ex, ey;      // e, direction of the contact force's reaction [-]
-    double lever;       // distance of the contact point beyond the last link's end, s_c - l [m]
+    double ex, ey; // e, direction of the contact force's reaction [-]
+    double lever; // distance of the contact point beyond the last link's end, s_c - l [m]
     double penetration; // g [m]
-    double convective;  // d2g/dt2 - J alpha - (base acceleration)'e: the last link's velocity terms
+    double convective;  // d2g/dt2 - J alpha - (base acceleration)'e: the last link's
+                        // velocity terms
 } wall_contact;
 
 // The wall of resolved parameters; the contact point lies the arm's length from the hub.
 void wall_init(wall_model *w, const parameters *p);
 
-// Share of the approach speed [m/s] with which the arm bounces: none below the rest speed, so that
-// a sequence of ever smaller bounces ends in contact, nor where it would bounce at less than 2e-9
-// m/s, which the engines could not tell from rest.
+// Share of the approach speed [m/s] with which the arm bounces: none below the rest
+// speed, so that a sequence of ever smaller bounces ends in contact, nor where it would
+// bounce at less than 2e-9 m/s, which the engines could not tell from rest.
 double wall_restitution(const wall_model *w, double approach_speed);
 
 // Whether it moves.
@@ -105,8 +110,8 @@ static inline bool wall_moves(const wall_model *w)
     return w->motion.kind != MOTION_NONE;
 }
 
-// The velocity with which a wall that moves comes towards the arm along e, and the acceleration
-// [m/s], [m/s2].
+// The velocity with which a wall that moves comes towards the arm along e, and the
+// acceleration [m/s], [m/s2].
 static inline double wall_comes(const wall_model *w, double ex, double ey)
 {
     return w->shift.velocity * (w->cosine * ey - w->sine * ex);
@@ -134,7 +139,8 @@ static inline bool wall_has_face(const wall_model *w)
     return w->face_mass > 0;
 }
 
-// depth^n for a depth [m], zero in front of the wall; Hertz's exponent needs no logarithm.
+// depth^n for a depth [m], zero in front of the wall; Hertz's exponent needs no
+// logarithm.
 static inline double wall_power(const wall_model *w, double depth)
 {
     return depth <= 0           ? 0
@@ -149,8 +155,8 @@ static inline double wall_spring_force(const wall_model *w, double depth)
     return w->stiffness * wall_power(w, depth);
 }
 
-// Force of the law [N] at a depth [m] and its rate [m/s], negative where it would pull. Smooth also
-// where a step tries it in front of the wall.
+// Force of the law [N] at a depth [m] and its rate [m/s], negative where it would pull.
+// Smooth also where a step tries it in front of the wall.
 static inline double wall_force(const wall_model *w, double depth, double rate)
 {
     if (w->law == WALL_KELVIN_VOIGT) {
@@ -162,12 +168,12 @@ static inline double wall_force(const wall_model *w, double depth, double rate)
 // Energy that the wall's spring holds at a depth [J].
 double wall_stored_energy(const wall_model *w, double depth);
 
-// How fast the wall and a mass of 1/compliance [kg] behind it can move, until they part, from a
-// depth [m] and its rate [m/s] on: frequency or decay [1/s].
+// How fast the wall and a mass of 1/compliance [kg] behind it can move, until they part,
+// from a depth [m] and its rate [m/s] on: frequency or decay [1/s].
 double wall_rate(const wall_model *w, double compliance, double depth, double rate);
 
-// A face without a mass that an arm leaves behind at a depth [m]: there, with the rate of its
-// return; at rest in place where it returns in less than can be told.
+// A face without a mass that an arm leaves behind at a depth [m]: there, with the rate of
+// its return; at rest in place where it returns in less than can be told.
 wall_face wall_face_left_behind(const wall_model *w, double depth);
 
 // The wall where it is at an instant [s].
@@ -184,8 +190,8 @@ static inline bool wall_is_shaken(const wall_model *w)
     return wall_has_face(w) && wall_moves(w);
 }
 
-// A face on its spring and damper alone, h [s] after the instant of a wall that moves, and what
-// that has done on it by then [J].
+// A face on its spring and damper alone, h [s] after the instant of a wall that moves,
+// and what that has done on it by then [J].
 wall_face wall_face_after(const wall_model *w, wall_face face, double h);
 double wall_face_work(const wall_model *w, wall_face face, double h);
 
@@ -193,15 +199,15 @@ double wall_face_work(const wall_model *w, wall_face face, double h);
 double wall_face_acceleration(const wall_model *w, wall_face face);
 double wall_face_energy(const wall_model *w, wall_face face);
 
-// How fast the motion of a face left alone changes: frequency or decay [1/s], 0 for one at rest or
-// at a constant rate.
+// How fast the motion of a face left alone changes: frequency or decay [1/s], 0 for one
+// at rest or at a constant rate.
 double wall_face_rate(const wall_model *w, wall_face face);
 
 // How long that motion stays analytic [s]: that of Hunt and Crossley's wall ends at rest.
 double wall_face_lasts(const wall_model *w, wall_face face);
 
-// Place of the contact point in a frame with direction (c, s) through the hub's axis: along it, and
-// how far it lies to its right [m].
+// Place of the contact point in a frame with direction (c, s) through the hub's axis:
+// along it, and how far it lies to its right [m].
 static inline double wall_along(const wall_model *w, double c, double s)
 {
     return w->x * c + w->y * s;
@@ -211,11 +217,11 @@ static inline double wall_right_of(const wall_model *w, double c, double s)
     return w->x * s - w->y * c;
 }
 
-// Geometry of contact from the last link's length l, its base (x, y) moving at (vx, vy), its
-// direction (c, s) and angular velocity omega. For a wall that stands.
+// Geometry of contact from the last link's length l, its base (x, y) moving at (vx, vy),
+// its direction (c, s) and angular velocity omega. For a wall that stands.
 static inline __attribute__((always_inline)) wall_contact
-wall_contact_at(const wall_model *w, double l, double x, double y, double vx, double vy, double c,
-                double s, double omega)
+wall_contact_at(const wall_model *w, double l, double x, double y, double vx, double vy,
+                double c, double s, double omega)
 {
     wall_contact at;
 
@@ -249,7 +255,8 @@ static inline double wall_last_lever(const wall_contact *at, double l, double c,
     return at->lever + l * (c * at->ey - s * at->ex);
 }
 
-// dg/dt [m/s] with the last link's base moving at (vx, vy), J_N and the link's angular velocity.
+// dg/dt [m/s] with the last link's base moving at (vx, vy), J_N and the link's angular
+// velocity.
 static inline double wall_penetration_rate(const wall_contact *at, double vx, double vy,
                                            double last_lever, double omega)
 {

@@ -12,18 +12,21 @@
 
 wall_motion wall_motion_of(const wall_parameters *p)
 {
-    return (wall_motion){.kind = p->kind == WALL_NONE ? MOTION_NONE : (wall_motion_kind)p->motion,
+    return (wall_motion){.kind = p->kind == WALL_NONE ? MOTION_NONE
+                                                      : (wall_motion_kind)p->motion,
                          .amplitude = p->motion_amplitude,
                          .frequency = p->motion_frequency,
                          .time = p->motion_time};
 }
 
-// --- a table ----------------------------------------------------------------------------------
+// --- a table ---------------------------------------------------------------------------
 
-// The rates m of the cubic spline through the rows with slope 0 at both ends. Its acceleration is
-// continuous at each row between if, with h the intervals and d the slopes of the chords,
+// The rates m of the cubic spline through the rows with slope 0 at both ends. Its
+// acceleration is continuous at each row between if, with h the intervals and d the
+// slopes of the chords,
 //
-//     h_i m_(i-1) + 2 (h_(i-1) + h_i) m_i + h_(i-1) m_(i+1) = 3 (h_i d_(i-1) + h_(i-1) d_i)
+//     h_i m_(i-1) + 2 (h_(i-1) + h_i) m_i + h_(i-1) m_(i+1) = 3 (h_i d_(i-1) + h_(i-1)
+//     d_i)
 //
 // a diagonally dominant tridiagonal system, solved by elimination; scratch[rows].
 static void find_rates(wall_path *p, double *scratch)
@@ -31,7 +34,8 @@ static void find_rates(wall_path *p, double *scratch)
     const size_t last = p->rows - 1;
     p->rates[0] = scratch[0] = 0;
     for (size_t i = 1; i < last; i++) {
-        const double before = p->times[i] - p->times[i - 1], after = p->times[i + 1] - p->times[i];
+        const double before = p->times[i] - p->times[i - 1],
+                     after = p->times[i + 1] - p->times[i];
         const double chord_before = (p->places[i] - p->places[i - 1]) / before;
         const double chord_after = (p->places[i + 1] - p->places[i]) / after;
         const double pivot = 2 * (before + after) - after * scratch[i - 1];
@@ -50,18 +54,24 @@ status wall_path_create(wall_path **created, const char *file, fault *f)
     csv_table table = {0};
     wall_path *p = calloc(1, sizeof *p);
     *created = NULL;
-    TRY_MEMORY(p != NULL, f);
+    if (p == NULL) {
+        return fault_no_memory(f);
+    }
     status code = csv_table_read(&table, file, 2, f);
-    code = code == STATUS_OK ? csv_table_times(&table, "time", &p->times, f) : code;
-    code = code == STATUS_OK ? csv_table_numbers(&table, "place", "m", false, &p->places, f) : code;
+    if (code == STATUS_OK) {
+        code = csv_table_times(&table, "time", &p->times, f);
+    }
+    if (code == STATUS_OK) {
+        code = csv_table_numbers(&table, "place", "m", false, &p->places, f);
+    }
     p->rows = table.rows;
     for (size_t i = 1; i < p->rows && code == STATUS_OK; i++) {
         if (!(p->times[i] > p->times[i - 1])) {
             const int column = csv_table_find(&table, "time") + 1;
-            code =
-                fault_set_place(f, STATUS_BAD_ARGUMENT, table.lines[i], column,
-                                "%.300s:%d:%d: time = %g s again: a wall is at one place at a time",
-                                file, table.lines[i], column, p->times[i]);
+            code = fault_set_place(
+                f, STATUS_BAD_ARGUMENT, table.lines[i], column,
+                "%.300s:%d:%d: time = %g s again: a wall is at one place at a time", file,
+                table.lines[i], column, p->times[i]);
         }
     }
     csv_table_finish(&table);
@@ -69,7 +79,11 @@ status wall_path_create(wall_path **created, const char *file, fault *f)
     if (code == STATUS_OK) {
         p->rates = calloc(p->rows, sizeof *p->rates);
         scratch = calloc(p->rows, sizeof *scratch);
-        code = p->rates != NULL && scratch != NULL ? STATUS_OK : fault_no_memory(f);
+        if (p->rates != NULL && scratch != NULL) {
+            code = STATUS_OK;
+        } else {
+            code = fault_no_memory(f);
+        }
     }
     if (code == STATUS_OK) {
         find_rates(p, scratch);
@@ -99,8 +113,9 @@ void wall_path_destroy(wall_path *p)
     }
 }
 
-// The row that begins the interval of an instant of the table's own time; an instant next to a row
-// belongs to the interval that it begins. -1 before the first, rows - 1 from the last on.
+// The row that begins the interval of an instant of the table's own time; an instant next
+// to a row belongs to the interval that it begins. -1 before the first, rows - 1 from the
+// last on.
 static long interval_of(const wall_path *p, double time)
 {
     long low = -1, high = (long)p->rows;
@@ -133,7 +148,7 @@ static wall_shift path_at(const wall_path *p, double time)
                         .acceleration = (2 * square + x * 6 * cube) / (h * h)};
 }
 
-// --- where it is ------------------------------------------------------------------------------
+// --- where it is -----------------------------------------------------------------------
 
 wall_shift wall_motion_at(const wall_motion *m, double time)
 {
@@ -147,7 +162,8 @@ wall_shift wall_motion_at(const wall_motion *m, double time)
                             -m->amplitude * rate * rate * s};
     }
     case MOTION_STEP: {
-        const double rate = 2 * m->frequency, x = fmax(0, fmin(rate * since, 1)), y = 1 - x;
+        const double rate = 2 * m->frequency, x = fmax(0, fmin(rate * since, 1)),
+                     y = 1 - x;
         return (wall_shift){time, m->amplitude * x * x * x * (10 - 15 * x + 6 * x * x),
                             m->amplitude * rate * 30 * x * x * y * y,
                             m->amplitude * rate * rate * 60 * x * y * (y - x)};
@@ -193,7 +209,8 @@ bool wall_motion_series(const wall_motion *m, double time, int count, double *te
         const double h = m->path->times[i + 1] - m->path->times[i];
         const double rise = m->path->places[i + 1] - m->path->places[i];
         terms[0] = acceleration;
-        terms[1] = (6 * (m->path->rates[i] + m->path->rates[i + 1]) - 12 * rise / h) / (h * h);
+        terms[1] =
+            (6 * (m->path->rates[i] + m->path->rates[i + 1]) - 12 * rise / h) / (h * h);
         return true;
     }
     return false;
@@ -204,13 +221,17 @@ double wall_motion_rate(const wall_motion *m, double time)
     if (m->kind == MOTION_FILE) {
         // a share of an interval
         const long i = m->path != NULL ? interval_of(m->path, time - m->time) : -1;
-        return i >= 0 && i + 1 < (long)m->path->rows
-                   ? 1 / (m->path->times[i + 1] - m->path->times[i])
-                   : 0;
+        if (i >= 0 && i + 1 < (long)m->path->rows) {
+            return 1 / (m->path->times[i + 1] - m->path->times[i]);
+        }
+        return 0;
     }
     const bool rises = m->kind == MOTION_STEP && time - m->time > -SAME_INSTANT &&
                        wall_motion_lasts(m, time) < HUGE_VAL;
-    return m->kind == MOTION_SINE || rises ? 2 * M_PI * m->frequency : 0;
+    if (m->kind == MOTION_SINE || rises) {
+        return 2 * M_PI * m->frequency;
+    }
+    return 0;
 }
 
 double wall_motion_lasts(const wall_motion *m, double time)
@@ -218,11 +239,20 @@ double wall_motion_lasts(const wall_motion *m, double time)
     const double since = time - m->time;
     if (m->kind == MOTION_FILE && m->path != NULL) {
         const long next = interval_of(m->path, since) + 1;
-        return next < (long)m->path->rows ? m->path->times[next] - since : HUGE_VAL;
+        if (next < (long)m->path->rows) {
+            return m->path->times[next] - since;
+        }
+        return HUGE_VAL;
     }
     if (m->kind != MOTION_STEP) {
         return HUGE_VAL;
     }
     const double rises = 1 / (2 * m->frequency);
-    return since < -SAME_INSTANT ? -since : since < rises - SAME_INSTANT ? rises - since : HUGE_VAL;
+    if (since < -SAME_INSTANT) {
+        return -since;
+    }
+    if (since < rises - SAME_INSTANT) {
+        return rises - since;
+    }
+    return HUGE_VAL;
 }

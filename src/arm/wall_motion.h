@@ -1,16 +1,18 @@
-// How a wall moves: displacement along its normal, positive towards the arm, away from where
-// wall.angle has it.
+// How a wall moves: displacement along its normal, positive towards the arm, away from
+// where wall.angle has it.
 //
 //     sine: u = A sin(2 pi f (t - t0)), at all times
-//     step: u = A S((t - t0)/T), S(x) = x^3 (10 - 15 x + 6 x^2) for x from 0 to 1: at rest before
+//     step: u = A S((t - t0)/T), S(x) = x^3 (10 - 15 x + 6 x^2) for x from 0 to 1: at
+//     rest before
 //           and after, the acceleration without a jump; T = 1/(2 f)
 //
-//     file: the cubic spline through the rows of a table, at t - t0, that comes to rest at its ends
+//     file: the cubic spline through the rows of a table, at t - t0, that comes to rest
+//     at its ends
 //           and rests before and after; the acceleration jumps at the ends only
 //
-// so that an arm in contact is never struck by the wall's motion itself. The motion is analytic but
-// where a derivative jumps: at a step's begin and end, at the rows of a table. The engine's steps
-// end there.
+// so that an arm in contact is never struck by the wall's motion itself. The motion is
+// analytic but where a derivative jumps: at a step's begin and end, at the rows of a
+// table. The engine's steps end there.
 #pragma once
 
 #include <stdbool.h>
@@ -35,9 +37,10 @@ typedef struct wall_path {
     double *rates;  // of the spline there, 0 at both ends [m/s]
 } wall_path;
 
-// Reads a table with the columns time [s] and place [m] and computes its spline; to be destroyed.
-// STATUS_BAD_SCENARIO, with file, line and column, if it cannot be read, has fewer than two rows,
-// or times that do not rise; STATUS_NO_MEMORY. *created is then NULL.
+// Reads a table with the columns time [s] and place [m] and computes its spline; to be
+// destroyed. STATUS_BAD_SCENARIO, with file, line and column, if it cannot be read, has
+// fewer than two rows, or times that do not rise; STATUS_NO_MEMORY. *created is then
+// NULL.
 status wall_path_create(wall_path **created, const char *file, fault *f);
 void wall_path_destroy(wall_path *path); // may be NULL
 
@@ -54,8 +57,9 @@ wall_motion wall_motion_of(const wall_parameters *p);
 
 wall_shift wall_motion_at(const wall_motion *m, double time);
 
-// The first `count` coefficients of the acceleration's Taylor series at an instant [m/s2], [m/s3],
-// ..., good up to where the motion stays analytic. Whether any is not zero.
+// The first `count` coefficients of the acceleration's Taylor series at an instant
+// [m/s2], [m/s3], ..., good up to where the motion stays analytic. Whether any is not
+// zero.
 bool wall_motion_series(const wall_motion *m, double time, int count, double *terms);
 
 // How fast it changes from an instant on [1/s], 0 at rest.

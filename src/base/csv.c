@@ -11,7 +11,8 @@ csv_writer csv_begin(FILE *stream)
     return (csv_writer){.stream = stream};
 }
 
-// What stands between quotes, inner ones doubled; what may not leave the program becomes '?'.
+// What stands between quotes, inner ones doubled; what may not leave the program becomes
+// '?'.
 static void write_quoted(FILE *stream, const char *text)
 {
     const char *begin = text; // of what is written as it stands
@@ -25,7 +26,11 @@ static void write_quoted(FILE *stream, const char *text)
         // a quote ends the piece and begins the next one, too
         fwrite(begin, 1, (size_t)(text - begin), stream);
         fputc(length > 0 ? '"' : '?', stream);
-        begin = length > 0 ? text : text + 1;
+        if (length > 0) {
+            begin = text;
+        } else {
+            begin = text + 1;
+        }
         text++;
     }
     fwrite(begin, 1, (size_t)(text - begin), stream);

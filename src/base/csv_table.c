@@ -13,7 +13,7 @@
 
 enum { MOST_COLUMNS = 4096, SHOWN = 60 };
 
-// --- the file ---------------------------------------------------------------------------------
+// --- the file --------------------------------------------------------------------------
 
 // The whole file as a text on the heap, the caller's in any case.
 static status read_text(const char *path, char **text, fault *f)
@@ -21,15 +21,18 @@ static status read_text(const char *path, char **text, fault *f)
     size_t length;
     fault why = {0};
     *text = whole_file_read(path, SIZE_MAX / 4, &length, &why);
-    FAIL_IF(*text == NULL, whole_file_unread(path, &why, f));
-    return strlen(*text) == length
-               ? STATUS_OK
-               : fault_set(f, STATUS_BAD_ARGUMENT,
-                           "'%.300s' is no text, expected a table of numbers (CSV)", path);
+    if (*text == NULL) {
+        return whole_file_unread(path, &why, f);
+    }
+    if (strlen(*text) != length) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%.300s' is no text, expected a table of numbers (CSV)", path);
+    }
+    return STATUS_OK;
 }
 
-// Takes a field off the text: without quotes and blanks at its ends, ended by a 0. *last: it ends
-// its row; *line counts line ends, *text is NULL behind the last row.
+// Takes a field off the text: without quotes and blanks at its ends, ended by a 0. *last:
+// it ends its row; *line counts line ends, *text is NULL behind the last row.
 static char *next_field(char **text, bool *last, int *line)
 {
     char *from = *text, *to, *field;
@@ -39,7 +42,8 @@ static char *next_field(char **text, bool *last, int *line)
     field = to = from;
     const bool quoted = *from == '"';
     from += quoted;
-    for (bool inside = quoted; *from != '\0' && (inside || (*from != ',' && *from != '\n'));) {
+    for (bool inside = quoted;
+         *from != '\0' && (inside || (*from != ',' && *from != '\n'));) {
         if (quoted && *from == '"') {
             inside = inside && from[1] == '"';
             from += inside;
@@ -55,7 +59,11 @@ static char *next_field(char **text, bool *last, int *line)
     const char end = *from;
     *last = end != ',';
     *line += end == '\n';
-    *text = end == '\0' || (*last && from[1] == '\0') ? NULL : from + 1;
+    if (end == '\0' || (*last && from[1] == '\0')) {
+        *text = NULL;
+    } else {
+        *text = from + 1;
+    }
     while (to > field && is_blank(to[-1])) {
         to--;
     }
@@ -67,7 +75,9 @@ static char *next_field(char **text, bool *last, int *line)
 static status split(csv_table *t, char *text, fault *f)
 {
     static const char mark[] = "\xEF\xBB\xBF"; // that some programs put before UTF-8
-    text += strncmp(text, mark, strlen(mark)) == 0 ? strlen(mark) : 0;
+    if (strncmp(text, mark, strlen(mark)) == 0) {
+        text += strlen(mark);
+    }
     int line = 1;
     bool last = false;
     size_t count = 0;
@@ -87,9 +97,13 @@ static status split(csv_table *t, char *text, fault *f)
         if (columns == 1 && row[0][0] == '\0' && last) {
             continue;
         }
-        FAULT_PLACE_IF(columns < t->columns || !last, f, STATUS_BAD_ARGUMENT, begin, columns,
-                       "%.300s:%d:%d: the row has %s than %d fields, expected one for each heading",
-                       t->file, begin, columns, last ? "fewer" : "more", t->columns);
+        if (columns < t->columns || !last) {
+            return fault_set_place(f, STATUS_BAD_ARGUMENT, begin, columns,
+                                   "%.300s:%d:%d: the row has %s than %d fields, "
+                                   "expected one for each heading",
+                                   t->file, begin, columns, last ? "fewer" : "more",
+                                   t->columns);
+        }
         t->lines[t->rows++] = begin;
         count += (size_t)columns;
     }
@@ -99,7 +113,12 @@ static status split(csv_table *t, char *text, fault *f)
 status csv_table_read(csv_table *t, const char *path, size_t least, fault *f)
 {
     *t = (csv_table){.file = strdup(path)};
-    status code = t->file != NULL ? read_text(path, &t->text, f) : fault_no_memory(f);
+    status code;
+    if (t->file != NULL) {
+        code = read_text(path, &t->text, f);
+    } else {
+        code = fault_no_memory(f);
+    }
     if (code == STATUS_OK) {
         // a field for each comma and each line end
         size_t fields = 2, lines = 2;
@@ -111,13 +130,18 @@ status csv_table_read(csv_table *t, const char *path, size_t least, fault *f)
         t->fields = calloc(fields, sizeof *t->fields);
         t->lines = calloc(lines, sizeof *t->lines);
         const bool room = t->headings != NULL && t->fields != NULL && t->lines != NULL;
-        code = room ? split(t, t->text, f) : fault_no_memory(f);
+        if (room) {
+            code = split(t, t->text, f);
+        } else {
+            code = fault_no_memory(f);
+        }
     }
     if (code == STATUS_OK && t->rows < least) {
         const int line = t->rows > 0 ? t->lines[t->rows - 1] : 1;
-        code = fault_set_place(f, STATUS_BAD_ARGUMENT, line, 1,
-                               "%.300s:%d:1: %zu row%s below the headings, expected at least %zu",
-                               path, line, t->rows, t->rows == 1 ? "" : "s", least);
+        code = fault_set_place(
+            f, STATUS_BAD_ARGUMENT, line, 1,
+            "%.300s:%d:1: %zu row%s below the headings, expected at least %zu", path,
+            line, t->rows, t->rows == 1 ? "" : "s", least);
     }
     if (code != STATUS_OK) {
         csv_table_finish(t);
@@ -137,7 +161,7 @@ void csv_table_finish(csv_table *t)
     }
 }
 
-// --- columns ----------------------------------------------------------------------------------
+// --- columns ---------------------------------------------------------------------------
 
 // Length of a heading's name, without "[unit]" and the blanks before it.
 static size_t name_length(const char *heading)
@@ -226,40 +250,49 @@ static double factor_to(const char *unit, const char *wanted)
     return factor;
 }
 
-status csv_table_numbers(const csv_table *t, const char *heading, const char *unit, bool gaps,
-                         double **values, fault *f)
+status csv_table_numbers(const csv_table *t, const char *heading, const char *unit,
+                         bool gaps, double **values, fault *f)
 {
     *values = NULL;
     const int column = csv_table_find(t, heading);
-    FAULT_PLACE_IF(
-        column < 0, f, STATUS_BAD_ARGUMENT, 1, 1,
-        "%.300s:1:1: there is no column '%.*s', expected one of its %d headings, such as '%.*s'",
-        t->file, SHOWN, heading, t->columns, SHOWN, t->headings[0]);
+    if (column < 0) {
+        return fault_set_place(f, STATUS_BAD_ARGUMENT, 1, 1,
+                               "%.300s:1:1: there is no column '%.*s', expected one of "
+                               "its %d headings, such as '%.*s'",
+                               t->file, SHOWN, heading, t->columns, SHOWN,
+                               t->headings[0]);
+    }
 
     // its unit
     char own[32];
     const bool said = unit_of(heading, own) || unit_of(t->headings[column], own);
     const double factor = said ? factor_to(own, unit) : 1;
-    FAULT_PLACE_IF(factor == 0, f, STATUS_BAD_ARGUMENT, 1, column + 1,
-                   "%.300s:1:%d: the unit [%s] of '%.*s' is not known, expected [%s] or what can "
-                   "be converted to it",
-                   t->file, column + 1, own, SHOWN, t->headings[column], unit);
+    if (factor == 0) {
+        return fault_set_place(
+            f, STATUS_BAD_ARGUMENT, 1, column + 1,
+            "%.300s:1:%d: the unit [%s] of '%.*s' is not known, expected [%s] or "
+            "what can be converted to it",
+            t->file, column + 1, own, SHOWN, t->headings[column], unit);
+    }
 
     // and its numbers
     double *numbers = calloc(t->rows + 1, sizeof *numbers);
-    TRY_MEMORY(numbers != NULL, f);
+    if (numbers == NULL) {
+        return fault_no_memory(f);
+    }
     for (size_t r = 0; r < t->rows; r++) {
         const char *field = t->fields[r * (size_t)t->columns + (size_t)column], *rest;
         if (gaps && (field[0] == '\0' || strcasecmp(field, "nan") == 0)) {
             numbers[r] = (double)NAN;
             continue;
         }
-        if (!decimal_read(field, &numbers[r], &rest) || *rest != '\0' || !isfinite(numbers[r])) {
+        if (!decimal_read(field, &numbers[r], &rest) || *rest != '\0' ||
+            !isfinite(numbers[r])) {
             free(numbers);
-            return fault_set_place(f, STATUS_BAD_ARGUMENT, t->lines[r], column + 1,
-                                   "%.300s:%d:%d: '%.*s' in column '%.*s' is no finite number",
-                                   t->file, t->lines[r], column + 1, SHOWN, field, SHOWN,
-                                   t->headings[column]);
+            return fault_set_place(
+                f, STATUS_BAD_ARGUMENT, t->lines[r], column + 1,
+                "%.300s:%d:%d: '%.*s' in column '%.*s' is no finite number", t->file,
+                t->lines[r], column + 1, SHOWN, field, SHOWN, t->headings[column]);
         }
         numbers[r] *= factor;
     }
@@ -273,10 +306,11 @@ status csv_table_times(const csv_table *t, const char *heading, double **values,
     for (size_t r = 1; code == STATUS_OK && r < t->rows; r++) {
         if ((*values)[r] < (*values)[r - 1]) {
             const int column = csv_table_find(t, heading) + 1;
-            code = fault_set_place(f, STATUS_BAD_ARGUMENT, t->lines[r], column,
-                                   "%.300s:%d:%d: the time %.9g s lies before that of the row "
-                                   "above, %.9g s, expected rows by growing time",
-                                   t->file, t->lines[r], column, (*values)[r], (*values)[r - 1]);
+            code = fault_set_place(
+                f, STATUS_BAD_ARGUMENT, t->lines[r], column,
+                "%.300s:%d:%d: the time %.9g s lies before that of the row "
+                "above, %.9g s, expected rows by growing time",
+                t->file, t->lines[r], column, (*values)[r], (*values)[r - 1]);
             free(*values);
             *values = NULL;
         }

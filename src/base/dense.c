@@ -28,7 +28,9 @@ static inline bool solve(int n, int columns, double *matrix, double *right)
             }
         }
         double divisor = matrix[pivot * n + column];
-        FAIL_IF(divisor == 0 || !isfinite(divisor), false);
+        if (divisor == 0 || !isfinite(divisor)) {
+            return false;
+        }
         if (pivot != column) {
             swap_rows(n, matrix, pivot, column);
             swap_rows(columns, right, pivot, column);
@@ -71,8 +73,8 @@ bool dense_solve_columns(int n, int columns, double *matrix, double *right)
     return solve(n, columns, matrix, right);
 }
 
-void matrix_exponential(const double *matrix, int size, double h, double *result, double *power,
-                        double *product)
+void matrix_exponential(const double *matrix, int size, double h, double *result,
+                        double *power, double *product)
 {
     const size_t bytes = (size_t)(size * size) * sizeof(double);
 
@@ -125,13 +127,15 @@ void matrix_exponential(const double *matrix, int size, double h, double *result
     }
 }
 
-// --- symmetric matrices ----------------------------------------------------------------------
+// --- symmetric matrices ----------------------------------------------------------------
 
 enum { MOST_SHIFTS = 60 };
 
-// Reduces the matrix to tridiagonal form: `diagonal`, and `beside` it from index 1 on. On return
-// row k of `matrix` from k + 1 on holds the k-th reflection's vector and `norms` its 2 / v'v.
-static void tridiagonalise(int n, double *matrix, double *diagonal, double *beside, double *norms)
+// Reduces the matrix to tridiagonal form: `diagonal`, and `beside` it from index 1 on. On
+// return row k of `matrix` from k + 1 on holds the k-th reflection's vector and `norms`
+// its 2 / v'v.
+static void tridiagonalise(int n, double *matrix, double *diagonal, double *beside,
+                           double *norms)
 {
     for (int k = 0; k < n - 1; k++) {
         double *v = matrix + (long)k * n; // row k is column k
@@ -143,12 +147,20 @@ static void tridiagonalise(int n, double *matrix, double *diagonal, double *besi
         // the reflection that leaves only the first of these entries
         size = sqrt(size);
         diagonal[k] = v[k];
-        beside[k + 1] = v[k + 1] > 0 ? -size : size;
+        if (v[k + 1] > 0) {
+            beside[k + 1] = -size;
+        } else {
+            beside[k + 1] = size;
+        }
         v[k + 1] -= beside[k + 1];
 
         // 2 / v'v without forming v'v, which might cancel
         double square = size * (size + fabs(v[k + 1] + beside[k + 1]));
-        norms[k] = square > 0 ? 1 / square : 0;
+        if (square > 0) {
+            norms[k] = 1 / square;
+        } else {
+            norms[k] = 0;
+        }
         if (square == 0) {
             continue;
         }
@@ -257,7 +269,9 @@ static void sort_rows(int n, double *values, double *rows)
     for (int i = 0; i < n - 1; i++) {
         int least = i;
         for (int j = i + 1; j < n; j++) {
-            least = values[j] < values[least] ? j : least;
+            if (values[j] < values[least]) {
+                least = j;
+            }
         }
 
         if (least != i) {
@@ -285,13 +299,16 @@ bool symmetric_eigen(int n, double *matrix, double *values, double *scratch)
     for (int l = 0; l < n; l++) {
         for (int shifts = 0;; shifts++) {
             int m = l;
-            while (m < n - 1 && fabs(e[m]) > 1e-16 * (fabs(values[m]) + fabs(values[m + 1]))) {
+            while (m < n - 1 &&
+                   fabs(e[m]) > 1e-16 * (fabs(values[m]) + fabs(values[m + 1]))) {
                 m++;
             }
             if (m == l) {
                 break;
             }
-            FAIL_IF(shifts == MOST_SHIFTS, false);
+            if (shifts == MOST_SHIFTS) {
+                return false;
+            }
             ql_sweep(n, l, m, values, e, matrix);
         }
     }
@@ -313,8 +330,14 @@ bool symmetric_factor(int n, double *matrix)
             }
 
             // a pivot that is not positive: the matrix is not positive definite
-            FAIL_IF(i == j && !(sum > 0), false);
-            row[j] = i == j ? sqrt(sum) : sum / other[j];
+            if (i == j && !(sum > 0)) {
+                return false;
+            }
+            if (i == j) {
+                row[j] = sqrt(sum);
+            } else {
+                row[j] = sum / other[j];
+            }
         }
     }
     return true;
@@ -343,11 +366,14 @@ void symmetric_backward(int n, const double *factor, double *vector)
     }
 }
 
-bool symmetric_eigen_pair(int n, double *matrix, double *mass, double *values, double *scratch)
+bool symmetric_eigen_pair(int n, double *matrix, double *mass, double *values,
+                          double *scratch)
 {
     assert(n > 0);
     const size_t side = (size_t)n;
-    FAIL_IF(!symmetric_factor(n, mass), false);
+    if (!symmetric_factor(n, mass)) {
+        return false;
+    }
 
     // L^-1 A L^-T with mass = L L': symmetric, so that rows may stand for columns
     for (int pass = 0; pass < 2; pass++) {
@@ -367,7 +393,9 @@ bool symmetric_eigen_pair(int n, double *matrix, double *mass, double *values, d
             matrix[i * side + j] = matrix[j * side + i];
         }
     }
-    FAIL_IF(!symmetric_eigen(n, matrix, values, scratch), false);
+    if (!symmetric_eigen(n, matrix, values, scratch)) {
+        return false;
+    }
 
     // back to the coordinates of both matrices
     for (size_t k = 0; k < side; k++) {

@@ -71,7 +71,8 @@ static void read_sum(reader *r);
 // A name, or max of two or more.
 static void read_word(reader *r)
 {
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
+    static const char letters[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
     const char *start = r->at, *near = NULL;
     const size_t length = strspn(start, letters);
     char name[KEY_TEXT];
@@ -91,7 +92,8 @@ static void read_word(reader *r)
     }
     if (length == 0) {
         refuse(r, start, "expected a name, a number, max or '('%s%.20s%s",
-               *start != '\0' ? ", not '" : " at the end", start, *start != '\0' ? "'" : "");
+               *start != '\0' ? ", not '" : " at the end", start,
+               *start != '\0' ? "'" : "");
         return;
     }
     const int found = r->find(r->context, name, &near);
@@ -134,7 +136,8 @@ static void read_product(reader *r)
     while (r->code == STATUS_OK && is_next(r, "*/")) {
         const bool times = *r->at++ == '*';
         read_factor(r);
-        add_step(r, (expression_step){.what = times ? EXPRESSION_MULTIPLY : EXPRESSION_DIVIDE});
+        add_step(r, (expression_step){.what = times ? EXPRESSION_MULTIPLY
+                                                    : EXPRESSION_DIVIDE});
     }
 }
 
@@ -144,14 +147,16 @@ static void read_sum(reader *r)
     while (r->code == STATUS_OK && is_next(r, "+-")) {
         const bool plus = *r->at++ == '+';
         read_product(r);
-        add_step(r, (expression_step){.what = plus ? EXPRESSION_ADD : EXPRESSION_SUBTRACT});
+        add_step(r,
+                 (expression_step){.what = plus ? EXPRESSION_ADD : EXPRESSION_SUBTRACT});
     }
 }
 
-status expression_read(expression *e, const char *text, expression_find *find, void *context,
-                       fault *f)
+status expression_read(expression *e, const char *text, expression_find *find,
+                       void *context, fault *f)
 {
-    reader r = {.to = e, .text = text, .at = text, .find = find, .context = context, .fault = f};
+    reader r = {
+        .to = e, .text = text, .at = text, .find = find, .context = context, .fault = f};
     e->count = 0;
     read_sum(&r);
     is_next(&r, "");
@@ -164,15 +169,26 @@ status expression_read(expression *e, const char *text, expression_find *find, v
 // An operation on two values.
 static double combine(int what, double a, double b)
 {
-    return what == EXPRESSION_ADD        ? a + b
-           : what == EXPRESSION_SUBTRACT ? a - b
-           : what == EXPRESSION_MULTIPLY ? a * b
-           : what == EXPRESSION_DIVIDE   ? a / b
-           : isnan(a) || isnan(b)        ? (double)NAN
-                                         : fmax(a, b);
+    if (what == EXPRESSION_ADD) {
+        return a + b;
+    }
+    if (what == EXPRESSION_SUBTRACT) {
+        return a - b;
+    }
+    if (what == EXPRESSION_MULTIPLY) {
+        return a * b;
+    }
+    if (what == EXPRESSION_DIVIDE) {
+        return a / b;
+    }
+    if (isnan(a) || isnan(b)) {
+        return (double)NAN;
+    }
+    return fmax(a, b);
 }
 
-double expression_evaluate(const expression *e, expression_value *value, const void *context)
+double expression_evaluate(const expression *e, expression_value *value,
+                           const void *context)
 {
     assert(e->count > 0);
     double stack[EXPRESSION_STEPS];
@@ -180,7 +196,8 @@ double expression_evaluate(const expression *e, expression_value *value, const v
     for (int i = 0; i < e->count; i++) {
         const expression_step *s = &e->step[i];
         if (s->what == EXPRESSION_NUMBER || s->what == EXPRESSION_NAME) {
-            stack[++top] = s->what == EXPRESSION_NUMBER ? s->number : value(context, s->name);
+            stack[++top] =
+                s->what == EXPRESSION_NUMBER ? s->number : value(context, s->name);
         } else if (s->what == EXPRESSION_MINUS) {
             stack[top] = -stack[top];
         } else {

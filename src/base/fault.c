@@ -11,11 +11,14 @@ static const char *const texts[] = {STATUS_LIST(STATUS_TEXT)};
 
 const char *status_text(status code)
 {
-    return (size_t)code < sizeof texts / sizeof texts[0] ? texts[code] : "unknown status";
+    if ((size_t)code < sizeof texts / sizeof texts[0]) {
+        return texts[code];
+    }
+    return "unknown status";
 }
 
-status fault_fill(fault *f, status code, const char *path, int line, int column, const char *format,
-                  ...)
+status fault_fill(fault *f, status code, const char *path, int line, int column,
+                  const char *format, ...)
 {
     assert(line >= 0 && (line > 0) == (column > 0));
     if (f != NULL) {

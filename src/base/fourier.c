@@ -60,7 +60,8 @@ void fourier_transform(double *real, double *imaginary, size_t n)
     }
 }
 
-void fourier_amplitudes(const double *series, size_t n, double *scratch, double *amplitude)
+void fourier_amplitudes(const double *series, size_t n, double *scratch,
+                        double *amplitude)
 {
     assert(n > 1 && is_power_of_two(n));
     double *real = scratch, *imaginary = scratch + n, mean = 0, weight = 0;

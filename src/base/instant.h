@@ -1,5 +1,5 @@
-// When two instants are the same. Times are sums of steps, so that equal ones differ by rounding;
-// whoever compares times allows for that here and nowhere else.
+// When two instants are the same. Times are sums of steps, so that equal ones differ by
+// rounding; whoever compares times allows for that here and nowhere else.
 #pragma once
 
 #include <math.h>
@@ -19,7 +19,8 @@ static inline bool same_instant(double a, double b)
     return fabs(a - b) <= instant_tolerance(b);
 }
 
-// Whether an instant lies after another one and is not the same [s]; HUGE_VAL is after all others.
+// Whether an instant lies after another one and is not the same [s]; HUGE_VAL is after
+// all others.
 static inline bool instant_after(double later, double earlier)
 {
     return later > earlier + instant_tolerance(earlier);

@@ -23,7 +23,10 @@ void json_add(json_t *array, json_t *value)
 
 json_t *json_number(double value)
 {
-    return isfinite(value) ? json_real(value) : json_null();
+    if (isfinite(value)) {
+        return json_real(value);
+    }
+    return json_null();
 }
 
 json_t *json_text(const char *text)
@@ -34,7 +37,9 @@ json_t *json_text(const char *text)
 
     // a file's name may be no UTF-8, which JSON cannot hold
     for (char *c = copy; c != NULL && *c != '\0'; c++) {
-        *c = (unsigned char)*c < 0x80 ? *c : '?';
+        if (!((unsigned char)*c < 0x80)) {
+            *c = '?';
+        }
     }
     if (copy != NULL) {
         string = json_string(copy);

@@ -11,8 +11,8 @@
 
 #include "src/base/plain_math.h"
 
-// Gives the calling thread the "C" locale; returns the one to go back to. The C library keeps the
-// "C" locale for good: it is neither allocated here nor freed.
+// Gives the calling thread the "C" locale; returns the one to go back to. The C library
+// keeps the "C" locale for good: it is neither allocated here nor freed.
 static locale_t enter_plain(void)
 {
     return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
@@ -41,7 +41,10 @@ char *decimal_vtext(const char *format, va_list list)
     locale_t before = enter_plain();
     int length = vasprintf(&text, format, list);
     uselocale(before);
-    return length < 0 ? NULL : text;
+    if (length < 0) {
+        return NULL;
+    }
+    return text;
 }
 
 double decimal_parse(const char *text, char **end)
@@ -52,7 +55,7 @@ double decimal_parse(const char *text, char **end)
     return value;
 }
 
-// --- the shortest decimal number ---------------------------------------------------------------
+// --- the shortest decimal number -------------------------------------------------------
 
 __extension__ typedef unsigned __int128 wide;
 
@@ -94,8 +97,8 @@ static const uint64_t powers_of_five[POWERS_APART] = {
     0xad78ebc5ac620000, 0xd8d726b7177a8000, 0x878678326eac9000, 0xa968163f0a57b400,
     0xd3c21bcecceda100, 0x84595161401484a0, 0xa56fa5b99019a5c8, 0xcecb8f27f4200f3a};
 
-// 10^k / 2^(floor(log2(10^k)) - 127) for -292 <= k <= 324, rounded up. All were compared with exact
-// ones.
+// 10^k / 2^(floor(log2(10^k)) - 127) for -292 <= k <= 324, rounded up. All were compared
+// with exact ones.
 static wide make_power_of_ten(int k)
 {
     // 10^k is 5^r times a stored power, but for its exponent
@@ -114,7 +117,8 @@ static wide make_power_of_ten(int k)
     return high + ((rest | (uint64_t)low) != 0);
 }
 
-// The same as high and low half g, made once: threads that make one at a time make the same.
+// The same as high and low half g, made once: threads that make one at a time make the
+// same.
 static void power_of_ten(int k, uint64_t g[2])
 {
     static _Atomic uint64_t made[POWERS_TO - POWERS_FROM + 1][2];
@@ -130,11 +134,13 @@ static void power_of_ten(int k, uint64_t g[2])
     }
 }
 
-// value = c 2^q: bits of c that are stored, and the exponent that the stored one is counted from.
+// value = c 2^q: bits of c that are stored, and the exponent that the stored one is
+// counted from.
 enum { STORED_BITS = 52, EXPONENT_OFFSET = 1075 };
 
-// floor(log2(10^e)), and floor(log10(2^q)) or, a quarter being gone below, floor(log10(3/4 2^q)):
-// products with the logarithms in fixed point, exact over the range of doubles.
+// floor(log2(10^e)), and floor(log10(2^q)) or, a quarter being gone below,
+// floor(log10(3/4 2^q)): products with the logarithms in fixed point, exact over the
+// range of doubles.
 static int floor_log2_power(int e)
 {
     return (e * 1741647) >> 19;
@@ -145,8 +151,8 @@ static int floor_log10_power(int q, bool closer_below)
     return (q * 1262611 - (closer_below ? 524031 : 0)) >> 22;
 }
 
-// g c / 2^128 rounded to odd: its last bit says that something was left over. With that every
-// comparison with a multiple of four of such numbers comes out right.
+// g c / 2^128 rounded to odd: its last bit says that something was left over. With that
+// every comparison with a multiple of four of such numbers comes out right.
 static uint64_t round_to_odd(const uint64_t g[2], uint64_t c)
 {
     const wide low = (wide)g[1] * c;
@@ -173,8 +179,8 @@ static decimal without_zeros(decimal d)
     return d;
 }
 
-// The nearest multiple of 10^k, of 10^(k+1) if one of those reads back: value and the ends of its
-// interval are given as quarters of 10^k, rounded to odd.
+// The nearest multiple of 10^k, of 10^(k+1) if one of those reads back: value and the
+// ends of its interval are given as quarters of 10^k, rounded to odd.
 static decimal nearest_within(uint64_t lower, uint64_t value, uint64_t upper, int k)
 {
     // a digit less
@@ -186,15 +192,17 @@ static decimal nearest_within(uint64_t lower, uint64_t value, uint64_t upper, in
         }
     }
 
-    // the one of both neighbours that reads back, or the nearer one, at the same distance the even
+    // the one of both neighbours that reads back, or the nearer one, at the same distance
+    // the even
     const bool down = lower <= 4 * s, up = 4 * s + 4 <= upper;
     const uint64_t middle = 4 * s + 2;
     const bool nearer_above = value > middle || (value == middle && s % 2 == 1);
     return (decimal){s + (down != up ? up : nearer_above), k};
 }
 
-// The shortest decimal number that reads back as a finite value above zero, of those the nearest
-// to it: the algorithm Schubfach of R. Giulietti, The Schubfach way to render doubles, 2020.
+// The shortest decimal number that reads back as a finite value above zero, of those the
+// nearest to it: the algorithm Schubfach of R. Giulietti, The Schubfach way to render
+// doubles, 2020.
 static decimal shortest_decimal(double value)
 {
     assert(value > 0 && isfinite(value));
@@ -209,8 +217,9 @@ static decimal shortest_decimal(double value)
         return without_zeros((decimal){c >> -q, 0});
     }
 
-    // the ends of the interval that reads back as value, in quarters of 2^q: half way to its
-    // neighbours, the one below being nearer at a power of two; ends belong to even numbers
+    // the ends of the interval that reads back as value, in quarters of 2^q: half way to
+    // its neighbours, the one below being nearer at a power of two; ends belong to even
+    // numbers
     const bool closer_below = stored == 0 && exponent > 1, odd = c % 2 == 1;
     const int k = floor_log10_power(q, closer_below);
     const int shift = q + floor_log2_power(-k) + 1;
@@ -222,15 +231,16 @@ static decimal shortest_decimal(double value)
     return without_zeros(nearest_within(lower + odd, middle, upper - odd, k));
 }
 
-// --- writing -----------------------------------------------------------------------------------
+// --- writing ---------------------------------------------------------------------------
 
-// The decimal digits of a number above zero, two at a time from the last; returns how many.
+// The decimal digits of a number above zero, two at a time from the last; returns how
+// many.
 static int write_whole(char *text, uint64_t number)
 {
-    static const char pairs[] = "00010203040506070809101112131415161718192021222324"
-                                "25262728293031323334353637383940414243444546474849"
-                                "50515253545556575859606162636465666768697071727374"
-                                "75767778798081828384858687888990919293949596979899";
+    static const char pairs[] =
+        "00010203040506070809101112131415161718192021222324252627282930313233343536373839"
+        "40414243444546474849505152535455565758596061626364656667686970717273747576777879"
+        "8081828384858687888990919293949596979899";
     char digits[20], *first = digits + sizeof digits;
     for (; number >= 10; number /= 100) {
         first -= 2;
@@ -245,8 +255,8 @@ static int write_whole(char *text, uint64_t number)
     return count;
 }
 
-// Digits d1 d2 ... dn as 0.000d1d2, as d1d2.d3 or as d1d2000; `place` is how many of them stand
-// between d1 and the point, negative for zeros behind it. Returns the end.
+// Digits d1 d2 ... dn as 0.000d1d2, as d1d2.d3 or as d1d2000; `place` is how many of them
+// stand between d1 and the point, negative for zeros behind it. Returns the end.
 static char *write_plain(char *text, const char *digits, int count, int place)
 {
     if (place < 0) {
@@ -279,12 +289,15 @@ static char *write_with_exponent(char *text, const char *digits, int count, int 
     return text + write_whole(text, size);
 }
 
-// Writes with the fewest digits that read back as the same number: with an exponent below 1e-4, and
-// from 10^(digits) on, but not for less than `most_plain` of them.
+// Writes with the fewest digits that read back as the same number: with an exponent below
+// 1e-4, and from 10^(digits) on, but not for less than `most_plain` of them.
 static void write_digits(char *text, double value, int most_plain)
 {
     if (!isfinite(value)) {
-        snprintf(text, NUMBER_TEXT, "%s", isnan(value) ? "nan" : value > 0 ? "inf" : "-inf");
+        snprintf(text, NUMBER_TEXT, "%s",
+                 isnan(value) ? "nan"
+                 : value > 0  ? "inf"
+                              : "-inf");
         return;
     }
     if (signbit(value)) {
@@ -335,5 +348,8 @@ bool decimal_read(const char *text, double *value, const char **rest)
 int compare_numbers(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
-    return isnan(x) || isnan(y) ? isnan(x) - isnan(y) : (x > y) - (x < y);
+    if (isnan(x) || isnan(y)) {
+        return isnan(x) - isnan(y);
+    }
+    return (x > y) - (x < y);
 }

@@ -4,7 +4,8 @@
 
 uint64_t splitmix64_next(uint64_t *state)
 {
-    // a counter with an odd step near 2^64 divided by the golden ratio, then a mixing of its bits
+    // a counter with an odd step near 2^64 divided by the golden ratio, then a mixing of
+    // its bits
     *state += UINT64_C(0x9e3779b97f4a7c15);
     uint64_t z = *state;
     z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);

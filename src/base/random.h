@@ -1,6 +1,7 @@
-// Random numbers that are the same on every machine: the generator xoshiro256** of Blackman and
-// Vigna (Scrambled linear pseudorandom number generators, ACM Trans. Math. Softw. 47, 2021), its
-// state filled by splitmix64 (Steele, Lea and Flood, OOPSLA 2014) from a seed.
+// Random numbers that are the same on every machine: the generator xoshiro256** of
+// Blackman and Vigna (Scrambled linear pseudorandom number generators, ACM Trans. Math.
+// Softw. 47, 2021), its state filled by splitmix64 (Steele, Lea and Flood, OOPSLA 2014)
+// from a seed.
 #pragma once
 
 #include <stddef.h>
@@ -42,6 +43,6 @@ static inline double random_uniform(random_generator *g)
 // A whole number evenly distributed over 0 ... bound - 1; bound > 0.
 uint64_t random_below(random_generator *g, uint64_t bound);
 
-// Fills order[0 ... count - 1] with the numbers 0 ... count - 1 in random order, every order
-// equally likely (Fisher and Yates).
+// Fills order[0 ... count - 1] with the numbers 0 ... count - 1 in random order, every
+// order equally likely (Fisher and Yates).
 void random_permutation(random_generator *g, size_t *order, size_t count);

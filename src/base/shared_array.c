@@ -14,31 +14,39 @@ enum {
     PART = 32 // of an address space that is limited, what an array takes of it at most
 };
 
-// --- chunks -----------------------------------------------------------------------------------
+// --- chunks ----------------------------------------------------------------------------
 
-// Chunks are mapped side by side, so that elements are an ordinary array, and the kernel counts who
-// has them.
+// Chunks are mapped side by side, so that elements are an ordinary array, and the kernel
+// counts who has them.
 
 // Maps a chunk of its own at a place. False if there is no memory to be had.
 static bool map_chunk(void *at)
 {
-    // memory is asked for here, where its want is an error and not a signal; an old kernel cannot
-    return mmap(at, ARRAY_CHUNK, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_FIXED, -1,
-                0) == at &&
+    // memory is asked for here, where its want is an error and not a signal; an old
+    // kernel cannot
+    return mmap(at, ARRAY_CHUNK, PROT_READ | PROT_WRITE,
+                MAP_SHARED | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == at &&
            (madvise(at, ARRAY_CHUNK, MADV_POPULATE_WRITE) == 0 || errno == EINVAL);
 }
 
-// Puts a chunk behind the end of an array: memory of its own, or that of the same chunk of `from`.
+// Puts a chunk behind the end of an array: memory of its own, or that of the same chunk
+// of `from`.
 static bool append_chunk(shared_array *a, const shared_array *from)
 {
-    char *at = (char *)a->base + a->mapped, *there = from != NULL ? (char *)from->base : NULL;
-    FAIL_IF(a->mapped + ARRAY_CHUNK > a->reserved, false);
+    char *at = (char *)a->base + a->mapped,
+         *there = from != NULL ? (char *)from->base : NULL;
+    if (a->mapped + ARRAY_CHUNK > a->reserved) {
+        return false;
+    }
 
-    // memory of the size 0 that becomes larger is mapped a second time; valgrind knows no such call
-    // and gets a copy
-    const bool shares = from != NULL && mremap(there + a->mapped, 0, ARRAY_CHUNK,
-                                               MREMAP_MAYMOVE | MREMAP_FIXED, at) != MAP_FAILED;
-    FAIL_IF(!shares && ((from != NULL && errno != EINVAL) || !map_chunk(at)), false);
+    // memory of the size 0 that becomes larger is mapped a second time; valgrind knows no
+    // such call and gets a copy
+    const bool shares =
+        from != NULL && mremap(there + a->mapped, 0, ARRAY_CHUNK,
+                               MREMAP_MAYMOVE | MREMAP_FIXED, at) != MAP_FAILED;
+    if (!shares && ((from != NULL && errno != EINVAL) || !map_chunk(at))) {
+        return false;
+    }
     if (!shares && from != NULL) {
         memcpy(at, there + a->mapped, ARRAY_CHUNK);
     }
@@ -47,7 +55,7 @@ static bool append_chunk(shared_array *a, const shared_array *from)
     return true;
 }
 
-// --- arrays ----------------------------------------------------------------------------------
+// --- arrays ----------------------------------------------------------------------------
 
 void shared_array_init(shared_array *a, size_t size)
 {
@@ -64,14 +72,16 @@ bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t mos
     struct rlimit limit;
     if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur / PART / size < most) {
         most = limit.rlim_cur / PART / size;
-        most = most < least ? least : most;
+        if (most < least) {
+            most = least;
+        }
     }
 
     // half as much where it has no room for the most
     for (; most >= least; most /= 2) {
         size_t reserved = (most * size / ARRAY_CHUNK + 1) * ARRAY_CHUNK;
-        void *base =
-            mmap(NULL, reserved, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        void *base = mmap(NULL, reserved, PROT_NONE,
+                          MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (base != MAP_FAILED) {
             a->base = base;
             a->reserved = reserved;
@@ -84,9 +94,13 @@ bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t mos
 static bool grow_plain(shared_array *a, size_t count)
 {
     size_t capacity = a->capacity ? 2 * a->capacity : LEAST_ELEMENTS;
-    capacity = capacity < count ? count : capacity;
+    if (capacity < count) {
+        capacity = count;
+    }
     void *base = realloc(a->base, capacity * a->size + 1);
-    FAIL_IF(base == NULL, false);
+    if (base == NULL) {
+        return false;
+    }
     a->base = base;
     a->capacity = capacity;
     return true;
@@ -99,7 +113,9 @@ bool shared_array_grow(shared_array *a, size_t count)
         return count <= a->capacity || grow_plain(a, count);
     }
     while (count > a->capacity) {
-        FAIL_IF(!append_chunk(a, NULL), false);
+        if (!append_chunk(a, NULL)) {
+            return false;
+        }
     }
     return true;
 }
@@ -113,12 +129,16 @@ bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
 
     // chunks that are full will not change any more
     for (size_t i = 0; i < shared; i++) {
-        FAIL_IF(!append_chunk(a, from), false);
+        if (!append_chunk(a, from)) {
+            return false;
+        }
     }
 
     // the elements behind them
     size_t done = shared * ARRAY_CHUNK;
-    FAIL_IF(!shared_array_grow(a, count), false);
+    if (!shared_array_grow(a, count)) {
+        return false;
+    }
     if (bytes > done) {
         memcpy((char *)a->base + done, (const char *)from->base + done, bytes - done);
     }

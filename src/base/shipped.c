@@ -15,13 +15,14 @@ static const struct {
 } places[] = {
     [SHIPPED_SCENARIOS] = {IMPACTLAB_SOURCE_SCENARIOS, IMPACTLAB_SCENARIOS_IN_PREFIX,
                            IMPACTLAB_SCENARIOS},
-    [SHIPPED_MANUAL] = {IMPACTLAB_SOURCE_FOLDER, IMPACTLAB_MANUAL_IN_PREFIX, IMPACTLAB_MANUAL},
+    [SHIPPED_MANUAL] = {IMPACTLAB_SOURCE_FOLDER, IMPACTLAB_MANUAL_IN_PREFIX,
+                        IMPACTLAB_MANUAL},
     [SHIPPED_PROGRAM] = {IMPACTLAB_BUILD_FOLDER "/impactlab", IMPACTLAB_PROGRAM_IN_PREFIX,
                          IMPACTLAB_PROGRAM},
 };
 
-// The file that this very code was loaded from: the program, or the shared library in another one.
-// path has PATH_MAX bytes; false if nobody knows.
+// The file that this very code was loaded from: the program, or the shared library in
+// another one. path has PATH_MAX bytes; false if nobody knows.
 static bool own_file(char *path)
 {
     Dl_info about;
@@ -34,8 +35,8 @@ static bool own_file(char *path)
     return length > 0;
 }
 
-// FOLDER/NAME if it is there, to be freed. True unless there is no memory; *path is NULL if there
-// is no such file.
+// FOLDER/NAME if it is there, to be freed. True unless there is no memory; *path is NULL
+// if there is no such file.
 static bool path_in(const char *folder, const char *name, char **path)
 {
     if (asprintf(path, "%s/%s", folder, name) < 0) {

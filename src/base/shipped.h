@@ -1,5 +1,5 @@
-// Where the parts that belong to the program lie: in the tree it was built in, or where it was
-// installed, also after the installation has moved.
+// Where the parts that belong to the program lie: in the tree it was built in, or where
+// it was installed, also after the installation has moved.
 #pragma once
 
 typedef enum shipped_part {
@@ -8,9 +8,10 @@ typedef enum shipped_part {
     SHIPPED_PROGRAM,   // impactlab
 } shipped_part;
 
-// The part's path, to be freed, whether it is there or not; NULL without memory. What was built in
-// a tree has the tree's; else the prefix is looked for above the file that this code was loaded
-// from, and where no prefix has the part it is the place that the build was set up for.
+// The part's path, to be freed, whether it is there or not; NULL without memory. What was
+// built in a tree has the tree's; else the prefix is looked for above the file that this
+// code was loaded from, and where no prefix has the part it is the place that the build
+// was set up for.
 char *shipped_path(shipped_part part);
 
 // The version of the program, "0.2.0".

@@ -15,9 +15,12 @@ bool stop_ask(stop_request *s)
         return false;
     }
 
-    // the first look is where time begins to count; one too early says how many looks it takes
+    // the first look is where time begins to count; one too early says how many looks it
+    // takes
     const double now = clock_seconds(CLOCK_MONOTONIC);
-    s->asked = s->asked == 0 ? now : s->asked;
+    if (s->asked == 0) {
+        s->asked = now;
+    }
     const double looks = s->looks, took = now - s->asked;
     if (took < INTERVAL / 2) {
         s->due = (int)fmin(2 * looks, MOST_DUE);

@@ -24,15 +24,16 @@ enum { MOST_LINKS = 40 }; // followed one after the other, as the kernel does
 // A path of NULL is the standard output.
 static status cannot_write(fault *f, const char *path, int reason)
 {
-    FAULT_IF(path == NULL, f, STATUS_CANNOT_WRITE, "the standard output cannot be written: %s",
-             strerror(reason));
-    return fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", path, strerror(reason));
+    FAULT_IF(path == NULL, f, STATUS_CANNOT_WRITE,
+             "the standard output cannot be written: %s", strerror(reason));
+    return fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", path,
+                     strerror(reason));
 }
 
-// --- temporaries that exist just now ----------------------------------------------------------
+// --- temporaries that exist just now ---------------------------------------------------
 
-// For the signal handler; a few files at once are plenty, and one without a place is merely not
-// cleaned up after a signal.
+// For the signal handler; a few files at once are plenty, and one without a place is
+// merely not cleaned up after a signal.
 enum { MOST_UNFINISHED = 8 };
 static _Atomic(char *) unfinished[MOST_UNFINISHED];
 static atomic_bool ending; // of the program: other threads create no more of them
@@ -74,13 +75,16 @@ void whole_file_remove_unfinished(void)
     }
 }
 
-// --- where a path leads -----------------------------------------------------------------------
+// --- where a path leads ----------------------------------------------------------------
 
 // Length of path's folder with its slash, 0 if it has none.
 static size_t folder_length(const char *path)
 {
     const char *slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path) + 1 : 0;
+    if (slash) {
+        return (size_t)(slash - path) + 1;
+    }
+    return 0;
 }
 
 static bool is_same_file(const struct stat *a, const struct stat *b)
@@ -107,11 +111,13 @@ static bool may_follow(const char *link)
             about.st_uid == around.st_uid);
 }
 
-// Where a path leads, be it there or not: a link stays a link and its target is what gets written.
-// 0 or the reason why nobody knows.
+// Where a path leads, be it there or not: a link stays a link and its target is what gets
+// written. 0 or the reason why nobody knows.
 static int follow_links(const char *path, char target[PATH_MAX])
 {
-    FAIL_IF(strlen(path) >= PATH_MAX, ENAMETOOLONG);
+    if (strlen(path) >= PATH_MAX) {
+        return ENAMETOOLONG;
+    }
     strcpy(target, path);
 
     // link by link; a relative one counts from its own folder
@@ -121,34 +127,50 @@ static int follow_links(const char *path, char target[PATH_MAX])
         if (length < 0) {
             return 0;
         }
-        FAIL_IF(!may_follow(target), EACCES);
+        if (!may_follow(target)) {
+            return EACCES;
+        }
         const size_t folder = link[0] == '/' ? 0 : folder_length(target);
-        FAIL_IF(folder + (size_t)length >= PATH_MAX, ENAMETOOLONG);
+        if (folder + (size_t)length >= PATH_MAX) {
+            return ENAMETOOLONG;
+        }
         memcpy(target + folder, link, (size_t)length);
         target[folder + (size_t)length] = '\0';
     }
     return ELOOP;
 }
 
-// Where a path leads and the mode of what stands there, 0 for nothing. 0, or the reason why that
-// cannot be replaced or created.
+// Where a path leads and the mode of what stands there, 0 for nothing. 0, or the reason
+// why that cannot be replaced or created.
 static int find_target(const char *path, char target[PATH_MAX], mode_t *mode)
 {
     struct stat about = {.st_mode = 0};
     char folder[PATH_MAX];
     const int reason = path[0] == '\0' ? ENOENT : follow_links(path, target);
-    FAIL_IF(reason != 0, reason);
+    if (reason != 0) {
+        return reason;
+    }
 
     // what stands there already
     const bool there = stat(target, &about) == 0;
-    FAIL_IF(!there && errno != ENOENT, errno);
-    *mode = there ? about.st_mode : 0;
-    FAIL_IF(there && (S_ISDIR(*mode) || access(target, W_OK) != 0),
-            S_ISDIR(*mode) ? EISDIR : errno);
+    if (!there && errno != ENOENT) {
+        return errno;
+    }
+    if (there) {
+        *mode = about.st_mode;
+    } else {
+        *mode = 0;
+    }
+    if (there && (S_ISDIR(*mode) || access(target, W_OK) != 0)) {
+        return S_ISDIR(*mode) ? EISDIR : errno;
+    }
 
     // what stands beside it, as a temporary will
     const bool beside = !there || S_ISREG(*mode);
-    return beside && access(folder_of(target, folder), W_OK | X_OK) != 0 ? errno : 0;
+    if (beside && access(folder_of(target, folder), W_OK | X_OK) != 0) {
+        return errno;
+    }
+    return 0;
 }
 
 status whole_file_check(const char *path, fault *f)
@@ -156,7 +178,10 @@ status whole_file_check(const char *path, fault *f)
     char target[PATH_MAX];
     mode_t mode;
     const int reason = strcmp(path, "-") == 0 ? 0 : find_target(path, target, &mode);
-    return reason == 0 ? STATUS_OK : cannot_write(f, path, reason);
+    if (reason == 0) {
+        return STATUS_OK;
+    }
+    return cannot_write(f, path, reason);
 }
 
 bool whole_file_same_place(const char *path, const char *other)
@@ -169,17 +194,21 @@ bool whole_file_same_place(const char *path, const char *other)
 
     // one file under two names, or two names that lead to one place
     const bool there = stat(path, &here[0]) == 0 && stat(other, &here[1]) == 0;
-    FAIL_IF(there && is_same_file(&here[0], &here[1]), true);
+    if (there && is_same_file(&here[0], &here[1])) {
+        return true;
+    }
     for (int i = 0; i < 2; i++) {
-        FAIL_IF(follow_links(i == 0 ? path : other, places[i]) != 0 ||
-                    stat(folder_of(places[i], folder), &around[i]) != 0,
-                false);
+        if (follow_links(i == 0 ? path : other, places[i]) != 0 ||
+            stat(folder_of(places[i], folder), &around[i]) != 0) {
+            return false;
+        }
     }
     return is_same_file(&around[0], &around[1]) &&
-           strcmp(places[0] + folder_length(places[0]), places[1] + folder_length(places[1])) == 0;
+           strcmp(places[0] + folder_length(places[0]),
+                  places[1] + folder_length(places[1])) == 0;
 }
 
-// --- where the results of a command go --------------------------------------------------------
+// --- where the results of a command go -------------------------------------------------
 
 enum { MOST_RESULTS = 16 };
 static char results[MOST_RESULTS][PATH_MAX];
@@ -198,7 +227,9 @@ const char *whole_file_result_at(const char *path)
 bool whole_file_add_result(const char *path)
 {
     assert(result_count < MOST_RESULTS);
-    FAIL_IF(whole_file_result_at(path) != NULL, false);
+    if (whole_file_result_at(path) != NULL) {
+        return false;
+    }
     snprintf(results[result_count++], PATH_MAX, "%s", path);
     return true;
 }
@@ -214,16 +245,17 @@ status whole_file_keeps(const char *path, fault *why)
     const bool is_file = stat(path, &about) == 0 && S_ISREG(about.st_mode);
     const char *result = is_file ? whole_file_result_at(path) : NULL;
     FAULT_IF(result != NULL, why, STATUS_BAD_ARGUMENT,
-             "is read, and a result would be written over it to '%.300s', expected another file",
+             "is read, and a result would be written over it to '%.300s', expected "
+             "another file",
              result);
     return STATUS_OK;
 }
 
-// --- what killed runs left ------------------------------------------------------------------
+// --- what killed runs left -------------------------------------------------------------
 
-// A temporary is locked as long as its run lives, and the lock goes with the run however that ends.
-// False if another run has taken it for one left behind, in the moment before; where the file
-// system has no locks none does.
+// A temporary is locked as long as its run lives, and the lock goes with the run however
+// that ends. False if another run has taken it for one left behind, in the moment before;
+// where the file system has no locks none does.
 static bool lock_temporary(int descriptor)
 {
     struct stat about;
@@ -244,7 +276,10 @@ int whole_file_lock_left(int folder, const char *name)
     if (file >= 0 && !left) {
         close(file);
     }
-    return left ? file : -1;
+    if (left) {
+        return file;
+    }
+    return -1;
 }
 
 void whole_file_clean_folder(const char *path)
@@ -269,8 +304,8 @@ void whole_file_clean_folder(const char *path)
     }
 }
 
-// The same for the folder of `path`, once for each folder after another: the frames of a film, the
-// pictures of a report go into one many times.
+// The same for the folder of `path`, once for each folder after another: the frames of a
+// film, the pictures of a report go into one many times.
 static void clean_folder_of(const char *path)
 {
     static pthread_mutex_t looking = PTHREAD_MUTEX_INITIALIZER;
@@ -288,7 +323,7 @@ static void clean_folder_of(const char *path)
     }
 }
 
-// --- opening ----------------------------------------------------------------------------------
+// --- opening ---------------------------------------------------------------------------
 
 // Where the bytes of a stream go. The stream itself does not keep why a write failed.
 static ssize_t write_bytes(void *context, const char *bytes, size_t size)
@@ -296,9 +331,12 @@ static ssize_t write_bytes(void *context, const char *bytes, size_t size)
     whole_file *w = context;
     size_t done = 0;
     while (done < size) {
-        const ssize_t written = TEMP_FAILURE_RETRY(write(w->descriptor, bytes + done, size - done));
+        const ssize_t written =
+            TEMP_FAILURE_RETRY(write(w->descriptor, bytes + done, size - done));
         if (written < 0) {
-            w->reason = w->reason != 0 ? w->reason : errno;
+            if (w->reason == 0) {
+                w->reason = errno;
+            }
             return 0;
         }
         done += (size_t)written;
@@ -329,17 +367,23 @@ static int create_temporary(whole_file *w, mode_t mode)
     const int folder = (int)folder_length(w->path);
     int reason = EEXIST;
     for (int attempt = 0; attempt < 1000 && reason == EEXIST; attempt++) {
-        if (asprintf(&w->temporary, "%.*s.impactlab-%ld-%d.part", folder, w->path, (long)getpid(),
-                     attempt) < 0) {
+        if (asprintf(&w->temporary, "%.*s.impactlab-%ld-%d.part", folder, w->path,
+                     (long)getpid(), attempt) < 0) {
             w->temporary = NULL;
             return ENOMEM;
         }
 
         // creating it tells whether the name is free
         replace_unfinished(NULL, w->temporary);
-        FAIL_IF(atomic_load(&ending), ECANCELED);
+        if (atomic_load(&ending)) {
+            return ECANCELED;
+        }
         w->descriptor = open(w->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        reason = w->descriptor < 0 ? errno : 0;
+        if (w->descriptor < 0) {
+            reason = errno;
+        } else {
+            reason = 0;
+        }
         if (reason == 0 && !lock_temporary(w->descriptor)) {
             close(w->descriptor);
             reason = EEXIST;
@@ -366,9 +410,15 @@ static int open_target(whole_file *w, mode_t mode)
         reason = create_temporary(w, mode);
     } else {
         w->descriptor = open(w->path, O_WRONLY | O_CLOEXEC);
-        reason = w->descriptor < 0 ? errno : 0;
+        if (w->descriptor < 0) {
+            reason = errno;
+        } else {
+            reason = 0;
+        }
     }
-    FAIL_IF(reason != 0, reason);
+    if (reason != 0) {
+        return reason;
+    }
 
     w->stream = fopencookie(w, "w", (cookie_io_functions_t){.write = write_bytes});
     if (w->stream == NULL) {
@@ -395,7 +445,11 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
     int reason = find_target(path, target, &mode);
     if (reason == 0) {
         w->path = strdup(target);
-        reason = w->path != NULL ? open_target(w, mode) : ENOMEM;
+        if (w->path != NULL) {
+            reason = open_target(w, mode);
+        } else {
+            reason = ENOMEM;
+        }
     }
     if (reason != 0) {
         forget(w);
@@ -404,7 +458,7 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
     return STATUS_OK;
 }
 
-// --- closing ----------------------------------------------------------------------------------
+// --- closing ---------------------------------------------------------------------------
 
 int stream_failure(FILE *stream)
 {
@@ -417,14 +471,25 @@ int stream_failure(FILE *stream)
     if (errno == 0 && poll(&end, 1, 0) == 1 && (end.revents & POLLERR) != 0) {
         return EPIPE;
     }
-    return errno != 0 ? errno : EIO;
+    if (errno != 0) {
+        return errno;
+    }
+    return EIO;
 }
 
-// Closes the stream, brings the file to the disk if it is `wanted`; 0 or the reason why not.
+// Closes the stream, brings the file to the disk if it is `wanted`; 0 or the reason why
+// not.
 static int close_stream(whole_file *w, bool wanted)
 {
     const bool flushed = fclose(w->stream) == 0; // looks at everything written before
-    int reason = w->reason != 0 ? w->reason : flushed ? 0 : ENOMEM;
+    int reason;
+    if (w->reason != 0) {
+        reason = w->reason;
+    } else if (flushed) {
+        reason = 0;
+    } else {
+        reason = ENOMEM;
+    }
 
     // a pipe or a device has no disk to reach
     if (wanted && reason == 0 && w->temporary != NULL && fsync(w->descriptor) != 0) {
@@ -449,18 +514,26 @@ status whole_file_close(whole_file *w, status written, fault *f)
     }
 
     // the file takes the place of the old one if it is whole, or goes
-    if (w->temporary != NULL && wanted && reason == 0 && rename(w->temporary, w->path) != 0) {
+    if (w->temporary != NULL && wanted && reason == 0 &&
+        rename(w->temporary, w->path) != 0) {
         reason = errno;
     }
     if (w->temporary != NULL && (!wanted || reason != 0)) {
         unlink(w->temporary);
     }
 
-    // with it goes the lock, without which another run would take the temporary for one left behind
-    if (w->path != NULL && close(w->descriptor) != 0 && reason == 0 && w->temporary == NULL) {
+    // with it goes the lock, without which another run would take the temporary for one
+    // left behind
+    if (w->path != NULL && close(w->descriptor) != 0 && reason == 0 &&
+        w->temporary == NULL) {
         reason = errno;
     }
-    const status result = wanted && reason != 0 ? cannot_write(f, w->path, reason) : written;
+    status result;
+    if (wanted && reason != 0) {
+        result = cannot_write(f, w->path, reason);
+    } else {
+        result = written;
+    }
     forget(w);
     return result;
 }
@@ -470,12 +543,14 @@ void whole_file_abandon(whole_file *w)
     (void)!whole_file_close(w, STATUS_STOPPED, NULL);
 }
 
-// --- reading ----------------------------------------------------------------------------------
+// --- reading ---------------------------------------------------------------------------
 
 FILE *whole_file_open_to_read(const char *path, fault *why)
 {
     // without waiting for the other end of a pipe
-    FAIL_IF(whole_file_keeps(path, why) != STATUS_OK, NULL);
+    if (whole_file_keeps(path, why) != STATUS_OK) {
+        return NULL;
+    }
     FILE *stream = NULL;
     const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     struct stat about = {.st_mode = 0};
@@ -484,7 +559,8 @@ FILE *whole_file_open_to_read(const char *path, fault *why)
     } else if (fstat(file, &about) != 0 || S_ISDIR(about.st_mode)) {
         fault_set(why, STATUS_CANNOT_READ, "cannot be read (%s)", strerror(EISDIR));
     } else if (!S_ISREG(about.st_mode)) {
-        fault_set(why, STATUS_BAD_ARGUMENT, "is a device or a pipe, expected a plain file");
+        fault_set(why, STATUS_BAD_ARGUMENT,
+                  "is a device or a pipe, expected a plain file");
     } else if ((stream = fdopen(file, "r")) == NULL) {
         fault_no_memory(why);
     }
@@ -506,10 +582,16 @@ char *whole_file_read(const char *path, size_t most, size_t *length, fault *why)
     char *bytes = NULL;
     ssize_t count = 1;
     *length = 0;
-    FAIL_IF(file == NULL, NULL);
+    if (file == NULL) {
+        return NULL;
+    }
     for (size_t room = 0; count > 0 && *length < most;) {
         if (*length == room) {
-            room = room > most / 2 ? most : room + (room > 0 ? room : most < 65536 ? most : 65536);
+            if (room > most / 2) {
+                room = most;
+            } else {
+                room = room + (room > 0 ? room : most < 65536 ? most : 65536);
+            }
             char *more = realloc(bytes, room + 1);
             if (more == NULL) {
                 count = -1;
@@ -518,7 +600,9 @@ char *whole_file_read(const char *path, size_t most, size_t *length, fault *why)
             bytes = more;
         }
         count = TEMP_FAILURE_RETRY(read(fileno(file), bytes + *length, room - *length));
-        *length += count > 0 ? (size_t)count : 0;
+        if (count > 0) {
+            *length += (size_t)count;
+        }
     }
 
     // what became of it, whatever closing says
@@ -526,7 +610,10 @@ char *whole_file_read(const char *path, size_t most, size_t *length, fault *why)
     fclose(file);
     if (count < 0) {
         free(bytes);
-        const status code = reason == ENOMEM ? STATUS_NO_MEMORY : STATUS_CANNOT_READ;
+        status code = STATUS_NO_MEMORY;
+        if (reason != ENOMEM) {
+            code = STATUS_CANNOT_READ;
+        }
         fault_set(why, code, "cannot be read (%s)", strerror(reason));
         return NULL;
     }

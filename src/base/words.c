@@ -10,7 +10,10 @@
 
 static int smaller(int a, int b)
 {
-    return a < b ? a : b;
+    if (a < b) {
+        return a;
+    }
+    return b;
 }
 
 // Optimal string alignment: Levenshtein's distance with swaps of neighbours.
@@ -37,8 +40,8 @@ int edit_distance(const char *a, const char *b, int limit)
         row = oldest;
         row[0] = (int)i;
         for (size_t j = 1; j <= lb; j++) {
-            row[j] =
-                smaller(last[j - 1] + (a[i - 1] != b[j - 1]), smaller(last[j], row[j - 1]) + 1);
+            row[j] = smaller(last[j - 1] + (a[i - 1] != b[j - 1]),
+                             smaller(last[j], row[j - 1]) + 1);
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
                 row[j] = smaller(row[j], before[j - 2] + 1);
             }
@@ -88,7 +91,10 @@ int name_find(const void *table, size_t size, int count, const char *name)
     while (i < count && strcmp(name_at(table, size, i), name) != 0) {
         i++;
     }
-    return i < count ? i : -1;
+    if (i < count) {
+        return i;
+    }
+    return -1;
 }
 
 const char *name_nearest(const void *table, size_t size, int count, const char *name)
@@ -104,14 +110,18 @@ size_t text_stem(const char *text, const char *ending)
 {
     const size_t length = strlen(text), tail = strlen(ending);
     const bool ends = length > tail && strcmp(text + length - tail, ending) == 0;
-    return ends ? length - tail : length;
+    if (ends) {
+        return length - tail;
+    }
+    return length;
 }
 
 bool is_unprintable(uint32_t character)
 {
     const bool control = character < 0x20 || (character >= 0x7f && character < 0xa0);
     const bool separator = character == 0x2028 || character == 0x2029;
-    const bool direction = character == 0x061c || character == 0x200e || character == 0x200f ||
+    const bool direction = character == 0x061c || character == 0x200e ||
+                           character == 0x200f ||
                            (character >= 0x202a && character <= 0x202e) ||
                            (character >= 0x2066 && character <= 0x2069);
     return control || separator || direction;
@@ -121,22 +131,40 @@ bool is_unprintable(uint32_t character)
 static int whole_character(const unsigned char *c, uint32_t *number)
 {
     // the first byte says how many follow, each with six bits
-    const int length = *c < 0x80    ? 1
-                       : *c >= 0xf5 ? 0
-                       : *c >= 0xf0 ? 4
-                       : *c >= 0xe0 ? 3
-                       : *c >= 0xc2 ? 2
-                                    : 0;
-    *number = length <= 1 ? *c : *c & (0x7fu >> length);
+    int length = 1;
+    if (!(*c < 0x80)) {
+        if (*c >= 0xf5) {
+            length = 0;
+        } else if (*c >= 0xf0) {
+            length = 4;
+        } else if (*c >= 0xe0) {
+            length = 3;
+        } else if (*c >= 0xc2) {
+            length = 2;
+        } else {
+            length = 0;
+        }
+    }
+    if (length <= 1) {
+        *number = *c;
+    } else {
+        *number = *c & (0x7fu >> length);
+    }
     for (int i = 1; i < length; i++) {
-        FAIL_IF((c[i] & 0xc0) != 0x80, 0);
+        if ((c[i] & 0xc0) != 0x80) {
+            return 0;
+        }
         *number = *number << 6 | (c[i] & 0x3fu);
     }
 
     // written longer than it is, half of a pair, or beyond the last one
-    const bool broken = (length == 3 && *number < 0x800) || (length == 4 && *number < 0x10000) ||
+    const bool broken = (length == 3 && *number < 0x800) ||
+                        (length == 4 && *number < 0x10000) ||
                         (*number >= 0xd800 && *number < 0xe000) || *number > 0x10ffff;
-    return broken ? 0 : length;
+    if (broken) {
+        return 0;
+    }
+    return length;
 }
 
 int printable_length(const char *text)
@@ -144,7 +172,10 @@ int printable_length(const char *text)
     assert(*text != '\0');
     uint32_t character;
     const int length = whole_character((const unsigned char *)text, &character);
-    return is_unprintable(character) ? 0 : length;
+    if (is_unprintable(character)) {
+        return 0;
+    }
+    return length;
 }
 
 void make_printable(char *text, char kept)
@@ -152,8 +183,14 @@ void make_printable(char *text, char kept)
     // the bytes after the first of a character that goes begin none, and go one by one
     while (*text != '\0') {
         const int length = *text == kept ? 1 : printable_length(text);
-        *text = length > 0 ? *text : '?';
-        text += length > 0 ? length : 1;
+        if (!(length > 0)) {
+            *text = '?';
+        }
+        if (length > 0) {
+            text += length;
+        } else {
+            text += 1;
+        }
     }
 }
 
@@ -167,7 +204,11 @@ void print_printable_list(FILE *stream, const char *format, va_list list)
     const int length = decimal_vprint(brief, sizeof brief, format, list);
     if (length >= (int)sizeof brief) {
         char *whole = decimal_vtext(format, again);
-        text = whole != NULL ? whole : brief;
+        if (whole != NULL) {
+            text = whole;
+        } else {
+            text = brief;
+        }
     }
     va_end(again);
     loss_unless(length >= 0 && (length < (int)sizeof brief || text != brief));

@@ -1,39 +1,41 @@
 // The contact machine: an arm in free flight or on its wall, its hub stuck or sliding.
 //
-// Between events motion_step() moves the arm in one contact state; it ends a step at the first
-// event, just beyond it. motion_apply() then takes the transition:
+// Between events motion_step() moves the arm in one contact state; it ends a step at the
+// first event, just beyond it. motion_apply() then takes the transition:
 //
 //                   gap closes:  impact() at a speed, touch without
 //     motion_start  +--------+ --------------------------> +---------+
 //     ------------> |  FREE  |                             | CONTACT | --+  impact():
-//               +-> |        | <-------------------------- |         | <-+  motion_push() into
-//               |   +--------+   force falls below zero:   +---------+      the wall
+//               +-> |        | <-------------------------- |         | <-+  motion_push()
+//               into |   +--------+   force falls below zero:   +---------+      the wall
 //               |       |               release()
 //               +-------+
 //          impact() that rebounds
 //
 //                     hub comes to rest:  stick()
 //         +---------+ --------------------------> +-------+
-//     +-- | SLIDING |                             | STUCK |      SLIDING is forwards or backwards
+//     +-- | SLIDING |                             | STUCK |      SLIDING is forwards or
+//     backwards
 //     +-> |         | <-------------------------- |       |
 //         +---------+  torque beyond stiction:    +-------+
 //       stick() where        slip()
 //       nothing holds it
 //
-// The two are coupled: an impact may set a stuck hub sliding, a hub that sticks may lift the arm
-// off. So each transition sets only what the event itself determines (a velocity, that the wall is
-// touched) and leaves the rest to contact_resolve(), which finds the one pair of states that
-// violates no condition. The calls from outside, motion_push(), motion_retorque() and
-// motion_rebind(), end in contact_resolve() too. Where steps do not resolve the fastest modes,
-// accelerations at an instant carry no information: release(), stick() and slip() then take the
-// state that the event suggests, and the next step corrects it.
+// The two are coupled: an impact may set a stuck hub sliding, a hub that sticks may lift
+// the arm off. So each transition sets only what the event itself determines (a velocity,
+// that the wall is touched) and leaves the rest to contact_resolve(), which finds the one
+// pair of states that violates no condition. The calls from outside, motion_push(),
+// motion_retorque() and motion_rebind(), end in contact_resolve() too. Where steps do not
+// resolve the fastest modes, accelerations at an instant carry no information: release(),
+// stick() and slip() then take the state that the event suggests, and the next step
+// corrects it.
 //
-// A wall that gives has a face, which goes with the arm in contact and moves on its own while the
-// arm is free (motion_try_step); gap and speed are those to the face. One with a mass is met as a
-// rigid wall is, by impact() and release(). One without imposes no constraint and causes no impact:
-// there a touch begins the contact at any speed, and release() ends it where the law's force falls
-// to zero. Behind its place at rest a damped face cannot follow then, and returns at its own rate
-// (wall.h).
+// A wall that gives has a face, which goes with the arm in contact and moves on its own
+// while the arm is free (motion_try_step); gap and speed are those to the face. One with
+// a mass is met as a rigid wall is, by impact() and release(). One without imposes no
+// constraint and causes no impact: there a touch begins the contact at any speed, and
+// release() ends it where the law's force falls to zero. Behind its place at rest a
+// damped face cannot follow then, and returns at its own rate (wall.h).
 //
 // After every transition hold:
 //
@@ -45,7 +47,8 @@
 //   6  an arm that contact and friction hold still is at rest
 //   7  an impact never increases the energy
 //
-// 4 to 6 need not hold while an impact is yet to be delivered by the next step (SLOT_IMPULSE).
+// 4 to 6 need not hold while an impact is yet to be delivered by the next step
+// (SLOT_IMPULSE).
 #include "src/contact/contact_machine.h"
 
 #include <assert.h>
@@ -55,13 +58,14 @@
 #include "src/arm/impact.h"
 #include "src/contact/locate.h"
 
-#define SHORT_FLIGHT 0.01  // of the arm's shortest period, a flight that says nothing by itself
+// of the arm's shortest period, a flight that says nothing by itself
+#define SHORT_FLIGHT 0.01
 #define SAME_PLACE   1e-12 // as that of the wall's face, but for rounding [m]
 
-// --- a face that is left -------------------------------------------------------------------------
+// --- a face that is left ---------------------------------------------------------------
 
-// The arm leaves the face of a wall that gives, which returns by itself from now on. What does so
-// at once gives up its energy at once, if there is a damper to take it.
+// The arm leaves the face of a wall that gives, which returns by itself from now on. What
+// does so at once gives up its energy at once, if there is a damper to take it.
 static void leave_face(const arm *a, motion *m)
 {
     double *state = m->state;
@@ -70,12 +74,13 @@ static void leave_face(const arm *a, motion *m)
     state[SLOT_FACE] = face.position;
     state[SLOT_FACE_VELOCITY] = face.velocity;
     if (a->wall.damping > 0) {
-        state_quadratures(m, state)[QUADRATURE_WALL] += held - motion_wall_energy(a, m, state);
+        state_quadratures(m, state)[QUADRATURE_WALL] +=
+            held - motion_wall_energy(a, m, state);
     }
 }
 
-// Whether an arm on the face of a wall that gives still presses on it, after its velocity or the
-// law changed; else it leaves it.
+// Whether an arm on the face of a wall that gives still presses on it, after its velocity
+// or the law changed; else it leaves it.
 static bool face_follows(const arm *a, motion *m)
 {
     const penetration at =
@@ -87,22 +92,27 @@ static bool face_follows(const arm *a, motion *m)
     return follows;
 }
 
-// --- the transitions -----------------------------------------------------------------------------
+// --- the transitions -------------------------------------------------------------------
 
-// Counts flights that are too short for arm or face to change in them. Returns whether the chatter
-// rule applies to the impact after more than MOTION_MOST_SHORT_FLIGHTS in a row, which has that
-// result with the wall's restitution e: without a rebound it would lose next to nothing of what arm
-// and face hold. A link that nothing bends has no other motion than the bounces, and no period that
-// they are short against: it always would.
+// Counts flights that are too short for arm or face to change in them. Returns whether
+// the chatter rule applies to the impact after more than MOTION_MOST_SHORT_FLIGHTS in a
+// row, which has that result with the wall's restitution e: without a rebound it would
+// lose next to nothing of what arm and face hold. A link that nothing bends has no other
+// motion than the bounces, and no period that they are short against: it always would.
 static bool chatters(const arm *a, motion *m, const impact_result *result, double e)
 {
     double *state = m->state;
     double flight = state[SLOT_TIME] - state[SLOT_LAST_IMPACT];
-    double fastest = m->wall_has_face
-                         ? fmax(a->highest_frequency, sqrt(a->wall.stiffness / a->wall.face_mass))
-                         : a->highest_frequency;
-    bool is_short = state[SLOT_LAST_IMPACT] >= 0 && flight * fastest < SHORT_FLIGHT * 2 * M_PI;
-    state[SLOT_SHORT_FLIGHTS] = is_short ? state[SLOT_SHORT_FLIGHTS] + 1 : 0;
+    double fastest = m->wall_has_face ? fmax(a->highest_frequency,
+                                             sqrt(a->wall.stiffness / a->wall.face_mass))
+                                      : a->highest_frequency;
+    bool is_short =
+        state[SLOT_LAST_IMPACT] >= 0 && flight * fastest < SHORT_FLIGHT * 2 * M_PI;
+    if (is_short) {
+        state[SLOT_SHORT_FLIGHTS] = state[SLOT_SHORT_FLIGHTS] + 1;
+    } else {
+        state[SLOT_SHORT_FLIGHTS] = 0;
+    }
     state[SLOT_LAST_IMPACT] = state[SLOT_TIME];
     if (!(state[SLOT_SHORT_FLIGHTS] > MOTION_MOST_SHORT_FLIGHTS)) {
         return false;
@@ -112,17 +122,19 @@ static bool chatters(const arm *a, motion *m, const impact_result *result, doubl
     return 0.5 * result->speed * result->impulse / (1 + e) < MOTION_CHATTER_SHARE * held;
 }
 
-// The jump of an impact, and the contact state after it. Slower than the rest speed, or by the
-// chatter rule, it is plastic: a sequence of ever smaller bounces ends in contact.
+// The jump of an impact, and the contact state after it. Slower than the rest speed, or
+// by the chatter rule, it is plastic: a sequence of ever smaller bounces ends in contact.
 static void impact(const arm *a, motion *m, motion_report *report)
 {
     double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
     double *increment = m->scratch;
     const double face = m->state[SLOT_FACE_VELOCITY];
 
-    // the jump of an instantaneous impact, with the wall's coefficient of restitution or without
+    // the jump of an instantaneous impact, with the wall's coefficient of restitution or
+    // without
     double e = wall_restitution(&a->wall, chain_penetration(a, q, w).rate - face);
-    impact_result result = impact_velocity_increments(a, m->links, q, w, face, e, increment);
+    impact_result result =
+        impact_velocity_increments(a, m->links, q, w, face, e, increment);
     if (chatters(a, m, &result, e)) {
         m->state[SLOT_SHORT_FLIGHTS] = 0;
         report->chatter = e > 0;
@@ -136,7 +148,8 @@ static void impact(const arm *a, motion *m, motion_report *report)
 
     m->state[SLOT_CONTACT] = 1;
     if (motion_unresolved(a, m) && e == 0 && !motion_held_still(m)) {
-        // the impact happens within the next step, whose own damping takes the loss (after Moreau)
+        // the impact happens within the next step, whose own damping takes the loss
+        // (after Moreau)
         m->state[SLOT_FORCE] = 0;
         m->state[SLOT_IMPULSE] = result.impulse;
         m->state[SLOT_JUMPED] = 1;
@@ -186,9 +199,18 @@ static void slip(const arm *a, motion *m)
 {
     double *state = m->state;
     if (motion_unresolved(a, m)) {
-        bool forward = state[SLOT_FRICTION_TORQUE] < 0; // friction resists the way the hub goes
-        state[SLOT_FRICTION] = forward ? HUB_FORWARD : HUB_BACKWARD;
-        state[SLOT_FRICTION_TORQUE] = forward ? -a->motor.stiction : a->motor.stiction;
+        bool forward =
+            state[SLOT_FRICTION_TORQUE] < 0; // friction resists the way the hub goes
+        if (forward) {
+            state[SLOT_FRICTION] = HUB_FORWARD;
+        } else {
+            state[SLOT_FRICTION] = HUB_BACKWARD;
+        }
+        if (forward) {
+            state[SLOT_FRICTION_TORQUE] = -a->motor.stiction;
+        } else {
+            state[SLOT_FRICTION_TORQUE] = a->motor.stiction;
+        }
         state[SLOT_JUMPED] = 1;
     } else {
         contact_resolve(a, m, state[SLOT_CONTACT] != 0, MOTION_SLIP);
@@ -207,7 +229,8 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
         impact(a, m, report);
         break;
     case MOTION_TOUCH:
-        contact_resolve(a, m, true, MOTION_TOUCH); // at no speed, or on a wall that gives at any
+        contact_resolve(a, m, true,
+                        MOTION_TOUCH); // at no speed, or on a wall that gives at any
         break;
     case MOTION_RELEASE:
         release(a, m);
@@ -228,10 +251,10 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
     contact_check(a, m);
 }
 
-// --- from outside ------------------------------------------------------------------------------
+// --- from outside ----------------------------------------------------------------------
 
-void motion_start_at(const arm *a, motion *m, const double *angles, const double *velocities,
-                     double current)
+void motion_start_at(const arm *a, motion *m, const double *angles,
+                     const double *velocities, double current)
 {
     a = motion_arm_at(a, m, 0);
     memset(m->state, 0, (size_t)m->size * sizeof(double));
@@ -247,13 +270,14 @@ void motion_start_at(const arm *a, motion *m, const double *angles, const double
     m->record.largest_penetration = m->record.overheld = 0;
     motion_reset_peak(m);
 
-    // an arm on a rigid wall or a face, at rest, that moves into it counts as free until the impact
-    // that follows immediately; a gap of rounding is none
+    // an arm on a rigid wall or a face, at rest, that moves into it counts as free until
+    // the impact that follows immediately; a gap of rounding is none
     const penetration at = chain_penetration(a, q, w);
     const bool closed = at.depth >= -START_ROUNDING * a->links * a->link_length;
     const bool touching = closed && (m->wall_gives ? at.rate >= 0 : at.rate == 0);
     contact_resolve(a, m, touching, MOTION_REACHED);
-    m->record.start_energy += motion_wall_energy(a, m, m->state); // of a depth by rounding
+    m->record.start_energy +=
+        motion_wall_energy(a, m, m->state); // of a depth by rounding
 }
 
 void motion_start(const arm *a, motion *m, double angle, double velocity)
@@ -286,7 +310,8 @@ void motion_push(const arm *a, motion *m, double impulse, motion_report *report)
     if (m->wall_gives) {
         contact_resolve(a, m, contact && face_follows(a, m), MOTION_REACHED);
     } else {
-        const double speed = chain_penetration(a, q, w).rate - m->state[SLOT_FACE_VELOCITY];
+        const double speed =
+            chain_penetration(a, q, w).rate - m->state[SLOT_FACE_VELOCITY];
         if (contact && speed > TOUCH_SPEED) {
             report->event = MOTION_IMPACT;
             impact(a, m, report);
@@ -309,7 +334,8 @@ void motion_retorque(const arm *a, motion *m, double before)
     double *state = m->state;
     const bool sticks = contact_state_of(state).friction == HUB_STICK;
     double friction = state[SLOT_FRICTION_TORQUE] - (a->motor.torque - before);
-    if (sticks && !m->electric && m->dof > 1 && fabs(friction) < a->motor.stiction * (1 - 1e-9)) {
+    if (sticks && !m->electric && m->dof > 1 &&
+        fabs(friction) < a->motor.stiction * (1 - 1e-9)) {
         state[SLOT_FRICTION_TORQUE] = friction;
         motion_end_internal_step(m); // that was with the other torque
         return;
@@ -335,7 +361,8 @@ double motion_gap_with(const arm *a, motion *m)
 {
     a = motion_arm_at(a, m, m->state[SLOT_TIME]);
     return m->state[SLOT_FACE] -
-           chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state)).depth;
+           chain_penetration(a, state_angles(m, m->state), state_velocities(m, m->state))
+               .depth;
 }
 
 void motion_rebind(const arm *before, const arm *after, motion *m)
@@ -343,9 +370,10 @@ void motion_rebind(const arm *before, const arm *after, motion *m)
     assert(after->dof == m->dof);
     const double *q = state_angles(m, m->state);
     motion_note_change(m);
-    m->state[SLOT_EXTERNAL_WORK] += chain_strain_energy(after, q) - chain_strain_energy(before, q);
-    const bool turned =
-        after->wall.cosine != before->wall.cosine || after->wall.sine != before->wall.sine;
+    m->state[SLOT_EXTERNAL_WORK] +=
+        chain_strain_energy(after, q) - chain_strain_energy(before, q);
+    const bool turned = after->wall.cosine != before->wall.cosine ||
+                        after->wall.sine != before->wall.sine;
     bool contact = m->state[SLOT_CONTACT] != 0;
     if (contact && turned && motion_gap_with(after, m) > SAME_PLACE) {
         contact = false;

@@ -12,21 +12,24 @@
 void contact_check(const arm *a, const motion *m)
 {
     const double *state = m->state;
-    const double friction = state[SLOT_FRICTION], hub_velocity = state[SLOT_COUNT + m->dof];
+    const double friction = state[SLOT_FRICTION],
+                 hub_velocity = state[SLOT_COUNT + m->dof];
     const bool contact = state[SLOT_CONTACT] != 0, settled = state[SLOT_IMPULSE] == 0;
 
-    assert(state[SLOT_CONTACT] == 0 || state[SLOT_CONTACT] == 1);                         // 1
-    assert(friction == HUB_STICK || friction == HUB_FORWARD || friction == HUB_BACKWARD); // 1
-    assert(!contact || wall_stands(&a->wall));                                            // 2
-    assert(contact || state[SLOT_FORCE] == 0);                                            // 3
-    assert(!settled || friction != HUB_STICK || hub_velocity == 0);                       // 4
-    assert(!settled || a->motor.stiction == 0 || !(friction * hub_velocity < 0));         // 5
-    assert(!settled || !motion_held_still(m) || hub_velocity == 0);                       // 6
+    assert(state[SLOT_CONTACT] == 0 || state[SLOT_CONTACT] == 1); // 1
+    assert(friction == HUB_STICK || friction == HUB_FORWARD ||
+           friction == HUB_BACKWARD);                                             // 1
+    assert(!contact || wall_stands(&a->wall));                                    // 2
+    assert(contact || state[SLOT_FORCE] == 0);                                    // 3
+    assert(!settled || friction != HUB_STICK || hub_velocity == 0);               // 4
+    assert(!settled || a->motor.stiction == 0 || !(friction * hub_velocity < 0)); // 5
+    assert(!settled || !motion_held_still(m) || hub_velocity == 0);               // 6
     (void)a, (void)friction, (void)hub_velocity, (void)contact, (void)settled;
 }
 
-// By how much the state violates the conditions of its contact state: tension in contact, imminent
-// penetration of a released touch, friction beyond its limit, sliding against the chosen direction.
+// By how much the state violates the conditions of its contact state: tension in contact,
+// imminent penetration of a released touch, friction beyond its limit, sliding against
+// the chosen direction.
 static double violation(const arm *a, const motion *m, const double *state, bool touching,
                         bool hub_rests)
 {
@@ -37,7 +40,8 @@ static double violation(const arm *a, const motion *m, const double *state, bool
     if (now.contact && !m->wall_gives) {
         worst = fmax(worst, -state[SLOT_FORCE]);
     } else if (touching && !m->wall_gives) {
-        // of a light face the force that moves it: its acceleration amplifies the force's rounding
+        // of a light face the force that moves it: its acceleration amplifies the force's
+        // rounding
         const double mass = m->wall_has_face ? fmin(a->wall.face_mass, 1) : 1;
         worst = fmax(worst, -state[SLOT_GAP_ACCELERATION] * mass);
     }
@@ -46,7 +50,8 @@ static double violation(const arm *a, const motion *m, const double *state, bool
     if (now.friction == HUB_STICK) {
         worst = fmax(worst, fabs(state[SLOT_FRICTION_TORQUE]) - a->motor.stiction);
     } else if (hub_rests) {
-        worst = fmax(worst, -now.friction * state[SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT]);
+        worst = fmax(worst,
+                     -now.friction * state[SLOT_COUNT + 2 * m->dof + QUADRATURE_COUNT]);
     }
     return worst;
 }
@@ -64,19 +69,19 @@ static void end_rounding(motion *m)
     }
 }
 
-// The ways of friction of a hub at rest in the order in which they are tried: what holds it, or
-// which way it slides. A hub that breaks away continues doing so where the contact changes at that
-// instant; it gives way to what friction has held.
+// The ways of friction of a hub at rest in the order in which they are tried: what holds
+// it, or which way it slides. A hub that breaks away continues doing so where the contact
+// changes at that instant; it gives way to what friction has held.
 static const hub_friction *friction_order(const double *state, motion_event event)
 {
     static const hub_friction orders[][3] = {{HUB_STICK, HUB_FORWARD, HUB_BACKWARD},
                                              {HUB_FORWARD, HUB_BACKWARD, HUB_STICK},
                                              {HUB_BACKWARD, HUB_FORWARD, HUB_STICK}};
-    const bool breaks_away =
-        (event == MOTION_RELEASE || event == MOTION_TOUCH) && state[SLOT_FRICTION] != HUB_STICK;
+    const bool breaks_away = (event == MOTION_RELEASE || event == MOTION_TOUCH) &&
+                             state[SLOT_FRICTION] != HUB_STICK;
     const bool slides = event == MOTION_SLIP || breaks_away;
-    const bool backwards =
-        breaks_away ? state[SLOT_FRICTION] == HUB_BACKWARD : state[SLOT_FRICTION_TORQUE] > 0;
+    const bool backwards = breaks_away ? state[SLOT_FRICTION] == HUB_BACKWARD
+                                       : state[SLOT_FRICTION_TORQUE] > 0;
     return orders[!slides ? 0 : backwards ? 2 : 1];
 }
 
@@ -103,12 +108,18 @@ void contact_resolve(const arm *a, motion *m, bool touching, motion_event event)
     hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
     int choices = hub_rests ? 3 : 1, ways = touching && !m->wall_gives ? 2 : 1;
 
-    // the state that the event has ended would be violated an instant later: its successor is taken
-    // even if rounding makes it look worse
-    const int preferred = event == MOTION_RELEASE || event == MOTION_TOUCH ? choices
-                          : event == MOTION_SLIP                           ? 2
-                          : event == MOTION_STICK                          ? 1
-                                                                           : 0;
+    // the state that the event has ended would be violated an instant later: its
+    // successor is taken even if rounding makes it look worse
+    int preferred;
+    if (event == MOTION_RELEASE || event == MOTION_TOUCH) {
+        preferred = choices;
+    } else if (event == MOTION_SLIP) {
+        preferred = 2;
+    } else if (event == MOTION_STICK) {
+        preferred = 1;
+    } else {
+        preferred = 0;
+    }
     const double rounding = rounding_after(a, m, event);
     double least = 0;
     contact_state best = {false, sliding}, tried = best;
@@ -116,8 +127,13 @@ void contact_resolve(const arm *a, motion *m, bool touching, motion_event event)
     // at a release the released arm is tried first, else the one in contact
     for (int i = 0; i < ways * choices; i++) {
         bool second = i >= choices;
-        state[SLOT_CONTACT] = touching && (m->wall_gives || second == (event == MOTION_RELEASE));
-        state[SLOT_FRICTION] = hub_rests ? at_rest[i % choices] : sliding;
+        state[SLOT_CONTACT] =
+            touching && (m->wall_gives || second == (event == MOTION_RELEASE));
+        if (hub_rests) {
+            state[SLOT_FRICTION] = at_rest[i % choices];
+        } else {
+            state[SLOT_FRICTION] = sliding;
+        }
         motion_evaluate(a, m, state);
         double v = violation(a, m, state, touching, hub_rests);
         tried = contact_state_of(state);

@@ -8,8 +8,8 @@
 
 enum { MOST_CUTS = 40, MOST_ITERATIONS = 100 };
 
-// Where the cubic through both ends' values and slopes, the time over the value, is zero: for a
-// function that falls all the way; else the root of the chord.
+// Where the cubic through both ends' values and slopes, the time over the value, is zero:
+// for a function that falls all the way; else the root of the chord.
 static double guess_root(step_point lo, step_point hi)
 {
     const double fall = lo.at.value - hi.at.value, length = hi.time - lo.time;
@@ -17,13 +17,18 @@ static double guess_root(step_point lo, step_point hi)
     if (!(lo.at.slope < 0 && hi.at.slope < 0)) {
         return chord;
     }
-    const double start = s * (1 - s) * (1 - s) / lo.at.slope, end = s * s * (s - 1) / hi.at.slope;
+    const double start = s * (1 - s) * (1 - s) / lo.at.slope,
+                 end = s * s * (s - 1) / hi.at.slope;
     const double guess = lo.time + length * s * s * (3 - 2 * s) - fall * (start + end);
-    return guess > lo.time && guess < hi.time ? guess : chord;
+    if (guess > lo.time && guess < hi.time) {
+        return guess;
+    }
+    return chord;
 }
 
-// The root of an event function that falls from `lo` to `hi`, `second` a bound on its second
-// derivative: Newton's method within the bracket, halved where that leaves it or gains too little.
+// The root of an event function that falls from `lo` to `hi`, `second` a bound on its
+// second derivative: Newton's method within the bracket, halved where that leaves it or
+// gains too little.
 static double root_between(const arm *a, const motion *m, event_function w, step_point lo,
                            step_point hi, double second)
 {
@@ -42,10 +47,11 @@ static double root_between(const arm *a, const motion *m, event_function w, step
             to = t;
         }
 
-        // end where the estimate has settled, the next correction would be below the resolution of
-        // time, or the bracket has closed
+        // end where the estimate has settled, the next correction would be below the
+        // resolution of time, or the bracket has closed
         double next = t - g.value / g.slope;
-        const double step = fabs(next - t), resolution = ROOT_RESOLUTION + 2e-16 * hi.time;
+        const double step = fabs(next - t),
+                     resolution = ROOT_RESOLUTION + 2e-16 * hi.time;
         if (step <= resolution || second * step * step <= resolution * fabs(g.slope) ||
             to - from <= resolution) {
             return fmin(fmax(next, lo.time), hi.time);
@@ -53,7 +59,9 @@ static double root_between(const arm *a, const motion *m, event_function w, step
 
         // three steps that do not halve the bracket are followed by one that does
         if (i % 3 == 2) {
-            next = to - from > 0.5 * width ? 0.5 * (from + to) : next;
+            if (to - from > 0.5 * width) {
+                next = 0.5 * (from + to);
+            }
             width = to - from;
         }
         t = next;
@@ -61,13 +69,14 @@ static double root_between(const arm *a, const motion *m, event_function w, step
     return t;
 }
 
-// The first fall below zero from `lo` to `hi`, at both of which the function is known, as `known`
-// is a bound on its second derivative, or infinite; negative if there is none. Intervals in which
-// the bound on the second derivative excludes a fall are skipped; those in which it excludes a
-// rising slope have exactly one root; all others are bisected. Where the function is not finite
-// nothing is found: the state at the step's end reports that.
-static double first_zero_crossing(const arm *a, const motion *m, event_function w, step_point lo,
-                                  step_point hi, int cuts, double known)
+// The first fall below zero from `lo` to `hi`, at both of which the function is known, as
+// `known` is a bound on its second derivative, or infinite; negative if there is none.
+// Intervals in which the bound on the second derivative excludes a fall are skipped;
+// those in which it excludes a rising slope have exactly one root; all others are
+// bisected. Where the function is not finite nothing is found: the state at the step's
+// end reports that.
+static double first_zero_crossing(const arm *a, const motion *m, event_function w,
+                                  step_point lo, step_point hi, int cuts, double known)
 {
     const double length = hi.time - lo.time;
     const double second =
@@ -82,7 +91,10 @@ static double first_zero_crossing(const arm *a, const motion *m, event_function 
     const bool steady = fmax(lo.at.slope, hi.at.slope) + second * length / 2 < 0;
     const bool flat = cuts == 0 || room <= event_tolerance(w);
     if (steady || flat) {
-        return falls ? root_between(a, m, w, lo, hi, second) : -1;
+        if (falls) {
+            return root_between(a, m, w, lo, hi, second);
+        }
+        return -1;
     }
 
     // each half by itself, the earlier one first
@@ -92,7 +104,10 @@ static double first_zero_crossing(const arm *a, const motion *m, event_function 
         return first_zero_crossing(a, m, w, lo, middle, cuts - 1, second);
     }
     double first = first_zero_crossing(a, m, w, lo, middle, cuts - 1, second);
-    return first >= 0 ? first : first_zero_crossing(a, m, w, middle, hi, cuts - 1, second);
+    if (first >= 0) {
+        return first;
+    }
+    return first_zero_crossing(a, m, w, middle, hi, cuts - 1, second);
 }
 
 void dense_search_event(const arm *a, motion *m, step_end *end)
@@ -106,23 +121,24 @@ void dense_search_event(const arm *a, motion *m, step_end *end)
         }
         step_point lo = {0, m->engine->event_function(a, m, w, 0)},
                    hi = {end->length, m->engine->event_function(a, m, w, end->length)};
-        double fall =
-            lo.at.value < 0 ? 0 : first_zero_crossing(a, m, w, lo, hi, MOST_CUTS, HUGE_VAL);
+        double fall = lo.at.value < 0
+                          ? 0
+                          : first_zero_crossing(a, m, w, lo, hi, MOST_CUTS, HUGE_VAL);
         if (fall >= 0) {
             *end = (step_end){fall, true, w};
         }
     }
 }
 
-// --- the largest force -------------------------------------------------------------------------
+// --- the largest force -----------------------------------------------------------------
 
 static void note_force(motion *m, step_point p)
 {
     motion_note_force(m, m->state[SLOT_TIME] + p.time, p.at.value);
 }
 
-// Where the force stops growing between `lo`, where it grows, and `hi`, where it falls: secants of
-// the slope within the bracket, halved where they gain too little.
+// Where the force stops growing between `lo`, where it grows, and `hi`, where it falls:
+// secants of the slope within the bracket, halved where they gain too little.
 static step_point summit(const arm *a, motion *m, step_point lo, step_point hi)
 {
     step_point top = lo.at.value > hi.at.value ? lo : hi;
@@ -131,7 +147,11 @@ static step_point summit(const arm *a, motion *m, step_point lo, step_point hi)
 
     for (int i = 0; i < MOST_ITERATIONS && hi.time - lo.time > resolution; i++) {
         double share = lo.at.slope / (lo.at.slope - hi.at.slope);
-        share = i % 3 == 2 ? 0.5 : fmin(fmax(share, 1e-3), 1 - 1e-3);
+        if (i % 3 == 2) {
+            share = 0.5;
+        } else {
+            share = fmin(fmax(share, 1e-3), 1 - 1e-3);
+        }
 
         // which side of the summit it is on
         double time = lo.time + share * (hi.time - lo.time);
@@ -155,11 +175,13 @@ static void raise_peak(const arm *a, motion *m, step_point lo, step_point hi, in
     // no larger force is possible here, or the slope keeps its sign
     const double length = hi.time - lo.time;
     const double second =
-        isfinite(known) ? known
-                        : m->engine->second_derivative(a, m, EVENT_OF_FORCE, lo.time, hi.time);
+        isfinite(known)
+            ? known
+            : m->engine->second_derivative(a, m, EVENT_OF_FORCE, lo.time, hi.time);
     const double most = fmax(lo.at.value, hi.at.value) + second * length * length / 8;
     const double change = second * length / 2; // of the slope from the nearer end
-    if (most <= m->record.pulse_peak * (1 + SAME_PEAK) || fmin(lo.at.slope, hi.at.slope) > change ||
+    if (most <= m->record.pulse_peak * (1 + SAME_PEAK) ||
+        fmin(lo.at.slope, hi.at.slope) > change ||
         fmax(lo.at.slope, hi.at.slope) < -change) {
         return;
     }

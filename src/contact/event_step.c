@@ -9,24 +9,26 @@
 #include "src/contact/contact_machine.h"
 #include "src/contact/locate.h"
 
-#define MOST_HALVINGS     8    // of a step that does not converge or makes energy
-#define LEAST_AFTER_TSTOP 1e-9 // share of a step; what is left of one before tstop is longer
-// What a stuck hub may be held by beyond stiction: a share of the torques, and of what rounding
-// makes of a slow soft arm's [N m].
+#define MOST_HALVINGS 8 // of a step that does not converge or makes energy
+// share of a step; what is left of one before tstop is longer
+#define LEAST_AFTER_TSTOP 1e-9
+// What a stuck hub may be held by beyond stiction: a share of the torques, and of what
+// rounding makes of a slow soft arm's [N m].
 #define HOLD_SHARE    1e-6
 #define HOLD_ROUNDING 1e-8
-// Angles, velocities and accelerations below this are set to zero [rad, rad/s, rad/s2]. Squares of
-// larger ones are normal numbers: so a motion that dies away never computes with denormal numbers,
-// which are many times slower on some processors.
+// Angles, velocities and accelerations below this are set to zero [rad, rad/s, rad/s2].
+// Squares of larger ones are normal numbers: so a motion that dies away never computes
+// with denormal numbers, which are many times slower on some processors.
 #define FADED 1e-150
 
-// Notes what the friction of a stuck hub exceeds stiction by, beyond rounding, which only a slip
-// that was missed explains. Stepping engines may be a step late.
+// Notes what the friction of a stuck hub exceeds stiction by, beyond rounding, which only
+// a slip that was missed explains. Stepping engines may be a step late.
 static void note_hold(const arm *a, motion *m)
 {
     const double *state = m->state;
     const double beyond = fabs(state[SLOT_FRICTION_TORQUE]) - a->motor.stiction;
-    if (state[SLOT_FRICTION] != HUB_STICK || !engine_is_dense(m->engine) || !(beyond > 0)) {
+    if (state[SLOT_FRICTION] != HUB_STICK || !engine_is_dense(m->engine) ||
+        !(beyond > 0)) {
         return;
     }
     const double largest = larger(a->motor.stiction, fabs(state[SLOT_MOTOR_TORQUE]));
@@ -40,7 +42,11 @@ static void count_step(motion *m, double passed, double step)
 {
     const double steps = passed / step - 1e-6;
     const long whole = (long)steps; // rounded up, and one at least
-    m->record.steps += steps > 0 ? whole + ((double)whole < steps) : 1;
+    if (steps > 0) {
+        m->record.steps += whole + ((double)whole < steps);
+    } else {
+        m->record.steps += 1;
+    }
     m->record.largest_penetration =
         larger(-state_rest_gap(m->state).value, m->record.largest_penetration);
 }
@@ -57,9 +63,9 @@ static void accept(motion *m, double step)
     }
 }
 
-// Brings a motion that dies away to rest: what has faded below the limit becomes exactly zero. A
-// faded velocity is the sign of such a motion, or of a body without one a faded acceleration: what
-// is held without a velocity has accelerations that are rounding.
+// Brings a motion that dies away to rest: what has faded below the limit becomes exactly
+// zero. A faded velocity is the sign of such a motion, or of a body without one a faded
+// acceleration: what is held without a velocity has accelerations that are rounding.
 static void come_to_rest(motion *m)
 {
     const double *w = state_velocities(m, m->state);
@@ -73,43 +79,58 @@ static void come_to_rest(motion *m)
         motion_end_internal_step(m);
     }
     for (int i = SLOT_COUNT; fading && i < m->size; i++) {
-        m->state[i] = fabs(m->state[i]) < FADED ? 0 : m->state[i];
+        if (fabs(m->state[i]) < FADED) {
+            m->state[i] = 0;
+        }
     }
 }
 
 // The event of a fall of that function.
 static motion_event event_of(const motion *m, event_function w)
 {
-    static const motion_event events[EVENT_FUNCTION_COUNT] = {[EVENT_OF_FORCE] = MOTION_RELEASE,
-                                                              [EVENT_OF_HUB] = MOTION_STICK,
-                                                              [EVENT_OF_STICTION] = MOTION_SLIP,
-                                                              [EVENT_OF_CURRENT] = MOTION_REACHED};
+    static const motion_event events[EVENT_FUNCTION_COUNT] = {
+        [EVENT_OF_FORCE] = MOTION_RELEASE,
+        [EVENT_OF_HUB] = MOTION_STICK,
+        [EVENT_OF_STICTION] = MOTION_SLIP,
+        [EVENT_OF_CURRENT] = MOTION_REACHED};
     if (w != EVENT_OF_GAP) {
         return events[w];
     }
 
     // contact begins with an impact only at a speed, and only if the wall does not give
     if (m->wall_gives) {
-        return m->state[SLOT_CONTACT] != 0 ? MOTION_RELEASE : MOTION_TOUCH;
+        if (m->state[SLOT_CONTACT] != 0) {
+            return MOTION_RELEASE;
+        }
+        return MOTION_TOUCH;
     }
-    return m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED ? MOTION_IMPACT : MOTION_TOUCH;
+    if (m->state[SLOT_GAP_VELOCITY] < -TOUCH_SPEED) {
+        return MOTION_IMPACT;
+    }
+    return MOTION_TOUCH;
 }
 
-// Tries a step of that length, shorter if need be; *end and m->trial end at the first event, if
-// there is one.
+// Tries a step of that length, shorter if need be; *end and m->trial end at the first
+// event, if there is one.
 static status step_to_event(const arm *a, motion *m, step_end *end)
 {
     status s = motion_try_step(a, m, end->length, STATE_WHOLE);
-    for (int i = 0; i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
+    for (int i = 0;
+         i < MOST_HALVINGS && (s == STATUS_NEWTON_FAILED || s == STATUS_UNSTABLE); i++) {
         end->length /= 2;
         s = motion_try_step(a, m, end->length, STATE_WHOLE);
     }
-    return s == STATUS_OK ? locate_first_event(a, m, end) : s;
+    if (s == STATUS_OK) {
+        return locate_first_event(a, m, end);
+    }
+    return s;
 }
 
-// A step of a stepping engine, which locates events and peaks by further, shorter steps. One that
-// goes beyond m->record.tstop, or ends within rounding of it, is made again to end there.
-static status tried_step(const arm *a, motion *m, double until, double step, step_end *end)
+// A step of a stepping engine, which locates events and peaks by further, shorter steps.
+// One that goes beyond m->record.tstop, or ends within rounding of it, is made again to
+// end there.
+static status tried_step(const arm *a, motion *m, double until, double step,
+                         step_end *end)
 {
     const double wanted = m->engine->advance(a, m, until - m->state[SLOT_TIME], step);
     const double left = m->record.tstop - m->state[SLOT_TIME];
@@ -119,24 +140,31 @@ static status tried_step(const arm *a, motion *m, double until, double step, ste
     const double spare = s == STATUS_OK && end->any ? 0 : LEAST_AFTER_TSTOP * step;
     if (!(reached <= left - spare)) {
         *end = (step_end){.length = left};
-        s = s == STATUS_OK ? motion_try_step(a, m, left, STATE_WHOLE) : s;
-        s = s == STATUS_OK ? s : step_to_event(a, m, end);
+        if (s == STATUS_OK) {
+            s = motion_try_step(a, m, left, STATE_WHOLE);
+        }
+        if (s != STATUS_OK) {
+            s = step_to_event(a, m, end);
+        }
     }
     const bool touches = s == STATUS_OK && m->state[SLOT_CONTACT] != 0;
-    return touches ? locate_peak(a, m, end->length) : s;
+    if (touches) {
+        return locate_peak(a, m, end->length);
+    }
+    return s;
 }
 
-// Whether a rigid wall holds the arm where the contact equations are singular: folded over the
-// hub's axis.
+// Whether a rigid wall holds the arm where the contact equations are singular: folded
+// over the hub's axis.
 static bool held_folded(const arm *a, motion *m)
 {
     return m->state[SLOT_CONTACT] != 0 && motion_wall_is_rigid(m) &&
            chain_is_folded(a, state_angles(m, m->state));
 }
 
-// Whether the step just made by a stepping engine led an arm on a rigid flat wall through a fold,
-// where every link goes from one side of across the wall to the other. Internal steps of dense
-// engines keep clear of it.
+// Whether the step just made by a stepping engine led an arm on a rigid flat wall through
+// a fold, where every link goes from one side of across the wall to the other. Internal
+// steps of dense engines keep clear of it.
 static bool went_through_fold(const arm *a, const motion *m)
 {
     const double *before = state_angles(m, m->trial), *now = state_angles(m, m->state);
@@ -146,7 +174,8 @@ static bool went_through_fold(const arm *a, const motion *m)
     for (int k = a->first; k < a->dof && through; k++) {
         const double was =
             inline_cos(before[k]) * a->wall.cosine + inline_sin(before[k]) * a->wall.sine;
-        const double is = inline_cos(now[k]) * a->wall.cosine + inline_sin(now[k]) * a->wall.sine;
+        const double is =
+            inline_cos(now[k]) * a->wall.cosine + inline_sin(now[k]) * a->wall.sine;
         through = was * is < 0;
     }
     return through;
@@ -164,8 +193,8 @@ static void examine(const arm *a, motion *m, double until, double far, double st
         end.length = larger(smaller(left, far - now), end.length);
     }
 
-    // to the first event, tstop or the internal step's end; an event at the instant of tstop is
-    // before it
+    // to the first event, tstop or the internal step's end; an event at the instant of
+    // tstop is before it
     if (begun) {
         m->engine->first_event(a, m, &end);
         if (now + end.length > m->record.tstop) {
@@ -194,7 +223,8 @@ void motion_examine_step(const arm *a, motion *m, double until, double far, doub
 }
 
 // The internal step of a dense engine.
-static status dense_step(const arm *a, motion *m, double until, double step, step_end *end)
+static status dense_step(const arm *a, motion *m, double until, double step,
+                         step_end *end)
 {
     if (!m->step.coming.known) {
         examine(a, m, until, until, step);
@@ -207,7 +237,10 @@ static status dense_step(const arm *a, motion *m, double until, double step, ste
         for (int i = 0; i < m->dof; i++) {
             sum += state_accelerations(m, m->state)[i];
         }
-        return isfinite(sum) ? STATUS_NO_PROGRESS : STATUS_NOT_FINITE;
+        if (isfinite(sum)) {
+            return STATUS_NO_PROGRESS;
+        }
+        return STATUS_NOT_FINITE;
     }
     return motion_try_step(a, m, end->length, STATE_WHOLE);
 }
@@ -221,8 +254,8 @@ static void meet_stop(motion *m, double until)
     }
 }
 
-// The step of an arm that is held still: time passes up to `until` or tstop [s], and its force
-// stays the same. m->trial gets its start.
+// The step of an arm that is held still: time passes up to `until` or tstop [s], and its
+// force stays the same. m->trial gets its start.
 static void rest(motion *m, double until, double step)
 {
     double *state = m->state;
@@ -239,7 +272,8 @@ static void rest(motion *m, double until, double step)
     meet_stop(m, until);
 }
 
-status motion_step(const arm *a, motion *m, double until, double step, motion_report *report)
+status motion_step(const arm *a, motion *m, double until, double step,
+                   motion_report *report)
 {
     assert(step > 0);
     *report = (motion_report){.event = MOTION_REACHED};
@@ -247,7 +281,10 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     // a step examined by motion_examine_step needs no search any more
     if (!m->step.coming.known && (m->out_of_memory || held_folded(a, m))) {
         m->failure_time = m->state[SLOT_TIME];
-        return m->out_of_memory ? STATUS_NO_MEMORY : STATUS_FOLDED;
+        if (m->out_of_memory) {
+            return STATUS_NO_MEMORY;
+        }
+        return STATUS_FOLDED;
     }
     if (motion_held_still(m)) {
         rest(m, until, step);
@@ -256,8 +293,12 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
 
     // as far as accuracy allows, tstop, or the first event
     step_end end;
-    const status s = engine_is_dense(m->engine) ? dense_step(a, m, until, step, &end)
-                                                : tried_step(a, m, until, step, &end);
+    status s;
+    if (engine_is_dense(m->engine)) {
+        s = dense_step(a, m, until, step, &end);
+    } else {
+        s = tried_step(a, m, until, step, &end);
+    }
     if (s != STATUS_OK) {
         m->failure_time = m->state[SLOT_TIME] + end.length;
         return s;
@@ -266,8 +307,9 @@ status motion_step(const arm *a, motion *m, double until, double step, motion_re
     accept(m, step);
     m->step.last = end.length;
     note_hold(a, m);
-    const bool folded = end.any && (end.first == EVENT_OF_GAP || end.first == EVENT_OF_FORCE) &&
-                        motion_wall_is_rigid(m) && chain_is_folded(a, state_angles(m, m->state));
+    const bool folded =
+        end.any && (end.first == EVENT_OF_GAP || end.first == EVENT_OF_FORCE) &&
+        motion_wall_is_rigid(m) && chain_is_folded(a, state_angles(m, m->state));
     if (folded || went_through_fold(a, m)) {
         m->failure_time = m->state[SLOT_TIME];
         return STATUS_FOLDED;
@@ -293,5 +335,8 @@ double *motion_between(const arm *a, motion *m, double time, state_extent extent
     m->state = now;
     m->trial = start;
     m->between[SLOT_TIME] = time;
-    return s == STATUS_OK ? m->between : NULL;
+    if (s == STATUS_OK) {
+        return m->between;
+    }
+    return NULL;
 }

@@ -3,38 +3,55 @@
 #include <math.h>
 #include <string.h>
 
-#define TOUCH_TOLERANCE   1e-12 // penetration that counts as crossing the wall [m]
-#define GAP_ROUNDING      4e-15 // penetration that may be rounding [m]
-#define TORQUE_TOLERANCE  1e-12 // excess that counts as breaking away [N m]
-#define UNRESOLVED_IMPACT 0.1 // share of a step that an impact takes where steps do not resolve it
+#define TOUCH_TOLERANCE  1e-12 // penetration that counts as crossing the wall [m]
+#define GAP_ROUNDING     4e-15 // penetration that may be rounding [m]
+#define TORQUE_TOLERANCE 1e-12 // excess that counts as breaking away [N m]
+// share of a step that an impact takes where steps do not resolve it
+#define UNRESOLVED_IMPACT 0.1
 #define LOCATION_TIME     1e-15 // width to which the bracket of an event is narrowed [s]
 
-// Whether the arm is in contact with a wall that gives, and no constraint holds it: the watched gap
-// is then the depth.
+// Whether the arm is in contact with a wall that gives, and no constraint holds it: the
+// watched gap is then the depth.
 static bool within_wall(const motion *m, const double *state)
 {
     return m->wall_gives && state[SLOT_CONTACT] != 0;
 }
 
 // Positive on the admissible side.
-static double event_value(const arm *a, const motion *m, const double *state, event_function w)
+static double event_value(const arm *a, const motion *m, const double *state,
+                          event_function w)
 {
-    return w == EVENT_OF_GAP     ? within_wall(m, state) ? -state[SLOT_GAP] : state[SLOT_GAP]
-               : w == EVENT_OF_FORCE ? state[SLOT_FORCE]
-           : w == EVENT_OF_HUB   ? state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof]
-                                 : a->motor.stiction - fabs(state[SLOT_FRICTION_TORQUE]);
+    if (w == EVENT_OF_GAP) {
+        if (within_wall(m, state)) {
+            return -state[SLOT_GAP];
+        }
+        return state[SLOT_GAP];
+    }
+    if (w == EVENT_OF_FORCE) {
+        return state[SLOT_FORCE];
+    }
+    if (w == EVENT_OF_HUB) {
+        return state[SLOT_FRICTION] * state[SLOT_COUNT + m->dof];
+    }
+    return a->motor.stiction - fabs(state[SLOT_FRICTION_TORQUE]);
 }
 
 double event_tolerance(event_function w)
 {
-    return w == EVENT_OF_GAP        ? TOUCH_TOLERANCE
-           : w == EVENT_OF_FORCE    ? FORCE_TOLERANCE
-           : w == EVENT_OF_STICTION ? TORQUE_TOLERANCE
-                                    : 0;
+    if (w == EVENT_OF_GAP) {
+        return TOUCH_TOLERANCE;
+    }
+    if (w == EVENT_OF_FORCE) {
+        return FORCE_TOLERANCE;
+    }
+    if (w == EVENT_OF_STICTION) {
+        return TORQUE_TOLERANCE;
+    }
+    return 0;
 }
 
-// Where in (0, 1) a cubic with the given end values and end slopes (per step) is least, if that
-// lies inside and the cubic falls at the start and rises at the end; else -1.
+// Where in (0, 1) a cubic with the given end values and end slopes (per step) is least,
+// if that lies inside and the cubic falls at the start and rises at the end; else -1.
 static double cubic_dip(double v0, double v1, double d0, double d1)
 {
     if (!(d0 < 0 && d1 > 0)) {
@@ -44,12 +61,16 @@ static double cubic_dip(double v0, double v1, double d0, double d1)
 
     double c = d0 + d1 - 2 * (v1 - v0), b = 3 * (v1 - v0) - 2 * d0 - d1;
     double root = sqrt(fmax(b * b - 3 * c * d0, 0));
-    return b + root != 0 ? -d0 / (b + root) : -1;
+    if (b + root != 0) {
+        return -d0 / (b + root);
+    }
+    return -1;
 }
 
-// Slopes of an event function at both ends of the step from m->state to m->trial, per step. False
-// where they are not known.
-static bool event_slopes(const motion *m, double h, event_function w, double *d0, double *d1)
+// Slopes of an event function at both ends of the step from m->state to m->trial, per
+// step. False where they are not known.
+static bool event_slopes(const motion *m, double h, event_function w, double *d0,
+                         double *d1)
 {
     const double *state = m->state, *trial = m->trial;
 
@@ -78,19 +99,23 @@ static bool event_slopes(const motion *m, double h, event_function w, double *d0
 static double cubic(double s, double v0, double v1, double d0, double d1)
 {
     double t = 1 - s;
-    return t * t * (1 + 2 * s) * v0 + s * t * t * d0 + s * s * (3 - 2 * s) * v1 - s * s * t * d1;
+    return t * t * (1 + 2 * s) * v0 + s * t * t * d0 + s * s * (3 - 2 * s) * v1 -
+           s * s * t * d1;
 }
 
-// Fraction of the step at which a function that is admissible at both ends may dip below zero in
-// between; -1 if there is no sign of a dip.
-static double suspected_dip(const arm *a, const motion *m, double h, event_function w, double v0,
-                            double v1)
+// Fraction of the step at which a function that is admissible at both ends may dip below
+// zero in between; -1 if there is no sign of a dip.
+static double suspected_dip(const arm *a, const motion *m, double h, event_function w,
+                            double v0, double v1)
 {
     double d0, d1;
 
     if (!event_slopes(m, h, w, &d0, &d1)) {
         // near the limit of friction the middle of the step is checked
-        return fmin(v0, v1) < 0.2 * a->motor.stiction ? 0.5 : -1;
+        if (fmin(v0, v1) < 0.2 * a->motor.stiction) {
+            return 0.5;
+        }
+        return -1;
     }
 
     // the least value of the cubic, if it comes near zero
@@ -98,12 +123,16 @@ static double suspected_dip(const arm *a, const motion *m, double h, event_funct
     if (s <= 1e-6 || s >= 1) { // a dip right at the start is the edge it starts from
         return -1;
     }
-    return cubic(s, v0, v1, d0, d1) < 1e-3 * fmax(v0, v1) ? s : -1;
+    if (cubic(s, v0, v1, d0, d1) < 1e-3 * fmax(v0, v1)) {
+        return s;
+    }
+    return -1;
 }
 
-// A first guess of where the function crosses zero between v0 > 0 and v1 < 0: the root of Hermite's
-// cubic by a few steps of false position, or of the straight line.
-static double guess_crossing(const motion *m, double h, event_function w, double v0, double v1)
+// A first guess of where the function crosses zero between v0 > 0 and v1 < 0: the root of
+// Hermite's cubic by a few steps of false position, or of the straight line.
+static double guess_crossing(const motion *m, double h, event_function w, double v0,
+                             double v1)
 {
     double d0, d1, lo = 0, hi = 1, s = v0 / (v0 - v1), v_lo = v0, v_hi = v1;
 
@@ -130,12 +159,13 @@ typedef struct bracket {
     double edge; // in the function's unit, commonly zero
 } bracket;
 
-// Narrows a bracket until it is as narrow as LOCATION_TIME; m->trial ends as the state at its far
-// side. Starts at `s` and continues by Chandrupatla's method: inverse quadratic interpolation where
-// the last three values allow it, else bisection.
+// Narrows a bracket until it is as narrow as LOCATION_TIME; m->trial ends as the state at
+// its far side. Starts at `s` and continues by Chandrupatla's method: inverse quadratic
+// interpolation where the last three values allow it, else bisection.
 static status narrow(const arm *a, motion *m, event_function w, double s, bracket *b)
 {
-    // the velocities of an implicit step are differences of angles over it: it must not be tiny
+    // the velocities of an implicit step are differences of angles over it: it must not
+    // be tiny
     const double least = motion_unresolved(a, m) ? 1e-6 * m->nominal_step : LOCATION_TIME;
     const double resolution = fmax(least, LOCATION_TIME * m->state[SLOT_TIME]);
 
@@ -164,13 +194,20 @@ static status narrow(const arm *a, motion *m, event_function w, double s, bracke
         }
         // an estimate that has settled is stepped past, so that the bracket closes on it
         double next = s + t * (other - s);
-        s = fabs(next - s) < 0.5 * resolution ? s + copysign(resolution, other - s) : next;
+        if (fabs(next - s) < 0.5 * resolution) {
+            s = s + copysign(resolution, other - s);
+        } else {
+            s = next;
+        }
     }
-    return evaluated == b->hi ? STATUS_OK : motion_try_step(a, m, b->hi, STATE_WHOLE);
+    if (evaluated == b->hi) {
+        return STATUS_OK;
+    }
+    return motion_try_step(a, m, b->hi, STATE_WHOLE);
 }
 
-// Looks for the first instant in (0, end->length] at which `w` leaves its admissible side; if there
-// is one, *end and m->trial move there.
+// Looks for the first instant in (0, end->length] at which `w` leaves its admissible
+// side; if there is one, *end and m->trial move there.
 static status search(const arm *a, motion *m, event_function w, step_end *end)
 {
     const double h = end->length;
@@ -187,14 +224,17 @@ static status search(const arm *a, motion *m, event_function w, step_end *end)
         status s = motion_try_step(a, m, dip * h, STATE_WHOLE);
         v1 = event_value(a, m, m->trial, w);
         if (s != STATUS_OK || v1 >= -tolerance) {
-            return s == STATUS_OK ? motion_try_step(a, m, h, STATE_WHOLE) : s;
+            if (s == STATUS_OK) {
+                return motion_try_step(a, m, h, STATE_WHOLE);
+            }
+            return s;
         }
         hi = dip * h;
         guess = 0.5 * hi;
     }
 
-    // it starts at zero (a release, a break-away): find where it is clearly admissible, and on the
-    // way where a gap is first found closed beyond rounding
+    // it starts at zero (a release, a break-away): find where it is clearly admissible,
+    // and on the way where a gap is first found closed beyond rounding
     const double beyond = fmin(v0, 0) - GAP_ROUNDING;
     double closed = hi, v_closed = v1;
     if (v0 <= tolerance) {
@@ -217,9 +257,9 @@ static status search(const arm *a, motion *m, event_function w, step_end *end)
         guess = 0.5 * (lo + hi);
     }
 
-    // narrowed to the width that time resolves; a gap that was nowhere found open closes where it
-    // exceeds its rounding: this ends flights too low to be told from rounding (after an impact
-    // that leaves the arm with hardly any force)
+    // narrowed to the width that time resolves; a gap that was nowhere found open closes
+    // where it exceeds its rounding: this ends flights too low to be told from rounding
+    // (after an impact that leaves the arm with hardly any force)
     double edge = 0;
     if (w == EVENT_OF_GAP && !(v0 > 0) && !m->wall_gives) {
         edge = beyond;
@@ -233,9 +273,11 @@ static status search(const arm *a, motion *m, event_function w, step_end *end)
     status s = narrow(a, m, w, guess, &between);
     hi = between.hi;
 
-    // an unresolved impact happens within its step: nothing is located inside its first part
+    // an unresolved impact happens within its step: nothing is located inside its first
+    // part
     double least = fmin(h, UNRESOLVED_IMPACT * m->nominal_step);
-    bool within_impact = m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0 && hi < least;
+    bool within_impact =
+        m->state[SLOT_JUMPED] != 0 && m->state[SLOT_CONTACT] != 0 && hi < least;
     if (s == STATUS_OK && within_impact && motion_unresolved(a, m)) {
         hi = least;
         s = motion_try_step(a, m, hi, STATE_WHOLE);
@@ -247,7 +289,8 @@ static status search(const arm *a, motion *m, event_function w, step_end *end)
 status locate_first_event(const arm *a, motion *m, step_end *end)
 {
     *end = (step_end){.length = end->length};
-    for (event_function w = EVENT_OF_GAP; w <= EVENT_OF_STICTION && !motion_held_still(m); w++) {
+    for (event_function w = EVENT_OF_GAP; w <= EVENT_OF_STICTION && !motion_held_still(m);
+         w++) {
         if (event_function_active(a, m, w)) {
             TRY(search(a, m, w, end));
         }
@@ -255,10 +298,10 @@ status locate_first_event(const arm *a, motion *m, step_end *end)
     return STATUS_OK;
 }
 
-// --- the largest depth and force ---------------------------------------------------------------
+// --- the largest depth and force -------------------------------------------------------
 
-void locate_deepest(const arm *a, motion *m, step_point lo, step_point hi, double resolution,
-                    rest_gap_function at)
+void locate_deepest(const arm *a, motion *m, step_point lo, step_point hi,
+                    double resolution, rest_gap_function at)
 {
     // false position on the rate, the end that stays halved
     double from = lo.time, to = hi.time, v0 = lo.at.slope, v1 = hi.at.slope;
@@ -278,14 +321,18 @@ void locate_deepest(const arm *a, motion *m, step_point lo, step_point hi, doubl
 static value_and_slope stepped_gap(const arm *a, motion *m, double h)
 {
     const bool fails = motion_try_step(a, m, h, STATE_WHOLE) != STATUS_OK;
-    return fails ? (value_and_slope){(double)NAN, (double)NAN} : state_rest_gap(m->trial);
+    if (fails) {
+        return (value_and_slope){(double)NAN, (double)NAN};
+    }
+    return state_rest_gap(m->trial);
 }
 
 status locate_peak(const arm *a, motion *m, double h)
 {
     memcpy(m->between, m->trial, (size_t)m->size * sizeof(double));
     if (!motion_wall_is_rigid(m)) {
-        const step_point lo = {0, state_rest_gap(m->state)}, hi = {h, state_rest_gap(m->trial)};
+        const step_point lo = {0, state_rest_gap(m->state)},
+                         hi = {h, state_rest_gap(m->trial)};
         locate_deepest(a, m, lo, hi, 1e-9 * h, stepped_gap);
         memcpy(m->trial, m->between, (size_t)m->size * sizeof(double));
     }

@@ -18,8 +18,8 @@
 // A link that friction holds so near the wall rests on it [m].
 #define RESTING_GAP 1e-12
 
-// A few units in the last place of an acceleration, relative to 1e-9, which counts as zero in a
-// slow soft arm.
+// A few units in the last place of an acceleration, relative to 1e-9, which counts as
+// zero in a slow soft arm.
 #define LAST_BITS 4e-4
 
 const arm *motion_arm_at(const arm *a, motion *m, double time)
@@ -40,8 +40,8 @@ void motion_evaluate(const arm *a, motion *m, double *state)
     chain_reaction r;
     contact_state mode = contact_state_of(state);
     mode.current = state_quadratures(m, state)[QUADRATURE_CURRENT];
-    chain_accelerations(a, m->links, state_angles(m, state), state_velocities(m, state), mode,
-                        state_accelerations(m, state), &r);
+    chain_accelerations(a, m->links, state_angles(m, state), state_velocities(m, state),
+                        mode, state_accelerations(m, state), &r);
     state[SLOT_MOTOR_TORQUE] = r.motor_torque;
     state[SLOT_FORCE] = r.force;
     state[SLOT_FRICTION_TORQUE] = r.friction;
@@ -68,7 +68,8 @@ void motion_evaluate(const arm *a, motion *m, double *state)
 force_bounds motion_held_forces(const arm *a, const motion *m, double *state)
 {
     assert(m->dof == 1 && wall_stands(&a->wall));
-    const double one = 1, *q = state_angles(m, state), lever = chain_penetration_rate(a, q, &one);
+    const double one = 1, *q = state_angles(m, state),
+                 lever = chain_penetration_rate(a, q, &one);
     const double weight = a->gravity != 0 ? chain_weight(a, 0) * inline_cos(q[0]) : 0;
     const double balanced = (a->motor.torque + state[SLOT_MOTOR_TORQUE] - weight) / lever;
     const double friction = a->motor.stiction / fabs(lever);
@@ -81,9 +82,12 @@ force_bounds motion_force_bounds(const arm *a, const motion *m, double *state)
     const bool single =
         m->dof == 1 && !m->wall_moves && wall_stands(&a->wall) && motion_wall_is_rigid(m);
     const bool near = state[SLOT_GAP] <= RESTING_GAP && now.friction == HUB_STICK;
-    const bool rests = single && state_velocities(m, state)[0] == 0 && (now.contact || near);
-    return rests ? motion_held_forces(a, m, state)
-                 : (force_bounds){state[SLOT_FORCE], state[SLOT_FORCE]};
+    const bool rests =
+        single && state_velocities(m, state)[0] == 0 && (now.contact || near);
+    if (rests) {
+        return motion_held_forces(a, m, state);
+    }
+    return (force_bounds){state[SLOT_FORCE], state[SLOT_FORCE]};
 }
 
 void motion_reset_peak(motion *m)
@@ -94,27 +98,32 @@ void motion_reset_peak(motion *m)
 
 double motion_rounding(const arm *a, const motion *m)
 {
-    return motion_rounding_at(a, m->dof, state_angles(m, m->state), state_velocities(m, m->state));
+    return motion_rounding_at(a, m->dof, state_angles(m, m->state),
+                              state_velocities(m, m->state));
 }
 
 double motion_face_rounding(const arm *a, const motion *m)
 {
-    return m->wall_has_face ? EDGE_PLACE * a->wall.stiffness : 0;
+    if (m->wall_has_face) {
+        return EDGE_PLACE * a->wall.stiffness;
+    }
+    return 0;
 }
 
 double motion_wall_rounding(const arm *a, const motion *m)
 {
     double terms[4];
-    const double time = m->state[SLOT_TIME], since = fabs(time) + fabs(a->wall.motion.time);
+    const double time = m->state[SLOT_TIME],
+                 since = fabs(time) + fabs(a->wall.motion.time);
     wall_motion_series(&a->wall.motion, time, 4, terms);
     return LAST_BITS * fabs(terms[1]) * since;
 }
 
 void motion_gap_edges(const arm *a, const motion *m, double limits[3])
 {
-    // a rounding error of the force accelerates a face by that error over its mass, and so does
-    // that of its spring, by the face's place; one without a mass returns at a rate that has the
-    // error of the place where it was left
+    // a rounding error of the force accelerates a face by that error over its mass, and
+    // so does that of its spring, by the face's place; one without a mass returns at a
+    // rate that has the error of the place where it was left
     const bool returns = m->wall_gives && state_face_swings(m, m->state);
     const double rate = returns ? wall_face_rate(&a->wall, state_face(m->state)) : 0;
     const double yields = m->wall_has_face ? 1 / a->wall.face_mass : 0;
@@ -132,7 +141,8 @@ double motion_rounding_at(const arm *a, int dof, const double *q, const double *
         angle = larger(fabs(q[i]), angle);
         rate = larger(fabs(w[i]), rate);
     }
-    return 1 + LAST_BITS * (a->highest_frequency * a->highest_frequency * angle + rate * rate);
+    return 1 + LAST_BITS *
+                   (a->highest_frequency * a->highest_frequency * angle + rate * rate);
 }
 
 double motion_decay_length(const arm *a, double reach, double since)
@@ -150,13 +160,16 @@ static double wall_compliance(const arm *a, motion *m, double *state)
     return compliance / (1 + a->wall.face_mass * compliance); // both masses on the spring
 }
 
-// Fastest rate (frequency or decay) of the arm on a wall that gives, or of a face left alone, in a
-// state of this motion [1/s]; 0 for other walls.
+// Fastest rate (frequency or decay) of the arm on a wall that gives, or of a face left
+// alone, in a state of this motion [1/s]; 0 for other walls.
 static double fastest_wall_rate(const arm *a, motion *m, double *state)
 {
     if (motion_wall_is_rigid(m) || !contact_state_of(state).contact) {
         const wall_model wall = wall_at(&a->wall, state[SLOT_TIME]);
-        return state_face_swings(m, state) ? wall_face_rate(&wall, state_face(state)) : 0;
+        if (state_face_swings(m, state)) {
+            return wall_face_rate(&wall, state_face(state));
+        }
+        return 0;
     }
     return wall_rate(&a->wall, wall_compliance(a, m, state), fmax(-state[SLOT_GAP], 0),
                      -state[SLOT_GAP_VELOCITY]);
@@ -169,9 +182,13 @@ double motion_vibration(const arm *a, motion *m, double *state)
         return a->highest_frequency;
     }
     const double wall = fastest_wall_rate(a, m, state);
-    const double current = a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
+    const double current =
+        a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
     const double own = a->highest_frequency * chain_stiffened(a, state_angles(m, state));
-    return wall > 0 || current > 0 ? sqrt(own * own + wall * wall + current * current) : own;
+    if (wall > 0 || current > 0) {
+        return sqrt(own * own + wall * wall + current * current);
+    }
+    return own;
 }
 
 state_energy motion_energy(const arm *a, const motion *m, double *state)
@@ -187,7 +204,7 @@ double motion_energy_residual(const arm *a, const motion *m, double *state)
     return motion_unaccounted(m, state, energy + motion_held_energy(a, m, state));
 }
 
-// --- a step of smooth motion ----------------------------------------------------------------
+// --- a step of smooth motion -----------------------------------------------------------
 
 bool motion_project(const arm *a, motion *m, double *state)
 {
@@ -198,7 +215,8 @@ bool motion_project(const arm *a, motion *m, double *state)
         return false;
     }
     a = motion_arm_at(a, m, state[SLOT_TIME]);
-    double *response = m->scratch, *q = state_angles(m, state), *w = state_velocities(m, state);
+    double *response = m->scratch, *q = state_angles(m, state),
+           *w = state_velocities(m, state);
     const double compliance = chain_contact_response(a, m->links, q, locked, response);
 
     // position first, then velocity at the new position
@@ -215,7 +233,8 @@ bool motion_project(const arm *a, motion *m, double *state)
 }
 
 // The parts of a state, `h` after another one, that need no evaluation.
-static void set_slots(const arm *a, const motion *m, double *from, double h, double *state)
+static void set_slots(const arm *a, const motion *m, double *from, double h,
+                      double *state)
 {
     static const int kept[] = {QUADRATURE_WALL, QUADRATURE_CURRENT, QUADRATURE_MOTOR,
                                QUADRATURE_PUSHED};
@@ -275,7 +294,10 @@ status motion_try_step(const arm *a, motion *m, double h, state_extent extent)
     if (m->engine->kept == 0) {
         book(a, m, m->state, trial);
     }
-    return is_finite(m, trial) ? STATUS_OK : STATUS_NOT_FINITE;
+    if (is_finite(m, trial)) {
+        return STATUS_OK;
+    }
+    return STATUS_NOT_FINITE;
 }
 
 bool motion_between_all(const arm *a, motion *m, const double *times, int count,

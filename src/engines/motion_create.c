@@ -1,5 +1,5 @@
-// Which engine takes an arm, and the storage of its motion: one block of the state and one that is
-// the engine's own.
+// Which engine takes an arm, and the storage of its motion: one block of the state and
+// one that is the engine's own.
 
 #include "src/engines/motion_create.h"
 
@@ -9,16 +9,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-// The fastest decay of the two-link series [1/s]: so cheap are they that half a million steps
-// take a third of a second.
+// The fastest decay of the two-link series [1/s]: so cheap are they that half a million
+// steps take a third of a second.
 #define FASTEST_OF_PAIR 2e6
 
-// The event method's engine: series of two equal links, hub joint and damping of any kind, on a
-// rigid wall that is a point, a plane or none; the stiff engine for all others. It does not depend
-// on the time step.
+// The event method's engine: series of two equal links, hub joint and damping of any
+// kind, on a rigid wall that is a point, a plane or none; the stiff engine for all
+// others. It does not depend on the time step.
 static const engine *event_engine(const arm *a)
 {
-    return motion_suits_pair(a) ? &taylor_engine : &stiff_engine;
+    if (motion_suits_pair(a)) {
+        return &taylor_engine;
+    }
+    return &stiff_engine;
 }
 
 bool motion_suits_pair(const arm *a)
@@ -40,19 +43,25 @@ static void choose_engine(const arm *a, motion *m, const method_parameters *meth
     // the engine, and its coefficients
     if (method->name == METHOD_NEWMARK) {
         m->engine = &newmark_engine;
-        m->implicit = (implicit_coefficients){.beta = method->beta, .gamma = method->gamma};
+        m->implicit =
+            (implicit_coefficients){.beta = method->beta, .gamma = method->gamma};
     } else if (method->name == METHOD_GENERALIZED_ALPHA) {
         m->engine = &generalized_alpha_engine;
         // Chung and Hulbert (1993), equations (17), (18), (25)
         const double alpha_m = (2 * rho - 1) / (rho + 1), alpha_f = rho / (rho + 1);
         const double more = 1 - alpha_m + alpha_f;
-        m->implicit =
-            (implicit_coefficients){alpha_m, alpha_f, 0.25 * more * more, 0.5 - alpha_m + alpha_f};
+        m->implicit = (implicit_coefficients){alpha_m, alpha_f, 0.25 * more * more,
+                                              0.5 - alpha_m + alpha_f};
     } else {
-        static const engine *const named[] = {
-            [ENGINE_AUTO] = NULL, [ENGINE_PAIR] = &taylor_engine, [ENGINE_STIFF] = &stiff_engine};
+        static const engine *const named[] = {[ENGINE_AUTO] = NULL,
+                                              [ENGINE_PAIR] = &taylor_engine,
+                                              [ENGINE_STIFF] = &stiff_engine};
         const engine *wanted = chosen != NULL ? chosen : named[method->engine];
-        m->engine = wanted != NULL ? wanted : event_engine(a);
+        if (wanted != NULL) {
+            m->engine = wanted;
+        } else {
+            m->engine = event_engine(a);
+        }
         m->chosen = wanted != NULL;
         m->tolerance = method->tolerance;
     }
@@ -75,14 +84,18 @@ static void lay_out_motion(const arm *a, motion *m, layout *l)
     m->trial = layout_add(l, state);
     m->scratch = layout_add(l, 4 * (size_t)a->dof * sizeof(double));
     m->links = layout_add(l, (size_t)a->links * sizeof(chain_link));
-    m->moved = m->wall_moves ? layout_add(l, sizeof *m->moved) : NULL;
+    if (m->wall_moves) {
+        m->moved = layout_add(l, sizeof *m->moved);
+    } else {
+        m->moved = NULL;
+    }
 }
 
-// A zeroed block, in *block, for what a function lays out, from its first whole cache line on;
-// false if out of memory. Pages of a large one are the system's until they are touched: of many
-// links most never are.
-static bool open_block(const arm *a, motion *m, void (*lay_out)(const arm *a, motion *m, layout *l),
-                       void **block)
+// A zeroed block, in *block, for what a function lays out, from its first whole cache
+// line on; false if out of memory. Pages of a large one are the system's until they are
+// touched: of many links most never are.
+static bool open_block(const arm *a, motion *m,
+                       void (*lay_out)(const arm *a, motion *m, layout *l), void **block)
 {
     layout l = {0};
     lay_out(a, m, &l);
@@ -124,7 +137,8 @@ motion *motion_create(const arm *a, const method_parameters *method)
     return motion_create_by(a, method, NULL);
 }
 
-motion *motion_create_by(const arm *a, const method_parameters *method, const engine *chosen)
+motion *motion_create_by(const arm *a, const method_parameters *method,
+                         const engine *chosen)
 {
     assert(a->dof > 0 && method->step > 0);
     motion *m = calloc(1, sizeof *m);
@@ -164,8 +178,8 @@ motion *motion_renew(motion *m, const arm *a, const method_parameters *method)
     next.step = (motion_steps){.history_invalid = true};
     choose_engine(a, &next, method, NULL);
     next.most_size = most_size(a, &next);
-    if (next.engine != m->engine || next.engine->kept > 0 || next.most_size > m->most_size ||
-        next.wall_moves != m->wall_moves) {
+    if (next.engine != m->engine || next.engine->kept > 0 ||
+        next.most_size > m->most_size || next.wall_moves != m->wall_moves) {
         motion_destroy(m);
         return motion_create(a, method);
     }
@@ -199,10 +213,11 @@ void motion_follow_arm(const arm *a, motion *m)
     motion_end_internal_step(m);
 
     // it knows nothing yet of the steps to come
-    memset(m->state + m->head_size, 0, (size_t)(m->size - m->head_size) * sizeof *m->state);
+    memset(m->state + m->head_size, 0,
+           (size_t)(m->size - m->head_size) * sizeof *m->state);
 }
 
-// --- copies -----------------------------------------------------------------------------------
+// --- copies ----------------------------------------------------------------------------
 
 size_t motion_saved_size(const motion *m)
 {
@@ -221,6 +236,7 @@ void motion_restore(const arm *a, motion *m, const void *bytes)
 {
     motion_follow_arm(a, m);
     memcpy(&m->record, bytes, sizeof m->record);
-    memcpy(m->state, (const char *)bytes + sizeof m->record, (size_t)m->size * sizeof *m->state);
+    memcpy(m->state, (const char *)bytes + sizeof m->record,
+           (size_t)m->size * sizeof *m->state);
     motion_invalidate_history(m);
 }

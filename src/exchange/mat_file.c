@@ -41,8 +41,10 @@ void mat_file_begin(FILE *stream)
     fwrite(&order, sizeof order, 1, stream);
 }
 
-// All of a matrix before its numbers, of which there are `parts` sets: real, or real and imaginary.
-static void begin_matrix(FILE *stream, const char *name, int rows, int columns, size_t parts)
+// All of a matrix before its numbers, of which there are `parts` sets: real, or real and
+// imaginary.
+static void begin_matrix(FILE *stream, const char *name, int rows, int columns,
+                         size_t parts)
 {
     static const char zeros[8];
     const size_t length = strlen(name), count = (size_t)rows * (size_t)columns;
@@ -59,7 +61,8 @@ static void begin_matrix(FILE *stream, const char *name, int rows, int columns, 
     fwrite(zeros, 1, rounded(length) - length, stream);
 }
 
-void mat_file_matrix(FILE *stream, const char *name, int rows, int columns, const double *values)
+void mat_file_matrix(FILE *stream, const char *name, int rows, int columns,
+                     const double *values)
 {
     begin_matrix(stream, name, rows, columns, 1);
     put_tag(stream, DOUBLE, 8 * (size_t)rows * (size_t)columns);
@@ -70,7 +73,8 @@ void mat_file_matrix(FILE *stream, const char *name, int rows, int columns, cons
     }
 }
 
-void mat_file_complex(FILE *stream, const char *name, int count, const double complex *values)
+void mat_file_complex(FILE *stream, const char *name, int count,
+                      const double complex *values)
 {
     begin_matrix(stream, name, count, 1, 2);
     for (int part = 0; part < 2; part++) {

@@ -1,34 +1,36 @@
-// With the force as the input the arm on the wall reads x'' = s^2 (x - f/K), K = 2 k2/l, s^2 =
-// K/mu. Its modes are xi = x + x'/s and zeta = x - x'/s:
+// With the force as the input the arm on the wall reads x'' = s^2 (x - f/K), K = 2 k2/l,
+// s^2 = K/mu. Its modes are xi = x + x'/s and zeta = x - x'/s:
 //
 //     xi' = s (xi - f/K),      zeta' = -s (zeta - f/K).
 //
-// zeta follows f/K by itself. xi runs away from it: at rest K xi = f, and whatever f does from now
-// on,
+// zeta follows f/K by itself. xi runs away from it: at rest K xi = f, and whatever f does
+// from now on,
 //
 //     K xi(t) = s times the integral of f(t + r) exp(-s r) over r from 0 on
 //
 // if xi is not to run away, a weighted mean of all forces to come. Hence two bounds.
 //
-// Peak: the mean is not above the largest: no peak is below K xi. f = K xi all along attains it: xi
-// stays, x goes to xi, the arm comes to rest. Where the torque does not reach K xi at once, xi
-// grows until it does; then the least peak P is that for which the hardest braking that P and the
-// motor allow just brings the arm to rest, found by bisection (more braking now leaves a smaller
-// xi).
+// Peak: the mean is not above the largest: no peak is below K xi. f = K xi all along
+// attains it: xi stays, x goes to xi, the arm comes to rest. Where the torque does not
+// reach K xi at once, xi grows until it does; then the least peak P is that for which the
+// hardest braking that P and the motor allow just brings the arm to rest, found by
+// bisection (more braking now leaves a smaller xi).
 //
-// Settling: a force that stays within [a, b] has K xi within [a, b]; and where it is there, f = K
-// xi keeps it there. So settling takes as long as it takes to bring K xi into [a, b], and since xi'
-// falls with f, the largest force is the fastest way down and the smallest the fastest way up:
+// Settling: a force that stays within [a, b] has K xi within [a, b]; and where it is
+// there, f = K xi keeps it there. So settling takes as long as it takes to bring K xi
+// into [a, b], and since xi' falls with f, the largest force is the fastest way down and
+// the smallest the fastest way up:
 //
 //     ln((P - b)/(P - K xi))/s from above,     ln(a/(K xi))/s from below.
 //
-// It is this only while the motor gives every force from 0 to P. It does not always, so the ways
-// are integrated with the force that it gives; and inside the band it must be able to stay, which
-// is tried out. A weak motor may need another way: coast on beyond the near edge, since the arm
-// presses harder the further the beam is bent, or stop braking early, since it cannot stop the arm
-// that comes back. So the least time is looked for over all ways that go to one extreme for a while
-// and then to the other. (Within the tenths of a second that this takes a torque that raises xi'
-// now raises xi at the end too, the arm's own vibration taking 0.28 s.)
+// It is this only while the motor gives every force from 0 to P. It does not always, so
+// the ways are integrated with the force that it gives; and inside the band it must be
+// able to stay, which is tried out. A weak motor may need another way: coast on beyond
+// the near edge, since the arm presses harder the further the beam is bent, or stop
+// braking early, since it cannot stop the arm that comes back. So the least time is
+// looked for over all ways that go to one extreme for a while and then to the other.
+// (Within the tenths of a second that this takes a torque that raises xi' now raises xi
+// at the end too, the arm's own vibration taking 0.28 s.)
 #include "src/predict/best_stop.h"
 
 #include <assert.h>
@@ -40,9 +42,10 @@
 
 #define STEP        1e-4 // of the way to the band; fourth order [s]
 #define COARSE_STEP 5e-4 // of the other ways [s]
-#define INSIDE      1e-6 // beyond the band's edge, so that rounding does not lead out again [s]
-#define HORIZON     1.0  // ways longer than this are given up [s]
-#define HOLDING     0.3  // time for which staying in the band is tried out [s]
+// beyond the band's edge, so that rounding does not lead out again [s]
+#define INSIDE  1e-6
+#define HORIZON 1.0 // ways longer than this are given up [s]
+#define HOLDING 0.3 // time for which staying in the band is tried out [s]
 
 bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
 {
@@ -55,23 +58,25 @@ bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
         .viscous = p->motor.viscous_friction,
         .stiction = p->motor.stiction,
         .torque_limit = motor_torque_per_volt(&p->motor) * motor_command_limit(&p->motor),
-        .current_torque = limited ? p->motor.torque_constant * p->motor.current_limit : HUGE_VAL,
+        .current_torque =
+            limited ? p->motor.torque_constant * p->motor.current_limit : HUGE_VAL,
         .spring_force = 2 * p->arm.k2 / l,
         .mass_force = (quarter - p->arm.link_inertia) / l,
     };
 
-    // the model has two bare links on a rigid hub and a wall that rests, and knows no damping of
-    // the beam
+    // the model has two bare links on a rigid hub and a wall that rests, and knows no
+    // damping of the beam
     const arm_parameters *a = &p->arm;
     const bool bare = a->tip_mass == 0 && a->stiffening == 0 && a->air_drag == 0 &&
                       a->modal_ratios[0] == '\0' && parameters_even_links(a);
     const bool rests = p->wall.contact == WALL_RIGID && p->wall.motion == MOTION_NONE;
-    return bare && rests && a->tilt == 0 && p->arm.model == ARM_CORRECTED && p->arm.links == 2 &&
-           p->arm.hub_joint == HUB_RIGID && p->arm.damping_ratio == 0 &&
-           p->wall.kind != WALL_NONE && m->mass_force > 0;
+    return bare && rests && a->tilt == 0 && p->arm.model == ARM_CORRECTED &&
+           p->arm.links == 2 && p->arm.hub_joint == HUB_RIGID &&
+           p->arm.damping_ratio == 0 && p->wall.kind != WALL_NONE && m->mass_force > 0;
 }
 
-bool pressed_after_impact(const parameters *p, const three_body_state *before, pressed_state *after)
+bool pressed_after_impact(const parameters *p, const three_body_state *before,
+                          pressed_state *after)
 {
     two_link t;
     double velocity[3], impulse;
@@ -86,15 +91,23 @@ bool pressed_after_impact(const parameters *p, const three_body_state *before, p
 // The force under a torque of the motor [N].
 static double force_under(const pressed_arm_model *m, pressed_state s, double torque)
 {
-    double friction = s.velocity > 0 ? m->stiction : s.velocity < 0 ? -m->stiction : 0;
+    double friction;
+    if (s.velocity > 0) {
+        friction = m->stiction;
+    } else if (s.velocity < 0) {
+        friction = -m->stiction;
+    } else {
+        friction = 0;
+    }
     double viscous = m->viscous * s.velocity, motor = torque - m->damping * s.velocity;
-    motor = smaller(m->current_torque - viscous, larger(-m->current_torque - viscous, motor));
+    motor =
+        smaller(m->current_torque - viscous, larger(-m->current_torque - viscous, motor));
     double sum = motor - friction - m->stiffness * s.x;
     return m->spring_force * s.x - m->mass_force * sum / m->inertia;
 }
 
-// The force that a way asks for: the largest that `highest` allows, the smallest that `lowest`
-// allows, or K xi limited to between them. The motor then limits it further.
+// The force that a way asks for: the largest that `highest` allows, the smallest that
+// `lowest` allows, or K xi limited to between them. The motor then limits it further.
 typedef enum press_rule { PRESS_HARD, PRESS_SOFT, PRESS_KEEP } press_rule;
 typedef struct way {
     press_rule rule;
@@ -109,10 +122,16 @@ static double runaway(const pressed_arm_model *m, pressed_state s)
 
 static double force_on(const pressed_arm_model *m, const way *w, pressed_state s)
 {
-    double wanted = w->rule == PRESS_HARD   ? w->highest
-                    : w->rule == PRESS_SOFT ? w->lowest
-                                            : fmin(fmax(runaway(m, s), w->lowest), w->highest);
-    double least = force_under(m, s, m->torque_limit), most = force_under(m, s, -m->torque_limit);
+    double wanted;
+    if (w->rule == PRESS_HARD) {
+        wanted = w->highest;
+    } else if (w->rule == PRESS_SOFT) {
+        wanted = w->lowest;
+    } else {
+        wanted = fmin(fmax(runaway(m, s), w->lowest), w->highest);
+    }
+    double least = force_under(m, s, m->torque_limit),
+           most = force_under(m, s, -m->torque_limit);
     return fmin(fmax(wanted, least), most);
 }
 
@@ -128,13 +147,14 @@ static pressed_state ahead(pressed_state s, pressed_state r, double h)
 }
 
 // One step of the classical Runge-Kutta method.
-static pressed_state advance(const pressed_arm_model *m, const way *w, pressed_state s, double h)
+static pressed_state advance(const pressed_arm_model *m, const way *w, pressed_state s,
+                             double h)
 {
     pressed_state a = rate(m, w, s), b = rate(m, w, ahead(s, a, h / 2));
     pressed_state c = rate(m, w, ahead(s, b, h / 2)), d = rate(m, w, ahead(s, c, h));
-    return (pressed_state){s.x + h / 6 * (a.x + 2 * b.x + 2 * c.x + d.x),
-                           s.velocity +
-                               h / 6 * (a.velocity + 2 * b.velocity + 2 * c.velocity + d.velocity)};
+    return (pressed_state){
+        s.x + h / 6 * (a.x + 2 * b.x + 2 * c.x + d.x),
+        s.velocity + h / 6 * (a.velocity + 2 * b.velocity + 2 * c.velocity + d.velocity)};
 }
 
 // Whether braking with at most `peak` brings the arm to rest.
@@ -159,8 +179,8 @@ double best_peak(const pressed_arm_model *m, pressed_state s)
         return (double)NAN;
     }
 
-    // bracket, then halve; on the edge itself the arm takes for ever to stop. However weak the
-    // motor, some force stops it: the beam's own
+    // bracket, then halve; on the edge itself the arm takes for ever to stop. However
+    // weak the motor, some force stops it: the beam's own
     while (!stops(m, s, high) && isfinite(high)) {
         high = 1.5 * high + 1e-3;
     }
@@ -189,34 +209,46 @@ static bool stays(const pressed_arm_model *m, const way *band, pressed_state s)
     return beyond(band, runaway(m, s)) < 1e-6 * band->highest;
 }
 
-// The state at which K xi comes to `edge` within the step from `s` to `next`, a little beyond it;
+// The state at which K xi comes to `edge` within the step from `s` to `next`, a little
+// beyond it;
 // *share: where in the step, -1 if it does not.
 static pressed_state crossing(const pressed_arm_model *m, const way *on, pressed_state s,
                               pressed_state next, double edge, double *share)
 {
     double before = runaway(m, s) - edge, after = runaway(m, next) - edge;
-    *share = (before < 0) != (after < 0) ? before / (before - after) : -1;
-    return *share < 0 ? next : advance(m, on, s, *share * STEP + INSIDE);
+    if ((before < 0) != (after < 0)) {
+        *share = before / (before - after);
+    } else {
+        *share = -1;
+    }
+    if (*share < 0) {
+        return next;
+    }
+    return advance(m, on, s, *share * STEP + INSIDE);
 }
 
 // The edge of the band that a way comes to: hard pressing from above, soft from below.
 static double near_edge(const way *on, const way *band)
 {
-    return on->rule == PRESS_HARD ? band->highest : band->lowest;
+    if (on->rule == PRESS_HARD) {
+        return band->highest;
+    }
+    return band->lowest;
 }
 
-// Whether a way fails from K xi = `xi` on: the arm leaves the wall, runs away under any force up to
-// the peak, or leaves the band on its far side.
+// Whether a way fails from K xi = `xi` on: the arm leaves the wall, runs away under any
+// force up to the peak, or leaves the band on its far side.
 static bool is_lost(const way *on, const way *band, double xi, double force)
 {
     bool hard = on->rule == PRESS_HARD;
-    bool leaves = hard ? xi < band->lowest && force >= xi : xi > band->highest && force <= xi;
+    bool leaves =
+        hard ? xi < band->lowest && force >= xi : xi > band->highest && force <= xi;
     return xi <= 0 || (xi > band->highest && xi >= on->highest) || leaves;
 }
 
 // Time on a way until the force can stay in the band; NaN if it is not below `limit`.
-static double time_on(const pressed_arm_model *m, const way *on, const way *band, pressed_state s,
-                      double limit)
+static double time_on(const pressed_arm_model *m, const way *on, const way *band,
+                      pressed_state s, double limit)
 {
     for (double t = 0; t < limit; t += STEP) {
         double xi = runaway(m, s), share;
@@ -238,10 +270,11 @@ static double time_on(const pressed_arm_model *m, const way *on, const way *band
     return (double)NAN;
 }
 
-// The least time on one way for a while and then on another, over all whiles; `best` if it is not
-// below that.
-static double time_on_both(const pressed_arm_model *m, const way *first, const way *second,
-                           const way *band, pressed_state s, double best)
+// The least time on one way for a while and then on another, over all whiles; `best` if
+// it is not below that.
+static double time_on_both(const pressed_arm_model *m, const way *first,
+                           const way *second, const way *band, pressed_state s,
+                           double best)
 {
     for (double t = 0; t < best; t += STEP) {
         double more = time_on(m, second, band, s, best - t), share;
@@ -264,8 +297,8 @@ static double time_on_both(const pressed_arm_model *m, const way *first, const w
     return best;
 }
 
-double best_settling(const pressed_arm_model *m, pressed_state s, double force, double band,
-                     double peak)
+double best_settling(const pressed_arm_model *m, pressed_state s, double force,
+                     double band, double peak)
 {
     assert(m->mass_force > 0 && band > 0);
     const way settled = {PRESS_KEEP, force * (1 - band), force * (1 + band)};
@@ -281,5 +314,8 @@ double best_settling(const pressed_arm_model *m, pressed_state s, double force, 
     // the better of the two orders
     double best = time_on_both(m, &soft, &hard, &settled, s, HORIZON);
     best = time_on_both(m, &hard, &soft, &settled, s, best);
-    return best < HORIZON ? best : (double)NAN;
+    if (best < HORIZON) {
+        return best;
+    }
+    return (double)NAN;
 }

@@ -1,10 +1,12 @@
-// Bounds for every controller: the least peak and the least settling time after an impact, for a
-// controller that knows the whole state at every instant and commands without delay.
+// Bounds for every controller: the least peak and the least settling time after an
+// impact, for a controller that knows the whole state at every instant and commands
+// without delay.
 //
 // In contact the two-link arm has one degree of freedom, x = theta2 - theta_imp
 // (docs/explanation/control-design.md):
 //
-//     M x'' = T - D x' - friction - 4 k2 x,     f = (2 k2/l) x - mu x'',    |T| <= Kt times limit
+//     M x'' = T - D x' - friction - 4 k2 x,     f = (2 k2/l) x - mu x'',    |T| <= Kt
+//     times limit
 //
 // which is linear: at 0.1 rad the force of the arm itself is some 2 % less.
 #pragma once
@@ -30,23 +32,24 @@ typedef struct pressed_state {
     double x, velocity;
 } pressed_state;
 
-// The model of an arm. False where it does not hold: other than two bare links, a spring at the
-// hub, a beam with damping, a tilted plane, no wall or one that gives or moves, the printed model.
+// The model of an arm. False where it does not hold: other than two bare links, a spring
+// at the hub, a beam with damping, a tilted plane, no wall or one that gives or moves,
+// the printed model.
 bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m);
 
-// The state just after a plastic impact at the angles and velocities of a state before it,
-// (4.10)-(4.17). False if there is no single impulse.
+// The state just after a plastic impact at the angles and velocities of a state before
+// it, (4.10)-(4.17). False if there is no single impulse.
 bool pressed_after_impact(const parameters *p, const three_body_state *before,
                           pressed_state *after);
 
-// The least peak [N] with which the arm can be brought to rest in contact: 4 k2 (x + x'/s) in the
-// two-link arm's own numbers, more where the motor cannot brake as hard as that. NaN where the arm
-// moves away from the wall or is bent so far back that it will.
+// The least peak [N] with which the arm can be brought to rest in contact: 4 k2 (x +
+// x'/s) in the two-link arm's own numbers, more where the motor cannot brake as hard as
+// that. NaN where the arm moves away from the wall or is bent so far back that it will.
 double best_peak(const pressed_arm_model *m, pressed_state s);
 
-// The least time [s] after which the force is within `band` (a share) of `force` for good, if it
-// has to stay between 0 and `peak` [N], or the band's upper edge where that is higher. NaN where
-// there is no way within a second: the arm leaves the wall, runs away under every such force, or
-// the motor is too weak to hold the force.
-double best_settling(const pressed_arm_model *m, pressed_state s, double force, double band,
-                     double peak);
+// The least time [s] after which the force is within `band` (a share) of `force` for
+// good, if it has to stay between 0 and `peak` [N], or the band's upper edge where that
+// is higher. NaN where there is no way within a second: the arm leaves the wall, runs
+// away under every such force, or the motor is too weak to hold the force.
+double best_settling(const pressed_arm_model *m, pressed_state s, double force,
+                     double band, double peak);

@@ -8,7 +8,8 @@
 #include "src/base/sincos.h"
 #include "src/base/plain_math.h"
 
-void quasi_principle_deflections(int n, const double *k, double energy, double *deflection)
+void quasi_principle_deflections(int n, const double *k, double energy,
+                                 double *deflection)
 {
     assert(n > 0);
     double compliance = 0;
@@ -23,9 +24,9 @@ void quasi_principle_deflections(int n, const double *k, double energy, double *
     }
 }
 
-// Energy before contact as the listing sums it up: I2 and I3 left out, the hub spring's strain left
-// out, and with `energy_cross_term` e w2 w3 cos d for 2 l e w2 w3 cos d (equal in number at l =
-// 0.5).
+// Energy before contact as the listing sums it up: I2 and I3 left out, the hub spring's
+// strain left out, and with `energy_cross_term` e w2 w3 cos d for 2 l e w2 w3 cos d
+// (equal in number at l = 0.5).
 static double listed_energy(const parameters *p, const three_body_state *s)
 {
     double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2;
@@ -34,30 +35,33 @@ static double listed_energy(const parameters *p, const three_body_state *s)
     double cross = p->printed.energy_cross_term ? e : 2 * l * e;
     double hub = p->arm.hub_inertia * w[0] * w[0];
     double first = m * e * e * w[1] * w[1];
-    double last =
-        m * (l * l * w[1] * w[1] + e * e * w[2] * w[2] + cross * w[1] * w[2] * inline_cos(bend));
+    double last = m * (l * l * w[1] * w[1] + e * e * w[2] * w[2] +
+                       cross * w[1] * w[2] * inline_cos(bend));
     return (hub + first + last + p->arm.k2 * bend * bend) / 2;
 }
 
 // Kinetic and strain energy before contact, (4.23), whole.
 static double whole_energy(const parameters *p, const three_body_state *s)
 {
-    double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2, inertia = two_link_inertia(p);
+    double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2,
+           inertia = two_link_inertia(p);
     bool rigid = p->arm.hub_joint == HUB_RIGID;
     const double *q = s->angle, *w = s->velocity;
-    double bend = q[2] - q[1], hub_bend = rigid ? 0 : q[1] - q[0], hub_speed = w[rigid ? 1 : 0];
+    double bend = q[2] - q[1], hub_bend = rigid ? 0 : q[1] - q[0],
+           hub_speed = w[rigid ? 1 : 0];
     double kinetic = p->arm.hub_inertia * hub_speed * hub_speed +
                      (inertia + m * e * e + m * l * l) * w[1] * w[1] +
                      (inertia + m * e * e) * w[2] * w[2] +
                      2 * m * l * e * inline_cos(bend) * w[1] * w[2];
-    double strain = p->arm.k2 * bend * bend + (rigid ? 0 : p->arm.k1 * hub_bend * hub_bend);
+    double strain =
+        p->arm.k2 * bend * bend + (rigid ? 0 : p->arm.k1 * hub_bend * hub_bend);
     return (kinetic + strain) / 2;
 }
 
-// Printed form. All energy goes to k2 (4.26 with k1 far stiffer), which it bends by D against the
-// drive: theta3 - theta2 = -D. With all velocities zero (4.28), (4.29), (4.34) give accelerations
-// and force, where k1 (theta2 - theta1) is replaced by the motor torque, (4.27) without its
-// acceleration term.
+// Printed form. All energy goes to k2 (4.26 with k1 far stiffer), which it bends by D
+// against the drive: theta3 - theta2 = -D. With all velocities zero (4.28), (4.29),
+// (4.34) give accelerations and force, where k1 (theta2 - theta1) is replaced by the
+// motor torque, (4.27) without its acceleration term.
 static bool printed_force(const parameters *p, const three_body_state *s, double *force)
 {
     two_link t;
@@ -69,10 +73,12 @@ static bool printed_force(const parameters *p, const three_body_state *s, double
     return solved;
 }
 
-// Share of the energy at the touch that structural damping leaves for the largest bend, 4.3 in
-// numbers: the arm on the wall is a damped oscillator of one degree of freedom, and from a bend b
-// that grows at b' it is largest a phase atan(b'/(w b)) later. 1 without arm.damping_ratio.
-static double share_undamped(const parameters *p, const two_link *t, const three_body_state *s)
+// Share of the energy at the touch that structural damping leaves for the largest bend,
+// 4.3 in numbers: the arm on the wall is a damped oscillator of one degree of freedom,
+// and from a bend b that grows at b' it is largest a phase atan(b'/(w b)) later. 1
+// without arm.damping_ratio.
+static double share_undamped(const parameters *p, const two_link *t,
+                             const three_body_state *s)
 {
     if (p->arm.damping_ratio == 0) {
         return 1;
@@ -91,16 +97,21 @@ static double share_undamped(const parameters *p, const two_link *t, const three
     // the constrained arm: its second link turns against the first one
     double ratio = -t->j2 / t->j3, last = t->m32 + t->m33 * ratio;
     double mass = t->m22 + t->m23 * ratio - last + ratio * last;
-    double square = p->arm.k2 * (ratio - 1) * (ratio - 1) / mass, damping = square * seconds / 2;
+    double square = p->arm.k2 * (ratio - 1) * (ratio - 1) / mass,
+           damping = square * seconds / 2;
     double frequency = sqrt(fmax(square - damping * damping, 0));
     double bend = s->angle[2] - s->angle[1], rate = s->velocity[2] - s->velocity[1];
     double phase = plain_atan2(fabs(rate), frequency * copysign(bend, rate * bend));
-    return frequency > 0 ? plain_exp(-2 * damping * phase / frequency) : 0;
+    if (frequency > 0) {
+        return plain_exp(-2 * damping * phase / frequency);
+    }
+    return 0;
 }
 
-// Corrected form: whole energy (4.23), shared by (4.24), and (4.28) without the k2 term that does
-// not belong there. With a hub spring its torque k1 D1 drives both links. With a rigid hub hub and
-// first link are one body, driven by the motor less the Coulomb friction that slowed it.
+// Corrected form: whole energy (4.23), shared by (4.24), and (4.28) without the k2 term
+// that does not belong there. With a hub spring its torque k1 D1 drives both links. With
+// a rigid hub hub and first link are one body, driven by the motor less the Coulomb
+// friction that slowed it.
 static bool corrected_force(const parameters *p, const three_body_state *s, double *force)
 {
     two_link t;
@@ -114,13 +125,15 @@ static bool corrected_force(const parameters *p, const three_body_state *s, doub
     // what drives the links while they are stopped
     double hub_speed = s->velocity[rigid ? 1 : 0];
     double friction = p->motor.stiction * ((hub_speed > 0) - (hub_speed < 0));
-    double r[3] = {rigid ? t.motor_torque - friction : p->arm.k1 * bend[1], p->arm.k2 * bend[0], 0};
+    double r[3] = {rigid ? t.motor_torque - friction : p->arm.k1 * bend[1],
+                   p->arm.k2 * bend[0], 0};
     bool solved = two_link_solve(&t, r);
     *force = r[2];
     return solved;
 }
 
-status predict_energy(const parameters *p, const three_body_state *s, prediction *out, fault *f)
+status predict_energy(const parameters *p, const three_body_state *s, prediction *out,
+                      fault *f)
 {
     bool printed = p->arm.model == ARM_PRINTED;
     two_link touch;
@@ -134,7 +147,8 @@ status predict_energy(const parameters *p, const three_body_state *s, prediction
              "(4.28), (4.29), (4.34) is singular");
 
     // it holds for an arm that comes near and, corrected, stays on the wall
-    two_link_at(&touch, p, printed ? FORM_LISTED_IMPACT : FORM_CORRECTED, s->angle[1], s->angle[2]);
+    two_link_at(&touch, p, printed ? FORM_LISTED_IMPACT : FORM_CORRECTED, s->angle[1],
+                s->angle[2]);
     out->force = force;
     out->holds = force > 0 && two_link_approach_speed(&touch, s) >= 0;
     if (!printed) {

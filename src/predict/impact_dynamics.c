@@ -12,11 +12,14 @@
 
 static two_link_form form_of(const parameters *p)
 {
-    return p->arm.model == ARM_PRINTED ? FORM_LISTED_IMPACT : FORM_CORRECTED;
+    if (p->arm.model == ARM_PRINTED) {
+        return FORM_LISTED_IMPACT;
+    }
+    return FORM_CORRECTED;
 }
 
-status predict_velocity_jump(const parameters *p, const three_body_state *s, double after[3],
-                             double *impulse, fault *f)
+status predict_velocity_jump(const parameters *p, const three_body_state *s,
+                             double after[3], double *impulse, fault *f)
 {
     two_link t;
     TRY(three_body_state_check(s, f));
@@ -24,23 +27,23 @@ status predict_velocity_jump(const parameters *p, const three_body_state *s, dou
     return two_link_velocity_jump(&t, s, after, impulse, f);
 }
 
-// The coefficients of (4.20)-(4.22). All velocities are taken to fall linearly to zero during the
-// delay T, so that momentum falls to zero, an angle's integral is T theta0 + T^2 w / 4 (the
-// trapezoid of its two ends), and the force, rising linearly, has the impulse T f / 2. With
-// x = (T, f, w1), w1 the hub's velocity just after the impact:
+// The coefficients of (4.20)-(4.22). All velocities are taken to fall linearly to zero
+// during the delay T, so that momentum falls to zero, an angle's integral is T theta0 +
+// T^2 w / 4 (the trapezoid of its two ends), and the force, rising linearly, has the
+// impulse T f / 2. With x = (T, f, w1), w1 the hub's velocity just after the impact:
 //
-//   E1 = -I1 w1 - k1 T D1 - k1 T^2 (w2 - w1) / 4 - S T + kv T w1 / 2                       (4.20)
-//   E2 = k1 T D1 + k1 T^2 (w2 - w1) / 4 - B [k2 T D2 + k2 T^2 (w3 - w2) / 4]
-//        - P2 + both T f / 2                                                               (4.21)
-//   E3 = k2 T D2 + k2 T^2 (w3 - w2) / 4 - P3 + last T f / 2                                (4.22)
+//   E1 = -I1 w1 - k1 T D1 - k1 T^2 (w2 - w1) / 4 - S T + kv T w1 / 2 (4.20) E2 = k1 T D1
+//   + k1 T^2 (w2 - w1) / 4 - B [k2 T D2 + k2 T^2 (w3 - w2) / 4]
+//        - P2 + both T f / 2 (4.21)
+//   E3 = k2 T D2 + k2 T^2 (w3 - w2) / 4 - P3 + last T f / 2 (4.22)
 //
-// D1, D2 are the bends theta2 - theta1, theta3 - theta2 at contact, S the motor torque less Coulomb
-// friction, P2 = m22 w2 + m23 w3 and P3 = m32 w2 + m33 w3 the momenta after the impact. B = 1 is
-// the spring counted twice, 0 the corrected form.
+// D1, D2 are the bends theta2 - theta1, theta3 - theta2 at contact, S the motor torque
+// less Coulomb friction, P2 = m22 w2 + m23 w3 and P3 = m32 w2 + m33 w3 the momenta after
+// the impact. B = 1 is the spring counted twice, 0 the corrected form.
 //
-// For a half oscillation that starts without bend, momentum M v against a stiffness k, these
-// approximations give T = 2 sqrt(M/k) and f = v sqrt(M k): the peak is right, the delay 4/pi times
-// too long.
+// For a half oscillation that starts without bend, momentum M v against a stiffness k,
+// these approximations give T = 2 sqrt(M/k) and f = v sqrt(M k): the peak is right, the
+// delay 4/pi times too long.
 typedef struct integrated_motion {
     double hub_inertia, hub_damping, k1, k2, twice; // twice: B
     double hub_bend, bend;                          // D1, D2 [rad]
@@ -114,7 +117,8 @@ static double polynomial(const double *c, int degree, double x)
     return sum;
 }
 
-// The root of a polynomial that is monotonic and changes sign between low and high, by bisection.
+// The root of a polynomial that is monotonic and changes sign between low and high, by
+// bisection.
 static double bisect(const double *c, int degree, double low, double high)
 {
     bool rising = polynomial(c, degree, high) > 0;
@@ -134,9 +138,9 @@ static double bisect(const double *c, int degree, double low, double high)
     return low + (high - low) / 2;
 }
 
-// Simple roots of c[0] + c[1] x + ... + c[degree] x^degree, degree <= 4, within the range of
-// delays, in rising order: between two roots of its derivative a polynomial is monotonic. Returns
-// how many.
+// Simple roots of c[0] + c[1] x + ... + c[degree] x^degree, degree <= 4, within the range
+// of delays, in rising order: between two roots of its derivative a polynomial is
+// monotonic. Returns how many.
 static int positive_roots(const double *c, int degree, double *roots)
 {
     double slope[4], turns[6];
@@ -176,7 +180,8 @@ static double hub_velocity_of_delay(const integrated_motion *g, double T)
     return drive / (g->k1 * T * T / 4 + g->hub_damping * T / 2 - g->hub_inertia);
 }
 
-// E2 less both/last times E3 is free of f: c[0] + c[1] T + c[2] T^2 without the terms of k1.
+// E2 less both/last times E3 is free of f: c[0] + c[1] T + c[2] T^2 without the terms of
+// k1.
 static void force_free_terms(const integrated_motion *g, double c[3])
 {
     double lever = g->both / g->last, springs = g->twice + lever;
@@ -190,8 +195,8 @@ static double length_of(const double x[3])
     return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
-// Newton's method (3.8) on E1..E3 from a guess. The step is halved while it makes the residual
-// worse. False if that does not lead to a root.
+// Newton's method (3.8) on E1..E3 from a guess. The step is halved while it makes the
+// residual worse. False if that does not lead to a root.
 static bool newton(const integrated_motion *g, double x[3])
 {
     enum { ITERATIONS = 50 };
@@ -231,29 +236,32 @@ static bool newton(const integrated_motion *g, double x[3])
     return error <= 1e-9 * scale;
 }
 
-// Solves E1..E3. With w1 from E1 and f from E3, E2 becomes a polynomial of fourth degree in T; of
-// its positive roots the one is meant whose hub velocity stays nearest to that before the impact,
-// as (4.10) wants it (Newton's method from the listing's guess T = 5 s, f = 5 N, w1 = 1 rad/s ends
-// at the same one in all cells of Tables 4.1-4.3). Newton's method then solves the three together.
-// STATUS_OK with *delay NaN if no root is positive with a positive force.
-static status solve_with_hub_spring(const integrated_motion *g, double hub_velocity, double *delay,
-                                    double *force, fault *f)
+// Solves E1..E3. With w1 from E1 and f from E3, E2 becomes a polynomial of fourth degree
+// in T; of its positive roots the one is meant whose hub velocity stays nearest to that
+// before the impact, as (4.10) wants it (Newton's method from the listing's guess T = 5
+// s, f = 5 N, w1 = 1 rad/s ends at the same one in all cells of Tables 4.1-4.3). Newton's
+// method then solves the three together. STATUS_OK with *delay NaN if no root is positive
+// with a positive force.
+static status solve_with_hub_spring(const integrated_motion *g, double hub_velocity,
+                                    double *delay, double *force, fault *f)
 {
     double c[3], roots[4], best = (double)INFINITY, x[3];
     force_free_terms(g, c);
 
-    // w1 = N / D; the sum of c, T k1 D1 and k1 T^2 (w2 - w1) / 4 times D, without the terms of k1
-    // squared that cancel
+    // w1 = N / D; the sum of c, T k1 D1 and k1 T^2 (w2 - w1) / 4 times D, without the
+    // terms of k1 squared that cancel
     double d0 = -g->hub_inertia, d1 = g->hub_damping / 2, d2 = g->k1 / 4;
     double hub1 = c[1] + g->k1 * g->hub_bend, hub2 = c[2] + g->k1 * g->w2 / 4;
-    double quartic[5] = {c[0] * d0, c[0] * d1 + hub1 * d0, c[0] * d2 + hub1 * d1 + hub2 * d0,
+    double quartic[5] = {c[0] * d0, c[0] * d1 + hub1 * d0,
+                         c[0] * d2 + hub1 * d1 + hub2 * d0,
                          c[1] * d2 + hub2 * d1 - g->drive * d2, c[2] * d2};
 
     // the root whose hub velocity is the nearest
     int count = positive_roots(quartic, 4, roots);
     *delay = *force = (double)NAN;
     for (int i = 0; i < count; i++) {
-        double peak = force_of_delay(g, roots[i]), w1 = hub_velocity_of_delay(g, roots[i]);
+        double peak = force_of_delay(g, roots[i]),
+               w1 = hub_velocity_of_delay(g, roots[i]);
         if (peak > 0 && fabs(w1 - hub_velocity) < best) {
             best = fabs(w1 - hub_velocity);
             memcpy(x, (double[3]){roots[i], peak, w1}, sizeof x);
@@ -264,7 +272,8 @@ static status solve_with_hub_spring(const integrated_motion *g, double hub_veloc
         return STATUS_OK;
     }
     FAULT_IF(!newton(g, x) || !(x[0] > 0), f, STATUS_NEWTON_FAILED,
-             "Newton's method found no solution of (4.20)-(4.22) near a delay of %g s", x[0]);
+             "Newton's method found no solution of (4.20)-(4.22) near a delay of %g s",
+             x[0]);
 
     *delay = x[0];
     *force = x[1];
@@ -290,10 +299,12 @@ static double earliest_delay(const double c[3])
     return earliest;
 }
 
-// Without a hub spring E1 and E2 are one equation, the balance of the whole arm with w1 = w2:
-// -S T + kv T w2 / 2 - P2 + both T f / 2 = 0, and the system is quadratic in T. So is the printed
-// closed form of an arm with one, whose velocity w1 after the impact is known.
-static void solve_quadratic(const integrated_motion *g, bool rigid_hub, double w1, prediction *out)
+// Without a hub spring E1 and E2 are one equation, the balance of the whole arm with w1 =
+// w2:
+// -S T + kv T w2 / 2 - P2 + both T f / 2 = 0, and the system is quadratic in T. So is the
+// printed closed form of an arm with one, whose velocity w1 after the impact is known.
+static void solve_quadratic(const integrated_motion *g, bool rigid_hub, double w1,
+                            prediction *out)
 {
     double c[3];
     force_free_terms(g, c);
@@ -340,17 +351,18 @@ static status predict(const parameters *p, const three_body_state *s, bool close
     return STATUS_OK;
 }
 
-status predict_impact_dynamics(const parameters *p, const three_body_state *s, prediction *out,
-                               fault *f)
+status predict_impact_dynamics(const parameters *p, const three_body_state *s,
+                               prediction *out, fault *f)
 {
     return predict(p, s, false, out, f);
 }
 
-// Hub and first link jump alike. Printed: w1 = w1(before) + Dw2 is then known, E1 and with it the
-// motor torque drop out, and E2 is quadratic in T. Corrected: what jumps alike is one body, so that
-// this is the form of a rigid hub whatever the hub's joint is, and the motor torque stays.
-status predict_impact_quadratic(const parameters *p, const three_body_state *s, prediction *out,
-                                fault *f)
+// Hub and first link jump alike. Printed: w1 = w1(before) + Dw2 is then known, E1 and
+// with it the motor torque drop out, and E2 is quadratic in T. Corrected: what jumps
+// alike is one body, so that this is the form of a rigid hub whatever the hub's joint is,
+// and the motor torque stays.
+status predict_impact_quadratic(const parameters *p, const three_body_state *s,
+                                prediction *out, fault *f)
 {
     parameters rigid = *p;
     if (p->arm.model != ARM_PRINTED) {

@@ -98,8 +98,8 @@ static double press_of(const flight *f, const flight_state *s)
     return f->press * s->q[0] + f->per_rate * velocity;
 }
 
-// The impulse response to one step of unit torque, k steps after its beginning, k from 1: tip
-// [1/N], K xi [1/m].
+// The impulse response to one step of unit torque, k steps after its beginning, k from 1:
+// tip [1/N], K xi [1/m].
 typedef struct responses {
     double tip[MOST_STEPS + 1], press[MOST_STEPS + 1];
 } responses;
@@ -110,8 +110,8 @@ typedef struct edge {
 } edge;
 
 // Sums over the torque U sign(sense (press - weight tip)).
-static void follow_sign(const flight *f, const responses *r, int n, double weight, double sense,
-                        double *tip, double *press)
+static void follow_sign(const flight *f, const responses *r, int n, double weight,
+                        double sense, double *tip, double *press)
 {
     *tip = *press = 0;
     for (int k = 1; k <= n; k++) {
@@ -122,9 +122,9 @@ static void follow_sign(const flight *f, const responses *r, int n, double weigh
     }
 }
 
-// The largest K xi (sense 1) or the least (-1) of a touch after n steps. A larger weight takes the
-// tip back (sense 1) or on (-1), one step's sign after the other, so that halving finds the one
-// with the tip at the wall. False if no torque brings it there.
+// The largest K xi (sense 1) or the least (-1) of a touch after n steps. A larger weight
+// takes the tip back (sense 1) or on (-1), one step's sign after the other, so that
+// halving finds the one with the tip at the wall. False if no torque brings it there.
 static bool find_edge(const flight *f, const responses *r, int n, double sense, edge *e)
 {
     double way = 0, low = -1, high = 1, tip, press;
@@ -148,7 +148,8 @@ static bool find_edge(const flight *f, const responses *r, int n, double sense, 
         *((start + tip > 0) == (sense > 0) ? &low : &high) = middle;
     }
 
-    // between two weights one step's torque lies between both signs: on the straight line there
+    // between two weights one step's torque lies between both signs: on the straight line
+    // there
     double tip_low, press_low;
     follow_sign(f, r, n, low, sense, &tip_low, &press_low);
     follow_sign(f, r, n, high, sense, &tip, &press);
@@ -160,13 +161,23 @@ static bool find_edge(const flight *f, const responses *r, int n, double sense, 
     return true;
 }
 
-// Least time from K xi to the band [a, b] under forces from 0 to P; NaN if it is never there.
+// Least time from K xi to the band [a, b] under forces from 0 to P; NaN if it is never
+// there.
 static double time_to_band(double xi, double a, double b, double most, double s)
 {
     if (xi > b) {
-        return xi < most ? plain_log((most - b) / (most - xi)) / s : (double)NAN;
+        if (xi < most) {
+            return plain_log((most - b) / (most - xi)) / s;
+        }
+        return (double)NAN;
     }
-    return xi >= a ? 0 : xi > 0 ? plain_log(a / xi) / s : (double)NAN;
+    if (xi >= a) {
+        return 0;
+    }
+    if (xi > 0) {
+        return plain_log(a / xi) / s;
+    }
+    return (double)NAN;
 }
 
 least_time least_time_of(const parameters *p, double force, double band, double peak)
@@ -182,7 +193,8 @@ least_time least_time_of(const parameters *p, double force, double band, double 
     const double a = force * (1 - band), b = force * (1 + band), most = fmax(peak, b);
     const double s = f.press / f.per_rate;
 
-    // tries later and later touches, until the touch alone takes longer than the best total
+    // tries later and later touches, until the touch alone takes longer than the best
+    // total
     flight_state kicked = {{0, 0}, {0, 0}};
     for (int n = 1; n <= MOST_STEPS && n * LEAST_TIME_STEP < best.total; n++) {
         edge edges[2];
@@ -207,7 +219,10 @@ least_time least_time_of(const parameters *p, double force, double band, double 
                                 .slack = e->slack};
         }
     }
-    return isfinite(best.total) ? best : none;
+    if (isfinite(best.total)) {
+        return best;
+    }
+    return none;
 }
 
 void least_time_follow(const parameters *p, const double *torque, int steps, double *tip,

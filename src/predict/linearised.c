@@ -1,19 +1,20 @@
 // Two links on a rigid hub.
 //
-// In contact the arm has one degree of freedom, the hub angle x: the constraint gives the second
-// link's angle and, with v = (1, -J_1/J_2), its velocity. With the sweeps of chain.h as the exact
-// acceleration a(x, x'), the motion is approximated piecewise by
+// In contact the arm has one degree of freedom, the hub angle x: the constraint gives the
+// second link's angle and, with v = (1, -J_1/J_2), its velocity. With the sweeps of
+// chain.h as the exact acceleration a(x, x'), the motion is approximated piecewise by
 //
 //     y'' = a_s - c (y' - w_s) - k y,        y = x - x_s, w_s = x'_s
 //
-// whose solution is a damped oscillation in closed form. c = (v'Cv)/(v'Mv) is the damping of hub
-// and joint; k starts as the tangent (v'Kv)/(v'Mv) = 4 k2 / (v'Mv) and is replaced, piece by piece,
-// by the secant that makes the acceleration exact at the far end of the piece too. Three pieces
-// carry the stiffening by large bending. The force is then evaluated exactly on the predicted path
-// at four instants before the arm stops, and a cubic through them gives peak and delay.
+// whose solution is a damped oscillation in closed form. c = (v'Cv)/(v'Mv) is the damping
+// of hub and joint; k starts as the tangent (v'Kv)/(v'Mv) = 4 k2 / (v'Mv) and is
+// replaced, piece by piece, by the secant that makes the acceleration exact at the far
+// end of the piece too. Three pieces carry the stiffening by large bending. The force is
+// then evaluated exactly on the predicted path at four instants before the arm stops, and
+// a cubic through them gives peak and delay.
 //
-// The pulse of any other arm, of one that bends far, and of one damped so strongly that the force
-// peaks early, is followed by its engine.
+// The pulse of any other arm, of one that bends far, and of one damped so strongly that
+// the force peaks early, is followed by its engine.
 #include "src/predict/linearised.h"
 
 #include <assert.h>
@@ -28,20 +29,21 @@
 
 enum { PIECES = 3 };
 
-// As far as the closed form is followed: its three pieces are then 1 % off at worst [rad].
+// As far as the closed form is followed: its three pieces are then 1 % off at worst
+// [rad].
 #define CLOSED_FORM_BEND 0.6
 
-// And the share of critical damping below which its pieces are taken: with more the arm stops late,
-// far from where they are fitted.
+// And the share of critical damping below which its pieces are taken: with more the arm
+// stops late, far from where they are fitted.
 #define MOST_DAMPED 0.5
 
-// The peak is known if it grows by no more than this share of it between this share of the horizon
-// and its end.
+// The peak is known if it grows by no more than this share of it between this share of
+// the horizon and its end.
 #define SETTLED_FROM 0.8
 #define SETTLED      5e-4
 
-// From one look at the energies to the next, at most and at least [s], and of the fastest vibration
-// where that is between them [rad].
+// From one look at the energies to the next, at most and at least [s], and of the fastest
+// vibration where that is between them [rad].
 #define LONGEST_LOOK  1e-4
 #define SHORTEST_LOOK 3e-5
 #define LOOK_PHASE    0.1
@@ -50,7 +52,7 @@ enum { PIECES = 3 };
 
 enum { MOST_STEPS = 60000 };
 
-// --- any arm, by its engine ----------------------------------------------------------------
+// --- any arm, by its engine ------------------------------------------------------------
 
 arm arm_touching_now(const arm *a, const double *q)
 {
@@ -73,8 +75,8 @@ arm arm_touching_now(const arm *a, const double *q)
     return touched;
 }
 
-// What is seen of energies: the last three looks, and the kinetic energy where the strain was
-// largest [J].
+// What is seen of energies: the last three looks, and the kinetic energy where the strain
+// was largest [J].
 typedef struct seen_energies {
     double time[3]; // [s]
     state_energy at[3];
@@ -82,8 +84,8 @@ typedef struct seen_energies {
 } seen_energies;
 
 // The parabola f + slope x + bend x^2 through values at x[0] < 0, at 0 and at x[1].
-static void parabola(const double x[2], double before, double f, double after, double *slope,
-                     double *bend)
+static void parabola(const double x[2], double before, double f, double after,
+                     double *slope, double *bend)
 {
     const double first = (before - f) / x[0], second = (after - f) / x[1];
     *bend = (second - first) / (x[1] - x[0]);
@@ -105,13 +107,15 @@ static void see_energies(const arm *a, motion *m, seen_energies *seen)
     }
 
     const double x[] = {seen->time[0] - seen->time[1], seen->time[2] - seen->time[1]};
-    if (x[0] < 0 && x[1] > 0 && at[1].strain > at[0].strain && at[1].strain > at[2].strain) {
+    if (x[0] < 0 && x[1] > 0 && at[1].strain > at[0].strain &&
+        at[1].strain > at[2].strain) {
         double slope, bend, slope2, bend2;
         parabola(x, at[0].strain, at[1].strain, at[2].strain, &slope, &bend);
         parabola(x, at[0].kinetic, at[1].kinetic, at[2].kinetic, &slope2, &bend2);
         const double top = -slope / (2 * bend), strain = at[1].strain + slope / 2 * top;
         if (strain > seen->most.strain) {
-            seen->most = (state_energy){at[1].kinetic + top * (slope2 + bend2 * top), strain};
+            seen->most =
+                (state_energy){at[1].kinetic + top * (slope2 + bend2 * top), strain};
         }
     }
 }
@@ -125,7 +129,10 @@ static double give_commands(arm *a, motion *m, const voltage_profile *command, i
         arm_set_voltage(a, command->volts[(*next)++]);
         motion_retorque(a, m, before);
     }
-    return *next < command->count ? command->times[*next] : HUGE_VAL;
+    if (*next < command->count) {
+        return command->times[*next];
+    }
+    return HUGE_VAL;
 }
 
 // Puts the arm where it is touched, through the impact. Whether the touch holds.
@@ -144,9 +151,10 @@ static bool touch(const arm *a, motion *m, const double *q, const double *w, dou
     return m->state[SLOT_CONTACT] != 0;
 }
 
-// Follows the arm in contact to where that ends, to the horizon, or as far as it can be followed.
-static status follow(arm *a, motion *m, const voltage_profile *command, seen_energies *seen,
-                     prediction *out)
+// Follows the arm in contact to where that ends, to the horizon, or as far as it can be
+// followed.
+static status follow(arm *a, motion *m, const voltage_profile *command,
+                     seen_energies *seen, prediction *out)
 {
     const double settled = SETTLED_FROM * PULSE_HORIZON;
     double before = 0; // the peak then [N]
@@ -156,12 +164,14 @@ static status follow(arm *a, motion *m, const voltage_profile *command, seen_ene
         if (seen != NULL) {
             see_energies(a, m, seen);
             const double look = LOOK_PHASE / motion_vibration(a, m, m->state);
-            until =
-                fmin(until, m->state[SLOT_TIME] + fmax(fmin(look, LONGEST_LOOK), SHORTEST_LOOK));
+            until = fmin(until, m->state[SLOT_TIME] +
+                                    fmax(fmin(look, LONGEST_LOOK), SHORTEST_LOOK));
         }
         if (m->state[SLOT_TIME] <= settled) {
             before = m->record.pulse_peak;
-            until = m->state[SLOT_TIME] < settled ? fmin(until, settled) : until;
+            if (m->state[SLOT_TIME] < settled) {
+                until = fmin(until, settled);
+            }
         }
 
         // a step, and the event at its end; a command may end the contact, too
@@ -198,12 +208,17 @@ status predict_pulse(const arm *source, const method_parameters *method, const d
     method_parameters event = *method;
     event.name = METHOD_EVENT;
     motion *m = motion_create(&a, &event);
-    FAIL_IF(m == NULL, STATUS_NO_MEMORY);
+    if (m == NULL) {
+        return STATUS_NO_MEMORY;
+    }
 
     // numbers only where they are to be relied on
     seen_energies seen = {0};
     const bool held = touch(&a, m, q, w, given.current, out);
-    const status s = held ? follow(&a, m, &given, energies ? &seen : NULL, out) : STATUS_OK;
+    status s = STATUS_OK;
+    if (held) {
+        s = follow(&a, m, &given, energies ? &seen : NULL, out);
+    }
     out->holds = held && s == STATUS_OK && !out->doubtful;
     if (out->holds) {
         out->force = m->record.pulse_peak;
@@ -212,14 +227,17 @@ status predict_pulse(const arm *source, const method_parameters *method, const d
     if (out->holds && energies && m->state[SLOT_CONTACT] == 0) {
         see_energies(&a, m, &seen);
         const double left = motion_energy(&a, m, m->state).kinetic;
-        out->restitution = seen.most.strain > 0 ? (left - seen.most.kinetic) / seen.most.strain
-                                                : (double)NAN; // no joint stores anything
+        if (seen.most.strain > 0) {
+            out->restitution = (left - seen.most.kinetic) / seen.most.strain;
+        } else {
+            out->restitution = (double)NAN;
+        } // no joint stores anything
     }
     motion_destroy(m);
     return s;
 }
 
-// --- two links on a rigid hub ---------------------------------------------------------------
+// --- two links on a rigid hub ----------------------------------------------------------
 
 // A damped oscillation y(t) with y(0) = 0.
 typedef struct oscillation {
@@ -283,7 +301,8 @@ static void pressed_evaluate(pressed_arm *p, double x, double v)
     inline_sincos(x, &sx, &cx);
     if (a->wall.kind == WALL_POINT) {
         // the second link points from the joint to the contact point, (3.9)
-        double dx = a->wall.x - l * cx, dy = a->wall.y - l * sx, d = sqrt(dx * dx + dy * dy);
+        double dx = a->wall.x - l * cx, dy = a->wall.y - l * sx,
+               d = sqrt(dx * dx + dy * dy);
         q[1] = plain_atan2(dy, dx);
         turn = l * (cx * dx + sx * dy) / d / d; // (3.12)
     } else {
@@ -305,7 +324,8 @@ static void pressed_evaluate(pressed_arm *p, double x, double v)
 static void pressed_tangents(const arm *a, const double *q, double *c, double *k)
 {
     double l = a->link_length, m = a->link_mass, unit[2][2] = {{1, 0}, {0, 1}};
-    double ratio = -chain_penetration_rate(a, q, unit[0]) / chain_penetration_rate(a, q, unit[1]);
+    double ratio =
+        -chain_penetration_rate(a, q, unit[0]) / chain_penetration_rate(a, q, unit[1]);
     double own = a->link_inertia + m * l * l / 4, bend = ratio - 1;
     double mass = a->hub_inertia + own + m * l * l + own * ratio * ratio +
                   m * l * l * inline_cos(q[1] - q[0]) * ratio;
@@ -334,9 +354,10 @@ static double path_force(pressed_arm *p, const pressed_path *path, double t)
     return p->force;
 }
 
-// Follows the arm from the hub at x moving at v, towards the wall, until it comes to rest. False if
-// damping lets it creep there.
-static bool predict_path(pressed_arm *p, double x, double v, double c, double k, pressed_path *path)
+// Follows the arm from the hub at x moving at v, towards the wall, until it comes to
+// rest. False if damping lets it creep there.
+static bool predict_path(pressed_arm *p, double x, double v, double c, double k,
+                         pressed_path *path)
 {
     double t = 0, acceleration = p->acceleration;
     for (int i = 0; i < PIECES; i++) {
@@ -368,7 +389,11 @@ static bool predict_path(pressed_arm *p, double x, double v, double c, double k,
         path->start[i] = t;
         path->angle[i] = x;
         path->stop = t + oscillation_stop(o);
-        length = i == PIECES - 1 ? path->stop - t : fmin(length, path->stop - t);
+        if (i == PIECES - 1) {
+            length = path->stop - t;
+        } else {
+            length = fmin(length, path->stop - t);
+        }
         oscillation_at(o, length, &y, &velocity);
         x += y;
         v = velocity;
@@ -377,18 +402,23 @@ static bool predict_path(pressed_arm *p, double x, double v, double c, double k,
     return true;
 }
 
-// The force peaks a little before the arm stops: a parabola through three instants there finds
-// where, and a cubic through these and a fourth look says how large and when. False if it peaks
-// earlier, as it does under strong damping, whose force jumps up at the touch: `first` is that.
-static bool path_peak(pressed_arm *p, const pressed_path *path, double first, prediction *out)
+// The force peaks a little before the arm stops: a parabola through three instants there
+// finds where, and a cubic through these and a fourth look says how large and when. False
+// if it peaks earlier, as it does under strong damping, whose force jumps up at the
+// touch: `first` is that.
+static bool path_peak(pressed_arm *p, const pressed_path *path, double first,
+                      prediction *out)
 {
     double h = 0.08 * path->stop, t = path->stop - h, f[4], top;
     for (int i = 0; i < 3; i++) {
         f[i] = path_force(p, path, path->stop - (2 - i) * h);
     }
 
-    const double middle = t, second = f[0] - 2 * f[1] + f[2], slope_there = (f[2] - f[0]) / 2;
-    t += second < 0 ? fmin(fmax(-slope_there / second, -1), 1) * h : 0;
+    const double middle = t, second = f[0] - 2 * f[1] + f[2],
+                 slope_there = (f[2] - f[0]) / 2;
+    if (second < 0) {
+        t += fmin(fmax(-slope_there / second, -1), 1) * h;
+    }
     f[3] = path_force(p, path, t);
 
     // Newton's form on s = (time - middle) / h with nodes -1, 0, 1 and s3
@@ -401,8 +431,11 @@ static bool path_peak(pressed_arm *p, const pressed_path *path, double first, pr
 
     // Newton's iteration for the cubic's top
     for (int i = 0; i < 3; i++) {
-        double slope = d1 + d2 * (2 * s + 1) + d3 * (3 * s * s - 1), bend = 2 * d2 + 6 * d3 * s;
-        s = bend < 0 ? fmin(fmax(s - slope / bend, -1), 1) : s;
+        double slope = d1 + d2 * (2 * s + 1) + d3 * (3 * s * s - 1),
+               bend = 2 * d2 + 6 * d3 * s;
+        if (bend < 0) {
+            s = fmin(fmax(s - slope / bend, -1), 1);
+        }
     }
 
     top = f[0] + (s + 1) * (d1 + s * (d2 + (s - 1) * d3));
@@ -411,15 +444,17 @@ static bool path_peak(pressed_arm *p, const pressed_path *path, double first, pr
     return d2 < 0 && s > -1 && top > first;
 }
 
-// --- the touch ------------------------------------------------------------------------------
+// --- the touch -------------------------------------------------------------------------
 
-// The velocities just after the plastic impact of two links on a rigid wall, and whether it holds.
-static bool touch_holds(const arm *touched, const double *q, const double *w, double after[2],
-                        contact_state *mode, double *impulse)
+// The velocities just after the plastic impact of two links on a rigid wall, and whether
+// it holds.
+static bool touch_holds(const arm *touched, const double *q, const double *w,
+                        double after[2], contact_state *mode, double *impulse)
 {
     chain_link links[2];
     chain_reaction r;
-    const impact_result jump = impact_velocity_increments(touched, links, q, w, 0, 0, after);
+    const impact_result jump =
+        impact_velocity_increments(touched, links, q, w, 0, 0, after);
     const double e = wall_restitution(&touched->wall, jump.speed);
     *impulse = (1 + e) * fmax(jump.impulse, 0);
     for (int i = 0; i < 2; i++) {
@@ -428,7 +463,11 @@ static bool touch_holds(const arm *touched, const double *q, const double *w, do
 
     // an elastic impact throws the arm back
     mode->contact = true;
-    mode->friction = after[0] < 0 ? HUB_BACKWARD : HUB_FORWARD;
+    if (after[0] < 0) {
+        mode->friction = HUB_BACKWARD;
+    } else {
+        mode->friction = HUB_FORWARD;
+    }
     if (jump.impulse < 0 || e > 0) {
         return false;
     }
@@ -437,8 +476,9 @@ static bool touch_holds(const arm *touched, const double *q, const double *w, do
     return r.force > 0;
 }
 
-// False if the arm bends further than the few pieces of the closed form are good for, if the force
-// peaks long before the arm stops, or if so much damping is on the way that it stops late.
+// False if the arm bends further than the few pieces of the closed form are good for, if
+// the force peaks long before the arm stops, or if so much damping is on the way that it
+// stops late.
 static bool predict_closed_form(const arm *touched, const double *q, const double *after,
                                 contact_state mode, prediction *out)
 {
@@ -450,16 +490,16 @@ static bool predict_closed_form(const arm *touched, const double *q, const doubl
 
     // the path, and the force along its end, where the arm is bent the most
     pressed_tangents(touched, q, &c, &k);
-    return predict_path(&p, q[0], after[0], c, k, &path) && path_peak(&p, &path, first, out) &&
-           fabs(p.bend) < CLOSED_FORM_BEND;
+    return predict_path(&p, q[0], after[0], c, k, &path) &&
+           path_peak(&p, &path, first, out) && fabs(p.bend) < CLOSED_FORM_BEND;
 }
 
 status predict_linearised(const arm *a, const method_parameters *method, const double *q,
                           const double *w, prediction *out)
 {
     assert(a->motor.inductance == 0);
-    const bool plain = a->dof == 2 && a->links == 2 && arm_is_plain(a) && !wall_gives(&a->wall) &&
-                       wall_stands(&a->wall);
+    const bool plain = a->dof == 2 && a->links == 2 && arm_is_plain(a) &&
+                       !wall_gives(&a->wall) && wall_stands(&a->wall);
     if (plain) {
         // two links on a rigid hub that turns on towards the wall: the closed form
         const arm touched = arm_touching_now(a, q);
@@ -467,7 +507,8 @@ status predict_linearised(const arm *a, const method_parameters *method, const d
         contact_state mode = {.current = 0};
         *out = prediction_none();
         out->holds = touch_holds(&touched, q, w, after, &mode, &out->impulse);
-        if (!out->holds || (after[0] > 0 && predict_closed_form(&touched, q, after, mode, out))) {
+        if (!out->holds ||
+            (after[0] > 0 && predict_closed_form(&touched, q, after, mode, out))) {
             return STATUS_OK;
         }
     }

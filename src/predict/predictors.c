@@ -8,8 +8,8 @@
 #include "src/predict/linearised.h"
 
 // The linearised arm asks for the state of all links.
-static prediction_outcome ask_linearised(const prediction_question *question, prediction *out,
-                                         fault *f)
+static prediction_outcome ask_linearised(const prediction_question *question,
+                                         prediction *out, fault *f)
 {
     const parameters *p = question->parameters;
     if (p->arm.model == ARM_PRINTED) {
@@ -26,8 +26,12 @@ static prediction_outcome ask_linearised(const prediction_question *question, pr
     command.current = question->current;
     const double *q = question->angles, *w = question->velocities;
     const bool as_is = command.count == 0 && p->motor.inductance == 0;
-    status code = as_is ? predict_linearised(&a, &p->method, q, w, out)
-                        : predict_pulse(&a, &p->method, q, w, &command, false, out);
+    status code;
+    if (as_is) {
+        code = predict_linearised(&a, &p->method, q, w, out);
+    } else {
+        code = predict_pulse(&a, &p->method, q, w, &command, false, out);
+    }
 
     // e_eq is that of the pulse to its end
     prediction whole;
@@ -39,11 +43,18 @@ static prediction_outcome ask_linearised(const prediction_question *question, pr
         fault_set(f, code, "%s", status_text(code));
         return PREDICTION_FAILED;
     }
-    return out->doubtful ? PREDICTION_DOUBTFUL : out->holds ? PREDICTION_HOLDS : PREDICTION_LOST;
+    if (out->doubtful) {
+        return PREDICTION_DOUBTFUL;
+    }
+    if (out->holds) {
+        return PREDICTION_HOLDS;
+    }
+    return PREDICTION_LOST;
 }
 
-// Mean command from the touch until `time` [V]: with it, kT/Ra times the time is the integral of
-// (4.20) over the prescribed v(t); at no time the command in force at the touch.
+// Mean command from the touch until `time` [V]: with it, kT/Ra times the time is the
+// integral of (4.20) over the prescribed v(t); at no time the command in force at the
+// touch.
 static double mean_voltage(const prediction_question *question, double time)
 {
     const voltage_profile *command = &question->command;
@@ -59,11 +70,14 @@ static double mean_voltage(const prediction_question *question, double time)
             volts = motor_limited_voltage(motor, command->volts[i]);
         }
     }
-    return time > 0 ? sum / time : volts;
+    if (time > 0) {
+        return sum / time;
+    }
+    return volts;
 }
 
-// The impact dynamics for a prescribed v(t): the delay says over which time the voltage counts, and
-// the mean voltage over it says the delay.
+// The impact dynamics for a prescribed v(t): the delay says over which time the voltage
+// counts, and the mean voltage over it says the delay.
 static status ask_impact_dynamics(predictor which, const prediction_question *question,
                                   prediction *out, fault *f)
 {
@@ -74,9 +88,12 @@ static status ask_impact_dynamics(predictor which, const prediction_question *qu
         if (question->command.count > 0) {
             p.motor.voltage = mean_voltage(question, delay);
         }
-        status code = which == PREDICTOR_IMPACT_DYNAMICS
-                          ? predict_impact_dynamics(&p, &question->bodies, out, f)
-                          : predict_impact_quadratic(&p, &question->bodies, out, f);
+        status code;
+        if (which == PREDICTOR_IMPACT_DYNAMICS) {
+            code = predict_impact_dynamics(&p, &question->bodies, out, f);
+        } else {
+            code = predict_impact_quadratic(&p, &question->bodies, out, f);
+        }
         found = out->delay;
         if (code != STATUS_OK || question->command.count == 0 || !out->holds ||
             fabs(found - delay) <= 1e-9 * found) {
@@ -84,22 +101,26 @@ static status ask_impact_dynamics(predictor which, const prediction_question *qu
         }
 
         // half the way, as the mean of a voltage that changes its sign may overshoot
-        delay = i == 0 ? found : (delay + found) / 2;
+        if (i == 0) {
+            delay = found;
+        } else {
+            delay = (delay + found) / 2;
+        }
     }
     return fault_set(f, STATUS_NEWTON_FAILED,
                      "no delay goes with the mean of the prescribed voltage over it");
 }
 
-// Whether the thesis's two links stand for the beam: they know one stiffness, and of damping what
-// is proportional to it.
+// Whether the thesis's two links stand for the beam: they know one stiffness, and of
+// damping what is proportional to it.
 static bool is_plain_beam(const arm_parameters *a)
 {
     return parameters_even_links(a) && a->stiffening == 0 && a->modal_ratios[0] == '\0' &&
            a->air_drag == 0;
 }
 
-static prediction_outcome ask(predictor which, const prediction_question *question, prediction *out,
-                              fault *f)
+static prediction_outcome ask(predictor which, const prediction_question *question,
+                              prediction *out, fault *f)
 {
     const parameters *p = question->parameters;
 
@@ -108,15 +129,24 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
     const bool limited = p->motor.drive == DRIVE_VOLTAGE && p->motor.current_limit > 0;
     const bool moves = p->wall.motion != MOTION_NONE && p->wall.kind != WALL_NONE;
     const bool timed = which == PREDICTOR_ENERGY && question->command.count > 0;
-    const prediction_outcome refused =
-        thesis && limited                         ? PREDICTION_UNLIMITED_ONLY
-        : thesis && p->wall.contact != WALL_RIGID ? PREDICTION_RIGID_WALL_ONLY
-        : moves                                   ? PREDICTION_STILL_WALL_ONLY
-        : thesis && p->arm.tilt != 0              ? PREDICTION_LEVEL_ONLY
-        : thesis && p->arm.tip_mass > 0           ? PREDICTION_BARE_TIP_ONLY
-        : thesis && !is_plain_beam(&p->arm)       ? PREDICTION_EQUAL_LINKS_ONLY
-        : timed                                   ? PREDICTION_KNOWS_NO_TIME
-                                                  : PREDICTION_HOLDS;
+    prediction_outcome refused = PREDICTION_UNLIMITED_ONLY;
+    if (!(thesis && limited)) {
+        if (thesis && p->wall.contact != WALL_RIGID) {
+            refused = PREDICTION_RIGID_WALL_ONLY;
+        } else if (moves) {
+            refused = PREDICTION_STILL_WALL_ONLY;
+        } else if (thesis && p->arm.tilt != 0) {
+            refused = PREDICTION_LEVEL_ONLY;
+        } else if (thesis && p->arm.tip_mass > 0) {
+            refused = PREDICTION_BARE_TIP_ONLY;
+        } else if (thesis && !is_plain_beam(&p->arm)) {
+            refused = PREDICTION_EQUAL_LINKS_ONLY;
+        } else if (timed) {
+            refused = PREDICTION_KNOWS_NO_TIME;
+        } else {
+            refused = PREDICTION_HOLDS;
+        }
+    }
     if (refused != PREDICTION_HOLDS) {
         return refused;
     }
@@ -125,9 +155,19 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
         return ask_linearised(question, out, f);
     }
 
-    const status code = which == PREDICTOR_ENERGY ? predict_energy(p, &question->bodies, out, f)
-                                                  : ask_impact_dynamics(which, question, out, f);
-    return code != STATUS_OK ? PREDICTION_FAILED : out->holds ? PREDICTION_HOLDS : PREDICTION_LOST;
+    status code;
+    if (which == PREDICTOR_ENERGY) {
+        code = predict_energy(p, &question->bodies, out, f);
+    } else {
+        code = ask_impact_dynamics(which, question, out, f);
+    }
+    if (code != STATUS_OK) {
+        return PREDICTION_FAILED;
+    }
+    if (out->holds) {
+        return PREDICTION_HOLDS;
+    }
+    return PREDICTION_LOST;
 }
 
 prediction_answer predict_with(predictor which, const prediction_question *question)
@@ -135,7 +175,8 @@ prediction_answer predict_with(predictor which, const prediction_question *quest
     static const struct {
         const char *name, *label, *short_label;
     } texts[] = {
-#define PREDICTOR_TEXT(id, name, label, short_label, about) [id] = {name, label, short_label},
+#define PREDICTOR_TEXT(id, name, label, short_label, about)                              \
+    [id] = {name, label, short_label},
         PREDICTOR_LIST(PREDICTOR_TEXT)
 #undef PREDICTOR_TEXT
     };
@@ -154,7 +195,8 @@ prediction_answer predict_with(predictor which, const prediction_question *quest
     return answer;
 }
 
-// Tells the answers what the inductance changes of the peak, as far as the linearised arm knows.
+// Tells the answers what the inductance changes of the peak, as far as the linearised arm
+// knows.
 static void tell_inductance(const prediction_question *question,
                             prediction_answer answers[PREDICTOR_COUNT])
 {
@@ -163,22 +205,29 @@ static void tell_inductance(const prediction_question *question,
     at_once.motor.inductance = 0;
     without.parameters = &at_once;
     const prediction_answer other = predict_with(PREDICTOR_LINEARISED, &without);
-    const double change = answers[PREDICTOR_LINEARISED].prediction.force - other.prediction.force;
+    const double change =
+        answers[PREDICTOR_LINEARISED].prediction.force - other.prediction.force;
 
     for (predictor which = 0; which < PREDICTOR_COUNT; which++) {
         prediction_answer *answer = &answers[which];
-        answer->prediction.inductance = prediction_known(answer) ? change : (double)NAN;
+        if (prediction_known(answer)) {
+            answer->prediction.inductance = change;
+        } else {
+            answer->prediction.inductance = (double)NAN;
+        }
         if (which != PREDICTOR_LINEARISED && answer->outcome == PREDICTION_HOLDS) {
             decimal_print(answer->note, sizeof answer->note,
-                          isnan(change) ? "without the motor's inductance"
-                                        : "without the motor's inductance, which changes the peak "
-                                          "by %.2g N",
+                          isnan(change)
+                              ? "without the motor's inductance"
+                              : "without the motor's inductance, which changes the peak "
+                                "by %.2g N",
                           change);
         }
     }
 }
 
-void predict_all(const prediction_question *question, prediction_answer answers[PREDICTOR_COUNT])
+void predict_all(const prediction_question *question,
+                 prediction_answer answers[PREDICTOR_COUNT])
 {
     for (predictor which = 0; which < PREDICTOR_COUNT; which++) {
         answers[which] = predict_with(which, question);
@@ -200,7 +249,11 @@ const char *prediction_reason(const prediction_answer *answer)
         PREDICTION_OUTCOME_LIST(PREDICTION_OUTCOME_TEXT)
 #undef PREDICTION_OUTCOME_TEXT
     };
-    return answer->outcome == PREDICTION_FAILED  ? answer->fault.text
-           : answer->outcome == PREDICTION_HOLDS ? answer->note
-                                                 : texts[answer->outcome];
+    if (answer->outcome == PREDICTION_FAILED) {
+        return answer->fault.text;
+    }
+    if (answer->outcome == PREDICTION_HOLDS) {
+        return answer->note;
+    }
+    return texts[answer->outcome];
 }

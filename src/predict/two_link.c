@@ -10,13 +10,16 @@
 double two_link_inertia(const parameters *p)
 {
     double l = p->arm.length / 2, m = p->arm.mass / 2;
-    return p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12;
+    if (p->arm.links == 2) {
+        return p->arm.link_inertia;
+    }
+    return m * l * l / 12;
 }
 
-// Contact constraint of the corrected model with the wall standing where the arm is.
-// A point at the beam's length 2l from the hub lies at A along the second link's line, with
-// |l r2 + A r3| = 2l, so A = l (sqrt(c^2 + 3) - c). A flat wall through the hub's axis touches the
-// tip; seen from there each link makes half the bend with it.
+// Contact constraint of the corrected model with the wall standing where the arm is. A
+// point at the beam's length 2l from the hub lies at A along the second link's line, with
+// |l r2 + A r3| = 2l, so A = l (sqrt(c^2 + 3) - c). A flat wall through the hub's axis
+// touches the tip; seen from there each link makes half the bend with it.
 static void contact_on_the_arm(two_link *t, int wall, double bend)
 {
     double l = t->length, c = inline_cos(bend);
@@ -28,16 +31,18 @@ static void contact_on_the_arm(two_link *t, int wall, double bend)
     }
 }
 
-void two_link_at(two_link *t, const parameters *p, two_link_form form, double angle2, double angle3)
+void two_link_at(two_link *t, const parameters *p, two_link_form form, double angle2,
+                 double angle3)
 {
     memset(t, 0, sizeof *t);
-    double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2, inertia = two_link_inertia(p);
+    double l = p->arm.length / 2, e = l / 2, m = p->arm.mass / 2,
+           inertia = two_link_inertia(p);
     double bend = angle3 - angle2, c = inline_cos(bend);
 
     t->length = l;
     t->centre = e;
-    t->motor_torque =
-        motor_torque_per_volt(&p->motor) * motor_limited_voltage(&p->motor, p->motor.voltage);
+    t->motor_torque = motor_torque_per_volt(&p->motor) *
+                      motor_limited_voltage(&p->motor, p->motor.voltage);
     t->hub_damping = motor_damping(&p->motor);
 
     // factors of the accelerations, as (2.16) and (2.17) have them
@@ -57,7 +62,9 @@ void two_link_at(two_link *t, const parameters *p, two_link_form form, double an
         t->both = t->j2 + t->j3;
         t->last = t->j3;
         t->rigid_hub = p->arm.hub_joint == HUB_RIGID;
-        t->m22 += t->rigid_hub ? p->arm.hub_inertia : 0;
+        if (t->rigid_hub) {
+            t->m22 += p->arm.hub_inertia;
+        }
         return;
     }
 
@@ -67,8 +74,11 @@ void two_link_at(two_link *t, const parameters *p, two_link_form form, double an
     t->both = l * (1 + c);
     t->last = l;
     t->j2 = l * c;
-    t->j3 =
-        form == FORM_LISTED_ENERGY ? l : a * inline_cos(angle3) + b * inline_sin(angle3) - l * c;
+    if (form == FORM_LISTED_ENERGY) {
+        t->j3 = l;
+    } else {
+        t->j3 = a * inline_cos(angle3) + b * inline_sin(angle3) - l * c;
+    }
 }
 
 double two_link_approach_speed(const two_link *t, const three_body_state *s)
@@ -78,20 +88,25 @@ double two_link_approach_speed(const two_link *t, const three_body_state *s)
 
 bool two_link_solve(const two_link *t, double r[3])
 {
-    double matrix[9] = {t->m22, t->m23, t->both, t->m32, t->m33, t->last, t->j2, t->j3, 0};
+    double matrix[9] = {t->m22,  t->m23, t->both, t->m32, t->m33,
+                        t->last, t->j2,  t->j3,   0};
     return dense_solve(3, matrix, r);
 }
 
-double two_link_restitution(const two_link *t, const parameters *p, const three_body_state *s)
+double two_link_restitution(const two_link *t, const parameters *p,
+                            const three_body_state *s)
 {
     wall_model wall;
     wall_init(&wall, p);
     const double e = wall_restitution(&wall, two_link_approach_speed(t, s));
-    return p->arm.model == ARM_PRINTED ? 0 : e;
+    if (p->arm.model == ARM_PRINTED) {
+        return 0;
+    }
+    return e;
 }
 
-status two_link_velocity_jump(const two_link *t, const three_body_state *s, double after[3],
-                              double *impulse, fault *f)
+status two_link_velocity_jump(const two_link *t, const three_body_state *s,
+                              double after[3], double *impulse, fault *f)
 {
     double r[3] = {0, 0, -two_link_approach_speed(t, s)};
     FAULT_IF(!two_link_solve(t, r) || !isfinite(r[2]), f, STATUS_SINGULAR,
@@ -100,15 +115,19 @@ status two_link_velocity_jump(const two_link *t, const three_body_state *s, doub
 
     after[1] = s->velocity[1] + r[0];
     after[2] = s->velocity[2] + r[1];
-    after[0] = t->rigid_hub ? after[1] : s->velocity[0];
+    if (t->rigid_hub) {
+        after[0] = after[1];
+    } else {
+        after[0] = s->velocity[0];
+    }
     *impulse = r[2];
     return STATUS_OK;
 }
 
-// With the contact point (a, b) on the second link's line the factor of w3^2 in (3.13) vanishes; a
-// flat wall through tip and hub axis stands at half the bend to either link.
-double two_link_first_force(const two_link *t, const parameters *p, const three_body_state *s,
-                            const double after[3])
+// With the contact point (a, b) on the second link's line the factor of w3^2 in (3.13)
+// vanishes; a flat wall through tip and hub axis stands at half the bend to either link.
+double two_link_first_force(const two_link *t, const parameters *p,
+                            const three_body_state *s, const double after[3])
 {
     double l = t->length, bend = s->angle[2] - s->angle[1], w2 = after[1], w3 = after[2];
     double coupling = p->arm.mass / 2 * l * t->centre * inline_sin(bend);
@@ -121,18 +140,23 @@ double two_link_first_force(const two_link *t, const parameters *p, const three_
     }
 
     // d2g/dt2 = 0
-    double curve = p->wall.kind == WALL_PLANE ? l * inline_sin(bend / 2) * (w3 * w3 - w2 * w2)
-                                              : l * inline_sin(bend) * (2 * w2 * w3 - w2 * w2);
+    double curve = p->wall.kind == WALL_PLANE
+                       ? l * inline_sin(bend / 2) * (w3 * w3 - w2 * w2)
+                       : l * inline_sin(bend) * (2 * w2 * w3 - w2 * w2);
     double r[3] = {hub_torque + coupling * (w3 * w3 - w2 * w2),
                    -p->arm.k2 * bend - coupling * w2 * w2, curve};
-    return two_link_solve(t, r) ? r[2] : (double)NAN;
+    if (two_link_solve(t, r)) {
+        return r[2];
+    }
+    return (double)NAN;
 }
 
 status three_body_state_check(const three_body_state *s, fault *f)
 {
     static const char *const names[3] = {"hub", "first link", "second link"};
     for (int i = 0; i < 3; i++) {
-        FAULT_IF(!isfinite(s->angle[i]) || !isfinite(s->velocity[i]), f, STATUS_NOT_FINITE,
+        FAULT_IF(!isfinite(s->angle[i]) || !isfinite(s->velocity[i]), f,
+                 STATUS_NOT_FINITE,
                  "a prediction needs a finite state, but the %s's %s is %g", names[i],
                  isfinite(s->angle[i]) ? "velocity" : "angle",
                  isfinite(s->angle[i]) ? s->velocity[i] : s->angle[i]);

@@ -50,11 +50,12 @@ controller_parameter controller_parameter_at(const controller *law, int index)
                                   .description = info->description};
 }
 
-// --- control.settings -----------------------------------------------------------------------
+// --- control.settings ------------------------------------------------------------------
 
 int controller_find_parameter(const controller *law, const char *name)
 {
-    return name_find(law->parameters, sizeof *law->parameters, law->parameter_count, name);
+    return name_find(law->parameters, sizeof *law->parameters, law->parameter_count,
+                     name);
 }
 
 const char *controller_takes_anything(void *memory, const controller_setup *setup)
@@ -63,21 +64,24 @@ const char *controller_takes_anything(void *memory, const controller_setup *setu
     return NULL;
 }
 
-static status read_setting(const controller *law, const setting *s, double *values, fault *f)
+static status read_setting(const controller *law, const setting *s, double *values,
+                           fault *f)
 {
     int index = controller_find_parameter(law, s->name);
     if (index < 0) {
-        const char *near =
-            name_nearest(law->parameters, sizeof *law->parameters, law->parameter_count, s->name);
-        return fault_set(f, STATUS_BAD_SCENARIO,
-                         "control.settings: the controller '%s' has no parameter '%s'%s%s%s",
-                         law->name, s->name, DID_YOU_MEAN(near, ""));
+        const char *near = name_nearest(law->parameters, sizeof *law->parameters,
+                                        law->parameter_count, s->name);
+        return fault_set(
+            f, STATUS_BAD_SCENARIO,
+            "control.settings: the controller '%s' has no parameter '%s'%s%s%s",
+            law->name, s->name, DID_YOU_MEAN(near, ""));
     }
 
     controller_parameter wanted = controller_parameter_at(law, index);
     double value = 0;
-    FAULT_IF(!setting_number(s, &value) || !(value >= wanted.minimum && value <= wanted.maximum), f,
-             STATUS_BAD_SCENARIO,
+    FAULT_IF(!setting_number(s, &value) ||
+                 !(value >= wanted.minimum && value <= wanted.maximum),
+             f, STATUS_BAD_SCENARIO,
              "control.settings: '%.*s' is wrong, expected %s=NUMBER from %g to %g%s%s",
              (int)s->length, s->word, wanted.name, wanted.minimum, wanted.maximum,
              wanted.unit != NULL && wanted.unit[0] ? " " : "",
@@ -86,7 +90,8 @@ static status read_setting(const controller *law, const setting *s, double *valu
     return STATUS_OK;
 }
 
-status controller_values(const controller *law, const parameters *p, double *values, fault *f)
+status controller_values(const controller *law, const parameters *p, double *values,
+                         fault *f)
 {
     assert(values != NULL || law->parameter_count == 0);
 
@@ -94,13 +99,16 @@ status controller_values(const controller *law, const parameters *p, double *val
     for (int i = 0; i < law->parameter_count; i++) {
         const char *name = law->parameters[i].name;
         const int index = scenario_parameter(name);
-        FAULT_IF(has_only_a_name(&law->parameters[i]) && index < 0, f, STATUS_BAD_SCENARIO,
+        FAULT_IF(has_only_a_name(&law->parameters[i]) && index < 0, f,
+                 STATUS_BAD_SCENARIO,
                  "the controller '%s' says of its parameter '%.60s' nothing but the "
                  "name, and there is no control.%.60s",
                  law->name, name, name);
-        values[i] = index >= 0 && (p->set[index] || has_only_a_name(&law->parameters[i]))
-                        ? parameter_get(p, index)
-                        : law->parameters[i].initial;
+        if (index >= 0 && (p->set[index] || has_only_a_name(&law->parameters[i]))) {
+            values[i] = parameter_get(p, index);
+        } else {
+            values[i] = law->parameters[i].initial;
+        }
     }
 
     // those that control.settings replaces; a process reads its settings itself

@@ -5,14 +5,16 @@
 
 #include "src/base/plain_math.h"
 
-// A stride shorter than this share of the time constant leaves the closed form too few digits.
+// A stride shorter than this share of the time constant leaves the closed form too few
+// digits.
 #define SHORT_STEP 1e-3
 
-// Lengths that differ by less than this share of the time constant are the same but for rounding:
-// the square of the share is nothing.
+// Lengths that differ by less than this share of the time constant are the same but for
+// rounding: the square of the share is nothing.
 #define SAME_STRETCH 1e-9
 
-// Halves of a stretch until a turn is known to the last digit, of which its instant needs half.
+// Halves of a stretch until a turn is known to the last digit, of which its instant needs
+// half.
 enum { TURN_BISECTIONS = 32 };
 
 // exp(-h/time_constant), h no shorter than SHORT_STEP.
@@ -73,7 +75,7 @@ void lag_strike(first_order_lag *y, double pulse)
     }
 }
 
-// --- where it turns ---------------------------------------------------------------------------
+// --- where it turns --------------------------------------------------------------------
 
 // The way of input and lag through a stretch, at a share u of it.
 typedef struct passage {
@@ -95,7 +97,8 @@ static double output_at(const passage *p, double u)
     return lag_output(&y, input_at(p, u));
 }
 
-// How far the input is ahead of the lag: the lag rises as long as it is. And the rate of that.
+// How far the input is ahead of the lag: the lag rises as long as it is. And the rate of
+// that.
 static double lead_at(const passage *p, double u)
 {
     return input_at(p, u) - output_at(p, u);
@@ -107,7 +110,8 @@ static double lead_rate_at(const passage *p, double u)
     return p->f.slope + 2 * p->f.curve * u - rate;
 }
 
-// Where a function changes its sign between two shares, having that of `sign` at the first.
+// Where a function changes its sign between two shares, having that of `sign` at the
+// first.
 static double zero_between(const passage *p, double (*function)(const passage *, double),
                            double from, double to, double sign)
 {
@@ -122,9 +126,10 @@ static double zero_between(const passage *p, double (*function)(const passage *,
     return (from + to) / 2;
 }
 
-// A lag's lead has no more than one extreme, as its rate is a straight line and one exponential
-// less their like: so it is zero twice at most.
-int lag_turns(const first_order_lag *y, const lag_input *input, double turns[LAG_MOST_TURNS])
+// A lag's lead has no more than one extreme, as its rate is a straight line and one
+// exponential less their like: so it is zero twice at most.
+int lag_turns(const first_order_lag *y, const lag_input *input,
+              double turns[LAG_MOST_TURNS])
 {
     const passage p = {y, input, parabola_of(input)};
     if (!(input->length > 0)) {
@@ -141,7 +146,8 @@ int lag_turns(const first_order_lag *y, const lag_input *input, double turns[LAG
     // what begins or ends without a lead has that of its rate there
     const double rate = lead_rate_at(&p, 0), last_rate = lead_rate_at(&p, 1);
     const double lead = lead_at(&p, 0), last_lead = lead_at(&p, 1);
-    const double first = lead != 0 ? lead : rate, last = last_lead != 0 ? last_lead : -last_rate;
+    const double first = lead != 0 ? lead : rate,
+                 last = last_lead != 0 ? last_lead : -last_rate;
     if (first * last < 0) {
         turns[0] = output_at(&p, zero_between(&p, lead_at, 0, 1, first));
         return 1;

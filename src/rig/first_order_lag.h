@@ -1,11 +1,12 @@
-// A first-order lag, as force sensors and amplifiers have: time_constant value' = input - value.
+// A first-order lag, as force sensors and amplifiers have: time_constant value' = input -
+// value.
 #pragma once
 
 typedef struct first_order_lag {
     double time_constant; // [s], 0 for a sensor without it
     double value;         // in the input's unit
-    // the factor by which a transient decays over a stretch of that length, kept because most
-    // stretches are, up to rounding, as long as the one before
+    // the factor by which a transient decays over a stretch of that length, kept because
+    // most stretches are, up to rounding, as long as the one before
     double stretch; // [s], 0: none
     double left;    // exp(-stretch/time_constant)
 } first_order_lag;
@@ -28,7 +29,8 @@ static inline double lag_output(const first_order_lag *y, double input)
     return y->time_constant > 0 ? y->value : input;
 }
 
-// The values at which what comes out turns within an input that is still to be followed, the
-// earlier one first. Returns how many those are.
+// The values at which what comes out turns within an input that is still to be followed,
+// the earlier one first. Returns how many those are.
 enum { LAG_MOST_TURNS = 2 };
-int lag_turns(const first_order_lag *y, const lag_input *input, double turns[LAG_MOST_TURNS]);
+int lag_turns(const first_order_lag *y, const lag_input *input,
+              double turns[LAG_MOST_TURNS]);

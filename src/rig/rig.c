@@ -12,7 +12,7 @@
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
 
-// --- starting -------------------------------------------------------------------------------
+// --- starting --------------------------------------------------------------------------
 
 // Memory, values and the controller's own start, once it is known which controller it is.
 static status start_controller(rig *r, const parameters *p, fault *f)
@@ -25,7 +25,9 @@ static status start_controller(rig *r, const parameters *p, fault *f)
              "no memory for the controller '%s'", r->law->name);
 
     // one that is withheld has no use for settings
-    TRY(r->withheld ? STATUS_OK : controller_values(r->law, p, r->values, f));
+    if (!r->withheld) {
+        TRY(controller_values(r->law, p, r->values, f));
+    }
     if (r->given.law != NULL) {
         assert(r->law->memory_size >= sizeof r->given.context);
         memcpy(r->memory, &r->given.context, sizeof r->given.context);
@@ -38,9 +40,12 @@ static status start_controller(rig *r, const parameters *p, fault *f)
     const char *refusal = r->law->start != NULL ? r->law->start(r->memory, &setup) : NULL;
     if (refusal != NULL) {
         // a run that had no memory may go another time, one that is refused does not
-        const status code =
-            refusal == reduced_arm_no_memory ? STATUS_NO_MEMORY : STATUS_BAD_SCENARIO;
-        return fault_set(f, code, "the controller '%s' cannot run: %.600s", r->law->name, refusal);
+        status code = STATUS_NO_MEMORY;
+        if (refusal != reduced_arm_no_memory) {
+            code = STATUS_BAD_SCENARIO;
+        }
+        return fault_set(f, code, "the controller '%s' cannot run: %.600s", r->law->name,
+                         refusal);
     }
     return STATUS_OK;
 }
@@ -54,26 +59,29 @@ static controller_output no_answer(void)
                                .calculated_force = (double)NAN};
 }
 
-// --- what the user has not allowed ------------------------------------------------------------
+// --- what the user has not allowed -----------------------------------------------------
 
 // Stands where a controller from outside would; it is never asked.
 static const controller withheld_law =
-    ONE_MODE_CONTROLLER("withheld", "withheld", 0, NULL, .tune = controller_takes_anything);
+    ONE_MODE_CONTROLLER("withheld", "withheld", 0, NULL,
+                        .tune = controller_takes_anything);
 
 static status explain_withheld(const rig *r, fault *f)
 {
     const control_parameters *c = &r->told.control;
     const bool program = c->law == LAW_PROCESS;
-    return fault_set_at(f, STATUS_NOT_ALLOWED, program ? "control.command" : "control.plugin",
-                        "the scenario wants to %s '%.200s', which can do whatever you can: if "
-                        "you trust it, allow that with --allow-code",
-                        program ? "start the program" : "load the plug-in",
-                        program ? c->command : c->plugin);
+    return fault_set_at(
+        f, STATUS_NOT_ALLOWED, program ? "control.command" : "control.plugin",
+        "the scenario wants to %s '%.200s', which can do whatever you can: "
+        "if you trust it, allow that with --allow-code",
+        program ? "start the program" : "load the plug-in",
+        program ? c->command : c->plugin);
 }
 
-// --- beginning and end ------------------------------------------------------------------------
+// --- beginning and end -----------------------------------------------------------------
 
-// Finds the controller that control.law names; one from outside only if the user allows it.
+// Finds the controller that control.law names; one from outside only if the user allows
+// it.
 static status open_law(rig *r, const parameters *p, const rig_options *o, fault *f)
 {
     const control_parameters *c = &p->control;
@@ -99,13 +107,18 @@ static status open_law(rig *r, const parameters *p, const rig_options *o, fault 
     r->process = process_create(c, o->transcript, o->stop);
     r->law = &process_law;
     r->given = (given_law){r->law, r->process};
-    return r->process != NULL ? STATUS_OK : fault_no_memory(f);
+    if (r->process == NULL) {
+        return fault_no_memory(f);
+    }
+    return STATUS_OK;
 }
 
 status rig_create(rig **created, const parameters *p, const rig_options *o, fault *f)
 {
     static const rig_options none = {.law = NULL};
-    o = o != NULL ? o : &none;
+    if (o == NULL) {
+        o = &none;
+    }
     assert(p->control.rate > 0);
     const given_law *given = o->law;
     assert(given != NULL || p->control.law != LAW_NONE);
@@ -128,17 +141,29 @@ status rig_create(rig **created, const parameters *p, const rig_options *o, faul
     random_seed(&r->clock, ~(uint64_t)p->control.seed);
 
     // the controller, which may refuse the lock, its settings or the arm
-    r->given = given != NULL ? *given : (given_law){.law = NULL};
+    if (given != NULL) {
+        r->given = *given;
+    } else {
+        r->given = (given_law){.law = NULL};
+    }
     r->law = r->given.law;
-    status s = given != NULL ? STATUS_OK : open_law(r, p, o, f);
+    status s = STATUS_OK;
+    if (given == NULL) {
+        s = open_law(r, p, o, f);
+    }
     r->lock = -1;
-    s = s == STATUS_OK && !r->withheld ? rig_lock(r, p->control.lock, f) : s;
-    s = s == STATUS_OK ? start_controller(r, p, f) : s;
+    if (s == STATUS_OK && !r->withheld) {
+        s = rig_lock(r, p->control.lock, f);
+    }
+    if (s == STATUS_OK) {
+        s = start_controller(r, p, f);
+    }
     if (s == STATUS_OK && p->control.force_amplitude > 0 && r->law->tune == NULL) {
-        s = fault_set(f, STATUS_BAD_SCENARIO,
-                      "control.force_amplitude: the controller '%s' takes its force at the start "
-                      "only",
-                      r->law->name);
+        s = fault_set(
+            f, STATUS_BAD_SCENARIO,
+            "control.force_amplitude: the controller '%s' takes its force at the "
+            "start only",
+            r->law->name);
     }
     if (s != STATUS_OK) {
         rig_destroy(r);
@@ -161,11 +186,14 @@ void rig_destroy(rig *r)
     }
 }
 
-// --- the sampled loop -----------------------------------------------------------------------
+// --- the sampled loop ------------------------------------------------------------------
 
 double rig_next_time(const rig *r)
 {
-    return r->pending_count > 0 ? smaller(r->sample_time, r->effect_time[0]) : r->sample_time;
+    if (r->pending_count > 0) {
+        return smaller(r->sample_time, r->effect_time[0]);
+    }
+    return r->sample_time;
 }
 
 // The commands that are due at an instant go out, and all but `most` of the others.
@@ -177,7 +205,8 @@ static void apply(rig *r, double time, int most, bool *changed)
         r->voltage = r->pending[0];
         r->largest_command = larger(fabs(r->voltage), r->largest_command);
         r->pending_count--;
-        memmove(r->pending, r->pending + 1, (size_t)r->pending_count * sizeof r->pending[0]);
+        memmove(r->pending, r->pending + 1,
+                (size_t)r->pending_count * sizeof r->pending[0]);
         memmove(r->effect_time, r->effect_time + 1,
                 (size_t)r->pending_count * sizeof r->effect_time[0]);
     }
@@ -213,22 +242,35 @@ static status take_sample(rig *r, double time, const sensed_motion *now, fault *
     TRY(rig_follow_setpoint(r, time, f));
     rig_read(r, time, now);
     controller_input input = input_of(r, time);
-    r->predicted_force =
-        r->told.control.force_limit > 0 ? touch_forecast_sample(&r->forecast, &input) : (double)NAN;
+    if (r->told.control.force_limit > 0) {
+        r->predicted_force = touch_forecast_sample(&r->forecast, &input);
+    } else {
+        r->predicted_force = (double)NAN;
+    }
     input.predicted_force = r->predicted_force;
     controller_output *out = &r->output;
     *out = no_answer();
-    FAIL_IF(r->withheld, explain_withheld(r, f));
+    if (r->withheld) {
+        return explain_withheld(r, f);
+    }
     r->law->sample(r->memory, &input, out);
     const char *why = "";
-    status failed = r->process != NULL ? process_failure(r->process, &why) : STATUS_OK;
-    FAIL_IF(failed == STATUS_STOPPED, failed);
-    FAULT_AT_IF(failed != STATUS_OK, f, failed, "control.command", "at t = %.9g s %s", time, why);
+    status failed = STATUS_OK;
+    if (r->process != NULL) {
+        failed = process_failure(r->process, &why);
+    }
+    if (failed == STATUS_STOPPED) {
+        return failed;
+    }
+    if (failed != STATUS_OK) {
+        return fault_set_at(f, failed, "control.command", "at t = %.9g s %s", time, why);
+    }
     FAULT_IF(!isfinite(out->command), f, STATUS_NOT_FINITE,
-             "at t = %.9g s the controller '%s' %s, expected a finite number of volts; its "
-             "sensors read %.6g rad, %.6g rad/s and %.6g N",
+             "at t = %.9g s the controller '%s' %s, expected a finite number of "
+             "volts; its sensors read %.6g rad, %.6g rad/s and %.6g N",
              time, r->law->name,
-             isnan(out->command) ? "did not answer with a command" : "gave an infinite command",
+             isnan(out->command) ? "did not answer with a command"
+                                 : "gave an infinite command",
              input.encoder, input.tachometer, input.force);
 
     // what the D/A makes of it goes out after the delay
@@ -250,7 +292,8 @@ status rig_act(rig *r, double time, const sensed_motion *now, bool *changed, fau
     *changed = false;
     const bool samples = !instant_after(r->sample_time, time);
 
-    // with jitter a sample may come before the command of one long before: that goes out then
+    // with jitter a sample may come before the command of one long before: that goes out
+    // then
     apply(r, time, samples ? r->pending_most : CONTROL_MOST_DELAY + 1, changed);
 
     status s = STATUS_OK;

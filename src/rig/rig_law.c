@@ -1,5 +1,5 @@
-// What the controller of a rig is and what it is told: the law, its modes, the nominal model,
-// changes on the way.
+// What the controller of a rig is and what it is told: the law, its modes, the nominal
+// model, changes on the way.
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -17,8 +17,8 @@
 const controller *controller_of(int law)
 {
 #define LAW(name, prefix, ...) [LAW_##name] = &prefix##_law,
-    static const controller *const built_in[LAW_COUNT] = {CONTROL_LAWS(LAW)[LAW_PLAYBACK] =
-                                                              &playback_law};
+    static const controller *const built_in[LAW_COUNT] = {
+        CONTROL_LAWS(LAW)[LAW_PLAYBACK] = &playback_law};
 #undef LAW
     assert(law >= 0 && law < LAW_COUNT);
     return built_in[law];
@@ -32,8 +32,16 @@ static void list_modes(const controller *law, char *text, size_t size)
     size_t used = 0;
     text[0] = '\0';
     for (int i = 0; law->modes != NULL && law->modes[i] != NULL && used < size; i++) {
-        const char *before = i == 0 ? "" : law->modes[i + 1] == NULL ? " or " : ", ";
-        used += (size_t)snprintf(text + used, size - used, "%s%.40s", before, law->modes[i]);
+        const char *before = "";
+        if (i != 0) {
+            if (law->modes[i + 1] == NULL) {
+                before = " or ";
+            } else {
+                before = ", ";
+            }
+        }
+        used +=
+            (size_t)snprintf(text + used, size - used, "%s%.40s", before, law->modes[i]);
     }
 }
 
@@ -43,9 +51,12 @@ status rig_find_mode(const controller *law, const char *lock, int *mode, fault *
     if (lock[0] == '\0' || strcmp(lock, "none") == 0) {
         return STATUS_OK;
     }
-    FAULT_AT_IF(!law->lockable || law->modes == NULL, f, STATUS_BAD_SCENARIO, "control.lock",
-                "control.lock = '%.60s', but the law '%s' cannot be held in a mode, expected none",
-                lock, law->name);
+    if (!law->lockable || law->modes == NULL) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, "control.lock",
+                            "control.lock = '%.60s', but the law '%s' cannot be held in "
+                            "a mode, expected none",
+                            lock, law->name);
+    }
 
     // the mode of that name
     for (int i = 0; law->modes[i] != NULL; i++) {
@@ -58,20 +69,24 @@ status rig_find_mode(const controller *law, const char *lock, int *mode, fault *
     // none: say which there are
     char modes[256];
     list_modes(law, modes, sizeof modes);
-    return fault_set_at(f, STATUS_BAD_SCENARIO, "control.lock",
-                        "control.lock = '%.60s' is no mode of the law '%s', expected none, %s",
-                        lock, law->name, modes);
+    return fault_set_at(
+        f, STATUS_BAD_SCENARIO, "control.lock",
+        "control.lock = '%.60s' is no mode of the law '%s', expected none, %s", lock,
+        law->name, modes);
 }
 
 status rig_lock(rig *r, const char *lock, fault *f)
 {
     int mode;
     status s = rig_find_mode(r->law, lock, &mode, f);
-    r->lock = s == STATUS_OK ? mode : r->lock;
+    if (s == STATUS_OK) {
+        r->lock = mode;
+    }
     return s;
 }
 
-int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most, bool *lockable)
+int rig_mode_names(const parameters *p, char names[][MODE_NAME_SIZE], int most,
+                   bool *lockable)
 {
     fault ignored;
     plugin opened = {0};
@@ -102,7 +117,8 @@ controller_setup rig_nominal_setup(const rig *r, const parameters *p)
     double m = p->arm.mass / 2, l = p->arm.length / 2, k2 = p->arm.k2;
     double link_inertia = p->arm.links == 2 ? p->arm.link_inertia : m * l * l / 12;
     k2_table measured;
-    if (k2_table_read(&measured, p->control.k2_table, NULL) == STATUS_OK && measured.count > 0) {
+    if (k2_table_read(&measured, p->control.k2_table, NULL) == STATUS_OK &&
+        measured.count > 0) {
         k2 = k2_table_at(&measured, p->control.force);
     }
 
@@ -126,7 +142,8 @@ controller_setup rig_nominal_setup(const rig *r, const parameters *p)
         .k2 = k2 * b->k2_factor,
         .wall_angle = p->wall.angle + b->wall_error,
         .links = b->links,
-        .hub_spring = p->arm.hub_joint == HUB_SPRING ? p->arm.k1 * b->hub_spring_factor : HUGE_VAL,
+        .hub_spring =
+            p->arm.hub_joint == HUB_SPRING ? p->arm.k1 * b->hub_spring_factor : HUGE_VAL,
         .damping_ratio = p->arm.damping_ratio,
         .parameters = r->values,
     };
@@ -153,7 +170,8 @@ static bool group_differs(const parameters *a, const parameters *b, const char *
     return false;
 }
 
-// Whether parameters say something else of what the controller is told than it was told last.
+// Whether parameters say something else of what the controller is told than it was told
+// last.
 static bool tells_anew(const rig *r, const parameters *p)
 {
     const parameters *told = &r->told;
@@ -164,16 +182,18 @@ static bool tells_anew(const rig *r, const parameters *p)
 
 status rig_takes(const rig *r, const parameters *p, fault *f)
 {
-    return r->law->tune != NULL || !tells_anew(r, p)
-               ? STATUS_OK
-               : fault_set(f, STATUS_BAD_SCENARIO,
-                           "the controller '%s' takes its parameters at the start only: they "
-                           "cannot change during the run",
-                           r->law->name);
+    if (!(r->law->tune != NULL || !tells_anew(r, p))) {
+        return fault_set(
+            f, STATUS_BAD_SCENARIO,
+            "the controller '%s' takes its parameters at the start only: they "
+            "cannot change during the run",
+            r->law->name);
+    }
+    return STATUS_OK;
 }
 
-// Gives the controller what it is told from this instant [s] on. STATUS_BAD_SCENARIO, with a
-// sentence in f, if it refuses.
+// Gives the controller what it is told from this instant [s] on. STATUS_BAD_SCENARIO,
+// with a sentence in f, if it refuses.
 static status tell_controller(rig *r, const parameters *p, double time, fault *f)
 {
     // its parameters, and the nominal model
@@ -188,7 +208,8 @@ static status tell_controller(rig *r, const parameters *p, double time, fault *f
 
     const char *refusal = r->law->tune(r->memory, &setup);
     FAULT_IF(refusal != NULL, f, STATUS_BAD_SCENARIO,
-             "at t = %.9g s the controller '%s' refuses: %.600s", time, r->law->name, refusal);
+             "at t = %.9g s the controller '%s' refuses: %.600s", time, r->law->name,
+             refusal);
     return STATUS_OK;
 }
 
@@ -206,7 +227,8 @@ status rig_retune(rig *r, const parameters *p, double time, fault *f)
         return STATUS_OK;
     }
 
-    // the arm as it was at the start is what the controller knows, whatever has changed since
+    // the arm as it was at the start is what the controller knows, whatever has changed
+    // since
     told->control = p->control;
     told->belief = p->belief;
     told->motor.voltage_limit = p->motor.voltage_limit;
@@ -240,11 +262,16 @@ status rig_follow_setpoint(rig *r, double time, fault *f)
 
     // the ramp towards the setpoint, and the wave upon it
     const double way = c->force - r->ramp, most = c->force_rate * (time - r->ramp_time);
-    r->ramp = c->force_rate > 0 && fabs(way) > most ? r->ramp + copysign(most, way) : c->force;
+    if (c->force_rate > 0 && fabs(way) > most) {
+        r->ramp = r->ramp + copysign(most, way);
+    } else {
+        r->ramp = c->force;
+    }
     r->ramp_time = time;
-    const double wave = c->force_amplitude > 0
-                            ? c->force_amplitude * inline_sin(2 * M_PI * c->force_frequency * time)
-                            : 0;
+    const double wave =
+        c->force_amplitude > 0
+            ? c->force_amplitude * inline_sin(2 * M_PI * c->force_frequency * time)
+            : 0;
     const double wanted = larger(r->ramp + wave, 0);
 
     // the controller hears of a change only
@@ -262,11 +289,13 @@ bool rig_can_change(const parameters *p, int parameter)
     assert(parameter >= 0 && parameter < parameter_count);
     const char *path = parameter_table[parameter].path;
     const controller *law = controller_of(p->control.law);
-    const bool told = strncmp(path, "control.", 8) == 0 || strncmp(path, "belief.", 7) == 0 ||
+    const bool told = strncmp(path, "control.", 8) == 0 ||
+                      strncmp(path, "belief.", 7) == 0 ||
                       parameter == PARAMETER_INDEX(motor.voltage_limit);
     if (!parameter_table[parameter].timed) {
         return false;
     }
     return p->control.law == LAW_NONE || p->control.law == LAW_PROCESS || !told ||
-           parameter == PARAMETER_INDEX(control.lock) || (law != NULL && law->tune != NULL);
+           parameter == PARAMETER_INDEX(control.lock) ||
+           (law != NULL && law->tune != NULL);
 }

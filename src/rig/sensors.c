@@ -11,12 +11,13 @@
 // 10 % to 90 % of a first-order lag takes ln 9 time constants.
 #define RISE_OVER_TIME_CONSTANT 2.1972245773362196
 
-// A stride no longer than this [s] counts as none: its gain of velocity would be rounding only.
+// A stride no longer than this [s] counts as none: its gain of velocity would be rounding
+// only.
 #define SHORTEST_GAIN 1e-9
 
-// Draws numbers of the standard normal distribution by Marsaglia's polar method, some at a time, as
-// their logarithms and roots then need not wait for each other. Apart from the readings that take
-// them, which stay short.
+// Draws numbers of the standard normal distribution by Marsaglia's polar method, some at
+// a time, as their logarithms and roots then need not wait for each other. Apart from the
+// readings that take them, which stay short.
 static __attribute__((noinline)) void draw_ahead(noise_source *n)
 {
     enum { PAIRS = NOISE_AHEAD / 2 };
@@ -38,7 +39,8 @@ static __attribute__((noinline)) void draw_ahead(noise_source *n)
     n->taken = 0;
 }
 
-// Each sensor has numbers of its own: its place stands above the bits of the scenario's seed.
+// Each sensor has numbers of its own: its place stands above the bits of the scenario's
+// seed.
 static void noise_start(noise_source *n, uint64_t sensor, int seed)
 {
     random_seed(&n->random, sensor << 32 | (uint32_t)seed);
@@ -58,11 +60,13 @@ converter converter_of(int bits, double range)
 {
     assert(bits >= 0 && bits < 63 && range >= 0);
     const double codes = (double)(INT64_C(1) << bits);
-    return bits == 0 ? (converter){.range = range}
-                     : (converter){range, 2 * range / codes, codes, codes / (2 * range)};
+    if (bits == 0) {
+        return (converter){.range = range};
+    }
+    return (converter){range, 2 * range / codes, codes, codes / (2 * range)};
 }
 
-// --- in time --------------------------------------------------------------------------------
+// --- in time ---------------------------------------------------------------------------
 
 // Carries out sensor.ideal.
 static void idealise(sensor_parameters *p)
@@ -73,7 +77,8 @@ static void idealise(sensor_parameters *p)
     p->piezo_rise_time = p->piezo_leak_time = p->piezo_range = p->piezo_noise = 0;
     p->film_leak_time = p->film_noise = 0;
     p->accelerometer_rise_time = p->accelerometer_range = p->accelerometer_noise = 0;
-    p->encoder_gain_error = p->tachometer_gain_error = p->fsr_gain_error = p->piezo_gain_error = 0;
+    p->encoder_gain_error = p->tachometer_gain_error = p->fsr_gain_error =
+        p->piezo_gain_error = 0;
     p->encoder_offset = p->tachometer_offset = p->fsr_offset = p->piezo_offset = 0;
     p->fsr_hysteresis = 0;
     p->fsr_saturation = HUGE_VAL;
@@ -94,7 +99,11 @@ void sensors_retune(sensors *s, const sensor_parameters *p)
 
     // what follows from them
     s->adc = converter_of(s->p.adc_bits, s->p.ideal ? HUGE_VAL : s->p.adc_range);
-    s->encoder_step = s->p.encoder_counts > 0 ? 2 * M_PI / s->p.encoder_counts : 0;
+    if (s->p.encoder_counts > 0) {
+        s->encoder_step = 2 * M_PI / s->p.encoder_counts;
+    } else {
+        s->encoder_step = 0;
+    }
 
     // the curve is another one
     s->felt = (fsr_point){(double)NAN, 0};
@@ -119,7 +128,8 @@ void sensors_init(sensors *s, const sensor_parameters *p, int seed)
     noise_start(&s->acceleration_noise, 3, seed);
 }
 
-// What the FSR shows of a force that turned: a play as wide as the hysteresis times the force.
+// What the FSR shows of a force that turned: a play as wide as the hysteresis times the
+// force.
 static double fsr_shows(sensors *s, double force)
 {
     const double play = s->p.fsr_hysteresis * fabs(force);
@@ -127,7 +137,8 @@ static double fsr_shows(sensors *s, double force)
     return s->fsr_shown;
 }
 
-// Lets the FSR follow the force over a stretch: its play is moved wherever the force turns.
+// Lets the FSR follow the force over a stretch: its play is moved wherever the force
+// turns.
 static void follow_with_fsr(sensors *s, const lag_input *force)
 {
     if (s->p.fsr_hysteresis > 0) {
@@ -142,7 +153,8 @@ static void follow_with_fsr(sensors *s, const lag_input *force)
     fsr_shows(s, lag_output(&s->fsr, force->last));
 }
 
-// Turns a jump of the hub's velocity since the last look into a pulse of its acceleration.
+// Turns a jump of the hub's velocity since the last look into a pulse of its
+// acceleration.
 static void feel_jump(sensors *s, double velocity)
 {
     if (!isnan(s->seen_velocity)) {
@@ -151,8 +163,8 @@ static void feel_jump(sensors *s, double velocity)
     s->seen_velocity = velocity;
 }
 
-void sensors_follow(sensors *s, double h, const sensed_motion *first, const sensed_motion *last,
-                    double mean_force)
+void sensors_follow(sensors *s, double h, const sensed_motion *first,
+                    const sensed_motion *last, double mean_force)
 {
     const lag_input force = {h, first->force, last->force, mean_force};
     follow_with_fsr(s, &force);
@@ -168,7 +180,8 @@ void sensors_follow(sensors *s, double h, const sensed_motion *first, const sens
         lag_follow(&s->film_leak, &(lag_input){h, first->bending, last->bending, mean});
     }
 
-    // a jump between strides is a pulse; within the stride the velocity gained is the mean
+    // a jump between strides is a pulse; within the stride the velocity gained is the
+    // mean
     if (s->p.accelerometer) {
         feel_jump(s, first->velocity);
         if (h > SHORTEST_GAIN) {
@@ -195,19 +208,23 @@ void sensors_strike(sensors *s, double impulse)
 
     // a blow takes up any play: without a lag the force was without bounds
     if (s->p.fsr_hysteresis > 0 && impulse > 0) {
-        s->fsr_shown = s->fsr.time_constant > 0 ? fsr_shows(s, s->fsr.value) : HUGE_VAL;
+        if (s->fsr.time_constant > 0) {
+            s->fsr_shown = fsr_shows(s, s->fsr.value);
+        } else {
+            s->fsr_shown = HUGE_VAL;
+        }
     }
 }
 
-// --- readings -------------------------------------------------------------------------------
+// --- readings --------------------------------------------------------------------------
 
 double fsr_volts(const sensor_parameters *p, double force)
 {
     if (!(force > 0)) {
         return 0;
     }
-    double resistance =
-        p->fsr_resistance * plain_pow(smaller(force, p->fsr_saturation), -p->fsr_exponent);
+    double resistance = p->fsr_resistance *
+                        plain_pow(smaller(force, p->fsr_saturation), -p->fsr_exponent);
     return p->fsr_gain * p->fsr_supply * p->fsr_divider / (p->fsr_divider + resistance);
 }
 
@@ -262,8 +279,13 @@ static void see_angle(sensors *s, double angle)
     }
     s->seen_angle = angle;
     const double shown = off(angle, s->p.encoder_gain_error, s->p.encoder_offset);
-    s->counted = count == 0 ? shown : count * floor(shown / count + 0.5);
-    s->ripple = 1 + s->p.tachometer_ripple * inline_sin(s->p.tachometer_ripple_count * angle);
+    if (count == 0) {
+        s->counted = shown;
+    } else {
+        s->counted = count * floor(shown / count + 0.5);
+    }
+    s->ripple =
+        1 + s->p.tachometer_ripple * inline_sin(s->p.tachometer_ripple_count * angle);
 }
 
 // Through the A/D converter, noise added before it.
@@ -276,11 +298,15 @@ static double convert(const sensors *s, noise_source *source, double volts, doub
 // Within the range either way, 0 being no limit.
 static double on_scale(double value, double range)
 {
-    return range > 0 ? larger(smaller(value, range), -range) : value;
+    if (range > 0) {
+        return larger(smaller(value, range), -range);
+    }
+    return value;
 }
 
-// Rise and leak one behind the other, 1/(1 + s r) times s q/(1 + s q), as the difference of two
-// lags side by side, (1/(1 + s r) - 1/(1 + s q)) q/(q - r): each of them follows the force exactly.
+// Rise and leak one behind the other, 1/(1 + s r) times s q/(1 + s q), as the difference
+// of two lags side by side, (1/(1 + s r) - 1/(1 + s q)) q/(q - r): each of them follows
+// the force exactly.
 static double read_piezo(sensors *s, double force)
 {
     const sensor_parameters *p = &s->p;
@@ -320,15 +346,17 @@ sensor_reading sensors_read(sensors *s, const sensed_motion *now)
     see_angle(s, now->angle);
     const double turning =
         off(now->velocity * s->ripple, p->tachometer_gain_error, p->tachometer_offset);
-    double tachometer = convert(s, &s->noise, p->tachometer_gain * turning, p->tachometer_noise);
+    double tachometer =
+        convert(s, &s->noise, p->tachometer_gain * turning, p->tachometer_noise);
     double fsr = convert(s, &s->noise, felt, p->fsr_noise);
 
     // the others draw from noise of their own, in any order
     return (sensor_reading){.encoder = s->counted,
                             .tachometer = tachometer / p->tachometer_gain,
                             .force_reading = read_force(s, fsr),
-                            .piezo_force = p->piezo ? read_piezo(s, now->force) : (double)NAN,
+                            .piezo_force =
+                                p->piezo ? read_piezo(s, now->force) : (double)NAN,
                             .film = p->film ? read_film(s, now->bending) : (double)NAN,
-                            .accelerometer =
-                                p->accelerometer ? read_accelerometer(s, now) : (double)NAN};
+                            .accelerometer = p->accelerometer ? read_accelerometer(s, now)
+                                                              : (double)NAN};
 }

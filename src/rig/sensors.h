@@ -1,19 +1,20 @@
 // The sensors and converters of the rig, each imperfection one number that can be zero.
 //
-// Hub encoder and tachometer are collocated with the motor. The force sensing resistor (FSR) at the
-// tip lags the force by a first-order rise, its resistance falls with the force by a power law, and
-// a voltage divider and an amplifier (Fig. 2.1) turn that into volts. Its hysteresis is a play: the
-// reading y follows a force f only as far as (1 - h) f <= y <= (1 + h) f asks for, f being what has
-// arrived through the lag, with every extreme on its way from sample to sample. An impulse p is the
-// limit of a force p/e over a time e -> 0, larger than any play: the lag T rises by p/T, to f, and
-// takes the play to its lower edge, y >= (1 - h) f; without a lag f itself was without bounds and
-// has fallen, so that y = (1 + h) f behind it. Readings of sensors that are calibrated wrongly are
-// (1 + gain error) times the value plus an offset.
+// Hub encoder and tachometer are collocated with the motor. The force sensing resistor
+// (FSR) at the tip lags the force by a first-order rise, its resistance falls with the
+// force by a power law, and a voltage divider and an amplifier (Fig. 2.1) turn that into
+// volts. Its hysteresis is a play: the reading y follows a force f only as far as (1 - h)
+// f <= y <= (1 + h) f asks for, f being what has arrived through the lag, with every
+// extreme on its way from sample to sample. An impulse p is the limit of a force p/e over
+// a time e -> 0, larger than any play: the lag T rises by p/T, to f, and takes the play
+// to its lower edge, y >= (1 - h) f; without a lag f itself was without bounds and has
+// fallen, so that y = (1 + h) f behind it. Readings of sensors that are calibrated
+// wrongly are (1 + gain error) times the value plus an offset.
 //
-// Three more need not be there: the additional measurements that chapter 6 of the thesis wishes
-// for. A piezoelectric force sensor rises fast, goes off scale in an impact, and its charge leaks
-// away. A piezo film shows how much the beam bends and leaks too. An accelerometer on the hub has a
-// bandwidth.
+// Three more need not be there: the additional measurements that chapter 6 of the thesis
+// wishes for. A piezoelectric force sensor rises fast, goes off scale in an impact, and
+// its charge leaks away. A piezo film shows how much the beam bends and leaks too. An
+// accelerometer on the hub has a bandwidth.
 #pragma once
 
 #include <stdint.h>
@@ -55,12 +56,13 @@ typedef struct fsr_point {
 enum { FSR_POINTS_READ = 32 };
 
 typedef struct sensors {
-    sensor_parameters p;      // with sensor.ideal carried out
-    converter adc;            // the range of an ideal one is not limited [V]
-    double encoder_step;      // of a count, 0: continuous [rad]
-    noise_source noise;       // of tachometer and FSR
-    noise_source piezo_noise; // the other sensors have their own: fitting one shifts nothing
-    noise_source film_noise;  //
+    sensor_parameters p; // with sensor.ideal carried out
+    converter adc;       // the range of an ideal one is not limited [V]
+    double encoder_step; // of a count, 0: continuous [rad]
+    noise_source noise;  // of tachometer and FSR
+    noise_source
+        piezo_noise; // the other sensors have their own: fitting one shifts nothing
+    noise_source film_noise; //
     noise_source acceleration_noise;
     first_order_lag fsr;        // what has arrived in the FSR [N],
     double fsr_shown;           // and what its hysteresis makes of that [N]
@@ -68,10 +70,11 @@ typedef struct sensors {
     first_order_lag piezo_leak; // and the part of it that has leaked [N]
     first_order_lag film_leak;  // the part of the bending that has leaked [rad]
     first_order_lag acceleration;
-    double seen_velocity; // of the hub when the accelerometer last looked [rad/s], NaN before
-    // points of the FSR's curve that are known already, each a power that need not be raised again:
-    // cache for a constant force, and for the few codes of the A/D between which noise moves the
-    // reading
+    double seen_velocity; // of the hub when the accelerometer last looked [rad/s], NaN
+                          // before
+    // points of the FSR's curve that are known already, each a power that need not be
+    // raised again: cache for a constant force, and for the few codes of the A/D between
+    // which noise moves the reading
     fsr_point felt;
     fsr_point read[FSR_POINTS_READ];
     // the hub's angle last read, and what follows from it
@@ -80,8 +83,8 @@ typedef struct sensors {
     double ripple;     // of the tachometer, a factor
 } sensors;
 
-// What the sensors read, under the names of the recorded signals: volts read back through their
-// nominal curves. NaN where one is not fitted.
+// What the sensors read, under the names of the recorded signals: volts read back through
+// their nominal curves. NaN where one is not fitted.
 typedef struct sensor_reading {
     double encoder;       // hub angle [rad]
     double tachometer;    // hub velocity [rad/s]
@@ -91,22 +94,24 @@ typedef struct sensor_reading {
     double accelerometer; // hub acceleration [rad/s2]
 } sensor_reading;
 
-// Starts sensors at rest, their noise from the seed; sensor.ideal takes every imperfection away.
+// Starts sensors at rest, their noise from the seed; sensor.ideal takes every
+// imperfection away.
 void sensors_init(sensors *s, const sensor_parameters *p, int seed);
 // Gives the sensors other properties; the states of their lags and their noise continue.
 void sensors_retune(sensors *s, const sensor_parameters *p);
 
-// Whether sensors_follow over a flight, in which nothing presses, leaves the sensors as they are:
-// none of the force's remembers any, and those that feel the arm itself are not there.
+// Whether sensors_follow over a flight, in which nothing presses, leaves the sensors as
+// they are: none of the force's remembers any, and those that feel the arm itself are not
+// there.
 bool sensors_at_rest(const sensors *s);
 
-// Lets the sensors with a lag or a leak follow the arm over a time h [s]. Force, bending and hub
-// acceleration are each taken as the parabola that has the values of `first` and `last` at its ends
-// and their mean: of the force as given [N], of the acceleration what the velocity gained, of the
-// bending what the cubic through angles and rates has. Exact for such parabolas. A velocity that
-// jumped before `first` is a pulse of acceleration.
-void sensors_follow(sensors *s, double h, const sensed_motion *first, const sensed_motion *last,
-                    double mean_force);
+// Lets the sensors with a lag or a leak follow the arm over a time h [s]. Force, bending
+// and hub acceleration are each taken as the parabola that has the values of `first` and
+// `last` at its ends and their mean: of the force as given [N], of the acceleration what
+// the velocity gained, of the bending what the cubic through angles and rates has. Exact
+// for such parabolas. A velocity that jumped before `first` is a pulse of acceleration.
+void sensors_follow(sensors *s, double h, const sensed_motion *first,
+                    const sensed_motion *last, double mean_force);
 
 // Applies an impulse [N s] of the wall to the force sensors.
 void sensors_strike(sensors *s, double impulse);
@@ -114,10 +119,12 @@ void sensors_strike(sensors *s, double impulse);
 // Reads all sensors at once.
 sensor_reading sensors_read(sensors *s, const sensed_motion *now);
 
-// Volts at the A/D under a constant force [N], without noise and converter: divider and gain stage.
+// Volts at the A/D under a constant force [N], without noise and converter: divider and
+// gain stage.
 double fsr_volts(const sensor_parameters *p, double force);
 
-// The force [N] that gives these volts; 0 below, the saturation force above the sensor's range.
+// The force [N] that gives these volts; 0 below, the saturation force above the sensor's
+// range.
 double fsr_force(const sensor_parameters *p, double volts);
 
 // A converter of the given bits with the range -range to range; 0 bits: a continuous one.
@@ -126,12 +133,15 @@ converter converter_of(int bits, double range);
 // The nearest value that it has; of a continuous one the value itself within the range.
 static inline double converter_value(const converter *c, double value)
 {
-    const double within = value < -c->range ? -c->range : value < c->range ? value : c->range;
+    const double within = value < -c->range  ? -c->range
+                          : value < c->range ? value
+                                             : c->range;
     if (c->step == 0) {
         return within;
     }
 
-    // whole steps from the lower end of the range: a conversion that rounds positive numbers
+    // whole steps from the lower end of the range: a conversion that rounds positive
+    // numbers
     const double code = (double)(int64_t)((within + c->range) * c->a_unit + 0.5);
     return c->step * ((code < c->codes ? code : c->codes - 1) - c->codes / 2);
 }

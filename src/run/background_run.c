@@ -10,7 +10,8 @@ struct background_run {
     scenario scenario;
     run_options options;
     run_monitor monitor;
-    run_result result; // the thread's until it is over; the places of its rows never change
+    run_result
+        result; // the thread's until it is over; the places of its rows never change
     pthread_t thread;
     bool runs; // the thread has yet to be joined
 };
@@ -27,7 +28,9 @@ background_run *background_run_start(const scenario *s, const background_options
 {
     assert(how->rows_expected > 0);
     background_run *c = calloc(1, sizeof *c);
-    FAIL_IF(c == NULL, NULL);
+    if (c == NULL) {
+        return NULL;
+    }
 
     // the scenario and the rows that it begins with
     c->scenario = *s;
@@ -40,8 +43,8 @@ background_run *background_run_start(const scenario *s, const background_options
         c->result = *begun;
     }
 
-    // a new thread inherits the mask of the one that starts it: signals are for that one, which
-    // waits for input; without a thread it is computed here
+    // a new thread inherits the mask of the one that starts it: signals are for that one,
+    // which waits for input; without a thread it is computed here
     sigset_t before;
     worker_signals_block(&before);
     c->runs = !how->at_once && pthread_create(&c->thread, NULL, compute, c) == 0;
@@ -55,7 +58,8 @@ background_run *background_run_start(const scenario *s, const background_options
 bool background_run_wait(background_run *c, double seconds)
 {
     const struct timespec until = clock_after(seconds);
-    c->runs = c->runs && pthread_clockjoin_np(c->thread, NULL, CLOCK_MONOTONIC, &until) != 0;
+    c->runs =
+        c->runs && pthread_clockjoin_np(c->thread, NULL, CLOCK_MONOTONIC, &until) != 0;
     return !c->runs;
 }
 
@@ -72,7 +76,8 @@ size_t background_run_look(background_run *c, run_result *view)
                               .events = t->events,
                               .angle_count = t->angle_count,
                               .row_count = rows};
-        view->trace.event_count = atomic_load_explicit(&c->monitor.events, memory_order_acquire);
+        view->trace.event_count =
+            atomic_load_explicit(&c->monitor.events, memory_order_acquire);
     }
     return rows;
 }
@@ -94,7 +99,8 @@ run_result background_run_finish(background_run *c)
 
 void worker_signals_block(sigset_t *before)
 {
-    static const int crashes[] = {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL, SIGTRAP, SIGSYS};
+    static const int crashes[] = {SIGSEGV, SIGABRT, SIGFPE, SIGBUS,
+                                  SIGILL,  SIGTRAP, SIGSYS};
     sigset_t blocked;
     sigfillset(&blocked);
     for (size_t i = 0; i < sizeof crashes / sizeof crashes[0]; i++) {

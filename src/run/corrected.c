@@ -17,9 +17,11 @@
 #define GRID_TOLERANCE  1e-9  // of a step: the end so near a row of the grid has that row
 #define SAME_EVENT_TIME 1e-13 // events nearer than this come at once [s]
 
-enum { MOST_EVENTS_AT_ONCE = 100 }; // events without time passing before the run is given up
+enum {
+    MOST_EVENTS_AT_ONCE = 100
+}; // events without time passing before the run is given up
 
-// --- between stretches: script and rig --------------------------------------------------------
+// --- between stretches: script and rig -------------------------------------------------
 
 // Whether the stretch between two stops is through.
 static bool stretch_is_over(const corrected_run *c)
@@ -38,10 +40,11 @@ static status begin(corrected_run *c, fault *f)
 
     if (motion_unresolved(&c->arm, m)) {
         decimal_print(s->message, sizeof s->message,
-                      "steps of %g s do not resolve the fastest modes of %d links (%.3g rad/s): "
-                      "the method was %s, what happens within a few steps of an impact is rough; a "
-                      "shorter method.step resolves it",
-                      p->method.step, c->arm.links, c->arm.highest_frequency, m->engine->name);
+                      "steps of %g s do not resolve the fastest modes of %d links (%.3g "
+                      "rad/s): the method was %s, what happens within a few steps of an "
+                      "impact is rough; a shorter method.step resolves it",
+                      p->method.step, c->arm.links, c->arm.highest_frequency,
+                      m->engine->name);
     }
 
     TRY(recording_open_trace(r, c->arm.dof, f));
@@ -49,17 +52,21 @@ static status begin(corrected_run *c, fault *f)
     r->state.earlier_peak = -1;
     r->state.landing.before.angle[0] = (double)NAN;
     motion_start(&c->arm, m, p->initial.angle, p->initial.velocity);
-    FAULT_AT_IF(m->wall_moves && m->state[SLOT_GAP] < -DEEPEST, f, STATUS_BAD_SCENARIO,
-                "wall.motion",
-                "at t = 0 the wall has moved %.4g m past the arm, which must start in front of it "
-                "(initial.angle)",
-                -m->state[SLOT_GAP]);
-    TRY_MEMORY(corrected_begin_in_contact(c) == STATUS_OK, f);
+    if (m->wall_moves && m->state[SLOT_GAP] < -DEEPEST) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, "wall.motion",
+            "at t = 0 the wall has moved %.4g m past the arm, which must start "
+            "in front of it (initial.angle)",
+            -m->state[SLOT_GAP]);
+    }
+    if (corrected_begin_in_contact(c) != STATUS_OK) {
+        return fault_no_memory(f);
+    }
     return STATUS_OK;
 }
 
-// Samples the sensors and changes the command where the time for it has come. A step under way goes
-// on unless something changes.
+// Samples the sensors and changes the command where the time for it has come. A step
+// under way goes on unless something changes.
 static status run_rig(corrected_run *c, fault *f)
 {
     rig *on = c->recording->rig;
@@ -70,13 +77,16 @@ static status run_rig(corrected_run *c, fault *f)
     bool changed;
     const sensed_motion sensed = corrected_sensed_now(c);
     TRY(rig_act(on, now, &sensed, &changed, f));
-    TRY(changed ? corrected_end_step(c, f) : STATUS_OK);
+    if (changed) {
+        TRY(corrected_end_step(c, f));
+    }
     return corrected_pass_sample(c, changed);
 }
 
-// corrected_approach_step where a stretch is over, or the run is to begin; apart from it, which
-// then has little to do for most steps.
-static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *ended, fault *f)
+// corrected_approach_step where a stretch is over, or the run is to begin; apart from it,
+// which then has little to do for most steps.
+static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *ended,
+                                                      fault *f)
 {
     recording *r = c->recording;
     motion *m = c->motion;
@@ -87,36 +97,51 @@ static __attribute__((noinline)) status begin_stretch(corrected_run *c, bool *en
         const status failed = run_rig(c, f);
         r->state.grid_row = 1;
         const status recorded = corrected_record_row(c, m->state, 0);
-        TRY(failed == STATUS_OK ? recorded : failed);
+        if (failed == STATUS_OK) {
+            TRY(recorded);
+        } else {
+            TRY(failed);
+        }
     }
 
-    // script and rig act between stretches of motion, each ending where one of them is due
+    // script and rig act between stretches of motion, each ending where one of them is
+    // due
     while (stretch_is_over(c)) {
         *ended = !(corrected_now(c) < duration);
         if (*ended) {
             // the end may lie between rows of the grid
             const double last_row = (double)(r->state.grid_row - 1) * p->method.step;
-            return last_row < duration - GRID_TOLERANCE * p->method.step
-                       ? corrected_record_row(c, m->state, 0)
-                       : STATUS_OK;
+            if (last_row < duration - GRID_TOLERANCE * p->method.step) {
+                return corrected_record_row(c, m->state, 0);
+            }
+            return STATUS_OK;
         }
 
         // the mean force of the end begins to count here
         if (!c->stretch.open.goes_on && same_instant(m->state[SLOT_TIME], window)) {
-            r->state.integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+            r->state.integral_at_window =
+                state_quadratures(m, m->state)[QUADRATURE_FORCE];
             r->state.in_window = (force_bounds){0};
         }
 
-        // what is due now, then how far the motion may go by itself; steps are cut, and not planned
-        // for it, at an action and where the window begins
+        // what is due now, then how far the motion may go by itself; steps are cut, and
+        // not planned for it, at an action and where the window begins
         TRY(corrected_run_script(c, f));
         TRY(run_rig(c, f));
         const scenario *s = r->scenario;
         const int next = r->state.next_action;
         const double act = next < s->action_count ? s->actions[next].time : HUGE_VAL;
         const bool before = instant_after(window, m->state[SLOT_TIME]);
-        m->record.tstop = before ? smaller(window, act) : act;
-        c->stretch.stop = r->rig != NULL ? smaller(rig_next_time(r->rig), duration) : duration;
+        if (before) {
+            m->record.tstop = smaller(window, act);
+        } else {
+            m->record.tstop = act;
+        }
+        if (r->rig != NULL) {
+            c->stretch.stop = smaller(rig_next_time(r->rig), duration);
+        } else {
+            c->stretch.stop = duration;
+        }
         c->stretch.last_event = -1;
         c->stretch.at_once = 0;
     }
@@ -127,10 +152,13 @@ status corrected_approach_step(corrected_run *c, bool *ended, fault *f)
 {
     *ended = false;
     const bool within = c->recording->state.grid_row > 0 && !stretch_is_over(c);
-    return within ? STATUS_OK : begin_stretch(c, ended, f);
+    if (within) {
+        return STATUS_OK;
+    }
+    return begin_stretch(c, ended, f);
 }
 
-// --- a step -----------------------------------------------------------------------------------
+// --- a step ----------------------------------------------------------------------------
 
 // What comes of a step that ended where `report` says.
 static status record_step(corrected_run *c, motion_report *report)
@@ -142,20 +170,24 @@ static status record_step(corrected_run *c, motion_report *report)
     if (s == STATUS_OK && at_event) {
         s = corrected_pass_event(c, report);
         bool same = m->state[SLOT_TIME] - c->stretch.last_event < SAME_EVENT_TIME;
-        c->stretch.at_once = same ? c->stretch.at_once + 1 : 0;
+        if (same) {
+            c->stretch.at_once = c->stretch.at_once + 1;
+        } else {
+            c->stretch.at_once = 0;
+        }
         c->stretch.last_event = m->state[SLOT_TIME];
     }
     return s;
 }
 
-// --- the step under way -----------------------------------------------------------------------
+// --- the step under way ----------------------------------------------------------------
 
 // Whether the arm flies under a rig, in internal steps that outlast the run's.
 static bool flies_beyond_samples(const corrected_run *c)
 {
     const motion *m = c->motion;
-    return c->recording->rig != NULL && m->state[SLOT_CONTACT] == 0 && engine_is_dense(m->engine) &&
-           !m->out_of_memory && !motion_held_still(m);
+    return c->recording->rig != NULL && m->state[SLOT_CONTACT] == 0 &&
+           engine_is_dense(m->engine) && !m->out_of_memory && !motion_held_still(m);
 }
 
 void corrected_begin_step(corrected_run *c)
@@ -178,8 +210,8 @@ void corrected_begin_step(corrected_run *c)
                                   .sensed = corrected_sample_point_at(c, m->state)};
 }
 
-// What the sensors are fixed to at an instant [s] within the step under way: most see nothing but
-// the hub, and no force. False if the state there cannot be had.
+// What the sensors are fixed to at an instant [s] within the step under way: most see
+// nothing but the hub, and no force. False if the state there cannot be had.
 static bool sensed_within(const corrected_run *c, double time, sensed_motion *at)
 {
     motion *m = c->motion;
@@ -187,38 +219,51 @@ static bool sensed_within(const corrected_run *c, double time, sensed_motion *at
     *at = (sensed_motion){.force = 0};
     if (fitted->film || fitted->accelerometer) {
         double *state = motion_between(&c->arm, m, time, STATE_WHOLE);
-        FAIL_IF(state == NULL, false);
+        if (state == NULL) {
+            return false;
+        }
         *at = corrected_sensed_motion(c, state);
     }
 
-    const value_and_slope hub = motion_output(&c->arm, m, OUTPUT_HUB, time - m->state[SLOT_TIME]);
+    const value_and_slope hub =
+        motion_output(&c->arm, m, OUTPUT_HUB, time - m->state[SLOT_TIME]);
     at->angle = hub.value;
     at->velocity = hub.slope;
     return true;
 }
 
-// Continues to an instant [s] within the step under way, with rows and, where the rig acts there,
-// sensors.
+// Continues to an instant [s] within the step under way, with rows and, where the rig
+// acts there, sensors.
 static status go_along(corrected_run *c, double time, fault *f)
 {
     sample_point to = {.time = time, .integral = c->stretch.open.sensed.integral};
     status s = corrected_record_rows_to(c, time);
     if (s == STATUS_OK && time == c->stretch.stop) {
         const bool known = sensed_within(c, time, &to.at);
-        s = known ? corrected_follow_flight(c, &to) : STATUS_NOT_FINITE;
+        if (known) {
+            s = corrected_follow_flight(c, &to);
+        } else {
+            s = STATUS_NOT_FINITE;
+        }
     }
 
     // the run is there
     if (s == STATUS_OK) {
         c->stretch.open.now = time;
-        s = recording_asked_to_stop(c->recording) ? STATUS_STOPPED : s;
+        if (recording_asked_to_stop(c->recording)) {
+            s = STATUS_STOPPED;
+        }
     }
-    return s == STATUS_OK ? s : corrected_explain(c, s, f);
+    if (s == STATUS_OK) {
+        return s;
+    }
+    return corrected_explain(c, s, f);
 }
 
-// --- a step to its end ------------------------------------------------------------------------
+// --- a step to its end -----------------------------------------------------------------
 
-// Makes the next step, to `until` [s] or the event at its end, and records what comes of it.
+// Makes the next step, to `until` [s] or the event at its end, and records what comes of
+// it.
 static status make_step(corrected_run *c, double until, fault *f)
 {
     recording *r = c->recording;
@@ -237,17 +282,24 @@ static status make_step(corrected_run *c, double until, fault *f)
         s = STATUS_STOPPED;
     }
     recording_publish(r, m->state[SLOT_TIME]);
-    FAIL_IF(s == STATUS_OK && c->stretch.at_once > MOST_EVENTS_AT_ONCE,
-            corrected_explain_standstill(c, report.event, f));
-    FAIL_IF(s != STATUS_OK, corrected_explain(c, s, f));
-    return zeno_monitor_count(&c->zeno, &c->arm, m, r->scenario->parameters.run.duration, step, f);
+    if (s == STATUS_OK && c->stretch.at_once > MOST_EVENTS_AT_ONCE) {
+        return corrected_explain_standstill(c, report.event, f);
+    }
+    if (s != STATUS_OK) {
+        return corrected_explain(c, s, f);
+    }
+    return zeno_monitor_count(&c->zeno, &c->arm, m, r->scenario->parameters.run.duration,
+                              step, f);
 }
 
 status corrected_step(corrected_run *c, double until, fault *f)
 {
     recording *r = c->recording;
     motion *m = c->motion;
-    TRY_MEMORY(r->options->rows_expected == 0 || checkpoint_keep(r, m, c->stretch.last_event), f);
+    if (!(r->options->rows_expected == 0 ||
+          checkpoint_keep(r, m, c->stretch.last_event))) {
+        return fault_no_memory(f);
+    }
 
     // within the step under way
     if (!c->stretch.open.goes_on && flies_beyond_samples(c)) {
@@ -259,8 +311,8 @@ status corrected_step(corrected_run *c, double until, fault *f)
         return go_along(c, next, f);
     }
 
-    // or to the end of one; where it stops by itself it is that of a run that nobody steps, to the
-    // last bit
+    // or to the end of one; where it stops by itself it is that of a run that nobody
+    // steps, to the last bit
     if (until < c->stretch.stop && !c->stretch.open.goes_on) {
         m->record.tstop = smaller(m->record.tstop, until);
     }
@@ -290,7 +342,7 @@ status corrected_act_now(corrected_run *c, const action *todo, fault *f)
     return corrected_act(c, todo, -1, f);
 }
 
-// --- at present -------------------------------------------------------------------------------
+// --- at present ------------------------------------------------------------------------
 
 double *corrected_present(const corrected_run *c)
 {
@@ -298,7 +350,10 @@ double *corrected_present(const corrected_run *c)
     double *within = c->stretch.open.goes_on
                          ? motion_between(&c->arm, m, c->stretch.open.now, STATE_WHOLE)
                          : m->state;
-    return within != NULL ? within : m->state;
+    if (within != NULL) {
+        return within;
+    }
+    return m->state;
 }
 
 sensed_motion corrected_sensed_now(const corrected_run *c)
@@ -308,13 +363,16 @@ sensed_motion corrected_sensed_now(const corrected_run *c)
     if (!on->goes_on) {
         return corrected_sensed_motion(c, c->motion->state);
     }
-    return on->sensed.time == on->now || sensed_within(c, on->now, &at) ? at : on->sensed.at;
+    if (on->sensed.time == on->now || sensed_within(c, on->now, &at)) {
+        return at;
+    }
+    return on->sensed.at;
 }
 
-// --- beginning and end ------------------------------------------------------------------------
+// --- beginning and end -----------------------------------------------------------------
 
-// Sums the run up where it stands, as if it ended here: a step that fails in this does not end the
-// run, but may be lost.
+// Sums the run up where it stands, as if it ended here: a step that fails in this does
+// not end the run, but may be lost.
 static void end_and_summarise(corrected_run *c, status failed)
 {
     fault none;
@@ -390,7 +448,7 @@ motion *corrected_finish(corrected_run *c, status failed)
     return m;
 }
 
-// --- the state as bytes ------------------------------------------------------------------------
+// --- the state as bytes ----------------------------------------------------------------
 
 // The stretch, then what the motion remembers.
 

@@ -7,8 +7,8 @@
 #include "src/base/instant.h"
 #include "src/base/sincos.h"
 
-// What swings off the wall sooner than this after the start [s], with no larger force before [N],
-// does so at once; a derivative higher than the second decides.
+// What swings off the wall sooner than this after the start [s], with no larger force
+// before [N], does so at once; a derivative higher than the second decides.
 #define AT_ONCE  1e-6
 #define NO_FORCE 1e-9
 
@@ -25,7 +25,7 @@ void corrected_bind_arm(corrected_run *c)
     }
 }
 
-// --- events of the motion ---------------------------------------------------------------------
+// --- events of the motion --------------------------------------------------------------
 
 static status record_event(recording *r, const motion *m, event_kind kind,
                            const motion_report *report)
@@ -52,7 +52,8 @@ static void open_first_pulse(corrected_run *c, double impulse)
     motion_reset_peak(c->motion);
 }
 
-// Whether it is not the last link that meets a point but its line, on the other side of its base.
+// Whether it is not the last link that meets a point but its line, on the other side of
+// its base.
 static bool touches_from_behind(const corrected_run *c)
 {
     const arm *a = &c->arm;
@@ -66,8 +67,8 @@ static bool touches_from_behind(const corrected_run *c)
     return (a->wall.x - x) * inline_cos(last) + (a->wall.y - y) * inline_sin(last) < 0;
 }
 
-// Whether an arm that comes to the wall meets it where it stands at rest, not a face on its way
-// back.
+// Whether an arm that comes to the wall meets it where it stands at rest, not a face on
+// its way back.
 static bool lands(const motion *m)
 {
     return m->state[SLOT_FACE] < FACE_RETURNED;
@@ -79,10 +80,13 @@ static void open_landing(corrected_run *c, double impulse)
     recording_state *r = &c->recording->state;
     motion *m = c->motion;
     r->landing_open = true;
-    r->landing =
-        (landing){m->state[SLOT_TIME], impulse, (double)NAN, (double)NAN, r->landing.before};
-    r->earlier_peak =
-        isnan(c->recording->result->summary.first_contact_s) ? -1 : m->record.pulse_peak;
+    r->landing = (landing){m->state[SLOT_TIME], impulse, (double)NAN, (double)NAN,
+                           r->landing.before};
+    if (isnan(c->recording->result->summary.first_contact_s)) {
+        r->earlier_peak = -1;
+    } else {
+        r->earlier_peak = m->record.pulse_peak;
+    }
     r->earlier_peak_time = m->record.pulse_peak_time;
     motion_reset_peak(m);
 }
@@ -100,11 +104,11 @@ void corrected_close_landing(corrected_run *c)
 
 status corrected_begin_in_contact(corrected_run *c)
 {
-    // held by a rigid wall, or on one that gives: what goes into that is in contact, however hard
-    // the wall throws it back
+    // held by a rigid wall, or on one that gives: what goes into that is in contact,
+    // however hard the wall throws it back
     const motion *m = c->motion;
-    const bool leaves =
-        m->wall_gives && m->state[SLOT_GAP_VELOCITY] >= 0 && m->state[SLOT_GAP_ACCELERATION] > 0;
+    const bool leaves = m->wall_gives && m->state[SLOT_GAP_VELOCITY] >= 0 &&
+                        m->state[SLOT_GAP_ACCELERATION] > 0;
     if (m->state[SLOT_CONTACT] == 0 || leaves) {
         return STATUS_OK;
     }
@@ -137,12 +141,14 @@ void corrected_tell_bounds(force_bounds bounds, double *low, double *high)
     }
 }
 
-// Whether an arm that started on the wall has swung off at once, without ever pressing on it.
+// Whether an arm that started on the wall has swung off at once, without ever pressing on
+// it.
 static bool has_not_touched(const corrected_run *c)
 {
     const summary *s = &c->recording->result->summary;
     return s->first_contact_s < AT_ONCE && s->contact_impulse_Ns == 0 &&
-           c->motion->state[SLOT_TIME] < AT_ONCE && !(c->motion->record.pulse_peak > NO_FORCE);
+           c->motion->state[SLOT_TIME] < AT_ONCE &&
+           !(c->motion->record.pulse_peak > NO_FORCE);
 }
 
 // What the trace calls the event.
@@ -154,18 +160,23 @@ static event_kind kind_of(const motion *m, const motion_report *report)
                                        [MOTION_STICK] = EVENT_STICK,
                                        [MOTION_SLIP] = EVENT_SLIP};
     // the hub came to rest: does friction hold it?
-    bool turns_back = report->event == MOTION_STICK && m->state[SLOT_FRICTION] != HUB_STICK;
-    return turns_back ? EVENT_REVERSAL : kinds[report->event];
+    bool turns_back =
+        report->event == MOTION_STICK && m->state[SLOT_FRICTION] != HUB_STICK;
+    if (turns_back) {
+        return EVENT_REVERSAL;
+    }
+    return kinds[report->event];
 }
 
-// Adds the events that one which has just been recorded brought with it, or a change from outside:
-// what was in contact no longer is, friction holds or lets go the hub.
+// Adds the events that one which has just been recorded brought with it, or a change from
+// outside: what was in contact no longer is, friction holds or lets go the hub.
 static status record_consequences(corrected_run *c, contact_state before,
                                   const motion_report *report)
 {
     recording *r = c->recording;
     const motion *m = c->motion;
-    const bool holds = m->state[SLOT_FRICTION] == HUB_STICK, held = before.friction == HUB_STICK;
+    const bool holds = m->state[SLOT_FRICTION] == HUB_STICK,
+               held = before.friction == HUB_STICK;
     const bool contact = m->state[SLOT_CONTACT] != 0;
     if (before.contact && !contact && report->event != MOTION_RELEASE) {
         TRY(record_event(r, m, EVENT_RELEASE, report));
@@ -174,11 +185,14 @@ static status record_consequences(corrected_run *c, contact_state before,
         TRY(record_event(r, m, EVENT_STICK, report));
     }
     const bool slips = held && !holds && report->event != MOTION_SLIP;
-    return slips ? record_event(r, m, EVENT_SLIP, report) : STATUS_OK;
+    if (slips) {
+        return record_event(r, m, EVENT_SLIP, report);
+    }
+    return STATUS_OK;
 }
 
-// Puts an event that has just been applied into trace and summary; `before`: the contact state that
-// it ended.
+// Puts an event that has just been applied into trace and summary; `before`: the contact
+// state that it ended.
 static status record_applied_event(corrected_run *c, contact_state before,
                                    const motion_report *report)
 {
@@ -187,7 +201,8 @@ static status record_applied_event(corrected_run *c, contact_state before,
     summary *s = &r->result->summary;
     const bool closes = report->event == MOTION_IMPACT || report->event == MOTION_TOUCH;
 
-    // the event itself; where a start on the wall was no touch, what follows has nothing to release
+    // the event itself; where a start on the wall was no touch, what follows has nothing
+    // to release
     if (report->event != MOTION_RELEASE || !isnan(s->first_contact_s)) {
         TRY(record_event(r, m, kind_of(m, report), report));
     }
@@ -229,16 +244,22 @@ static status record_applied_event(corrected_run *c, contact_state before,
     return STATUS_OK;
 }
 
-// Records what a push, which may be an impact, a change of a parameter or a command has done to the
-// contact state.
+// Records what a push, which may be an impact, a change of a parameter or a command has
+// done to the contact state.
 static status record_change(corrected_run *c, contact_state before, motion_report *report)
 {
     const bool contact = c->motion->state[SLOT_CONTACT] != 0;
     if (report->event == MOTION_REACHED && contact != before.contact) {
-        report->event = contact ? MOTION_TOUCH : MOTION_RELEASE;
+        if (contact) {
+            report->event = MOTION_TOUCH;
+        } else {
+            report->event = MOTION_RELEASE;
+        }
     }
-    return report->event == MOTION_REACHED ? record_consequences(c, before, report)
-                                           : record_applied_event(c, before, report);
+    if (report->event == MOTION_REACHED) {
+        return record_consequences(c, before, report);
+    }
+    return record_applied_event(c, before, report);
 }
 
 // Adds the impulse of an impact that has just been applied to the force sensors' lag.
@@ -246,7 +267,8 @@ static void add_impulse_to_sensors(corrected_run *c, const motion_report *report
 {
     rig *on = c->recording->rig;
     // an impulse that the next step is to deliver is part of that step's force
-    if (on != NULL && report->event == MOTION_IMPACT && c->motion->state[SLOT_IMPULSE] == 0) {
+    if (on != NULL && report->event == MOTION_IMPACT &&
+        c->motion->state[SLOT_IMPULSE] == 0) {
         sensors_strike(&on->sensors, report->impulse);
     }
 }
@@ -262,7 +284,8 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
     if (closes && lands(m) && first->time == 0) {
         const double *q = state_angles(m, m->state), *w = state_velocities(m, m->state);
         const int link = c->arm.first, last = c->arm.dof - 1;
-        first->before = (three_body_state){{q[0], q[link], q[last]}, {w[0], w[link], w[last]}};
+        first->before =
+            (three_body_state){{q[0], q[link], q[last]}, {w[0], w[link], w[last]}};
     }
 
     // and after it
@@ -275,7 +298,7 @@ status corrected_pass_event(corrected_run *c, motion_report *report)
     return corrected_record_row(c, m->state, report->impulse);
 }
 
-// --- the script -------------------------------------------------------------------------------
+// --- the script ------------------------------------------------------------------------
 
 // Whether the wall stays in front of the arm, if the action moves it.
 static status check_wall(const corrected_run *c, const action *todo, fault *f)
@@ -290,13 +313,15 @@ static status check_wall(const corrected_run *c, const action *todo, fault *f)
     const status code = action_apply(todo, &p, f);
     arm after = c->arm;
     wall_init(&after.wall, &p);
-    const double gap = motion_gap_with(&after, m), least = m->state[SLOT_CONTACT] != 0 ? -1e-12 : 0;
-    return code != STATUS_OK || gap >= least
-               ? code
-               : fault_set_at(f, STATUS_BAD_SCENARIO, "wall.angle",
-                              "at t = %.9g s wall.angle = %.9g rad would leave the arm %.4g m "
-                              "behind the wall, expected one in front of it",
-                              m->state[SLOT_TIME], p.wall.angle, -gap);
+    const double gap = motion_gap_with(&after, m),
+                 least = m->state[SLOT_CONTACT] != 0 ? -1e-12 : 0;
+    if (code != STATUS_OK || gap >= least) {
+        return code;
+    }
+    return fault_set_at(f, STATUS_BAD_SCENARIO, "wall.angle",
+                        "at t = %.9g s wall.angle = %.9g rad would leave the arm %.4g m "
+                        "behind the wall, expected one in front of it",
+                        m->state[SLOT_TIME], p.wall.angle, -gap);
 }
 
 // Sets a parameter, under which the arm continues in its present state.
@@ -307,7 +332,8 @@ static status set_parameter(corrected_run *c, const action *todo, fault *f)
     recording_before_change(r, todo, now, state_angles(c->motion, c->motion->state)[0]);
     const status failed = recording_set(r, todo, now, f);
 
-    // a voltage changes nothing but the torque; else the motion continues with an arm bound anew
+    // a voltage changes nothing but the torque; else the motion continues with an arm
+    // bound anew
     if (todo->parameter == PARAMETER_INDEX(motor.voltage)) {
         const double before = c->arm.motor.torque;
         if (r->rig == NULL) {
@@ -346,10 +372,11 @@ status corrected_act(corrected_run *c, const action *todo, int index, fault *f)
         motion_push(&c->arm, m, todo->value, &report);
         add_impulse_to_sensors(c, &report);
         if (!isfinite(m->state[SLOT_EXTERNAL_WORK])) {
-            failed = fault_set(f, STATUS_NOT_FINITE,
-                               "at t = %.9g s: a push of %g N s gives the arm more energy than "
-                               "there are numbers for",
-                               m->state[SLOT_TIME], todo->value);
+            failed = fault_set(
+                f, STATUS_NOT_FINITE,
+                "at t = %.9g s: a push of %g N s gives the arm more energy than "
+                "there are numbers for",
+                m->state[SLOT_TIME], todo->value);
         }
     }
     r->state.last_jump = m->state[SLOT_TIME];
@@ -367,13 +394,14 @@ status corrected_run_script(corrected_run *c, fault *f)
     const scenario *s = c->recording->scenario;
     int *next = &c->recording->state.next_action;
     const double now = c->motion->state[SLOT_TIME];
-    for (; *next < s->action_count && !instant_after(s->actions[*next].time, now); ++*next) {
+    for (; *next < s->action_count && !instant_after(s->actions[*next].time, now);
+         ++*next) {
         TRY(corrected_act(c, &s->actions[*next], *next, f));
     }
     return STATUS_OK;
 }
 
-// --- the rig ----------------------------------------------------------------------------------
+// --- the rig ---------------------------------------------------------------------------
 
 // Puts the rig's command into effect.
 static status apply_command(corrected_run *c)
@@ -388,8 +416,11 @@ static status apply_command(corrected_run *c)
     arm_set_voltage(&c->arm, r->rig->voltage);
     motion_retorque(&c->arm, m, torque);
 
-    // less torque may let the contact go, or hold the hub no more; the first command finds it so
-    before.friction = now > 0 ? before.friction : contact_state_of(m->state).friction;
+    // less torque may let the contact go, or hold the hub no more; the first command
+    // finds it so
+    if (!(now > 0)) {
+        before.friction = contact_state_of(m->state).friction;
+    }
     motion_report done = {.event = MOTION_REACHED};
     return record_change(c, before, &done);
 }
@@ -408,6 +439,11 @@ status corrected_pass_sample(corrected_run *c, bool changed)
     if (sampled) {
         recording_show_sample(r);
     }
-    TRY(changed ? apply_command(c) : STATUS_OK);
-    return jumps ? corrected_record_row(c, corrected_present(c), 0) : STATUS_OK;
+    if (changed) {
+        TRY(apply_command(c));
+    }
+    if (jumps) {
+        return corrected_record_row(c, corrected_present(c), 0);
+    }
+    return STATUS_OK;
 }

@@ -7,17 +7,18 @@
 
 #define SHORTEST_MEAN 1e-9 // a step shorter than this has the mean of its ends [s]
 
-// By how much a mean may leave the range of its force: a share of it, and of the integral so far.
+// By how much a mean may leave the range of its force: a share of it, and of the integral
+// so far.
 #define BEYOND_RANGE    1e-6
 #define INTEGRAL_DIGITS 1e-14
 
-// Largest (fastest rate) x (time) of a piece: over it a parabola is exact to 1e-4 of the fastest
-// mode's force, and to 1e-5 of what sensors with a lag see of it.
+// Largest (fastest rate) x (time) of a piece: over it a parabola is exact to 1e-4 of the
+// fastest mode's force, and to 1e-5 of what sensors with a lag see of it.
 #define FORCE_REACH  0.25
 #define SENSOR_REACH 0.5
 
-// A slope at the start that predicts this many times the change found over a piece belongs to a
-// decay.
+// A slope at the start that predicts this many times the change found over a piece
+// belongs to a decay.
 #define FALLS_AT_ONCE 4
 
 enum { MOST_PIECES = 64 };
@@ -48,25 +49,29 @@ static force_step force_over_step(const motion *m)
     double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
                       state_quadratures(m, m->trial)[QUADRATURE_FORCE];
 
-    // between stops that differ by rounding only, the integral's difference is all rounding
+    // between stops that differ by rounding only, the integral's difference is all
+    // rounding
     double ends = (start[SLOT_FORCE] + m->state[SLOT_FORCE]) / 2;
     return (force_step){start[SLOT_TIME], m->state[SLOT_TIME], start[SLOT_FORCE],
-                        m->state[SLOT_FORCE], length > SHORTEST_MEAN ? integral / length : ends};
+                        m->state[SLOT_FORCE],
+                        length > SHORTEST_MEAN ? integral / length : ends};
 }
 
-// Whether the mean over the step just made lies within what the force is in it: from zero to the
-// bound that a dense engine has of it.
+// Whether the mean over the step just made lies within what the force is in it: from zero
+// to the bound that a dense engine has of it.
 static bool mean_is_possible(const motion *m, const force_step *force)
 {
     const double total = state_quadratures(m, m->state)[QUADRATURE_FORCE];
     const double most = larger(larger(force->first, force->last), m->most_force);
-    const double slack = BEYOND_RANGE * (1 + most) +
-                         INTEGRAL_DIGITS * total / larger(force->end - force->start, SHORTEST_MEAN);
-    return !engine_is_dense(m->engine) || (force->mean >= -slack && force->mean <= most + slack);
+    const double slack =
+        BEYOND_RANGE * (1 + most) +
+        INTEGRAL_DIGITS * total / larger(force->end - force->start, SHORTEST_MEAN);
+    return !engine_is_dense(m->engine) ||
+           (force->mean >= -slack && force->mean <= most + slack);
 }
 
-// Number of pieces for a step of large (fastest rate) x (length), so that a parabola is accurate in
-// each. Only dense engines make such steps.
+// Number of pieces for a step of large (fastest rate) x (length), so that a parabola is
+// accurate in each. Only dense engines make such steps.
 static int pieces_of_step(const corrected_run *c, double length, double reach)
 {
     motion *m = c->motion;
@@ -76,13 +81,17 @@ static int pieces_of_step(const corrected_run *c, double length, double reach)
     double pieces = length * motion_vibration(&c->arm, m, m->trial) / reach;
     const double whole = state_kept(m, m->trial)[KEPT_LENGTH];
     if (m->engine->parabolas > 0 && whole > 0) { // it follows nothing that is faster
-        pieces = smaller(pieces, m->engine->parabolas * FORCE_REACH / reach * (length / whole));
+        pieces = smaller(pieces,
+                         m->engine->parabolas * FORCE_REACH / reach * (length / whole));
     }
     if (!(pieces > 1) || motion_held_still(m)) {
         return 1;
     }
     const int least = pieces < MOST_PIECES ? (int)pieces : MOST_PIECES;
-    return least < MOST_PIECES ? least + (least < pieces) : MOST_PIECES;
+    if (least < MOST_PIECES) {
+        return least + (least < pieces);
+    }
+    return MOST_PIECES;
 }
 
 // Whether the decays that an event excites are faster than the arm's vibrations.
@@ -91,18 +100,20 @@ static bool decays_outrun(const arm *a)
     return a->fastest_decay > a->highest_frequency;
 }
 
-// Where the next piece of a step ends that goes from `time` to `end` and is taken in parabolas [s],
-// as long as what the last event set going decays faster than the arm vibrates. False where equal
-// pieces do for the rest.
-static bool next_decay_piece(const corrected_run *c, double time, double end, double reach,
-                             double *next)
+// Where the next piece of a step ends that goes from `time` to `end` and is taken in
+// parabolas [s], as long as what the last event set going decays faster than the arm
+// vibrates. False where equal pieces do for the rest.
+static bool next_decay_piece(const corrected_run *c, double time, double end,
+                             double reach, double *next)
 {
     const arm *a = &c->arm;
-    if (!decays_outrun(a) || !engine_is_dense(c->motion->engine) || motion_held_still(c->motion)) {
+    if (!decays_outrun(a) || !engine_is_dense(c->motion->engine) ||
+        motion_held_still(c->motion)) {
         return false;
     }
     const double since = time - c->recording->state.last_jump;
-    const double length = larger(motion_decay_length(a, reach, since), instant_tolerance(time));
+    const double length =
+        larger(motion_decay_length(a, reach, since), instant_tolerance(time));
     const double equal = larger(reach / a->highest_frequency, (end - time) / MOST_PIECES);
     *next = time + length;
     return length < equal && *next < end;
@@ -112,9 +123,10 @@ int corrected_force_pieces(const corrected_run *c, double length)
 {
     const double now = c->motion->state[SLOT_TIME];
     double next;
-    return next_decay_piece(c, now, now + length, FORCE_REACH, &next)
-               ? 0
-               : pieces_of_step(c, length, FORCE_REACH);
+    if (next_decay_piece(c, now, now + length, FORCE_REACH, &next)) {
+        return 0;
+    }
+    return pieces_of_step(c, length, FORCE_REACH);
 }
 
 sample_point corrected_sample_point_at(const corrected_run *c, double *state)
@@ -135,20 +147,23 @@ static bool go_to(const corrected_run *c, sample_point *w, double time)
 }
 
 // Takes a piece of the step just made, over which the force has that mean [N].
-typedef status (*piece_taker)(corrected_run *c, const sample_point *from, const sample_point *to,
-                              double mean);
+typedef status (*piece_taker)(corrected_run *c, const sample_point *from,
+                              const sample_point *to, double mean);
 
-// Continues to an instant within the step, a stretch of this length [s], and hands it over.
+// Continues to an instant within the step, a stretch of this length [s], and hands it
+// over.
 static status take_piece(corrected_run *c, sample_point *w, double time, double length,
                          piece_taker take)
 {
     const sample_point from = *w;
-    return go_to(c, w, time) ? take(c, &from, w, (w->integral - from.integral) / length)
-                             : STATUS_NOT_FINITE;
+    if (go_to(c, w, time)) {
+        return take(c, &from, w, (w->integral - from.integral) / length);
+    }
+    return STATUS_NOT_FINITE;
 }
 
-// Follows, piece by piece, the fast decay that an event has excited, up to where equal pieces are
-// enough for the rest of the step, which ends at `end` [s].
+// Follows, piece by piece, the fast decay that an event has excited, up to where equal
+// pieces are enough for the rest of the step, which ends at `end` [s].
 static status follow_decay(corrected_run *c, sample_point *w, double end, double reach,
                            piece_taker take)
 {
@@ -159,27 +174,31 @@ static status follow_decay(corrected_run *c, sample_point *w, double end, double
     return STATUS_OK;
 }
 
-// Whether a force begins with a decay that is over at once: it shows in the slope at the start
-// only, which then says nothing about the mean.
+// Whether a force begins with a decay that is over at once: it shows in the slope at the
+// start only, which then says nothing about the mean.
 static bool falls_at_once(value_and_slope first, value_and_slope last, double width)
 {
     const double shown = fabs(last.value - first.value) + fabs(last.slope) * width;
     return fabs(first.slope) * width > FALLS_AT_ONCE * shown;
 }
 
-// Keeps the force over equal pieces of the rest of the step just made, `before` being its integral
-// up to there: each has the mean of the cubic through both ends' values and slopes. A step may
-// begin with a decay that is over at once, which only the motion's own integral knows.
+// Keeps the force over equal pieces of the rest of the step just made, `before` being its
+// integral up to there: each has the mean of the cubic through both ends' values and
+// slopes. A step may begin with a decay that is over at once, which only the motion's own
+// integral knows.
 static status record_equal_pieces(corrected_run *c, const force_step *rest, double before,
                                   int count)
 {
     motion *m = c->motion;
     value_and_slope at[MOST_PIECES + 1];
     force_step *kept = force_history_extend(forces_of(c), (size_t)count);
-    FAIL_IF(kept == NULL, STATUS_NO_MEMORY);
+    if (kept == NULL) {
+        return STATUS_NO_MEMORY;
+    }
 
     // the force at the start and at the ends of all pieces
-    const double since = rest->start - m->trial[SLOT_TIME], width = (m->step.last - since) / count;
+    const double since = rest->start - m->trial[SLOT_TIME],
+                 width = (m->step.last - since) / count;
     m->engine->dense_output(&c->arm, m, OUTPUT_FORCE, since, m->step.last, count, at);
 
     const double slope_share = width / 12;
@@ -198,22 +217,24 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
 
     if (falls_at_once(at[0], at[1], width)) {
         sample_point w;
-        FAIL_IF(!go_to(c, &w, kept[0].end), STATUS_NOT_FINITE);
+        if (!go_to(c, &w, kept[0].end)) {
+            return STATUS_NOT_FINITE;
+        }
         kept[0].mean = (w.integral - before) / width;
     }
     return STATUS_OK;
 }
 
 // Keeps the force over a piece of the step.
-static status keep_force(corrected_run *c, const sample_point *from, const sample_point *to,
-                         double mean)
+static status keep_force(corrected_run *c, const sample_point *from,
+                         const sample_point *to, double mean)
 {
     const force_step piece = {from->time, to->time, from->at.force, to->at.force, mean};
     return force_history_add(forces_of(c), piece);
 }
 
-// Keeps the force over the step just made, in pieces over which it is nearly a parabola: so many
-// where nothing decays.
+// Keeps the force over the step just made, in pieces over which it is nearly a parabola:
+// so many where nothing decays.
 static status record_force(corrected_run *c, const force_step *whole, int pieces)
 {
     const motion *m = c->motion;
@@ -238,19 +259,25 @@ static status record_force(corrected_run *c, const force_step *whole, int pieces
         pieces = pieces_of_step(c, length, FORCE_REACH);
         rest.mean = (state_quadratures(m, m->state)[QUADRATURE_FORCE] - before) / length;
     }
-    return pieces > 1 ? record_equal_pieces(c, &rest, before, pieces)
-                      : force_history_add(forces_of(c), rest);
+    if (pieces > 1) {
+        return record_equal_pieces(c, &rest, before, pieces);
+    }
+    return force_history_add(forces_of(c), rest);
 }
 
 // Lets the sensors follow the arm over a piece of the step.
-static status sense(corrected_run *c, const sample_point *from, const sample_point *to, double mean)
+static status sense(corrected_run *c, const sample_point *from, const sample_point *to,
+                    double mean)
 {
-    sensors_follow(&c->recording->rig->sensors, to->time - from->time, &from->at, &to->at, mean);
+    sensors_follow(&c->recording->rig->sensors, to->time - from->time, &from->at, &to->at,
+                   mean);
     return STATUS_OK;
 }
 
-// Lets the sensors follow the arm from where w is to `last`, the force having that mean [N].
-static status follow_to(corrected_run *c, sample_point w, const sample_point *last, double mean)
+// Lets the sensors follow the arm from where w is to `last`, the force having that mean
+// [N].
+static status follow_to(corrected_run *c, sample_point w, const sample_point *last,
+                        double mean)
 {
     const double begin = w.time;
     TRY(follow_decay(c, &w, last->time, SENSOR_REACH, sense));
@@ -264,21 +291,26 @@ static status follow_to(corrected_run *c, sample_point w, const sample_point *la
 
     // the last piece ends where the way does
     const bool part = w.time > begin;
-    return sense(c, &w, last, part ? (last->integral - w.integral) / (length / pieces) : mean);
+    return sense(c, &w, last,
+                 part ? (last->integral - w.integral) / (length / pieces) : mean);
 }
 
 status corrected_follow_flight(corrected_run *c, const sample_point *to)
 {
     sample_point *sensed = &c->stretch.open.sensed;
     const bool rest = sensors_at_rest(&c->recording->rig->sensors);
-    const status s = rest ? STATUS_OK : follow_to(c, *sensed, to, 0);
+    status s = STATUS_OK;
+    if (!rest) {
+        s = follow_to(c, *sensed, to, 0);
+    }
     *sensed = *to;
     return s;
 }
 
-// Lets the sensors follow the arm over the step just made, or over what is left of it. One piece: a
-// parabola represents the force over all of it.
-static status follow_with_sensors(corrected_run *c, const force_step *whole, bool one_piece)
+// Lets the sensors follow the arm over the step just made, or over what is left of it.
+// One piece: a parabola represents the force over all of it.
+static status follow_with_sensors(corrected_run *c, const force_step *whole,
+                                  bool one_piece)
 {
     const motion *m = c->motion;
     sensors *felt = &c->recording->rig->sensors;
@@ -300,8 +332,8 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole, boo
     return follow_to(c, first, &last, rest ? 0 : whole->mean);
 }
 
-// Follows the bounds of a force that is not determined, over the step just made: Simpson's rule
-// over its pieces.
+// Follows the bounds of a force that is not determined, over the step just made:
+// Simpson's rule over its pieces.
 static status follow_bounds(corrected_run *c, const force_step *whole)
 {
     motion *m = c->motion;
@@ -315,11 +347,18 @@ static status follow_bounds(corrected_run *c, const force_step *whole)
     for (int i = 0; i <= halves; i++) {
         const bool inner = i > 0 && i < halves;
         const double share = (inner ? i % 2 != 0 ? 4 : 2 : 1) * length / (3 * halves);
-        double *state =
-            inner    ? motion_between(&c->arm, m, whole->start + i * length / halves, STATE_WHOLE)
-            : i == 0 ? m->trial
-                     : m->state;
-        FAIL_IF(state == NULL, STATUS_NOT_FINITE);
+        double *state;
+        if (inner) {
+            state = motion_between(&c->arm, m, whole->start + i * length / halves,
+                                   STATE_WHOLE);
+        } else if (i == 0) {
+            state = m->trial;
+        } else {
+            state = m->state;
+        }
+        if (state == NULL) {
+            return STATUS_NOT_FINITE;
+        }
         const force_bounds at = motion_force_bounds(&c->arm, m, state);
         r->in_window.low += share * at.low;
         r->in_window.high += share * at.high;
@@ -332,10 +371,12 @@ static status follow_bounds(corrected_run *c, const force_step *whole)
 status corrected_record_forces(corrected_run *c)
 {
     const force_step force = force_over_step(c->motion);
-    FAIL_IF(!mean_is_possible(c->motion, &force), STATUS_IMPOSSIBLE_MEAN);
+    if (!mean_is_possible(c->motion, &force)) {
+        return STATUS_IMPOSSIBLE_MEAN;
+    }
 
-    // most under a rig need not be cut in pieces, which are shorter for the force than for the
-    // sensors
+    // most under a rig need not be cut in pieces, which are shorter for the force than
+    // for the sensors
     const bool touches = c->motion->trial[SLOT_CONTACT] != 0;
     const int pieces = touches ? pieces_of_step(c, c->motion->step.last, FORCE_REACH) : 0;
     const bool one_piece = pieces == 1 && !decays_outrun(&c->arm);
@@ -346,5 +387,8 @@ status corrected_record_forces(corrected_run *c)
         return STATUS_OK;
     }
     TRY(follow_bounds(c, &force));
-    return one_piece ? force_history_add(forces_of(c), force) : record_force(c, &force, pieces);
+    if (one_piece) {
+        return force_history_add(forces_of(c), force);
+    }
+    return record_force(c, &force, pieces);
 }

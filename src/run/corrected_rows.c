@@ -6,12 +6,14 @@
 #include "src/run/corrected.h"
 #include "src/run/recording.h"
 
-// --- rows -------------------------------------------------------------------------------------
+// --- rows ------------------------------------------------------------------------------
 
-#define TINY_ENERGY    1e-9 // below it nothing is called unstable [J]
-#define TINY_TURN      1e-2 // nor below what the motor does in this turn [rad]
-#define WRONG_ENERGY   0.1  // share of the energy turned over that may not be unaccounted for
-#define GRID_TOLERANCE 1e-9 // of a step: a row of the grid so near a step's end lies at it
+#define TINY_ENERGY 1e-9 // below it nothing is called unstable [J]
+#define TINY_TURN   1e-2 // nor below what the motor does in this turn [rad]
+// share of the energy turned over that may not be unaccounted for
+#define WRONG_ENERGY 0.1
+// of a step: a row of the grid so near a step's end lies at it
+#define GRID_TOLERANCE 1e-9
 
 // corrected_audit for a state that holds that energy.
 static inline status audit(corrected_run *c, state_energy has)
@@ -23,13 +25,20 @@ static inline status audit(corrected_run *c, state_energy has)
     s->energy_residual_J = larger(fabs(residual), s->energy_residual_J);
 
     const double torque = c->arm.motor.torque + m->state[SLOT_MOTOR_TORQUE];
-    double turned_over = fabs(motion_motor_work(m, m->state)) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
-                         fabs(held) + fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED]) +
+    double turned_over = fabs(motion_motor_work(m, m->state)) +
+                         fabs(m->state[SLOT_EXTERNAL_WORK]) + fabs(held) +
+                         fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED]) +
                          m->record.start_energy + fabs(torque) * TINY_TURN + TINY_ENERGY;
-    // steps that do not resolve the fastest modes damp them: there energy may vanish, not appear
+    // steps that do not resolve the fastest modes damp them: there energy may vanish, not
+    // appear
     double wrong = motion_unresolved(&c->arm, m) ? residual : fabs(residual);
-    FAIL_IF(!isfinite(residual) || !isfinite(turned_over), STATUS_NOT_FINITE);
-    return wrong > WRONG_ENERGY * turned_over ? STATUS_UNSTABLE : STATUS_OK;
+    if (!isfinite(residual) || !isfinite(turned_over)) {
+        return STATUS_NOT_FINITE;
+    }
+    if (wrong > WRONG_ENERGY * turned_over) {
+        return STATUS_UNSTABLE;
+    }
+    return STATUS_OK;
 }
 
 status corrected_audit(corrected_run *c)
@@ -38,7 +47,8 @@ status corrected_audit(corrected_run *c)
 }
 
 // The row of a state that holds that energy.
-static sample row_of(const corrected_run *c, double *state, state_energy has, double impulse)
+static sample row_of(const corrected_run *c, double *state, state_energy has,
+                     double impulse)
 {
     const arm *a = &c->arm;
     const motion *m = c->motion;
@@ -82,8 +92,9 @@ static sample row_of(const corrected_run *c, double *state, state_energy has, do
         .energy_residual = motion_unaccounted(m, state, has.kinetic + has.strain + held),
         .wall_energy = rigid ? (double)NAN : motion_wall_energy(a, m, state),
         .wall_loss = rigid ? (double)NAN : quadrature[QUADRATURE_WALL],
-        .wall_place = wall_moves(&a->wall) ? wall_motion_at(&a->wall.motion, state[SLOT_TIME]).place
-                                           : (double)NAN,
+        .wall_place = wall_moves(&a->wall)
+                          ? wall_motion_at(&a->wall.motion, state[SLOT_TIME]).place
+                          : (double)NAN,
         .wall_work = wall_moves(&a->wall) ? quadrature[QUADRATURE_PUSHED] : (double)NAN,
         .weight_energy = a->gravity != 0 ? chain_weight_energy(a, q) : (double)NAN,
         .face_depth = rigid ? (double)NAN : state[SLOT_FACE],
@@ -98,7 +109,8 @@ sample corrected_row(const corrected_run *c, double *state)
     return row_of(c, state, motion_energy(&c->arm, c->motion, state), 0);
 }
 
-static status record_row_of(corrected_run *c, double *state, state_energy has, double impulse)
+static status record_row_of(corrected_run *c, double *state, state_energy has,
+                            double impulse)
 {
     const motion *m = c->motion;
     const sample row = row_of(c, state, has, impulse);
@@ -115,8 +127,8 @@ status corrected_record_row(corrected_run *c, double *state, double impulse)
     return record_row_of(c, state, has, impulse);
 }
 
-// Records rows within the step just made or under way, stepped to again from its start: side by
-// side if the engine can do that.
+// Records rows within the step just made or under way, stepped to again from its start:
+// side by side if the engine can do that.
 static status record_within(corrected_run *c, const double *times, int count)
 {
     motion *m = c->motion;
@@ -127,15 +139,21 @@ static status record_within(corrected_run *c, const double *times, int count)
             TRY(record_row_of(c, m->between + i * m->size, has[i], 0));
         } else {
             double *state = motion_between(&c->arm, m, times[i], STATE_WHOLE);
-            TRY(state ? corrected_record_row(c, state, 0) : STATUS_NOT_FINITE);
+            if (state) {
+                TRY(corrected_record_row(c, state, 0));
+            } else {
+                TRY(STATUS_NOT_FINITE);
+            }
         }
-        FAIL_IF(recording_asked_to_stop(c->recording), STATUS_STOPPED);
+        if (recording_asked_to_stop(c->recording)) {
+            return STATUS_STOPPED;
+        }
     }
     return STATUS_OK;
 }
 
-// Records the rows of the grid before an instant [s], which lie within the step just made or under
-// way.
+// Records the rows of the grid before an instant [s], which lie within the step just made
+// or under way.
 static status record_rows_before(corrected_run *c, double instant)
 {
     recording *r = c->recording;
@@ -159,16 +177,20 @@ status corrected_record_rows_to(corrected_run *c, double time)
 {
     const double interval = c->recording->scenario->parameters.method.step;
     const bool keeps = c->recording->options->keep_trace;
-    return keeps ? record_rows_before(c, time + GRID_TOLERANCE * interval) : STATUS_OK;
+    if (keeps) {
+        return record_rows_before(c, time + GRID_TOLERANCE * interval);
+    }
+    return STATUS_OK;
 }
 
-// Records the rows of the grid that lie within the step just made, and passes over one at its end
-// if an event is there.
+// Records the rows of the grid that lie within the step just made, and passes over one at
+// its end if an event is there.
 static status record_grid(corrected_run *c, bool at_event)
 {
     recording *r = c->recording;
     motion *m = c->motion;
-    const double interval = r->scenario->parameters.method.step, now = m->state[SLOT_TIME];
+    const double interval = r->scenario->parameters.method.step,
+                 now = m->state[SLOT_TIME];
     const double end = GRID_TOLERANCE * interval;
 
     // those within it, then one at its end; an event records its own rows
@@ -177,20 +199,25 @@ static status record_grid(corrected_run *c, bool at_event)
         return STATUS_OK;
     }
     r->state.grid_row++;
-    TRY(at_event ? STATUS_OK : corrected_record_row(c, m->state, 0));
-    return recording_asked_to_stop(r) ? STATUS_STOPPED : STATUS_OK;
+    if (!at_event) {
+        TRY(corrected_record_row(c, m->state, 0));
+    }
+    if (recording_asked_to_stop(r)) {
+        return STATUS_STOPPED;
+    }
+    return STATUS_OK;
 }
 
-// --- flight -----------------------------------------------------------------------------------
+// --- flight ----------------------------------------------------------------------------
 
-// The fastest mode turns by no more in a piece of a step, in which the tip's speed then has one
-// extreme at most but for little [rad].
+// The fastest mode turns by no more in a piece of a step, in which the tip's speed then
+// has one extreme at most but for little [rad].
 #define RATE_REACH 0.5
 
 enum { SEPARATION_BISECTIONS = 30, FASTEST_THIRDS = 24, MOST_FLIGHT_PIECES = 16 };
 
-// The gap at an instant [s] within the step just made, a step in free flight; false, and none, if
-// that fails.
+// The gap at an instant [s] within the step just made, a step in free flight; false, and
+// none, if that fails.
 static bool gap_within(const arm *a, motion *m, double time, value_and_slope *gap)
 {
     *gap = (value_and_slope){0, 0};
@@ -205,14 +232,15 @@ static bool gap_within(const arm *a, motion *m, double time, value_and_slope *ga
     return state != NULL;
 }
 
-// Whether the gap was a separation, above SEPARATION_GAP, at any instant of the step just made. A
-// whole flight may lie within it, so its end says little: look where the gap stops growing.
+// Whether the gap was a separation, above SEPARATION_GAP, at any instant of the step just
+// made. A whole flight may lie within it, so its end says little: look where the gap
+// stops growing.
 static bool flight_separated(const arm *a, motion *m)
 {
     double from = m->trial[SLOT_TIME], to = m->state[SLOT_TIME];
 
-    // the ends of the step decide nearly always; in contact the gap is that to the wall at rest,
-    // beyond which a face with a mass may swing
+    // the ends of the step decide nearly always; in contact the gap is that to the wall
+    // at rest, beyond which a face with a mass may swing
     if (m->state[SLOT_CONTACT] != 0) {
         return false;
     }
@@ -223,7 +251,8 @@ static bool flight_separated(const arm *a, motion *m)
         return false;
     }
 
-    // the gap closes at the step's end: bisect for the instant at which it was the largest
+    // the gap closes at the step's end: bisect for the instant at which it was the
+    // largest
     for (int i = 0; i < SEPARATION_BISECTIONS; i++) {
         const double middle = 0.5 * (from + to);
         value_and_slope gap;
@@ -239,8 +268,8 @@ static bool flight_separated(const arm *a, motion *m)
     return false;
 }
 
-// The rate of the gap at the ends of equal pieces of the step just made: `count` of them from its
-// start on. What cannot be had is HUGE_VAL.
+// The rate of the gap at the ends of equal pieces of the step just made: `count` of them
+// from its start on. What cannot be had is HUGE_VAL.
 static void rates_of(const arm *a, motion *m, int count, double *rate)
 {
     const double from = m->trial[SLOT_TIME], width = (m->state[SLOT_TIME] - from) / count;
@@ -248,12 +277,16 @@ static void rates_of(const arm *a, motion *m, int count, double *rate)
     rate[count] = m->state[SLOT_GAP_VELOCITY];
     for (int i = 1; i < count; i++) {
         value_and_slope gap;
-        rate[i] = gap_within(a, m, from + i * width, &gap) ? gap.slope : HUGE_VAL;
+        if (gap_within(a, m, from + i * width, &gap)) {
+            rate[i] = gap.slope;
+        } else {
+            rate[i] = HUGE_VAL;
+        }
     }
 }
 
-// The least rate of the gap between two instants [s], where it falls and then grows, of which one
-// that is known is `least`.
+// The least rate of the gap between two instants [s], where it falls and then grows, of
+// which one that is known is `least`.
 static double least_rate(const arm *a, motion *m, double from, double to, double least)
 {
     // thirds of what is left, of which the better two stay
@@ -263,15 +296,20 @@ static double least_rate(const arm *a, motion *m, double from, double to, double
         if (!gap_within(a, m, early, &first) || !gap_within(a, m, late, &second)) {
             break;
         }
-        from = first.slope <= second.slope ? from : early;
-        to = first.slope <= second.slope ? late : to;
+        if (!(first.slope <= second.slope)) {
+            from = early;
+        }
+        if (first.slope <= second.slope) {
+            to = late;
+        }
         least = smaller(least, smaller(first.slope, second.slope));
     }
     return least;
 }
 
-// How fast the tip came towards the wall at most in the step just made [m/s]: at its ends or, where
-// it was faster and then slower, in between. Negative if it only went away; 0 without a wall.
+// How fast the tip came towards the wall at most in the step just made [m/s]: at its ends
+// or, where it was faster and then slower, in between. Negative if it only went away; 0
+// without a wall.
 static double flight_closing_speed(const arm *a, motion *m)
 {
     double rate[MOST_FLIGHT_PIECES + 1];
@@ -288,7 +326,9 @@ static double flight_closing_speed(const arm *a, motion *m)
     int fastest = 0;
     rates_of(a, m, count, rate);
     for (int i = 1; i <= count; i++) {
-        fastest = rate[i] < rate[fastest] ? i : fastest;
+        if (rate[i] < rate[fastest]) {
+            fastest = i;
+        }
     }
 
     // it may be faster to either side of there, but not before the step and after it
@@ -302,7 +342,7 @@ static double flight_closing_speed(const arm *a, motion *m)
     return -least_rate(a, m, before, after, rate[fastest]);
 }
 
-// --- a step ---------------------------------------------------------------------------------
+// --- a step ----------------------------------------------------------------------------
 
 status corrected_record_step(corrected_run *c, bool at_event)
 {
@@ -323,19 +363,27 @@ status corrected_record_step(corrected_run *c, bool at_event)
 
     // an arm held still has the energy it had
     const bool known = m->step.energy.kinetic >= 0;
-    const status s = motion_held_still(m) ? STATUS_OK
-                     : known              ? audit(c, m->step.energy)
-                                          : corrected_audit(c);
+    status s = STATUS_OK;
+    if (!motion_held_still(m)) {
+        if (known) {
+            s = audit(c, m->step.energy);
+        } else {
+            s = corrected_audit(c);
+        }
+    }
 
     // how fast the tip came towards the wall on its own
     if (r->rig != NULL && m->trial[SLOT_CONTACT] == 0) {
         summary *all = &r->result->summary;
-        double *most =
-            isnan(all->first_contact_s) ? &all->approach_speed_m_s : &all->return_speed_m_s;
+        double *most = isnan(all->first_contact_s) ? &all->approach_speed_m_s
+                                                   : &all->return_speed_m_s;
         *most = larger(flight_closing_speed(&c->arm, m), *most);
     }
 
     TRY(s);
     TRY(corrected_record_forces(c));
-    return r->options->keep_trace ? record_grid(c, at_event) : STATUS_OK;
+    if (r->options->keep_trace) {
+        return record_grid(c, at_event);
+    }
+    return STATUS_OK;
 }

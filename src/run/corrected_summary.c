@@ -1,5 +1,5 @@
-// What a run of the corrected arm comes to, whether its numbers can be relied on, and why one ended
-// early.
+// What a run of the corrected arm comes to, whether its numbers can be relied on, and why
+// one ended early.
 #include <math.h>
 #include <stdarg.h>
 #include <string.h>
@@ -10,26 +10,31 @@
 #include "src/run/corrected.h"
 #include "src/run/recording.h"
 
-#define SMALL_FLIGHT   1e-10 // motions of this size are followed to 1e-5 of it [rad, m, N m]
+// motions of this size are followed to 1e-5 of it [rad, m, N m]
+#define SMALL_FLIGHT   1e-10
 #define SMALL_CONTACT  1e-7  // the same of those that meet the wall
 #define DEEPEST        1e-9  // that an arm may be in a rigid wall by rounding [m]
 #define ANGLE_ROUNDING 1e-16 // of an arm that something holds [rad]
 
-// --- why it ended early -------------------------------------------------------------------------
+// --- why it ended early ----------------------------------------------------------------
 
-// Advice to the user where the energy balance does not close: dense engines choose their steps
-// themselves.
+// Advice to the user where the energy balance does not close: dense engines choose their
+// steps themselves.
 static const char *advice(const motion *m)
 {
-    return engine_is_dense(m->engine) ? "" : ", a shorter method.step may help";
+    if (engine_is_dense(m->engine)) {
+        return "";
+    }
+    return ", a shorter method.step may help";
 }
 
 status corrected_explain(const corrected_run *c, status s, fault *f)
 {
     const motion *m = c->motion;
-    FAULT_IF(s == STATUS_UNSTABLE, f, s, "at t = %.9g s: %s (residual %.3g J); the method was %s%s",
-             m->state[SLOT_TIME], status_text(s), motion_energy_residual(&c->arm, m, m->state),
-             m->engine->name, advice(m));
+    FAULT_IF(s == STATUS_UNSTABLE, f, s,
+             "at t = %.9g s: %s (residual %.3g J); the method was %s%s",
+             m->state[SLOT_TIME], status_text(s),
+             motion_energy_residual(&c->arm, m, m->state), m->engine->name, advice(m));
     return fault_set(f, s, "at t = %.9g s: %s", corrected_now(c), status_text(s));
 }
 
@@ -39,10 +44,12 @@ static status explain_fold(const corrected_run *c, fault *f)
     const motion *m = c->motion;
     const double *q = state_angles(m, m->state);
     return fault_set(f, STATUS_FOLDED,
-                     "at t = %.9g s: the arm is folded across the hub's axis, its tip on the flat "
-                     "wall there, first and last link at %.4g and %.4g rad, across the wall within "
-                     "%g rad: no force of a rigid wall holds it so, and the model ends there",
-                     m->state[SLOT_TIME], q[c->arm.first], q[c->arm.dof - 1], CHAIN_FOLDED);
+                     "at t = %.9g s: the arm is folded across the hub's axis, its tip on "
+                     "the flat wall there, first and last link at %.4g and %.4g rad, "
+                     "across the wall within %g rad: no force of a rigid wall holds it "
+                     "so, and the model ends there",
+                     m->state[SLOT_TIME], q[c->arm.first], q[c->arm.dof - 1],
+                     CHAIN_FOLDED);
 }
 
 status corrected_explain_standstill(const corrected_run *c, motion_event last, fault *f)
@@ -51,22 +58,30 @@ status corrected_explain_standstill(const corrected_run *c, motion_event last, f
     char cause[ZENO_CAUSE_SIZE];
     zeno_monitor_cause(&c->arm, m, last, cause, sizeof cause);
     return fault_set(f, STATUS_NO_PROGRESS, "at t = %.9g s: %s; the method was %s: %s",
-                     m->state[SLOT_TIME], status_text(STATUS_NO_PROGRESS), m->engine->name, cause);
+                     m->state[SLOT_TIME], status_text(STATUS_NO_PROGRESS),
+                     m->engine->name, cause);
 }
 
 status corrected_explain_step(const corrected_run *c, status s, fault *f)
 {
     const motion *m = c->motion;
-    FAIL_IF(s == STATUS_FOLDED, explain_fold(c, f));
-    FAIL_IF(s == STATUS_NO_PROGRESS, corrected_explain_standstill(c, MOTION_REACHED, f));
-    return fault_set(f, s, "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
-                     m->failure_time, m->state[SLOT_TIME], status_text(s), m->engine->name);
+    if (s == STATUS_FOLDED) {
+        return explain_fold(c, f);
+    }
+    if (s == STATUS_NO_PROGRESS) {
+        return corrected_explain_standstill(c, MOTION_REACHED, f);
+    }
+    return fault_set(f, s,
+                     "at t = %.9g s (last good state at %.9g s): %s; the method was %s",
+                     m->failure_time, m->state[SLOT_TIME], status_text(s),
+                     m->engine->name);
 }
 
-// --- remarks ------------------------------------------------------------------------------------
+// --- remarks ---------------------------------------------------------------------------
 
 // Adds a sentence to the remarks.
-static __attribute__((format(printf, 2, 3))) void remark(summary *s, const char *format, ...)
+static __attribute__((format(printf, 2, 3))) void remark(summary *s, const char *format,
+                                                         ...)
 {
     size_t length = strlen(s->message);
     if (length > 0 && length + 2 < sizeof s->message) {
@@ -81,10 +96,14 @@ static __attribute__((format(printf, 2, 3))) void remark(summary *s, const char 
 // The beam as one spring, 0: one link on a rigid hub [N m/rad].
 static double beam_stiffness(const arm *a)
 {
-    return a->links > 1 ? 2 * a->joint_stiffness / a->links : a->hub_stiffness;
+    if (a->links > 1) {
+        return 2 * a->joint_stiffness / a->links;
+    }
+    return a->hub_stiffness;
 }
 
-// How far so much energy [J] bends the beam, or turns one rigid link in the time [s] it has [rad].
+// How far so much energy [J] bends the beam, or turns one rigid link in the time [s] it
+// has [rad].
 static double turn_of_energy(const arm *a, double energy, double duration)
 {
     const double length = a->links * a->link_length;
@@ -93,9 +112,9 @@ static double turn_of_energy(const arm *a, double energy, double duration)
     return sqrt(energy / (beam > 0 ? beam : inertia / (duration * duration)));
 }
 
-// Adds a remark where the whole motion is so small that the tolerances of events (absolute lengths,
-// speeds and torques) are too large a share of it. An arm that has not moved is held by friction,
-// or by the wall with more than that.
+// Adds a remark where the whole motion is so small that the tolerances of events
+// (absolute lengths, speeds and torques) are too large a share of it. An arm that has not
+// moved is held by friction, or by the wall with more than that.
 static void judge_size(const corrected_run *c, double energy)
 {
     const arm *a = &c->arm;
@@ -103,17 +122,19 @@ static void judge_size(const corrected_run *c, double energy)
     const double duration = c->recording->scenario->parameters.run.duration;
     const double turn = turn_of_energy(a, energy, duration);
     const double travel = turn * a->links * a->link_length;
-    const double torque = turn > 0 ? energy / turn : fabs(a->motor.torque) - a->motor.stiction;
+    const double torque =
+        turn > 0 ? energy / turn : fabs(a->motor.torque) - a->motor.stiction;
 
     const double size = turn > 0 ? smaller(smaller(turn, travel), torque) : torque;
     const double least = isnan(s->first_contact_s) ? SMALL_FLIGHT : SMALL_CONTACT;
     if (size > 0 && size < least) {
         s->inaccurate = true;
         remark(s,
-               "the %.3g J put in %s by some %.2g rad only (%.2g m at the tip, with torques of "
-               "%.2g N m), so little that the tolerances of contact and friction show",
-               energy, beam_stiffness(a) > 0 ? "bend the beam" : "turn the arm", turn, travel,
-               torque);
+               "the %.3g J put in %s by some %.2g rad only (%.2g m at the tip, with "
+               "torques of %.2g N m), so little that the tolerances of contact and "
+               "friction show",
+               energy, beam_stiffness(a) > 0 ? "bend the beam" : "turn the arm", turn,
+               travel, torque);
     }
 }
 
@@ -125,9 +146,9 @@ static void remark_on_single_link(const corrected_run *c)
     if (!isnan(s->peak_force_high_N)) {
         const bool steady = !isnan(s->steady_force_high_N);
         remark(s,
-               "wall and friction hold the one link both, so that its force on the wall is "
-               "determined within bounds only, the %s from %.6g to %.6g N; the number given is "
-               "that without friction",
+               "wall and friction hold the one link both, so that its force on the "
+               "wall is determined within bounds only, the %s from %.6g to %.6g N; "
+               "the number given is that without friction",
                steady ? "steady one" : "largest",
                steady ? s->steady_force_low_N : s->peak_force_low_N,
                steady ? s->steady_force_high_N : s->peak_force_high_N);
@@ -139,19 +160,21 @@ static void remark_on_single_link(const corrected_run *c)
     if (within && m->dof == 1 && m->state[SLOT_FRICTION] == HUB_STICK) {
         const force_bounds held = motion_held_forces(&c->arm, m, m->state);
         remark(s,
-               "friction holds the link where it came to rest in the wall, and would at any force "
-               "from %.6g to %.6g N: on another way there it is another one",
+               "friction holds the link where it came to rest in the wall, and "
+               "would at any force from %.6g to %.6g N: on another way there it is "
+               "another one",
                held.low, held.high);
     }
 }
 
-// What rounding of the angles makes of the largest torque and the beam's stiffness [J]: an arm that
-// something holds seems to have so much put in.
+// What rounding of the angles makes of the largest torque and the beam's stiffness [J]:
+// an arm that something holds seems to have so much put in.
 static double rounding_energy(const corrected_run *c)
 {
     const arm *a = &c->arm;
     const double force = larger(c->motion->record.pulse_peak, 0);
-    const double torque = larger(fabs(a->motor.torque), force * a->links * a->link_length);
+    const double torque =
+        larger(fabs(a->motor.torque), force * a->links * a->link_length);
     return ANGLE_ROUNDING * (torque + ANGLE_ROUNDING * beam_stiffness(a));
 }
 
@@ -166,35 +189,37 @@ static void judge(const corrected_run *c)
     const double rounding = rounding_energy(c);
     if (r->state.chatters > 0) {
         remark(s,
-               "the wall's restitution would have made the arm bounce without end: %ld times more "
-               "than %d flights in a row were shorter than a hundredth of its shortest period, and "
-               "the impact after them took all the approach speed, less than %g of the energy "
-               "(chatter)",
+               "the wall's restitution would have made the arm bounce without end: "
+               "%ld times more than %d flights in a row were shorter than a "
+               "hundredth of its shortest period, and the impact after them took "
+               "all the approach speed, less than %g of the energy (chatter)",
                r->state.chatters, MOTION_MOST_SHORT_FLIGHTS, MOTION_CHATTER_SHARE);
     }
 
     if (r->state.from_behind > 0) {
         remark(s,
-               "a point stops the line of the last link on both sides of its base: %ld of the "
-               "touches were behind it, where no link is",
+               "a point stops the line of the last link on both sides of its base: "
+               "%ld of the touches were behind it, where no link is",
                r->state.from_behind);
     }
 
     const parameters *p = &r->scenario->parameters;
     if (p->arm.tilt != 0 && r->rig != NULL && p->control.law != LAW_PLAYBACK) {
-        remark(s, "the law is not told of the weight in the tilted plane (arm.tilt = %g rad)%s",
-               p->arm.tilt,
-               isnan(s->first_contact_s) && wall_stands(&c->arm.wall)
-                   ? ", and its arm does not come to the wall"
-                   : "");
+        remark(
+            s,
+            "the law is not told of the weight in the tilted plane (arm.tilt = %g rad)%s",
+            p->arm.tilt,
+            isnan(s->first_contact_s) && wall_stands(&c->arm.wall)
+                ? ", and its arm does not come to the wall"
+                : "");
     }
 
     remark_on_single_link(c);
     s->inaccurate = s->energy_residual_J > bound * energy + rounding;
     if (s->inaccurate) {
         remark(s,
-               "the energy ledger lacks up to %.3g J of the %.3g J put in, more than "
-               "method.residual_bound = %g allows: the method was %s%s",
+               "the energy ledger lacks up to %.3g J of the %.3g J put in, more "
+               "than method.residual_bound = %g allows: the method was %s%s",
                s->energy_residual_J, energy, bound, m->engine->name, advice(m));
     }
 
@@ -206,8 +231,8 @@ static void judge(const corrected_run *c)
     if (m->record.overheld > 0) {
         s->inaccurate = true;
         remark(s,
-               "friction held the hub by %.3g N m more than motor.stiction allows, a slip was "
-               "missed: the method was %s%s",
+               "friction held the hub by %.3g N m more than motor.stiction allows, "
+               "a slip was missed: the method was %s%s",
                m->record.overheld, m->engine->name, advice(m));
     }
     judge_size(c, energy > rounding ? energy : 0);
@@ -241,7 +266,8 @@ void corrected_summarise(corrected_run *c, status failed)
         }
         const bool earlier = r->state.earlier_peak > m->record.pulse_peak;
         const double peak = earlier ? r->state.earlier_peak : m->record.pulse_peak;
-        const double when = earlier ? r->state.earlier_peak_time : m->record.pulse_peak_time;
+        const double when =
+            earlier ? r->state.earlier_peak_time : m->record.pulse_peak_time;
         if (peak >= 0) {
             s->peak_force_N = peak;
             s->time_to_peak_s = when - s->first_contact_s;
@@ -255,7 +281,8 @@ void corrected_summarise(corrected_run *c, status failed)
         double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE];
         recording_finish_summary(r, integral - r->state.integral_at_window);
         const double window = fmin(STEADY_WINDOW, r->scenario->parameters.run.duration);
-        const force_bounds sum = r->state.in_window, mean = {sum.low / window, sum.high / window};
+        const force_bounds sum = r->state.in_window,
+                           mean = {sum.low / window, sum.high / window};
         corrected_tell_bounds(mean, &s->steady_force_low_N, &s->steady_force_high_N);
         recording_finish_rig_summary(r, state_angles(m, m->state)[0]);
         judge(c);

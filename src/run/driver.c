@@ -5,17 +5,21 @@
 #include "src/base/instant.h"
 #include "src/engines/motion_create.h"
 
-status driver_open(run_driver *d, const scenario *s, const run_options *options, run_result *result,
-                   fault *f)
+status driver_open(run_driver *d, const scenario *s, const run_options *options,
+                   run_result *result, fault *f)
 {
     recording *r = &d->recording;
     const status code = recording_begin(r, s, options, result, f);
     d->is_printed = s->parameters.arm.model == ARM_PRINTED;
     d->duration = s->parameters.run.duration;
     d->opened = code == STATUS_OK;
-    return code != STATUS_OK ? code
-           : d->is_printed   ? printed_open(&d->printed, r, f)
-                             : corrected_open(&d->corrected, r, NULL, f);
+    if (code != STATUS_OK) {
+        return code;
+    }
+    if (d->is_printed) {
+        return printed_open(&d->printed, r, f);
+    }
+    return corrected_open(&d->corrected, r, NULL, f);
 }
 
 void driver_close(run_driver *d, status failed, const fault *f)
@@ -49,7 +53,7 @@ summary driver_summary(run_driver *d, status failed, const fault *f)
     return all;
 }
 
-// --- continuing ---------------------------------------------------------------------------------
+// --- continuing ------------------------------------------------------------------------
 
 // Whether an instant is still to be gone to; the end is, until it is known to be one.
 static bool lies_ahead(const run_driver *d, double time)
@@ -61,19 +65,26 @@ static bool lies_ahead(const run_driver *d, double time)
 
 status driver_approach(run_driver *d, bool *ended, fault *f)
 {
-    return d->is_printed ? printed_approach_step(&d->printed, ended, f)
-                         : corrected_approach_step(&d->corrected, ended, f);
+    if (d->is_printed) {
+        return printed_approach_step(&d->printed, ended, f);
+    }
+    return corrected_approach_step(&d->corrected, ended, f);
 }
 
 status driver_advance(run_driver *d, double until, bool *ended, fault *f)
 {
     recording *r = &d->recording;
     while (!*ended && lies_ahead(d, until)) {
-        FAIL_IF(r->options->stepped && stop_requested(&r->stop), STATUS_STOPPED);
+        if (r->options->stepped && stop_requested(&r->stop)) {
+            return STATUS_STOPPED;
+        }
         TRY(driver_approach(d, ended, f));
         if (!*ended) {
-            TRY(d->is_printed ? printed_step(&d->printed, f)
-                              : corrected_step(&d->corrected, until, f));
+            if (d->is_printed) {
+                TRY(printed_step(&d->printed, f));
+            } else {
+                TRY(corrected_step(&d->corrected, until, f));
+            }
         }
     }
     return STATUS_OK;
@@ -81,26 +92,37 @@ status driver_advance(run_driver *d, double until, bool *ended, fault *f)
 
 status driver_act(run_driver *d, const action *todo, fault *f)
 {
-    return d->is_printed ? printed_act(&d->printed, todo, -1, f)
-                         : corrected_act_now(&d->corrected, todo, f);
+    if (d->is_printed) {
+        return printed_act(&d->printed, todo, -1, f);
+    }
+    return corrected_act_now(&d->corrected, todo, f);
 }
 
-// --- at present -------------------------------------------------------------------------------
+// --- at present ------------------------------------------------------------------------
 
 double driver_time(const run_driver *d)
 {
-    return d->is_printed ? d->printed.motion.row.time : corrected_now(&d->corrected);
+    if (d->is_printed) {
+        return d->printed.motion.row.time;
+    }
+    return corrected_now(&d->corrected);
 }
 
 sensed_motion driver_sensed(run_driver *d)
 {
-    return d->is_printed ? d->printed.sensed : corrected_sensed_now(&d->corrected);
+    if (d->is_printed) {
+        return d->printed.sensed;
+    }
+    return corrected_sensed_now(&d->corrected);
 }
 
 sample driver_row(const run_driver *d)
 {
     const corrected_run *c = &d->corrected;
-    return d->is_printed ? printed_sample(&d->printed) : corrected_row(c, corrected_present(c));
+    if (d->is_printed) {
+        return printed_sample(&d->printed);
+    }
+    return corrected_row(c, corrected_present(c));
 }
 
 const double *driver_state(const run_driver *d, int *angle_count)
@@ -114,7 +136,7 @@ const double *driver_state(const run_driver *d, int *angle_count)
     return state_angles(m, corrected_present(&d->corrected));
 }
 
-// --- the state as bytes -----------------------------------------------------------------------
+// --- the state as bytes ----------------------------------------------------------------
 
 // What has been recorded; the model, the rig's memory and its values follow.
 typedef struct saved_run {
@@ -129,7 +151,10 @@ typedef struct saved_run {
 
 static size_t model_size(const run_driver *d)
 {
-    return d->is_printed ? sizeof d->printed : corrected_saved_size(&d->corrected);
+    if (d->is_printed) {
+        return sizeof d->printed;
+    }
+    return corrected_saved_size(&d->corrected);
 }
 
 static size_t values_size(const rig *r)
@@ -210,7 +235,9 @@ static void restore_rig(rig *r, const rig *saved, const char *at)
 
 static void keep_at_most(size_t *count, size_t most)
 {
-    *count = *count < most ? *count : most;
+    if (!(*count < most)) {
+        *count = most;
+    }
 }
 
 void driver_restore(run_driver *d, const void *bytes)

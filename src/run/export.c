@@ -17,12 +17,16 @@ static json_t *parameter_value(const parameters *p, int index)
     double numbers[PARAMETER_LIST_MOST];
     if (info->type != PARAMETER_CHOICE && !parameter_is_text(info)) {
         const double value = parameter_get(p, index);
-        return info->type == PARAMETER_BOOLEAN ? json_boolean(value != 0) : json_number(value);
+        if (info->type == PARAMETER_BOOLEAN) {
+            return json_boolean(value != 0);
+        }
+        return json_number(value);
     }
     parameter_format(p, index, text, sizeof text);
-    return info->type == PARAMETER_LIST
-               ? json_numbers(numbers, parameter_list_numbers(text, numbers))
-               : json_text(text);
+    if (info->type == PARAMETER_LIST) {
+        return json_numbers(numbers, parameter_list_numbers(text, numbers));
+    }
+    return json_text(text);
 }
 
 json_t *export_parameters(const parameters *p)
@@ -57,7 +61,8 @@ static json_t *expectations_array(const scenario *s, const run_result *result)
         json_t *object =
             json_of("quantity:t expected:n tolerance:n value:n met:b",
                     summary_table[e->quantity].key, e->is_null ? (double)NAN : e->value,
-                    e->is_null ? (double)NAN : e->tolerance, value, expectation_is_met(e, value));
+                    e->is_null ? (double)NAN : e->tolerance, value,
+                    expectation_is_met(e, value));
 
         json_add(array, object);
     }
@@ -79,7 +84,8 @@ static json_t *event_object(const scenario *s, const event *e)
         const action *a = &s->actions[e->index];
         char path[ACTION_PATH];
         json_put(object, "parameter", json_text(action_path(a, path)));
-        json_put(object, "value", action_is_text(a) ? json_text(a->text) : json_number(a->value));
+        json_put(object, "value",
+                 action_is_text(a) ? json_text(a->text) : json_number(a->value));
     }
     return object;
 }

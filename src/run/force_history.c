@@ -7,7 +7,9 @@
 
 force_step *force_history_extend(shared_array *h, size_t count)
 {
-    FAIL_IF(h->count + count > h->capacity && !shared_array_grow(h, h->count + count), NULL);
+    if (h->count + count > h->capacity && !shared_array_grow(h, h->count + count)) {
+        return NULL;
+    }
     force_step *added = (force_step *)h->base + h->count;
     h->count += count;
     return added;
@@ -16,12 +18,15 @@ force_step *force_history_extend(shared_array *h, size_t count)
 status force_history_add(shared_array *h, force_step step)
 {
     force_step *added = force_history_extend(h, 1);
-    FAIL_IF(added == NULL, STATUS_NO_MEMORY);
+    if (added == NULL) {
+        return STATUS_NO_MEMORY;
+    }
     *added = step;
     return STATUS_OK;
 }
 
-// The last instant within a step at which the force is `edge`, as a share of it; negative if none.
+// The last instant within a step at which the force is `edge`, as a share of it; negative
+// if none.
 static double last_crossing(const force_step *step, double edge)
 {
     const step_parabola force = step_parabola_of(step);
@@ -31,14 +36,19 @@ static double last_crossing(const force_step *step, double edge)
     // a straight line
     if (fabs(curve) < 1e-12 * (fabs(slope) + fabs(offset))) {
         double s = slope != 0 ? -offset / slope : -1;
-        return s <= 1 ? s : -1;
+        if (s <= 1) {
+            return s;
+        }
+        return -1;
     }
 
     // the later one of the parabola's two crossings, which are NaN if there are none
     double root = sqrt(slope * slope - 4 * curve * offset);
     for (int sign = -1; sign <= 1; sign += 2) {
         double s = (sign * root - slope) / (2 * curve);
-        latest = s <= 1 ? fmax(latest, s) : latest;
+        if (s <= 1) {
+            latest = fmax(latest, s);
+        }
     }
     return latest;
 }
@@ -52,17 +62,21 @@ double force_settled_since(const shared_array *h, double final)
     // from the end backwards: where was the force outside for the last time?
     for (size_t i = h->count; i-- > 0;) {
         const force_step *step = &steps[i];
-        const double far =
-            larger(fabs(step->first - final), fabs(step->last - final)) + step_bulge(step);
+        const double far = larger(fabs(step->first - final), fabs(step->last - final)) +
+                           step_bulge(step);
         if (far < band) {
             continue; // well within it
         }
-        double upper = last_crossing(step, final + band), lower = last_crossing(step, final - band);
+        double upper = last_crossing(step, final + band),
+               lower = last_crossing(step, final - band);
         double left = fmax(upper, lower);
 
         if (fabs(step->last - final) > band) {
             // outside at its end: inside only from the next step's start on
-            return i + 1 == h->count ? (double)NAN : step->end;
+            if (i + 1 == h->count) {
+                return (double)NAN;
+            }
+            return step->end;
         }
 
         // it came into the band within this step
@@ -70,10 +84,13 @@ double force_settled_since(const shared_array *h, double final)
             return step->start + left * (step->end - step->start);
         }
     }
-    return h->count > 0 ? steps[0].start : (double)NAN;
+    if (h->count > 0) {
+        return steps[0].start;
+    }
+    return (double)NAN;
 }
 
-// --- the largest mean over a sliding window ---------------------------------------------------
+// --- the largest mean over a sliding window --------------------------------------------
 
 // One end of the window, on its way through the run.
 typedef struct window_end {
@@ -84,7 +101,8 @@ typedef struct window_end {
     double impulses; // of those that it has passed [N s]
 } window_end;
 
-// Integral of the force from the step's start to an instant within it [N s]; zero over no length.
+// Integral of the force from the step's start to an instant within it [N s]; zero over no
+// length.
 static double integral_within(const force_step *step, double time)
 {
     double length = step->end - step->start;
@@ -93,9 +111,10 @@ static double integral_within(const force_step *step, double time)
     return length * s * (p.first + s * (p.slope / 2 + s * p.curve / 3));
 }
 
-// Moves an end of the window on, which stands `behind` the front's time [s]. Impulses at the
-// instant itself are passed or not. Instants are compared where the front meets them, by the same
-// sums as in next_change: rounded otherwise, the end could stay in a step that it has left.
+// Moves an end of the window on, which stands `behind` the front's time [s]. Impulses at
+// the instant itself are passed or not. Instants are compared where the front meets them,
+// by the same sums as in next_change: rounded otherwise, the end could stay in a step
+// that it has left.
 static void advance(const run_result *r, window_end *w, double time, double behind,
                     bool past_impulses)
 {
@@ -113,24 +132,27 @@ static void advance(const run_result *r, window_end *w, double time, double behi
         if (!(met < time || (past_impulses && met == time))) {
             break;
         }
-        const bool strikes = e->kind == EVENT_IMPACT && e->impulse > 0 && !e->delivered_by_step;
-        w->impulses += strikes ? e->impulse : 0;
+        const bool strikes =
+            e->kind == EVENT_IMPACT && e->impulse > 0 && !e->delivered_by_step;
+        if (strikes) {
+            w->impulses += e->impulse;
+        }
     }
     w->time = time;
 }
 
-// Integral of force and impulses up to an end of the window, the end being moved to `time` within
-// its step [N s].
+// Integral of force and impulses up to an end of the window, the end being moved to
+// `time` within its step [N s].
 static double integral_to(const run_result *r, const window_end *w, double time)
 {
     return w->before + integral_within(&force_steps(&r->history.forces)[w->step], time) +
            w->impulses;
 }
 
-// The next instant of the window's front at which its front or back meets a step's end or an
-// impulse [s].
-static double next_change(const run_result *r, const window_end *front, const window_end *back,
-                          double window)
+// The next instant of the window's front at which its front or back meets a step's end or
+// an impulse [s].
+static double next_change(const run_result *r, const window_end *front,
+                          const window_end *back, double window)
 {
     const force_step *steps = force_steps(&r->history.forces);
     double next = fmin(steps[front->step].end, steps[back->step].end + window);
@@ -146,8 +168,8 @@ static double next_change(const run_result *r, const window_end *front, const wi
     return next;
 }
 
-// Adds the parabola a + b u + c u^2 of a step's force to the sums of such, u being the time since
-// `from` [s].
+// Adds the parabola a + b u + c u^2 of a step's force to the sums of such, u being the
+// time since `from` [s].
 static void add_parabola(double *sums, const force_step *step, double from, double sign)
 {
     const double length = step->end - step->start, s = (from - step->start) / length;
@@ -157,10 +179,10 @@ static void add_parabola(double *sums, const force_step *step, double from, doub
     sums[2] += sign * p.curve / (length * length);
 }
 
-// The largest integral over the window with its front strictly between `from` and `to`, where the
-// forces at front and back are equal; -HUGE_VAL if they are nowhere.
-static double largest_between(const run_result *r, const window_end *front, const window_end *back,
-                              double window, double to)
+// The largest integral over the window with its front strictly between `from` and `to`,
+// where the forces at front and back are equal; -HUGE_VAL if they are nowhere.
+static double largest_between(const run_result *r, const window_end *front,
+                              const window_end *back, double window, double to)
 {
     // both parabolas as ones of the time since `from`: difference a + b u + c u^2
     const force_step *steps = force_steps(&r->history.forces);
@@ -168,11 +190,12 @@ static double largest_between(const run_result *r, const window_end *front, cons
     add_parabola(sums, &steps[front->step], from, 1);
     add_parabola(sums, &steps[back->step], from - window, -1);
 
-    // its roots, of which those that are none are no numbers: between them the integral only grows
-    // or only falls
+    // its roots, of which those that are none are no numbers: between them the integral
+    // only grows or only falls
     double root = sqrt(sums[1] * sums[1] - 4 * sums[2] * sums[0]);
     for (int sign = -1; sign <= 1; sign += 2) {
-        double u = 2 * sums[0] / (sign * root - sums[1]); // 2 a / (...) stands c = 0 as well
+        double u =
+            2 * sums[0] / (sign * root - sums[1]); // 2 a / (...) stands c = 0 as well
         if (u > 0 && from + u < to) {
             largest = fmax(largest, integral_to(r, front, from + u) -
                                         integral_to(r, back, from + u - window));
@@ -181,23 +204,30 @@ static double largest_between(const run_result *r, const window_end *front, cons
     return largest;
 }
 
-// The instant [s] up to which no window that ends in the front's step or a later one can hold more
-// than `largest` [N s]; -HUGE_VAL if one that ends in the front's step can. It goes from the back's
-// step on over steps without an event and without a force large enough for more. Steps before
+// The instant [s] up to which no window that ends in the front's step or a later one can
+// hold more than `largest` [N s]; -HUGE_VAL if one that ends in the front's step can. It
+// goes from the back's step on over steps without an event and without a force large
+// enough for more. Steps before
 // *bounded were checked already.
-static double holds_no_more(const run_result *r, const window_end *front, const window_end *back,
-                            double window, double largest, size_t *bounded)
+static double holds_no_more(const run_result *r, const window_end *front,
+                            const window_end *back, double window, double largest,
+                            size_t *bounded)
 {
     const shared_array *h = &r->history.forces;
     const force_step *steps = force_steps(h);
     const trace *t = &r->trace;
-    const double met = back->event < t->event_count ? t->events[back->event].time : HUGE_VAL;
+    const double met =
+        back->event < t->event_count ? t->events[back->event].time : HUGE_VAL;
     size_t i = *bounded > back->step ? *bounded : back->step;
-    while (i < h->count && steps[i].end < met && step_at_most(&steps[i]) * window <= largest) {
+    while (i < h->count && steps[i].end < met &&
+           step_at_most(&steps[i]) * window <= largest) {
         i++;
     }
     *bounded = i;
-    return i > front->step ? steps[i - 1].end : -HUGE_VAL;
+    if (i > front->step) {
+        return steps[i - 1].end;
+    }
+    return -HUGE_VAL;
 }
 
 double force_largest_mean(const run_result *result, double from, double window)
@@ -205,7 +235,9 @@ double force_largest_mean(const run_result *result, double from, double window)
     assert(isfinite(from) && window > 0);
     const shared_array *h = &result->history.forces;
     double end = h->count > 0 ? force_steps(h)[h->count - 1].end : -HUGE_VAL;
-    FAIL_IF(!(from + window <= end), (double)NAN);
+    if (!(from + window <= end)) {
+        return (double)NAN;
+    }
 
     window_end front = {0}, back = {0};
     double largest = -HUGE_VAL;
@@ -215,7 +247,8 @@ double force_largest_mean(const run_result *result, double from, double window)
         advance(result, &front, time, 0, true);
         advance(result, &back, time, window, false);
         const double passed =
-            time < end ? holds_no_more(result, &front, &back, window, largest, &bounded) : time;
+            time < end ? holds_no_more(result, &front, &back, window, largest, &bounded)
+                       : time;
         if (passed > time) {
             time = fmin(passed, end);
             continue;
@@ -230,6 +263,10 @@ double force_largest_mean(const run_result *result, double from, double window)
         advance(result, &back, time, window, true);
         double next = fmin(next_change(result, &front, &back, window), end);
         largest = fmax(largest, largest_between(result, &front, &back, window, next));
-        time = next > time ? next : end;
+        if (next > time) {
+            time = next;
+        } else {
+            time = end;
+        }
     }
 }

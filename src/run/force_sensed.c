@@ -9,8 +9,8 @@
 // After so many time constants nothing is left of what a lag held, to the last digit.
 #define FORGOTTEN 40
 
-// The sensor on its way through the run. Of the steps that bring nothing larger it knows only that
-// they do not: it follows them where its value is needed after all.
+// The sensor on its way through the run. Of the steps that bring nothing larger it knows
+// only that they do not: it follows them where its value is needed after all.
 typedef struct sensor_passage {
     const force_step *steps;
     first_order_lag lag;
@@ -40,7 +40,9 @@ static void follow_to_step(sensor_passage *s, size_t step, double begin)
     while (from > s->followed && s->steps[from - 1].end > remembered) {
         from--;
     }
-    s->lag.value = from > s->followed ? 0 : s->lag.value;
+    if (from > s->followed) {
+        s->lag.value = 0;
+    }
     for (; from < step; from++) {
         const force_step *f = &s->steps[from];
         lag_follow(&s->lag, &(lag_input){f->end - f->start, f->first, f->last, f->mean});
@@ -48,7 +50,8 @@ static void follow_to_step(sensor_passage *s, size_t step, double begin)
     s->followed = step;
 }
 
-// Takes the impulses up to an instant [s] that lies at the beginning of a step, or ends the run.
+// Takes the impulses up to an instant [s] that lies at the beginning of a step, or ends
+// the run.
 static void take_impulses(sensor_passage *s, const trace *t, size_t step, double until)
 {
     for (; s->event < t->event_count && t->events[s->event].time <= until; s->event++) {
@@ -99,13 +102,16 @@ static size_t next_struck_step(sensor_passage *s, const trace *t, size_t count)
     return low;
 }
 
-// A force that no step of the run exceeds [N]: of one that delivers an impulse nothing is known.
+// A force that no step of the run exceeds [N]: of one that delivers an impulse nothing is
+// known.
 static double largest_force(const run_result *result)
 {
     const trace *t = &result->trace;
     double largest = result->summary.peak_force_N;
     for (size_t i = 0; i < t->event_count; i++) {
-        largest = t->events[i].delivered_by_step ? HUGE_VAL : largest;
+        if (t->events[i].delivered_by_step) {
+            largest = HUGE_VAL;
+        }
     }
     return largest;
 }
@@ -122,7 +128,11 @@ double force_largest_sensed(const run_result *result, double time_constant, doub
         take_impulses(&s, &result->trace, i, s.steps[i].start);
         if (s.largest >= most) {
             const size_t next = next_struck_step(&s, &result->trace, h->count);
-            i = next > i ? next : i + 1;
+            if (next > i) {
+                i = next;
+            } else {
+                i = i + 1;
+            }
             continue;
         }
         if (step_at_most(&s.steps[i]) > s.largest) {

@@ -25,10 +25,11 @@ struct run_loop {
     uint64_t fingerprint; // of what a saved state must agree with
 };
 
-// --- the controller of a commanded loop -------------------------------------------------------
+// --- the controller of a commanded loop ------------------------------------------------
 
 // All it remembers is where its command stands.
-static void put_out(void *memory, const controller_input *input, controller_output *output)
+static void put_out(void *memory, const controller_input *input,
+                    controller_output *output)
 {
     const double *const *volts = memory;
     (void)input;
@@ -36,9 +37,10 @@ static void put_out(void *memory, const controller_input *input, controller_outp
 }
 
 static const controller commanded_law =
-    ONE_MODE_CONTROLLER("the program", "command", sizeof(const double *), put_out, .tune = NULL);
+    ONE_MODE_CONTROLLER("the program", "command", sizeof(const double *), put_out,
+                        .tune = NULL);
 
-// --- beginning and end ------------------------------------------------------------------------
+// --- beginning and end -----------------------------------------------------------------
 
 // FNV-1a, a text after the other.
 static uint64_t hash_text(uint64_t hash, const char *text)
@@ -49,8 +51,8 @@ static uint64_t hash_text(uint64_t hash, const char *text)
     return (hash ^ 0xff) * 0x100000001b3u;
 }
 
-// What two loops must have in common to exchange states: the version, every parameter and the
-// script; of a controller of somebody else's, the loop itself.
+// What two loops must have in common to exchange states: the version, every parameter and
+// the script; of a controller of somebody else's, the loop itself.
 static uint64_t fingerprint_of(const run_loop *l)
 {
     const scenario *s = &l->scenario;
@@ -62,13 +64,15 @@ static uint64_t fingerprint_of(const run_loop *l)
     }
     for (int i = 0; i < s->action_count; i++) {
         const action *a = &s->actions[i];
-        snprintf(text, sizeof text, "%a %d %d %a", a->time, (int)a->kind, a->parameter, a->value);
+        snprintf(text, sizeof text, "%a %d %d %a", a->time, (int)a->kind, a->parameter,
+                 a->value);
         hash = hash_text(hash_text(hash, text), a->text);
     }
 
     const rig *r = l->driver.recording.rig;
-    const bool foreign = r != NULL && r->law != &commanded_law &&
-                         (l->law.law != NULL || controller_of(s->parameters.control.law) == NULL);
+    const bool foreign =
+        r != NULL && r->law != &commanded_law &&
+        (l->law.law != NULL || controller_of(s->parameters.control.law) == NULL);
     if (foreign) {
         snprintf(text, sizeof text, "%p", (const void *)l);
         hash = hash_text(hash, text);
@@ -76,7 +80,8 @@ static uint64_t fingerprint_of(const run_loop *l)
     return hash_text(hash, r == NULL ? "bare" : r->law->name);
 }
 
-status loop_create(run_loop **created, const scenario *s, const loop_options *options, fault *f)
+status loop_create(run_loop **created, const scenario *s, const loop_options *options,
+                   fault *f)
 {
     *created = NULL;
     run_loop *l = calloc(1, sizeof *l);
@@ -86,10 +91,22 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
     }
 
     // whose command the rig puts out
-    l->volts = s->parameters.control.law == LAW_NONE ? s->parameters.motor.voltage : 0;
-    l->law = options->commanded ? (given_law){&commanded_law, &l->volts} : options->law;
+    if (s->parameters.control.law == LAW_NONE) {
+        l->volts = s->parameters.motor.voltage;
+    } else {
+        l->volts = 0;
+    }
+    if (options->commanded) {
+        l->law = (given_law){&commanded_law, &l->volts};
+    } else {
+        l->law = options->law;
+    }
     const bool asks = l->law.law == NULL && s->parameters.control.law == LAW_PROCESS;
-    l->transcript = asks ? process_transcript_create() : NULL;
+    if (asks) {
+        l->transcript = process_transcript_create();
+    } else {
+        l->transcript = NULL;
+    }
     l->options = (run_options){.keep_trace = options->keep_trace,
                                .law = l->law.law != NULL ? &l->law : NULL,
                                .ask = options->ask,
@@ -119,7 +136,7 @@ void loop_destroy(run_loop *l)
     }
 }
 
-// --- continuing ---------------------------------------------------------------------------------
+// --- continuing ------------------------------------------------------------------------
 
 double loop_time(const run_loop *l)
 {
@@ -166,12 +183,16 @@ status loop_step(run_loop *l, fault *f)
     double next = (floor(loop_time(l) / interval + GRID_TOLERANCE) + 1) * interval;
     if (on != NULL && l->failed == STATUS_OK && !l->ended) {
         l->failed = driver_approach(&l->driver, &l->ended, &l->fault);
-        next = l->driver.is_printed ? fmax(next, on->sample_time) : on->sample_time;
+        if (l->driver.is_printed) {
+            next = fmax(next, on->sample_time);
+        } else {
+            next = on->sample_time;
+        }
     }
     return loop_until(l, next, f);
 }
 
-// --- inputs -----------------------------------------------------------------------------------
+// --- inputs ----------------------------------------------------------------------------
 
 void loop_command(run_loop *l, double volts)
 {
@@ -181,13 +202,17 @@ void loop_command(run_loop *l, double volts)
 // Carries out an input; one that is refused changes nothing.
 static status act(run_loop *l, const action *todo, fault *f)
 {
-    FAIL_IF(l->failed != STATUS_OK, stay_failed(l, f));
+    if (l->failed != STATUS_OK) {
+        return stay_failed(l, f);
+    }
     FAULT_IF(todo->kind == ACTION_PUSH && l->driver.is_printed, f, STATUS_BAD_ARGUMENT,
              "the printed model takes no pushes");
-    if (todo->kind == ACTION_SET && !rig_can_change(&l->driver.recording.now, todo->parameter)) {
+    if (todo->kind == ACTION_SET &&
+        !rig_can_change(&l->driver.recording.now, todo->parameter)) {
         const char *path = parameter_table[todo->parameter].path;
         return fault_set_at(f, STATUS_BAD_ARGUMENT, path,
-                            "%s holds from the start and cannot change during this run", path);
+                            "%s holds from the start and cannot change during this run",
+                            path);
     }
 
     // tried on a copy, with what the rig will say
@@ -216,8 +241,10 @@ static status act(run_loop *l, const action *todo, fault *f)
 status loop_set_number(run_loop *l, int parameter, double value, fault *f)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    const action todo = {
-        .time = loop_time(l), .kind = ACTION_SET, .parameter = parameter, .value = value};
+    const action todo = {.time = loop_time(l),
+                         .kind = ACTION_SET,
+                         .parameter = parameter,
+                         .value = value};
     return act(l, &todo, f);
 }
 
@@ -241,7 +268,7 @@ status loop_push(run_loop *l, double impulse, fault *f)
     return act(l, &todo, f);
 }
 
-// --- what is known ----------------------------------------------------------------------------
+// --- what is known ---------------------------------------------------------------------
 
 bool loop_sense(run_loop *l, sensor_reading *reading)
 {
@@ -269,7 +296,10 @@ const double *loop_state(const run_loop *l, int *angle_count)
 
 summary loop_summary(run_loop *l)
 {
-    const status code = l->failed == STATUS_OK && !l->ended ? STATUS_STOPPED : l->failed;
+    status code = STATUS_STOPPED;
+    if (!(l->failed == STATUS_OK && !l->ended)) {
+        code = l->failed;
+    }
     return driver_summary(&l->driver, code, &l->fault);
 }
 
@@ -283,7 +313,7 @@ const scenario *loop_scenario(const run_loop *l)
     return &l->scenario;
 }
 
-// --- the state as bytes ------------------------------------------------------------------------
+// --- the state as bytes ----------------------------------------------------------------
 
 // The head of a saved state; the run follows.
 typedef struct saved_head {
@@ -299,8 +329,9 @@ size_t loop_saved_size(const run_loop *l)
     return sizeof(saved_head) + driver_saved_size(&l->driver);
 }
 
-// A number that other bytes behind the head's `check` would not give, but for one in 2^64: eight
-// bytes a turn are mixed in as by FNV-1a, and the upper half down into the lower one.
+// A number that other bytes behind the head's `check` would not give, but for one in
+// 2^64: eight bytes a turn are mixed in as by FNV-1a, and the upper half down into the
+// lower one.
 static uint64_t check_of(const char *bytes, size_t size)
 {
     uint64_t check = 0xcbf29ce484222325u;
@@ -331,9 +362,11 @@ status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
 {
     saved_head head;
     FAULT_IF(size != loop_saved_size(l), f, STATUS_BAD_ARGUMENT,
-             "a state of this loop has %zu bytes, but %zu were given", loop_saved_size(l), size);
+             "a state of this loop has %zu bytes, but %zu were given", loop_saved_size(l),
+             size);
     memcpy(&head, bytes, sizeof head);
-    FAULT_IF(head.fingerprint != l->fingerprint || head.size != size, f, STATUS_BAD_ARGUMENT,
+    FAULT_IF(head.fingerprint != l->fingerprint || head.size != size, f,
+             STATUS_BAD_ARGUMENT,
              "the state is of another scenario, another controller or another version");
     FAULT_IF(head.check != check_of(bytes, size), f, STATUS_BAD_ARGUMENT,
              "the state is damaged, expected the bytes as they were saved");

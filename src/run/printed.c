@@ -5,21 +5,23 @@
 
 #include "src/run/recording.h"
 
-// --- what a step is recorded as ---------------------------------------------------------------
+// --- what a step is recorded as --------------------------------------------------------
 
 static status record_event(recording *r, double time, event_kind kind, int index)
 {
-    return trace_add_event(&r->result->trace, (event){.time = time, .kind = kind, .index = index});
+    return trace_add_event(&r->result->trace,
+                           (event){.time = time, .kind = kind, .index = index});
 }
 
-// The largest forces so far, of the run and of its first pulse: as the thesis's program has it they
-// are samples, and no parabola runs through their neighbours.
+// The largest forces so far, of the run and of its first pulse: as the thesis's program
+// has it they are samples, and no parabola runs through their neighbours.
 static void note_peaks(printed_run *p, const printed_row *row)
 {
     summary *s = &p->recording->result->summary;
     const double since = row->time - s->first_contact_s;
     const bool largest = row->force > s->peak_force_N;
-    const bool largest_of_first = isnan(s->first_pulse_s) && row->force > s->first_pulse_peak_N;
+    const bool largest_of_first =
+        isnan(s->first_pulse_s) && row->force > s->first_pulse_peak_N;
 
     if (largest) {
         s->peak_force_N = row->force;
@@ -121,7 +123,8 @@ static status keep_row(const printed_run *p)
     return recording_add_row(p->recording, &sampled, row->angle, row->velocity);
 }
 
-// Records the row that the motion stands at: contact, what the sensors feel, force, signals.
+// Records the row that the motion stands at: contact, what the sensors feel, force,
+// signals.
 static status record_row(printed_run *p, fault *f)
 {
     recording *r = p->recording;
@@ -129,14 +132,16 @@ static status record_row(printed_run *p, fault *f)
     status failed = note_contact(p, row);
 
     // the force over the step, which the row of time 0 has none of
-    const double before = p->begun ? p->last.last : 0, start = p->begun ? p->last.end : row->time;
-    const force_step step = {start, row->time, before, row->force, (before + row->force) / 2};
+    const double before = p->begun ? p->last.last : 0,
+                 start = p->begun ? p->last.end : row->time;
+    const force_step step = {start, row->time, before, row->force,
+                             (before + row->force) / 2};
 
     // what the sensors felt of it
     const sensed_motion now = sensed_at(row);
     if (r->rig != NULL) {
-        sensors_follow(&r->rig->sensors, row->time - start, p->begun ? &p->sensed : &now, &now,
-                       step.mean);
+        sensors_follow(&r->rig->sensors, row->time - start, p->begun ? &p->sensed : &now,
+                       &now, step.mean);
     }
 
     // the mean force of the end
@@ -155,12 +160,12 @@ static status record_row(printed_run *p, fault *f)
     TRY(failed);
     TRY(force_history_add(&r->result->history.forces, step));
     TRY(keep_row(p));
-    FAULT_IF(recording_asked_to_stop(r), f, STATUS_STOPPED, "at t = %.9g s: %s", row->time,
-             status_text(STATUS_STOPPED));
+    FAULT_IF(recording_asked_to_stop(r), f, STATUS_STOPPED, "at t = %.9g s: %s",
+             row->time, status_text(STATUS_STOPPED));
     return STATUS_OK;
 }
 
-// --- between steps ----------------------------------------------------------------------------
+// --- between steps ---------------------------------------------------------------------
 
 status printed_act(printed_run *p, const action *todo, int index, fault *f)
 {
@@ -207,7 +212,10 @@ static status run_rig(printed_run *p, fault *f)
     if (sampled) {
         recording_show_sample(r);
     }
-    return sampled || changed ? keep_row(p) : STATUS_OK;
+    if (sampled || changed) {
+        return keep_row(p);
+    }
+    return STATUS_OK;
 }
 
 status printed_approach_step(printed_run *p, bool *ended, fault *f)
@@ -218,7 +226,8 @@ status printed_approach_step(printed_run *p, bool *ended, fault *f)
     }
     const scenario *s = p->recording->scenario;
     int *next = &p->recording->state.next_action;
-    for (; *next < s->action_count && s->actions[*next].time <= p->motion.row.time; ++*next) {
+    for (; *next < s->action_count && s->actions[*next].time <= p->motion.row.time;
+         ++*next) {
         TRY(printed_act(p, &s->actions[*next], *next, f));
     }
     TRY(run_rig(p, f));
@@ -232,7 +241,7 @@ status printed_step(printed_run *p, fault *f)
     return record_row(p, f);
 }
 
-// --- the summary ------------------------------------------------------------------------------
+// --- the summary -----------------------------------------------------------------------
 
 void printed_sum_up(printed_run *p, status failed)
 {
@@ -241,7 +250,8 @@ void printed_sum_up(printed_run *p, status failed)
     summary *s = &r->result->summary;
     snprintf(s->method, sizeof s->method, "Newmark, as printed");
     s->steps = (double)p->motion.steps;
-    s->motor_work_J = s->energy_residual_J = (double)NAN; // (2.16) as printed conserves no energy
+    s->motor_work_J = s->energy_residual_J =
+        (double)NAN; // (2.16) as printed conserves no energy
     s->separations += r->state.separated;
 
     if (!isnan(s->first_contact_s)) {
@@ -256,13 +266,13 @@ void printed_sum_up(printed_run *p, status failed)
     // what only a whole run has
     if (failed == STATUS_OK) {
         const double mean = p->steady_rows > 0 ? p->steady_sum / p->steady_rows : 0;
-        recording_finish_summary(r,
-                                 mean * fmin(STEADY_WINDOW, r->scenario->parameters.run.duration));
+        recording_finish_summary(r, mean * fmin(STEADY_WINDOW,
+                                                r->scenario->parameters.run.duration));
         recording_finish_rig_summary(r, p->sensed.angle);
     }
 }
 
-// --- the beginning ----------------------------------------------------------------------------
+// --- the beginning ---------------------------------------------------------------------
 
 status printed_open(printed_run *p, recording *r, fault *f)
 {
@@ -271,9 +281,10 @@ status printed_open(printed_run *p, recording *r, fault *f)
     TRY(recording_open_trace(r, 3, f));
     for (int i = 0; i < r->scenario->action_count; i++) {
         const action *a = &r->scenario->actions[i];
-        FAULT_IF(a->kind == ACTION_PUSH, f, STATUS_BAD_SCENARIO,
-                 "the script pushes the arm at %g s, but the printed model knows no pushes",
-                 a->time);
+        FAULT_IF(
+            a->kind == ACTION_PUSH, f, STATUS_BAD_SCENARIO,
+            "the script pushes the arm at %g s, but the printed model knows no pushes",
+            a->time);
     }
 
     // the row of time 0, with the command that the rig starts with

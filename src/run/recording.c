@@ -9,7 +9,8 @@
 #include "src/base/clock.h"
 #include "src/base/instant.h"
 
-// Sets up the rig, if the scenario has a control law; until its first command the motor rests.
+// Sets up the rig, if the scenario has a control law; until its first command the motor
+// rests.
 static status start_rig(recording *r, fault *f)
 {
     assert(r->rig == NULL);
@@ -31,7 +32,10 @@ static status start_rig(recording *r, fault *f)
     };
     TRY(rig_create(&r->rig, p, &given, f));
     TRY(scenario_check_timing(r->scenario, f));
-    return r->rig->withheld ? STATUS_OK : scenario_check_locks(r->scenario, r->rig->law, f);
+    if (r->rig->withheld) {
+        return STATUS_OK;
+    }
+    return scenario_check_locks(r->scenario, r->rig->law, f);
 }
 
 status recording_begin(recording *r, const scenario *s, const run_options *options,
@@ -44,8 +48,9 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
                      .now = s->parameters,
                      .begun_cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
                      .begun_at = clock_seconds(CLOCK_MONOTONIC)};
-    r->stop = (stop_request){
-        .flag = &stop_everything, .ask = options->ask, .context = options->ask_context};
+    r->stop = (stop_request){.flag = &stop_everything,
+                             .ask = options->ask,
+                             .context = options->ask_context};
     if (options->monitor != NULL) {
         r->stop.flag = &options->monitor->stop;
     } else if (options->abandon != NULL) {
@@ -62,7 +67,10 @@ status recording_begin(recording *r, const scenario *s, const run_options *optio
 
     // not even set up: an arm of a thousand links takes seconds for that
     const bool abandoned = options->monitor == NULL && stop_is_set(&r->stop);
-    return abandoned ? STATUS_STOPPED : start_rig(r, f);
+    if (abandoned) {
+        return STATUS_STOPPED;
+    }
+    return start_rig(r, f);
 }
 
 void recording_tell_fault(summary *s, status code, const fault *f)
@@ -87,7 +95,7 @@ void recording_end(recording *r, status code, const fault *f)
     }
 }
 
-// --- rows and events --------------------------------------------------------------------------
+// --- rows and events -------------------------------------------------------------------
 
 // Room for rows is made in advance up to so many of them, some of them for events.
 enum { MOST_ROWS_AHEAD = 100000, ROWS_OF_EVENTS = 64 };
@@ -108,11 +116,13 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
     const double rows = ROWS_OF_EVENTS + p->run.duration / p->method.step + 2 * samples;
     const double bytes = rows * (double)trace_row_bytes(angle_count), gigabyte = 1e9;
     const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-    FAULT_AT_IF((expected > 0 || r->options->keep_trace) && bytes > memory, f, STATUS_BAD_SCENARIO,
-                "method.step",
-                "rows every method.step = %g s over run.duration = %g s take %.3g GB of memory, "
-                "and this machine has %.3g GB",
-                p->method.step, p->run.duration, bytes / gigabyte, memory / gigabyte);
+    if ((expected > 0 || r->options->keep_trace) && bytes > memory) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, "method.step",
+            "rows every method.step = %g s over run.duration = %g s take %.3g GB "
+            "of memory, and this machine has %.3g GB",
+            p->method.step, p->run.duration, bytes / gigabyte, memory / gigabyte);
+    }
     if (expected == 0) {
         // where there is no memory, rows will say so
         trace_init(&r->result->trace, angle_count);
@@ -123,7 +133,10 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
     }
     size_t most = recording_most_rows(expected);
     status s = trace_reserve(&r->result->trace, angle_count, expected, most);
-    return s == STATUS_OK ? s : fault_set(f, s, "no address space for %zu rows", expected);
+    if (s == STATUS_OK) {
+        return s;
+    }
+    return fault_set(f, s, "no address space for %zu rows", expected);
 }
 
 void recording_publish(const recording *r, double time)
@@ -183,14 +196,20 @@ void recording_finish_summary(recording *r, double force_integral)
     s->steady_force_N = force_integral / fmin(STEADY_WINDOW, duration);
     if (s->steady_force_N > 0) {
         s->force_overshoot_percent = 100 * (s->peak_force_N / s->steady_force_N - 1);
-        double settled = force_settled_since(&r->result->history.forces, s->steady_force_N);
-        s->settling_time_s = isnan(settled) ? (double)NAN : fmax(0, settled - s->first_contact_s);
+        double settled =
+            force_settled_since(&r->result->history.forces, s->steady_force_N);
+        if (isnan(settled)) {
+            s->settling_time_s = (double)NAN;
+        } else {
+            s->settling_time_s = fmax(0, settled - s->first_contact_s);
+        }
     }
 }
 
-// --- the rig ----------------------------------------------------------------------------------
+// --- the rig ---------------------------------------------------------------------------
 
-// The smoothed force: means over SMOOTHING_WINDOW [s], from SMOOTHED_AFTER first contact on [s].
+// The smoothed force: means over SMOOTHING_WINDOW [s], from SMOOTHED_AFTER first contact
+// on [s].
 #define SMOOTHING_WINDOW 5e-3
 #define SMOOTHED_AFTER   0.02
 
@@ -199,20 +218,68 @@ void recording_add_rig_signals(const recording *r, sample *row)
     const shown_sample *s = &r->shown;
 
     // what the sensors read; before their first sample nothing
-    row->encoder = s->sampled ? s->reading.encoder : (double)NAN;
-    row->tachometer = s->sampled ? s->reading.tachometer : (double)NAN;
-    row->force_reading = s->sampled ? s->reading.force_reading : (double)NAN;
-    row->piezo_force = s->sampled ? s->reading.piezo_force : (double)NAN;
-    row->film = s->sampled ? s->reading.film : (double)NAN;
-    row->accelerometer = s->sampled ? s->reading.accelerometer : (double)NAN;
+    if (s->sampled) {
+        row->encoder = s->reading.encoder;
+    } else {
+        row->encoder = (double)NAN;
+    }
+    if (s->sampled) {
+        row->tachometer = s->reading.tachometer;
+    } else {
+        row->tachometer = (double)NAN;
+    }
+    if (s->sampled) {
+        row->force_reading = s->reading.force_reading;
+    } else {
+        row->force_reading = (double)NAN;
+    }
+    if (s->sampled) {
+        row->piezo_force = s->reading.piezo_force;
+    } else {
+        row->piezo_force = (double)NAN;
+    }
+    if (s->sampled) {
+        row->film = s->reading.film;
+    } else {
+        row->film = (double)NAN;
+    }
+    if (s->sampled) {
+        row->accelerometer = s->reading.accelerometer;
+    } else {
+        row->accelerometer = (double)NAN;
+    }
 
     // what the controller made of it
-    row->command = s->sampled ? s->output.command : (double)NAN;
-    row->controller_mode = s->sampled ? s->output.mode : (double)NAN;
-    row->desired_angle = s->sampled ? s->output.desired_angle : (double)NAN;
-    row->desired_velocity = s->sampled ? s->output.desired_velocity : (double)NAN;
-    row->calculated_force = s->sampled ? s->output.calculated_force : (double)NAN;
-    row->predicted_force = s->sampled ? s->predicted_force : (double)NAN;
+    if (s->sampled) {
+        row->command = s->output.command;
+    } else {
+        row->command = (double)NAN;
+    }
+    if (s->sampled) {
+        row->controller_mode = s->output.mode;
+    } else {
+        row->controller_mode = (double)NAN;
+    }
+    if (s->sampled) {
+        row->desired_angle = s->output.desired_angle;
+    } else {
+        row->desired_angle = (double)NAN;
+    }
+    if (s->sampled) {
+        row->desired_velocity = s->output.desired_velocity;
+    } else {
+        row->desired_velocity = (double)NAN;
+    }
+    if (s->sampled) {
+        row->calculated_force = s->output.calculated_force;
+    } else {
+        row->calculated_force = (double)NAN;
+    }
+    if (s->sampled) {
+        row->predicted_force = s->predicted_force;
+    } else {
+        row->predicted_force = (double)NAN;
+    }
 }
 
 bool recording_has_new_sample(const recording *r)
@@ -234,11 +301,13 @@ void recording_change_command(recording *r, double time, double hub_angle)
 {
     const recorded_command *c = &r->command;
     r->result->summary.electrical_energy_J +=
-        motor_electrical_energy(&r->now.motor, c->volts, time - c->time, hub_angle - c->hub_angle);
+        motor_electrical_energy(&r->now.motor, c->volts, time - c->time,
+                                hub_angle - c->hub_angle);
     r->command = (recorded_command){r->rig->voltage, time, hub_angle};
 }
 
-void recording_before_change(recording *r, const action *todo, double time, double hub_angle)
+void recording_before_change(recording *r, const action *todo, double time,
+                             double hub_angle)
 {
     if (r->rig != NULL && todo->parameter == PARAMETER_INDEX(motor.voltage_limit)) {
         recording_change_command(r, time, hub_angle);
@@ -261,7 +330,8 @@ void recording_finish_rig_summary(recording *r, double hub_angle)
     s->force_over_command_N = s->peak_force_N - command;
     if (!isnan(s->first_contact_s)) {
         s->smoothed_over_command_N =
-            force_largest_mean(r->result, s->first_contact_s + SMOOTHED_AFTER, SMOOTHING_WINDOW) -
+            force_largest_mean(r->result, s->first_contact_s + SMOOTHED_AFTER,
+                               SMOOTHING_WINDOW) -
             command;
     }
     s->steady_error_N = s->steady_force_N - command;

@@ -1,5 +1,5 @@
-// What a run in progress records, whichever model it is of: rows, events, the force of every step,
-// and the summary that comes of them.
+// What a run in progress records, whichever model it is of: rows, events, the force of
+// every step, and the summary that comes of them.
 #pragma once
 
 #include "src/rig/rig.h"
@@ -12,21 +12,23 @@
 
 // What a run remembers from step to step besides rows, forces and summary.
 typedef struct recording_state {
-    int next_action;           // of the script
-    long grid_row;             // number of the next row of the grid
-    bool separated;            // gap above SEPARATION_GAP in the present flight
-    bool pulse_open;           // the first pulse has not ended
-    bool landing_open;         // nor that of the landing
-    landing landing;           // as far as it is known
-    double earlier_peak;       // largest force before it and its instant, of an arm that starts on
-    double earlier_peak_time;  // the wall, else -1 [N], [s]
-    double energy_put_in;      // sum of what motor and actions did or took over each step [J]
-    long chatters;             // sequences of bounces that ended plastically
-    long from_behind;          // touches of a point by the line behind the last link, not the link
-    double last_jump;          // instant of the last event, action or start [s]
-    double integral_at_window; // of the force, where the steady force's window begins [N s]
-    force_bounds largest;      // of the largest force since first contact [N]
-    force_bounds in_window;    // of the force's integral since that window began [N s]
+    int next_action;   // of the script
+    long grid_row;     // number of the next row of the grid
+    bool separated;    // gap above SEPARATION_GAP in the present flight
+    bool pulse_open;   // the first pulse has not ended
+    bool landing_open; // nor that of the landing
+    landing landing;   // as far as it is known
+    double
+        earlier_peak; // largest force before it and its instant, of an arm that starts on
+    double earlier_peak_time; // the wall, else -1 [N], [s]
+    double energy_put_in; // sum of what motor and actions did or took over each step [J]
+    long chatters;        // sequences of bounces that ended plastically
+    long from_behind; // touches of a point by the line behind the last link, not the link
+    double last_jump; // instant of the last event, action or start [s]
+    double
+        integral_at_window; // of the force, where the steady force's window begins [N s]
+    force_bounds largest;   // of the largest force since first contact [N]
+    force_bounds in_window; // of the force's integral since that window began [N s]
 } recording_state;
 
 // A controller's command in force.
@@ -61,7 +63,8 @@ typedef struct recording {
 // Most rows that a run of which `expected` are expected reserves address space for.
 size_t recording_most_rows(size_t expected);
 
-// Sets up an empty trace of the kind that is asked for. STATUS_NO_MEMORY, with a sentence in f.
+// Sets up an empty trace of the kind that is asked for. STATUS_NO_MEMORY, with a sentence
+// in f.
 status recording_open_trace(recording *r, int angle_count, fault *f)
     __attribute__((warn_unused_result));
 
@@ -74,53 +77,60 @@ static inline bool recording_asked_to_stop(recording *r)
 // Whether the last row is one of this instant [s].
 bool recording_has_row_at(const recording *r, double time);
 
-// Publishes how far the run is to observers: all rows and events counted there are complete.
+// Publishes how far the run is to observers: all rows and events counted there are
+// complete.
 void recording_publish(const recording *r, double time);
 
-// Sets a parameter at an instant [s], which the rig is told, too. On failure f says why: a lock
-// that a law from outside does not know, a law that cannot be tuned.
+// Sets a parameter at an instant [s], which the rig is told, too. On failure f says why:
+// a lock that a law from outside does not know, a law that cannot be tuned.
 status recording_set(recording *r, const action *todo, double time, fault *f)
     __attribute__((warn_unused_result));
 
-// Adds a row with all angles [rad] and velocities [rad/s] and lets it be seen. On the rig, whose
-// clock and the grid round differently, rows of one instant have one time. STATUS_NO_MEMORY.
+// Adds a row with all angles [rad] and velocities [rad/s] and lets it be seen. On the
+// rig, whose clock and the grid round differently, rows of one instant have one time.
+// STATUS_NO_MEMORY.
 status recording_add_row(recording *r, const sample *row, const double *angles,
                          const double *velocities) __attribute__((warn_unused_result));
 
-// Fills in steady force, overshoot and settling time; force_integral is that of the force over the
-// last STEADY_WINDOW of the run [N s].
+// Fills in steady force, overshoot and settling time; force_integral is that of the force
+// over the last STEADY_WINDOW of the run [N s].
 void recording_finish_summary(recording *r, double force_integral);
 
-// --- what begins and ends every run -----------------------------------------------------------
+// --- what begins and ends every run ----------------------------------------------------
 
-// Begins to record a run of the scenario into result: an empty summary, and the rig if a law is
-// chosen or given. f holds no fault or why it cannot begin; STATUS_STOPPED where it is to end
-// already and no monitor looks on. recording_end is due in any case.
+// Begins to record a run of the scenario into result: an empty summary, and the rig if a
+// law is chosen or given. f holds no fault or why it cannot begin; STATUS_STOPPED where
+// it is to end already and no monitor looks on. recording_end is due in any case.
 status recording_begin(recording *r, const scenario *s, const run_options *options,
                        run_result *result, fault *f);
 
-// Ends it: the rig is gone, and the summary says what stopped the run and what time it took.
+// Ends it: the rig is gone, and the summary says what stopped the run and what time it
+// took.
 void recording_end(recording *r, status code, const fault *f);
 
 // Writes into the summary what stopped the run.
 void recording_tell_fault(summary *s, status code, const fault *f);
 
-// --- the rig in a run, in every row and in the summary ----------------------------------------
+// --- the rig in a run, in every row and in the summary ---------------------------------
 
-// Copies what rows show of the rig into a row; NaN without a rig or before its first sample.
+// Copies what rows show of the rig into a row; NaN without a rig or before its first
+// sample.
 void recording_add_rig_signals(const recording *r, sample *row);
 
-// Whether the rig has taken a sample that rows do not show yet; and lets them show it from here on.
+// Whether the rig has taken a sample that rows do not show yet; and lets them show it
+// from here on.
 bool recording_has_new_sample(const recording *r);
 void recording_show_sample(recording *r);
 
-// The rig's present command takes effect at `time` [s], with the hub at hub_angle [rad]: what the
-// amplifier fed in under the one before is booked.
+// The rig's present command takes effect at `time` [s], with the hub at hub_angle [rad]:
+// what the amplifier fed in under the one before is booked.
 void recording_change_command(recording *r, double time, double hub_angle);
 
-// A parameter is about to change at `time` [s], with the hub at hub_angle [rad]: what the amplifier
-// fed in under another limit is booked.
-void recording_before_change(recording *r, const action *todo, double time, double hub_angle);
+// A parameter is about to change at `time` [s], with the hub at hub_angle [rad]: what the
+// amplifier fed in under another limit is booked.
+void recording_before_change(recording *r, const action *todo, double time,
+                             double hub_angle);
 
-// Fills in what the summary says of the rig; the hub is at the given angle at the end [rad].
+// Fills in what the summary says of the rig; the hub is at the given angle at the end
+// [rad].
 void recording_finish_rig_summary(recording *r, double hub_angle);

@@ -22,8 +22,8 @@ static bool keeps_history(const recording *r)
     return r->options->rows_expected > 0 && r->rig == NULL;
 }
 
-// Reserves address space for the forces and checkpoints (of `size` bytes each) of a run of so many
-// rows at least and at most. False if it cannot be had.
+// Reserves address space for the forces and checkpoints (of `size` bytes each) of a run
+// of so many rows at least and at most. False if it cannot be had.
 static bool checkpoint_reserve(run_history *h, size_t size, size_t least, size_t most)
 {
     assert(size >= sizeof(checkpoint));
@@ -39,16 +39,18 @@ status checkpoint_open_history(recording *r, const motion *m, fault *f)
     run_history *h = &r->result->history;
     const size_t expected = r->options->rows_expected;
     if (h->forces.base != NULL) {
-        return STATUS_OK; // shared with the run that is resumed, or another run's memory to use
+        return STATUS_OK; // shared with the run that is resumed, or another run's memory
+                          // to use
     }
     if (!keeps_history(r)) {
         shared_array_init(&h->forces, sizeof(force_step));
         return STATUS_OK;
     }
     const size_t size = sizeof(checkpoint) + motion_saved_size(m);
-    return checkpoint_reserve(h, size, expected, recording_most_rows(expected))
-               ? STATUS_OK
-               : fault_set(f, STATUS_NO_MEMORY, "no address space for %zu rows", expected);
+    if (!checkpoint_reserve(h, size, expected, recording_most_rows(expected))) {
+        return fault_set(f, STATUS_NO_MEMORY, "no address space for %zu rows", expected);
+    }
+    return STATUS_OK;
 }
 
 bool checkpoint_keep(recording *r, const motion *m, double last_event)
@@ -61,12 +63,15 @@ bool checkpoint_keep(recording *r, const motion *m, double last_event)
     }
 
     // is it time for one, and is there room?
-    size_t before = h->checkpoints.count > 0 ? checkpoint_at(h, h->checkpoints.count - 1)->rows : 0;
+    size_t before =
+        h->checkpoints.count > 0 ? checkpoint_at(h, h->checkpoints.count - 1)->rows : 0;
     if (t->row_count < before + CHECKPOINT_ROWS) {
         return true;
     }
 
-    FAIL_IF(!shared_array_grow(&h->checkpoints, h->checkpoints.count + 1), false);
+    if (!shared_array_grow(&h->checkpoints, h->checkpoints.count + 1)) {
+        return false;
+    }
 
     // all that the steps to come depend on
     checkpoint *kept = checkpoint_at(h, h->checkpoints.count++);
@@ -98,7 +103,7 @@ void checkpoint_restore(recording *r, arm *a, motion *m)
     recording_publish(r, kept->time);
 }
 
-// --- resuming ---------------------------------------------------------------------------------
+// --- resuming --------------------------------------------------------------------------
 
 #define MARGIN 1e-3 // of a step: how much before a difference a step must have begun
 
@@ -111,8 +116,8 @@ static bool same_parameter(const parameters *a, const parameters *b, int i)
     return parameter_get(a, i) == parameter_get(b, i);
 }
 
-// Until when two scenarios ask for the same: -1 if they differ from the start, HUGE_VAL if not at
-// all [s].
+// Until when two scenarios ask for the same: -1 if they differ from the start, HUGE_VAL
+// if not at all [s].
 static double same_until(const scenario *a, const scenario *b)
 {
     const int duration = PARAMETER_INDEX(run.duration);
@@ -147,10 +152,11 @@ static double same_until(const scenario *a, const scenario *b)
     return until;
 }
 
-// Lets `result` begin with what `from` had recorded as a checkpoint says, so many checkpoints among
-// it, with room for so many rows at least and at most. False without memory; result is empty then.
-static bool share(const run_result *from, const checkpoint *part, size_t checkpoints, size_t least,
-                  size_t most, run_result *result)
+// Lets `result` begin with what `from` had recorded as a checkpoint says, so many
+// checkpoints among it, with room for so many rows at least and at most. False without
+// memory; result is empty then.
+static bool share(const run_result *from, const checkpoint *part, size_t checkpoints,
+                  size_t least, size_t most, run_result *result)
 {
     const run_history *old = &from->history;
     run_history *own = &result->history;
@@ -158,7 +164,8 @@ static bool share(const run_result *from, const checkpoint *part, size_t checkpo
 
     // rows and events, then forces and checkpoints of a run that has them
     bool shared =
-        trace_reserve(&result->trace, from->trace.angle_count, least, most) == STATUS_OK &&
+        trace_reserve(&result->trace, from->trace.angle_count, least, most) ==
+            STATUS_OK &&
         trace_share(&result->trace, &from->trace, part->rows, part->events) == STATUS_OK;
     if (shared && old->forces.reserved > 0) {
         shared = checkpoint_reserve(own, old->checkpoints.size, least, most) &&
@@ -177,7 +184,9 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
 {
     memset(result, 0, sizeof *result);
     const run_history *h = &from->history;
-    FAIL_IF(h->checkpoints.count == 0, false);
+    if (h->checkpoints.count == 0) {
+        return false;
+    }
 
     // the last checkpoint before the runs differ
     double until = same_until(old, s) - MARGIN * s->parameters.method.step;
@@ -185,7 +194,9 @@ bool run_resume(const run_result *from, const scenario *old, const scenario *s,
     while (count < h->checkpoints.count && checkpoint_at(h, count)->time < until) {
         count++;
     }
-    FAIL_IF(count == 0, false);
+    if (count == 0) {
+        return false;
+    }
 
     return share(from, checkpoint_at(h, count - 1), count, rows_expected,
                  recording_most_rows(rows_expected), result);
@@ -203,7 +214,9 @@ status run_share(const run_result *from, run_result *result)
     // it will not grow
     const size_t rows = whole.rows > whole.events ? whole.rows : whole.events;
     const size_t most = (rows > whole.force_steps ? rows : whole.force_steps) + 1;
-    FAIL_IF(!share(from, &whole, checkpoints, most, most, result), STATUS_NO_MEMORY);
+    if (!share(from, &whole, checkpoints, most, most, result)) {
+        return STATUS_NO_MEMORY;
+    }
     result->landing = from->landing;
     return STATUS_OK;
 }

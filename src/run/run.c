@@ -27,19 +27,22 @@ status run_scenario(const scenario *s, bool keep_trace, run_result *result)
     return run_scenario_with(s, &options, result);
 }
 
-status run_scenario_with(const scenario *s, const run_options *options, run_result *result)
+status run_scenario_with(const scenario *s, const run_options *options,
+                         run_result *result)
 {
     run_driver d;
     fault f;
     bool ended = false;
     status code = driver_open(&d, s, options, result, &f);
-    code = code == STATUS_OK ? driver_advance(&d, HUGE_VAL, &ended, &f) : code;
+    if (code == STATUS_OK) {
+        code = driver_advance(&d, HUGE_VAL, &ended, &f);
+    }
     driver_close(&d, code, &f);
     return code;
 }
 
-int run_check_expectations(const scenario *s, const run_result *result, fault_handler report,
-                           void *context)
+int run_check_expectations(const scenario *s, const run_result *result,
+                           fault_handler report, void *context)
 {
     assert(report != NULL || s->expectation_count == 0);
     int missed = 0;
@@ -51,17 +54,19 @@ int run_check_expectations(const scenario *s, const run_result *result, fault_ha
             continue;
         }
 
-        // as the editor that opens the file wants it: place, what is and what was expected
+        // as the editor that opens the file wants it: place, what is and what was
+        // expected
         char sentence[512], found[64] = "nothing (null)";
         if (!isnan(value)) {
             decimal_print(found, sizeof found, "%.9g", value);
         }
         if (e->is_null) {
-            snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected null", s->file,
-                     e->line, e->column, key, found);
+            snprintf(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected null",
+                     s->file, e->line, e->column, key, found);
         } else {
-            decimal_print(sentence, sizeof sentence, "%s:%d:%d: %s is %s, expected %.9g within %g",
-                          s->file, e->line, e->column, key, found, e->value, e->tolerance);
+            decimal_print(sentence, sizeof sentence,
+                          "%s:%d:%d: %s is %s, expected %.9g within %g", s->file, e->line,
+                          e->column, key, found, e->value, e->tolerance);
         }
         report(context, sentence);
         missed++;
@@ -94,7 +99,10 @@ three_body_state row_bodies(const sample *row)
 
 double row_current(const motor_parameters *motor, const sample *row)
 {
-    return motor->torque_constant > 0 ? row->motor_torque / motor->torque_constant : 0;
+    if (motor->torque_constant > 0) {
+        return row->motor_torque / motor->torque_constant;
+    }
+    return 0;
 }
 
 const sample *predict_first_contact(const scenario *s, const run_result *result,
@@ -102,18 +110,23 @@ const sample *predict_first_contact(const scenario *s, const run_result *result,
                                     prediction_answer answers[PREDICTOR_COUNT])
 {
     const sample *row = row_before_landing(result);
-    FAIL_IF(row == NULL, NULL);
+    if (row == NULL) {
+        return NULL;
+    }
 
     // under a control law the voltage in force is the law's
     parameters now = scenario_parameters_at(s, row->time);
     now.motor.voltage = row->voltage;
     const bool known = now.arm.model == ARM_CORRECTED;
-    const size_t at = (size_t)(row - result->trace.rows) * (size_t)result->trace.angle_count;
+    const size_t at =
+        (size_t)(row - result->trace.rows) * (size_t)result->trace.angle_count;
     prediction_question question = {.parameters = &now,
                                     .bodies = row_bodies(row),
                                     .angles = known ? result->trace.angles + at : NULL,
-                                    .velocities = known ? result->trace.velocities + at : NULL,
-                                    .command = then != NULL ? *then : (voltage_profile){0},
+                                    .velocities =
+                                        known ? result->trace.velocities + at : NULL,
+                                    .command =
+                                        then != NULL ? *then : (voltage_profile){0},
                                     .whole_pulse = true,
                                     .current = row_current(&now.motor, row)};
     predict_all(&question, answers);

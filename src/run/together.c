@@ -11,8 +11,8 @@
 #include "src/run/run.h"
 #include "src/engines/pair/taylor_lanes.h"
 
-// So many runs are in hand at once: enough to fill the vectors with steps of one form, eight
-// lanes to 96 %, few enough to stay in the second cache.
+// So many runs are in hand at once: enough to fill the vectors with steps of one form,
+// eight lanes to 96 %, few enough to stay in the second cache.
 enum { IN_HAND = 24 };
 
 enum { SUMMARY_SHARE = 128 }; // of the summary, what steps add to [bytes]
@@ -22,9 +22,10 @@ typedef struct side_run {
     recording recording;
     corrected_run run;
     fault fault;
-    taylor_lane *lane;   // its part in the series of the step it is to make
-    int kind;            // that of its form
-    motion *motion;      // of the run before, NULL if there was none: its storage is used again
+    taylor_lane *lane; // its part in the series of the step it is to make
+    int kind;          // that of its form
+    motion
+        *motion; // of the run before, NULL if there was none: its storage is used again
     shared_array forces; // and that run's forces, if there was one
 } side_run;
 
@@ -45,7 +46,9 @@ static void end_run(side_run *one, status failed)
 {
     shared_array *forces = &one->recording.result->history.forces;
     motion *over = corrected_finish(&one->run, failed);
-    one->motion = over != NULL ? over : one->motion;
+    if (over != NULL) {
+        one->motion = over;
+    }
     one->forces = *forces;
     memset(forces, 0, sizeof *forces);
     recording_end(&one->recording, failed, &one->fault);
@@ -57,7 +60,8 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
 {
     one->run.motion = NULL;
     one->run.path = NULL;
-    const status failed = recording_begin(&one->recording, s, options, result, &one->fault);
+    const status failed =
+        recording_begin(&one->recording, s, options, result, &one->fault);
     result->history.forces = one->forces;
     result->history.forces.count = 0;
     one->forces = (shared_array){0};
@@ -67,8 +71,8 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
     return corrected_open(&one->run, &one->recording, spare, &one->fault);
 }
 
-// Continues with a run, what came last having come to `failed`, until it waits for series that can
-// be computed together with others'. False if it is over: it is closed then.
+// Continues with a run, what came last having come to `failed`, until it waits for series
+// that can be computed together with others'. False if it is over: it is closed then.
 static bool go_on(side_by_side *group, int place, status failed)
 {
     side_run *one = &group->in_hand[place];
@@ -80,9 +84,11 @@ static bool go_on(side_by_side *group, int place, status failed)
         if (failed == STATUS_OK && !ended) {
             corrected_run *run = &one->run;
             const double remaining = run->stretch.stop - run->motion->state[SLOT_TIME];
-            one->lane = run->stretch.open.goes_on
-                            ? NULL
-                            : taylor_prepare(&run->arm, run->motion, remaining);
+            if (run->stretch.open.goes_on) {
+                one->lane = NULL;
+            } else {
+                one->lane = taylor_prepare(&run->arm, run->motion, remaining);
+            }
             if (one->lane != NULL) {
                 one->kind = taylor_kind(one->lane->form);
                 group->alike[one->kind]++;
@@ -105,8 +111,8 @@ static inline void fetch(const void *from, size_t size)
     }
 }
 
-// Asks for what the next step of a run will touch: the series of others have taken its place in
-// the nearest cache.
+// Asks for what the next step of a run will touch: the series of others have taken its
+// place in the nearest cache.
 static void fetch_run(const side_run *one)
 {
     const corrected_run *run = &one->run;
@@ -141,8 +147,8 @@ static void begin_next(side_by_side *group, int place)
     }
 }
 
-// Takes as many of those that wait as fit into the vectors and are of the form that most of the
-// first few have, computes their series, and lets them make their steps.
+// Takes as many of those that wait as fit into the vectors and are of the form that most
+// of the first few have, computes their series, and lets them make their steps.
 static void serve(side_by_side *group)
 {
     enum { LOOKED_AT = 4 };
@@ -150,9 +156,12 @@ static void serve(side_by_side *group)
 
     // the kind that most share, of those of the first in the queue
     int kind = group->in_hand[group->waiting[0]].kind;
-    for (int i = 1; i < group->waiting_count && i < LOOKED_AT && group->alike[kind] < width; i++) {
+    for (int i = 1;
+         i < group->waiting_count && i < LOOKED_AT && group->alike[kind] < width; i++) {
         const int other = group->in_hand[group->waiting[i]].kind;
-        kind = group->alike[other] > group->alike[kind] ? other : kind;
+        if (group->alike[other] > group->alike[kind]) {
+            kind = other;
+        }
     }
 
     // out of the queue, whose order stays
@@ -183,7 +192,8 @@ static void serve(side_by_side *group)
         corrected_run *run = &group->in_hand[chosen[i]].run;
         corrected_begin_step(run);
         const double length = run->motion->step.coming.end.length;
-        const int pieces = lanes[i]->form.contact ? corrected_force_pieces(run, length) : 0;
+        const int pieces =
+            lanes[i]->form.contact ? corrected_force_pieces(run, length) : 0;
         ends[i] = (taylor_end){length, pieces};
     }
     taylor_finish(&group->series, lanes, ends, count);
@@ -224,7 +234,8 @@ void run_together(const scenario *scenarios, int count, const atomic_bool *aband
 {
     assert(count >= 0);
     const run_options options = {.abandon = abandon};
-    const double cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID), at = clock_seconds(CLOCK_MONOTONIC);
+    const double cpu = clock_seconds(CLOCK_THREAD_CPUTIME_ID),
+                 at = clock_seconds(CLOCK_MONOTONIC);
     side_by_side *group = taylor_width() > 1 ? open_storage(storage) : NULL;
     if (group == NULL) {
         for (int i = 0; i < count; i++) {

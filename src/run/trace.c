@@ -22,7 +22,10 @@ const char *event_name(event_kind kind)
 const char *event_description(int kind)
 {
     const int count = (int)(sizeof event_texts / sizeof event_texts[0]);
-    return kind >= 0 && kind < count ? event_texts[kind].description : NULL;
+    if (kind >= 0 && kind < count) {
+        return event_texts[kind].description;
+    }
+    return NULL;
 }
 
 // Plain arrays move as they grow: where the four lie now.
@@ -74,7 +77,9 @@ status trace_share(trace *t, const trace *from, size_t rows, size_t events)
     assert(rows <= from->row_count && events <= from->event_count);
     for (int i = 0; i < TRACE_ARRAYS; i++) {
         const size_t count = i == TRACE_EVENTS ? events : rows;
-        FAIL_IF(!shared_array_share(&t->arrays[i], &from->arrays[i], count), STATUS_NO_MEMORY);
+        if (!shared_array_share(&t->arrays[i], &from->arrays[i], count)) {
+            return STATUS_NO_MEMORY;
+        }
     }
     find_places(t);
     t->row_count = rows;
@@ -94,15 +99,19 @@ bool trace_expect(trace *t, size_t rows)
     return grown;
 }
 
-status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities)
+status trace_add_row(trace *t, const sample *row, const double *angles,
+                     const double *velocities)
 {
     size_t n = (size_t)t->angle_count;
     const bool full = t->row_count >= t->arrays[TRACE_ROWS].capacity ||
                       t->row_count >= t->arrays[TRACE_ANGLES].capacity;
-    FAIL_IF(full && !trace_expect(t, t->row_count + 1), STATUS_NO_MEMORY);
+    if (full && !trace_expect(t, t->row_count + 1)) {
+        return STATUS_NO_MEMORY;
+    }
 
     t->rows[t->row_count] = *row;
-    double *to_angles = t->angles + t->row_count * n, *to_rates = t->velocities + t->row_count * n;
+    double *to_angles = t->angles + t->row_count * n,
+           *to_rates = t->velocities + t->row_count * n;
     for (size_t i = 0; i < n; i++) {
         to_angles[i] = angles[i];
         to_rates[i] = velocities[i];
@@ -114,7 +123,9 @@ status trace_add_row(trace *t, const sample *row, const double *angles, const do
 status trace_add_event(trace *t, event e)
 {
     shared_array *events = &t->arrays[TRACE_EVENTS];
-    FAIL_IF(!shared_array_grow(events, t->event_count + 1), STATUS_NO_MEMORY);
+    if (!shared_array_grow(events, t->event_count + 1)) {
+        return STATUS_NO_MEMORY;
+    }
     t->events = events->base;
     t->events[t->event_count++] = e;
     return STATUS_OK;
@@ -138,7 +149,10 @@ size_t trace_rows_until(const trace *t, double time)
 size_t trace_row_at(const trace *t, double time)
 {
     size_t until = trace_rows_until(t, time);
-    return until > 0 ? until - 1 : 0;
+    if (until > 0) {
+        return until - 1;
+    }
+    return 0;
 }
 
 size_t trace_side(const trace *t, size_t row)
@@ -149,7 +163,10 @@ size_t trace_side(const trace *t, size_t row)
         last++;
     }
     const bool first = row == 0 || !same_instant(t->rows[row - 1].time, time);
-    return first && last > row ? SIZE_MAX : last - row;
+    if (first && last > row) {
+        return SIZE_MAX;
+    }
+    return last - row;
 }
 
 size_t trace_row_on_side(const trace *t, double time, size_t side)
@@ -194,10 +211,11 @@ bool trace_has(const trace *t, int signal)
     return false;
 }
 
-// --- statistics -------------------------------------------------------------------------------
+// --- statistics ------------------------------------------------------------------------
 
 // Takes a straight piece from one value to another into the sums.
-static void add_piece(signal_statistics *s, double *squares, double width, double a, double b)
+static void add_piece(signal_statistics *s, double *squares, double width, double a,
+                      double b)
 {
     if (!isfinite(a) || !isfinite(b)) {
         return;
@@ -245,14 +263,23 @@ signal_statistics trace_statistics(const trace *t, int signal, double from, doub
     }
 
     // of an instant the value itself
-    s.mean = s.duration > 0 ? s.integral / s.duration : s.minimum;
-    s.rms = s.duration > 0 ? sqrt(squares / s.duration) : fabs(s.minimum);
+    if (s.duration > 0) {
+        s.mean = s.integral / s.duration;
+    } else {
+        s.mean = s.minimum;
+    }
+    if (s.duration > 0) {
+        s.rms = sqrt(squares / s.duration);
+    } else {
+        s.rms = fabs(s.minimum);
+    }
     return s;
 }
 
 // --- recorded tables ---
 
-status measured_rows(trace *t, const csv_table *table, const char *column, int signal, fault *f)
+status measured_rows(trace *t, const csv_table *table, const char *column, int signal,
+                     fault *f)
 {
     assert(signal < signal_count);
     static const double none[1] = {0};
@@ -260,9 +287,17 @@ status measured_rows(trace *t, const csv_table *table, const char *column, int s
     size_t numbers = 0;
     status code = csv_table_times(table, "time", &columns[0], f);
     for (int i = 1; i < signal_count && code == STATUS_OK; i++) {
-        const char *heading = column == NULL ? signal_table[i].name : i == signal ? column : NULL;
+        const char *heading;
+        if (column == NULL) {
+            heading = signal_table[i].name;
+        } else if (i == signal) {
+            heading = column;
+        } else {
+            heading = NULL;
+        }
         if (heading != NULL && csv_table_find(table, heading) >= 0) {
-            code = csv_table_numbers(table, heading, signal_table[i].unit, true, &columns[i], f);
+            code = csv_table_numbers(table, heading, signal_table[i].unit, true,
+                                     &columns[i], f);
         }
     }
 
@@ -271,7 +306,11 @@ status measured_rows(trace *t, const csv_table *table, const char *column, int s
         double row[SIGNALS_AT_MOST];
         sample measured;
         for (int i = 0; i < SIGNALS_AT_MOST; i++) {
-            row[i] = columns[i] != NULL ? columns[i][r] : (double)NAN;
+            if (columns[i] != NULL) {
+                row[i] = columns[i][r];
+            } else {
+                row[i] = (double)NAN;
+            }
             numbers += i > 0 && isfinite(row[i]);
         }
         memcpy(&measured, row, sizeof measured);
@@ -284,5 +323,8 @@ status measured_rows(trace *t, const csv_table *table, const char *column, int s
              "%.200s:1: expected a heading with time[s] and at least one recorded "
              "signal, such as force[N], and a number in a row below it",
              table->file);
-    return code == STATUS_NO_MEMORY ? fault_no_memory(f) : code;
+    if (code == STATUS_NO_MEMORY) {
+        return fault_no_memory(f);
+    }
+    return code;
 }

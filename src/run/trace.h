@@ -6,17 +6,18 @@
 #include "src/base/shared_array.h"
 #include "src/tables/signals.h"
 
-// The kinds of events: name in the enumeration, word in JSON and on screens, what happens.
-#define EVENT_KINDS(KIND)                                                                          \
-    KIND(IMPACT, "impact", "the gap closes with an approach speed: an impulse acts")               \
-    KIND(CONTACT, "contact", "contact goes on after an impact, or begins without one")             \
-    KIND(RELEASE, "release", "the contact force reaches zero")                                     \
-    KIND(STICK, "stick", "the hub comes to rest and friction holds it")                            \
-    KIND(REVERSAL, "reversal", "the hub comes to rest and turns back at once")                     \
-    KIND(SLIP, "slip", "the hub breaks away")                                                      \
-    KIND(CHANGE, "change", "a scripted change of a parameter")                                     \
-    KIND(PUSH, "push", "a scripted push")                                                          \
-    KIND(CHATTER, "chatter",                                                                       \
+// The kinds of events: name in the enumeration, word in JSON and on screens, what
+// happens.
+#define EVENT_KINDS(KIND)                                                                \
+    KIND(IMPACT, "impact", "the gap closes with an approach speed: an impulse acts")     \
+    KIND(CONTACT, "contact", "contact goes on after an impact, or begins without one")   \
+    KIND(RELEASE, "release", "the contact force reaches zero")                           \
+    KIND(STICK, "stick", "the hub comes to rest and friction holds it")                  \
+    KIND(REVERSAL, "reversal", "the hub comes to rest and turns back at once")           \
+    KIND(SLIP, "slip", "the hub breaks away")                                            \
+    KIND(CHANGE, "change", "a scripted change of a parameter")                           \
+    KIND(PUSH, "push", "a scripted push")                                                \
+    KIND(CHATTER, "chatter",                                                             \
          "too many short flights in a row: the impact took all the approach speed")
 
 typedef enum event_kind {
@@ -45,7 +46,8 @@ enum { TRACE_ROWS, TRACE_VELOCITIES, TRACE_ANGLES, TRACE_EVENTS, TRACE_ARRAYS };
 
 typedef struct trace {
     sample *rows;
-    double *angles;     // row r: angles[r * angle_count ...], the hub's first if it has one [rad]
+    double *
+        angles; // row r: angles[r * angle_count ...], the hub's first if it has one [rad]
     double *velocities; // the same of their velocities [rad/s]
     event *events;
     size_t row_count, event_count;
@@ -55,13 +57,13 @@ typedef struct trace {
 
 // An empty trace for angle_count link angles a row.
 void trace_init(trace *t, int angle_count);
-// The same in shared arrays (src/base/shared_array.h): for `least` rows and, if there is room,
-// `most`.
+// The same in shared arrays (src/base/shared_array.h): for `least` rows and, if there is
+// room, `most`.
 status trace_reserve(trace *t, int angle_count, size_t least, size_t most);
 void trace_finish(trace *t);
 
-// Lets a trace, still empty, begin with the first rows and events of another one: without a copy
-// where both are reserved. STATUS_NO_MEMORY if there is no room.
+// Lets a trace, still empty, begin with the first rows and events of another one: without
+// a copy where both are reserved. STATUS_NO_MEMORY if there is no room.
 status trace_share(trace *t, const trace *from, size_t rows, size_t events);
 
 // What a row takes [bytes].
@@ -70,12 +72,14 @@ static inline size_t trace_row_bytes(int angle_count)
     return sizeof(sample) + 2 * sizeof(double) * (size_t)angle_count;
 }
 
-// Makes room for so many rows in advance. False without memory, then the trace is as it was.
+// Makes room for so many rows in advance. False without memory, then the trace is as it
+// was.
 bool trace_expect(trace *t, size_t rows);
 
-// Append a row (angles, velocities: angle_count values each) or an event; STATUS_NO_MEMORY if there
-// is no room.
-status trace_add_row(trace *t, const sample *row, const double *angles, const double *velocities);
+// Append a row (angles, velocities: angle_count values each) or an event;
+// STATUS_NO_MEMORY if there is no room.
+status trace_add_row(trace *t, const sample *row, const double *angles,
+                     const double *velocities);
 status trace_add_event(trace *t, event e);
 
 // How many rows have a time that is not after `time` [s].
@@ -84,8 +88,8 @@ size_t trace_rows_until(const trace *t, double time);
 // The last row whose time is not after `time` [s]; 0 for an earlier time.
 size_t trace_row_at(const trace *t, double time);
 
-// Several rows of one instant are the sides of what happens at it. The side that a row stands for:
-// 0 the last one, SIZE_MAX the first of several, else how many follow it.
+// Several rows of one instant are the sides of what happens at it. The side that a row
+// stands for: 0 the last one, SIZE_MAX the first of several, else how many follow it.
 size_t trace_side(const trace *t, size_t row);
 
 // The row of an instant [s] on a side, the last row before it if it has none.
@@ -97,24 +101,26 @@ sample trace_sample_at(const trace *t, double time, size_t side);
 // Whether any row holds a finite value of the signal.
 bool trace_has(const trace *t, int signal);
 
-// --- statistics of a signal -------------------------------------------------------------------
+// --- statistics of a signal ------------------------------------------------------------
 
 typedef struct signal_statistics {
     double minimum, maximum; // in the signal's unit
     double mean;             // over time
     double rms;              // square root of the mean square over time
-    double integral;         // over time [unit s]; a force's is its momentum, impulses excluded
-    double duration;         // for which it had a value [s]
+    double integral; // over time [unit s]; a force's is its momentum, impulses excluded
+    double duration; // for which it had a value [s]
 } signal_statistics;
 
-// Of a signal from one instant to a later one [s], straight between rows, both kept within the run.
-// All NaN where it never has a value.
+// Of a signal from one instant to a later one [s], straight between rows, both kept
+// within the run. All NaN where it never has a value.
 signal_statistics trace_statistics(const trace *t, int signal, double from, double to);
 
 // --- recorded tables as traces: measured signals beside those of a run ---
 
-// Appends a row for each row of a table with a column "time": of the columns that are headed as
-// signals, in their units, or of `column` alone (not NULL), which stands for `signal`. What was not
-// measured is NaN. STATUS_BAD_ARGUMENT with the line in f: no time, times that fall, no such
-// column, a field that is no number, no number at all; STATUS_NO_MEMORY.
-status measured_rows(trace *t, const csv_table *table, const char *column, int signal, fault *f);
+// Appends a row for each row of a table with a column "time": of the columns that are
+// headed as signals, in their units, or of `column` alone (not NULL), which stands for
+// `signal`. What was not measured is NaN. STATUS_BAD_ARGUMENT with the line in f: no
+// time, times that fall, no such column, a field that is no number, no number at all;
+// STATUS_NO_MEMORY.
+status measured_rows(trace *t, const csv_table *table, const char *column, int signal,
+                     fault *f);

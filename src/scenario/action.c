@@ -1,4 +1,5 @@
-// The actions of a script: their order, and what they set; what is another than in the file.
+// The actions of a script: their order, and what they set; what is another than in the
+// file.
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -37,8 +38,8 @@ action action_of(double time, const parameters *p, int parameter, const char *te
         snprintf(name, sizeof name, "%.*s", (int)strcspn(text + 1, "="), text + 1);
         settings_get(p, name, &a.value);
         number_format_short(number, a.value);
-        snprintf(a.text, sizeof a.text, ".%.*s=%s", PARAMETER_TEXT_SIZE - NUMBER_TEXT - 3, name,
-                 number);
+        snprintf(a.text, sizeof a.text, ".%.*s=%s", PARAMETER_TEXT_SIZE - NUMBER_TEXT - 3,
+                 name, number);
     }
     return a;
 }
@@ -91,7 +92,10 @@ void action_format_value(const action *a, char *text, size_t size)
 
 bool expectation_is_met(const expectation *e, double value)
 {
-    return e->is_null ? isnan(value) : fabs(value - e->value) <= e->tolerance;
+    if (e->is_null) {
+        return isnan(value);
+    }
+    return fabs(value - e->value) <= e->tolerance;
 }
 
 parameters scenario_parameters_at(const scenario *s, double time)
@@ -114,8 +118,10 @@ status scenario_check_timing(const scenario *s, fault *f)
         // those of one instant go together
         fault wrong;
         const bool last = i + 1 == s->action_count || s->actions[i + 1].time > time;
-        FAULT_AT_IF(last && parameters_check_timing(&now, &wrong) != STATUS_OK, f, wrong.code,
-                    wrong.path, "from %g s on %s", time, wrong.text);
+        if (last && parameters_check_timing(&now, &wrong) != STATUS_OK) {
+            return fault_set_at(f, wrong.code, wrong.path, "from %g s on %s", time,
+                                wrong.text);
+        }
     }
     return STATUS_OK;
 }

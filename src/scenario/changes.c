@@ -14,8 +14,8 @@ static void format_value(char *text, size_t size, const char *path, int paramete
     snprintf(text, size, "%s = %s%s%s", path, value, unit[0] != '\0' ? " " : "", unit);
 }
 
-// Whether a parameter was given another value than the file's, and that has an effect; text has
-// room for it in words.
+// Whether a parameter was given another value than the file's, and that has an effect;
+// text has room for it in words.
 static bool is_changed(const scenario *s, int index, char *text, size_t size)
 {
     char value[PARAMETER_TEXT_SIZE], written[PARAMETER_TEXT_SIZE];
@@ -53,10 +53,10 @@ const char *scenario_changes_within(const scenario *s, char *text, size_t room)
     for (int i = 0; i < parameter_count + s->action_count; i++) {
         char words[4 * PARAMETER_TEXT_SIZE];
         const action *a = i < parameter_count ? NULL : &s->actions[i - parameter_count];
-        if (a == NULL
-                ? !is_changed(s, i, words, sizeof words)
-                : !a->added || (a->kind == ACTION_SET &&
-                                effect_none_from(s, a->parameter, i - parameter_count) != NULL)) {
+        if (a == NULL ? !is_changed(s, i, words, sizeof words)
+                      : !a->added || (a->kind == ACTION_SET &&
+                                      effect_none_from(s, a->parameter,
+                                                       i - parameter_count) != NULL)) {
             continue;
         }
         if (a != NULL) {
@@ -68,8 +68,8 @@ const char *scenario_changes_within(const scenario *s, char *text, size_t room)
             more++;
             continue;
         }
-        used +=
-            (size_t)snprintf(text + used, room - used, "%s%s", used == 0 ? ", with " : ", ", words);
+        used += (size_t)snprintf(text + used, room - used, "%s%s",
+                                 used == 0 ? ", with " : ", ", words);
     }
     if (more > 0 && used > 0) {
         snprintf(text + used, room - used, " and %d more", more);

@@ -11,7 +11,7 @@
 #include "src/tables/features.h"
 #include "src/tables/settings.h"
 
-// --- features of a scenario ------------------------------------------------------------------
+// --- features of a scenario ------------------------------------------------------------
 
 // Whether an action happens, and sets a parameter.
 static bool sets(const scenario *s, const action *a, int parameter)
@@ -32,10 +32,12 @@ static feature_set engine_features(const parameters *p, feature_set features)
     }
     arm a;
     arm_init(&a, p);
-    return HAS(PAIR) | (p->method.engine == ENGINE_AUTO && !motion_suits_pair(&a) ? HAS(STIFF) : 0);
+    return HAS(PAIR) |
+           (p->method.engine == ENGINE_AUTO && !motion_suits_pair(&a) ? HAS(STIFF) : 0);
 }
 
-// Whether a law has a parameter control.NAME and reads it; of one from outside nobody knows.
+// Whether a law has a parameter control.NAME and reads it; of one from outside nobody
+// knows.
 static bool law_reads(int law, const char *name)
 {
     char word[ACTION_PATH];
@@ -51,7 +53,8 @@ static feature_set own_features(const parameters *p, int parameter)
     const char *name = strchr(parameter_table[parameter].path, '.') + 1;
     double given;
     const bool replaced = p->control.law != LAW_PROCESS && settings_get(p, name, &given);
-    return (law_reads(p->control.law, name) ? HAS(READ) : 0) | (replaced ? 0 : HAS(ALONE));
+    return (law_reads(p->control.law, name) ? HAS(READ) : 0) |
+           (replaced ? 0 : HAS(ALONE));
 }
 
 static feature_set law_features(const scenario *s, const parameters *p)
@@ -65,24 +68,27 @@ static feature_set law_features(const scenario *s, const parameters *p)
 
     // with a limit the rig predicts the force of a touch, by the same model
     const feature_set forecast = TOLD_ARM | HAS(TOLD_HUB_SPRING) | HAS(TOLD_DAMPING);
-    return law->told | (steps || p->control.force_amplitude > 0 ? law->told_where_force_moves : 0) |
+    return law->told |
+           (steps || p->control.force_amplitude > 0 ? law->told_where_force_moves : 0) |
            (p->control.law != LAW_NONE && p->control.force_limit > 0 ? forecast : 0) |
            (own == NULL || own->lockable ? HAS(LOCKABLE) : 0) |
            (law_reads(p->control.law, "force") ? HAS(FORCE_READ) : 0) |
            (steps ? HAS(FORCE_STEPS) : 0);
 }
 
-// --- effects ---------------------------------------------------------------------------------
+// --- effects ---------------------------------------------------------------------------
 
 // Why a parameter has no effect as long as the parameters are these.
 static const char *inert_with(const scenario *s, const parameters *p, int parameter)
 {
     const feature_set own = features_of(p);
-    return features_inert(
-        own | law_features(s, p) | own_features(p, parameter) | engine_features(p, own), parameter);
+    return features_inert(own | law_features(s, p) | own_features(p, parameter) |
+                              engine_features(p, own),
+                          parameter);
 }
 
-// Whether an action gives another value to what action `first` sets, or to a parameter if that is
+// Whether an action gives another value to what action `first` sets, or to a parameter if
+// that is
 // -1.
 static bool sets_again(const scenario *s, const action *a, int parameter, int first)
 {
@@ -97,12 +103,13 @@ static bool sets_again(const scenario *s, const action *a, int parameter, int fi
 const char *effect_none_from(const scenario *s, int parameter, int first)
 {
     assert(parameter >= 0 && parameter < parameter_count && first < s->action_count);
-    const char *why = first < 0 ? "the script gives it another value at once" : "the run has ended";
+    const char *why =
+        first < 0 ? "the script gives it another value at once" : "the run has ended";
     parameters p = s->parameters;
     for (int i = -1; i < s->action_count; i++) {
         const action *a = i >= 0 ? &s->actions[i] : NULL;
-        if (a != NULL &&
-            (a->time > p.run.duration || (i > first && sets_again(s, a, parameter, first)))) {
+        if (a != NULL && (a->time > p.run.duration ||
+                          (i > first && sets_again(s, a, parameter, first)))) {
             break;
         }
         if (a != NULL) {
@@ -112,7 +119,9 @@ const char *effect_none_from(const scenario *s, int parameter, int first)
         // what is set at one instant goes together
         const double now = a != NULL ? a->time : 0;
         const bool last = i + 1 == s->action_count || s->actions[i + 1].time > now;
-        why = i >= first && last ? inert_with(s, &p, parameter) : why;
+        if (i >= first && last) {
+            why = inert_with(s, &p, parameter);
+        }
         if (why == NULL) {
             return NULL;
         }
@@ -148,8 +157,13 @@ bool effect_next_idle(const scenario *s, int *place, idle_value *idle)
         }
         idle->why = effect_none_from(s, parameter, first);
         if (idle->why != NULL) {
-            idle->line = a != NULL ? a->line : s->lines[parameter];
-            snprintf(idle->path, sizeof idle->path, "%s", parameter_table[parameter].path);
+            if (a != NULL) {
+                idle->line = a->line;
+            } else {
+                idle->line = s->lines[parameter];
+            }
+            snprintf(idle->path, sizeof idle->path, "%s",
+                     parameter_table[parameter].path);
             if (a != NULL) {
                 action_path(a, idle->path);
             }

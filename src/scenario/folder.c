@@ -1,4 +1,5 @@
-// Scenarios as files: reading one, finding one by name, listing the folder of those that ship.
+// Scenarios as files: reading one, finding one by name, listing the folder of those that
+// ship.
 
 #include <dirent.h>
 #include <errno.h>
@@ -31,13 +32,17 @@ __attribute__((format(printf, 1, 2))) static char *text_of(const char *format, .
     va_start(args, format);
     int length = vasprintf(&text, format, args);
     va_end(args);
-    return length < 0 ? NULL : text;
+    if (length < 0) {
+        return NULL;
+    }
+    return text;
 }
 
 // Whether a call that failed says that there is nothing of that name.
 static bool is_missing(int reason)
 {
-    return reason == ENOENT || reason == ENOTDIR || reason == ENAMETOOLONG || reason == ELOOP;
+    return reason == ENOENT || reason == ENOTDIR || reason == ENAMETOOLONG ||
+           reason == ELOOP;
 }
 
 // What a name is of; what cannot be looked at may be anything.
@@ -46,9 +51,16 @@ enum { NOTHING = 1, FOLDER = 2, FILE_OR_LIKE = 4, HIDDEN = 8 };
 static int kind_of(const char *path)
 {
     struct stat information;
-    return stat(path, &information) == 0 ? (S_ISDIR(information.st_mode) ? FOLDER : FILE_OR_LIKE)
-           : is_missing(errno)           ? NOTHING
-                                         : HIDDEN;
+    if (stat(path, &information) == 0) {
+        if (S_ISDIR(information.st_mode)) {
+            return FOLDER;
+        }
+        return FILE_OR_LIKE;
+    }
+    if (is_missing(errno)) {
+        return NOTHING;
+    }
+    return HIDDEN;
 }
 
 static bool is_folder(const char *path)
@@ -56,13 +68,14 @@ static bool is_folder(const char *path)
     return kind_of(path) == FOLDER;
 }
 
-// Whether there is a file of that name, or what cannot be looked at: its reader will tell.
+// Whether there is a file of that name, or what cannot be looked at: its reader will
+// tell.
 static bool is_file(const char *path)
 {
     return (kind_of(path) & (FILE_OR_LIKE | HIDDEN)) != 0;
 }
 
-// ---- reading ------------------------------------------------------------------------------------
+// ---- reading --------------------------------------------------------------------------
 
 static status report_no_memory(fault_handler report, void *context)
 {
@@ -70,43 +83,53 @@ static status report_no_memory(fault_handler report, void *context)
     return STATUS_NO_MEMORY;
 }
 
-// Reports a sentence, printf-like. Returns `code`; STATUS_NO_MEMORY where there is none for it.
-__attribute__((format(printf, 4, 5))) static status tell(fault_handler report, void *context,
-                                                         status code, const char *format, ...)
+// Reports a sentence, printf-like. Returns `code`; STATUS_NO_MEMORY where there is none
+// for it.
+__attribute__((format(printf, 4, 5))) static status
+tell(fault_handler report, void *context, status code, const char *format, ...)
 {
     char *sentence;
     va_list args;
     va_start(args, format);
     const int length = vasprintf(&sentence, format, args);
     va_end(args);
-    FAIL_IF(length < 0, report_no_memory(report, context));
+    if (length < 0) {
+        return report_no_memory(report, context);
+    }
     report(context, sentence);
     free(sentence);
     return code;
 }
 
 // What is wrong with a file as a whole.
-static status report_file(scenario *s, const char *path, const char *what, fault_handler report,
-                          void *context)
+static status report_file(scenario *s, const char *path, const char *what,
+                          fault_handler report, void *context)
 {
     s->refused = (fault_place){1, 1, NULL};
-    return tell(report, context, STATUS_CANNOT_READ, "%s:1:1: %s, expected a scenario file", path,
-                what);
+    return tell(report, context, STATUS_CANNOT_READ,
+                "%s:1:1: %s, expected a scenario file", path, what);
 }
 
-status scenario_read(scenario *s, const char *path, const char *name, fault_handler report,
-                     void *context)
+status scenario_read(scenario *s, const char *path, const char *name,
+                     fault_handler report, void *context)
 {
     fault why = {0};
-    FAIL_IF(is_folder(path), report_file(s, path, "it is a folder", report, context));
+    if (is_folder(path)) {
+        return report_file(s, path, "it is a folder", report, context);
+    }
 
     // one byte more than is allowed, so that the parser sees what is too long
     size_t length;
     char *text = whole_file_read(path, (size_t)TREE_MAX_BYTES + 1, &length, &why);
-    FAIL_IF(why.code == STATUS_NO_MEMORY, report_no_memory(report, context));
-    FAIL_IF(why.code == STATUS_BAD_ARGUMENT,
-            tell(report, context, why.code, "'%s' %s", path, why.text));
-    FAIL_IF(text == NULL, report_file(s, path, why.text, report, context));
+    if (why.code == STATUS_NO_MEMORY) {
+        return report_no_memory(report, context);
+    }
+    if (why.code == STATUS_BAD_ARGUMENT) {
+        return tell(report, context, why.code, "'%s' %s", path, why.text);
+    }
+    if (text == NULL) {
+        return report_file(s, path, why.text, report, context);
+    }
     const status result = scenario_parse(s, text, length, path, name, report, context);
     free(text);
     return result;
@@ -123,15 +146,19 @@ bool scenario_is(const char *path)
     return is;
 }
 
-// ---- the folder ---------------------------------------------------------------------------------
+// ---- the folder -----------------------------------------------------------------------
 
 static bool add_name(name_list *list, const char *name, size_t length)
 {
     char **grown = realloc(list->names, (size_t)(list->count + 1) * sizeof *grown);
-    FAIL_IF(grown == NULL, false);
+    if (grown == NULL) {
+        return false;
+    }
     list->names = grown;
     grown[list->count] = strndup(name, length);
-    FAIL_IF(grown[list->count] == NULL, false);
+    if (grown[list->count] == NULL) {
+        return false;
+    }
     list->count++;
     return true;
 }
@@ -144,9 +171,10 @@ static void free_names(char **names, int count)
     free(names);
 }
 
-// The folders to look in: those of IMPACTLAB_SCENARIOS, then that of the scenarios that ship.
-// STATUS_CANNOT_READ if one is not there, all are named nevertheless. STATUS_NO_MEMORY, and then
-// none is: a folder less would be another scenario of the same name.
+// The folders to look in: those of IMPACTLAB_SCENARIOS, then that of the scenarios that
+// ship. STATUS_CANNOT_READ if one is not there, all are named nevertheless.
+// STATUS_NO_MEMORY, and then none is: a folder less would be another scenario of the same
+// name.
 static status name_folders(name_list *all, fault *f)
 {
     const char *chosen = getenv("IMPACTLAB_SCENARIOS");
@@ -184,7 +212,8 @@ static status name_folders(name_list *all, fault *f)
     return result;
 }
 
-// The file of that name in the first folder that has it, else in the last; NULL without memory.
+// The file of that name in the first folder that has it, else in the last; NULL without
+// memory.
 static char *find_file(const char *name, const char *ending)
 {
     name_list all;
@@ -206,24 +235,30 @@ char *scenario_folder_file(const char *name)
 
 static const char no_scenarios[] = "recipes"; // a folder of what belongs to figures
 
-static status walk(name_list *list, const char *folder, const char *prefix, int depth, fault *f);
+static status walk(name_list *list, const char *folder, const char *prefix, int depth,
+                   fault *f);
 
 // Why a folder's scenarios are not known.
 static status cannot_list(const char *folder, fault *f)
 {
-    return errno == ENOMEM ? fault_no_memory(f)
-                           : fault_set(f, STATUS_CANNOT_READ,
-                                       "%.500s cannot be listed (%s), expected scenarios there",
-                                       folder, strerror(errno));
+    if (errno == ENOMEM) {
+        return fault_no_memory(f);
+    }
+    return fault_set(f, STATUS_CANNOT_READ,
+                     "%.500s cannot be listed (%s), expected scenarios there", folder,
+                     strerror(errno));
 }
 
 // Adds one entry of a folder, or what is below it.
-static status add_entry(name_list *list, const char *folder, const char *prefix, const char *entry,
-                        int depth, fault *f)
+static status add_entry(name_list *list, const char *folder, const char *prefix,
+                        const char *entry, int depth, fault *f)
 {
     char *path = text_of("%s/%s", folder, entry);
     char *name = text_of("%s%s%s", prefix, prefix[0] != '\0' ? "/" : "", entry);
-    status code = path != NULL && name != NULL ? STATUS_OK : fault_no_memory(f);
+    status code = STATUS_OK;
+    if (!(path != NULL && name != NULL)) {
+        code = fault_no_memory(f);
+    }
     struct stat about = {0};
     if (code == STATUS_OK && stat(path, &about) != 0 && !is_missing(errno)) {
         code = cannot_list(folder, f);
@@ -231,9 +266,17 @@ static status add_entry(name_list *list, const char *folder, const char *prefix,
 
     // a folder's scenarios have its name before theirs; other files than .yaml are none
     if (code == STATUS_OK && S_ISDIR(about.st_mode)) {
-        code = depth < MAX_FOLDER_DEPTH ? walk(list, path, name, depth + 1, f) : STATUS_OK;
+        if (depth < MAX_FOLDER_DEPTH) {
+            code = walk(list, path, name, depth + 1, f);
+        } else {
+            code = STATUS_OK;
+        }
     } else if (code == STATUS_OK && entry[text_stem(entry, suffix)] != '\0') {
-        code = add_name(list, name, text_stem(name, suffix)) ? STATUS_OK : fault_no_memory(f);
+        if (add_name(list, name, text_stem(name, suffix))) {
+            code = STATUS_OK;
+        } else {
+            code = fault_no_memory(f);
+        }
     }
 
     free(path);
@@ -241,14 +284,18 @@ static status add_entry(name_list *list, const char *folder, const char *prefix,
     return code;
 }
 
-// Adds the scenarios in and below a folder; one below that is not the user's to read counts as
-// empty.
-static status walk(name_list *list, const char *folder, const char *prefix, int depth, fault *f)
+// Adds the scenarios in and below a folder; one below that is not the user's to read
+// counts as empty.
+static status walk(name_list *list, const char *folder, const char *prefix, int depth,
+                   fault *f)
 {
     DIR *directory = opendir(folder);
     if (directory == NULL) {
         const bool hidden = errno == EACCES && depth > 0;
-        return hidden || errno == ENOENT ? STATUS_OK : cannot_list(folder, f);
+        if (hidden || errno == ENOENT) {
+            return STATUS_OK;
+        }
+        return cannot_list(folder, f);
     }
 
     // every entry that may be a scenario or a folder of them
@@ -318,7 +365,7 @@ status scenario_list(char ***names, int *count, fault *f)
     return STATUS_OK;
 }
 
-// ---- finding ------------------------------------------------------------------------------------
+// ---- finding --------------------------------------------------------------------------
 
 // Says what is wrong with a name that is neither listed nor a file.
 static status report_unknown(const char *wanted, fault_handler report, void *context)
@@ -335,38 +382,50 @@ static status report_unknown(const char *wanted, fault_handler report, void *con
     // the nearest of the shipped scenarios, if their folder can be read
     const char *near = name_nearest(names, sizeof *names, count, stem);
     const status code = STATUS_BAD_ARGUMENT;
-    const status told =
-        unread.text[0] != '\0'
-            ? tell(report, context, code, "'%s' is no file, and no scenario can be found: %s",
-                   wanted, unread.text)
-        : near != NULL
-            ? tell(report, context, code,
-                   "'%s' is neither a scenario nor a file, did you mean '%s'?", wanted, near)
-            : tell(report, context, code,
-                   "'%s' is neither a scenario nor a file, expected a name that 'impactlab list' "
-                   "shows or the path of a file",
-                   wanted);
+    status told;
+    if (unread.text[0] != '\0') {
+        told = tell(report, context, code,
+                    "'%s' is no file, and no scenario can be found: %s", wanted,
+                    unread.text);
+    } else if (near != NULL) {
+        told = tell(report, context, code,
+                    "'%s' is neither a scenario nor a file, did you mean '%s'?", wanted,
+                    near);
+    } else {
+        told = tell(report, context, code,
+                    "'%s' is neither a scenario nor a file, expected a name that "
+                    "'impactlab list' shows or the path of a file",
+                    wanted);
+    }
     free_names(names, count);
     free(stem);
     return told;
 }
 
-// Whether the list may show a name: none of its parts is empty or hidden, nor are they too many.
+// Whether the list may show a name: none of its parts is empty or hidden, nor are they
+// too many.
 static bool may_be_listed(const char *name)
 {
     const size_t skipped = sizeof no_scenarios - 1;
     int depth = 0;
     for (const char *part = name; part != NULL; depth++) {
-        FAIL_IF(*part == '/' || *part == '.' || *part == '\0', false);
+        if (*part == '/' || *part == '.' || *part == '\0') {
+            return false;
+        }
         part = strchr(part, '/');
-        part = part != NULL ? part + 1 : NULL;
+        if (part != NULL) {
+            part = part + 1;
+        } else {
+            part = NULL;
+        }
     }
     return depth <= MAX_FOLDER_DEPTH + 1 &&
            !(strncmp(name, no_scenarios, skipped) == 0 && name[skipped] == '/');
 }
 
-// The file of a scenario that the list has, on the heap; *path is NULL if it has none of that name.
-// It has none at all if a folder is not there; STATUS_NO_MEMORY is the only failure.
+// The file of a scenario that the list has, on the heap; *path is NULL if it has none of
+// that name. It has none at all if a folder is not there; STATUS_NO_MEMORY is the only
+// failure.
 static status find_name(const char *wanted, char **path)
 {
     struct stat about;
@@ -375,10 +434,14 @@ static status find_name(const char *wanted, char **path)
     status folders = name_folders(&all, NULL);
     free_names(all.names, all.count);
     if (folders != STATUS_OK || !may_be_listed(wanted)) {
-        return folders == STATUS_NO_MEMORY ? folders : STATUS_OK;
+        if (folders == STATUS_NO_MEMORY) {
+            return folders;
+        }
+        return STATUS_OK;
     }
 
-    // a link that leads nowhere is listed, too; of one that cannot be looked at its reader tells
+    // a link that leads nowhere is listed, too; of one that cannot be looked at its
+    // reader tells
     *path = find_file(wanted, suffix);
     const bool missing = *path != NULL && lstat(*path, &about) != 0 && is_missing(errno);
     if (*path != NULL && (missing || is_folder(*path))) {
@@ -386,15 +449,21 @@ static status find_name(const char *wanted, char **path)
         *path = NULL;
         return STATUS_OK;
     }
-    return *path == NULL ? STATUS_NO_MEMORY : STATUS_OK;
+    if (*path == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+    return STATUS_OK;
 }
 
-status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context)
+status scenario_open(scenario *s, const char *name_or_file, fault_handler report,
+                     void *context)
 {
     // a scenario of the folder
     char *path;
     status result = find_name(name_or_file, &path);
-    FAIL_IF(result != STATUS_OK, report_no_memory(report, context));
+    if (result != STATUS_OK) {
+        return report_no_memory(report, context);
+    }
     if (path != NULL) {
         result = scenario_read(s, path, name_or_file, report, context);
         free(path);
@@ -403,13 +472,24 @@ status scenario_open(scenario *s, const char *name_or_file, fault_handler report
 
     // a file, with its ending or without
     path = text_of("%s%s", name_or_file, suffix);
-    FAIL_IF(path == NULL, report_no_memory(report, context));
-    const char *file = is_file(name_or_file)     ? name_or_file
-                       : is_file(path)           ? path
-                       : is_folder(name_or_file) ? name_or_file
-                                                 : NULL;
-    result = file != NULL ? scenario_read(s, file, NULL, report, context)
-                          : report_unknown(name_or_file, report, context);
+    if (path == NULL) {
+        return report_no_memory(report, context);
+    }
+    const char *file;
+    if (is_file(name_or_file)) {
+        file = name_or_file;
+    } else if (is_file(path)) {
+        file = path;
+    } else if (is_folder(name_or_file)) {
+        file = name_or_file;
+    } else {
+        file = NULL;
+    }
+    if (file != NULL) {
+        result = scenario_read(s, file, NULL, report, context);
+    } else {
+        result = report_unknown(name_or_file, report, context);
+    }
     free(path);
     return result;
 }

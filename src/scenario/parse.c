@@ -1,4 +1,5 @@
-// A scenario file from its first key to its last: what each is, and in which order they are read.
+// A scenario file from its first key to its last: what each is, and in which order they
+// are read.
 #include <string.h>
 
 #include "src/scenario/reader.h"
@@ -6,7 +7,8 @@
 #include "src/tables/signals.h"
 
 // Copies prose; only the description may have several lines. NULL after a fault.
-static char *parse_prose(reader *r, const tree_node *node, const char *what, bool many_lines)
+static char *parse_prose(reader *r, const tree_node *node, const char *what,
+                         bool many_lines)
 {
     // trailing blanks are no part of it
     const size_t length = node_text_length(node);
@@ -18,8 +20,8 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what, boo
     // control characters are not allowed
     for (size_t i = 0; i < length; i++) {
         unsigned char c = (unsigned char)node->text[i];
-        bool control =
-            c < 0x20 || c == 0x7f || (c == 0xc2 && (unsigned char)node->text[i + 1] < 0xa0);
+        bool control = c < 0x20 || c == 0x7f ||
+                       (c == 0xc2 && (unsigned char)node->text[i + 1] < 0xa0);
         if (control && !(many_lines && (c == '\n' || c == '\t'))) {
             report_node(r, node, "%s holds %s, expected %s", what,
                         c == '\n' ? "several lines" : "a control character",
@@ -30,7 +32,8 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what, boo
 
     // a title fits on a line
     if (!many_lines && length > SCENARIO_TITLE) {
-        report_node(r, node, "%s has %zu bytes, expected at most %d", what, length, SCENARIO_TITLE);
+        report_node(r, node, "%s has %zu bytes, expected at most %d", what, length,
+                    SCENARIO_TITLE);
         return NULL;
     }
 
@@ -39,7 +42,8 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what, boo
     return copy;
 }
 
-// Reports a key that a file does not have at its top, with the nearest one that it may have.
+// Reports a key that a file does not have at its top, with the nearest one that it may
+// have.
 static void report_unknown_top(reader *r, const tree_node *key)
 {
     static const char *const others[] = {"title",  "description", "panes",
@@ -50,8 +54,8 @@ static void report_unknown_top(reader *r, const tree_node *key)
     int index = parameter_find(key->text);
     if (index >= 0) {
         const char *dot = strchr(key->text, '.');
-        report_node(r, key, "unknown key '%s', expected '%s:' under '%.*s:'", key->text, dot + 1,
-                    (int)(dot - key->text), key->text);
+        report_node(r, key, "unknown key '%s', expected '%s:' under '%.*s:'", key->text,
+                    dot + 1, (int)(dot - key->text), key->text);
         return;
     }
 
@@ -83,17 +87,18 @@ static void report_unknown_top(reader *r, const tree_node *key)
                     (int)strcspn(near.best, "."), near.best);
         return;
     }
-    report_node(
-        r, key,
-        "unknown key '%.60s', expected title, description, panes%s, script, expect or lesson",
-        key->text, groups);
+    report_node(r, key,
+                "unknown key '%.60s', expected title, description, panes%s, script, "
+                "expect or lesson",
+                key->text, groups);
 }
 
 // The signals that a scenario is to be looked at by.
 static void reader_panes(reader *r, const tree_node *list)
 {
     if (list->kind != TREE_LIST) {
-        report_node(r, list, "panes is %s, expected a list of signals: [force, hub_angle]",
+        report_node(r, list,
+                    "panes is %s, expected a list of signals: [force, hub_angle]",
                     node_kind_name(list));
         return;
     }
@@ -112,7 +117,8 @@ static void reader_panes(reader *r, const tree_node *list)
     }
 }
 
-// Reads everything; script, expect and lesson come after the parameters that they depend on.
+// Reads everything; script, expect and lesson come after the parameters that they depend
+// on.
 static void parse_root(reader *r, const tree_node *root)
 {
     const tree_node *script = NULL, *expect = NULL, *steps = NULL;
@@ -147,7 +153,8 @@ static void parse_root(reader *r, const tree_node *root)
     }
 
     // what depends on all parameters
-    r->duration_known = r->given[PARAMETER_INDEX(run.duration)].line > 0 || r->faults == 0;
+    r->duration_known =
+        r->given[PARAMETER_INDEX(run.duration)].line > 0 || r->faults == 0;
     reader_resolve(r);
     const place lock = r->given[PARAMETER_INDEX(control.lock)];
     if (lock.line > 0) {
@@ -182,11 +189,16 @@ static void complete(reader *r, const char *name)
 
     // the name stands in for a title, if it can
     const char *title = strlen(called) <= SCENARIO_TITLE ? called : "untitled";
-    s->title = s->title != NULL ? s->title : strdup(title);
-    s->description = s->description != NULL ? s->description : strdup("");
+    if (s->title == NULL) {
+        s->title = strdup(title);
+    }
+    if (s->description == NULL) {
+        s->description = strdup("");
+    }
 
     // any of the copies may have failed
-    r->no_memory = s->name == NULL || s->file == NULL || s->title == NULL || s->description == NULL;
+    r->no_memory =
+        s->name == NULL || s->file == NULL || s->title == NULL || s->description == NULL;
 }
 
 status scenario_parse(scenario *s, const char *text, size_t length, const char *path,
@@ -214,7 +226,10 @@ status scenario_parse(scenario *s, const char *text, size_t length, const char *
     if (r.no_memory || r.faults > 0) {
         scenario_finish(s);
         s->refused = r.refused;
-        return r.no_memory ? STATUS_NO_MEMORY : STATUS_BAD_SCENARIO;
+        if (r.no_memory) {
+            return STATUS_NO_MEMORY;
+        }
+        return STATUS_BAD_SCENARIO;
     }
     return STATUS_OK;
 }

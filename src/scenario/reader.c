@@ -42,8 +42,13 @@ static int compare_places(const void *a, const void *b)
 {
     const found_fault *x = a, *y = b;
     int order = (x->at.line > y->at.line) - (x->at.line < y->at.line);
-    order = order ? order : (x->at.column > y->at.column) - (x->at.column < y->at.column);
-    return order ? order : (x->number > y->number) - (x->number < y->number);
+    if (!order) {
+        order = (x->at.column > y->at.column) - (x->at.column < y->at.column);
+    }
+    if (order) {
+        return order;
+    }
+    return (x->number > y->number) - (x->number < y->number);
 }
 
 void reader_report_all(reader *r, fault_handler report, void *context)
@@ -95,7 +100,10 @@ const char *node_kind_name(const tree_node *node)
 {
     static const char *const names[] = {"a single value", "a list", "a map of keys"};
     const bool blank = node_is_scalar(node) && node_text_length(node) == 0;
-    return blank ? "empty" : names[node->kind];
+    if (blank) {
+        return "empty";
+    }
+    return names[node->kind];
 }
 
 const char *reader_key(reader *r, const tree_node *map, const tree_node *child)
@@ -109,7 +117,8 @@ const char *reader_key(reader *r, const tree_node *map, const tree_node *child)
     // YAML allows a key twice, and would keep the last
     for (const tree_node *other = map->first; other != child; other = other->next) {
         if (node_is_scalar(other->key) && strcmp(other->key->text, key->text) == 0) {
-            report_node(r, key, "'%.60s' is there twice, expected it once (first at line %d)",
+            report_node(r, key,
+                        "'%.60s' is there twice, expected it once (first at line %d)",
                         key->text, other->key->line);
             return NULL;
         }
@@ -117,10 +126,12 @@ const char *reader_key(reader *r, const tree_node *map, const tree_node *child)
     return key->text;
 }
 
-bool reader_expect_map(reader *r, const tree_node *node, const char *what, const char *example)
+bool reader_expect_map(reader *r, const tree_node *node, const char *what,
+                       const char *example)
 {
-    return node->kind == TREE_MAP || report_node(r, node, "%s is %s, expected keys such as '%s'",
-                                                 what, node_kind_name(node), example);
+    return node->kind == TREE_MAP ||
+           report_node(r, node, "%s is %s, expected keys such as '%s'", what,
+                       node_kind_name(node), example);
 }
 
 bool reader_quantity(reader *r, const tree_node *node, const char *what, const char *unit,
@@ -129,24 +140,30 @@ bool reader_quantity(reader *r, const tree_node *node, const char *what, const c
     const char *rest, *space = unit[0] != '\0' ? " in " : "";
 
     // a number
-    FAIL_IF(!node_is_scalar(node) || node_is_empty(node),
-            report_node(r, node, "%s is %s, expected a number%s%s", what, node_kind_name(node),
-                        space, unit));
-    FAIL_IF(!decimal_read(node->text, value, &rest),
-            report_node(r, node, "%s = '%.60s' is not a finite number, expected a number%s%s", what,
-                        node->text, space, unit));
+    if (!node_is_scalar(node) || node_is_empty(node)) {
+        return report_node(r, node, "%s is %s, expected a number%s%s", what,
+                           node_kind_name(node), space, unit);
+    }
+    if (!decimal_read(node->text, value, &rest)) {
+        return report_node(r, node,
+                           "%s = '%.60s' is not a finite number, expected a number%s%s",
+                           what, node->text, space, unit);
+    }
 
     // with its unit or without, and finite
-    FAIL_IF(*rest != '\0' && strcmp(rest, unit) != 0,
-            report_node(r, node, "%s = '%.60s' carries '%.20s', expected %s", what, node->text,
-                        rest, unit[0] != '\0' ? unit : "a number without a unit"));
-    FAIL_IF(!isfinite(*value),
-            report_node(r, node, "%s = '%.60s' is too large, expected a finite number", what,
-                        node->text));
+    if (*rest != '\0' && strcmp(rest, unit) != 0) {
+        return report_node(r, node, "%s = '%.60s' carries '%.20s', expected %s", what,
+                           node->text, rest,
+                           unit[0] != '\0' ? unit : "a number without a unit");
+    }
+    if (!isfinite(*value)) {
+        return report_node(r, node, "%s = '%.60s' is too large, expected a finite number",
+                           what, node->text);
+    }
     return true;
 }
 
-// --- parameters ------------------------------------------------------------------------------
+// --- parameters ------------------------------------------------------------------------
 
 bool parameter_in_group(const char *path, const char *group)
 {
@@ -164,13 +181,14 @@ bool reader_is_group(const char *word)
     return false;
 }
 
-// Reports a key that its group does not have: in another group, or near to one of its own.
+// Reports a key that its group does not have: in another group, or near to one of its
+// own.
 static void report_unknown_parameter(reader *r, const tree_node *key, const char *group)
 {
     const char *elsewhere = parameter_suggest(key->text);
     if (elsewhere != NULL && strcmp(strchr(elsewhere, '.') + 1, key->text) == 0) {
-        report_node(r, key, "unknown key '%.60s' in %s, did you mean %s?", key->text, group,
-                    elsewhere);
+        report_node(r, key, "unknown key '%.60s' in %s, did you mean %s?", key->text,
+                    group, elsewhere);
         return;
     }
 
@@ -187,11 +205,11 @@ static void report_unknown_parameter(reader *r, const tree_node *key, const char
         }
     }
     if (near.best != NULL) {
-        report_node(r, key, "unknown key '%.60s' in %s, did you mean '%s'?", key->text, group,
-                    near.best);
+        report_node(r, key, "unknown key '%.60s' in %s, did you mean '%s'?", key->text,
+                    group, near.best);
     } else {
-        report_node(r, key, "unknown key '%.60s' in %s, expected one of %s", key->text, group,
-                    known);
+        report_node(r, key, "unknown key '%.60s' in %s, expected one of %s", key->text,
+                    group, known);
     }
 }
 
@@ -204,8 +222,8 @@ const char *reader_value_text(reader *r, const tree_node *node, const char *path
     return node->text;
 }
 
-// The numbers of a YAML list with commas between them, each checked where it stands; a value that
-// is no list stays as it is. NULL after a fault.
+// The numbers of a YAML list with commas between them, each checked where it stands; a
+// value that is no list stays as it is. NULL after a fault.
 static const char *list_text(reader *r, const tree_node *node, int index,
                              char list[PARAMETER_TEXT_SIZE])
 {
@@ -221,7 +239,9 @@ static const char *list_text(reader *r, const tree_node *node, int index,
         fault f;
         parameters scratch = r->s->parameters;
         const char *text = reader_value_text(r, child, path);
-        FAIL_IF(text == NULL, NULL);
+        if (text == NULL) {
+            return NULL;
+        }
         if (parameter_set_text(&scratch, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
             return NULL;
@@ -255,7 +275,8 @@ static void read_settings(reader *r, const tree_node *map)
             continue;
         }
         const char *text = reader_value_text(r, child, path);
-        if (text != NULL && settings_set_text(&r->s->parameters, name, text, &f) != STATUS_OK) {
+        if (text != NULL &&
+            settings_set_text(&r->s->parameters, name, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
         }
     }
@@ -271,7 +292,8 @@ void reader_group(reader *r, const tree_node *map, const char *group)
         first++;
     }
     char example[64];
-    snprintf(example, sizeof example, "%s: ...", strchr(parameter_table[first].path, '.') + 1);
+    snprintf(example, sizeof example, "%s: ...",
+             strchr(parameter_table[first].path, '.') + 1);
     if (!reader_expect_map(r, map, group, example)) {
         return;
     }
@@ -303,7 +325,8 @@ void reader_group(reader *r, const tree_node *map, const char *group)
         const char *text = parameter_table[index].type == PARAMETER_LIST
                                ? list_text(r, child, index, list)
                                : reader_value_text(r, child, path);
-        if (text != NULL && parameter_set_text(&r->s->parameters, index, text, &f) != STATUS_OK) {
+        if (text != NULL &&
+            parameter_set_text(&r->s->parameters, index, text, &f) != STATUS_OK) {
             report_node(r, child, "%s", f.text);
         } else if (text != NULL) {
             r->given[index] = (place){child->line, child->column};

@@ -38,7 +38,8 @@ bool reader_have_memory(reader *r, const void *memory);
 bool reader_report_at(reader *r, int line, int column, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 // The same at a node or its key.
-#define report_node(r, node, ...) reader_report_at(r, (node)->line, (node)->column, __VA_ARGS__)
+#define report_node(r, node, ...)                                                        \
+    reader_report_at(r, (node)->line, (node)->column, __VA_ARGS__)
 
 // Reports all faults in the order of their places, and frees them.
 void reader_report_all(reader *r, fault_handler report, void *context);
@@ -52,11 +53,13 @@ size_t node_text_length(const tree_node *node);
 // "a list", as a sentence names what stands there.
 const char *node_kind_name(const tree_node *node);
 
-// The key of a map's child as text; NULL, after a fault, if it is no word or was there before.
+// The key of a map's child as text; NULL, after a fault, if it is no word or was there
+// before.
 const char *reader_key(reader *r, const tree_node *map, const tree_node *child);
 
 // True for a map; otherwise a fault that shows an example.
-bool reader_expect_map(reader *r, const tree_node *node, const char *what, const char *example);
+bool reader_expect_map(reader *r, const tree_node *node, const char *what,
+                       const char *example);
 
 // Parses a finite number that may carry its unit ("0.4 s"); false after a fault.
 bool reader_quantity(reader *r, const tree_node *node, const char *what, const char *unit,
@@ -76,8 +79,8 @@ const char *reader_value_text(reader *r, const tree_node *node, const char *path
 // Parses the values of a group into the scenario.
 void reader_group(reader *r, const tree_node *map, const char *group);
 
-// Resolves the parameters. To report every fault, the one to blame (fault.path) is put back to its
-// default and the rest is resolved again.
+// Resolves the parameters. To report every fault, the one to blame (fault.path) is put
+// back to its default and the rest is resolved again.
 void reader_resolve(reader *r);
 
 // Reports, at a place, that control.lock names a mode which the law does not have.

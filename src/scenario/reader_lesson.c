@@ -10,7 +10,7 @@
 
 #define NEAR_ENOUGH 0.001 // share of a value that a parameter may be off
 
-// --- pieces -----------------------------------------------------------------------------------
+// --- pieces ----------------------------------------------------------------------------
 
 // The text of a node in one line; NULL after a fault.
 static char *read_text(reader *r, const tree_node *node, const char *what)
@@ -23,15 +23,20 @@ static char *read_text(reader *r, const tree_node *node, const char *what)
 
     // folded lines are one
     char *text = strndup(node->text, length);
-    FAIL_IF(!reader_have_memory(r, text), NULL);
+    if (!reader_have_memory(r, text)) {
+        return NULL;
+    }
     for (char *c = text; *c != '\0'; c++) {
-        *c = *c == '\n' || *c == '\t' ? ' ' : *c;
+        if (*c == '\n' || *c == '\t') {
+            *c = ' ';
+        }
     }
     return text;
 }
 
 // Fills texts from a list; returns how many there are.
-static int read_texts(reader *r, const tree_node *list, const char *what, char **texts, int most)
+static int read_texts(reader *r, const tree_node *list, const char *what, char **texts,
+                      int most)
 {
     int count = 0;
 
@@ -61,14 +66,16 @@ static void refuse_other_keys(reader *r, const tree_node *map, const char *known
         char word[64];
         snprintf(word, sizeof word, " %.60s ", key != NULL ? key : "");
         if (key != NULL && (strchr(key, ' ') != NULL || strstr(known, word) == NULL)) {
-            report_node(r, child->key, "unknown key '%.60s', expected some of:%s", key, known);
+            report_node(r, child->key, "unknown key '%.60s', expected some of:%s", key,
+                        known);
         }
     }
 }
 
-// A number of a map, not below the least; the value stays where the key may be left out and is.
-static void read_number(reader *r, const tree_node *map, const char *key, bool needed, double least,
-                        double *value)
+// A number of a map, not below the least; the value stays where the key may be left out
+// and is.
+static void read_number(reader *r, const tree_node *map, const char *key, bool needed,
+                        double least, double *value)
 {
     const tree_node *node = tree_child(map, key);
     if (node != NULL) {
@@ -81,12 +88,16 @@ static void read_number(reader *r, const tree_node *map, const char *key, bool n
 }
 
 // A whole number from 1 to `most`; 0 after a fault, which says that it is `what`.
-static int read_count(reader *r, const tree_node *node, const char *key, int most, const char *what)
+static int read_count(reader *r, const tree_node *node, const char *key, int most,
+                      const char *what)
 {
     double number;
-    FAIL_IF(!reader_quantity(r, node, key, "", &number), 0);
+    if (!reader_quantity(r, node, key, "", &number)) {
+        return 0;
+    }
     if (number != floor(number) || number < 1 || number > most) {
-        report_node(r, node, "%s = %g, expected %s, from 1 to %d", key, number, what, most);
+        report_node(r, node, "%s = %g, expected %s, from 1 to %d", key, number, what,
+                    most);
         return 0;
     }
     return (int)number;
@@ -97,7 +108,11 @@ static void read_quantity(reader *r, const tree_node *map, const char *key, int 
 {
     const tree_node *node = tree_child(map, key);
     const bool named = node != NULL && node_is_scalar(node);
-    *index = named ? summary_find(node->text) : -1;
+    if (named) {
+        *index = summary_find(node->text);
+    } else {
+        *index = -1;
+    }
     if (*index < 0) {
         report_node(r, node != NULL ? node : map,
                     "%s is no quantity of a run, expected a key of 'run --json'", key);
@@ -105,7 +120,7 @@ static void read_quantity(reader *r, const tree_node *map, const char *key, int 
     }
 }
 
-// --- checks -----------------------------------------------------------------------------------
+// --- checks ----------------------------------------------------------------------------
 
 static void read_choice(reader *r, const tree_node *map, lesson_step *step)
 {
@@ -115,8 +130,8 @@ static void read_choice(reader *r, const tree_node *map, lesson_step *step)
     const bool answers = of != NULL && (of->kind != TREE_LIST || of->first != NULL);
     if (!answers || right == NULL) {
         report_node(r, map,
-                    "a choice has no '%s', expected answers under 'of' and the right one's "
-                    "number under 'right'",
+                    "a choice has no '%s', expected answers under 'of' and the right "
+                    "one's number under 'right'",
                     answers ? "right" : "of");
         return;
     }
@@ -125,7 +140,8 @@ static void read_choice(reader *r, const tree_node *map, lesson_step *step)
     step->choice_count = read_texts(r, of, "of", step->choices, LESSON_CHOICES);
     if (step->choice_count > 0) {
         step->right =
-            read_count(r, right, "right", step->choice_count, "the number of an answer") - 1;
+            read_count(r, right, "right", step->choice_count, "the number of an answer") -
+            1;
     }
 }
 
@@ -147,10 +163,14 @@ static void read_value(reader *r, const tree_node *map, lesson_step *step)
     step->parameter = parameter_look_up(path, &f);
     const char *text = step->parameter >= 0 ? reader_value_text(r, child, path) : NULL;
     parameters scratch = r->s->parameters;
-    status code = step->parameter >= 0 ? STATUS_OK : STATUS_BAD_ARGUMENT;
+    status code = STATUS_OK;
+    if (!(step->parameter >= 0)) {
+        code = STATUS_BAD_ARGUMENT;
+    }
     if (code == STATUS_OK && parameter_is_text(&parameter_table[step->parameter])) {
         code = fault_set(&f, STATUS_BAD_ARGUMENT,
-                         "%s is a text or a list, expected a parameter with one value", path);
+                         "%s is a text or a list, expected a parameter with one value",
+                         path);
     }
     if (code == STATUS_OK && text != NULL) {
         code = parameter_set_text(&scratch, step->parameter, text, &f);
@@ -164,16 +184,19 @@ static void read_value(reader *r, const tree_node *map, lesson_step *step)
 }
 
 // Reads a condition that a step requires; false if the key is no such condition.
-static bool read_check(reader *r, const char *key, const tree_node *node, lesson_step *step)
+static bool read_check(reader *r, const char *key, const tree_node *node,
+                       lesson_step *step)
 {
     static const struct {
         const char *key;
         lesson_check check;
         const char *known; // keys of its map, "": any
-    } kinds[] = {
-        {"number", LESSON_NUMBER, " quantity within "},  {"choice", LESSON_CHOICE, " of right "},
-        {"cursor", LESSON_CURSOR, " at offset within "}, {"value", LESSON_VALUE, ""},
-        {"ratio", LESSON_RATIO, " quantity from to "},   {"pinned", LESSON_PINNED, ""}};
+    } kinds[] = {{"number", LESSON_NUMBER, " quantity within "},
+                 {"choice", LESSON_CHOICE, " of right "},
+                 {"cursor", LESSON_CURSOR, " at offset within "},
+                 {"value", LESSON_VALUE, ""},
+                 {"ratio", LESSON_RATIO, " quantity from to "},
+                 {"pinned", LESSON_PINNED, ""}};
     enum { KINDS = sizeof kinds / sizeof *kinds };
     int kind = 0;
     while (kind < KINDS && strcmp(key, kinds[kind].key) != 0) {
@@ -184,12 +207,14 @@ static bool read_check(reader *r, const char *key, const tree_node *node, lesson
     }
     const lesson_check check = kinds[kind].check;
     if (step->check != LESSON_READ) {
-        report_node(r, node->key, "'%s' is a second check of this step, expected one", key);
+        report_node(r, node->key, "'%s' is a second check of this step, expected one",
+                    key);
         return true;
     }
 
     // a count, or a map of what it needs
-    if (check != LESSON_PINNED && !reader_expect_map(r, node, key, "quantity: peak_force_N")) {
+    if (check != LESSON_PINNED &&
+        !reader_expect_map(r, node, key, "quantity: peak_force_N")) {
         return true;
     }
     step->check = check;
@@ -197,7 +222,8 @@ static bool read_check(reader *r, const char *key, const tree_node *node, lesson
         refuse_other_keys(r, node, kinds[kind].known);
     }
     if (check == LESSON_PINNED) {
-        step->pinned = read_count(r, node, key, LESSON_PINNED_RUNS, "how many runs are pinned");
+        step->pinned =
+            read_count(r, node, key, LESSON_PINNED_RUNS, "how many runs are pinned");
     } else if (check == LESSON_CHOICE) {
         read_choice(r, node, step);
     } else if (check == LESSON_VALUE) {
@@ -217,7 +243,7 @@ static bool read_check(reader *r, const char *key, const tree_node *node, lesson
     return true;
 }
 
-// --- steps ------------------------------------------------------------------------------------
+// --- steps -----------------------------------------------------------------------------
 
 static void read_step(reader *r, const tree_node *map, lesson_step *step)
 {
@@ -234,11 +260,12 @@ static void read_step(reader *r, const tree_node *map, lesson_step *step)
         if (which >= 0) {
             step->texts[which] = read_text(r, child, key);
         } else if (strcmp(key, "do") == 0) {
-            step->command_count = read_texts(r, child, key, step->commands, LESSON_COMMANDS);
+            step->command_count =
+                read_texts(r, child, key, step->commands, LESSON_COMMANDS);
         } else {
             report_node(r, child->key,
-                        "unknown key '%.60s' in a step, expected say, then, hint, do, number, "
-                        "choice, cursor, value, pinned or ratio",
+                        "unknown key '%.60s' in a step, expected say, then, hint, do, "
+                        "number, choice, cursor, value, pinned or ratio",
                         key);
         }
     }
@@ -247,8 +274,12 @@ static void read_step(reader *r, const tree_node *map, lesson_step *step)
     if (tree_child(map, "say") == NULL) {
         report_node(r, map, "a step has no 'say', expected text");
     }
-    step->then = step->then != NULL ? step->then : strdup("");
-    step->hint = step->hint != NULL ? step->hint : strdup("");
+    if (step->then == NULL) {
+        step->then = strdup("");
+    }
+    if (step->hint == NULL) {
+        step->hint = strdup("");
+    }
     reader_have_memory(r, step->then);
     reader_have_memory(r, step->hint);
 }

@@ -18,7 +18,8 @@ static void add_action(reader *r, action a)
     scenario_insert_action(s, a);
 }
 
-// Index of the parameter that a key of `set` names, and what gives it the value; -1 after a fault.
+// Index of the parameter that a key of `set` names, and what gives it the value; -1 after
+// a fault.
 static int find_timed_parameter(reader *r, const tree_node *key, const char **text,
                                 char room[PARAMETER_TEXT_SIZE])
 {
@@ -27,7 +28,8 @@ static int find_timed_parameter(reader *r, const tree_node *key, const char **te
     if (index < 0) {
         report_node(r, key, "%s", f.text);
     } else if (!parameter_table[index].timed) {
-        report_node(r, key, "%s cannot change during a run, expected it at the top of the file",
+        report_node(r, key,
+                    "%s cannot change during a run, expected it at the top of the file",
                     key->text);
         index = -1;
     }
@@ -45,8 +47,10 @@ static void parse_set(reader *r, const tree_node *map, bool timed, double time)
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *path = reader_key(r, map, child);
         char room[PARAMETER_TEXT_SIZE];
-        const char *text = node_is_scalar(child) && child->text != NULL ? child->text : "";
-        const int index = path != NULL ? find_timed_parameter(r, child->key, &text, room) : -1;
+        const char *text =
+            node_is_scalar(child) && child->text != NULL ? child->text : "";
+        const int index =
+            path != NULL ? find_timed_parameter(r, child->key, &text, room) : -1;
         if (index < 0 || reader_value_text(r, child, path) == NULL) {
             continue;
         }
@@ -76,12 +80,14 @@ static void parse_push(reader *r, const tree_node *node, bool timed, double time
     double impulse;
     if (r->s->parameters.arm.model == ARM_PRINTED) {
         report_node(r, node->key,
-                    "push: the printed model takes no pushes, expected 'set' or arm.model = "
-                    "corrected");
+                    "push: the printed model takes no pushes, expected 'set' or "
+                    "arm.model = corrected");
     }
     if (reader_quantity(r, node, "push", "N s", &impulse) && timed) {
-        add_action(r,
-                   (action){.time = time, .kind = ACTION_PUSH, .parameter = -1, .value = impulse});
+        add_action(r, (action){.time = time,
+                               .kind = ACTION_PUSH,
+                               .parameter = -1,
+                               .value = impulse});
     }
 }
 
@@ -89,10 +95,14 @@ static void parse_push(reader *r, const tree_node *node, bool timed, double time
 static bool parse_time(reader *r, const tree_node *node, double *time)
 {
     const double duration = r->s->parameters.run.duration;
-    FAIL_IF(!reader_quantity(r, node, "at", "s", time), false);
-    FAIL_IF(*time < 0 || (r->duration_known && *time > duration),
-            report_node(r, node, "at = %g s is outside the run, expected 0 to %g s (run.duration)",
-                        *time, duration));
+    if (!reader_quantity(r, node, "at", "s", time)) {
+        return false;
+    }
+    if (*time < 0 || (r->duration_known && *time > duration)) {
+        return report_node(
+            r, node, "at = %g s is outside the run, expected 0 to %g s (run.duration)",
+            *time, duration);
+    }
     return true;
 }
 
@@ -116,7 +126,8 @@ static void find_action_parts(reader *r, const tree_node *map, const tree_node *
                         DID_YOU_MEAN(near, ", expected at, set or push"));
         } else if (*deed != NULL) {
             report_node(r, child->key,
-                        "'%s' after '%s' in one action, expected one of them (begin a new '- at:')",
+                        "'%s' after '%s' in one action, expected one of them (begin a "
+                        "new '- at:')",
                         key, (*deed)->key->text);
         } else {
             *deed = child;
@@ -162,7 +173,7 @@ void reader_script(reader *r, const tree_node *list)
     }
 }
 
-// --- expectations ----------------------------------------------------------------------------
+// --- expectations ----------------------------------------------------------------------
 
 // Index in the summary of a quantity that two machines agree about; -1 after a fault.
 static int parse_quantity(reader *r, const tree_node *key)
@@ -190,9 +201,11 @@ static bool parse_value_and_tolerance(reader *r, const tree_node *map, expectati
     const char *quantity = summary_table[e->quantity].key;
     const tree_node *value = NULL, *tolerance = NULL;
     const int faults = r->faults;
-    FAIL_IF(map->kind != TREE_MAP,
-            report_node(r, map, "%s is %s, expected {value: ..., tolerance: ...} or null", quantity,
-                        node_kind_name(map)));
+    if (map->kind != TREE_MAP) {
+        return report_node(r, map,
+                           "%s is %s, expected {value: ..., tolerance: ...} or null",
+                           quantity, node_kind_name(map));
+    }
 
     // which of the two keys are there
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
@@ -205,23 +218,26 @@ static bool parse_value_and_tolerance(reader *r, const tree_node *map, expectati
         } else if (strcmp(key, "tolerance") == 0) {
             tolerance = child;
         } else {
-            report_node(r, child->key, "unknown key '%.60s' in %s, expected value and tolerance",
-                        key, quantity);
+            report_node(r, child->key,
+                        "unknown key '%.60s' in %s, expected value and tolerance", key,
+                        quantity);
         }
     }
 
     if (value == NULL || tolerance == NULL) {
-        report_node(r, map, "%s has no %s, expected {value: ..., tolerance: ...}", quantity,
-                    value == NULL ? "value" : "tolerance");
+        report_node(r, map, "%s has no %s, expected {value: ..., tolerance: ...}",
+                    quantity, value == NULL ? "value" : "tolerance");
     }
 
     // their numbers
     if (value != NULL) {
         reader_quantity(r, value, "value", "", &e->value);
     }
-    if (tolerance != NULL && reader_quantity(r, tolerance, "tolerance", "", &e->tolerance) &&
+    if (tolerance != NULL &&
+        reader_quantity(r, tolerance, "tolerance", "", &e->tolerance) &&
         e->tolerance < 0) {
-        report_node(r, tolerance, "tolerance = %g is negative, expected 0 or more", e->tolerance);
+        report_node(r, tolerance, "tolerance = %g is negative, expected 0 or more",
+                    e->tolerance);
     }
 
     return r->faults == faults;
@@ -252,8 +268,9 @@ void reader_expectations(reader *r, const tree_node *map)
             continue;
         }
 
-        expectation e = {
-            .quantity = quantity, .line = child->key->line, .column = child->key->column};
+        expectation e = {.quantity = quantity,
+                         .line = child->key->line,
+                         .column = child->key->column};
         e.is_null = node_is_scalar(child) && child->plain &&
                     (strcmp(child->text, "null") == 0 || strcmp(child->text, "~") == 0);
         if (e.is_null || parse_value_and_tolerance(r, child, &e)) {

@@ -66,11 +66,18 @@ status scenario_copy(scenario *copy, const scenario *s)
     copy->file = text_of(s->file, &good);
     copy->title = text_of(s->title, &good);
     copy->description = text_of(s->description, &good);
-    copy->actions = copy_of(s->actions, (size_t)s->action_count * sizeof *s->actions, &good);
+    copy->actions =
+        copy_of(s->actions, (size_t)s->action_count * sizeof *s->actions, &good);
     copy->expectations =
-        copy_of(s->expectations, (size_t)s->expectation_count * sizeof *s->expectations, &good);
-    copy->lesson.steps = copy_of(l->steps, (size_t)l->step_count * sizeof *l->steps, &good);
-    copy->lesson.step_count = copy->lesson.steps != NULL ? l->step_count : 0;
+        copy_of(s->expectations, (size_t)s->expectation_count * sizeof *s->expectations,
+                &good);
+    copy->lesson.steps =
+        copy_of(l->steps, (size_t)l->step_count * sizeof *l->steps, &good);
+    if (copy->lesson.steps != NULL) {
+        copy->lesson.step_count = l->step_count;
+    } else {
+        copy->lesson.step_count = 0;
+    }
     for (int i = 0; i < copy->lesson.step_count * LESSON_TEXTS; i++) {
         char **text = &copy->lesson.steps[i / LESSON_TEXTS].texts[i % LESSON_TEXTS];
         *text = text_of(*text, &good);
@@ -80,7 +87,10 @@ status scenario_copy(scenario *copy, const scenario *s)
     if (!good) {
         scenario_finish(copy);
     }
-    return good ? STATUS_OK : STATUS_NO_MEMORY;
+    if (good) {
+        return STATUS_OK;
+    }
+    return STATUS_NO_MEMORY;
 }
 
 // Gives one parameter of p its value; f holds the sentence without its beginning.
@@ -90,15 +100,20 @@ static status assign(parameters *p, const char *assignment, fault *f)
     const char *value;
     size_t length = strcspn(assignment, "=");
     FAULT_IF(assignment[length] == '\0' || length == 0 || length >= sizeof path, f,
-             STATUS_BAD_ARGUMENT, "not an assignment, expected PATH=VALUE such as arm.k2=49.2");
+             STATUS_BAD_ARGUMENT,
+             "not an assignment, expected PATH=VALUE such as arm.k2=49.2");
 
     snprintf(path, sizeof path, "%.*s", (int)length, assignment);
     value = assignment + length + 1;
     const int index = settings_look_up_value(path, &value, room, f);
-    return index < 0 ? STATUS_BAD_ARGUMENT : parameter_set_text(p, index, value, f);
+    if (index < 0) {
+        return STATUS_BAD_ARGUMENT;
+    }
+    return parameter_set_text(p, index, value, f);
 }
 
-// Resolves parameters that were changed, and checks that the scenario's script goes with them.
+// Resolves parameters that were changed, and checks that the scenario's script goes with
+// them.
 static status resolve_changed(const scenario *s, parameters *p, fault *f)
 {
     scenario changed = *s;
@@ -111,11 +126,16 @@ static status resolve_changed(const scenario *s, parameters *p, fault *f)
     const action *push = NULL;
     for (int i = 0; i < s->action_count; i++) {
         const action *a = &s->actions[i];
-        TRY(a->kind == ACTION_SET ? parameter_may_change(p, a->parameter, f) : STATUS_OK);
-        push = push == NULL && a->kind == ACTION_PUSH ? a : push;
+        if (a->kind == ACTION_SET) {
+            TRY(parameter_may_change(p, a->parameter, f));
+        }
+        if (push == NULL && a->kind == ACTION_PUSH) {
+            push = a;
+        }
     }
     FAULT_IF(push != NULL && p->arm.model == ARM_PRINTED, f, STATUS_BAD_SCENARIO,
-             "the printed model takes no pushes, but the script has one at %g s", push->time);
+             "the printed model takes no pushes, but the script has one at %g s",
+             push->time);
     return STATUS_OK;
 }
 
@@ -133,20 +153,26 @@ status scenario_with(const scenario *base, const parameter_change *changes, size
     parameters p = base->parameters;
     *changed = *base;
     for (const parameter_change *c = changes; c < changes + count; c++) {
-        TRY(c->text != NULL ? parameter_set_text(&p, c->parameter, c->text, f)
-                            : parameter_set_number(&p, c->parameter, c->number, f));
+        if (c->text != NULL) {
+            TRY(parameter_set_text(&p, c->parameter, c->text, f));
+        } else {
+            TRY(parameter_set_number(&p, c->parameter, c->number, f));
+        }
     }
     return scenario_take_parameters(changed, &p, f);
 }
 
 // Applies all at once: each is read once, and they are resolved together. All or nothing.
-static status override_together(scenario *s, char *const *assignments, int count, fault *f)
+static status override_together(scenario *s, char *const *assignments, int count,
+                                fault *f)
 {
     parameters p = s->parameters;
     for (int i = 0; i < count; i++) {
         TRY(assign(&p, assignments[i], f));
     }
-    TRY(count > 0 ? resolve_changed(s, &p, f) : STATUS_OK);
+    if (count > 0) {
+        TRY(resolve_changed(s, &p, f));
+    }
     s->parameters = p;
     return STATUS_OK;
 }
@@ -157,15 +183,17 @@ status scenario_override(scenario *s, const char *assignment, fault *f)
     char *const one = (char *)assignment;
     const status result = override_together(s, &one, 1, &inner);
     if (result != STATUS_OK && f != NULL) {
-        fault_set_at(f, result, inner.path, "--set %.200s: %.700s", assignment, inner.text);
+        fault_set_at(f, result, inner.path, "--set %.200s: %.700s", assignment,
+                     inner.text);
         make_printable(f->text, 0);
     }
     return result;
 }
 
-// Applies one after the other. Returns how many failed, each told to report (may be NULL).
-static int override_each(scenario *s, char *const *assignments, int count, fault_handler report,
-                         void *context)
+// Applies one after the other. Returns how many failed, each told to report (may be
+// NULL).
+static int override_each(scenario *s, char *const *assignments, int count,
+                         fault_handler report, void *context)
 {
     int failures = 0;
     for (int i = 0; i < count; i++) {
@@ -182,7 +210,8 @@ static int override_each(scenario *s, char *const *assignments, int count, fault
     return failures;
 }
 
-// The text of all settings beside a path of one of them would mean what their order decides.
+// The text of all settings beside a path of one of them would mean what their order
+// decides.
 static bool settings_twice(char *const *assignments, int count)
 {
     static const char path[] = "control.settings";
@@ -197,15 +226,16 @@ static bool settings_twice(char *const *assignments, int count)
     return whole && one;
 }
 
-status scenario_override_all(scenario *s, char *const *assignments, int count, fault_handler report,
-                             void *context)
+status scenario_override_all(scenario *s, char *const *assignments, int count,
+                             fault_handler report, void *context)
 {
     assert(count >= 0);
     if (settings_twice(assignments, count)) {
         s->refused = (fault_place){.path = setting_info.path};
         if (report != NULL) {
-            report(context, "control.settings and control.settings.NAME are set together, "
-                            "expected the text of all or the path of each");
+            report(context,
+                   "control.settings and control.settings.NAME are set together, "
+                   "expected the text of all or the path of each");
         }
         return STATUS_BAD_ARGUMENT;
     }
@@ -213,14 +243,15 @@ status scenario_override_all(scenario *s, char *const *assignments, int count, f
         return STATUS_OK;
     }
 
-    // something is wrong: those that can be applied are, so that the faults of the others are told
-    // as long as fewer remain
+    // something is wrong: those that can be applied are, so that the faults of the others
+    // are told as long as fewer remain
     int before, left = count + 1;
     do {
         before = left;
         left = override_each(s, assignments, count, NULL, NULL);
     } while (left > 0 && left < before);
-    return left == 0 || override_each(s, assignments, count, report, context) == 0
-               ? STATUS_OK
-               : STATUS_BAD_ARGUMENT;
+    if (left == 0 || override_each(s, assignments, count, report, context) == 0) {
+        return STATUS_OK;
+    }
+    return STATUS_BAD_ARGUMENT;
 }

@@ -8,8 +8,8 @@
 
 // --- a lesson ---
 
-// A lesson: steps that a student goes through in the terminal lab, with answers that can be
-// checked. It stands in a scenario file, under `lesson:`.
+// A lesson: steps that a student goes through in the terminal lab, with answers that can
+// be checked. It stands in a scenario file, under `lesson:`.
 enum { LESSON_PARAMETERS = 6, LESSON_CHOICES = 6, LESSON_COMMANDS = 8 };
 enum { LESSON_PINNED_RUNS = 7 }; // that the lab pins at most
 enum { LESSON_TEXTS = 3 + LESSON_CHOICES + LESSON_COMMANDS };
@@ -37,12 +37,13 @@ typedef struct lesson_step {
         char *texts[LESSON_TEXTS]; // all of these, NULL where there is none
     };
     lesson_check check;
-    int quantity;     // NUMBER, CURSOR, RATIO: index in summary_table
-    double within;    // NUMBER: share of the quantity; CURSOR: [s]; VALUE: share of the value
-    double offset;    // CURSOR: after the quantity's instant [s]
-    double low, high; // RATIO
-    int parameter;    // VALUE: index in parameter_table
-    double value;     // VALUE, in the parameter's unit
+    int quantity; // NUMBER, CURSOR, RATIO: index in summary_table
+    double
+        within; // NUMBER: share of the quantity; CURSOR: [s]; VALUE: share of the value
+    double offset;           // CURSOR: after the quantity's instant [s]
+    double low, high;        // RATIO
+    int parameter;           // VALUE: index in parameter_table
+    double value;            // VALUE, in the parameter's unit
     int choice_count, right; // CHOICE: the right one, from 0
     int pinned;              // PINNED
     int command_count;
@@ -64,10 +65,11 @@ typedef struct action {
     double time; // [s]
     action_kind kind;
     int parameter; // ACTION_SET: index in parameter_table
-    double value;  // ACTION_SET: new value; ACTION_PUSH: impulse at the tip, across the last link,
-                   // positive towards growing angle [N s]
-    char text[PARAMETER_TEXT_SIZE]; // ACTION_SET of a parameter that is a text: its new value; of
-                                    // one of control.settings ".NAME=VALUE", and `value`
+    double value;  // ACTION_SET: new value; ACTION_PUSH: impulse at the tip, across the
+                   // last link, positive towards growing angle [N s]
+    char text[PARAMETER_TEXT_SIZE]; // ACTION_SET of a parameter that is a text: its new
+                                    // value; of one of control.settings ".NAME=VALUE",
+                                    // and `value`
     bool added;                     // not of the scenario's file
     int line;                       // in that file, from 1; 0: none
 } action;
@@ -100,8 +102,9 @@ typedef struct scenario {
     int pane_count;
     parameters parameters; // resolved
     parameters written;    // those of the file; all zero of a scenario that has none
-    int lines[sizeof(((parameters *)0)->set)]; // of the file that give them, from 1; 0: none
-    action *actions;                           // sorted by time
+    int lines[sizeof(
+        ((parameters *)0)->set)]; // of the file that give them, from 1; 0: none
+    action *actions;              // sorted by time
     int action_count;
     expectation *expectations;
     int expectation_count;
@@ -133,22 +136,24 @@ parameters scenario_parameters_at(const scenario *s, double time);
 // parameters_check_timing at every instant of the script.
 status scenario_check_timing(const scenario *s, fault *f);
 
-// Whether the law has every mode that control.lock and the script hold it in; else a sentence in f.
-// law: controller_of() before a run, which knows no plug-in; NULL says nothing.
+// Whether the law has every mode that control.lock and the script hold it in; else a
+// sentence in f. law: controller_of() before a run, which knows no plug-in; NULL says
+// nothing.
 status scenario_check_locks(const scenario *s, const controller *law, fault *f);
 
-// Called once for each fault in a file, with a whole sentence "file:line:column: what, expected".
+// Called once for each fault in a file, with a whole sentence "file:line:column: what,
+// expected".
 typedef void (*fault_handler)(void *context, const char *sentence);
 
 // One that keeps the first sentence in a fault of zeroes, its context.
 void keep_first_fault(void *context, const char *sentence);
 
-// Reads and validates the file (layout: docs/reference/scenario.md). Every fault is reported
-// through `report`; STATUS_BAD_SCENARIO if there was any (STATUS_CANNOT_READ if the file cannot be
-// opened), and then nothing is to be freed; s->refused is the place of the first one. `name` is the
-// scenario's name, NULL to use the path.
-status scenario_read(scenario *s, const char *path, const char *name, fault_handler report,
-                     void *context);
+// Reads and validates the file (layout: docs/reference/scenario.md). Every fault is
+// reported through `report`; STATUS_BAD_SCENARIO if there was any (STATUS_CANNOT_READ if
+// the file cannot be opened), and then nothing is to be freed; s->refused is the place of
+// the first one. `name` is the scenario's name, NULL to use the path.
+status scenario_read(scenario *s, const char *path, const char *name,
+                     fault_handler report, void *context);
 
 // The same from memory; `path` is used in messages only.
 status scenario_parse(scenario *s, const char *text, size_t length, const char *path,
@@ -159,10 +164,14 @@ void scenario_finish(scenario *s);
 // A copy of one's own; STATUS_NO_MEMORY, and then nothing is to be freed.
 status scenario_copy(scenario *copy, const scenario *s);
 
-enum { SCENARIO_CHANGES = 512, SCENARIO_TITLE = 200 }; // SCENARIO_TITLE: most bytes of a title
+enum {
+    SCENARIO_CHANGES = 512,
+    SCENARIO_TITLE = 200
+}; // SCENARIO_TITLE: most bytes of a title
 
-// What is another than in the file, to stand after its title or name: ", with motor.voltage = 4 V,
-// a push of 0.1 N s at 0.2 s", or "". What has no room is counted. Returns text.
+// What is another than in the file, to stand after its title or name: ", with
+// motor.voltage = 4 V, a push of 0.1 N s at 0.2 s", or "". What has no room is counted.
+// Returns text.
 #define scenario_changes(s, text) scenario_changes_within(s, text, SCENARIO_CHANGES)
 // The title with these changes. Returns text.
 enum { SCENARIO_TITLED = SCENARIO_TITLE + SCENARIO_CHANGES };
@@ -170,14 +179,13 @@ const char *scenario_titled(const scenario *s, char text[SCENARIO_TITLED]);
 // The same in at most `room` bytes, its end included.
 const char *scenario_changes_within(const scenario *s, char *text, size_t room);
 
-// Writes a file that reads back with the same title (with what was changed since the scenario was
-// read), description, parameters, script and lesson.
-// What it expects is not written: with other parameters it would not hold. Errors stay in the
-// stream.
+// Writes a file that reads back with the same title (with what was changed since the
+// scenario was read), description, parameters, script and lesson. What it expects is not
+// written: with other parameters it would not hold. Errors stay in the stream.
 void scenario_write(FILE *stream, const scenario *s);
 
-// Gives the scenario other parameters, changed but not yet resolved: resolves them and checks that
-// its script goes with them. If that fails nothing changes and f says why.
+// Gives the scenario other parameters, changed but not yet resolved: resolves them and
+// checks that its script goes with them. If that fails nothing changes and f says why.
 status scenario_take_parameters(scenario *s, const parameters *changed, fault *f);
 
 // One parameter that changes: to a text, or to a number where that is NULL.
@@ -187,37 +195,40 @@ typedef struct parameter_change {
     const char *text;
 } parameter_change;
 
-// A scenario with such changes; it borrows everything but its parameters from the base. Fails, with
-// the reason in f, if a value does not go or they do not go together.
+// A scenario with such changes; it borrows everything but its parameters from the base.
+// Fails, with the reason in f, if a value does not go or they do not go together.
 status scenario_with(const scenario *base, const parameter_change *changes, size_t count,
                      scenario *changed, fault *f);
 
-// Applies "PATH=VALUE" (--set) and resolves the parameters anew. If that fails nothing changes and
-// f says why, beginning with "--set PATH=VALUE: ". A run.duration that ends before an action of the
-// script is allowed; the action then does not happen.
+// Applies "PATH=VALUE" (--set) and resolves the parameters anew. If that fails nothing
+// changes and f says why, beginning with "--set PATH=VALUE: ". A run.duration that ends
+// before an action of the script is allowed; the action then does not happen.
 status scenario_override(scenario *s, const char *assignment, fault *f);
 
-// Applies several of them, in any order that makes sense: what is wrong only until another one is
-// set (arm.links=4 before arm.model=corrected) is right. Of several values for one parameter the
-// last one counts. Each fault is reported as scenario_override says it, and then nothing is said of
-// what the parameters are.
-status scenario_override_all(scenario *s, char *const *assignments, int count, fault_handler report,
-                             void *context);
+// Applies several of them, in any order that makes sense: what is wrong only until
+// another one is set (arm.links=4 before arm.model=corrected) is right. Of several values
+// for one parameter the last one counts. Each fault is reported as scenario_override says
+// it, and then nothing is said of what the parameters are.
+status scenario_override_all(scenario *s, char *const *assignments, int count,
+                             fault_handler report, void *context);
 
 // Whether a file is a scenario without a fault.
 bool scenario_is(const char *path);
 
-// Finds a scenario by the name `list` shows ("thesis/fig-3-4") or by file, as SCENARIO on the
-// command line is meant, and reads it. A file may be given without its ".yaml". STATUS_BAD_ARGUMENT
-// if there is neither; the sentence then names the nearest scenario.
-status scenario_open(scenario *s, const char *name_or_file, fault_handler report, void *context);
+// Finds a scenario by the name `list` shows ("thesis/fig-3-4") or by file, as SCENARIO on
+// the command line is meant, and reads it. A file may be given without its ".yaml".
+// STATUS_BAD_ARGUMENT if there is neither; the sentence then names the nearest scenario.
+status scenario_open(scenario *s, const char *name_or_file, fault_handler report,
+                     void *context);
 
-// Path of a file in the first scenario folder that has it, on the heap; NULL without memory.
+// Path of a file in the first scenario folder that has it, on the heap; NULL without
+// memory.
 char *scenario_folder_file(const char *name);
 
-// The names of all scenarios in and below the scenario folder, sorted with numbers as numbers
-// (fig-3-2 before fig-3-10); free each and the array. STATUS_CANNOT_READ if there is no folder.
-// The folders are those of IMPACTLAB_SCENARIOS, separated by colons, of which the first that has a
-// name counts, and that of the scenarios that ship: the source tree's for what was built there,
-// else the one beside the installation, wherever that has moved.
+// The names of all scenarios in and below the scenario folder, sorted with numbers as
+// numbers (fig-3-2 before fig-3-10); free each and the array. STATUS_CANNOT_READ if there
+// is no folder. The folders are those of IMPACTLAB_SCENARIOS, separated by colons, of
+// which the first that has a name counts, and that of the scenarios that ship: the source
+// tree's for what was built there, else the one beside the installation, wherever that
+// has moved.
 status scenario_list(char ***names, int *count, fault *f);

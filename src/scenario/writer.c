@@ -7,8 +7,8 @@
 #include "src/base/numbers.h"
 #include "src/base/words.h"
 
-// The escape of a character that YAML takes for a line's end or changes, NULL for any other; its
-// bytes in *length.
+// The escape of a character that YAML takes for a line's end or changes, NULL for any
+// other; its bytes in *length.
 static const char *yaml_escape(const char *c, size_t *length)
 {
     static const struct {
@@ -35,8 +35,15 @@ static void write_inside(FILE *stream, const char *text)
         if (escape != NULL) {
             fputs(escape, stream);
         } else {
-            length = printable > 0 ? (size_t)printable : 1;
-            fwrite(printable > 0 ? c : (unsigned char)*c < ' ' ? " " : "?", 1, length, stream);
+            if (printable > 0) {
+                length = (size_t)printable;
+            } else {
+                length = 1;
+            }
+            fwrite(printable > 0             ? c
+                   : (unsigned char)*c < ' ' ? " "
+                                             : "?",
+                   1, length, stream);
         }
     }
 }
@@ -63,7 +70,8 @@ static void write_value(FILE *stream, const parameters *p, int index)
     }
 }
 
-// The groups of the table in its order, each with those of its parameters that were given.
+// The groups of the table in its order, each with those of its parameters that were
+// given.
 static void write_parameters(FILE *stream, const parameters *p)
 {
     const char *group = "";
@@ -89,7 +97,8 @@ static void write_actions(FILE *stream, const scenario *s)
 {
     char text[NUMBER_TEXT];
 
-    // what a shortened run no longer comes to is no part of it, and a file must not ask for it
+    // what a shortened run no longer comes to is no part of it, and a file must not ask
+    // for it
     int count = s->action_count;
     while (count > 0 && s->actions[count - 1].time > s->parameters.run.duration) {
         count--;
@@ -121,7 +130,7 @@ static void write_actions(FILE *stream, const scenario *s)
     }
 }
 
-// --- lessons ----------------------------------------------------------------------------------
+// --- lessons ---------------------------------------------------------------------------
 
 // A list of at least one text behind a key.
 static void write_texts(FILE *stream, const char *key, char *const *texts, int count)
@@ -186,7 +195,8 @@ static void write_step(FILE *stream, const parameters *p, const lesson_step *ste
     write_check(stream, p, step);
 
     // what may be left out
-    const char *const keys[] = {"hint", "then"}, *const texts[] = {step->hint, step->then};
+    const char *const keys[] = {"hint", "then"}, *const texts[] = {step->hint,
+                                                                   step->then};
     for (int i = 0; i < 2; i++) {
         if (texts[i][0] != '\0') {
             fprintf(stream, "      %s: ", keys[i]);
@@ -209,7 +219,8 @@ static void write_lesson(FILE *stream, const scenario *s)
     fputs("lesson:\n", stream);
     for (int i = 0; i < l->parameter_count; i++) {
         fprintf(stream, "%s%s%s", i == 0 ? "  parameters: [" : ", ",
-                parameter_table[l->parameters[i]].path, i == l->parameter_count - 1 ? "]\n" : "");
+                parameter_table[l->parameters[i]].path,
+                i == l->parameter_count - 1 ? "]\n" : "");
     }
     fputs("  steps:\n", stream);
     for (int i = 0; i < l->step_count; i++) {
@@ -235,8 +246,8 @@ void scenario_write(FILE *stream, const scenario *s)
 
     // what to look at
     for (int i = 0; i < s->pane_count; i++) {
-        fprintf(stream, "%s%s%s", i == 0 ? "panes: [" : ", ", signal_table[s->panes[i]].name,
-                i == s->pane_count - 1 ? "]\n" : "");
+        fprintf(stream, "%s%s%s", i == 0 ? "panes: [" : ", ",
+                signal_table[s->panes[i]].name, i == s->pane_count - 1 ? "]\n" : "");
     }
 
     // what runs; expectations hold for the scenario as it was, and are left out

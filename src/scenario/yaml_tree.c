@@ -5,8 +5,8 @@
 #include <string.h>
 #include <yaml.h>
 
-// A map or list whose end is yet to come, the key that waits for its value, and where the next
-// child goes.
+// A map or list whose end is yet to come, the key that waits for its value, and where the
+// next child goes.
 typedef struct open_node {
     tree_node *node, *key, **link;
 } open_node;
@@ -23,23 +23,28 @@ typedef struct builder {
 } builder;
 
 // Records a fault; printf-like. Always false.
-#define refuse(b, line, column, ...)                                                               \
-    (fault_set_place((b)->fault, STATUS_BAD_SCENARIO, line, column, __VA_ARGS__) == STATUS_OK)
-#define refuse_at(b, mark, ...) refuse(b, (int)(mark).line + 1, (int)(mark).column + 1, __VA_ARGS__)
+#define refuse(b, line, column, ...)                                                     \
+    (fault_set_place((b)->fault, STATUS_BAD_SCENARIO, line, column, __VA_ARGS__) ==      \
+     STATUS_OK)
+#define refuse_at(b, mark, ...)                                                          \
+    refuse(b, (int)(mark).line + 1, (int)(mark).column + 1, __VA_ARGS__)
 
 static bool refuse_for_memory(const builder *b)
 {
-    fault_set_place(b->fault, STATUS_NO_MEMORY, 1, 1, "%s", status_text(STATUS_NO_MEMORY));
+    fault_set_place(b->fault, STATUS_NO_MEMORY, 1, 1, "%s",
+                    status_text(STATUS_NO_MEMORY));
     return false;
 }
 
-// Refuses at a byte of the text; a column counts characters, that is, bytes that begin one.
+// Refuses at a byte of the text; a column counts characters, that is, bytes that begin
+// one.
 static bool refuse_at_byte(const builder *b, size_t offset, const char *sentence)
 {
     int line = 1, column = 1;
     for (size_t i = 0; i < offset && i < b->length; i++) {
-        bool new_line = b->text[i] == '\n' ||
-                        (b->text[i] == '\r' && (i + 1 == b->length || b->text[i + 1] != '\n'));
+        bool new_line =
+            b->text[i] == '\n' ||
+            (b->text[i] == '\r' && (i + 1 == b->length || b->text[i + 1] != '\n'));
         if (new_line) {
             line++;
             column = 1;
@@ -50,7 +55,8 @@ static bool refuse_at_byte(const builder *b, size_t offset, const char *sentence
     return refuse(b, line, column, "%s", sentence);
 }
 
-// The byte that a mark points at, 0 at the end; a mark counts characters, the text is in bytes.
+// The byte that a mark points at, 0 at the end; a mark counts characters, the text is in
+// bytes.
 static char byte_at(const builder *b, yaml_mark_t mark)
 {
     size_t characters = 0;
@@ -69,21 +75,26 @@ static bool refuse_syntax(const builder *b)
     const char *problem = p->problem != NULL ? p->problem : "unknown problem";
     int line = (int)p->problem_mark.line + 1, column = (int)p->problem_mark.column + 1;
 
-    // no fault of the file's; then what is no text, and a tab, which the parser's words do not
-    // explain
-    FAIL_IF(p->error == YAML_MEMORY_ERROR, refuse_for_memory(b));
+    // no fault of the file's; then what is no text, and a tab, which the parser's words
+    // do not explain
+    if (p->error == YAML_MEMORY_ERROR) {
+        return refuse_for_memory(b);
+    }
     if (p->error == YAML_READER_ERROR) {
         char sentence[256];
-        snprintf(sentence, sizeof sentence, "not text in UTF-8: %s, expected a YAML file", problem);
+        snprintf(sentence, sizeof sentence, "not text in UTF-8: %s, expected a YAML file",
+                 problem);
         return refuse_at_byte(b, p->problem_offset, sentence);
     }
-    FAIL_IF(byte_at(b, p->problem_mark) == '\t',
-            refuse(b, line, column, "a tab, expected spaces for indentation"));
+    if (byte_at(b, p->problem_mark) == '\t') {
+        return refuse(b, line, column, "a tab, expected spaces for indentation");
+    }
 
     // the parser's words, with what it was in the middle of
-    FAIL_IF(p->context != NULL,
-            refuse(b, line, column, "not valid YAML: %s, %s that began at line %d", problem,
-                   p->context, (int)p->context_mark.line + 1));
+    if (p->context != NULL) {
+        return refuse(b, line, column, "not valid YAML: %s, %s that began at line %d",
+                      problem, p->context, (int)p->context_mark.line + 1);
+    }
     return refuse(b, line, column, "not valid YAML: %s", problem);
 }
 
@@ -91,31 +102,41 @@ static bool refuse_syntax(const builder *b)
 static const char *forbidden(const yaml_event_t *event)
 {
     // a scalar, a list and a map keep their anchor and tag in one place
-    return event->type == YAML_ALIAS_EVENT
-               ? "an alias (*name) is not allowed here, expected the value itself"
-           : event->data.scalar.anchor != NULL
-               ? "an anchor (&name) is not allowed here, expected the value alone"
-           : event->data.scalar.tag != NULL
-               ? "a tag (!name) is not allowed here, expected the value alone"
-               : NULL;
+    if (event->type == YAML_ALIAS_EVENT) {
+        return "an alias (*name) is not allowed here, expected the value itself";
+    }
+    if (event->data.scalar.anchor != NULL) {
+        return "an anchor (&name) is not allowed here, expected the value alone";
+    }
+    if (event->data.scalar.tag != NULL) {
+        return "a tag (!name) is not allowed here, expected the value alone";
+    }
+    return NULL;
 }
 
-// Makes the node that begins with an event, with nothing below it yet. False after a fault.
+// Makes the node that begins with an event, with nothing below it yet. False after a
+// fault.
 static bool make_node(builder *b, const yaml_event_t *event, tree_node **made)
 {
     const bool scalar = event->type == YAML_SCALAR_EVENT;
     const char *value = scalar ? (const char *)event->data.scalar.value : "";
     const size_t length = scalar ? event->data.scalar.length : 0;
     const char *reason = forbidden(event);
-    FAIL_IF(reason != NULL, refuse_at(b, event->start_mark, "%s", reason));
-    FAIL_IF(memchr(value, '\0', length) != NULL,
-            refuse_at(b, event->start_mark, "a NUL character, expected text without it"));
-    FAIL_IF(!scalar && b->depth >= TREE_MAX_DEPTH,
-            refuse_at(b, event->start_mark, "nested too deeply, expected at most %d levels",
-                      TREE_MAX_DEPTH));
-    FAIL_IF(++b->nodes > TREE_MAX_NODES,
-            refuse_at(b, event->start_mark, "too many keys and values, expected at most %d",
-                      TREE_MAX_NODES));
+    if (reason != NULL) {
+        return refuse_at(b, event->start_mark, "%s", reason);
+    }
+    if (memchr(value, '\0', length) != NULL) {
+        return refuse_at(b, event->start_mark,
+                         "a NUL character, expected text without it");
+    }
+    if (!scalar && b->depth >= TREE_MAX_DEPTH) {
+        return refuse_at(b, event->start_mark,
+                         "nested too deeply, expected at most %d levels", TREE_MAX_DEPTH);
+    }
+    if (++b->nodes > TREE_MAX_NODES) {
+        return refuse_at(b, event->start_mark,
+                         "too many keys and values, expected at most %d", TREE_MAX_NODES);
+    }
 
     tree_node *node = calloc(1, sizeof *node);
     char *text = node != NULL && scalar ? strndup(value, length) : NULL;
@@ -128,7 +149,8 @@ static bool make_node(builder *b, const yaml_event_t *event, tree_node **made)
                                                                           : TREE_LIST,
                         .line = (int)event->start_mark.line + 1,
                         .column = (int)event->start_mark.column + 1,
-                        .plain = scalar && event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE,
+                        .plain =
+                            scalar && event->data.scalar.style == YAML_PLAIN_SCALAR_STYLE,
                         .text = text};
     *made = node;
     return true;
@@ -163,8 +185,8 @@ static bool take_event(builder *b, const yaml_event_t *event)
     case YAML_DOCUMENT_END_EVENT:
         return true;
     case YAML_DOCUMENT_START_EVENT:
-        return b->root == NULL ||
-               refuse_at(b, event->start_mark, "a second document, expected one per file");
+        return b->root == NULL || refuse_at(b, event->start_mark,
+                                            "a second document, expected one per file");
     case YAML_STREAM_END_EVENT:
         return b->root != NULL ||
                refuse(b, 1, 1, "the file is empty, expected keys such as 'title: ...'");

@@ -1,8 +1,9 @@
 // A YAML file as a small tree whose nodes know their line and column.
 //
-// Only what a scenario needs: one document of maps, lists and scalars. Every scalar is text; what
-// it means is decided by the reader of the tree ("no" is a word, not a truth value). Anchors,
-// aliases, tags, further documents and NUL are refused, and so is what is too large or too deep.
+// Only what a scenario needs: one document of maps, lists and scalars. Every scalar is
+// text; what it means is decided by the reader of the tree ("no" is a word, not a truth
+// value). Anchors, aliases, tags, further documents and NUL are refused, and so is what
+// is too large or too deep.
 #pragma once
 
 #include <stdbool.h>
@@ -28,8 +29,8 @@ typedef struct tree_node {
     struct tree_node *next;  // next child of the same parent
 } tree_node;
 
-// Parses `length` bytes of text. Returns the root, to be given to tree_free, or NULL with a
-// fault that has its place: STATUS_BAD_SCENARIO, or STATUS_NO_MEMORY.
+// Parses `length` bytes of text. Returns the root, to be given to tree_free, or NULL with
+// a fault that has its place: STATUS_BAD_SCENARIO, or STATUS_NO_MEMORY.
 tree_node *tree_parse(const char *text, size_t length, fault *f);
 
 // The value of a key in a map, the first if it is there twice; NULL without one.

@@ -21,7 +21,8 @@ __attribute__((format(printf, 2, 3))) static void say(account *a, const char *fo
     va_end(list);
 }
 
-// The row with which an instant begins, of the state before an event there, or the last one before.
+// The row with which an instant begins, of the state before an event there, or the last
+// one before.
 static const sample *row_entering(const trace *t, double time)
 {
     size_t r = trace_row_at(t, time);
@@ -31,7 +32,7 @@ static const sample *row_entering(const trace *t, double time)
     return &t->rows[r];
 }
 
-// --- the sentences ----------------------------------------------------------------------------
+// --- the sentences ---------------------------------------------------------------------
 
 // What drives the arm.
 static void write_drive(const scenario *s, char *text, size_t size)
@@ -61,11 +62,12 @@ static bool say_approach(account *a)
         const double end = t->rows[t->row_count - 1].time;
         if (isfinite(nearest)) {
             say(a,
-                "Driven by %s the arm does not touch the wall in %.4g s: %.3g mm are left at its "
-                "nearest.",
+                "Driven by %s the arm does not touch the wall in %.4g s: %.3g mm are "
+                "left at its nearest.",
                 drive, end, 1e3 * nearest);
         } else {
-            say(a, "Driven by %s the arm moves for %.4g s, and nothing is in its way.", drive, end);
+            say(a, "Driven by %s the arm moves for %.4g s, and nothing is in its way.",
+                drive, end);
         }
         return false;
     }
@@ -79,8 +81,8 @@ static bool say_approach(account *a)
         return true;
     }
     say(a,
-        "Driven by %s the arm touches the wall at %.4g s, its tip at %.3g m/s, with %.3g J of "
-        "motion.",
+        "Driven by %s the arm touches the wall at %.4g s, its tip at %.3g "
+        "m/s, with %.3g J of motion.",
         drive, touch, fabs(before->gap_velocity), before->kinetic_energy);
     return true;
 }
@@ -98,8 +100,8 @@ static void say_blow(account *a)
     }
     const event *impact = &t->events[i];
     say(a,
-        "At %.4g s an impulse of %.3g N s stops what has to stop at once: of %.3g J of motion "
-        "%.3g J are left, whatever comes.",
+        "At %.4g s an impulse of %.3g N s stops what has to stop at once: of "
+        "%.3g J of motion %.3g J are left, whatever comes.",
         impact->time, impact->impulse, row_entering(t, impact->time)->kinetic_energy,
         t->rows[trace_row_at(t, impact->time)].kinetic_energy);
 }
@@ -124,8 +126,8 @@ static void say_pulse(account *a, double touch, double end)
         }
     }
     say(a,
-        "The rest bends the arm against the wall: the force is largest at %.4g s, %.4g N, when "
-        "the springs hold %.3g J; %s.",
+        "The rest bends the arm against the wall: the force is largest at "
+        "%.4g s, %.4g N, when the springs hold %.3g J; %s.",
         peak, m->first_pulse_peak_N, at_peak->strain_energy, turn);
 }
 
@@ -149,9 +151,10 @@ static const struct {
     {SIGNAL_INDEX(wall_loss), "the wall's damping", 1},
 };
 
-// Those that give between two rows (sign 1) or take (-1): "springs 0.01 J, motor 0.002 J". What is
-// below a thousandth of what the arm turns over is left out.
-static void list_shares(const sample *from, const sample *to, double sign, char *text, size_t size)
+// Those that give between two rows (sign 1) or take (-1): "springs 0.01 J, motor 0.002
+// J". What is below a thousandth of what the arm turns over is left out.
+static void list_shares(const sample *from, const sample *to, double sign, char *text,
+                        size_t size)
 {
     const double least = 1e-3 * (fabs(from->kinetic_energy - to->kinetic_energy) +
                                  fabs(from->strain_energy - to->strain_energy));
@@ -163,24 +166,26 @@ static void list_shares(const sample *from, const sample *to, double sign, char 
         const double fall = signal_value(from, signal) - signal_value(to, signal);
         const double share = sign * energy_shares[i].sign * fall;
         if (share > least) { // one that the scenario has not is NaN
-            used += (size_t)snprintf(text + used, size - used, "%s%s %.3g J", used > 0 ? ", " : "",
-                                     energy_shares[i].name, share);
+            used += (size_t)snprintf(text + used, size - used, "%s%s %.3g J",
+                                     used > 0 ? ", " : "", energy_shares[i].name, share);
         }
     }
 }
 
-// How the pulse ends: who gives energy from its peak on, and who takes it, or the arm stays.
+// How the pulse ends: who gives energy from its peak on, and who takes it, or the arm
+// stays.
 static void say_release(account *a, double touch)
 {
     const trace *t = &a->run->trace;
     const summary *m = &a->run->summary;
     if (isnan(m->first_pulse_s)) {
-        say(a, "What the springs give back is too little to lift the arm off: it stays on the "
-               "wall.");
+        say(a, "What the springs give back is too little to lift the arm off: it "
+               "stays on the wall.");
         return;
     }
     const double end = touch + m->first_pulse_s;
-    const double delay = isnan(m->first_pulse_time_to_peak_s) ? 0 : m->first_pulse_time_to_peak_s;
+    const double delay =
+        isnan(m->first_pulse_time_to_peak_s) ? 0 : m->first_pulse_time_to_peak_s;
     const char *then = m->impacts > 1 ? ", and comes back" : "";
     const sample *at_peak = &t->rows[trace_row_at(t, touch + delay)];
     const sample *after = &t->rows[trace_row_at(t, end)];
@@ -192,8 +197,9 @@ static void say_release(account *a, double touch)
     char given[160], taken[160];
     list_shares(at_peak, after, 1, given, sizeof given);
     list_shares(at_peak, after, -1, taken, sizeof taken);
-    say(a, "From there until it lets go at %.4g s%s, energy is given by %s and taken by %s.", end,
-        then, given, taken);
+    say(a,
+        "From there until it lets go at %.4g s%s, energy is given by %s and taken by %s.",
+        end, then, given, taken);
 }
 
 // What it ends with, and what would change that.
@@ -205,20 +211,21 @@ static void say_end(account *a)
     if (a->scenario->parameters.control.law != LAW_NONE) {
         char peak[64] = "";
         if (!isnan(m->force_over_command_N)) {
-            snprintf(peak, sizeof peak, "; its peak is %.3g N above that", m->force_over_command_N);
+            snprintf(peak, sizeof peak, "; its peak is %.3g N above that",
+                     m->force_over_command_N);
         }
         say(a, "The law wants %.3g N and gets %.4g at the end%s%s.", m->force_command_N,
             m->steady_force_N, last->sticking != 0 ? ", where the hub sticks" : "", peak);
     } else if (last->contact != 0) {
         say(a,
-            "At the end the arm presses with %.3g N under %.3g N m of the motor%s; a controller "
-            "would choose that force and damp the pulse (:law).",
+            "At the end the arm presses with %.3g N under %.3g N m of the motor%s; a "
+            "controller would choose that force and damp the pulse (:law).",
             last->force, last->motor_torque,
             last->sticking != 0 ? ", the hub held by friction" : "");
     } else {
         say(a,
-            "At the end the arm is off the wall by %.3g mm; a controller would hold it there or "
-            "bring it back (:law).",
+            "At the end the arm is off the wall by %.3g mm; a controller would "
+            "hold it there or bring it back (:law).",
             1e3 * last->gap);
     }
 }
@@ -229,8 +236,10 @@ int run_account(const scenario *s, const run_result *run,
     assert(run->trace.row_count > 0);
     account a = {.scenario = s, .run = run, .sentences = sentences};
     if (run->summary.status != STATUS_OK) {
-        say(&a, "The run stops at %.4g s: %.200s.", run->trace.rows[run->trace.row_count - 1].time,
-            run->summary.message[0] ? run->summary.message : status_text(run->summary.status));
+        say(&a, "The run stops at %.4g s: %.200s.",
+            run->trace.rows[run->trace.row_count - 1].time,
+            run->summary.message[0] ? run->summary.message
+                                    : status_text(run->summary.status));
         return a.count;
     }
     if (!say_approach(&a)) {

@@ -10,7 +10,8 @@
 #include "src/run/resume.h"
 #include "src/session/session.h"
 
-#define BEFORE_EVENT 1e-7 // how much before an event a change at the row before it takes effect [s]
+// how much before an event a change at the row before it takes effect [s]
+#define BEFORE_EVENT 1e-7
 
 // The row shown, to which undoing returns.
 static void remember_cursor(const session *s, session_input *in)
@@ -19,7 +20,8 @@ static void remember_cursor(const session *s, session_input *in)
     in->seen_row = s->row;
 }
 
-// Puts the cursor back where it was when an input was given, if the run is as it was then.
+// Puts the cursor back where it was when an input was given, if the run is as it was
+// then.
 static void restore_cursor(session *s, const session_input *in)
 {
     const trace *t = &s->run.trace;
@@ -30,8 +32,8 @@ static void restore_cursor(session *s, const session_input *in)
     }
 }
 
-// The instant at which something done at the cursor takes effect: the cursor's own, or one just
-// before an event of the motion where the row shown is the one before it [s].
+// The instant at which something done at the cursor takes effect: the cursor's own, or
+// one just before an event of the motion where the row shown is the one before it [s].
 static double effect_time(const session *s)
 {
     const trace *t = &s->run.trace;
@@ -43,7 +45,8 @@ static double effect_time(const session *s)
     // two rows at one instant: an event, and the one before it is shown
     for (size_t i = 0; i < t->event_count; i++) {
         const event_kind kind = t->events[i].kind;
-        if (same_instant(t->events[i].time, now) && kind != EVENT_CHANGE && kind != EVENT_PUSH) {
+        if (same_instant(t->events[i].time, now) && kind != EVENT_CHANGE &&
+            kind != EVENT_PUSH) {
             double before = s->row > 0 ? t->rows[s->row - 1].time : 0;
             return fmax(now - BEFORE_EVENT, (before + now) / 2);
         }
@@ -55,12 +58,16 @@ static double effect_time(const session *s)
 static status add_input(session *s, const session_input *in, fault *f)
 {
     // room for it
-    const int room = s->input_count < s->input_total ? s->input_total : s->input_count + 1;
+    const int room =
+        s->input_count < s->input_total ? s->input_total : s->input_count + 1;
     session_input *inputs = realloc(s->inputs, (size_t)room * sizeof *inputs);
-    TRY_MEMORY(inputs != NULL, f);
+    if (inputs == NULL) {
+        return fault_no_memory(f);
+    }
     s->inputs = inputs;
 
-    // it takes the place of the first that could be redone, which comes back if the run fails
+    // it takes the place of the first that could be redone, which comes back if the run
+    // fails
     session_input replaced = s->inputs[s->input_count];
     s->inputs[s->input_count++] = *in;
     session_seek(s, fmin(s->now, in->time));
@@ -77,20 +84,32 @@ static status add_input(session *s, const session_input *in, fault *f)
 status session_change(session *s, int parameter, const char *text, fault *f)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    session_input in = {
-        .kind = SESSION_INPUT_START, .time = effect_time(s), .parameter = parameter};
+    session_input in = {.kind = SESSION_INPUT_START,
+                        .time = effect_time(s),
+                        .parameter = parameter};
     remember_cursor(s, &in);
     const parameter_info *info = &parameter_table[parameter];
-    FAULT_IF(strlen(text) >= sizeof in.text, f, STATUS_BAD_ARGUMENT, "the value of %s is too long",
-             info->path);
+    FAULT_IF(strlen(text) >= sizeof in.text, f, STATUS_BAD_ARGUMENT,
+             "the value of %s is too long", info->path);
     snprintf(in.text, sizeof in.text, "%s", text);
 
     // a copy of the parameters checks the value
     parameters scratch = session_parameters_at(s, s->now);
-    in.before = parameter_is_text(info) ? (double)NAN : parameter_get(&scratch, parameter);
+    if (parameter_is_text(info)) {
+        in.before = (double)NAN;
+    } else {
+        in.before = parameter_get(&scratch, parameter);
+    }
     const bool timed = rig_can_change(&s->effective.parameters, parameter) && s->now > 0;
-    status code = timed ? parameter_may_change(&scratch, parameter, f) : STATUS_OK;
-    TRY(code == STATUS_OK ? parameter_set_text(&scratch, parameter, text, f) : code);
+    status code = STATUS_OK;
+    if (timed) {
+        code = parameter_may_change(&scratch, parameter, f);
+    }
+    if (code == STATUS_OK) {
+        TRY(parameter_set_text(&scratch, parameter, text, f));
+    } else {
+        TRY(code);
+    }
 
     in.value = parameter_get(&scratch, parameter);
     if (timed) {
@@ -132,12 +151,14 @@ static status begin_adjusting(session *s, int parameter, const char *text, fault
 status session_adjust(session *s, int parameter, const char *text, fault *f)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
+    const session_input *last =
+        s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
 
     // of control.settings the same number
     const size_t name = text[0] == '.' ? strcspn(text, "=") + 1 : 0;
-    if (last == NULL || last->kind == SESSION_INPUT_PUSH || last->parameter != parameter ||
-        strncmp(last->text, text, name) != 0 || last->time != s->now) {
+    if (last == NULL || last->kind == SESSION_INPUT_PUSH ||
+        last->parameter != parameter || strncmp(last->text, text, name) != 0 ||
+        last->time != s->now) {
         return begin_adjusting(s, parameter, text, f);
     }
 
@@ -171,7 +192,9 @@ unsigned session_new_gesture(const session *s)
 {
     unsigned highest = 0;
     for (int i = 0; i < s->input_total; i++) {
-        highest = s->inputs[i].gesture > highest ? s->inputs[i].gesture : highest;
+        if (s->inputs[i].gesture > highest) {
+            highest = s->inputs[i].gesture;
+        }
     }
     return highest + 1;
 }
@@ -191,14 +214,15 @@ status session_pull(session *s, double impulse, unsigned gesture, fault *f)
                         .before = (double)NAN};
     remember_cursor(s, &in);
 
-    FAULT_IF(!isfinite(impulse), f, STATUS_BAD_ARGUMENT, "a push is a finite impulse in N s");
+    FAULT_IF(!isfinite(impulse), f, STATUS_BAD_ARGUMENT,
+             "a push is a finite impulse in N s");
     FAULT_IF(s->effective.parameters.arm.model == ARM_PRINTED, f, STATUS_BAD_ARGUMENT,
              "the printed model knows no pushes");
     return add_input(s, &in, f);
 }
 
-// Takes out the last input (step -1) or puts in the next (1), with all of its gesture, and computes
-// the run; they stay where they are if that fails.
+// Takes out the last input (step -1) or puts in the next (1), with all of its gesture,
+// and computes the run; they stay where they are if that fails.
 static status move_inputs(session *s, int step, fault *f)
 {
     const session_input *in = s->inputs;
@@ -210,7 +234,9 @@ static status move_inputs(session *s, int step, fault *f)
              in[n].gesture == in[n - 1].gesture);
     s->input_count = n;
     const status code = session_compute(s, f);
-    s->input_count = code == STATUS_OK ? s->input_count : before;
+    if (code != STATUS_OK) {
+        s->input_count = before;
+    }
     return code;
 }
 
@@ -244,7 +270,8 @@ status session_change_input(session *s, int index, const char *text, fault *f)
 
     // a copy with the new text, which a scratch copy of the parameters checks
     session_input in = *old;
-    FAULT_IF(strlen(text) >= sizeof in.text, f, STATUS_BAD_ARGUMENT, "the value is too long");
+    FAULT_IF(strlen(text) >= sizeof in.text, f, STATUS_BAD_ARGUMENT,
+             "the value is too long");
     remember_cursor(s, &in);
     snprintf(in.text, sizeof in.text, "%s", text);
     parameters scratch = session_parameters_at(s, in.time);
@@ -262,7 +289,8 @@ status session_drop_input(session *s, int index, fault *f)
     assert(index >= 0 && index < s->input_count);
     const session_input dropped = s->inputs[index];
     const int last = s->input_count - 1;
-    memmove(&s->inputs[index], &s->inputs[index + 1], (size_t)(last - index) * sizeof *s->inputs);
+    memmove(&s->inputs[index], &s->inputs[index + 1],
+            (size_t)(last - index) * sizeof *s->inputs);
     s->inputs[last] = dropped;
 
     // it is then the first that can be redone
@@ -281,7 +309,9 @@ status session_take_inputs(session *s, const session_input *inputs, int count, f
 {
     assert(count >= 0);
     session_input *taken = calloc((size_t)count + 1, sizeof *taken);
-    TRY_MEMORY(taken != NULL, f);
+    if (taken == NULL) {
+        return fault_no_memory(f);
+    }
     if (count > 0) {
         memcpy(taken, inputs, (size_t)count * sizeof *taken);
     }

@@ -37,11 +37,20 @@ void session_seek(session *s, double time)
     double end = session_end(s);
 
     // rows to come may be waited for at an instant the cursor is at already
-    end = s->computing != NULL && s->now > end ? s->now : end;
-    s->now = time > end ? end : time > 0 ? time : 0;
+    if (s->computing != NULL && s->now > end) {
+        end = s->now;
+    }
+    if (time > end) {
+        s->now = end;
+    } else if (time > 0) {
+        s->now = time;
+    } else {
+        s->now = 0;
+    }
     s->row = trace_row_at(&s->run.trace, s->now);
 
-    // an instant beside a row's by rounding is the row's: a change there cuts no step anew
+    // an instant beside a row's by rounding is the row's: a change there cuts no step
+    // anew
     double near = s->run.trace.rows[s->row + (s->row + 1 < s->run.trace.row_count)].time;
     if (near > s->now && same_instant(near, s->now)) {
         session_seek(s, near);
@@ -52,7 +61,11 @@ void session_seek(session *s, double time)
 bool session_step(session *s, long rows)
 {
     long last = (long)s->run.trace.row_count - 1, to = (long)s->row + rows;
-    to = to < 0 ? 0 : to > last ? last : to;
+    if (to < 0) {
+        to = 0;
+    } else if (to > last) {
+        to = last;
+    }
     bool moved = to != (long)s->row;
     s->row = (size_t)to;
     s->now = session_sample(s)->time;
@@ -74,7 +87,8 @@ const event *session_event(const session *s)
 
 #define MEMORY_BUDGET (512.0 * 1024 * 1024) // rows of one run [bytes]
 #define ROW_SPARE     1.5                   // rows of events beside those of the grid
-#define SHORT_WAIT    0.001                 // for the first row of a run that takes long [s]
+// for the first row of a run that takes long [s]
+#define SHORT_WAIT 0.001
 
 enum { ROWS_SURVEYED = 50000 }; // at once, for the largest force of an incomplete run
 
@@ -85,10 +99,14 @@ static status build_effective(const session *s, scenario *to, fault *f)
     *to = s->base;
     to->expectation_count = 0;
     to->action_count = 0;
-    to->actions = calloc((size_t)(s->base.action_count + s->input_count) + 1, sizeof *to->actions);
-    TRY_MEMORY(to->actions != NULL, f);
+    to->actions =
+        calloc((size_t)(s->base.action_count + s->input_count) + 1, sizeof *to->actions);
+    if (to->actions == NULL) {
+        return fault_no_memory(f);
+    }
 
-    // the script's actions, then the inputs among them: an input comes after what is due with it
+    // the script's actions, then the inputs among them: an input comes after what is due
+    // with it
     for (int i = 0; i < s->base.action_count; i++) {
         scenario_insert_action(to, s->base.actions[i]);
     }
@@ -119,14 +137,15 @@ static status check_memory(const parameters *p, fault *f)
     const double rows = expected_rows(p);
     const double bytes = rows * (double)trace_row_bytes(p->arm.links + 1);
     FAULT_IF(bytes > MEMORY_BUDGET, f, STATUS_BAD_ARGUMENT,
-             "%g s in steps of %g s would keep %.0f MiB of rows, the lab keeps at most "
-             "%.0f: shorten run.duration or lengthen method.step",
-             p->run.duration, p->method.step, bytes / (1024 * 1024), MEMORY_BUDGET / (1024 * 1024));
+             "%g s in steps of %g s would keep %.0f MiB of rows, the lab keeps at "
+             "most %.0f: shorten run.duration or lengthen method.step",
+             p->run.duration, p->method.step, bytes / (1024 * 1024),
+             MEMORY_BUDGET / (1024 * 1024));
     return STATUS_OK;
 }
 
-// Puts the run that was being computed in the place of the present one, as far as it went. The
-// cursor may be beyond its end.
+// Puts the run that was being computed in the place of the present one, as far as it
+// went. The cursor may be beyond its end.
 static void collect_run(session *s)
 {
     s->run = background_run_finish(s->computing);
@@ -144,8 +163,8 @@ static bool end_computing(session *s)
     return s->run.summary.status == STATUS_STOPPED;
 }
 
-// Whether the files that parameters name, whose stamp is set, are those of the present run. If they
-// are others, what a program answered then says nothing of now.
+// Whether the files that parameters name, whose stamp is set, are those of the present
+// run. If they are others, what a program answered then says nothing of now.
 static bool outside_is_same(session *s, const parameters *p, char stamp[SHA256_TEXT])
 {
     // before a consent no program is opened, but what is only read is looked at
@@ -158,8 +177,9 @@ static bool outside_is_same(session *s, const parameters *p, char stamp[SHA256_T
     return false;
 }
 
-// Computes the run of a scenario, and resumes the present one where it can. A run that is not there
-// within the session's patience is left to its thread. On failure the present run stays.
+// Computes the run of a scenario, and resumes the present one where it can. A run that is
+// not there within the session's patience is left to its thread. On failure the present
+// run stays.
 static status start_run(session *s, const scenario *effective, fault *f)
 {
     run_result run = {.landing = {.time = 0}};
@@ -169,7 +189,8 @@ static status start_run(session *s, const scenario *effective, fault *f)
     const bool same = outside_is_same(s, p, stamp);
     bool resume = same && run_resume(&s->run, &s->effective, effective, rows, &run);
 
-    // of what it is about to read, unless that was read before; without a consent it reads nothing
+    // of what it is about to read, unless that was read before; without a consent it
+    // reads nothing
     const unsigned reads = outside_read(p);
     memcpy(digest, s->digest, sizeof digest);
     if (!p->code_allowed && (reads & ~outside_files()) != 0) {
@@ -178,10 +199,12 @@ static status start_run(session *s, const scenario *effective, fault *f)
         outside_digest_all(p, digest);
     }
     if (s->transcript == NULL && p->control.law == LAW_PROCESS) {
-        s->transcript = process_transcript_create(); // without memory the program is always asked
+        s->transcript =
+            process_transcript_create(); // without memory the program is always asked
     }
-    const background_options how = {
-        .rows_expected = rows, .transcript = s->transcript, .at_once = isinf(s->patience)};
+    const background_options how = {.rows_expected = rows,
+                                    .transcript = s->transcript,
+                                    .at_once = isinf(s->patience)};
     background_run *c = background_run_start(effective, &how, resume ? &run : NULL);
     if (c == NULL) {
         run_finish(&run);
@@ -201,12 +224,16 @@ static status start_run(session *s, const scenario *effective, fault *f)
         run.history = (run_history){0};
     }
 
-    // a run that diverges is worth looking at; one without a single row is not, and one that had no
-    // memory is not whole
+    // a run that diverges is worth looking at; one without a single row is not, and one
+    // that had no memory is not whole
     loss_unless(run.summary.status != STATUS_NO_MEMORY);
     if (run.trace.row_count == 0) {
-        status code =
-            run.summary.status != STATUS_OK ? summary_fault(&run.summary, f) : fault_no_memory(f);
+        status code;
+        if (run.summary.status != STATUS_OK) {
+            code = summary_fault(&run.summary, f);
+        } else {
+            code = fault_no_memory(f);
+        }
         run_finish(&run);
         return code;
     }
@@ -279,7 +306,8 @@ bool session_follow(session *s)
     const trace *t = &s->run.trace;
     const size_t end = s->surveyed + ROWS_SURVEYED;
     for (; s->surveyed < t->row_count && s->surveyed < end; s->surveyed++) {
-        s->run.summary.peak_force_N = fmax(s->run.summary.peak_force_N, t->rows[s->surveyed].force);
+        s->run.summary.peak_force_N =
+            fmax(s->run.summary.peak_force_N, t->rows[s->surveyed].force);
     }
     s->row = trace_row_at(&s->run.trace, s->now);
     return more;
@@ -317,7 +345,9 @@ parameters session_parameters_at(const session *s, double time)
 status session_keep_beside(session *s, const run_result *run, fault *f)
 {
     run_result kept;
-    FAIL_IF(run_share(run, &kept) != STATUS_OK, fault_no_memory(f));
+    if (run_share(run, &kept) != STATUS_OK) {
+        return fault_no_memory(f);
+    }
     session_forget_other(s);
     s->other = kept;
     s->has_other = true;
@@ -436,7 +466,8 @@ bool same_base(const scenario *a, const scenario *b)
 bool session_same_input(const session_input *a, const session_input *b)
 {
     return a->kind == b->kind && a->parameter == b->parameter && a->value == b->value &&
-           (a->kind == SESSION_INPUT_START || a->time == b->time) && strcmp(a->text, b->text) == 0;
+           (a->kind == SESSION_INPUT_START || a->time == b->time) &&
+           strcmp(a->text, b->text) == 0;
 }
 
 bool run_origin_is_of(const run_origin *o, const session *s)
@@ -451,7 +482,9 @@ bool run_origin_is_of(const run_origin *o, const session *s)
 status session_reopen(session *s, const run_origin *o, double patience, fault *f)
 {
     scenario base;
-    FAIL_IF(scenario_copy(&base, &o->base) != STATUS_OK, fault_no_memory(f));
+    if (scenario_copy(&base, &o->base) != STATUS_OK) {
+        return fault_no_memory(f);
+    }
 
     // the scenario's own run, then that of the changes
     status code = session_open(s, &base, patience, f);

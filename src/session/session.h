@@ -1,17 +1,20 @@
-// A session with one scenario: a run that is looked at from any instant, and changed on the way.
+// A session with one scenario: a run that is looked at from any instant, and changed on
+// the way.
 //
-// The whole run is computed and kept as rows; "running" moves a cursor over them. What the user
-// does (a changed parameter, a push) is an input with its instant, and the run is that of the
-// scenario and all inputs. So a saved scenario gives the same run by construction, stepping back
-// and forth changes nothing, undo is a shorter list of inputs, and a branch keeps the old run
-// beside the new one; rows that the new one resumes from are kept once.
+// The whole run is computed and kept as rows; "running" moves a cursor over them. What
+// the user does (a changed parameter, a push) is an input with its instant, and the run
+// is that of the scenario and all inputs. So a saved scenario gives the same run by
+// construction, stepping back and forth changes nothing, undo is a shorter list of
+// inputs, and a branch keeps the old run beside the new one; rows that the new one
+// resumes from are kept once.
 //
-// A run that takes longer than the session's patience is computed by a thread of its own. Until it
-// is over `run` shows the rows there are, session_follow brings more, and `computing` is not NULL.
-// The cursor may then stand at an instant that has no row yet: `row` is the last one there is.
+// A run that takes longer than the session's patience is computed by a thread of its own.
+// Until it is over `run` shows the rows there are, session_follow brings more, and
+// `computing` is not NULL. The cursor may then stand at an instant that has no row yet:
+// `row` is the last one there is.
 //
-// Rows before a change are those of the unchanged run to the last bit: no step is chosen for an
-// input, one that goes beyond it is cut.
+// Rows before a change are those of the unchanged run to the last bit: no step is chosen
+// for an input, one that goes beyond it is cut.
 //
 // Everybody but its functions reads a session only.
 #pragma once
@@ -39,14 +42,15 @@ typedef struct session_input {
     double value;                  // the new value; push: impulse [N s]
     char text[SESSION_INPUT_TEXT]; // the value as it was given
     double before;                 // the value until then; NaN for a text and for a push
-    unsigned gesture;              // undone together with its neighbours of this number; 0: alone
-    double seen_at;                // where the cursor was when it was given [s]
+    unsigned gesture; // undone together with its neighbours of this number; 0: alone
+    double seen_at;   // where the cursor was when it was given [s]
     size_t seen_row;
 } session_input;
 
 typedef struct session {
-    scenario base;         // as opened
-    session_input *inputs; // inputs[0 .. input_count) are in effect, the rest can be redone
+    scenario base; // as opened
+    session_input
+        *inputs; // inputs[0 .. input_count) are in effect, the rest can be redone
     int input_count, input_total;
     scenario effective; // base with the inputs; owns its actions only
     run_result run;     // of `effective`
@@ -54,36 +58,37 @@ typedef struct session {
     bool has_other;
     run_result ghost; // the run before a value that is being adjusted
     bool has_ghost;
-    double now;       // the cursor [s]
-    size_t row;       // the last row whose time is not after `now`
-    double seen;      // the latest instant the cursor has been at since the last change [s]
-    unsigned version; // counts the computed runs
+    double now;  // the cursor [s]
+    size_t row;  // the last row whose time is not after `now`
+    double seen; // the latest instant the cursor has been at since the last change [s]
+    unsigned version;                 // counts the computed runs
     struct background_run *computing; // the run, if it is not complete
     double patience;                  // for how long a change waits for its run [s]
     struct process_transcript
-        *transcript;           // what a process was asked in all runs, NULL if there is none
+        *transcript; // what a process was asked in all runs, NULL if there is none
     char outside[SHA256_TEXT]; // stamp of what the runs could read from outside
     char digest[SHA256_TEXT];  // outside_digest_all of what the run read
     size_t surveyed;           // rows whose force is in the summary of an incomplete run
 } session;
 
-// Takes over the scenario (also on failure) and computes its run; waits no longer than `patience`
-// [s] for a run's end, then it is computed in the background. A run that fails numerically is kept
-// as far as it went, session.run.summary says why. STATUS_BAD_ARGUMENT if the rows would not fit
-// into the memory budget (512 MiB), STATUS_NO_MEMORY; then there is no session.
+// Takes over the scenario (also on failure) and computes its run; waits no longer than
+// `patience` [s] for a run's end, then it is computed in the background. A run that fails
+// numerically is kept as far as it went, session.run.summary says why.
+// STATUS_BAD_ARGUMENT if the rows would not fit into the memory budget (512 MiB),
+// STATUS_NO_MEMORY; then there is no session.
 status session_open(session *s, scenario *base, double patience, fault *f);
 void session_finish(session *s);
 
 // --- its run ---
 
-// Computes the run with the inputs in effect and puts the cursor into it. On failure the present
-// run stays and f says why.
+// Computes the run with the inputs in effect and puts the cursor into it. On failure the
+// present run stays and f says why.
 status session_compute(session *s, fault *f);
 
 // Takes note of what has been computed since the last call. True if anything has.
 bool session_follow(session *s);
-// Ends a run that is being computed; its rows so far stay, its status is STATUS_STOPPED. False if
-// there was none, or it was just over.
+// Ends a run that is being computed; its rows so far stay, its status is STATUS_STOPPED.
+// False if there was none, or it was just over.
 bool session_stop(session *s);
 // Computes what is missing of a run that was stopped.
 status session_go_on(session *s, fault *f);
@@ -91,17 +96,17 @@ status session_go_on(session *s, fault *f);
 // The parameters as script and inputs have set them at an instant.
 parameters session_parameters_at(const session *s, double time);
 
-// Keeps a run for comparison, in the place of the one that is kept: its rows are shared, not
-// copied. STATUS_NO_MEMORY.
+// Keeps a run for comparison, in the place of the one that is kept: its rows are shared,
+// not copied. STATUS_NO_MEMORY.
 status session_keep_beside(session *s, const run_result *run, fault *f);
 // Forgets the run kept for comparison.
 void session_forget_other(session *s);
-// Lets the scenario load its plug-in or start its program, and computes the run with it. On failure
-// nothing changes and f says why.
+// Lets the scenario load its plug-in or start its program, and computes the run with it.
+// On failure nothing changes and f says why.
 status session_allow_code(session *s, fault *f);
 
-// What a process that is the controller went through again since this was asked last: all zero if
-// nothing, and while a run is being computed.
+// What a process that is the controller went through again since this was asked last: all
+// zero if nothing, and while a run is being computed.
 struct process_replay session_take_replay(session *s);
 
 // Forgets the run before the value that was adjusted last.
@@ -123,37 +128,38 @@ const event *session_event(const session *s);
 
 // --- inputs: what the user does, each with its instant, and their undoing ---
 
-// Gives a parameter another value: from the row at the cursor on if it may change during a run (and
-// the cursor is not at the start), else from the start. At the row before an event the change comes
-// before the event, and the cursor stands at it. Records an input and computes the run anew;
-// what could be redone is forgotten. On failure nothing changes and f says why.
+// Gives a parameter another value: from the row at the cursor on if it may change during
+// a run (and the cursor is not at the start), else from the start. At the row before an
+// event the change comes before the event, and the cursor stands at it. Records an input
+// and computes the run anew; what could be redone is forgotten. On failure nothing
+// changes and f says why.
 status session_change(session *s, int parameter, const char *text, fault *f);
 // The same from the start, wherever the cursor is, which stays.
 status session_change_from_start(session *s, int parameter, const char *text, fault *f);
-// The same as session_change, in the place of the last input if that gave this parameter a value at
-// this very instant: small steps to a value are one input (session.ghost is the run before them),
-// and none once they have led back to where they began.
+// The same as session_change, in the place of the last input if that gave this parameter
+// a value at this very instant: small steps to a value are one input (session.ghost is
+// the run before them), and none once they have led back to where they began.
 status session_adjust(session *s, int parameter, const char *text, fault *f);
 // The same as session_change for an impulse at the tip [N s].
 status session_push(session *s, double impulse, fault *f);
 
-// Pushes that are one gesture: undone and put in again together. A number that no input has, and a
-// push of that gesture (as session_push).
+// Pushes that are one gesture: undone and put in again together. A number that no input
+// has, and a push of that gesture (as session_push).
 unsigned session_new_gesture(const session *s);
 status session_pull(session *s, double impulse, unsigned gesture, fault *f);
 
-// Gives another value to what inputs[index] changed, at its instant; an input of its own, which
-// undoing takes back. STATUS_BAD_ARGUMENT for a push.
+// Gives another value to what inputs[index] changed, at its instant; an input of its own,
+// which undoing takes back. STATUS_BAD_ARGUMENT for a push.
 status session_change_input(session *s, int index, const char *text, fault *f);
 // Takes inputs[index] out; it is the next that session_redo puts in, at the end.
 status session_drop_input(session *s, int index, fault *f);
 
-// Puts other inputs in the place of all there are, and computes their run; nothing can be redone
-// then. On failure nothing changes and f says why.
+// Puts other inputs in the place of all there are, and computes their run; nothing can be
+// redone then. On failure nothing changes and f says why.
 status session_take_inputs(session *s, const session_input *inputs, int count, fault *f);
 
-// Takes back the last input, or puts it in again; the cursor goes to where it was, or to where the
-// input takes effect. STATUS_BAD_ARGUMENT if there is none.
+// Takes back the last input, or puts it in again; the cursor goes to where it was, or to
+// where the input takes effect. STATUS_BAD_ARGUMENT if there is none.
 status session_undo(session *s, fault *f) __attribute__((warn_unused_result));
 status session_redo(session *s, fault *f) __attribute__((warn_unused_result));
 
@@ -179,16 +185,16 @@ bool same_base(const scenario *a, const scenario *b);
 // Whether the session's present run has this origin.
 bool run_origin_is_of(const run_origin *o, const session *s);
 
-// Opens a session with the scenario and the changes of an origin, which stays as it is. On failure
-// there is no session and f says why.
+// Opens a session with the scenario and the changes of an origin, which stays as it is.
+// On failure there is no session and f says why.
 status session_reopen(session *s, const run_origin *o, double patience, fault *f);
 
-// Why a run comes out as it does: a causal account in at most five sentences, made from its events
-// and energies.
+// Why a run comes out as it does: a causal account in at most five sentences, made from
+// its events and energies.
 
 enum { ACCOUNT_SENTENCES = 5, ACCOUNT_SENTENCE = 320 };
 
-// Writes the account of a run with its rows; `s` is the scenario that was run. Returns how many
-// sentences there are, at least one.
+// Writes the account of a run with its rows; `s` is the scenario that was run. Returns
+// how many sentences there are, at least one.
 int run_account(const scenario *s, const run_result *run,
                 char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE]);

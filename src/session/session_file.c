@@ -15,7 +15,7 @@ static const char head[] = "impactlab-session: 1";
 
 enum { MOST_BYTES = 16 << 20, MOST_INPUTS = 20000 };
 
-// --- writing ----------------------------------------------------------------------------------
+// --- writing ---------------------------------------------------------------------------
 
 // A scenario's text, each line behind a bar.
 static void write_base(FILE *stream, const scenario *s)
@@ -29,7 +29,8 @@ static void write_base(FILE *stream, const scenario *s)
     loss_unless(whole != NULL);
     fprintf(stream, "scenario: %s\n", s->name);
     rest = whole;
-    for (char *line; rest != NULL && (line = strsep(&rest, "\n")) != NULL && rest != NULL;) {
+    for (char *line;
+         rest != NULL && (line = strsep(&rest, "\n")) != NULL && rest != NULL;) {
         fprintf(stream, "| %s\n", line);
     }
     free(whole);
@@ -44,7 +45,8 @@ static void write_number(FILE *stream, const char *before, double value)
 
 static void write_input(FILE *stream, const session_input *in)
 {
-    const bool start = in->kind == SESSION_INPUT_START, push = in->kind == SESSION_INPUT_PUSH;
+    const bool start = in->kind == SESSION_INPUT_START,
+               push = in->kind == SESSION_INPUT_PUSH;
     write_number(stream, start ? "start: " : push ? "push: " : "from: ", in->time);
     if (push) {
         write_number(stream, " ", in->value);
@@ -95,7 +97,7 @@ void session_file_write(FILE *stream, const session_file *file)
     }
 }
 
-// --- reading ----------------------------------------------------------------------------------
+// --- reading ---------------------------------------------------------------------------
 
 typedef struct session_reader {
     session_file *file;
@@ -110,22 +112,28 @@ typedef struct session_reader {
 
 static status refuse(const session_reader *r, const char *what)
 {
-    return fault_set(r->fault, STATUS_BAD_ARGUMENT, "%s:%d:1: %s", r->path, r->line, what);
+    return fault_set(r->fault, STATUS_BAD_ARGUMENT, "%s:%d:1: %s", r->path, r->line,
+                     what);
 }
 
 // The scenario whose text is complete.
 static status end_base(session_reader *r)
 {
     if (r->text == NULL) {
-        return r->base.name != NULL ? STATUS_OK : refuse(r, "a run, expected a scenario before it");
+        if (r->base.name != NULL) {
+            return STATUS_OK;
+        }
+        return refuse(r, "a run, expected a scenario before it");
     }
     fault first = {0};
     scenario fresh;
-    const status code =
-        scenario_parse(&fresh, r->text, r->length, r->path, r->name, keep_first_fault, &first);
+    const status code = scenario_parse(&fresh, r->text, r->length, r->path, r->name,
+                                       keep_first_fault, &first);
     free(r->text);
     r->text = NULL;
-    FAIL_IF(code != STATUS_OK, refuse(r, first.text[0] ? first.text : status_text(code)));
+    if (code != STATUS_OK) {
+        return refuse(r, first.text[0] ? first.text : status_text(code));
+    }
     scenario_finish(&r->base);
     r->base = fresh;
     return STATUS_OK;
@@ -135,10 +143,14 @@ static status begin_run(session_reader *r, const char *name)
 {
     session_file *file = r->file;
     TRY(end_base(r));
-    FAIL_IF(file->run_count == SESSION_FILE_RUNS, refuse(r, "one run more than a session holds"));
+    if (file->run_count == SESSION_FILE_RUNS) {
+        return refuse(r, "one run more than a session holds");
+    }
     kept_run *k = &file->runs[file->run_count];
     *k = (kept_run){0};
-    FAIL_IF(scenario_copy(&k->from.base, &r->base) != STATUS_OK, fault_no_memory(r->fault));
+    if (scenario_copy(&k->from.base, &r->base) != STATUS_OK) {
+        return fault_no_memory(r->fault);
+    }
     snprintf(k->name, sizeof k->name, "%s", name);
     file->run_count++;
     return STATUS_OK;
@@ -152,25 +164,28 @@ static bool read_pair(const char *text, double *first, double *second, const cha
 }
 
 // The parameter and the value of a change, as session_change would take them.
-static status read_change(const session_reader *r, const run_origin *from, session_input *in,
-                          const char *text)
+static status read_change(const session_reader *r, const run_origin *from,
+                          session_input *in, const char *text)
 {
     char path[128];
     parameters scratch = started_with(from);
     const size_t length = strcspn(text, " ");
     snprintf(path, sizeof path, "%.*s", (int)length, text);
     in->parameter = parameter_find(path);
-    FAIL_IF(in->parameter < 0 || strlen(text + length) >= sizeof in->text,
-            refuse(r, "no change, expected an instant, a parameter and a value"));
+    if (in->parameter < 0 || strlen(text + length) >= sizeof in->text) {
+        return refuse(r, "no change, expected an instant, a parameter and a value");
+    }
     snprintf(in->text, sizeof in->text, "%s", text + length + (text[length] == ' '));
     const bool timed = in->kind == SESSION_INPUT_TIMED;
 
-    // among the values that the changes before it give; values that others must go with are checked
-    // with all of them, when the run is computed
+    // among the values that the changes before it give; values that others must go with
+    // are checked with all of them, when the run is computed
     fault f = {0};
-    FAIL_IF((timed && !rig_can_change(&scratch, in->parameter)) ||
-                parameter_set_text(&scratch, in->parameter, in->text, &f) != STATUS_OK,
-            refuse(r, f.text[0] ? f.text : "a parameter that does not change during a run"));
+    if ((timed && !rig_can_change(&scratch, in->parameter)) ||
+        parameter_set_text(&scratch, in->parameter, in->text, &f) != STATUS_OK) {
+        return refuse(r, f.text[0] ? f.text
+                                   : "a parameter that does not change during a run");
+    }
     in->value = parameter_get(&scratch, in->parameter);
     return STATUS_OK;
 }
@@ -182,22 +197,34 @@ static status add_input(session_reader *r, session_input_kind kind, const char *
     const char *rest;
     run_origin *from = file->run_count > 0 ? &file->runs[file->run_count - 1].from : NULL;
     status code = STATUS_OK;
-    FAIL_IF(from == NULL || from->input_count == MOST_INPUTS,
-            refuse(r, from == NULL ? "a change, expected a run before it" : "too many changes"));
+    if (from == NULL || from->input_count == MOST_INPUTS) {
+        return refuse(r, from == NULL ? "a change, expected a run before it"
+                                      : "too many changes");
+    }
     if (kind == SESSION_INPUT_PUSH) {
         const bool good = read_pair(text, &in.time, &in.value, &rest) && *rest == '\0' &&
                           from->base.parameters.arm.model != ARM_PRINTED;
-        code = good ? STATUS_OK : refuse(r, "no push, expected an instant and an impulse");
+        if (good) {
+            code = STATUS_OK;
+        } else {
+            code = refuse(r, "no push, expected an instant and an impulse");
+        }
     } else {
-        const bool good = decimal_read(text, &in.time, &rest) && in.time >= 0 && isfinite(in.time);
-        code = good ? read_change(r, from, &in, rest)
-                    : refuse(r, "no change, expected an instant, a parameter and a value");
+        const bool good =
+            decimal_read(text, &in.time, &rest) && in.time >= 0 && isfinite(in.time);
+        if (good) {
+            code = read_change(r, from, &in, rest);
+        } else {
+            code = refuse(r, "no change, expected an instant, a parameter and a value");
+        }
     }
     TRY(code);
     in.seen_at = in.time;
     session_input *more =
         realloc(from->inputs, ((size_t)from->input_count + 1) * sizeof *from->inputs);
-    TRY_MEMORY(more != NULL, r->fault);
+    if (more == NULL) {
+        return fault_no_memory(r->fault);
+    }
     from->inputs = more;
     from->inputs[from->input_count++] = in;
     return STATUS_OK;
@@ -208,8 +235,10 @@ static status add_text(session_reader *r, const char *line)
 {
     const size_t more = strlen(line);
     char *longer = r->text != NULL ? realloc(r->text, r->length + more + 2) : NULL;
-    FAIL_IF(longer == NULL,
-            r->text == NULL ? refuse(r, "text without a scenario") : fault_no_memory(r->fault));
+    if (longer == NULL) {
+        return r->text == NULL ? refuse(r, "text without a scenario")
+                               : fault_no_memory(r->fault);
+    }
     r->text = longer;
     r->length += (size_t)sprintf(r->text + r->length, "%s\n", line);
     return STATUS_OK;
@@ -224,7 +253,9 @@ static status take_line(session_reader *r, char *line)
     if (strncmp(line, "| ", 2) == 0) {
         return add_text(r, line + 2);
     }
-    FAIL_IF(rest == NULL, refuse(r, "no line of a session, expected 'word: rest'"));
+    if (rest == NULL) {
+        return refuse(r, "no line of a session, expected 'word: rest'");
+    }
     *rest++ = '\0';
     rest += *rest == ' ';
 
@@ -234,14 +265,19 @@ static status take_line(session_reader *r, char *line)
         r->length = 0;
         r->text = calloc(1, 2);
         snprintf(r->name, sizeof r->name, "%s", rest);
-        return r->text == NULL ? fault_no_memory(r->fault) : STATUS_OK;
+        if (r->text == NULL) {
+            return fault_no_memory(r->fault);
+        }
+        return STATUS_OK;
     }
     if (strcmp(line, "present") == 0 || strcmp(line, "pinned") == 0) {
-        return (line[1] == 'r') == (file->run_count == 0)
-                   ? begin_run(r, rest)
-                   : refuse(r, "expected one present run, then pinned ones");
+        if ((line[1] == 'r') == (file->run_count == 0)) {
+            return begin_run(r, rest);
+        }
+        return refuse(r, "expected one present run, then pinned ones");
     }
-    if (strcmp(line, "start") == 0 || strcmp(line, "from") == 0 || strcmp(line, "push") == 0) {
+    if (strcmp(line, "start") == 0 || strcmp(line, "from") == 0 ||
+        strcmp(line, "push") == 0) {
         return add_input(r,
                          line[0] == 's'   ? SESSION_INPUT_START
                          : line[0] == 'f' ? SESSION_INPUT_TIMED
@@ -249,9 +285,10 @@ static status take_line(session_reader *r, char *line)
                          rest);
     }
     if (strcmp(line, "cursor") == 0 && last != NULL) {
-        return read_pair(rest, &last->from.now, &last->from.seen, &end)
-                   ? STATUS_OK
-                   : refuse(r, "no cursor, expected two instants");
+        if (read_pair(rest, &last->from.now, &last->from.seen, &end)) {
+            return STATUS_OK;
+        }
+        return refuse(r, "no cursor, expected two instants");
     }
     if (strcmp(line, "hidden") == 0 && last != NULL) {
         last->hidden = true;
@@ -263,13 +300,17 @@ static status take_line(session_reader *r, char *line)
     }
     if (strcmp(line, "baseline") == 0) {
         file->baseline = atoi(rest) - 1;
-        return file->baseline >= -1 && file->baseline < file->run_count - 1
-                   ? STATUS_OK
-                   : refuse(r, "no baseline, expected the number of a pinned run, or 0");
+        if (file->baseline >= -1 && file->baseline < file->run_count - 1) {
+            return STATUS_OK;
+        }
+        return refuse(r, "no baseline, expected the number of a pinned run, or 0");
     }
     if (strcmp(line, "view") == 0 && file->line_count < SESSION_FILE_LINES) {
         file->lines[file->line_count] = strdup(rest);
-        return file->lines[file->line_count++] != NULL ? STATUS_OK : fault_no_memory(r->fault);
+        if (file->lines[file->line_count++] == NULL) {
+            return fault_no_memory(r->fault);
+        }
+        return STATUS_OK;
     }
     return refuse(r, "a line that does not belong here");
 }
@@ -285,7 +326,8 @@ static status read_lines(session_reader *r, FILE *stream)
         bytes += (size_t)length;
         line[strcspn(line, "\r\n")] = '\0';
         if (bytes > MOST_BYTES || (r->line == 1 && strcmp(line, head) != 0)) {
-            code = refuse(r, bytes > MOST_BYTES ? "the file is too long" : "this is no session");
+            code = refuse(r, bytes > MOST_BYTES ? "the file is too long"
+                                                : "this is no session");
         } else if (r->line > 1 && line[0] != '\0') {
             code = take_line(r, line);
         }
@@ -302,7 +344,9 @@ status session_file_read(session_file *file, const char *path, fault *f)
     *file = (session_file){.baseline = -1};
     fault why = {0};
     FILE *stream = whole_file_open_to_read(path, &why);
-    FAIL_IF(stream == NULL, whole_file_unread(path, &why, f));
+    if (stream == NULL) {
+        return whole_file_unread(path, &why, f);
+    }
     fault own = {0};
     session_reader r = {.file = file, .path = path, .fault = &own};
     const status code = read_lines(&r, stream);

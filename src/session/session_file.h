@@ -1,8 +1,10 @@
-// A visit to the lab as a file: the present run and the pinned ones, each as its scenario, whole,
-// and its changes; and lines that say how they are looked at, which belong to who shows them.
+// A visit to the lab as a file: the present run and the pinned ones, each as its
+// scenario, whole, and its changes; and lines that say how they are looked at, which
+// belong to who shows them.
 //
-// The scenarios' text stands in the file itself, so that reading it reads no other file, and what a
-// scenario would start needs a consent as ever. Lines are "word: rest"; those of a scenario's text
+// The scenarios' text stands in the file itself, so that reading it reads no other file,
+// and what a scenario would start needs a consent as ever. Lines are "word: rest"; those
+// of a scenario's text
 // begin with "| ".
 #pragma once
 
@@ -28,10 +30,11 @@ typedef struct session_file {
 void session_file_write(FILE *stream, const session_file *file);
 
 // Reads one; every line is checked before anything is taken. STATUS_CANNOT_READ,
-// STATUS_BAD_ARGUMENT with the line in f, or STATUS_NO_MEMORY; then there is nothing to be freed.
+// STATUS_BAD_ARGUMENT with the line in f, or STATUS_NO_MEMORY; then there is nothing to
+// be freed.
 status session_file_read(session_file *file, const char *path, fault *f);
 void session_file_finish(session_file *file);
 
-// Whether a program or a file that one of its runs reads is another one than the run read, so that
-// it may be another one, too.
+// Whether a program or a file that one of its runs reads is another one than the run
+// read, so that it may be another one, too.
 bool session_file_is_outdated(const session_file *file);

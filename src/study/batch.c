@@ -15,7 +15,10 @@ typedef struct batch_scratch {
 static size_t piece_length(const batch *b, size_t piece)
 {
     const size_t left = b->count - piece * b->together;
-    return left < b->together ? left : b->together;
+    if (left < b->together) {
+        return left;
+    }
+    return b->together;
 }
 
 // Computes the runs of a piece side by side.
@@ -34,7 +37,8 @@ static void compute(void *context, size_t piece, void *scratch, void *result)
     for (size_t i = 0; i < length; i++) {
         fault f = {.path = ""};
         place[begun] = i;
-        if (b->make(b->context, piece * b->together + i, &own->made[begun], &f) == STATUS_OK) {
+        if (b->make(b->context, piece * b->together + i, &own->made[begun], &f) ==
+            STATUS_OK) {
             begun++;
         } else {
             summary_init(&summaries[i]);
@@ -95,7 +99,13 @@ status batch_run(const batch *asked, int jobs, fault *f)
 
     // enough pieces for everybody, and no more threads than pieces
     const size_t share = (b.count + threads - 1) / threads;
-    b.together = share < 1 ? 1 : share < most ? share : most;
+    if (share < 1) {
+        b.together = 1;
+    } else if (share < most) {
+        b.together = share;
+    } else {
+        b.together = most;
+    }
     const size_t pieces = (b.count + b.together - 1) / b.together;
     const pool_work work = {.context = &b,
                             .count = pieces,
@@ -107,5 +117,9 @@ status batch_run(const batch *asked, int jobs, fault *f)
                             .tick_interval = b.tick_interval,
                             .release = release,
                             .stop = b.stop};
-    return pool_run(&work, pieces < 1 ? 1 : pieces < threads ? (int)pieces : (int)threads, f);
+    return pool_run(&work,
+                    pieces < 1         ? 1
+                    : pieces < threads ? (int)pieces
+                                       : (int)threads,
+                    f);
 }

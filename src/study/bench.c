@@ -47,7 +47,10 @@ double bench_seconds_per_call(status (*work)(void *context), void *context, doub
         }
         elapsed = computing_time() - start;
     }
-    return *failed == STATUS_OK ? elapsed / (double)calls : (double)NAN;
+    if (*failed == STATUS_OK) {
+        return elapsed / (double)calls;
+    }
+    return (double)NAN;
 }
 
 status bench_run(const benchmark *b, bench_result *result, fault *f)
@@ -61,35 +64,41 @@ status bench_run(const benchmark *b, bench_result *result, fault *f)
         TRY(b->measure(b, &value, f));
         elapsed = computing_time() - start;
 
-        // the first one only warms the caches, but where it is long that makes no difference
+        // the first one only warms the caches, but where it is long that makes no
+        // difference
         if (i > 0 || elapsed > PATIENCE) {
             values[count++] = value;
         }
-        if ((count >= 3 && elapsed > PATIENCE) || (count >= 1 && elapsed > LONG_PATIENCE)) {
+        if ((count >= 3 && elapsed > PATIENCE) ||
+            (count >= 1 && elapsed > LONG_PATIENCE)) {
             break;
         }
     }
 
     // median and extremes
     qsort(values, (size_t)count, sizeof values[0], compare_numbers);
-    *result =
-        (bench_result){0.5 * (values[(count - 1) / 2] + values[count / 2]), values[0],
-                       values[count - 1], (clock_seconds(CLOCK_MONOTONIC) - start_wall) / elapsed};
+    *result = (bench_result){0.5 * (values[(count - 1) / 2] + values[count / 2]),
+                             values[0], values[count - 1],
+                             (clock_seconds(CLOCK_MONOTONIC) - start_wall) / elapsed};
     return STATUS_OK;
 }
 
 double bench_slowdown(const benchmark *b, double now, double before)
 {
-    return b->more_is_better ? before / now : now / before;
+    if (b->more_is_better) {
+        return before / now;
+    }
+    return now / before;
 }
 
 bool bench_is_slower(const benchmark *b, const bench_result *now, double before)
 {
     const double best = b->more_is_better ? now->max : now->min;
-    return bench_slowdown(b, best, before) > 1 && bench_slowdown(b, now->median, before) > SLOWER;
+    return bench_slowdown(b, best, before) > 1 &&
+           bench_slowdown(b, now->median, before) > SLOWER;
 }
 
-// --- files ----------------------------------------------------------------------------------
+// --- files -----------------------------------------------------------------------------
 
 json_t *bench_export(const bench_result results[BENCHMARKS])
 {
@@ -99,8 +108,8 @@ json_t *bench_export(const bench_result results[BENCHMARKS])
         if (r->median > 0) {
             // with extremes, as one number says little about a machine
             json_add(array, json_of("name:t unit:t median:n min:n max:n wall_per_cpu:n",
-                                    bench_table[i].name, bench_table[i].unit, r->median, r->min,
-                                    r->max, r->wall));
+                                    bench_table[i].name, bench_table[i].unit, r->median,
+                                    r->min, r->max, r->wall));
         }
     }
     return json_of("bench:o", array);
@@ -109,29 +118,35 @@ json_t *bench_export(const bench_result results[BENCHMARKS])
 status bench_read(const char *path, double medians[BENCHMARKS], fault *f)
 {
     json_error_t error;
-    json_t *root = json_load_file(path, 0, &error), *array = json_object_get(root, "bench"), *entry;
+    json_t *root = json_load_file(path, 0, &error),
+           *array = json_object_get(root, "bench"), *entry;
     size_t i;
     status code = STATUS_OK;
     memset(medians, 0, BENCHMARKS * sizeof *medians);
     if (root == NULL) {
-        code = fault_set(f, STATUS_CANNOT_READ, "%s:%d:%d: %s, expected what bench --json writes",
-                         path, error.line > 0 ? error.line : 1, error.column > 0 ? error.column : 1,
-                         error.text);
-    } else if (!json_is_array(array)) {
         code = fault_set(f, STATUS_CANNOT_READ,
-                         "%s: there is no list \"bench\", expected what bench --json writes", path);
+                         "%s:%d:%d: %s, expected what bench --json writes", path,
+                         error.line > 0 ? error.line : 1,
+                         error.column > 0 ? error.column : 1, error.text);
+    } else if (!json_is_array(array)) {
+        code =
+            fault_set(f, STATUS_CANNOT_READ,
+                      "%s: there is no list \"bench\", expected what bench --json writes",
+                      path);
     }
 
     // its entries
     json_array_foreach(array, i, entry)
     {
         const char *name = "", *unit;
-        const bool named = json_unpack(entry, "{s:s, s:s}", "name", &name, "unit", &unit) == 0;
+        const bool named =
+            json_unpack(entry, "{s:s, s:s}", "name", &name, "unit", &unit) == 0;
         const double median = json_number_value(json_object_get(entry, "median"));
         if (code == STATUS_OK && !(named && median > 0)) {
-            code = fault_set(f, STATUS_CANNOT_READ,
-                             "%s: entry %zu of \"bench\" has no name, unit and positive median",
-                             path, i + 1);
+            code = fault_set(
+                f, STATUS_CANNOT_READ,
+                "%s: entry %zu of \"bench\" has no name, unit and positive median", path,
+                i + 1);
         }
         for (int k = 0; k < BENCHMARKS; k++) {
             medians[k] = strcmp(bench_table[k].name, name) == 0 ? median : medians[k];
@@ -141,7 +156,8 @@ status bench_read(const char *path, double medians[BENCHMARKS], fault *f)
     return code;
 }
 
-// --- what is measured: runs and batches by the library, the rest by the program itself --------
+// --- what is measured: runs and batches by the library, the rest by the program itself
+// --------
 
 double bench_window = 0.5;
 
@@ -157,8 +173,8 @@ typedef struct timed_work {
 } timed_work;
 
 // Does it with the benchmark's scenario.
-static status measure_work(const benchmark *b, status (*work)(void *context), timed_work *t,
-                           double least, fault *f)
+static status measure_work(const benchmark *b, status (*work)(void *context),
+                           timed_work *t, double least, fault *f)
 {
     fault ignored = {0};
     status code = scenario_parse(&t->scenario, b->of, strlen(b->of), "bench", "bench",
@@ -170,7 +186,10 @@ static status measure_work(const benchmark *b, status (*work)(void *context), ti
         t->wall = clock_seconds(CLOCK_MONOTONIC) - start;
         scenario_finish(&t->scenario);
     }
-    return code == STATUS_OK ? code : fault_set(f, code, "%s: %s", b->name, status_text(code));
+    if (code == STATUS_OK) {
+        return code;
+    }
+    return fault_set(f, code, "%s: %s", b->name, status_text(code));
 }
 
 static status run_once(void *context)
@@ -182,8 +201,8 @@ static status run_once(void *context)
     return code;
 }
 
-// Computing time of a run for each simulated millisecond [us]; number: 1 where a row is kept for
-// each of them.
+// Computing time of a run for each simulated millisecond [us]; number: 1 where a row is
+// kept for each of them.
 static status measure_run(const benchmark *b, double *value, fault *f)
 {
     timed_work t = {.rows = b->number == 1};
@@ -216,9 +235,9 @@ static status run_batch(void *context)
     return batch_run(&runs, ((const timed_work *)context)->threads, NULL);
 }
 
-// Of the batch, number: 0: time steps of all runs together for a second by the clock, on as many
-// threads as processors [1/s]. Else the computing time of a run on one thread, in vectors of at
-// most so many arms [us].
+// Of the batch, number: 0: time steps of all runs together for a second by the clock, on
+// as many threads as processors [1/s]. Else the computing time of a run on one thread, in
+// vectors of at most so many arms [us].
 static status measure_batch(const benchmark *b, double *value, fault *f)
 {
     const bool all = b->number == 0;
@@ -226,13 +245,18 @@ static status measure_batch(const benchmark *b, double *value, fault *f)
     taylor_limit_width(b->number);
     const status code = measure_work(b, run_batch, &t, all ? 1e-9 : bench_window, f);
     taylor_limit_width(0);
-    *value = all ? t.steps / t.wall : 1e6 * t.seconds / BATCH_RUNS;
+    if (all) {
+        *value = t.steps / t.wall;
+    } else {
+        *value = 1e6 * t.seconds / BATCH_RUNS;
+    }
     return code;
 }
 
-// --- the program ------------------------------------------------------------------------------
+// --- the program -----------------------------------------------------------------------
 
-// Runs the program with the words in the current folder, without what it prints, and waits for it.
+// Runs the program with the words in the current folder, without what it prints, and
+// waits for it.
 static bool run_program(const char *program, const char *folder, const char *words)
 {
     const pid_t child = fork();
@@ -252,7 +276,8 @@ static bool run_program(const char *program, const char *folder, const char *wor
     return child > 0 && waitpid(child, &how, 0) == child && how == 0;
 }
 
-static int remove_entry(const char *path, const struct stat *about, int kind, struct FTW *place)
+static int remove_entry(const char *path, const struct stat *about, int kind,
+                        struct FTW *place)
 {
     (void)about;
     (void)kind;
@@ -266,45 +291,59 @@ static status measure_program(const benchmark *b, double *value, fault *f)
 {
     const char *place = getenv("TMPDIR");
     char folder[4000], *program = shipped_path(SHIPPED_PROGRAM);
-    snprintf(folder, sizeof folder, "%s/impactlab-bench-XXXXXX", place && *place ? place : "/tmp");
+    snprintf(folder, sizeof folder, "%s/impactlab-bench-XXXXXX",
+             place && *place ? place : "/tmp");
     if (program == NULL || mkdtemp(folder) == NULL) {
         free(program);
         return fault_set(f, STATUS_CANNOT_WRITE, "no folder '%s' can be made", folder);
     }
 
-    const double unit = *b->unit == 's' ? 1 : *b->unit == 'm' ? 1e-3 : 1e-6;
+    double unit = 1;
+    if (*b->unit != 's') {
+        if (*b->unit == 'm') {
+            unit = 1e-3;
+        } else {
+            unit = 1e-6;
+        }
+    }
     const double start = computing_time();
     const bool done = run_program(program, folder, b->of);
     *value = (computing_time() - start) / (unit * b->number);
     nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
     free(program);
-    return done ? STATUS_OK
-                : fault_set(f, STATUS_CANNOT_READ, "impactlab %s: it cannot be run once more",
-                            b->of);
+    if (!done) {
+        return fault_set(f, STATUS_CANNOT_READ,
+                         "impactlab %s: it cannot be run once more", b->of);
+    }
+    return STATUS_OK;
 }
 
-// Two links for 1 s at 1 V into the wall; chains that strike it at 1 rad/s after 5 ms, and what
-// comes of it up to 50 ms.
+// Two links for 1 s at 1 V into the wall; chains that strike it at 1 rad/s after 5 ms,
+// and what comes of it up to 50 ms.
 #define INTO_WALL "motor: {voltage: 1}\n"
-#define STRUCK(links)                                                                              \
-    {                                                                                              \
-        "struck_n" #links "_us_per_ms", "us/ms", false, measure_run,                               \
-            "arm: {links: " #links ", hub_joint: beam}\ninitial: {angle: 0.095, velocity: 1}\n"    \
-            "run: {duration: 0.05}\n",                                                             \
-            0                                                                                      \
+#define STRUCK(links)                                                                    \
+    {                                                                                    \
+        "struck_n" #links "_us_per_ms", "us/ms", false, measure_run,                     \
+            "arm: {links: " #links                                                       \
+            ", hub_joint: beam}\ninitial: {angle: 0.095, velocity: 1}\n"                 \
+            "run: {duration: 0.05}\n",                                                   \
+            0                                                                            \
     }
-#define WIDTH(width)                                                                               \
-    {                                                                                              \
-        "batch_width_" #width "_us_per_run", "us", false, measure_batch, INTO_WALL, width          \
+#define WIDTH(width)                                                                     \
+    {                                                                                    \
+        "batch_width_" #width "_us_per_run", "us", false, measure_batch, INTO_WALL,      \
+            width                                                                        \
     }
 
 const benchmark bench_table[] = {
-    // one run; the law samples its noisy sensors 200 times a second and hardly ever gives the same
-    // command twice
+    // one run; the law samples its noisy sensors 200 times a second and hardly ever gives
+    // the same command twice
     {"arm_n2_us_per_ms", "us/ms", false, measure_run, INTO_WALL, 0},
     {"arm_n2_rows_us_per_ms", "us/ms", false, measure_run, INTO_WALL, 1},
-    {"spring_hub_us_per_ms", "us/ms", false, measure_run, INTO_WALL "arm: {hub_joint: spring}", 0},
-    {"rig_n2_us_per_ms", "us/ms", false, measure_run, INTO_WALL "control: {law: hybrid}", 0},
+    {"spring_hub_us_per_ms", "us/ms", false, measure_run,
+     INTO_WALL "arm: {hub_joint: spring}", 0},
+    {"rig_n2_us_per_ms", "us/ms", false, measure_run, INTO_WALL "control: {law: hybrid}",
+     0},
 
     // many links
     STRUCK(8),
@@ -320,10 +359,11 @@ const benchmark bench_table[] = {
     WIDTH(4),
     WIDTH(8),
 
-    // the program: a sweep of voltages into a database, all tables and figures of the thesis, and
-    // a start that only says its version
+    // the program: a sweep of voltages into a database, all tables and figures of the
+    // thesis, and a start that only says its version
     {"sweep_us_per_run", "us", false, measure_program,
-     "sweep corrected/first-impact --vary motor.voltage=0.5:1.5:2000 --jobs 1 --db runs.db --quiet",
+     "sweep corrected/first-impact --vary motor.voltage=0.5:1.5:2000 --jobs 1 --db "
+     "runs.db --quiet",
      2000},
     {"tables_s", "s", false, measure_program, "tables", 1},
     {"start_ms", "ms", false, measure_program, "--version", 1},

@@ -11,11 +11,12 @@
 #define SHORTEST_PRESS 5.0 // [s]
 #define WINDOW_SHARE   0.4 // of it, its last part, over which the readings are averaged
 
-// --- one press ------------------------------------------------------------------------------
+// --- one press -------------------------------------------------------------------------
 
-// The scenario under a constant command. It starts where the arm touches the wall: an impact would
-// leave a beam without damping ringing, and the rig off scale.
-static status pressing(const scenario *s, double command, int number, scenario *under, fault *f)
+// The scenario under a constant command. It starts where the arm touches the wall: an
+// impact would leave a beam without damping ringing, and the rig off scale.
+static status pressing(const scenario *s, double command, int number, scenario *under,
+                       fault *f)
 {
     const parameters *p = &s->parameters;
     const parameter_change changes[] = {
@@ -23,7 +24,8 @@ static status pressing(const scenario *s, double command, int number, scenario *
         {PARAMETER_INDEX(control.lock), .text = "none"},
         {PARAMETER_INDEX(control.law), LAW_OPEN_LOOP},
         {PARAMETER_INDEX(control.approach_voltage), command},
-        {PARAMETER_INDEX(control.seed), (double)(((long)p->control.seed + number) % 2147483648L)},
+        {PARAMETER_INDEX(control.seed),
+         (double)(((long)p->control.seed + number) % 2147483648L)},
         {PARAMETER_INDEX(initial.angle), p->wall.angle},
         {PARAMETER_INDEX(initial.velocity), 0},
         {PARAMETER_INDEX(run.duration), fmax(p->run.duration, SHORTEST_PRESS)},
@@ -64,13 +66,15 @@ static double stiffness(const parameters *p, double force, double angle)
     return force * (p->arm.length / 2) / (2 * angle);
 }
 
-static void measure(const parameters *p, const trace *t, double command, calibration_point *point)
+static void measure(const parameters *p, const trace *t, double command,
+                    calibration_point *point)
 {
     average force[2] = {{0}}, angle[2] = {{0}}, whole_force = {0}, whole_angle = {0};
     const double wall = p->wall.angle + p->belief.wall_error, end = p->run.duration,
                  window = WINDOW_SHARE * end;
 
-    // readings of the window, and of its halves, which tell whether the arm has come to rest
+    // readings of the window, and of its halves, which tell whether the arm has come to
+    // rest
     for (size_t i = 0; i + 1 < t->row_count; i++) {
         const sample *row = &t->rows[i];
         double stood = t->rows[i + 1].time - row->time;
@@ -110,19 +114,22 @@ static status press(const scenario *s, double command, int number, run_monitor *
     // a run that presses with it, and what the sensors read at its end
     SCOPED(run_finish) run_result result;
     const status code = run_scenario_with(&under, &options, &result);
-    FAULT_AT_IF(code != STATUS_OK, f, code, result.summary.path,
-                "pressing with %g V failed: %.700s", command, result.summary.message);
+    if (code != STATUS_OK) {
+        return fault_set_at(f, code, result.summary.path,
+                            "pressing with %g V failed: %.700s", command,
+                            result.summary.message);
+    }
     measure(&under.parameters, &result.trace, command, point);
     FAULT_IF(!(point->force > 0) || !(point->angle > 0), f, STATUS_BAD_ARGUMENT,
-             "under %g V the arm does not press: the force sensor reads %.4g N, the encoder %.4g "
-             "rad beyond the wall; friction alone holds %.3g V",
+             "under %g V the arm does not press: the force sensor reads %.4g N, "
+             "the encoder %.4g rad beyond the wall; friction alone holds %.3g V",
              command, point->force, point->angle,
              s->parameters.motor.stiction / motor_torque_per_volt(&s->parameters.motor));
     return STATUS_OK;
 }
 
-status calibrate(const scenario *s, const double *commands, int count, run_monitor *monitor,
-                 calibration *c, fault *f)
+status calibrate(const scenario *s, const double *commands, int count,
+                 run_monitor *monitor, calibration *c, fault *f)
 {
     assert(count > 0 && count <= K2_TABLE_MOST);
     *c = (calibration){0};
@@ -131,14 +138,19 @@ status calibrate(const scenario *s, const double *commands, int count, run_monit
     FAULT_IF(s->parameters.wall.kind == WALL_NONE, f, STATUS_BAD_ARGUMENT,
              "there is nothing to press against, wall.kind is none");
 
-    FAULT_AT_IF(
-        s->parameters.wall.motion != MOTION_NONE, f, STATUS_BAD_ARGUMENT, "wall.motion",
-        "force and angle come to rest on a wall at rest only: calibrate with wall.motion = none");
+    if (s->parameters.wall.motion != MOTION_NONE) {
+        return fault_set_at(f, STATUS_BAD_ARGUMENT, "wall.motion",
+                            "force and angle come to rest on a wall at rest only: "
+                            "calibrate with wall.motion = none");
+    }
 
     // K2 says how the wall's force alone bends the beam
-    FAULT_AT_IF(s->parameters.arm.tilt != 0, f, STATUS_BAD_ARGUMENT, "arm.tilt",
-                "the weight bends the beam, too, so that force and angle say nothing of its "
-                "stiffness alone: calibrate in a level plane, arm.tilt = 0");
+    if (s->parameters.arm.tilt != 0) {
+        return fault_set_at(
+            f, STATUS_BAD_ARGUMENT, "arm.tilt",
+            "the weight bends the beam, too, so that force and angle say nothing "
+            "of its stiffness alone: calibrate in a level plane, arm.tilt = 0");
+    }
 
     // up to the first fault; what was measured before is kept
     for (int i = 0; i < count; i++) {
@@ -149,7 +161,7 @@ status calibrate(const scenario *s, const double *commands, int count, run_monit
     return STATUS_OK;
 }
 
-// --- results --------------------------------------------------------------------------------
+// --- results ---------------------------------------------------------------------------
 
 status calibration_table(const calibration *c, k2_table *t, fault *f)
 {
@@ -170,17 +182,18 @@ status calibration_table(const calibration *c, k2_table *t, fault *f)
     // a table gives one stiffness for a force
     for (int i = 1; i < t->count; i++) {
         // to the digits that the table is written with
-        FAULT_IF(t->force[i] - t->force[i - 1] < 2e-3 * t->force[i], f, STATUS_BAD_ARGUMENT,
-                 "two commands press alike, with %.4g N, so there is no table by force; expected "
-                 "commands further apart",
+        FAULT_IF(t->force[i] - t->force[i - 1] < 2e-3 * t->force[i], f,
+                 STATUS_BAD_ARGUMENT,
+                 "two commands press alike, with %.4g N, so there is no table by "
+                 "force; expected commands further apart",
                  t->force[i]);
     }
     return STATUS_OK;
 }
 
-#define COLUMN(key, name, unit, field, times)                                                      \
-    {                                                                                              \
-        key, name, unit, offsetof(calibration_point, field), times                                 \
+#define COLUMN(key, name, unit, field, times)                                            \
+    {                                                                                    \
+        key, name, unit, offsetof(calibration_point, field), times                       \
     }
 
 static result_table told(const calibration *c)
@@ -195,8 +208,8 @@ static result_table told(const calibration *c)
         COLUMN("angle_spread_rad", "angle_spread", "rad", angle_spread, 1),
         COLUMN("drift_percent", "drift", "%", drift, 100),
     };
-    return (result_table){columns, sizeof columns / sizeof *columns, c->points, sizeof *c->points,
-                          c->count};
+    return (result_table){columns, sizeof columns / sizeof *columns, c->points,
+                          sizeof *c->points, c->count};
 }
 
 json_t *calibration_json(const calibration *c, const char *name, const char *table)

@@ -13,29 +13,30 @@
 #include "src/tables/settings.h"
 
 // Number, key, name, heading and unit of each.
-#define COMPARED(QUANTITY)                                                                         \
-    QUANTITY(PEAK, "peak_force_N", "peak_force", "peak", "N")                                      \
-    QUANTITY(SENSED, "sensor_1ms_peak_N", "sensor_1ms_peak", "1 ms peak", "N")                     \
-    QUANTITY(BEST_PEAK, "best_peak_N", "best_peak", "best peak", "N")                              \
-    QUANTITY(OVERSHOOT, "overshoot_percent", "overshoot", "over", "%")                             \
-    QUANTITY(SETTLING, "settling_time_s", "settling_time", "settled", "s")                         \
-    QUANTITY(BEST_SETTLING, "best_settling_s", "best_settling", "best time", "s")                  \
-    QUANTITY(FROM_START, "from_start_s", "from_start", "from start", "s")                          \
-    QUANTITY(LEAST_TIME, "least_time_s", "least_time", "least time", "s")                          \
-    QUANTITY(IMPACTS, "impacts", "impacts", "impacts", "")                                         \
-    QUANTITY(SEPARATIONS, "separations", "separations", "separations", "")                         \
-    QUANTITY(STEADY_ERROR, "steady_error_N", "steady_error", "error", "N")                         \
-    QUANTITY(COMMAND, "largest_command_V", "largest_command", "command", "V")                      \
+#define COMPARED(QUANTITY)                                                               \
+    QUANTITY(PEAK, "peak_force_N", "peak_force", "peak", "N")                            \
+    QUANTITY(SENSED, "sensor_1ms_peak_N", "sensor_1ms_peak", "1 ms peak", "N")           \
+    QUANTITY(BEST_PEAK, "best_peak_N", "best_peak", "best peak", "N")                    \
+    QUANTITY(OVERSHOOT, "overshoot_percent", "overshoot", "over", "%")                   \
+    QUANTITY(SETTLING, "settling_time_s", "settling_time", "settled", "s")               \
+    QUANTITY(BEST_SETTLING, "best_settling_s", "best_settling", "best time", "s")        \
+    QUANTITY(FROM_START, "from_start_s", "from_start", "from start", "s")                \
+    QUANTITY(LEAST_TIME, "least_time_s", "least_time", "least time", "s")                \
+    QUANTITY(IMPACTS, "impacts", "impacts", "impacts", "")                               \
+    QUANTITY(SEPARATIONS, "separations", "separations", "separations", "")               \
+    QUANTITY(STEADY_ERROR, "steady_error_N", "steady_error", "error", "N")               \
+    QUANTITY(COMMAND, "largest_command_V", "largest_command", "command", "V")            \
     QUANTITY(ENERGY, "electrical_energy_J", "electrical_energy", "energy", "J")
 #define NUMBER(number, ...) number,
 #define ROW(number, ...)    {__VA_ARGS__},
 enum { COMPARED(NUMBER) };
 const compare_quantity compare_quantities[COMPARE_QUANTITIES] = {COMPARED(ROW)};
 
-// --- rows -----------------------------------------------------------------------------------
+// --- rows ------------------------------------------------------------------------------
 
 // What full knowledge of the state could have made of the run's first impact.
-static void find_best(const scenario *s, const run_result *result, double *peak, double *settling)
+static void find_best(const scenario *s, const run_result *result, double *peak,
+                      double *settling)
 {
     const summary *m = &result->summary;
     const parameters *p = &s->parameters;
@@ -60,14 +61,19 @@ static void find_best(const scenario *s, const run_result *result, double *peak,
     }
 }
 
-// The least time from the start that any controller takes, pressing no harder than the run did.
+// The least time from the start that any controller takes, pressing no harder than the
+// run did.
 static double find_least_time(const scenario *s, const run_result *result)
 {
     const parameters *p = &s->parameters;
-    const double command = result->summary.force_command_N, peak = result->summary.peak_force_N;
-    bool known = s->action_count == 0 && p->initial.velocity == 0 && p->wall.restitution == 0 &&
-                 command > 0 && !isnan(peak);
-    return known ? least_time_of(p, command, SETTLED_BAND, peak).total : (double)NAN;
+    const double command = result->summary.force_command_N,
+                 peak = result->summary.peak_force_N;
+    bool known = s->action_count == 0 && p->initial.velocity == 0 &&
+                 p->wall.restitution == 0 && command > 0 && !isnan(peak);
+    if (known) {
+        return least_time_of(p, command, SETTLED_BAND, peak).total;
+    }
+    return (double)NAN;
 }
 
 compare_row compare_row_of(const scenario *s, const run_result *result)
@@ -112,7 +118,8 @@ bool compare_differs(double value, double reference, double tolerance)
 static bool marked(const compare_table *t, int i, int k)
 {
     return t->against != NULL &&
-           compare_differs(t->rows[i].values[k], t->against[i / t->group].values[k], t->tolerance);
+           compare_differs(t->rows[i].values[k], t->against[i / t->group].values[k],
+                           t->tolerance);
 }
 
 status compare_choose(compare_table *t, const char *keys, fault *f)
@@ -131,7 +138,9 @@ status compare_choose(compare_table *t, const char *keys, fault *f)
         nearest_word near = nearest_begin(word);
         for (int k = 0; k < COMPARE_QUANTITIES; k++) {
             nearest_try(&near, compare_quantities[k].key);
-            found = strcmp(word, compare_quantities[k].key) == 0 ? k : found;
+            if (strcmp(word, compare_quantities[k].key) == 0) {
+                found = k;
+            }
         }
         FAULT_IF(found < 0, f, STATUS_BAD_ARGUMENT, "there is no column '%s'%s%s%s", word,
                  near.best ? ", did you mean '" : ", expected keys of --json",
@@ -145,29 +154,42 @@ status compare_choose(compare_table *t, const char *keys, fault *f)
     }
 }
 
-// --- tables ---------------------------------------------------------------------------------
+// --- tables ----------------------------------------------------------------------------
 
 // Value of a row's varied parameter as a scenario file would give it, without its unit.
-static void format_varied(const compare_table *t, int row, int which, char *text, size_t size)
+static void format_varied(const compare_table *t, int row, int which, char *text,
+                          size_t size)
 {
     sweep_axis_format(&t->varied[which], t->rows[row].varied[which], text, size);
 }
 
 // Columns of the table: names, what was varied, results.
-enum { SCENARIO, LAW, NAMES, MOST_COLUMNS = NAMES + COMPARE_MOST_VARIED + COMPARE_QUANTITIES };
+enum {
+    SCENARIO,
+    LAW,
+    NAMES,
+    MOST_COLUMNS = NAMES + COMPARE_MOST_VARIED + COMPARE_QUANTITIES
+};
 
-// The cell of a row, of row -1 the heading, which a text may have room for; NULL in a column that
-// is not shown. A varied parameter is headed by its path without the group, for which there is no
-// room.
+// The cell of a row, of row -1 the heading, which a text may have room for; NULL in a
+// column that is not shown. A varied parameter is headed by its path without the group,
+// for which there is no room.
 static const char *cell_of(const compare_table *t, int row, int column, bool page,
                            char text[PARAMETER_TEXT_SIZE])
 {
     const compare_row *of = row < 0 ? NULL : &t->rows[row];
     const int v = column - NAMES, k = v - t->varied_count;
     if (column < NAMES) {
-        return of == NULL           ? (column == LAW ? "law" : "scenario")
-               : column == SCENARIO ? of->scenario
-                                    : of->law;
+        if (of == NULL) {
+            if (column == LAW) {
+                return "law";
+            }
+            return "scenario";
+        }
+        if (column == SCENARIO) {
+            return of->scenario;
+        }
+        return of->law;
     }
     if (k >= 0 && t->hidden[k]) {
         return NULL;
@@ -177,11 +199,24 @@ static const char *cell_of(const compare_table *t, int row, int column, bool pag
     if (of == NULL) {
         const sweep_axis *axis = k < 0 ? &t->varied[v] : NULL;
         const char *own = k < 0 ? settings_name(axis->name) : NULL;
-        const char *name = k >= 0        ? compare_quantities[k].heading
-                           : own != NULL ? own
-                                         : strchr(axis->name, '.') + 1;
-        const char *unit = k >= 0 ? compare_quantities[k].unit : sweep_axis_parameter(axis)->unit;
-        const char *open = unit[0] == '\0' ? "" : page ? " [" : "/";
+        const char *name;
+        if (k >= 0) {
+            name = compare_quantities[k].heading;
+        } else if (own != NULL) {
+            name = own;
+        } else {
+            name = strchr(axis->name, '.') + 1;
+        }
+        const char *unit =
+            k >= 0 ? compare_quantities[k].unit : sweep_axis_parameter(axis)->unit;
+        const char *open = "";
+        if (unit[0] != '\0') {
+            if (page) {
+                open = " [";
+            } else {
+                open = "/";
+            }
+        }
         snprintf(text, PARAMETER_TEXT_SIZE, "%s%s%s%s", name, open, unit,
                  unit[0] != '\0' && page ? "]" : "");
     } else if (k < 0) {
@@ -195,7 +230,10 @@ static const char *cell_of(const compare_table *t, int row, int column, bool pag
                                              : "%.3g",
                       value);
     }
-    return k < 0 || page ? text : strcat(text, of != NULL && marked(t, row, k) ? "*" : " ");
+    if (k < 0 || page) {
+        return text;
+    }
+    return strcat(text, of != NULL && marked(t, row, k) ? "*" : " ");
 }
 
 void compare_text(FILE *stream, const compare_table *t, bool page)
@@ -206,12 +244,22 @@ void compare_text(FILE *stream, const compare_table *t, bool page)
 
     // names and what was varied are as wide as they have to be, names to the left
     for (int c = 0; c < columns; c++) {
-        widths[c] = c < NAMES + t->varied_count ? 0 : 12;
+        if (c < NAMES + t->varied_count) {
+            widths[c] = 0;
+        } else {
+            widths[c] = 12;
+        }
         for (int i = -1; i < t->count && c < NAMES + t->varied_count; i++) {
             const int length = (int)strlen(cell_of(t, i, c, false, text));
-            widths[c] = length > widths[c] ? length : widths[c];
+            if (length > widths[c]) {
+                widths[c] = length;
+            }
         }
-        widths[c] *= c < NAMES ? -1 : 1;
+        if (c < NAMES) {
+            widths[c] *= -1;
+        } else {
+            widths[c] *= 1;
+        }
     }
 
     // the headings, then a line each
@@ -230,7 +278,7 @@ void compare_text(FILE *stream, const compare_table *t, bool page)
     }
 }
 
-// --- for programs ---------------------------------------------------------------------------
+// --- for programs ----------------------------------------------------------------------
 
 static json_t *varied_object(const compare_table *t, int row)
 {

@@ -11,7 +11,7 @@
 #define REFERENCE_STEP 2e-5  // [s]
 #define LEAST_TIME     0.01  // for which a run's cost is measured [s]
 
-// --- the convergence panel ------------------------------------------------------------------
+// --- the convergence panel -------------------------------------------------------------
 
 double observed_order(double coarse, double middle, double fine)
 {
@@ -19,12 +19,17 @@ double observed_order(double coarse, double middle, double fine)
     double rounding = ROUNDING * fmax(fabs(coarse), fabs(fine));
     bool told = fabs(first) > rounding && fabs(second) > rounding && first * second > 0 &&
                 fabs(first) > fabs(second);
-    return told ? plain_log(first / second) / M_LN2 : (double)NAN;
+    if (told) {
+        return plain_log(first / second) / M_LN2;
+    }
+    return (double)NAN;
 }
 
 static const char *const panel_keys[] = {
-    "first_contact_s", "contact_impulse_Ns", "first_pulse_peak_N", "first_pulse_time_to_peak_s",
-    "first_pulse_s",   "peak_force_N",       "steady_force_N",     "motor_work_J",
+    "first_contact_s",    "contact_impulse_Ns",
+    "first_pulse_peak_N", "first_pulse_time_to_peak_s",
+    "first_pulse_s",      "peak_force_N",
+    "steady_force_N",     "motor_work_J",
 };
 enum { PANEL_KEYS = sizeof panel_keys / sizeof panel_keys[0] };
 
@@ -48,10 +53,11 @@ static status run_once(void *context)
     } else {
         run_finish(&run);
     }
-    return code == STATUS_OK
-               ? code
-               : fault_set_at(r->fault, code, r->summary.path, "with a step of %g s: %s",
-                              r->scenario.parameters.method.step, r->summary.message);
+    if (code == STATUS_OK) {
+        return code;
+    }
+    return fault_set_at(r->fault, code, r->summary.path, "with a step of %g s: %s",
+                        r->scenario.parameters.method.step, r->summary.message);
 }
 
 status convergence_compute(const scenario *s, run_monitor *monitor, run_result *kept,
@@ -64,9 +70,16 @@ status convergence_compute(const scenario *s, run_monitor *monitor, run_result *
 
     // three runs, each with half the step of the one before
     for (int i = 0; i < PANEL_STEPS; i++) {
-        r.scenario.parameters.method.step = panel->step[i] = ldexp(s->parameters.method.step, -i);
-        r.kept = kept != NULL ? &kept[i] : NULL;
-        code = code == STATUS_OK ? run_once(&r) : code;
+        r.scenario.parameters.method.step = panel->step[i] =
+            ldexp(s->parameters.method.step, -i);
+        if (kept != NULL) {
+            r.kept = &kept[i];
+        } else {
+            r.kept = NULL;
+        }
+        if (code == STATUS_OK) {
+            code = run_once(&r);
+        }
         if (code == STATUS_OK) {
             results[panel->done++] = r.summary;
             run_monitor_count(monitor);
@@ -79,20 +92,24 @@ status convergence_compute(const scenario *s, run_monitor *monitor, run_result *
         convergence_row *row = &panel->rows[k];
         row->key = panel_keys[k];
         for (int i = 0; i < PANEL_STEPS; i++) {
-            row->value[i] =
-                i < panel->done ? summary_value(&results[i], summary_index(row->key)) : (double)NAN;
+            if (i < panel->done) {
+                row->value[i] = summary_value(&results[i], summary_index(row->key));
+            } else {
+                row->value[i] = (double)NAN;
+            }
         }
         row->order = observed_order(row->value[0], row->value[1], row->value[2]);
     }
     return code;
 }
 
-size_t convergence_difference(const trace *coarse, const trace *fine, double *x, double *y)
+size_t convergence_difference(const trace *coarse, const trace *fine, double *x,
+                              double *y)
 {
     size_t count = 0, j = 0;
 
-    // both ascend, so each is gone through once; equal instants are equal to the last bit, since
-    // halving a step is exact
+    // both ascend, so each is gone through once; equal instants are equal to the last
+    // bit, since halving a step is exact
     for (size_t i = 0; i < coarse->row_count; i++) {
         double time = coarse->rows[i].time;
         while (j < fine->row_count && fine->rows[j].time < time) {
@@ -106,12 +123,14 @@ size_t convergence_difference(const trace *coarse, const trace *fine, double *x,
     return count;
 }
 
-// --- error against cost ---------------------------------------------------------------------
+// --- error against cost ----------------------------------------------------------------
 
-const char *const study_methods[STUDY_METHODS] = {"newmark", "generalized-alpha", "event"};
+const char *const study_methods[STUDY_METHODS] = {"newmark", "generalized-alpha",
+                                                  "event"};
 const char *const study_keys[STUDY_QUANTITIES] = {"first_contact_s", "first_pulse_peak_N",
                                                   "steady_force_N"};
-static const method_kind method_kinds[STUDY_METHODS] = {METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA,
+static const method_kind method_kinds[STUDY_METHODS] = {METHOD_NEWMARK,
+                                                        METHOD_GENERALIZED_ALPHA,
                                                         METHOD_EVENT};
 
 static void values_of(const summary *s, double values[STUDY_QUANTITIES])
@@ -135,7 +154,11 @@ static status study_one(const scenario *s, method_kind method, const double *ref
 
     values_of(&r.summary, values);
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
-        point->error[k] = code == STATUS_OK ? fabs(values[k] - reference[k]) : (double)NAN;
+        if (code == STATUS_OK) {
+            point->error[k] = fabs(values[k] - reference[k]);
+        } else {
+            point->error[k] = (double)NAN;
+        }
     }
     return code;
 }
@@ -148,14 +171,20 @@ static void prepare_points(method_study *study)
     for (int m = 0; m < STUDY_METHODS; m++) {
         double unit = 1000; // a second in those of the decade
         for (int i = 0; i < STUDY_STEPS; i++) {
-            unit *= i > 0 && i % 3 == 0 ? 10 : 1;
-            study->points[m][i] = (study_point){
-                .step = mantissas[i % 3] / unit, .cost = none, .error = {none, none, none}};
+            if (i > 0 && i % 3 == 0) {
+                unit *= 10;
+            } else {
+                unit *= 1;
+            }
+            study->points[m][i] = (study_point){.step = mantissas[i % 3] / unit,
+                                                .cost = none,
+                                                .error = {none, none, none}};
         }
     }
 }
 
-status method_study_compute(const scenario *s, run_monitor *monitor, method_study *study, fault *f)
+status method_study_compute(const scenario *s, run_monitor *monitor, method_study *study,
+                            fault *f)
 {
     _Static_assert(STUDY_QUANTITIES == 3, "an error each");
     one_run r = {*s, {.monitor = monitor}, .fault = f};
@@ -184,7 +213,8 @@ status method_study_compute(const scenario *s, run_monitor *monitor, method_stud
     return STATUS_OK;
 }
 
-double method_study_cost(const method_study *study, int method, int k, double error, double *step)
+double method_study_cost(const method_study *study, int method, int k, double error,
+                         double *step)
 {
     assert(method >= 0 && method < STUDY_METHODS);
     assert(k >= 0 && k < STUDY_QUANTITIES);

@@ -20,8 +20,8 @@ static double complex turned(double angle)
     return inline_cos(angle) + (double complex)I * inline_sin(angle);
 }
 
-// The force's part at a frequency [Hz], as that of a sine that begins at 0 s: the mean of the rows
-// times exp(-i w t) over whole periods, by the trapezoidal rule.
+// The force's part at a frequency [Hz], as that of a sine that begins at 0 s: the mean of
+// the rows times exp(-i w t) over whole periods, by the trapezoidal rule.
 static double complex part_of(const trace *t, double frequency, double until)
 {
     const double w = 2 * M_PI * frequency;
@@ -38,8 +38,8 @@ static double complex part_of(const trace *t, double frequency, double until)
     return sine * sum / (until - SETTLED);
 }
 
-// One run: the force's part at a frequency, of a wave of the set-point or of the wall. NaN if it
-// fails.
+// One run: the force's part at a frequency, of a wave of the set-point or of the wall.
+// NaN if it fails.
 static status part_in_run(const scenario *s, const char *law, double frequency, bool wall,
                           run_monitor *monitor, double complex *part, fault *f)
 {
@@ -65,38 +65,44 @@ static status part_in_run(const scenario *s, const char *law, double frequency, 
     if (code == STATUS_OK) {
         *part = part_of(&result.trace, frequency, until);
     }
-    return code == STATUS_STOPPED || code == STATUS_NO_MEMORY
-               ? fault_set(f, code, "%s", status_text(code))
-               : STATUS_OK;
+    if (code == STATUS_STOPPED || code == STATUS_NO_MEMORY) {
+        return fault_set(f, code, "%s", status_text(code));
+    }
+    return STATUS_OK;
 }
 
 // The answer to a wave of the set-point as gain, phase and error.
 static follow_point point_of(double frequency, double complex answer)
 {
-    return (follow_point){
-        .frequency = frequency,
-        .gain = cabs(answer),
-        .phase = (isnan(creal(answer)) ? (double)NAN : plain_atan2(cimag(answer), creal(answer))) *
-                 180 / M_PI,
-        .error = cabs(1 - answer),
-        .shaken = (double)NAN};
+    return (follow_point){.frequency = frequency,
+                          .gain = cabs(answer),
+                          .phase = (isnan(creal(answer))
+                                        ? (double)NAN
+                                        : plain_atan2(cimag(answer), creal(answer))) *
+                                   180 / M_PI,
+                          .error = cabs(1 - answer),
+                          .shaken = (double)NAN};
 }
 
-status follow_study_compute(const scenario *s, run_monitor *monitor, follow_study *study, fault *f)
+status follow_study_compute(const scenario *s, run_monitor *monitor, follow_study *study,
+                            fault *f)
 {
     *study = (follow_study){0};
     const parameters *p = &s->parameters;
-    FAULT_IF(p->control.law == LAW_NONE || p->wall.kind == WALL_NONE || !(p->control.force > 0), f,
-             STATUS_BAD_SCENARIO,
-             "%s has no %s: expected a control law that presses on a wall with control.force",
-             s->name,
-             p->control.law == LAW_NONE  ? "control law"
-             : p->wall.kind == WALL_NONE ? "wall"
-                                         : "commanded force");
+    FAULT_IF(
+        p->control.law == LAW_NONE || p->wall.kind == WALL_NONE ||
+            !(p->control.force > 0),
+        f, STATUS_BAD_SCENARIO,
+        "%s has no %s: expected a control law that presses on a wall with control.force",
+        s->name,
+        p->control.law == LAW_NONE  ? "control law"
+        : p->wall.kind == WALL_NONE ? "wall"
+                                    : "commanded force");
     study->later = p->control.delay + (0.5 + p->control.delay_periods) / p->control.rate;
     for (int i = 0; i < FOLLOW_LAWS * FOLLOW_FREQUENCIES; i++) {
         const int k = i % FOLLOW_FREQUENCIES;
-        study->points[i / FOLLOW_FREQUENCIES][k] = point_of(follow_frequencies[k], (double)NAN);
+        study->points[i / FOLLOW_FREQUENCIES][k] =
+            point_of(follow_frequencies[k], (double)NAN);
     }
     double phase_before = 0;
     for (; study->done < FOLLOW_RUNS; study->done++) {
@@ -114,7 +120,9 @@ status follow_study_compute(const scenario *s, run_monitor *monitor, follow_stud
         }
 
         // a phase goes on from the one at the frequency before
-        point->phase -= k > 0 && point->phase > phase_before + 180 ? 360 : 0;
+        if (k > 0 && point->phase > phase_before + 180) {
+            point->phase -= 360;
+        }
         phase_before = point->phase;
         run_monitor_count(monitor);
     }

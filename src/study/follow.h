@@ -1,5 +1,5 @@
-// How well control laws follow a set-point and a wall that move, over frequency: the force of runs
-// in contact at the frequency of a sine of either.
+// How well control laws follow a set-point and a wall that move, over frequency: the
+// force of runs in contact at the frequency of a sine of either.
 #pragma once
 
 #include "src/run/run_result.h"
@@ -27,12 +27,13 @@ typedef struct follow_point {
 typedef struct follow_study {
     int done; // runs, the first ones
     follow_point points[FOLLOW_LAWS][FOLLOW_FREQUENCIES];
-    double later; // from a reading to the middle of its command's effect: half a period, the delay
-                  // [s]
+    double later; // from a reading to the middle of its command's effect: half a period,
+                  // the delay [s]
 } follow_study;
 
-// Runs the scenario under each law with a set-point of 1 + FOLLOW_WAVE sin(2 pi f t) times
-// control.force, and with a wall that moves by FOLLOW_WALL sin(2 pi f t). A run that fails leaves
-// NaN; STATUS_STOPPED if `monitor` (NULL: nobody looks on) asked for it, STATUS_BAD_SCENARIO for a
-// scenario without a law, a force or a wall.
-status follow_study_compute(const scenario *s, run_monitor *monitor, follow_study *study, fault *f);
+// Runs the scenario under each law with a set-point of 1 + FOLLOW_WAVE sin(2 pi f t)
+// times control.force, and with a wall that moves by FOLLOW_WALL sin(2 pi f t). A run
+// that fails leaves NaN; STATUS_STOPPED if `monitor` (NULL: nobody looks on) asked for
+// it, STATUS_BAD_SCENARIO for a scenario without a law, a force or a wall.
+status follow_study_compute(const scenario *s, run_monitor *monitor, follow_study *study,
+                            fault *f);

@@ -31,12 +31,12 @@ status identify_available(fault *f)
     return STATUS_OK;
 #else
     return fault_set(f, STATUS_NOT_ALLOWED,
-                     "identify needs MINPACK, which this program was built without: install "
-                     "libcminpack-dev and build again");
+                     "identify needs MINPACK, which this program was built without: "
+                     "install libcminpack-dev and build again");
 #endif
 }
 
-// --- what is fitted ---------------------------------------------------------------------------
+// --- what is fitted --------------------------------------------------------------------
 
 static double within_range(const fitted_parameter *fit, double value)
 {
@@ -45,25 +45,31 @@ static double within_range(const fitted_parameter *fit, double value)
 
 status identify_add_path(identification *id, const char *text, fault *f)
 {
-    FAULT_IF(id->count == IDENTIFY_PATHS, f, STATUS_BAD_ARGUMENT, "more than %d parameters to fit",
-             IDENTIFY_PATHS);
+    FAULT_IF(id->count == IDENTIFY_PATHS, f, STATUS_BAD_ARGUMENT,
+             "more than %d parameters to fit", IDENTIFY_PATHS);
     fitted_parameter *p = &id->fit[id->count++];
     *p = (fitted_parameter){.value = (double)NAN};
     sweep_axis *axis = &p->axis;
     const char *range = strchr(text, '=');
     TRY(sweep_axis_find(axis, text, f));
     const parameter_info *info = sweep_axis_parameter(axis);
-    FAULT_AT_IF(info->type != PARAMETER_REAL && axis->element == 0, f, STATUS_BAD_ARGUMENT,
-                info->path, "%s has no real value that could be fitted", axis->name);
+    if (info->type != PARAMETER_REAL && axis->element == 0) {
+        return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path,
+                            "%s has no real value that could be fitted", axis->name);
+    }
     for (const fitted_parameter *other = id->fit; other < p; other++) {
-        FAULT_AT_IF(strcmp(other->axis.name, axis->name) == 0, f, STATUS_BAD_ARGUMENT, info->path,
-                    "%s is fitted twice", axis->name);
+        if (strcmp(other->axis.name, axis->name) == 0) {
+            return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path, "%s is fitted twice",
+                                axis->name);
+        }
     }
 
     // the scenario's value and the range to search
     p->start = sweep_axis_get(axis, &id->base->parameters);
-    FAULT_AT_IF(isnan(p->start) && axis->element > 0, f, STATUS_BAD_ARGUMENT, info->path,
-                "%s: the scenario's list is shorter", axis->name);
+    if (isnan(p->start) && axis->element > 0) {
+        return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path,
+                            "%s: the scenario's list is shorter", axis->name);
+    }
     p->low_most = info->minimum;
     p->high_most = info->maximum;
     if (range != NULL) {
@@ -76,7 +82,11 @@ status identify_add_path(identification *id, const char *text, fault *f)
                             axis->name, axis->name);
     }
     p->value = within_range(p, p->start);
-    p->scale = fabs(p->value) > 0 ? fabs(p->value) : fabs(p->high_most - p->low_most);
+    if (fabs(p->value) > 0) {
+        p->scale = fabs(p->value);
+    } else {
+        p->scale = fabs(p->high_most - p->low_most);
+    }
     return STATUS_OK;
 }
 
@@ -105,7 +115,8 @@ void identify_finish(identification *id)
     *id = (identification){0};
 }
 
-status identify_parameters(const identification *id, bool determined, parameters *p, fault *f)
+status identify_parameters(const identification *id, bool determined, parameters *p,
+                           fault *f)
 {
     *p = id->base->parameters;
     for (int i = 0; i < id->count; i++) {
@@ -117,7 +128,7 @@ status identify_parameters(const identification *id, bool determined, parameters
     return STATUS_OK;
 }
 
-// --- unknowns ---------------------------------------------------------------------------------
+// --- unknowns --------------------------------------------------------------------------
 
 // Lists them: the parameters, then what each trace has of its own and is fitted.
 static void list_unknowns(identification *id)
@@ -132,20 +143,25 @@ static void list_unknowns(identification *id)
         const bool fitted[OWNS] = {true, turns, turns, t->fits_velocity};
         for (int own = 0; own < OWNS; own++) {
             if (fitted[own]) {
-                id->unknown[id->unknowns++] = (unknown){k, own, own_scale[own], &t->own[own]};
+                id->unknown[id->unknowns++] =
+                    (unknown){k, own, own_scale[own], &t->own[own]};
             }
         }
     }
 }
 
-// The value that a number gives an unknown in its scale; a parameter stays within its range.
+// The value that a number gives an unknown in its scale; a parameter stays within its
+// range.
 static double value_of(const identification *id, int n, double x)
 {
     const unknown *u = &id->unknown[n];
-    return u->trace < 0 ? within_range(&id->fit[u->index], x * u->scale) : x * u->scale;
+    if (u->trace < 0) {
+        return within_range(&id->fit[u->index], x * u->scale);
+    }
+    return x * u->scale;
 }
 
-// --- batches of runs --------------------------------------------------------------------------
+// --- batches of runs -------------------------------------------------------------------
 
 // A piece: a trace under a set of unknowns, to `out`.
 typedef struct piece {
@@ -191,7 +207,9 @@ static status collect_piece(void *context, size_t i, const void *result, fault *
 {
     const batch_of_runs *b = context;
     (void)i;
-    FAIL_IF(*(const status *)result == STATUS_NO_MEMORY, fault_no_memory(f));
+    if (*(const status *)result == STATUS_NO_MEMORY) {
+        return fault_no_memory(f);
+    }
     FAULT_IF(run_monitor_stops(b->id->monitor), f, STATUS_STOPPED, "%s",
              status_text(STATUS_STOPPED));
     run_monitor_count(b->id->monitor);
@@ -202,25 +220,34 @@ static status collect_piece(void *context, size_t i, const void *result, fault *
 static double draw_back(const fitted_parameter *fit, double x, double *slope)
 {
     const double value = x * fit->scale, width = fit->high_most - fit->low_most;
-    const double beyond = fmax(value - fit->high_most, 0) + fmin(value - fit->low_most, 0);
-    *slope = beyond != 0 ? OUTSIDE * fit->scale / fmin(width, fit->scale) : 0;
+    const double beyond =
+        fmax(value - fit->high_most, 0) + fmin(value - fit->low_most, 0);
+    if (beyond != 0) {
+        *slope = OUTSIDE * fit->scale / fmin(width, fit->scale);
+    } else {
+        *slope = 0;
+    }
     return beyond / fmin(width, fit->scale) * OUTSIDE;
 }
 
-// Residuals of `sets` sets of unknowns, one behind the other: of each trace, or for set s of trace
-// only[s] alone (-1: of each; NULL: each of all), then what draws parameters back. `why` (may be
-// NULL) receives what stopped the first run that failed.
+// Residuals of `sets` sets of unknowns, one behind the other: of each trace, or for set s
+// of trace only[s] alone (-1: of each; NULL: each of all), then what draws parameters
+// back. `why` (may be NULL) receives what stopped the first run that failed.
 static status residuals_of(identification *id, const double *x, int sets, const int *only,
                            bool judge, double *out, fault *why, fault *f)
 {
-    SCOPED(free_kept) piece *pieces = calloc((size_t)(sets * id->trace_count), sizeof *pieces);
+    SCOPED(free_kept)
+    piece *pieces = calloc((size_t)(sets * id->trace_count), sizeof *pieces);
     batch_of_runs b = {.id = id, .pieces = pieces};
     double slope;
-    TRY_MEMORY(pieces != NULL, f);
+    if (pieces == NULL) {
+        return fault_no_memory(f);
+    }
     for (int s = 0; s < sets; s++, x += id->unknowns) {
         for (int k = 0; k < id->trace_count; k++) {
             if (only == NULL || only[s] < 0 || only[s] == k) {
-                b.pieces[b.count++] = (piece){.trace = k, .x = x, .out = out, .judge = judge};
+                b.pieces[b.count++] =
+                    (piece){.trace = k, .x = x, .out = out, .judge = judge};
             }
             out += id->traces[k].residuals;
         }
@@ -235,23 +262,31 @@ static status residuals_of(identification *id, const double *x, int sets, const 
                             .collect = collect_piece};
     const status code = pool_run(&work, id->jobs < 1 ? 1 : id->jobs, f);
     for (size_t i = b.count; why != NULL && i-- > 0;) {
-        *why = b.pieces[i].why.code != STATUS_OK ? b.pieces[i].why : *why;
+        if (b.pieces[i].why.code != STATUS_OK) {
+            *why = b.pieces[i].why;
+        }
     }
     return code;
 }
 
-// The Jacobian, column by column, by central differences: two runs of each trace that an unknown
-// has a say in, all in one batch.
+// The Jacobian, column by column, by central differences: two runs of each trace that an
+// unknown has a say in, all in one batch.
 static status jacobian_of(identification *id, const double *x, double *jacobian, fault *f)
 {
     const size_t n = (size_t)id->unknowns, m = id->residuals;
     SCOPED(free_kept) double *moved = calloc(2 * n * (n + m), sizeof *moved);
     int only[2 * IDENTIFY_UNKNOWNS];
-    TRY_MEMORY(moved != NULL, f);
+    if (moved == NULL) {
+        return fault_no_memory(f);
+    }
     double *out = moved + 2 * n * n;
     for (size_t s = 0; s < 2 * n; s++) {
         memcpy(moved + s * n, x, n * sizeof *x);
-        moved[s * n + s / 2] += s % 2 == 0 ? -DIFFERENCE : DIFFERENCE;
+        if (s % 2 == 0) {
+            moved[s * n + s / 2] += -DIFFERENCE;
+        } else {
+            moved[s * n + s / 2] += DIFFERENCE;
+        }
         only[s] = id->unknown[s / 2].trace;
     }
     TRY(residuals_of(id, moved, (int)(2 * n), only, false, out, NULL, f));
@@ -260,12 +295,13 @@ static status jacobian_of(identification *id, const double *x, double *jacobian,
         jacobian[i] = (lower[m] - lower[0]) / (2 * DIFFERENCE);
     }
     for (int j = 0; j < id->count; j++) {
-        draw_back(&id->fit[j], x[j], &jacobian[(size_t)(j + 1) * m - (size_t)(id->count - j)]);
+        draw_back(&id->fit[j], x[j],
+                  &jacobian[(size_t)(j + 1) * m - (size_t)(id->count - j)]);
     }
     return STATUS_OK;
 }
 
-// --- least squares ----------------------------------------------------------------------------
+// --- least squares ---------------------------------------------------------------------
 
 // The unknowns that left the least of all that were evaluated.
 typedef struct best_yet {
@@ -289,7 +325,8 @@ static double sum_of_squares(const double *residual, size_t count)
 }
 
 // Keeps the unknowns of a set that leaves less than those before, if there were any.
-static void keep_best(best_yet *best, const identification *id, const double *x, double left)
+static void keep_best(best_yet *best, const identification *id, const double *x,
+                      double left)
 {
     if (!(left >= best->least)) {
         best->least = left;
@@ -303,12 +340,18 @@ static int evaluate(void *context, int m, int n, const double *x, double *residu
 {
     least_squares *l = context;
     (void)m, (void)n, (void)rows;
-    l->code = asked == 1 ? residuals_of(l->id, x, 1, NULL, false, residual, NULL, l->f)
-                         : jacobian_of(l->id, x, jacobian, l->f);
+    if (asked == 1) {
+        l->code = residuals_of(l->id, x, 1, NULL, false, residual, NULL, l->f);
+    } else {
+        l->code = jacobian_of(l->id, x, jacobian, l->f);
+    }
     if (l->code == STATUS_OK && asked == 1) {
         keep_best(l->best, l->id, x, sum_of_squares(residual, l->id->residuals));
     }
-    return l->code == STATUS_OK ? 0 : -1;
+    if (l->code == STATUS_OK) {
+        return 0;
+    }
+    return -1;
 }
 
 // Levenberg and Marquardt's method from x on.
@@ -320,10 +363,12 @@ static status minimise(identification *id, double *x, double *residual, double *
     double diagonal[IDENTIFY_UNKNOWNS], work[4][IDENTIFY_UNKNOWNS];
     SCOPED(free_kept) double *more = calloc((size_t)m, sizeof *more);
     int pivots[IDENTIFY_UNKNOWNS], evaluations, jacobians;
-    TRY_MEMORY(more != NULL, f);
-    lmder(evaluate, &l, m, n, x, residual, jacobian, m, TOLERANCE, TOLERANCE, 0, MOST_STEPS,
-          diagonal, 1, 1, 0, &evaluations, &jacobians, pivots, work[0], work[1], work[2], work[3],
-          more);
+    if (more == NULL) {
+        return fault_no_memory(f);
+    }
+    lmder(evaluate, &l, m, n, x, residual, jacobian, m, TOLERANCE, TOLERANCE, 0,
+          MOST_STEPS, diagonal, 1, 1, 0, &evaluations, &jacobians, pivots, work[0],
+          work[1], work[2], work[3], more);
     return l.code;
 }
 #else
@@ -335,8 +380,8 @@ static status minimise(identification *id, double *x, double *residual, double *
 }
 #endif
 
-// The scenario's values; where a trace starts is what its encoder says, or, with an encoder that
-// counts from anywhere, what the scenario says.
+// The scenario's values; where a trace starts is what its encoder says, or, with an
+// encoder that counts from anywhere, what the scenario says.
 static void begin_with(const identification *id, bool counted, double *x)
 {
     const double angle = id->base->parameters.initial.angle;
@@ -345,22 +390,28 @@ static void begin_with(const identification *id, bool counted, double *x)
         double value = *u->value;
         if (counted && u->trace >= 0) {
             const double *own = id->traces[u->trace].own;
-            value = u->index == OWN_ANGLE    ? angle
-                    : u->index == OWN_OFFSET ? own[OWN_OFFSET] + (own[OWN_ANGLE] - angle)
-                                             : value;
+            if (u->index == OWN_ANGLE) {
+                value = angle;
+            } else if (u->index == OWN_OFFSET) {
+                value = own[OWN_OFFSET] + (own[OWN_ANGLE] - angle);
+            }
         }
         x[n] = value / u->scale;
     }
 }
 
-// The sets of unknowns to begin with, x[starts * unknowns], and what each leaves, rest[starts]: the
-// scenario's, and those drawn from the ranges or from half to twice the scenario's.
-static status draw_beginnings(identification *id, double *x, double *rest, best_yet *best, fault *f)
+// The sets of unknowns to begin with, x[starts * unknowns], and what each leaves,
+// rest[starts]: the scenario's, and those drawn from the ranges or from half to twice the
+// scenario's.
+static status draw_beginnings(identification *id, double *x, double *rest, best_yet *best,
+                              fault *f)
 {
     const size_t m = id->residuals;
     random_generator random;
     SCOPED(free_kept) double *out = calloc((size_t)id->starts * m, sizeof *out);
-    TRY_MEMORY(out != NULL, f);
+    if (out == NULL) {
+        return fault_no_memory(f);
+    }
     random_seed(&random, id->seed);
     for (int s = 0; s < id->starts; s++) {
         double *here = x + s * id->unknowns;
@@ -368,8 +419,11 @@ static status draw_beginnings(identification *id, double *x, double *rest, best_
         for (int i = 0; i < id->count && s > 1; i++) {
             const fitted_parameter *fit = &id->fit[i];
             const double u = random_uniform(&random);
-            here[i] = fit->axis.is_range ? sweep_axis_value_at(&fit->axis, u) / fit->scale
-                                         : here[i] * (u < 0.5 ? 0.5 + u : 2 * u);
+            if (fit->axis.is_range) {
+                here[i] = sweep_axis_value_at(&fit->axis, u) / fit->scale;
+            } else {
+                here[i] = here[i] * (u < 0.5 ? 0.5 + u : 2 * u);
+            }
         }
     }
     TRY(residuals_of(id, x, id->starts, NULL, false, out, NULL, f));
@@ -380,7 +434,8 @@ static status draw_beginnings(identification *id, double *x, double *rest, best_
     return STATUS_OK;
 }
 
-// Searches with room for the beginnings and what they leave, a set of residuals and the Jacobian.
+// Searches with room for the beginnings and what they leave, a set of residuals and the
+// Jacobian.
 static status search(identification *id, double *x, best_yet *best, fault *f)
 {
     double *rest = x + id->starts * id->unknowns, *residual = rest + id->starts,
@@ -391,7 +446,9 @@ static status search(identification *id, double *x, best_yet *best, fault *f)
     for (int tried = 0; tried < REFINED; tried++) {
         int s = 0;
         for (int i = 1; i < id->starts; i++) {
-            s = rest[i] < rest[s] ? i : s;
+            if (rest[i] < rest[s]) {
+                s = i;
+            }
         }
         rest[s] = HUGE_VAL;
         TRY(minimise(id, x + s * id->unknowns, residual, jacobian, best, f));
@@ -436,7 +493,9 @@ static status fit_with(identification *id, double *x, fault *f)
     }
 
     // the best there is, if there is any
-    FAIL_IF(isnan(best.least) || (code != STATUS_OK && code != STATUS_STOPPED), code);
+    if (isnan(best.least) || (code != STATUS_OK && code != STATUS_STOPPED)) {
+        return code;
+    }
     for (int n = 0; n < id->unknowns; n++) {
         *id->unknown[n].value = value_of(id, n, best.x[n]);
     }
@@ -458,15 +517,19 @@ status identify_fit(identification *id, fault *f)
     for (int i = 0; runs && i < id->count; i++) {
         const sweep_axis *axis = &id->fit[i].axis;
         const char *why = effect_none_from(&made, axis->parameter, -1);
-        FAULT_AT_IF(why != NULL, f, STATUS_BAD_ARGUMENT, sweep_axis_parameter(axis)->path,
-                    "%s has no effect in any run: %s", axis->name, why);
+        if (why != NULL) {
+            return fault_set_at(f, STATUS_BAD_ARGUMENT, sweep_axis_parameter(axis)->path,
+                                "%s has no effect in any run: %s", axis->name, why);
+        }
     }
 
     id->residuals = (size_t)id->count;
     for (int k = 0; k < id->trace_count; k++) {
         id->residuals += id->traces[k].residuals;
     }
-    id->starts = id->count == 0 || id->starts < 2 ? 2 : id->starts;
+    if (id->count == 0 || id->starts < 2) {
+        id->starts = 2;
+    }
     const size_t m = id->residuals, n = (size_t)id->unknowns, starts = (size_t)id->starts;
     FAULT_IF(m <= n + (size_t)id->count || m > 10000000, f, STATUS_BAD_ARGUMENT,
              "%zu readings can be compared for %zu unknowns, expected more", m, n);
@@ -474,6 +537,8 @@ status identify_fit(identification *id, fault *f)
     free(id->residual);
     id->residual = calloc(m, sizeof *id->residual);
     SCOPED(free_kept) double *room = calloc(starts * (n + 1) + m + m * n, sizeof *room);
-    TRY_MEMORY(id->residual != NULL && room != NULL, f);
+    if (!(id->residual != NULL && room != NULL)) {
+        return fault_no_memory(f);
+    }
     return fit_with(id, room, f);
 }

@@ -1,12 +1,13 @@
 // Parameters of an arm from recorded traces, with their errors.
 //
-// Each trace is simulated with the command that was recorded, and its readings are compared with
-// the recorded ones, each by its own standard deviation: noise of its channel and step of its
-// converter. The sum of squares is minimised by Levenberg and Marquardt's method (MINPACK's lmder),
-// the Jacobian by central differences, all its runs in one batch. Readings within IDENTIFY_GUARD of
-// a touch or release are left out; the instants of touches are residuals of their own. Every trace
-// has a time shift and an encoder offset of its own and the state that it starts with; they are
-// fitted too, and what they explain is nothing that the parameters are judged by.
+// Each trace is simulated with the command that was recorded, and its readings are
+// compared with the recorded ones, each by its own standard deviation: noise of its
+// channel and step of its converter. The sum of squares is minimised by Levenberg and
+// Marquardt's method (MINPACK's lmder), the Jacobian by central differences, all its runs
+// in one batch. Readings within IDENTIFY_GUARD of a touch or release are left out; the
+// instants of touches are residuals of their own. Every trace has a time shift and an
+// encoder offset of its own and the state that it starts with; they are fitted too, and
+// what they explain is nothing that the parameters are judged by.
 #pragma once
 
 #include <jansson.h>
@@ -17,7 +18,8 @@
 #include "src/study/sweep_axis.h"
 
 #define IDENTIFY_GUARD 0.01 // [s]
-#define IDENTIFY_PART  1e-6 // of a direction: smaller ones do not make a parameter undetermined
+// of a direction: smaller ones do not make a parameter undetermined
+#define IDENTIFY_PART 1e-6
 
 enum {
     IDENTIFY_PATHS = 12,  // that are fitted, at most
@@ -51,7 +53,8 @@ typedef struct recorded_trace {
     double *time;                // since then [s]
     double *command;             // [V]
     double *reading[CHANNELS];   // in the signal's unit, NULL: not recorded
-    double *deviation[CHANNELS]; // standard deviation of each in its residual's unit, 0: left out
+    double *deviation[CHANNELS]; // standard deviation of each in its residual's unit, 0:
+                                 // left out
     double *contacts; // instants of touches after a flight of at least IDENTIFY_GUARD [s]
     int contact_count;
     size_t residuals;     // how many it has
@@ -59,8 +62,10 @@ typedef struct recorded_trace {
     bool fits_velocity;   // it does not start from rest
     double contact_error; // largest, of the fitted arm [s]; NaN without a touch
     double peak_error;    // of the largest force reading, as a share; NaN without one
-    double rms[CHANNELS]; // of the residuals, in standard deviations; NaN where there are none
-    double whiteness[CHANNELS]; // Ljung and Box's statistic as a normal number; NaN where none
+    double rms[CHANNELS]; // of the residuals, in standard deviations; NaN where there are
+                          // none
+    double whiteness[CHANNELS]; // Ljung and Box's statistic as a normal number; NaN where
+                                // none
 } recorded_trace;
 
 typedef struct fitted_parameter {
@@ -98,68 +103,74 @@ typedef struct identification {
     double chi_square; // their sum of squares
     double aic;        // Akaike's criterion, chi_square + 2 unknowns
     bool white;        // no channel's residuals are correlated
-    double covariance[IDENTIFY_PATHS * IDENTIFY_PATHS]; // this and what follows in their scales
-    double singular[IDENTIFY_PATHS];                    // values of the Jacobian, rising
-    double direction[IDENTIFY_PATHS * IDENTIFY_PATHS];  // row k belongs to singular[k]
-    int undetermined;                                   // the first so many directions are
+    double covariance[IDENTIFY_PATHS *
+                      IDENTIFY_PATHS]; // this and what follows in their scales
+    double singular[IDENTIFY_PATHS];   // values of the Jacobian, rising
+    double direction[IDENTIFY_PATHS * IDENTIFY_PATHS]; // row k belongs to singular[k]
+    int undetermined;                                  // the first so many directions are
 } identification;
 
 // Whether this program was built with MINPACK; else a sentence in f.
 status identify_available(fault *f);
 
-// Reads PATH or PATH=a:b and adds it. STATUS_BAD_ARGUMENT with a sentence: no such parameter, one
-// that has no real value, a range that is none, a value of 0 without a range.
+// Reads PATH or PATH=a:b and adds it. STATUS_BAD_ARGUMENT with a sentence: no such
+// parameter, one that has no real value, a range that is none, a value of 0 without a
+// range.
 status identify_add_path(identification *id, const char *text, fault *f);
 
-// Reads a trace: `time`, `command` and at least one reading, headed as in signal_table or as
-// columns[] say ("SIGNAL=HEADER[unit]"). Of rows between two samples of the rig the first counts.
-// Fails as csv_table_read does.
-status identify_add_trace(identification *id, const char *file, char *const *columns, int count,
-                          fault *f);
+// Reads a trace: `time`, `command` and at least one reading, headed as in signal_table or
+// as columns[] say ("SIGNAL=HEADER[unit]"). Of rows between two samples of the rig the
+// first counts. Fails as csv_table_read does.
+status identify_add_trace(identification *id, const char *file, char *const *columns,
+                          int count, fault *f);
 void identify_finish(identification *id);
 
-// Fits parameters and what the traces have of their own. Without parameters only the latter, which
-// is a validation. STATUS_STOPPED where the monitor asks for it: chi_square is 0 if nothing was
-// tried until then, else the values are the best so far, and aic and their errors are NaN; what
-// stopped the run if there is none with the scenario's values; STATUS_NO_MEMORY.
+// Fits parameters and what the traces have of their own. Without parameters only the
+// latter, which is a validation. STATUS_STOPPED where the monitor asks for it: chi_square
+// is 0 if nothing was tried until then, else the values are the best so far, and aic and
+// their errors are NaN; what stopped the run if there is none with the scenario's values;
+// STATUS_NO_MEMORY.
 status identify_fit(identification *id, fault *f);
 
-// The parameters of the scenario with the fitted values, only those that are determined if so
-// asked for.
-status identify_parameters(const identification *id, bool determined, parameters *p, fault *f);
+// The parameters of the scenario with the fitted values, only those that are determined
+// if so asked for.
+status identify_parameters(const identification *id, bool determined, parameters *p,
+                           fault *f);
 
-// The scenario whose run is compared with a trace: with the fitted values and what the trace has of
-// its own, it plays the recorded command back. It borrows from the base what the base owns; its
-// sensors are the base's. Of a trace whose columns have the signals' names.
+// The scenario whose run is compared with a trace: with the fitted values and what the
+// trace has of its own, it plays the recorded command back. It borrows from the base what
+// the base owns; its sensors are the base's. Of a trace whose columns have the signals'
+// names.
 status identify_scenario(const identification *id, int index, scenario *made, fault *f);
 
 // A combination that the data do not determine, in words, k < undetermined. Returns text.
 const char *identify_words(const identification *id, int k, char *text, size_t size);
 
-// Whether the search ended at an end of its range: then the value is a limit, no estimate.
+// Whether the search ended at an end of its range: then the value is a limit, no
+// estimate.
 bool identify_at_end(const fitted_parameter *fit);
 
-// Chi square per degree of freedom: about 1 where what the model leaves is the noise of its
-// channels. Above *most it leaves more than noise twice as large as it is said to be: five standard
-// deviations above the mean of that.
+// Chi square per degree of freedom: about 1 where what the model leaves is the noise of
+// its channels. Above *most it leaves more than noise twice as large as it is said to be:
+// five standard deviations above the mean of that.
 double identify_misfit(const identification *id, double *most);
 
 // {"scenario", "fit": [{"path", "value", "standard_error", "low", "high", "determined",
-// "at_end_of_range"}],
-// "correlation", "singular_values", "undetermined", "chi_square", "residuals", "aic", "white",
-// "traces"}. NULL without memory.
+// "at_end_of_range"}], "correlation", "singular_values", "undetermined", "chi_square",
+// "residuals", "aic", "white", "traces"}. NULL without memory.
 json_t *identify_json(const identification *id);
 json_t *identify_traces_json(const identification *id);
 
-// A set of IDENTIFY_CASES arms drawn from the covariance, for robust and tune --over. The law is
-// told the fitted values: belief.*_factor go with the parameters.
+// A set of IDENTIFY_CASES arms drawn from the covariance, for robust and tune --over. The
+// law is told the fitted values: belief.*_factor go with the parameters.
 void identify_write_set(FILE *stream, const identification *id);
 
 // --- for the parts of identify
 
-// Residuals of a trace (its own number of them) under parameters p and what it has of its own.
-// Returns what stopped the run, with a sentence in f, and residuals of 1e3 each.
-status identify_residuals(const identification *id, recorded_trace *t, const parameters *p,
-                          const double own[OWNS], bool judge, double *residual, fault *f);
+// Residuals of a trace (its own number of them) under parameters p and what it has of its
+// own. Returns what stopped the run, with a sentence in f, and residuals of 1e3 each.
+status identify_residuals(const identification *id, recorded_trace *t,
+                          const parameters *p, const double own[OWNS], bool judge,
+                          double *residual, fault *f);
 // Judges the result: Jacobian column by column, jacobian[unknowns * residuals].
 status identify_judge(identification *id, const double *jacobian, fault *f);

@@ -7,19 +7,24 @@
 #include "src/base/plain_math.h"
 #include "src/study/identify.h"
 
-#define QUANTILE    1.959963984540054 // of 95 %
-#define BLOCK       0.05              // in which residuals may be correlated [s]
-#define LEAST_KNOWN 1.0   // singular value below which a combination is off by all its value
+#define QUANTILE 1.959963984540054 // of 95 %
+#define BLOCK    0.05              // in which residuals may be correlated [s]
+// singular value below which a combination is off by all its value
+#define LEAST_KNOWN 1.0
 #define NO_SAY      1e-12 // share of the largest eigenvalue below which there is none
-#define WHITE       3.5   // standard normal deviate that white residuals exceed once in 4000
-#define NOISE_KNOWN 2.0   // factor within which a bench knows its noise
-#define CHANCE      5.0   // standard deviations that chi square is not above its mean by chance
+// standard normal deviate that white residuals exceed once in 4000
+#define WHITE       3.5
+#define NOISE_KNOWN 2.0 // factor within which a bench knows its noise
+// standard deviations that chi square is not above its mean by chance
+#define CHANCE 5.0
 
-// --- whiteness --------------------------------------------------------------------------------
+// --- whiteness -------------------------------------------------------------------------
 
-// Ljung and Box's statistic of a series in which 0 deviations are gaps, as a number that is
-// standard normal for white noise (Wilson and Hilferty's transformation of chi square).
-static double whiteness_of(const double *series, const double *deviation, size_t rows, double *rms)
+// Ljung and Box's statistic of a series in which 0 deviations are gaps, as a number that
+// is standard normal for white noise (Wilson and Hilferty's transformation of chi
+// square).
+static double whiteness_of(const double *series, const double *deviation, size_t rows,
+                           double *rms)
 {
     double squares = 0, q = 0;
     size_t count = 0;
@@ -27,7 +32,11 @@ static double whiteness_of(const double *series, const double *deviation, size_t
         squares += series[i] * series[i];
         count += deviation[i] > 0;
     }
-    *rms = count > 0 ? sqrt(squares / (double)count) : (double)NAN;
+    if (count > 0) {
+        *rms = sqrt(squares / (double)count);
+    } else {
+        *rms = (double)NAN;
+    }
     if (count < 5 * IDENTIFY_LAGS || squares == 0) {
         return (double)NAN;
     }
@@ -43,7 +52,8 @@ static double whiteness_of(const double *series, const double *deviation, size_t
     return (plain_pow(q / k, 1.0 / 3) - (1 - spread)) / sqrt(spread);
 }
 
-// Of every channel; that of an encoder, whose steps are no noise, counts where it is alone.
+// Of every channel; that of an encoder, whose steps are no noise, counts where it is
+// alone.
 static status judge_whiteness(identification *id, fault *f)
 {
     const double *residual = id->residual;
@@ -51,7 +61,9 @@ static status judge_whiteness(identification *id, fault *f)
     for (int k = 0; k < id->trace_count; k++) {
         recorded_trace *t = &id->traces[k];
         SCOPED(free_kept) double *series = calloc(t->rows, sizeof *series);
-        TRY_MEMORY(series != NULL, f);
+        if (series == NULL) {
+            return fault_no_memory(f);
+        }
         const bool alone = t->reading[CHANNEL_TACHOMETER] == NULL;
         for (int c = 0; c < CHANNELS; c++) {
             t->rms[c] = t->whiteness[c] = (double)NAN;
@@ -59,7 +71,11 @@ static status judge_whiteness(identification *id, fault *f)
                 continue;
             }
             for (size_t i = 0; i < t->rows; i++) {
-                series[i] = t->deviation[c][i] > 0 ? *residual++ : 0;
+                if (t->deviation[c][i] > 0) {
+                    series[i] = *residual++;
+                } else {
+                    series[i] = 0;
+                }
             }
             t->whiteness[c] = whiteness_of(series, t->deviation[c], t->rows, &t->rms[c]);
             const bool counts = c != CHANNEL_ENCODER || alone;
@@ -70,7 +86,7 @@ static status judge_whiteness(identification *id, fault *f)
     return STATUS_OK;
 }
 
-// --- sums ---------------------------------------------------------------------------------------
+// --- sums ------------------------------------------------------------------------------
 
 static double dot(const double *a, const double *b, size_t count)
 {
@@ -88,11 +104,11 @@ static void add(double *to, double factor, const double *a, size_t count)
     }
 }
 
-// --- errors -----------------------------------------------------------------------------------
+// --- errors ----------------------------------------------------------------------------
 
-// What the parameters' columns of the Jacobian say that the traces' own cannot: what is left of
-// them when their projections on the latter, as far as these say anything, are taken off. alone[p *
-// residuals].
+// What the parameters' columns of the Jacobian say that the traces' own cannot: what is
+// left of them when their projections on the latter, as far as these say anything, are
+// taken off. alone[p * residuals].
 static bool project(const identification *id, const double *jacobian, double *alone)
 {
     const size_t m = id->residuals;
@@ -103,7 +119,11 @@ static bool project(const identification *id, const double *jacobian, double *al
     for (int i = 0; i < q; i++) {
         const double square =
             dot(jacobian + (size_t)(p + i) * m, jacobian + (size_t)(p + i) * m, m);
-        size[i] = square > 0 ? sqrt(square) : 1;
+        if (square > 0) {
+            size[i] = sqrt(square);
+        } else {
+            size[i] = 1;
+        }
         for (int j = 0; j <= i; j++) {
             own[i * q + j] = own[j * q + i] =
                 dot(jacobian + (size_t)(p + i) * m, jacobian + (size_t)(p + j) * m, m) /
@@ -123,20 +143,21 @@ static bool project(const identification *id, const double *jacobian, double *al
             add(along, own[k * q + j] / size[j], jacobian + (size_t)(p + j) * m, m);
         }
         for (int i = 0; i < p; i++) {
-            add(alone + (size_t)i * m, -dot(alone + (size_t)i * m, along, m) / values[k], along, m);
+            add(alone + (size_t)i * m, -dot(alone + (size_t)i * m, along, m) / values[k],
+                along, m);
         }
     }
     return true;
 }
 
-// How far the residuals of a channel of all traces scatter where the parameters look: over blocks
-// that are longer than what correlates them,
+// How far the residuals of a channel of all traces scatter where the parameters look:
+// over blocks that are longer than what correlates them,
 //
 //     rho = sum over parameters and blocks of (sum in the block of a r)^2 / sum of a^2
 //
-// with a the parameter's column, of size 1. It is 1 for white residuals of deviation 1, below for
-// the rounding of an encoder that moves, which has no slow part, above for what the model lacks.
-// Its weight goes to information[], that of the channel to scatter[].
+// with a the parameter's column, of size 1. It is 1 for white residuals of deviation 1,
+// below for the rounding of an encoder that moves, which has no slow part, above for what
+// the model lacks. Its weight goes to information[], that of the channel to scatter[].
 static void add_channel(const identification *id, int channel, const double *alone,
                         double *information, double *scatter)
 {
@@ -165,7 +186,8 @@ static void add_channel(const identification *id, int channel, const double *alo
                 for (int a = 0; a < p && c == channel; a++) {
                     sums[a] += alone[(size_t)a * m + at] * id->residual[at];
                     for (int b = 0; b < p; b++) {
-                        part[a * p + b] += alone[(size_t)a * m + at] * alone[(size_t)b * m + at];
+                        part[a * p + b] +=
+                            alone[(size_t)a * m + at] * alone[(size_t)b * m + at];
                     }
                 }
                 at++;
@@ -185,7 +207,11 @@ static void add_channel(const identification *id, int channel, const double *alo
             looking++;
         }
     }
-    rho = looking > 0 ? rho / looking : 1;
+    if (looking > 0) {
+        rho = rho / looking;
+    } else {
+        rho = 1;
+    }
     for (int i = 0; i < p * p; i++) {
         information[i] += part[i];
         scatter[i] += rho * part[i];
@@ -193,8 +219,8 @@ static void add_channel(const identification *id, int channel, const double *alo
 }
 
 // The instants of touches, each with the deviation that it has.
-static void add_contacts(const identification *id, const double *alone, double *information,
-                         double *scatter)
+static void add_contacts(const identification *id, const double *alone,
+                         double *information, double *scatter)
 {
     const size_t m = id->residuals;
     const int p = id->count;
@@ -204,7 +230,8 @@ static void add_contacts(const identification *id, const double *alone, double *
         const size_t end = at + t->residuals;
         for (size_t r = end - (size_t)t->contact_count; r < end; r++) {
             for (int a = 0; a < p * p; a++) {
-                const double both = alone[(size_t)(a / p) * m + r] * alone[(size_t)(a % p) * m + r];
+                const double both =
+                    alone[(size_t)(a / p) * m + r] * alone[(size_t)(a % p) * m + r];
                 information[a] += both;
                 scatter[a] += both * fmax(1, id->residual[r] * id->residual[r]);
             }
@@ -213,10 +240,13 @@ static void add_contacts(const identification *id, const double *alone, double *
     }
 }
 
-// The covariance of what is determined: with the information's eigenvectors v and values l,
+// The covariance of what is determined: with the information's eigenvectors v and values
+// l,
 //
-//     sum over k and j of v_k (v_k' S v_j) / (l_k l_j) v_j',   S the scatter (White's estimator).
-static void find_covariance(identification *id, const double *values, const double *scatter)
+//     sum over k and j of v_k (v_k' S v_j) / (l_k l_j) v_j',   S the scatter (White's
+//     estimator).
+static void find_covariance(identification *id, const double *values,
+                            const double *scatter)
 {
     const int p = id->count;
     memset(id->covariance, 0, sizeof id->covariance);
@@ -231,7 +261,8 @@ static void find_covariance(identification *id, const double *values, const doub
                 between += v[a / p] * scatter[a] * w[a % p];
             }
             for (int a = 0; a < p * p; a++) {
-                id->covariance[a] += v[a / p] * between / (values[k] * values[j]) * w[a % p];
+                id->covariance[a] +=
+                    v[a / p] * between / (values[k] * values[j]) * w[a % p];
             }
         }
     }
@@ -251,7 +282,9 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
 
     // what each channel says of the parameters, and how far it scatters
     SCOPED(free_kept) double *alone = calloc((size_t)p * id->residuals, sizeof *alone);
-    TRY_MEMORY(alone != NULL, f);
+    if (alone == NULL) {
+        return fault_no_memory(f);
+    }
     bool done = project(id, jacobian, alone);
     memset(id->direction, 0, sizeof id->direction);
     for (int c = 0; c < CHANNELS && done; c++) {
@@ -260,8 +293,8 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     if (done) {
         add_contacts(id, alone, id->direction, scatter);
     }
-    FAULT_IF(!done || !symmetric_eigen(p, id->direction, values, scratch), f, STATUS_SINGULAR,
-             "the parameters' errors cannot be computed");
+    FAULT_IF(!done || !symmetric_eigen(p, id->direction, values, scratch), f,
+             STATUS_SINGULAR, "the parameters' errors cannot be computed");
 
     // what the model does not explain makes errors larger, by as much
     double most;
@@ -279,16 +312,19 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
             part += id->direction[k * p + i] * id->direction[k * p + i];
         }
         fit->determined = part < IDENTIFY_PART;
-        fit->standard_error =
-            fit->determined ? id->fit[i].scale * sqrt(id->covariance[i * p + i]) : (double)NAN;
+        if (fit->determined) {
+            fit->standard_error = id->fit[i].scale * sqrt(id->covariance[i * p + i]);
+        } else {
+            fit->standard_error = (double)NAN;
+        }
         fit->low = fit->value - QUANTILE * fit->standard_error;
         fit->high = fit->value + QUANTILE * fit->standard_error;
     }
     return STATUS_OK;
 }
 
-// Chi square has as many degrees of freedom n as there are readings more than unknowns; noise alone
-// gives it the mean n and the standard deviation sqrt(2 n).
+// Chi square has as many degrees of freedom n as there are readings more than unknowns;
+// noise alone gives it the mean n and the standard deviation sqrt(2 n).
 double identify_misfit(const identification *id, double *most)
 {
     const double freedoms = (double)(id->residuals - (size_t)(id->unknowns + id->count));

@@ -15,16 +15,17 @@
 #define NEAR_RANGE      5.0  // standard deviations from the end of a converter's range
 #define LEAST_DEVIATION 1e-6 // of an ideal channel, in its unit
 
-const int identify_signals[CHANNELS] = {SIGNAL_INDEX(encoder),       SIGNAL_INDEX(tachometer),
-                                        SIGNAL_INDEX(force_reading), SIGNAL_INDEX(piezo_force),
-                                        SIGNAL_INDEX(film),          SIGNAL_INDEX(accelerometer)};
+const int identify_signals[CHANNELS] = {
+    SIGNAL_INDEX(encoder),     SIGNAL_INDEX(tachometer), SIGNAL_INDEX(force_reading),
+    SIGNAL_INDEX(piezo_force), SIGNAL_INDEX(film),       SIGNAL_INDEX(accelerometer)};
 
-// --- reading ----------------------------------------------------------------------------------
+// --- reading ---------------------------------------------------------------------------
 
-// A column under the heading that the user gives for a signal, else under the signal's name; NULL
-// in *values where it need not be there and is not.
-static status read_column(const csv_table *t, const char *signal, const char *unit, bool needed,
-                          char *const *columns, int count, double **values, fault *f)
+// A column under the heading that the user gives for a signal, else under the signal's
+// name; NULL in *values where it need not be there and is not.
+static status read_column(const csv_table *t, const char *signal, const char *unit,
+                          bool needed, char *const *columns, int count, double **values,
+                          fault *f)
 {
     const char *heading = signal;
     const size_t length = strlen(signal);
@@ -39,16 +40,21 @@ static status read_column(const csv_table *t, const char *signal, const char *un
     if (!needed && missing) {
         return STATUS_OK;
     }
-    FAULT_PLACE_IF(missing && strcmp(heading, "command") == 0, f, STATUS_BAD_ARGUMENT, 1, 1,
-                   "%.300s:1:1: there is no column 'command', the voltage [V] with which each "
-                   "trial run is driven: record it, or rename its heading",
-                   t->file);
-    return strcmp(signal, "time") == 0 ? csv_table_times(t, heading, values, f)
-                                       : csv_table_numbers(t, heading, unit, false, values, f);
+    if (missing && strcmp(heading, "command") == 0) {
+        return fault_set_place(
+            f, STATUS_BAD_ARGUMENT, 1, 1,
+            "%.300s:1:1: there is no column 'command', the voltage [V] with "
+            "which each trial run is driven: record it, or rename its heading",
+            t->file);
+    }
+    if (strcmp(signal, "time") == 0) {
+        return csv_table_times(t, heading, values, f);
+    }
+    return csv_table_numbers(t, heading, unit, false, values, f);
 }
 
-// Keeps what each sample read: of several rows within a sampling period, which show what the rig
-// holds, the last one's values and the first one's time.
+// Keeps what each sample read: of several rows within a sampling period, which show what
+// the rig holds, the last one's values and the first one's time.
 static void keep_samples(recorded_trace *t, double rate)
 {
     size_t kept = 0;
@@ -70,15 +76,20 @@ static void keep_samples(recorded_trace *t, double rate)
     t->rows = kept;
 }
 
-// What a residual is made of: volts of the FSR, whose noise is even there, else the reading.
+// What a residual is made of: volts of the FSR, whose noise is even there, else the
+// reading.
 static double residual_of(const sensor_parameters *s, int channel, double reading)
 {
-    return channel == CHANNEL_FSR ? fsr_volts(s, reading) : reading;
+    if (channel == CHANNEL_FSR) {
+        return fsr_volts(s, reading);
+    }
+    return reading;
 }
 
-// Standard deviation of noise and converter's step, in the residual's unit; *range: the largest
-// magnitude that can be read, in that unit; *dithered: noise covers the steps.
-static double deviation_of(const sensor_parameters *s, int channel, double *range, bool *dithered)
+// Standard deviation of noise and converter's step, in the residual's unit; *range: the
+// largest magnitude that can be read, in that unit; *dithered: noise covers the steps.
+static double deviation_of(const sensor_parameters *s, int channel, double *range,
+                           bool *dithered)
 {
     const struct {
         double noise, gain; // volts, volts per unit
@@ -93,7 +104,11 @@ static double deviation_of(const sensor_parameters *s, int channel, double *rang
     double noise = channels[channel].noise, gain = channels[channel].gain;
     *range = s->adc_range / gain;
     if (channel == CHANNEL_ENCODER) {
-        step = s->encoder_counts > 0 ? 2 * M_PI / s->encoder_counts : 0;
+        if (s->encoder_counts > 0) {
+            step = 2 * M_PI / s->encoder_counts;
+        } else {
+            step = 0;
+        }
         gain = 1;
         *range = HUGE_VAL;
     }
@@ -108,16 +123,18 @@ static double deviation_of(const sensor_parameters *s, int channel, double *rang
     return fmax(sqrt(noise * noise + step * step / 12) / gain, LEAST_DEVIATION);
 }
 
-// Finds touches and releases in the force that was recorded, and says what counts: nothing near
-// them, forces in contact, and what is within its range. A reading that stays within a step of
-// its converter for some samples is one reading.
+// Finds touches and releases in the force that was recorded, and says what counts:
+// nothing near them, forces in contact, and what is within its range. A reading that
+// stays within a step of its converter for some samples is one reading.
 static status weigh(recorded_trace *t, const parameters *p, fault *f)
 {
-    const double *force =
-        t->reading[CHANNEL_FSR] != NULL ? t->reading[CHANNEL_FSR] : t->reading[CHANNEL_PIEZO];
+    const double *force = t->reading[CHANNEL_FSR] != NULL ? t->reading[CHANNEL_FSR]
+                                                          : t->reading[CHANNEL_PIEZO];
     SCOPED(free_kept) unsigned char *near = calloc(t->rows, 1);
     t->contacts = calloc(t->rows, sizeof *t->contacts);
-    TRY_MEMORY(near != NULL && t->contacts != NULL, f);
+    if (!(near != NULL && t->contacts != NULL)) {
+        return fault_no_memory(f);
+    }
 
     double released = -HUGE_VAL;
     for (size_t i = 1; force != NULL && i < t->rows; i++) {
@@ -149,18 +166,27 @@ static status weigh(recorded_trace *t, const parameters *p, fault *f)
             continue;
         }
         t->deviation[c] = calloc(t->rows, sizeof *t->deviation[c]);
-        TRY_MEMORY(t->deviation[c] != NULL, f);
+        if (t->deviation[c] == NULL) {
+            return fault_no_memory(f);
+        }
         for (size_t i = 0, end; i < t->rows; i = end) {
             for (end = i + 1; !dithered && end < t->rows && read[end] == read[i];) {
                 end++;
             }
-            end = dithered ? i + 1 : end;
+            if (dithered) {
+                end = i + 1;
+            }
             for (size_t k = i; k < end; k++) {
                 const bool counts =
                     !near[k] &&
-                    fabs(residual_of(&p->sensor, c, read[k])) < range - NEAR_RANGE * deviation &&
+                    fabs(residual_of(&p->sensor, c, read[k])) <
+                        range - NEAR_RANGE * deviation &&
                     (c != CHANNEL_FSR || read[k] > p->control.contact_threshold);
-                t->deviation[c][k] = counts ? deviation * sqrt((double)(end - i)) : 0;
+                if (counts) {
+                    t->deviation[c][k] = deviation * sqrt((double)(end - i));
+                } else {
+                    t->deviation[c][k] = 0;
+                }
                 t->residuals += counts;
             }
         }
@@ -171,7 +197,8 @@ static status weigh(recorded_trace *t, const parameters *p, fault *f)
 // The state that the trace starts with, as far as its first readings tell.
 static void guess_start(recorded_trace *t, const parameters *p)
 {
-    const double *encoder = t->reading[CHANNEL_ENCODER], *speed = t->reading[CHANNEL_TACHOMETER];
+    const double *encoder = t->reading[CHANNEL_ENCODER],
+                 *speed = t->reading[CHANNEL_TACHOMETER];
     double range;
     bool dithered;
     t->own[OWN_ANGLE] = p->initial.angle;
@@ -188,17 +215,21 @@ static void guess_start(recorded_trace *t, const parameters *p)
     }
 }
 
-status identify_add_trace(identification *id, const char *file, char *const *columns, int count,
-                          fault *f)
+status identify_add_trace(identification *id, const char *file, char *const *columns,
+                          int count, fault *f)
 {
     assert(id->trace_count <= IDENTIFY_TRACES);
-    FAULT_IF(id->trace_count == IDENTIFY_TRACES, f, STATUS_BAD_ARGUMENT, "more than %d traces",
-             IDENTIFY_TRACES);
+    FAULT_IF(id->trace_count == IDENTIFY_TRACES, f, STATUS_BAD_ARGUMENT,
+             "more than %d traces", IDENTIFY_TRACES);
     const parameters *p = &id->base->parameters;
     recorded_trace *t = &id->traces[id->trace_count++];
     SCOPED(csv_table_finish) csv_table table = {0};
     *t = (recorded_trace){.file = strdup(file)};
-    TRY(t->file != NULL ? csv_table_read(&table, file, 2, f) : fault_no_memory(f));
+    if (t->file != NULL) {
+        TRY(csv_table_read(&table, file, 2, f));
+    } else {
+        return fault_no_memory(f);
+    }
 
     t->rows = table.rows;
     TRY(read_column(&table, "time", "s", true, columns, count, &t->time, f));
@@ -206,22 +237,28 @@ status identify_add_trace(identification *id, const char *file, char *const *col
     int readings = 0;
     for (int c = 0; c < CHANNELS; c++) {
         const signal_info *signal = &signal_table[identify_signals[c]];
-        TRY(read_column(&table, signal->name, signal->unit, false, columns, count, &t->reading[c],
-                        f));
+        TRY(read_column(&table, signal->name, signal->unit, false, columns, count,
+                        &t->reading[c], f));
         readings += t->reading[c] != NULL;
     }
-    FAULT_PLACE_IF(readings == 0, f, STATUS_BAD_ARGUMENT, 1, 1,
-                   "%.300s:1: no reading to compare with, expected a column such as encoder[rad], "
-                   "tachometer[rad/s] or force_reading[N]",
-                   file);
-    FAULT_PLACE_IF(!(t->time[t->rows - 1] > t->time[0]), f, STATUS_BAD_ARGUMENT, 2, 1,
-                   "%.300s:2: no time passes from the first row to the last", file);
+    if (readings == 0) {
+        return fault_set_place(
+            f, STATUS_BAD_ARGUMENT, 1, 1,
+            "%.300s:1: no reading to compare with, expected a column such as "
+            "encoder[rad], tachometer[rad/s] or force_reading[N]",
+            file);
+    }
+    if (!(t->time[t->rows - 1] > t->time[0])) {
+        return fault_set_place(f, STATUS_BAD_ARGUMENT, 2, 1,
+                               "%.300s:2: no time passes from the first row to the last",
+                               file);
+    }
     keep_samples(t, p->control.rate);
     guess_start(t, p);
     return weigh(t, p, f);
 }
 
-// --- a run under the recorded command ---------------------------------------------------------
+// --- a run under the recorded command --------------------------------------------------
 
 typedef struct playback_memory {
     const recorded_trace *trace;
@@ -239,10 +276,11 @@ static const controller playback = {.interface = CONTROLLER_INTERFACE,
                                     .memory_size = sizeof(playback_memory),
                                     .sample = play_back};
 
-// The scenario as it is run: the sensors' lags, curves and ripple stay, noise and steps are what
-// residuals are measured by.
-static status make_run(const identification *id, const recorded_trace *t, const parameters *p,
-                       const double own[OWNS], scenario *made, fault *f)
+// The scenario as it is run: the sensors' lags, curves and ripple stay, noise and steps
+// are what residuals are measured by.
+static status make_run(const identification *id, const recorded_trace *t,
+                       const parameters *p, const double own[OWNS], scenario *made,
+                       fault *f)
 {
     const sensor_parameters *sensor = &p->sensor;
     const parameter_change changes[] = {
@@ -255,7 +293,8 @@ static status make_run(const identification *id, const recorded_trace *t, const 
         {PARAMETER_INDEX(sensor.piezo_noise), 0},
         {PARAMETER_INDEX(sensor.film_noise), 0},
         {PARAMETER_INDEX(sensor.accelerometer_noise), 0},
-        {PARAMETER_INDEX(sensor.piezo), sensor->piezo || t->reading[CHANNEL_PIEZO] != NULL},
+        {PARAMETER_INDEX(sensor.piezo),
+         sensor->piezo || t->reading[CHANNEL_PIEZO] != NULL},
         {PARAMETER_INDEX(sensor.film), sensor->film || t->reading[CHANNEL_FILM] != NULL},
         {PARAMETER_INDEX(sensor.accelerometer),
          sensor->accelerometer || t->reading[CHANNEL_ACCELEROMETER] != NULL},
@@ -281,12 +320,13 @@ status identify_scenario(const identification *id, int index, scenario *made, fa
     TRY(identify_parameters(id, true, &p, f));
     TRY(make_run(id, t, &p, t->own, &fitted, f));
 
-    // its noise and steps come back; a sample takes the last row of its period, as keep_samples has
-    // it
+    // its noise and steps come back; a sample takes the last row of its period, as
+    // keep_samples has it
     fitted.parameters.sensor = p.sensor;
     const double period = (1 - ROW_MARGIN) / p.control.rate;
     const parameter_change changes[] = {
-        {PARAMETER_INDEX(sensor.encoder_offset), p.sensor.encoder_offset + t->own[OWN_OFFSET]},
+        {PARAMETER_INDEX(sensor.encoder_offset),
+         p.sensor.encoder_offset + t->own[OWN_OFFSET]},
         {PARAMETER_INDEX(control.law), LAW_PLAYBACK},
         {PARAMETER_INDEX(control.playback_file), .text = t->file},
         {PARAMETER_INDEX(control.playback_column), .text = "command"},
@@ -297,40 +337,49 @@ status identify_scenario(const identification *id, int index, scenario *made, fa
 }
 
 // Between two rows a quantity is the cubic through its values and rates.
-static double between(const sample *a, const sample *b, double time, double from, double to,
-                      double from_rate, double to_rate)
+static double between(const sample *a, const sample *b, double time, double from,
+                      double to, double from_rate, double to_rate)
 {
     const double h = b->time - a->time, u = h > 0 ? (time - a->time) / h : 1, v = 1 - u;
     return v * v * (1 + 2 * u) * from + u * u * (3 - 2 * u) * to +
            h * u * v * (v * from_rate - u * to_rate);
 }
 
-// What the sensors read at an instant; the hub's angle and velocity from the motion itself, what
-// lags between two samples on a straight line.
-static double reading_at(const trace *run, sensors *eyes, int channel, double time, double period)
+// What the sensors read at an instant; the hub's angle and velocity from the motion
+// itself, what lags between two samples on a straight line.
+static double reading_at(const trace *run, sensors *eyes, int channel, double time,
+                         double period)
 {
     const size_t last = run->row_count - 1, at = trace_row_at(run, time);
     if (channel == CHANNEL_ENCODER || channel == CHANNEL_TACHOMETER) {
         const sample *a = &run->rows[at], *b = &run->rows[at < last ? at + 1 : last];
         const double when = fmax(time, a->time);
-        const sensed_motion now = {.angle = between(a, b, when, a->hub_angle, b->hub_angle,
-                                                    a->hub_velocity, b->hub_velocity),
-                                   .velocity = between(a, b, when, a->hub_velocity, b->hub_velocity,
-                                                       a->hub_acceleration, b->hub_acceleration)};
+        const sensed_motion now = {
+            .angle = between(a, b, when, a->hub_angle, b->hub_angle, a->hub_velocity,
+                             b->hub_velocity),
+            .velocity = between(a, b, when, a->hub_velocity, b->hub_velocity,
+                                a->hub_acceleration, b->hub_acceleration)};
         const sensor_reading r = sensors_read(eyes, &now);
-        return channel == CHANNEL_ENCODER ? r.encoder : r.tachometer;
+        if (channel == CHANNEL_ENCODER) {
+            return r.encoder;
+        }
+        return r.tachometer;
     }
 
-    // a sample's reading stands in the row before the next sample acts, the earlier one of that
-    // instant
-    const double whole = floor(time / period + SAME_INSTANT), share = time / period - whole;
+    // a sample's reading stands in the row before the next sample acts, the earlier one
+    // of that instant
+    const double whole = floor(time / period + SAME_INSTANT),
+                 share = time / period - whole;
     double value[2];
     for (int i = 0; i < 2; i++) {
         size_t row = trace_row_at(run, (whole + i + 1 - SAME_INSTANT) * period);
         row += row < last;
         value[i] = signal_value(&run->rows[row], identify_signals[channel]);
     }
-    return share > SAME_INSTANT ? (1 - share) * value[0] + share * value[1] : value[0];
+    if (share > SAME_INSTANT) {
+        return (1 - share) * value[0] + share * value[1];
+    }
+    return value[0];
 }
 
 // The touch of the run that is nearest to an instant [s]; the run's end if there is none.
@@ -342,20 +391,27 @@ static double nearest_touch(const trace *run, double time)
         const event *e = &run->events[i];
         const bool touches = e->kind == EVENT_IMPACT || e->kind == EVENT_CONTACT;
         if (touches && e->time - released > IDENTIFY_GUARD) {
-            best = !any || fabs(e->time - time) < fabs(best - time) ? e->time : best;
+            if (!any || fabs(e->time - time) < fabs(best - time)) {
+                best = e->time;
+            }
             any = true;
         }
 
         // an impact alone sends the arm off again
         if (touches || e->kind == EVENT_RELEASE) {
-            released = e->kind == EVENT_CONTACT ? HUGE_VAL : e->time;
+            if (e->kind == EVENT_CONTACT) {
+                released = HUGE_VAL;
+            } else {
+                released = e->time;
+            }
         }
     }
     return best;
 }
 
 // What a run comes to beside its residuals.
-static void judge_run(recorded_trace *t, const trace *run, double period, const double *own)
+static void judge_run(recorded_trace *t, const trace *run, double period,
+                      const double *own)
 {
     const int channel = t->reading[CHANNEL_FSR] != NULL ? CHANNEL_FSR : CHANNEL_PIEZO;
     double recorded = 0, computed = 0;
@@ -364,8 +420,16 @@ static void judge_run(recorded_trace *t, const trace *run, double period, const 
         recorded = fmax(recorded, t->reading[channel][i]);
         computed = fmax(computed, reading_at(run, NULL, channel, time, period));
     }
-    t->peak_error = t->contact_count > 0 && recorded > 0 ? computed / recorded - 1 : (double)NAN;
-    t->contact_error = t->contact_count > 0 ? 0 : (double)NAN;
+    if (t->contact_count > 0 && recorded > 0) {
+        t->peak_error = computed / recorded - 1;
+    } else {
+        t->peak_error = (double)NAN;
+    }
+    if (t->contact_count > 0) {
+        t->contact_error = 0;
+    } else {
+        t->contact_error = (double)NAN;
+    }
     for (int i = 0; i < t->contact_count; i++) {
         const double at = t->contacts[i] - own[OWN_SHIFT];
         t->contact_error = fmax(t->contact_error, fabs(nearest_touch(run, at) - at));
@@ -385,7 +449,8 @@ static void compare(const recorded_trace *t, const trace *run, const parameters 
                 const double offset = c == CHANNEL_ENCODER ? own[OWN_OFFSET] : 0;
                 *residual++ =
                     (residual_of(&p->sensor, c, t->reading[c][i]) -
-                     residual_of(&p->sensor, c, reading_at(run, &eyes, c, time, period) + offset)) /
+                     residual_of(&p->sensor, c,
+                                 reading_at(run, &eyes, c, time, period) + offset)) /
                     t->deviation[c][i];
             }
         }
@@ -396,8 +461,9 @@ static void compare(const recorded_trace *t, const trace *run, const parameters 
     }
 }
 
-status identify_residuals(const identification *id, recorded_trace *t, const parameters *p,
-                          const double own[OWNS], bool judge, double *residual, fault *f)
+status identify_residuals(const identification *id, recorded_trace *t,
+                          const parameters *p, const double own[OWNS], bool judge,
+                          double *residual, fault *f)
 {
     scenario made;
     SCOPED(run_finish) run_result result = {0};
@@ -417,7 +483,9 @@ status identify_residuals(const identification *id, recorded_trace *t, const par
         compare(t, &result.trace, &made.parameters, own, residual);
     }
     for (size_t i = 0; i < t->residuals; i++) {
-        residual[i] = code == STATUS_OK && isfinite(residual[i]) ? residual[i] : FAILED_RUN;
+        if (!(code == STATUS_OK && isfinite(residual[i]))) {
+            residual[i] = FAILED_RUN;
+        }
     }
     if (code == STATUS_OK && judge) {
         judge_run(t, &result.trace, 1 / made.parameters.control.rate, own);

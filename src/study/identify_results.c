@@ -13,7 +13,9 @@ const char *identify_words(const identification *id, int k, char *text, size_t s
     const double *part = id->direction + k * id->count;
     int largest = 0;
     for (int i = 1; i < id->count; i++) {
-        largest = fabs(part[i]) > fabs(part[largest]) ? i : largest;
+        if (fabs(part[i]) > fabs(part[largest])) {
+            largest = i;
+        }
     }
     const char *joint = "";
     size_t used = 0;
@@ -26,14 +28,20 @@ const char *identify_words(const identification *id, int k, char *text, size_t s
                 continue;
             }
             if (share > 0) {
-                used += (size_t)decimal_print(text + used, size - used, "%s%s%s by %.3g %%", joint,
-                                              first ? sign > 0 ? "raising " : "lowering " : "",
+                used += (size_t)decimal_print(text + used, size - used,
+                                              "%s%s%s by %.3g %%", joint,
+                                              first ? sign > 0 ? "raising " : "lowering "
+                                                    : "",
                                               id->fit[i].axis.name, 10 * share);
                 joint = " and ";
                 first = false;
             }
         }
-        joint = used > 0 ? " while " : "";
+        if (used > 0) {
+            joint = " while ";
+        } else {
+            joint = "";
+        }
     }
     if (used < size) {
         snprintf(text + used, size - used, " changes no reading by more than its noise");
@@ -44,7 +52,8 @@ const char *identify_words(const identification *id, int k, char *text, size_t s
 json_t *identify_traces_json(const identification *id)
 {
     static const char *const own_keys[OWNS] = {"time_shift_s", "encoder_offset_rad",
-                                               "initial_angle_rad", "initial_velocity_rad_s"};
+                                               "initial_angle_rad",
+                                               "initial_velocity_rad_s"};
     json_t *traces = json_array();
     for (int k = 0; k < id->trace_count; k++) {
         const recorded_trace *t = &id->traces[k];
@@ -53,13 +62,13 @@ json_t *identify_traces_json(const identification *id)
         for (int own = 0; own < OWNS; own++) {
             json_put(line, own_keys[own], json_number(t->own[own]));
         }
-        json_members(line, "contacts:i contact_error_s:n peak_error_percent:n", t->contact_count,
-                     t->contact_error, 100 * t->peak_error);
+        json_members(line, "contacts:i contact_error_s:n peak_error_percent:n",
+                     t->contact_count, t->contact_error, 100 * t->peak_error);
         for (int c = 0; c < CHANNELS; c++) {
             if (t->reading[c] != NULL) {
                 json_add(channels, json_of("signal:t rms_over_deviation:n whiteness:n",
-                                           signal_table[identify_signals[c]].name, t->rms[c],
-                                           t->whiteness[c]));
+                                           signal_table[identify_signals[c]].name,
+                                           t->rms[c], t->whiteness[c]));
             }
         }
         json_put(line, "residuals", channels);
@@ -77,12 +86,16 @@ json_t *identify_json(const identification *id)
         double row[IDENTIFY_PATHS];
         json_add(fit, json_of("path:t value:n standard_error:n low:n high:n determined:b "
                               "at_end_of_range:b",
-                              of->axis.name, of->value, of->standard_error, of->low, of->high,
-                              of->determined, identify_at_end(of)));
+                              of->axis.name, of->value, of->standard_error, of->low,
+                              of->high, of->determined, identify_at_end(of)));
         for (int j = 0; j < p; j++) {
-            const double size = sqrt(id->covariance[i * p + i]) * sqrt(id->covariance[j * p + j]);
-            row[j] = of->determined && id->fit[j].determined ? id->covariance[i * p + j] / size
-                                                             : (double)NAN;
+            const double size =
+                sqrt(id->covariance[i * p + i]) * sqrt(id->covariance[j * p + j]);
+            if (of->determined && id->fit[j].determined) {
+                row[j] = id->covariance[i * p + j] / size;
+            } else {
+                row[j] = (double)NAN;
+            }
         }
         json_add(rows, json_numbers(row, p));
     }
@@ -92,13 +105,15 @@ json_t *identify_json(const identification *id)
     }
     return json_of("scenario:t fit:o correlation:o singular_values:o undetermined:o "
                    "chi_square:n residuals:i aic:n white:b traces:o",
-                   id->base->name, fit, rows, json_numbers(id->singular, p), words, id->chi_square,
-                   (int)id->residuals - p, id->aic, id->white, identify_traces_json(id));
+                   id->base->name, fit, rows, json_numbers(id->singular, p), words,
+                   id->chi_square, (int)id->residuals - p, id->aic, id->white,
+                   identify_traces_json(id));
 }
 
-// An arm of the covariance, whose eigenvectors and -values these are: along each a normal number.
-static void draw_arm(const identification *id, const double *directions, const double *values,
-                     random_generator *random, double *drawn)
+// An arm of the covariance, whose eigenvectors and -values these are: along each a normal
+// number.
+static void draw_arm(const identification *id, const double *directions,
+                     const double *values, random_generator *random, double *drawn)
 {
     const int p = id->count;
     for (int i = 0; i < p; i++) {
@@ -110,7 +125,8 @@ static void draw_arm(const identification *id, const double *directions, const d
             sum += random_uniform(random);
         }
         for (int i = 0; i < p; i++) {
-            drawn[i] += sum * sqrt(fmax(values[k], 0)) * directions[k * p + i] * id->fit[i].scale;
+            drawn[i] +=
+                sum * sqrt(fmax(values[k], 0)) * directions[k * p + i] * id->fit[i].scale;
         }
     }
     for (int i = 0; i < p; i++) {
@@ -118,8 +134,8 @@ static void draw_arm(const identification *id, const double *directions, const d
     }
 }
 
-// One line of a set, a number for each arm: of parameter i, or what a law believes of it, as a
-// factor of the true value that keeps the fitted one.
+// One line of a set, a number for each arm: of parameter i, or what a law believes of it,
+// as a factor of the true value that keeps the fitted one.
 static void write_line(FILE *stream, const char *path, const fitted_parameter *fit,
                        double (*drawn)[IDENTIFY_PATHS], int i, const double *belief)
 {
@@ -127,7 +143,8 @@ static void write_line(FILE *stream, const char *path, const fitted_parameter *f
         char text[NUMBER_TEXT];
         const double true_value = drawn[n][i],
                      factor = true_value != 0 ? fit->value / true_value : 1;
-        number_format(text, belief == NULL ? true_value : fmin(fmax(*belief * factor, 0.01), 100));
+        number_format(text, belief == NULL ? true_value
+                                           : fmin(fmax(*belief * factor, 0.01), 100));
         fprintf(stream, "%s%s%s", n > 0 ? "," : path, n > 0 ? "" : "=", text);
     }
     fputc('\n', stream);
@@ -138,11 +155,12 @@ void identify_write_set(FILE *stream, const identification *id)
     // what a law is told of a parameter, as a factor of the true value
     const struct {
         int parameter, belief;
-    } told[] = {{PARAMETER_INDEX(arm.k2), PARAMETER_INDEX(belief.k2_factor)},
-                {PARAMETER_INDEX(arm.mass), PARAMETER_INDEX(belief.mass_factor)},
-                {PARAMETER_INDEX(arm.hub_inertia), PARAMETER_INDEX(belief.inertia_factor)},
-                {PARAMETER_INDEX(motor.torque_constant), PARAMETER_INDEX(belief.torque_factor)},
-                {PARAMETER_INDEX(motor.stiction), PARAMETER_INDEX(belief.friction_factor)}};
+    } told[] = {
+        {PARAMETER_INDEX(arm.k2), PARAMETER_INDEX(belief.k2_factor)},
+        {PARAMETER_INDEX(arm.mass), PARAMETER_INDEX(belief.mass_factor)},
+        {PARAMETER_INDEX(arm.hub_inertia), PARAMETER_INDEX(belief.inertia_factor)},
+        {PARAMETER_INDEX(motor.torque_constant), PARAMETER_INDEX(belief.torque_factor)},
+        {PARAMETER_INDEX(motor.stiction), PARAMETER_INDEX(belief.friction_factor)}};
     double drawn[IDENTIFY_CASES][IDENTIFY_PATHS];
     random_generator random;
     double directions[IDENTIFY_PATHS * IDENTIFY_PATHS], values[IDENTIFY_PATHS] = {0};
@@ -156,10 +174,11 @@ void identify_write_set(FILE *stream, const identification *id)
         draw_arm(id, directions, values, &random, drawn[n]);
     }
 
-    fprintf(stream,
-            "# %d arms drawn from the covariance of a fit; the law is told the fitted one\n"
-            "control.seed=1:1000000\n",
-            IDENTIFY_CASES);
+    fprintf(
+        stream,
+        "# %d arms drawn from the covariance of a fit; the law is told the fitted one\n"
+        "control.seed=1:1000000\n",
+        IDENTIFY_CASES);
     const char *with = "";
     for (int i = 0; i < id->count; i++) {
         const fitted_parameter *fit = &id->fit[i];
@@ -171,9 +190,11 @@ void identify_write_set(FILE *stream, const identification *id)
         write_line(stream, fit->axis.name, fit, drawn, i, NULL);
         for (size_t k = 0; k < sizeof told / sizeof *told; k++) {
             if (strcmp(parameter_table[told[k].parameter].path, fit->axis.name) == 0) {
-                const double belief = parameter_get(&id->base->parameters, told[k].belief);
+                const double belief =
+                    parameter_get(&id->base->parameters, told[k].belief);
                 fputs(with, stream);
-                write_line(stream, parameter_table[told[k].belief].path, fit, drawn, i, &belief);
+                write_line(stream, parameter_table[told[k].belief].path, fit, drawn, i,
+                           &belief);
             }
         }
     }

@@ -10,7 +10,8 @@
 
 const int links_numbers[LINKS_LENGTHS] = {2, 4, 8, 16, 32, 64};
 
-#define SENSOR_WINDOW   0.02  // after first contact in which largest values are looked for [s]
+// after first contact in which largest values are looked for [s]
+#define SENSOR_WINDOW   0.02
 #define MOMENTUM_WINDOW 0.002 // and over which momentum is summed [s]
 #define PIECE           1e-5  // of a step, at whose ends the force is looked at [s]
 
@@ -38,12 +39,18 @@ static const links_row blank_rows[LINKS_QUANTITIES] = {
     [SENSED + 2] = {.key = "sensed_2ms_N", .label = "sensor of 2 ms", .unit = "N"},
     [CONTACT_TIME] = {.key = "first_pulse_s", .label = "contact time", .unit = "s"},
     [STEADY_FORCE] = {.key = "steady_force_N", .label = "steady force", .unit = "N"},
-    [FREE] = {.key = "frequency_tip_free_Hz", .label = "frequency, tip free", .unit = "Hz"},
-    [PINNED] = {.key = "frequency_tip_pinned_Hz", .label = "frequency, tip pinned", .unit = "Hz"},
-    [COMPLIANCE] = {.key = "tip_compliance_m_per_N", .label = "compliance", .unit = "m/N"},
+    [FREE] = {.key = "frequency_tip_free_Hz",
+              .label = "frequency, tip free",
+              .unit = "Hz"},
+    [PINNED] = {.key = "frequency_tip_pinned_Hz",
+                .label = "frequency, tip pinned",
+                .unit = "Hz"},
+    [COMPLIANCE] = {.key = "tip_compliance_m_per_N",
+                    .label = "compliance",
+                    .unit = "m/N"},
 };
 
-// --- the blow -------------------------------------------------------------------------------
+// --- the blow --------------------------------------------------------------------------
 
 // What the contact gives in its first milliseconds, and what sensors read of it.
 typedef struct blow {
@@ -62,7 +69,9 @@ static void take_impulse(blow *b, const event *e)
         b->speed = e->speed;
         b->impulse = e->impulse;
     }
-    b->momentum += e->time <= b->touch + MOMENTUM_WINDOW ? impulse : 0;
+    if (e->time <= b->touch + MOMENTUM_WINDOW) {
+        b->momentum += impulse;
+    }
 }
 
 // The force over a step, from the touch and up to the window's end, piece by piece.
@@ -74,12 +83,17 @@ static void take_force(blow *b, const force_step *step)
     double from = fmax(step->start, b->touch), to;
     for (; from < end; from = to) {
         to = fmin(from + PIECE, end);
-        to = from < early ? fmin(to, early) : to;
+        if (from < early) {
+            to = fmin(to, early);
+        }
         const double s = (from - step->start) / length, u = (to - step->start) / length;
         const double first = p.first + s * (p.slope + s * p.curve);
         const double last = p.first + u * (p.slope + u * p.curve);
-        const double mean = p.first + p.slope * (s + u) / 2 + p.curve * (s * s + s * u + u * u) / 3;
-        b->momentum += to <= early ? (to - from) * mean : 0;
+        const double mean =
+            p.first + p.slope * (s + u) / 2 + p.curve * (s * s + s * u + u * u) / 3;
+        if (to <= early) {
+            b->momentum += (to - from) * mean;
+        }
         b->peak = fmax(b->peak, fmax(first, last));
     }
 }
@@ -92,7 +106,8 @@ static blow blow_of(const run_result *result)
     blow b = {.touch = result->summary.first_contact_s};
     size_t next = 0;
     for (int k = 0; k < SENSORS; k++) {
-        b.sensed[k] = force_largest_sensed(result, sensor_constants[k], b.touch + SENSOR_WINDOW);
+        b.sensed[k] =
+            force_largest_sensed(result, sensor_constants[k], b.touch + SENSOR_WINDOW);
     }
     for (size_t i = 0; i < h->count; i++) {
         const force_step *step = &force_steps(h)[i];
@@ -109,7 +124,7 @@ static blow blow_of(const run_result *result)
     return b;
 }
 
-// --- one number of links --------------------------------------------------------------------
+// --- one number of links ---------------------------------------------------------------
 
 // The first frequency with the hub held [Hz].
 static status first_frequency(const arm *a, tip_end tip, double *frequency, fault *f)
@@ -117,30 +132,42 @@ static status first_frequency(const arm *a, tip_end tip, double *frequency, faul
     const size_t dof = (size_t)a->dof;
     SCOPED(free_kept) double *work = malloc((dof + dof * dof) * sizeof *work);
     int count = 0;
-    TRY_MEMORY(work != NULL, f);
+    if (work == NULL) {
+        return fault_no_memory(f);
+    }
     const status code = modes_compute(a, HUB_LOCKED, tip, &count, work, work + dof);
-    *frequency = code == STATUS_OK && count > 0 ? work[0] / (2 * M_PI) : (double)NAN;
-    return code == STATUS_OK ? code : fault_set(f, code, "%s", status_text(code));
+    if (code == STATUS_OK && count > 0) {
+        *frequency = work[0] / (2 * M_PI);
+    } else {
+        *frequency = (double)NAN;
+    }
+    if (code == STATUS_OK) {
+        return code;
+    }
+    return fault_set(f, code, "%s", status_text(code));
 }
 
-// Deflection of the tip under a unit force, the hub held: every joint bends by the moment there,
-// the distance to the tip, over its stiffness [m/N].
+// Deflection of the tip under a unit force, the hub held: every joint bends by the moment
+// there, the distance to the tip, over its stiffness [m/N].
 static double tip_compliance(const parameters *p)
 {
-    double lengths[PARAMETER_LINKS_MOST], stiffness[PARAMETER_LINKS_MOST], lever = 0, sum = 0;
+    double lengths[PARAMETER_LINKS_MOST], stiffness[PARAMETER_LINKS_MOST], lever = 0,
+                                                                           sum = 0;
     parameters_link_lengths(&p->arm, lengths);
     parameters_joint_stiffness(&p->arm, stiffness);
     for (int k = p->arm.links - 1; k >= 0; k--) {
         lever += lengths[k];
         // the first joint is none where hub and first link are one body
-        sum += k > 0 || stiffness[0] > 0 ? lever * lever / stiffness[k] : 0;
+        if (k > 0 || stiffness[0] > 0) {
+            sum += lever * lever / stiffness[k];
+        }
     }
     return sum;
 }
 
 // Column i of the study; *speed is that of the blow [m/s].
-static status compute_column(const scenario *s, int i, run_monitor *monitor, links_study *study,
-                             double *speed, fault *f)
+static status compute_column(const scenario *s, int i, run_monitor *monitor,
+                             links_study *study, double *speed, fault *f)
 {
     links_row *rows = study->rows;
     scenario changed;
@@ -151,11 +178,13 @@ static status compute_column(const scenario *s, int i, run_monitor *monitor, lin
     SCOPED(run_finish) run_result result;
     const run_options options = {.monitor = monitor, .keep_forces = true};
     const status code = run_scenario_with(&changed, &options, &result);
-    FAULT_AT_IF(code != STATUS_OK, f, code, result.summary.path, "with %d links: %.700s",
-                links_numbers[i], result.summary.message);
+    if (code != STATUS_OK) {
+        return fault_set_at(f, code, result.summary.path, "with %d links: %.700s",
+                            links_numbers[i], result.summary.message);
+    }
     FAULT_IF(isnan(result.summary.first_contact_s), f, STATUS_BAD_SCENARIO,
-             "%s: with %d links there is no contact within %g s", s->name, links_numbers[i],
-             s->parameters.run.duration);
+             "%s: with %d links there is no contact within %g s", s->name,
+             links_numbers[i], s->parameters.run.duration);
     const blow b = blow_of(&result);
     *speed = b.speed;
     rows[IMPULSE].value[i] = b.impulse;
@@ -175,7 +204,7 @@ static status compute_column(const scenario *s, int i, run_monitor *monitor, lin
     return first_frequency(&a, TIP_PINNED, &rows[PINNED].value[i], f);
 }
 
-// --- the beam -------------------------------------------------------------------------------
+// --- the beam --------------------------------------------------------------------------
 
 #define DAWSON_LARGEST 0.5410442246351817 // of Dawson's integral, at 0.9241388730
 
@@ -196,13 +225,14 @@ double links_beam_sensed(const parameters *p, double speed, double time_constant
     return 2 * beam_constant(p, speed) / sqrt(time_constant) * DAWSON_LARGEST;
 }
 
-// --- limits ---------------------------------------------------------------------------------
+// --- limits ----------------------------------------------------------------------------
 
-// Richardson's limit of values whose error falls as N^-p, N doubling: the last difference again
-// over 2^p - 1. What it may be off is that step itself.
+// Richardson's limit of values whose error falls as N^-p, N doubling: the last difference
+// again over 2^p - 1. What it may be off is that step itself.
 static void extrapolate(links_row *row)
 {
-    const double coarse = row->value[LINKS_LENGTHS - 3], middle = row->value[LINKS_LENGTHS - 2],
+    const double coarse = row->value[LINKS_LENGTHS - 3],
+                 middle = row->value[LINKS_LENGTHS - 2],
                  fine = row->value[LINKS_LENGTHS - 1];
     row->order = observed_order(coarse, middle, fine);
     row->limit = fine + (fine - middle) / (plain_pow(2, row->order) - 1);
@@ -224,12 +254,14 @@ static void extrapolate(links_row *row)
 static void compute_beam(const parameters *p, double speed, links_row *rows)
 {
     const double length = p->arm.length, bending = p->arm.k2 * length / 2;
-    const double rate = sqrt(bending / (p->arm.mass * length * length * length)) / (2 * M_PI);
+    const double rate =
+        sqrt(bending / (p->arm.mass * length * length * length)) / (2 * M_PI);
     if (p->arm.tip_mass > 0 || !parameters_even_links(&p->arm)) {
         return;
     }
     if (p->wall.contact == WALL_RIGID && p->arm.damping_ratio == 0) {
-        // the blow's closed form is that of a beam without damping which the wall stops at once
+        // the blow's closed form is that of a beam without damping which the wall stops
+        // at once
         rows[MOMENTUM].beam = links_beam_momentum(p, speed, MOMENTUM_WINDOW);
         for (int k = 0; k < SENSORS; k++) {
             rows[SENSED + k].beam = links_beam_sensed(p, speed, sensor_constants[k]);
@@ -245,8 +277,14 @@ void links_judge(links_row *row)
     // values that have no limit told may agree with the last one: three at least
     const bool told = !isnan(row->beam) || !isnan(row->limit);
     int i = LINKS_LENGTHS - 1;
-    row->aim = told ? row->limit : row->value[i];
-    row->aim = isnan(row->beam) ? row->aim : row->beam;
+    if (told) {
+        row->aim = row->limit;
+    } else {
+        row->aim = row->value[i];
+    }
+    if (!isnan(row->beam)) {
+        row->aim = row->beam;
+    }
     row->enough = 0;
     row->off = 0;
     for (; i >= 0; i--) {
@@ -255,16 +293,22 @@ void links_judge(links_row *row)
             break;
         }
         row->off = fmax(row->off, off);
-        row->enough = told || i <= LINKS_LENGTHS - 3 ? links_numbers[i] : 0;
+        if (told || i <= LINKS_LENGTHS - 3) {
+            row->enough = links_numbers[i];
+        } else {
+            row->enough = 0;
+        }
     }
 }
 
-status links_study_compute(const scenario *s, run_monitor *monitor, links_study *study, fault *f)
+status links_study_compute(const scenario *s, run_monitor *monitor, links_study *study,
+                           fault *f)
 {
     double speed = (double)NAN;
     *study = (links_study){0};
     FAULT_IF(s->parameters.arm.model == ARM_PRINTED, f, STATUS_BAD_SCENARIO,
-             "%s: the printed model has two links only, expected arm.model = corrected", s->name);
+             "%s: the printed model has two links only, expected arm.model = corrected",
+             s->name);
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
         study->rows[k] = blank_rows[k];
         study->rows[k].order = study->rows[k].limit = study->rows[k].error = (double)NAN;

@@ -12,18 +12,20 @@
 
 enum { LONGEST_QUEUE = 256 };
 
-// What the threads share. The mutex guards everything that changes; the first finished piece is the
-// calling thread's until it is collected.
+// What the threads share. The mutex guards everything that changes; the first finished
+// piece is the calling thread's until it is collected.
 typedef struct pool {
     const pool_work *work;
     pthread_mutex_t mutex;
-    pthread_cond_t changed; // a piece was finished, or room was made, or a thread has ended
-    size_t next;            // the first piece that no thread has taken
-    int working;            // threads that have not ended
+    pthread_cond_t
+        changed; // a piece was finished, or room was made, or a thread has ended
+    size_t next; // the first piece that no thread has taken
+    int working; // threads that have not ended
     bool stop;
-    size_t *pieces;            // finished ones, in a ring
-    char *results;             // of each
-    int room, first, finished; // places of the ring, the first finished piece, and how many
+    size_t *pieces; // finished ones, in a ring
+    char *results;  // of each
+    int room, first,
+        finished; // places of the ring, the first finished piece, and how many
 } pool;
 
 typedef struct pool_thread {
@@ -75,11 +77,14 @@ static void *work_on_pieces(void *argument)
 
 static double tick_interval(const pool_work *w)
 {
-    return w->tick_interval > 0 ? w->tick_interval : TICK_INTERVAL;
+    if (w->tick_interval > 0) {
+        return w->tick_interval;
+    }
+    return TICK_INTERVAL;
 }
 
-// Waits a little for a finished piece. Its place, -1 without one; *more is false if all threads
-// have ended and nothing is left.
+// Waits a little for a finished piece. Its place, -1 without one; *more is false if all
+// threads have ended and nothing is left.
 static int wait_for_piece(pool *p, bool stop, bool *more)
 {
     const struct timespec until = clock_after(tick_interval(p->work));
@@ -100,7 +105,8 @@ static bool asked_to_stop(const pool_work *w)
     return w->stop != NULL && *w->stop;
 }
 
-// Collects what the threads finish until they have ended. After a failure they are only waited for.
+// Collects what the threads finish until they have ended. After a failure they are only
+// waited for.
 static status collect_results(pool *p, fault *f)
 {
     const pool_work *w = p->work;
@@ -109,8 +115,8 @@ static status collect_results(pool *p, fault *f)
     for (bool more = true; more;) {
         const int at = wait_for_piece(p, code != STATUS_OK || asked_to_stop(w), &more);
         if (at >= 0 && code == STATUS_OK) {
-            code =
-                w->collect(w->context, p->pieces[at], p->results + (size_t)at * w->result_size, f);
+            code = w->collect(w->context, p->pieces[at],
+                              p->results + (size_t)at * w->result_size, f);
         }
         if (at >= 0) {
             pthread_mutex_lock(&p->mutex);
@@ -123,7 +129,8 @@ static status collect_results(pool *p, fault *f)
 
         // a tick now and then, and one at the end
         double now = clock_seconds(CLOCK_MONOTONIC);
-        if (code == STATUS_OK && w->tick != NULL && (!more || now - ticked >= tick_interval(w))) {
+        if (code == STATUS_OK && w->tick != NULL &&
+            (!more || now - ticked >= tick_interval(w))) {
             code = w->tick(w->context, !more, f);
             ticked = now;
         }
@@ -144,10 +151,14 @@ static status work_alone(pool *p, pool_thread *self, fault *f)
             code = w->tick(w->context, false, f);
         }
     }
-    return code == STATUS_OK && w->tick != NULL ? w->tick(w->context, true, f) : code;
+    if (code == STATUS_OK && w->tick != NULL) {
+        return w->tick(w->context, true, f);
+    }
+    return code;
 }
 
-// Starts up to `wanted` threads; signals are for the calling one. Returns how many there are.
+// Starts up to `wanted` threads; signals are for the calling one. Returns how many there
+// are.
 static int start_threads(pool *p, pool_thread *threads, int wanted)
 {
     sigset_t before;
@@ -156,8 +167,8 @@ static int start_threads(pool *p, pool_thread *threads, int wanted)
 
     // none ends before their number is known
     pthread_mutex_lock(&p->mutex);
-    while (started < wanted &&
-           pthread_create(&threads[started].thread, NULL, work_on_pieces, &threads[started]) == 0) {
+    while (started < wanted && pthread_create(&threads[started].thread, NULL,
+                                              work_on_pieces, &threads[started]) == 0) {
         started++;
     }
     p->working = started;
@@ -167,12 +178,16 @@ static int start_threads(pool *p, pool_thread *threads, int wanted)
     return started;
 }
 
-// The ring, of which only what was put there is read, and each thread's own storage; false without
-// memory.
+// The ring, of which only what was put there is read, and each thread's own storage;
+// false without memory.
 static bool allocate(pool *p, pool_thread *threads, int count)
 {
     const pool_work *w = p->work;
-    p->room = w->count < LONGEST_QUEUE ? (int)w->count + 1 : LONGEST_QUEUE;
+    if (w->count < LONGEST_QUEUE) {
+        p->room = (int)w->count + 1;
+    } else {
+        p->room = LONGEST_QUEUE;
+    }
     p->pieces = malloc((size_t)p->room * sizeof *p->pieces);
     p->results = malloc((size_t)p->room * w->result_size); // may be many megabytes
     bool allocated = p->pieces != NULL && p->results != NULL;
@@ -219,7 +234,11 @@ status pool_run(const pool_work *work, int threads, fault *f)
         // a single thread that nobody waits for while it computes is this one
         const bool alone = threads == 1 && work->tick == NULL;
         int started = alone ? 0 : start_threads(&p, each, threads);
-        code = started > 0 ? collect_results(&p, f) : work_alone(&p, &each[0], f);
+        if (started > 0) {
+            code = collect_results(&p, f);
+        } else {
+            code = work_alone(&p, &each[0], f);
+        }
         for (int i = 0; i < started; i++) {
             pthread_join(each[i].thread, NULL);
         }

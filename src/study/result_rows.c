@@ -10,9 +10,10 @@ result_cell result_cell_of(const result_table *t, int row, const result_column *
     const void *at = (const char *)t->rows + (size_t)row * t->row_size + column->place;
     const bool text = column->kind == RESULT_TEXT;
     return (result_cell){text ? *(const char *const *)at : NULL,
-                         text                           ? 0
-                         : column->kind == RESULT_COUNT ? (double)*(const size_t *)at
-                                                        : column->times * *(const double *)at};
+                         text ? 0
+                         : column->kind == RESULT_COUNT
+                             ? (double)*(const size_t *)at
+                             : column->times * *(const double *)at};
 }
 
 json_t *result_json(const result_table *t)
@@ -59,7 +60,8 @@ void result_field(csv_writer *w, result_cell cell)
 
 void result_put(json_t *object, const char *key, result_cell cell)
 {
-    json_put(object, key, cell.text != NULL ? json_text(cell.text) : json_number(cell.number));
+    json_put(object, key,
+             cell.text != NULL ? json_text(cell.text) : json_number(cell.number));
 }
 
 void result_print(FILE *stream, bool page, int column, int width, const char *text)

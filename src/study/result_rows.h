@@ -41,13 +41,14 @@ result_cell result_cell_of(const result_table *t, int row, const result_column *
 json_t *result_json(const result_table *t);
 void result_csv(FILE *stream, const result_table *t);
 
-// Of other tables: the first row of CSV, and a field of the others; a member of an object.
+// Of other tables: the first row of CSV, and a field of the others; a member of an
+// object.
 void result_headings(csv_writer *w, const result_column *columns, int count);
 void result_field(csv_writer *w, result_cell cell);
 void result_put(json_t *object, const char *key, result_cell cell);
 
-// Prints a cell of a table for people, of column 0, 1 ...: of columns of blanks, to the left where
-// the width is negative, or of a table of a Markdown page; result_page_rule then goes under its
-// headings. The row is not ended.
+// Prints a cell of a table for people, of column 0, 1 ...: of columns of blanks, to the
+// left where the width is negative, or of a table of a Markdown page; result_page_rule
+// then goes under its headings. The row is not ended.
 void result_print(FILE *stream, bool page, int column, int width, const char *text);
 void result_page_rule(FILE *stream, int columns);

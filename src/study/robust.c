@@ -8,7 +8,7 @@
 #include "src/base/numbers.h"
 #include "src/base/whole_file.h"
 
-// --- the sets of arms ------------------------------------------------------------------------
+// --- the sets of arms ------------------------------------------------------------------
 
 enum { MOST_SET_BYTES = 65536 };
 
@@ -18,13 +18,16 @@ static status read_text(const char *path, char **text, fault *f)
     size_t length;
     fault why = {0};
     *text = whole_file_read(path, MOST_SET_BYTES + 1, &length, &why);
-    FAIL_IF(*text == NULL, whole_file_unread(path, &why, f));
-    return length <= MOST_SET_BYTES && strlen(*text) == length
-               ? STATUS_OK
-               : fault_set(
-                     f, STATUS_BAD_ARGUMENT,
-                     "'%s' is no set, expected lines PATH=a:b or PATH=v1,v2 of at most %d bytes",
-                     path, MOST_SET_BYTES);
+    if (*text == NULL) {
+        return whole_file_unread(path, &why, f);
+    }
+    if (!(length <= MOST_SET_BYTES && strlen(*text) == length)) {
+        return fault_set(
+            f, STATUS_BAD_ARGUMENT,
+            "'%s' is no set, expected lines PATH=a:b or PATH=v1,v2 of at most %d bytes",
+            path, MOST_SET_BYTES);
+    }
+    return STATUS_OK;
 }
 
 // The text without the blanks at both ends, which are cut off.
@@ -46,8 +49,8 @@ static bool read_push(robust_case *c, const char *text)
     const char *rest;
     double impulse, time;
     if (c->push_count == ROBUST_CASE_PUSHES || !decimal_read(text, &impulse, &rest) ||
-        *rest != '@' || !decimal_read(rest + 1, &time, &rest) || *rest != '\0' || time < 0 ||
-        !isfinite(impulse) || !isfinite(time)) {
+        *rest != '@' || !decimal_read(rest + 1, &time, &rest) || *rest != '\0' ||
+        time < 0 || !isfinite(impulse) || !isfinite(time)) {
         return false;
     }
     c->push_impulse[c->push_count] = impulse;
@@ -55,8 +58,8 @@ static bool read_push(robust_case *c, const char *text)
     return true;
 }
 
-// Takes a case apart: "TITLE: PATH=VALUE; push=IMPULSE@TIME". Its settings go behind those of the
-// cases before. False if a piece is neither.
+// Takes a case apart: "TITLE: PATH=VALUE; push=IMPULSE@TIME". Its settings go behind
+// those of the cases before. False if a piece is neither.
 static bool read_case(robust_case *c, char *text, char **settings)
 {
     char *rest = strchr(text, ':');
@@ -105,18 +108,20 @@ static status read_lines(robust_set *set, fault *f)
 
         robust_case *c = &set->cases[set->case_count++];
         *c = (robust_case){.file = set->file, .line = number};
-        FAULT_PLACE_IF(!read_case(c, line + strlen(word), settings), f, STATUS_BAD_ARGUMENT, number,
-                       1,
-                       "%s:%d: no case, expected 'case TITLE: PATH=VALUE; PATH=VALUE', or "
-                       "push=IMPULSE@TIME for a value",
-                       set->file, number);
+        if (!read_case(c, line + strlen(word), settings)) {
+            return fault_set_place(
+                f, STATUS_BAD_ARGUMENT, number, 1,
+                "%s:%d: no case, expected 'case TITLE: PATH=VALUE; PATH=VALUE', or "
+                "push=IMPULSE@TIME for a value",
+                set->file, number);
+        }
         settings += c->setting_count;
     }
     return STATUS_OK;
 }
 
-// Room for all cases that the text of the set may have, and their settings: they have at least one
-// character each. False without memory.
+// Room for all cases that the text of the set may have, and their settings: they have at
+// least one character each. False without memory.
 static bool make_room(robust_set *set)
 {
     const size_t most = strlen(set->text) + 1;
@@ -132,14 +137,24 @@ static bool make_room(robust_set *set)
 status robust_set_read(robust_set *set, const char *path, fault *f)
 {
     *set = (robust_set){.file = strdup(path)};
-    status code = set->file != NULL ? read_text(path, &set->text, f) : fault_no_memory(f);
+    status code;
+    if (set->file != NULL) {
+        code = read_text(path, &set->text, f);
+    } else {
+        code = fault_no_memory(f);
+    }
     if (code == STATUS_OK) {
-        code = make_room(set) ? read_lines(set, f) : fault_no_memory(f);
+        if (make_room(set)) {
+            code = read_lines(set, f);
+        } else {
+            code = fault_no_memory(f);
+        }
     }
     if (code == STATUS_OK && set->count == 0) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT,
-                         "the set '%s' names no parameter, expected lines PATH=a:b or PATH=v1,v2",
-                         path);
+        code = fault_set(
+            f, STATUS_BAD_ARGUMENT,
+            "the set '%s' names no parameter, expected lines PATH=a:b or PATH=v1,v2",
+            path);
     }
     if (code != STATUS_OK) {
         robust_set_finish(set);
@@ -160,16 +175,18 @@ void robust_set_finish(robust_set *set)
 
 status robust_case_fault(const robust_case *c, const fault *why, fault *f)
 {
-    return why->code == STATUS_NO_MEMORY
-               ? fault_no_memory(f)
-               : fault_set_place(f, why->code, c->line, 1, "%.200s:%d: case '%.60s': %.600s",
-                                 c->file, c->line, c->title, why->text);
+    if (why->code == STATUS_NO_MEMORY) {
+        return fault_no_memory(f);
+    }
+    return fault_set_place(f, why->code, c->line, 1, "%.200s:%d: case '%.60s': %.600s",
+                           c->file, c->line, c->title, why->text);
 }
 
 // The settings and pushes of a case, which must go together with the scenario.
 static status apply_case(scenario *derived, const robust_case *c, fault *f)
 {
-    f->code = scenario_override_all(derived, c->settings, c->setting_count, keep_first_fault, f);
+    f->code = scenario_override_all(derived, c->settings, c->setting_count,
+                                    keep_first_fault, f);
     TRY(f->code);
     const double duration = derived->parameters.run.duration;
     for (int i = 0; i < c->push_count; i++) {
@@ -186,14 +203,18 @@ static status apply_case(scenario *derived, const robust_case *c, fault *f)
     return scenario_take_parameters(derived, &p, f);
 }
 
-status robust_case_scenario(scenario *derived, const scenario *base, const robust_case *c, fault *f)
+status robust_case_scenario(scenario *derived, const scenario *base, const robust_case *c,
+                            fault *f)
 {
     *derived = *base;
     int pushes = c != NULL ? c->push_count : 0;
     derived->actions = calloc((size_t)(base->action_count + pushes + 1), sizeof(action));
-    TRY_MEMORY(derived->actions != NULL, f);
+    if (derived->actions == NULL) {
+        return fault_no_memory(f);
+    }
     if (base->action_count > 0) {
-        memcpy(derived->actions, base->actions, (size_t)base->action_count * sizeof(action));
+        memcpy(derived->actions, base->actions,
+               (size_t)base->action_count * sizeof(action));
     }
 
     fault why = {.code = STATUS_OK};
@@ -216,7 +237,7 @@ void robust_case_finish(scenario *derived)
 static const double robust_levels[ROBUST_QUANTILES] = {
     [ROBUST_MEDIAN] = 0.5, [ROBUST_NINE_TENTHS] = 0.9, [ROBUST_WORST] = 1};
 
-// --- a law ------------------------------------------------------------------------------------
+// --- a law -----------------------------------------------------------------------------
 
 // Sorts the values; between two of them a quantile lies on a straight line.
 static void find_quantiles(double *values, size_t count, double *quantiles)
@@ -226,30 +247,36 @@ static void find_quantiles(double *values, size_t count, double *quantiles)
         double place = robust_levels[i] * (double)(count - 1), whole = floor(place);
         size_t at = (size_t)whole, next = at + 1 < count ? at + 1 : at;
         double part = place - whole;
-        quantiles[i] = part > 0 ? (1 - part) * values[at] + part * values[next] : values[at];
+        if (part > 0) {
+            quantiles[i] = (1 - part) * values[at] + part * values[next];
+        } else {
+            quantiles[i] = values[at];
+        }
     }
 }
 
 // Quantities of every run that a judgement takes; every run that did not fail has steps.
-#define JUDGED(QUANTITY)                                                                           \
-    QUANTITY(COMMAND, "force_command_N")                                                           \
-    QUANTITY(OVER, "force_over_command_N")                                                         \
-    QUANTITY(SMOOTHED, "smoothed_over_command_N")                                                  \
-    QUANTITY(PEAK, "peak_force_N")                                                                 \
-    QUANTITY(CONTACT, "first_contact_s")                                                           \
-    QUANTITY(SETTLING, "settling_time_s")                                                          \
-    QUANTITY(ERROR, "steady_error_N")                                                              \
-    QUANTITY(SEPARATIONS, "separations")                                                           \
-    QUANTITY(APPROACH, "approach_speed_m_s")                                                       \
-    QUANTITY(BACK, "return_speed_m_s")                                                             \
+#define JUDGED(QUANTITY)                                                                 \
+    QUANTITY(COMMAND, "force_command_N")                                                 \
+    QUANTITY(OVER, "force_over_command_N")                                               \
+    QUANTITY(SMOOTHED, "smoothed_over_command_N")                                        \
+    QUANTITY(PEAK, "peak_force_N")                                                       \
+    QUANTITY(CONTACT, "first_contact_s")                                                 \
+    QUANTITY(SETTLING, "settling_time_s")                                                \
+    QUANTITY(ERROR, "steady_error_N")                                                    \
+    QUANTITY(SEPARATIONS, "separations")                                                 \
+    QUANTITY(APPROACH, "approach_speed_m_s")                                             \
+    QUANTITY(BACK, "return_speed_m_s")                                                   \
     QUANTITY(STEPS, "steps")
 #define NUMBER(name, key) name,
 #define KEY(name, key)    key,
 enum { JUDGED(NUMBER) QUANTITIES };
 static const char *const keys[QUANTITIES] = {JUDGED(KEY)};
 
-// Judges the runs, whose quantities stand `most` behind one another; what is sorted is overwritten.
-static void judge(robust_law *out, const sweep *s, const size_t *runs, size_t most, double *values)
+// Judges the runs, whose quantities stand `most` behind one another; what is sorted is
+// overwritten.
+static void judge(robust_law *out, const sweep *s, const size_t *runs, size_t most,
+                  double *values)
 {
     const size_t n = out->runs;
     double *of[QUANTITIES];
@@ -257,7 +284,9 @@ static void judge(robust_law *out, const sweep *s, const size_t *runs, size_t mo
     double pushed = 0; // instant of the script's last push [s]
     for (int i = 0; i < s->base->action_count; i++) {
         const action *a = &s->base->actions[i];
-        pushed = a->kind == ACTION_PUSH ? fmax(pushed, a->time) : pushed;
+        if (a->kind == ACTION_PUSH) {
+            pushed = fmax(pushed, a->time);
+        }
     }
     for (int q = 0; q < QUANTITIES; q++) {
         of[q] = values + (size_t)q * most;
@@ -287,14 +316,28 @@ static void judge(robust_law *out, const sweep *s, const size_t *runs, size_t mo
 
         // a push begins anew
         double contact = of[CONTACT][i], at = contact + of[SETTLING][i];
-        of[CONTACT][i] = pushed > 0 ? (double)NAN : at;
-        of[SETTLING][i] = at > pushed ? at - fmax(contact, pushed) : isnan(at) ? at : 0;
+        if (pushed > 0) {
+            of[CONTACT][i] = (double)NAN;
+        } else {
+            of[CONTACT][i] = at;
+        }
+        if (at > pushed) {
+            of[SETTLING][i] = at - fmax(contact, pushed);
+        } else if (isnan(at)) {
+            of[SETTLING][i] = at;
+        } else {
+            of[SETTLING][i] = 0;
+        }
     }
 
     // all of them
-    out->overshoot_of = out->by_smoothed == 0   ? "peak"
-                        : out->by_smoothed == n ? "smoothed"
-                                                : "peak and smoothed";
+    if (out->by_smoothed == 0) {
+        out->overshoot_of = "peak";
+    } else if (out->by_smoothed == n) {
+        out->overshoot_of = "smoothed";
+    } else {
+        out->overshoot_of = "peak and smoothed";
+    }
     out->settled = (double)settled / (double)n;
     out->separated = (double)separated / (double)n;
     out->exceeded = (double)exceeded / (double)n;
@@ -319,7 +362,9 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sha
     SCOPED(free_kept) double *column = calloc(n, sizeof *column);
     SCOPED(free_kept) double *values = calloc(QUANTITIES * n, sizeof *values);
     out->overshoots = calloc(n, sizeof *out->overshoots);
-    TRY_MEMORY(runs != NULL && column != NULL && values != NULL && out->overshoots != NULL, f);
+    if (!(runs != NULL && column != NULL && values != NULL && out->overshoots != NULL)) {
+        return fault_no_memory(f);
+    }
     for (int q = 0; q < QUANTITIES; q++) {
         TRY(store->quantity(store, share, keys[q], column, NULL, f));
         out->runs = 0;

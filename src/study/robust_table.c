@@ -35,12 +35,12 @@ enum { ROBUST_CELL = 64 };
 #define SHARE(field) offsetof(robust_law, field), 100 // in percent
 
 // The three quantiles of a quantity, in the order of their enumeration.
-#define QUANTILES(name, key_unit, unit, field)                                                     \
-    {name "_median" key_unit, name "_median", unit, PLACE(field[ROBUST_MEDIAN])},                  \
-        {name "_nine_tenths" key_unit, name "_nine_tenths", unit,                                  \
-         PLACE(field[ROBUST_NINE_TENTHS])},                                                        \
-    {                                                                                              \
-        name "_worst" key_unit, name "_worst", unit, PLACE(field[ROBUST_WORST])                    \
+#define QUANTILES(name, key_unit, unit, field)                                           \
+    {name "_median" key_unit, name "_median", unit, PLACE(field[ROBUST_MEDIAN])},        \
+        {name "_nine_tenths" key_unit, name "_nine_tenths", unit,                        \
+         PLACE(field[ROBUST_NINE_TENTHS])},                                              \
+    {                                                                                    \
+        name "_worst" key_unit, name "_worst", unit, PLACE(field[ROBUST_WORST])          \
     }
 
 static const result_column columns[COLUMNS] = {
@@ -110,7 +110,8 @@ static bool has_cases(const robust_table *t)
 static result_table told(const robust_table *t)
 {
     const int first = has_cases(t) ? CASE : LAW;
-    return (result_table){columns + first, COLUMNS - first, t->laws, sizeof *t->laws, t->count};
+    return (result_table){columns + first, COLUMNS - first, t->laws, sizeof *t->laws,
+                          t->count};
 }
 
 // Two counts, then the numbers but the one that another law is needed for.
@@ -123,7 +124,10 @@ static int column_of(int i)
 const char *robust_key(int i)
 {
     assert(i >= 0);
-    return column_of(i) < COLUMNS ? columns[column_of(i)].key : NULL;
+    if (column_of(i) < COLUMNS) {
+        return columns[column_of(i)].key;
+    }
+    return NULL;
 }
 
 double robust_value(const robust_law *law, int i)
@@ -140,7 +144,10 @@ static const char *cell_of(const robust_table *t, int row, const shown_column *s
         snprintf(text, ROBUST_CELL, "/%s", t->against);
     }
     if (row < 0) {
-        return shown->column == AGAINST ? text : shown->heading;
+        if (shown->column == AGAINST) {
+            return text;
+        }
+        return shown->heading;
     }
     const result_table all = told(t);
     const result_cell cell = result_cell_of(&all, row, &columns[shown->column]);
@@ -149,7 +156,10 @@ static const char *cell_of(const robust_table *t, int row, const shown_column *s
                   : fabs(cell.number) >= 1000 ? "%.0f"
                                               : "%.3g",
                   cell.number);
-    return cell.text != NULL ? cell.text : text;
+    if (cell.text != NULL) {
+        return cell.text;
+    }
+    return text;
 }
 
 // The table in columns of blanks, or of a Markdown page.
@@ -157,23 +167,32 @@ void robust_text(FILE *stream, const robust_table *t, bool page)
 {
     const bool cases = has_cases(t);
     const shown_column *shown = cases ? of_cases : of_laws;
-    const int count = cases ? (int)(sizeof of_cases / sizeof of_cases[0]) - (t->against == NULL)
-                            : (int)(sizeof of_laws / sizeof of_laws[0]);
+    const int count =
+        cases ? (int)(sizeof of_cases / sizeof of_cases[0]) - (t->against == NULL)
+              : (int)(sizeof of_laws / sizeof of_laws[0]);
     int widest = 0; // title of a case
     char text[ROBUST_CELL];
     for (int i = 0; i < t->count && cases; i++) {
         const int length = (int)strlen(t->laws[i].case_title);
-        widest = length > widest ? length : widest;
+        if (length > widest) {
+            widest = length;
+        }
     }
 
     // headings, then a line a law
     for (int i = -1; i < t->count; i++) {
         for (int k = 0; k < count; k++) {
             const int column = shown[k].column;
-            const int width = column == CASE   ? -widest
-                              : column == LAW  ? -16
-                              : column == RUNS ? 5
-                                               : 12;
+            int width;
+            if (column == CASE) {
+                width = -widest;
+            } else if (column == LAW) {
+                width = -16;
+            } else if (column == RUNS) {
+                width = 5;
+            } else {
+                width = 12;
+            }
             result_print(stream, page, k, width, cell_of(t, i, &shown[k], text));
         }
         if (i >= 0 && t->laws[i].failed > 0 && !page) {

@@ -10,7 +10,7 @@
 #include "src/study/sweep.h"
 #include "src/tables/settings.h"
 
-// --- the condition --------------------------------------------------------------------------
+// --- the condition ---------------------------------------------------------------------
 
 // The part of a text between two places without blanks at its ends, as a text of its own.
 static void copy_trimmed(const char *start, const char *end, char *copy, size_t size)
@@ -29,7 +29,8 @@ status solve_condition_read(const char *text, solve_condition *c, fault *f)
     const char *sign = strpbrk(text, "<>"), *rest;
     char key[128];
     FAULT_IF(sign == NULL, f, STATUS_BAD_ARGUMENT,
-             "'%.100s' is no condition, expected KEY<VALUE or KEY>VALUE, such as 'peak_force_N<2'",
+             "'%.100s' is no condition, expected KEY<VALUE or KEY>VALUE, such as "
+             "'peak_force_N<2'",
              text);
 
     // the quantity
@@ -41,24 +42,32 @@ status solve_condition_read(const char *text, solve_condition *c, fault *f)
                          near ? ", did you mean '" : "; expected a key of run --json",
                          near ? near : "", near ? "'?" : "");
     }
-    FAULT_IF(summary_table[c->quantity].timing, f, STATUS_BAD_ARGUMENT,
-             "%s depends on the machine, not on the scenario: no parameter has a limit for it",
-             key);
+    FAULT_IF(
+        summary_table[c->quantity].timing, f, STATUS_BAD_ARGUMENT,
+        "%s depends on the machine, not on the scenario: no parameter has a limit for it",
+        key);
 
     // and its bound
     c->equal = sign[1] == '=';
     char bound[128];
     copy_trimmed(sign + 1 + c->equal, text + strlen(text), bound, sizeof bound);
-    FAULT_IF(!decimal_read(bound, &c->bound, &rest) || *rest != '\0', f, STATUS_BAD_ARGUMENT,
-             "'%.100s' is no bound of %s, expected a number%s%s", sign + 1 + c->equal, key,
-             summary_table[c->quantity].unit[0] ? " in " : "", summary_table[c->quantity].unit);
+    FAULT_IF(!decimal_read(bound, &c->bound, &rest) || *rest != '\0', f,
+             STATUS_BAD_ARGUMENT, "'%.100s' is no bound of %s, expected a number%s%s",
+             sign + 1 + c->equal, key, summary_table[c->quantity].unit[0] ? " in " : "",
+             summary_table[c->quantity].unit);
     return STATUS_OK;
 }
 
 bool solve_condition_holds(const solve_condition *c, double value)
 {
     assert(!isnan(value));
-    return c->equal && value == c->bound ? true : c->below ? value < c->bound : value > c->bound;
+    if (c->equal && value == c->bound) {
+        return true;
+    }
+    if (c->below) {
+        return value < c->bound;
+    }
+    return value > c->bound;
 }
 
 status solve_usual_range(sweep_axis *axis, const scenario *s, fault *f)
@@ -76,7 +85,11 @@ status solve_axis_read(sweep_axis *axis, const char *text, const scenario *s, fa
 {
     const char *range = strchr(text, '=');
     TRY(sweep_axis_find(axis, text, f));
-    TRY(range != NULL ? sweep_axis_parse_range(axis, range + 1, f) : solve_usual_range(axis, s, f));
+    if (range != NULL) {
+        TRY(sweep_axis_parse_range(axis, range + 1, f));
+    } else {
+        TRY(solve_usual_range(axis, s, f));
+    }
 
     // a study of one run with any value of the range
     double any = (double)NAN;
@@ -84,7 +97,7 @@ status solve_axis_read(sweep_axis *axis, const char *text, const scenario *s, fa
     return sweep_check_effect(&study, 0, f);
 }
 
-// --- one run --------------------------------------------------------------------------------
+// --- one run ---------------------------------------------------------------------------
 
 // What one value of the parameter gives.
 typedef struct trial {
@@ -108,20 +121,23 @@ typedef struct search {
 static trial trial_of(const search *s, double value, const summary *m)
 {
     const bool known = m->status == STATUS_OK && !m->inaccurate;
-    const double quantity = known ? summary_value(m, s->condition->quantity) : (double)NAN;
+    const double quantity =
+        known ? summary_value(m, s->condition->quantity) : (double)NAN;
     return (trial){value, quantity, known, true};
 }
 
 // What ends a search, others are runs that say nothing.
 static status ending(status code, fault *f)
 {
-    return code == STATUS_STOPPED || code == STATUS_NO_MEMORY
-               ? fault_set(f, code, "%s", status_text(code))
-               : STATUS_OK;
+    if (code == STATUS_STOPPED || code == STATUS_NO_MEMORY) {
+        return fault_set(f, code, "%s", status_text(code));
+    }
+    return STATUS_OK;
 }
 
-// Runs the scenario with one value of the parameter. Values that do not go with the others of the
-// scenario are as good as a run that fails. STATUS_STOPPED, STATUS_NO_MEMORY.
+// Runs the scenario with one value of the parameter. Values that do not go with the
+// others of the scenario are as good as a run that fails. STATUS_STOPPED,
+// STATUS_NO_MEMORY.
 static status run_trial(const search *s, double value, trial *t, fault *f)
 {
     scenario derived;
@@ -141,15 +157,16 @@ static bool holds(const search *s, const trial *t)
     return !isnan(t->quantity) && solve_condition_holds(s->condition, t->quantity);
 }
 
-// --- the range ------------------------------------------------------------------------------
+// --- the range -------------------------------------------------------------------------
 
 static bool is_whole(const search *s)
 {
-    return sweep_axis_parameter(s->axis)->type == PARAMETER_INTEGER && s->axis->element == 0;
+    return sweep_axis_parameter(s->axis)->type == PARAMETER_INTEGER &&
+           s->axis->element == 0;
 }
 
-// Value i of the range, from its low to its high end, both included; whole numbers are each other's
-// neighbours where there are enough points.
+// Value i of the range, from its low to its high end, both included; whole numbers are
+// each other's neighbours where there are enough points.
 static double point_value(const search *s, size_t i)
 {
     const size_t points = (size_t)s->found->points;
@@ -157,7 +174,10 @@ static double point_value(const search *s, size_t i)
     rising.low = fmin(s->axis->low, s->axis->high);
     rising.high = fmax(s->axis->low, s->axis->high);
     const double value = sweep_axis_point(&rising, i, points);
-    return is_whole(s) && i > 0 && i + 1 < points ? round(value) : value;
+    if (is_whole(s) && i > 0 && i + 1 < points) {
+        return round(value);
+    }
+    return value;
 }
 
 static status make_point(void *context, size_t i, scenario *made, fault *f)
@@ -186,7 +206,7 @@ static status take_point(void *context, size_t i, const summary *m, fault *f)
     return STATUS_OK;
 }
 
-// --- between two values ---------------------------------------------------------------------
+// --- between two values ----------------------------------------------------------------
 
 // Whether no value lies between two, or none that matters.
 static bool neighbours(const search *s, double a, double b)
@@ -195,8 +215,9 @@ static bool neighbours(const search *s, double a, double b)
     return fabs(a - b) <= (is_whole(s) ? 1 : 1e-13 * width) || nextafter(a, b) == b;
 }
 
-// The next value to try between `in`, where the condition holds, and `out`: by the secant, kept a
-// thousandth of the interval off its ends so that both come near the limit, or in the middle.
+// The next value to try between `in`, where the condition holds, and `out`: by the
+// secant, kept a thousandth of the interval off its ends so that both come near the
+// limit, or in the middle.
 static double next_value(const search *s, const trial *in, const trial *out, bool secant)
 {
     const double width = out->value - in->value;
@@ -208,13 +229,16 @@ static double next_value(const search *s, const trial *in, const trial *out, boo
 
     // one of the whole numbers within
     const double value = in->value + share * width;
-    return is_whole(s)
-               ? in->value +
-                     copysign(fmin(fmax(round(fabs(value - in->value)), 1), fabs(width) - 1), width)
-               : value;
+    if (is_whole(s)) {
+        return in->value +
+               copysign(fmin(fmax(round(fabs(value - in->value)), 1), fabs(width) - 1),
+                        width);
+    }
+    return value;
 }
 
-// Locates the limit between two trials, of which one holds. Leaves the innermost two of them.
+// Locates the limit between two trials, of which one holds. Leaves the innermost two of
+// them.
 static status locate(const search *s, trial *in, trial *out, fault *f)
 {
     // a jump is halved down to a part in 1e13, forty times; the secant takes fewer
@@ -240,11 +264,14 @@ static status locate_limits(search *s, fault *f)
             continue;
         }
 
-        // where the quantity ceases to be there between them, that is no limit of its value
+        // where the quantity ceases to be there between them, that is no limit of its
+        // value
         trial *in = first ? &a : &b, *out = first ? &b : &a;
         if (!found->stopped) {
             const status code = locate(s, in, out, f);
-            FAIL_IF(code == STATUS_NO_MEMORY, code);
+            if (code == STATUS_NO_MEMORY) {
+                return code;
+            }
             found->stopped = code == STATUS_STOPPED;
         }
         if (isnan(out->quantity)) {
@@ -254,12 +281,16 @@ static status locate_limits(search *s, fault *f)
         if (!found->more) {
             // continuous as far as the values at both sides tell
             const double size = fmax(fabs(s->condition->bound), fabs(in->quantity));
-            const bool jumps = is_whole(s) || fabs(in->quantity - out->quantity) > 1e-6 * size;
+            const bool jumps =
+                is_whole(s) || fabs(in->quantity - out->quantity) > 1e-6 * size;
             found->limits[found->count++] =
                 (solve_limit){in->value, in->quantity, first, jumps, out->value};
         }
     }
-    return found->stopped ? STATUS_STOPPED : STATUS_OK;
+    if (found->stopped) {
+        return STATUS_STOPPED;
+    }
+    return STATUS_OK;
 }
 
 status solve(const scenario *s, const sweep_axis *axis, const solve_condition *condition,
@@ -267,8 +298,11 @@ status solve(const scenario *s, const sweep_axis *axis, const solve_condition *c
 {
     assert(axis->is_range);
     assert(points >= 2 && points <= SOLVE_MOST_POINTS);
-    search here = {
-        .base = s, .axis = axis, .condition = condition, .monitor = monitor, .found = found};
+    search here = {.base = s,
+                   .axis = axis,
+                   .condition = condition,
+                   .monitor = monitor,
+                   .found = found};
 
     // no whole number twice
     *found = (solution){.points = points};
@@ -276,7 +310,9 @@ status solve(const scenario *s, const sweep_axis *axis, const solve_condition *c
         found->points = (int)fmin(points, fabs(axis->high - axis->low) + 1);
     }
     SCOPED(free_kept) trial *trials = calloc((size_t)found->points, sizeof *trials);
-    TRY_MEMORY(trials != NULL, f);
+    if (trials == NULL) {
+        return fault_no_memory(f);
+    }
     here.trials = trials;
 
     // one by one: none waits for others when it is stopped
@@ -287,7 +323,9 @@ status solve(const scenario *s, const sweep_axis *axis, const solve_condition *c
                          .together = 1,
                          .abandon = monitor != NULL ? &monitor->stop : NULL};
     const status code = batch_run(&range, jobs, f);
-    FAIL_IF(code != STATUS_OK && code != STATUS_STOPPED, code);
+    if (code != STATUS_OK && code != STATUS_STOPPED) {
+        return code;
+    }
     found->stopped = code == STATUS_STOPPED;
     return locate_limits(&here, f);
 }

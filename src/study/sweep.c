@@ -28,7 +28,7 @@ int sweep_sampling_find(const char *name)
     return i;
 }
 
-// --- what is varied -------------------------------------------------------------------------
+// --- what is varied --------------------------------------------------------------------
 
 // An axis whose values go with those of the axis before it, one each.
 static status check_together(const sweep *s, const sweep_axis *axis, fault *f)
@@ -37,8 +37,9 @@ static status check_together(const sweep *s, const sweep_axis *axis, fault *f)
     FAULT_IF(s->sampling == SWEEP_GRID || axis == s->axes, f, STATUS_BAD_ARGUMENT,
              "'with' goes with drawn values, behind those that they are drawn with");
     FAULT_IF(axis->is_range || before->is_range || axis->count != before->count, f,
-             STATUS_BAD_ARGUMENT, "%s is drawn with %s, expected as many values: %zu, not %zu",
-             axis->name, before->name, before->count, axis->count);
+             STATUS_BAD_ARGUMENT,
+             "%s is drawn with %s, expected as many values: %zu, not %zu", axis->name,
+             before->name, before->count, axis->count);
     return STATUS_OK;
 }
 
@@ -49,39 +50,49 @@ static status read_axis(sweep *s, const char *given, fault *f)
     FAULT_IF(s->axis_count == SWEEP_MOST_AXES, f, STATUS_BAD_ARGUMENT,
              "at most %d parameters can be varied", SWEEP_MOST_AXES);
     const bool together = strncmp(given, with, strlen(with)) == 0;
-    given += together ? strlen(with) : 0;
+    if (together) {
+        given += strlen(with);
+    }
 
     // the parameter before the equals sign, the values behind it
     sweep_axis *axis = &s->axes[s->axis_count];
     const char *values = strchr(given, '=');
-    FAULT_IF(values == NULL, f, STATUS_BAD_ARGUMENT, "expected PATH=a:b:n or PATH=v1,v2,v3");
+    FAULT_IF(values == NULL, f, STATUS_BAD_ARGUMENT,
+             "expected PATH=a:b:n or PATH=v1,v2,v3");
     s->axis_count++;
     TRY(sweep_axis_find(axis, given, f));
     for (const sweep_axis *other = s->axes; other < axis; other++) {
-        FAULT_IF(strcmp(other->name, axis->name) == 0, f, STATUS_BAD_ARGUMENT, "%s is varied twice",
-                 axis->name);
+        FAULT_IF(strcmp(other->name, axis->name) == 0, f, STATUS_BAD_ARGUMENT,
+                 "%s is varied twice", axis->name);
     }
     TRY(sweep_axis_parse(axis, values + 1, s->sampling != SWEEP_GRID, f));
     axis->together = together;
-    return together ? check_together(s, axis, f) : STATUS_OK;
+    if (together) {
+        return check_together(s, axis, f);
+    }
+    return STATUS_OK;
 }
 
-// --- which values a run has -----------------------------------------------------------------
+// --- which values a run has ------------------------------------------------------------
 
-// Latin hypercube (McKay, Beckman and Conover 1979): for each parameter its range falls into
-// run_count parts of equal chance, which the runs take in random order, each at a random place.
+// Latin hypercube (McKay, Beckman and Conover 1979): for each parameter its range falls
+// into run_count parts of equal chance, which the runs take in random order, each at a
+// random place.
 static status draw_latin(sweep *s, random_generator *g, fault *f)
 {
     SCOPED(free_kept) size_t *part = malloc(s->run_count * sizeof *part);
     SCOPED(free_kept) double *share = malloc(s->run_count * sizeof *share);
-    TRY_MEMORY(part != NULL && share != NULL, f);
+    if (!(part != NULL && share != NULL)) {
+        return fault_no_memory(f);
+    }
     for (int i = 0; i < s->axis_count; i++) {
         if (!s->axes[i].together) {
             random_permutation(g, part, s->run_count);
         }
         for (size_t run = 0; run < s->run_count; run++) {
             if (!s->axes[i].together) {
-                const double u = ((double)part[run] + random_uniform(g)) / (double)s->run_count;
+                const double u =
+                    ((double)part[run] + random_uniform(g)) / (double)s->run_count;
                 // the sum may round up to the next part
                 const double above = (double)(part[run] + 1) / (double)s->run_count;
                 share[run] = fmin(u, nextafter(above, 0));
@@ -102,20 +113,27 @@ static status count_runs(sweep *s, size_t runs, fault *f)
              sweep_sampling_name(s->sampling), SWEEP_MOST_RUNS);
 
     // of a grid the product of its axes, whose factors are small enough to fit
-    s->run_count = grid ? 1 : runs;
+    if (grid) {
+        s->run_count = 1;
+    } else {
+        s->run_count = runs;
+    }
     for (int i = 0; i < s->axis_count && grid; i++) {
         s->run_count *= s->axes[i].count;
         FAULT_IF(s->run_count > SWEEP_MOST_RUNS, f, STATUS_BAD_ARGUMENT,
                  "the grid has more than %d runs", SWEEP_MOST_RUNS);
     }
-    return !grid || runs == 0 ? STATUS_OK
-                              : fault_set(f, STATUS_BAD_ARGUMENT,
-                                          "--runs goes with --sample random or latin; a grid is as "
-                                          "large as it is, here %zu",
-                                          s->run_count);
+    if (!(!grid || runs == 0)) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "--runs goes with --sample random or latin; a grid is as "
+                         "large as it is, here %zu",
+                         s->run_count);
+    }
+    return STATUS_OK;
 }
 
-// The values of random sampling, all at once, so that they do not depend on the order of the runs.
+// The values of random sampling, all at once, so that they do not depend on the order of
+// the runs.
 static status draw_values(sweep *s, fault *f)
 {
     random_generator g;
@@ -123,7 +141,9 @@ static status draw_values(sweep *s, fault *f)
         return STATUS_OK;
     }
     s->drawn = malloc(s->run_count * (size_t)s->axis_count * sizeof *s->drawn);
-    TRY_MEMORY(s->drawn != NULL, f);
+    if (s->drawn == NULL) {
+        return fault_no_memory(f);
+    }
 
     // the same seed gives the same values
     random_seed(&g, s->seed);
@@ -135,7 +155,9 @@ static status draw_values(sweep *s, fault *f)
     for (size_t run = 0; run < s->run_count; run++) {
         double share = 0;
         for (int i = 0; i < s->axis_count; i++) {
-            share = s->axes[i].together ? share : random_uniform(&g);
+            if (!s->axes[i].together) {
+                share = random_uniform(&g);
+            }
             s->drawn[run * (size_t)s->axis_count + (size_t)i] =
                 sweep_axis_value_at(&s->axes[i], share);
         }
@@ -172,7 +194,8 @@ status sweep_scenario(const sweep *s, size_t run, scenario *derived, fault *f)
     return sweep_axes_scenario(s->axes, s->axis_count, values, s->base, derived, f);
 }
 
-// Tells before anything is computed if values do not go together (links and the printed model).
+// Tells before anything is computed if values do not go together (links and the printed
+// model).
 static status check_combinations(const sweep *s, fault *f)
 {
     // what a very large sweep has beyond these is told in the rows of the runs
@@ -187,12 +210,13 @@ static status check_combinations(const sweep *s, fault *f)
             for (int i = 0; i < s->axis_count && length < sizeof values; i++) {
                 char text[128];
                 sweep_value_text(s, run, i, text, sizeof text);
-                length += (size_t)snprintf(values + length, sizeof values - length, "%s%s = %s",
-                                           i > 0 ? ", " : "", s->axes[i].name, text);
+                length +=
+                    (size_t)snprintf(values + length, sizeof values - length, "%s%s = %s",
+                                     i > 0 ? ", " : "", s->axes[i].name, text);
             }
 
-            return fault_set_at(f, STATUS_BAD_ARGUMENT, why.path, "run %zu (%s): %.400s", run + 1,
-                                values, why.text);
+            return fault_set_at(f, STATUS_BAD_ARGUMENT, why.path, "run %zu (%s): %.400s",
+                                run + 1, values, why.text);
         }
     }
     return STATUS_OK;
@@ -213,18 +237,26 @@ status sweep_plan(sweep *s, const sweep_request *request, fault *f)
         fault why = {.path = ""};
         code = read_axis(s, request->vary[i], &why);
         if (code != STATUS_OK) {
-            code = code == STATUS_NO_MEMORY ? code : STATUS_BAD_ARGUMENT;
-            code = request->lines == NULL
-                       ? fault_set_at(f, code, why.path, "--vary %.200s: %.700s", request->vary[i],
-                                      why.text)
-                       : fault_set_place(f, code, request->lines[i], 1, "%.200s:%d: %.700s",
-                                         request->file, request->lines[i], why.text);
+            if (code != STATUS_NO_MEMORY) {
+                code = STATUS_BAD_ARGUMENT;
+            }
+            if (request->lines == NULL) {
+                code = fault_set_at(f, code, why.path, "--vary %.200s: %.700s",
+                                    request->vary[i], why.text);
+            } else {
+                code = fault_set_place(f, code, request->lines[i], 1, "%.200s:%d: %.700s",
+                                       request->file, request->lines[i], why.text);
+            }
         }
     }
 
     // the runs
-    code = code == STATUS_OK ? count_runs(s, request->runs, f) : code;
-    code = code == STATUS_OK ? draw_values(s, f) : code;
+    if (code == STATUS_OK) {
+        code = count_runs(s, request->runs, f);
+    }
+    if (code == STATUS_OK) {
+        code = draw_values(s, f);
+    }
     if (code != STATUS_OK) {
         sweep_finish(s);
     }
@@ -250,11 +282,15 @@ const char *sweep_idle(const sweep *s, size_t run, int axis)
     scenario derived;
     for (int i = 0; i < s->axis_count; i++) {
         values[i] = sweep_value(s, run, i);
-        values[i] = isnan(values[i]) ? sweep_axis_value_at(&s->axes[i], SOME_SHARE) : values[i];
+        if (isnan(values[i])) {
+            values[i] = sweep_axis_value_at(&s->axes[i], SOME_SHARE);
+        }
     }
-    return sweep_axes_scenario(s->axes, s->axis_count, values, s->base, &derived, NULL) == STATUS_OK
-               ? effect_none_from(&derived, s->axes[axis].parameter, -1)
-               : NULL;
+    if (sweep_axes_scenario(s->axes, s->axis_count, values, s->base, &derived, NULL) ==
+        STATUS_OK) {
+        return effect_none_from(&derived, s->axes[axis].parameter, -1);
+    }
+    return NULL;
 }
 
 status sweep_check_effect(const sweep *s, int axis, fault *f)
@@ -264,8 +300,11 @@ status sweep_check_effect(const sweep *s, int axis, fault *f)
     while (run < s->run_count && (why = sweep_idle(s, run, axis)) != NULL) {
         run++;
     }
-    FAULT_AT_IF(why != NULL, f, STATUS_BAD_ARGUMENT, sweep_axis_parameter(&s->axes[axis])->path,
-                "%s has no effect in any run: %s", s->axes[axis].name, why);
+    if (why != NULL) {
+        return fault_set_at(f, STATUS_BAD_ARGUMENT,
+                            sweep_axis_parameter(&s->axes[axis])->path,
+                            "%s has no effect in any run: %s", s->axes[axis].name, why);
+    }
     return STATUS_OK;
 }
 

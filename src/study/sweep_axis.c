@@ -13,7 +13,10 @@
 const parameter_info *sweep_axis_parameter(const sweep_axis *axis)
 {
     assert(axis->parameter >= 0 && axis->parameter < parameter_count);
-    return settings_name(axis->name) ? &setting_info : &parameter_table[axis->parameter];
+    if (settings_name(axis->name)) {
+        return &setting_info;
+    }
+    return &parameter_table[axis->parameter];
 }
 
 bool sweep_axis_has_words(const sweep_axis *axis)
@@ -30,23 +33,30 @@ status sweep_axis_find(sweep_axis *axis, const char *text, fault *f)
     if (settings_name(name) != NULL) {
         axis->parameter = settings_look_up(name, &own, f);
         snprintf(axis->name, sizeof axis->name, "%.*s", SWEEP_NAME - 1, name);
-        return axis->parameter >= 0 ? STATUS_OK : STATUS_BAD_ARGUMENT;
+        if (axis->parameter >= 0) {
+            return STATUS_OK;
+        }
+        return STATUS_BAD_ARGUMENT;
     }
     const size_t length = strcspn(name, "[");
     snprintf(path, sizeof path, "%.*s", (int)length, name);
     axis->parameter = parameter_look_up(path, f);
-    FAIL_IF(axis->parameter < 0, STATUS_BAD_ARGUMENT);
+    if (axis->parameter < 0) {
+        return STATUS_BAD_ARGUMENT;
+    }
 
     // a list by one of its numbers, nothing else by any
     const parameter_type type = sweep_axis_parameter(axis)->type;
     const bool list = type == PARAMETER_LIST;
-    FAULT_IF(type == PARAMETER_TEXT || (list && name[length] == '\0'), f, STATUS_BAD_ARGUMENT,
-             "%s is a %s, only numbers and words are varied%s%s%s", path, list ? "list" : "text",
-             list ? "; its first number is " : "", list ? path : "", list ? "[1]" : "");
+    FAULT_IF(type == PARAMETER_TEXT || (list && name[length] == '\0'), f,
+             STATUS_BAD_ARGUMENT, "%s is a %s, only numbers and words are varied%s%s%s",
+             path, list ? "list" : "text", list ? "; its first number is " : "",
+             list ? path : "", list ? "[1]" : "");
     if (name[length] != '\0') {
         const char *rest;
         double k = 0;
-        const bool read = decimal_read(name + length + 1, &k, &rest) && strcmp(rest, "]") == 0;
+        const bool read =
+            decimal_read(name + length + 1, &k, &rest) && strcmp(rest, "]") == 0;
         FAULT_IF(!list || !read || k != floor(k) || k < 1 || k > PARAMETER_LIST_MOST, f,
                  STATUS_BAD_ARGUMENT,
                  list ? "'%.60s' is no number of a list, expected %s[1] to %s[%d]"
@@ -75,8 +85,10 @@ status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fau
     double numbers[PARAMETER_LIST_MOST];
     parameter_format(p, axis->parameter, list, sizeof list);
     const int count = parameter_list_numbers(list, numbers);
-    FAULT_AT_IF(axis->element > count, f, STATUS_BAD_ARGUMENT, sweep_axis_parameter(axis)->path,
-                "%s: the scenario's list has %d numbers", axis->name, count);
+    if (axis->element > count) {
+        return fault_set_at(f, STATUS_BAD_ARGUMENT, sweep_axis_parameter(axis)->path,
+                            "%s: the scenario's list has %d numbers", axis->name, count);
+    }
     numbers[axis->element - 1] = value;
     for (int i = 0; i < count; i++) {
         char *end = changed + strlen(changed);
@@ -102,7 +114,10 @@ double sweep_axis_get(const sweep_axis *axis, const parameters *p)
     const char *own = settings_name(axis->name);
     double value = (double)NAN, numbers[PARAMETER_LIST_MOST];
     if (own != NULL) {
-        return settings_get(p, own, &value) ? value : (double)NAN;
+        if (settings_get(p, own, &value)) {
+            return value;
+        }
+        return (double)NAN;
     }
     if (axis->element == 0) {
         return parameter_get(p, axis->parameter);
@@ -111,19 +126,25 @@ double sweep_axis_get(const sweep_axis *axis, const parameters *p)
     // a number of the list, if it is as long
     char list[PARAMETER_TEXT_SIZE];
     parameter_format(p, axis->parameter, list, sizeof list);
-    return axis->element <= parameter_list_numbers(list, numbers) ? numbers[axis->element - 1]
-                                                                  : value;
+    if (axis->element <= parameter_list_numbers(list, numbers)) {
+        return numbers[axis->element - 1];
+    }
+    return value;
 }
 
 // Checks and reads one value of the axis.
-static status read_value(const sweep_axis *axis, const char *text, double *value, fault *f)
+static status read_value(const sweep_axis *axis, const char *text, double *value,
+                         fault *f)
 {
     parameters scratch = {0};
     const char *own = settings_name(axis->name);
     char list[PARAMETER_TEXT_SIZE];
     double numbers[PARAMETER_LIST_MOST];
-    TRY(own != NULL ? settings_set_text(&scratch, own, text, f)
-                    : parameter_set_text(&scratch, axis->parameter, text, f));
+    if (own != NULL) {
+        TRY(settings_set_text(&scratch, own, text, f));
+    } else {
+        TRY(parameter_set_text(&scratch, axis->parameter, text, f));
+    }
     if (axis->element == 0) {
         *value = sweep_axis_get(axis, &scratch);
         return STATUS_OK;
@@ -152,11 +173,18 @@ void sweep_axis_format(const sweep_axis *axis, double value, char *text, size_t 
 double sweep_axis_point(const sweep_axis *axis, size_t i, size_t n)
 {
     assert(n >= 2 && i < n);
-    const double low = axis->low, high = axis->high, x = (double)i, last = (double)(n - 1);
-    return i == 0              ? low
-           : i == n - 1        ? high
-           : axis->logarithmic ? low * plain_pow(high / low, x / last)
-                               : (low * (last - x) + high * x) / last;
+    const double low = axis->low, high = axis->high, x = (double)i,
+                 last = (double)(n - 1);
+    if (i == 0) {
+        return low;
+    }
+    if (i == n - 1) {
+        return high;
+    }
+    if (axis->logarithmic) {
+        return low * plain_pow(high / low, x / last);
+    }
+    return (low * (last - x) + high * x) / last;
 }
 
 // The values of a range; each is checked as a parameter, and none may come twice.
@@ -165,15 +193,22 @@ static status fill_range(sweep_axis *axis, size_t n, fault *f)
     char text[SWEEP_VALUE_TEXT];
     double same;
     axis->values = malloc(n * sizeof *axis->values);
-    TRY_MEMORY(axis->values != NULL, f);
+    if (axis->values == NULL) {
+        return fault_no_memory(f);
+    }
     axis->count = n;
 
     // a range may leave what the parameter allows at either end
     for (size_t i = 0; i < n; i++) {
-        // a whole number as near as there is one; an even spacing that misses them is refused
+        // a whole number as near as there is one; an even spacing that misses them is
+        // refused
         const bool whole = sweep_axis_parameter(axis)->type == PARAMETER_INTEGER;
         const double value = sweep_axis_point(axis, i, n);
-        axis->values[i] = axis->logarithmic && whole && i > 0 && i + 1 < n ? round(value) : value;
+        if (axis->logarithmic && whole && i > 0 && i + 1 < n) {
+            axis->values[i] = round(value);
+        } else {
+            axis->values[i] = value;
+        }
         number_format(text, axis->values[i]);
         TRY(read_value(axis, text, &same, f));
 
@@ -191,8 +226,8 @@ static status read_count(const char *text, size_t *count, fault *f)
 {
     const char *rest;
     double value;
-    FAULT_IF(!decimal_read(text, &value, &rest) || *rest != '\0' || value != floor(value) ||
-                 value < 2 || value > SWEEP_MOST_RUNS,
+    FAULT_IF(!decimal_read(text, &value, &rest) || *rest != '\0' ||
+                 value != floor(value) || value < 2 || value > SWEEP_MOST_RUNS,
              f, STATUS_BAD_ARGUMENT,
              "'%.40s' is no number of values, expected a whole number from 2 to %d", text,
              SWEEP_MOST_RUNS);
@@ -216,29 +251,35 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
         char words[128];
         snprintf(words, sizeof words, "%s", choices != NULL ? choices : "true|false");
         for (char *c = words; *c != '\0'; c++) {
-            *c = *c == '|' ? ',' : *c;
+            if (*c == '|') {
+                *c = ',';
+            }
         }
-        return fault_set(f, STATUS_BAD_ARGUMENT,
-                         "%s takes words, which have no range; expected a list such as %s",
-                         axis->name, words);
+        return fault_set(
+            f, STATUS_BAD_ARGUMENT,
+            "%s takes words, which have no range; expected a list such as %s", axis->name,
+            words);
     }
 
     // how many pieces there may be
     axis->logarithmic = count > 2 && count <= 4 && strcmp(pieces[count - 1], "log") == 0;
     count -= axis->logarithmic;
     FAULT_IF(count > 3 || (count < 3 && !drawn), f, STATUS_BAD_ARGUMENT,
-             "expected %s (first, last, number of values), with :log for an even spacing of the "
-             "logarithm",
+             "expected %s (first, last, number of values), with :log for an even "
+             "spacing of the logarithm",
              drawn ? "a:b or a:b:n" : "a:b:n");
 
     // the ends, and the number of values
     TRY(read_value(axis, pieces[0], &axis->low, f));
     TRY(read_value(axis, pieces[1], &axis->high, f));
-    TRY(count == 3 ? read_count(pieces[2], &n, f) : STATUS_OK);
+    if (count == 3) {
+        TRY(read_count(pieces[2], &n, f));
+    }
 
-    FAULT_IF(axis->low == axis->high, f, STATUS_BAD_ARGUMENT, "a range needs two different ends");
-    FAULT_IF(axis->logarithmic && !(axis->low > 0 && axis->high > 0), f, STATUS_BAD_ARGUMENT,
-             "a logarithmic range needs ends above zero");
+    FAULT_IF(axis->low == axis->high, f, STATUS_BAD_ARGUMENT,
+             "a range needs two different ends");
+    FAULT_IF(axis->logarithmic && !(axis->low > 0 && axis->high > 0), f,
+             STATUS_BAD_ARGUMENT, "a logarithmic range needs ends above zero");
 
     // its text in one way of writing, for comparing sweeps
     sweep_axis_format(axis, axis->low, low, sizeof low);
@@ -246,12 +287,15 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
     if (!drawn) {
         snprintf(number, sizeof number, ":%zu", n);
     }
-    if (asprintf(&axis->text, "%s:%s%s%s", low, high, number, axis->logarithmic ? ":log" : "") <
-        0) {
+    if (asprintf(&axis->text, "%s:%s%s%s", low, high, number,
+                 axis->logarithmic ? ":log" : "") < 0) {
         axis->text = NULL;
         return fault_no_memory(f);
     }
-    return drawn ? STATUS_OK : fill_range(axis, n, f);
+    if (drawn) {
+        return STATUS_OK;
+    }
+    return fill_range(axis, n, f);
 }
 
 // Reads "v1,v2,v3".
@@ -268,7 +312,9 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
     // room for as many as there are commas, and the text as it would be written
     axis->values = malloc(most * sizeof *axis->values);
     axis->text = calloc(most, SWEEP_VALUE_TEXT);
-    TRY_MEMORY(axis->values != NULL && axis->text != NULL, f);
+    if (!(axis->values != NULL && axis->text != NULL)) {
+        return fault_no_memory(f);
+    }
     char *end = axis->text;
     for (char *piece; (piece = strsep(&text, ",")) != NULL; axis->count++) {
         char value[SWEEP_VALUE_TEXT - 1];
@@ -277,7 +323,8 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
 
         // in a grid each value once
         for (const double *other = axis->values; !drawn && other < here; other++) {
-            FAULT_IF(*other == *here, f, STATUS_BAD_ARGUMENT, "'%.60s' stands there twice", piece);
+            FAULT_IF(*other == *here, f, STATUS_BAD_ARGUMENT,
+                     "'%.60s' stands there twice", piece);
         }
         sweep_axis_format(axis, *here, value, sizeof value);
         end += sprintf(end, "%s%s", axis->count > 0 ? "," : "", value);
@@ -288,10 +335,12 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
 status sweep_axis_parse(sweep_axis *axis, const char *values, bool drawn, fault *f)
 {
     SCOPED(free_kept) char *text = strdup(values);
-    TRY_MEMORY(text != NULL, f);
+    if (text == NULL) {
+        return fault_no_memory(f);
+    }
 
-    // a list cannot hold ranges: with a comma it is read as a list, and a value with a colon is
-    // refused
+    // a list cannot hold ranges: with a comma it is read as a list, and a value with a
+    // colon is refused
     const bool range = strchr(text, ':') != NULL && strchr(text, ',') == NULL;
     return (range ? read_range : read_list)(axis, text, drawn, f);
 }
@@ -299,9 +348,10 @@ status sweep_axis_parse(sweep_axis *axis, const char *values, bool drawn, fault 
 status sweep_axis_parse_range(sweep_axis *axis, const char *text, fault *f)
 {
     TRY(sweep_axis_parse(axis, text, true, f));
-    return axis->is_range
-               ? STATUS_OK
-               : fault_set(f, STATUS_BAD_ARGUMENT, "expected a range, %s=a:b", axis->name);
+    if (!axis->is_range) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "expected a range, %s=a:b", axis->name);
+    }
+    return STATUS_OK;
 }
 
 void sweep_axis_finish(sweep_axis *axis)

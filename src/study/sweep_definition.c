@@ -41,7 +41,8 @@ static bool is_varied(const sweep *s, int parameter)
     return false;
 }
 
-// Parameters that keep their value, and which of them were given (the others follow arm.model).
+// Parameters that keep their value, and which of them were given (the others follow
+// arm.model).
 static void define_parameters(definition *d, const sweep *s)
 {
     const parameters *p = &s->base->parameters;
@@ -128,7 +129,11 @@ static void define_outside(definition *d, const sweep *s, fault *f)
         snprintf(key, sizeof key, "%s%s", content_of,
                  parameter_table[parameter_at(source->parameter)].path);
         const bool told = outside_is_told(source, p);
-        d->code = told ? outside_digest(source, p, digest, f) : STATUS_OK;
+        if (told) {
+            d->code = outside_digest(source, p, digest, f);
+        } else {
+            d->code = STATUS_OK;
+        }
         if (d->code == STATUS_OK) {
             definition_add(d, key, "%s", told ? digest : untold);
         }
@@ -155,8 +160,8 @@ status definition_init(definition *d, const sweep *s, fault *f)
     for (int i = 0; i < s->axis_count; i++) {
         char key[16];
         snprintf(key, sizeof key, "vary %d", i + 1);
-        definition_add(d, key, "%s%s=%s", s->axes[i].together ? "with " : "", s->axes[i].name,
-                       s->axes[i].text);
+        definition_add(d, key, "%s%s=%s", s->axes[i].together ? "with " : "",
+                       s->axes[i].name, s->axes[i].text);
     }
 
     if (s->chosen_by != NULL) {
@@ -167,7 +172,10 @@ status definition_init(definition *d, const sweep *s, fault *f)
     define_script(d, s->base);
     define_parameters(d, s);
     define_outside(d, s, f);
-    return d->code == STATUS_NO_MEMORY ? fault_no_memory(f) : d->code;
+    if (d->code == STATUS_NO_MEMORY) {
+        return fault_no_memory(f);
+    }
+    return d->code;
 }
 
 void definition_finish(definition *d)
@@ -187,7 +195,11 @@ static bool read_number(const definition *d, const char *key, unsigned long long
     const char *text = definition_value(d, key);
     const size_t length = text != NULL ? strspn(text, "0123456789") : 0;
     errno = 0;
-    *number = length > 0 ? strtoull(text, NULL, 10) : 0;
+    if (length > 0) {
+        *number = strtoull(text, NULL, 10);
+    } else {
+        *number = 0;
+    }
     return length > 0 && text[length] == '\0' && errno == 0;
 }
 
@@ -204,8 +216,10 @@ status definition_plan(const definition *d, const char *path, sweep *plan, fault
     // how the values are combined, and of how many runs
     const bool drawn = sampling != SWEEP_GRID;
     bool good = sampling >= 0;
-    if (good && (!read_number(d, "runs", &runs) || (drawn && !read_number(d, "seed", &seed)))) {
-        snprintf(why.text, sizeof why.text, "it does not say how many runs its sweep has");
+    if (good &&
+        (!read_number(d, "runs", &runs) || (drawn && !read_number(d, "seed", &seed)))) {
+        snprintf(why.text, sizeof why.text,
+                 "it does not say how many runs its sweep has");
         good = false;
     }
 
@@ -218,25 +232,37 @@ status definition_plan(const definition *d, const char *path, sweep *plan, fault
         }
         vary[request.vary_count] = (char *)line; // is only read
     }
-    request.runs = drawn ? (size_t)runs : 0;
+    if (drawn) {
+        request.runs = (size_t)runs;
+    } else {
+        request.runs = 0;
+    }
     request.seed = seed;
-    status code = good ? sweep_plan(plan, &request, &why) : STATUS_BAD_ARGUMENT;
+    status code = STATUS_BAD_ARGUMENT;
+    if (good) {
+        code = sweep_plan(plan, &request, &why);
+    }
     if (code == STATUS_OK && plan->run_count != runs) {
         snprintf(why.text, sizeof why.text,
-                 "it says that it has %llu runs, but its values make %zu", runs, plan->run_count);
+                 "it says that it has %llu runs, but its values make %zu", runs,
+                 plan->run_count);
         sweep_finish(plan);
         code = STATUS_BAD_ARGUMENT;
     }
-    return code == STATUS_OK ? STATUS_OK
-           : code == STATUS_NO_MEMORY
-               ? fault_no_memory(f)
-               : fault_set(f, code, "'%.200s' holds no sweep that this version can make: %.700s",
-                           path, why.text);
+    if (code == STATUS_OK) {
+        return STATUS_OK;
+    }
+    if (code == STATUS_NO_MEMORY) {
+        return fault_no_memory(f);
+    }
+    return fault_set(f, code,
+                     "'%.200s' holds no sweep that this version can make: %.700s", path,
+                     why.text);
 }
 
 // Adds one difference to the sentence; beyond the first few they are only counted.
-static void add_difference(char *text, size_t size, int *count, const char *key, const char *was,
-                           const char *now)
+static void add_difference(char *text, size_t size, int *count, const char *key,
+                           const char *was, const char *now)
 {
     enum { SHOWN = 4 };
     size_t length = strlen(text);
@@ -262,7 +288,8 @@ static void add_difference(char *text, size_t size, int *count, const char *key,
     }
 }
 
-status definition_compare(const char *path, const definition *was, const definition *now, fault *f)
+status definition_compare(const char *path, const definition *was, const definition *now,
+                          fault *f)
 {
     char text[900] = "";
     const char *key;
@@ -273,9 +300,10 @@ status definition_compare(const char *path, const definition *was, const definit
     json_object_foreach(now->lines, key, line)
     {
         const char *before = definition_value(was, key), *value = json_string_value(line);
-        // the same scenario may have another name (a file seen from another folder), and which
-        // parameters were given is worth saying only if all values are the same
-        const bool aside = strcmp(key, "scenario") == 0 || (count > 0 && strcmp(key, "given") == 0);
+        // the same scenario may have another name (a file seen from another folder), and
+        // which parameters were given is worth saying only if all values are the same
+        const bool aside =
+            strcmp(key, "scenario") == 0 || (count > 0 && strcmp(key, "given") == 0);
         const bool same = before != NULL && strcmp(before, value) == 0;
         if (!aside && (!same || strcmp(before, untold) == 0)) {
             add_difference(text, sizeof text, &count, key, before, value);
@@ -292,6 +320,6 @@ status definition_compare(const char *path, const definition *was, const definit
     if (count == 0) {
         return STATUS_OK;
     }
-    return fault_set(f, STATUS_BAD_ARGUMENT, "'%.200s' holds another sweep: %s%s", path, text,
-                     count > 4 ? "; and more" : "");
+    return fault_set(f, STATUS_BAD_ARGUMENT, "'%.200s' holds another sweep: %s%s", path,
+                     text, count > 4 ? "; and more" : "");
 }

@@ -10,7 +10,8 @@
 
 #define COMMIT_INTERVAL 0.5 // [s]
 
-// A sweep being computed; all but what is to be computed, and how, is the calling thread's.
+// A sweep being computed; all but what is to be computed, and how, is the calling
+// thread's.
 typedef struct sweep_execution {
     const sweep *sweep;
     sweep_store *store;
@@ -79,12 +80,13 @@ static status commit_and_report(void *context, bool over, fault *f)
     return code;
 }
 
-// Whether every run of the sweep is of a kind that gains by being computed side by side, and short:
-// two links, by the event method, under no law from outside the program.
+// Whether every run of the sweep is of a kind that gains by being computed side by side,
+// and short: two links, by the event method, under no law from outside the program.
 static bool runs_are_light(const sweep *s)
 {
-    static const char *const decisive[] = {"arm.model",    "arm.links",      "method.name",
-                                           "run.duration", "control.law",    "control.plugin",
+    static const char *const decisive[] = {"arm.model",    "arm.links",
+                                           "method.name",  "run.duration",
+                                           "control.law",  "control.plugin",
                                            "control.rate", "control.command"};
     const parameters *p = &s->base->parameters;
     for (int i = 0; i < s->axis_count; i++) {
@@ -94,8 +96,9 @@ static bool runs_are_light(const sweep *s)
             }
         }
     }
-    return p->arm.model != ARM_PRINTED && p->arm.links == 2 && p->method.name == METHOD_EVENT &&
-           p->control.law != LAW_PLUGIN && p->control.law != LAW_PROCESS;
+    return p->arm.model != ARM_PRINTED && p->arm.links == 2 &&
+           p->method.name == METHOD_EVENT && p->control.law != LAW_PLUGIN &&
+           p->control.law != LAW_PROCESS;
 }
 
 // Computes what of the share an earlier call has not.
@@ -106,7 +109,9 @@ static status run_missing(sweep_execution *e, fault *f)
     size_t count = 0;
     p->total = sweep_share_count(e->options->share, e->sweep->run_count);
     SCOPED(free_kept) size_t *wanted = malloc((p->total + 1) * sizeof *wanted);
-    TRY_MEMORY(wanted != NULL, f);
+    if (wanted == NULL) {
+        return fault_no_memory(f);
+    }
     e->wanted = wanted;
     for (size_t i = 0; i < p->total; i++) {
         const size_t run = sweep_share_run(e->options->share, i);
@@ -116,15 +121,16 @@ static status run_missing(sweep_execution *e, fault *f)
         }
     }
 
-    // heavy runs go one by one: none of them is to wait for another to be stored, or to hold up the
-    // end of a sweep that is stopped
+    // heavy runs go one by one: none of them is to wait for another to be stored, or to
+    // hold up the end of a sweep that is stopped
     const batch missing = {.context = e,
                            .count = count,
                            .make = make_run,
                            .take = store_run,
-                           .together = runs_are_light(e->sweep)
-                                           ? (size_t)fmax(1, RUN_TOGETHER / fmax(duration, 1))
-                                           : 1,
+                           .together =
+                               runs_are_light(e->sweep)
+                                   ? (size_t)fmax(1, RUN_TOGETHER / fmax(duration, 1))
+                                   : 1,
                            .tick = commit_and_report,
                            .stop = e->options->stop,
                            .abandon = e->options->abandon};

@@ -9,7 +9,8 @@
 
 enum { SWEEP_MOST_JOBS = POOL_MOST_THREADS };
 
-// Every parts-th run, beginning with number `part` (from 1): what one of several machines computes.
+// Every parts-th run, beginning with number `part` (from 1): what one of several machines
+// computes.
 typedef struct sweep_share {
     int part, parts; // 0, 0: all runs
 } sweep_share;
@@ -21,25 +22,27 @@ static inline size_t sweep_share_run(sweep_share share, size_t i)
 }
 static inline size_t sweep_share_count(sweep_share share, size_t total)
 {
-    return share.parts > 0 ? (total + (size_t)(share.parts - share.part)) / (size_t)share.parts
-                           : total;
+    return share.parts > 0
+               ? (total + (size_t)(share.parts - share.part)) / (size_t)share.parts
+               : total;
 }
 
-// Where the rows of a sweep are kept, one for each run that was computed: what a store can do. Its
-// functions are given itself; their faults are sentences.
+// Where the rows of a sweep are kept, one for each run that was computed: what a store
+// can do. Its functions are given itself; their faults are sentences.
 typedef struct sweep_store {
-    // 1 for every run that the store has, 0 for the others, and how many those are; `put` goes on
-    // with it.
+    // 1 for every run that the store has, 0 for the others, and how many those are; `put`
+    // goes on with it.
     unsigned char *present;
     size_t count;
 
-    // Adds the result of run `run`; `commit` makes permanent what was put since the last one.
+    // Adds the result of run `run`; `commit` makes permanent what was put since the last
+    // one.
     status (*put)(struct sweep_store *store, size_t run, const summary *result, fault *f);
     status (*commit)(struct sweep_store *store, fault *f);
 
-    // One quantity of every run of a share, in order: NaN where a run failed, is missing, or the
-    // quantity did not occur. `failed` (may be NULL) receives the number of failed runs. It takes
-    // as long as the share is large.
+    // One quantity of every run of a share, in order: NaN where a run failed, is missing,
+    // or the quantity did not occur. `failed` (may be NULL) receives the number of failed
+    // runs. It takes as long as the share is large.
     status (*quantity)(struct sweep_store *store, sweep_share share, const char *key,
                        double *values, size_t *failed, fault *f);
 } sweep_store;
@@ -58,16 +61,18 @@ typedef struct sweep_options {
     sweep_share share;
     int jobs;                          // threads that compute, 1 ... SWEEP_MOST_JOBS
     const volatile sig_atomic_t *stop; // becomes true to end early; NULL if nothing does
-    const atomic_bool *abandon;        // the same for the runs in hand, which are not stored then
-    void (*report)(void *context, const sweep_progress *p); // about ten times a second, or NULL
+    const atomic_bool
+        *abandon; // the same for the runs in hand, which are not stored then
+    void (*report)(void *context,
+                   const sweep_progress *p); // about ten times a second, or NULL
     void *context;
 } sweep_options;
 
 // Computes the runs that are missing in the store, runs of two links side by side in the
-// processor's vectors (run_together): what each gives does not depend on that. Rows are committed
-// at least every second, or, with longer runs, as each finishes. If *stop becomes true the runs in
-// hand are finished and committed, unless *abandon is true, and STATUS_OK is returned with
-// progress->done < progress->total. On failure of the store, or without memory, what was committed
-// stays and f says why.
+// processor's vectors (run_together): what each gives does not depend on that. Rows are
+// committed at least every second, or, with longer runs, as each finishes. If *stop
+// becomes true the runs in hand are finished and committed, unless *abandon is true, and
+// STATUS_OK is returned with progress->done < progress->total. On failure of the store,
+// or without memory, what was committed stays and f says why.
 status sweep_run(const sweep *s, sweep_store *store, const sweep_options *options,
                  sweep_progress *progress, fault *f);

@@ -9,18 +9,27 @@
 #include "src/thesis/printed_algorithm.h"
 #include "src/base/instant.h"
 
-// The simulation's row of the printed model is the largest force within this time of first contact,
-// the first pulse and, with the nominal spring, the bounces that belong to it [s].
+// The simulation's row of the printed model is the largest force within this time of
+// first contact, the first pulse and, with the nominal spring, the bounces that belong to
+// it [s].
 #define PRINTED_WINDOW 0.12
 // Long enough for every cell's first pulse [s].
 #define DURATION 1.5
 
 enum { STIFFNESSES = 3, MODELS = 2, QUANTITIES = 5 };
 
-enum quantity { FORCE_ENERGY, FORCE_DYNAMICS, FORCE_SIMULATION, DELAY_DYNAMICS, DELAY_SIMULATION };
+enum quantity {
+    FORCE_ENERGY,
+    FORCE_DYNAMICS,
+    FORCE_SIMULATION,
+    DELAY_DYNAMICS,
+    DELAY_SIMULATION
+};
 
-static const char *const quantity_names[QUANTITIES] = {"max_force_energy", "max_force_dynamics",
-                                                       "max_force_simulation", "delay_dynamics",
+static const char *const quantity_names[QUANTITIES] = {"max_force_energy",
+                                                       "max_force_dynamics",
+                                                       "max_force_simulation",
+                                                       "delay_dynamics",
                                                        "delay_simulation"};
 
 static const double voltages[TABLE_VOLTAGES] = {1, 2, 5, 10};
@@ -70,8 +79,8 @@ typedef struct cell {
     double delay;              // of the peak after contact [s]
 } cell;
 
-// Runs the printed model until its first pulse is over, which it comes to in each cell: the state
-// of the step before contact, and the largest force after it.
+// Runs the printed model until its first pulse is over, which it comes to in each cell:
+// the state of the step before contact, and the largest force after it.
 static void simulate_printed(const parameters *p, cell *c)
 {
     printed_motion m;
@@ -95,7 +104,8 @@ static void simulate_printed(const parameters *p, cell *c)
 
         // the first pulse
         since = m.row.time - first_contact;
-        if (!instant_after(since, PRINTED_WINDOW) && m.row.force > 0 && !(m.row.force <= c->peak)) {
+        if (!instant_after(since, PRINTED_WINDOW) && m.row.force > 0 &&
+            !(m.row.force <= c->peak)) {
             c->peak = m.row.force;
             c->delay = since;
         }
@@ -106,9 +116,12 @@ static void simulate_printed(const parameters *p, cell *c)
 static status simulate_corrected(const parameters *p, cell *c, fault *f)
 {
     char name[] = "tables";
-    scenario s = {.name = name, .file = name, .title = name, .description = name, .parameters = *p};
+    scenario s = {
+        .name = name, .file = name, .title = name, .description = name, .parameters = *p};
     SCOPED(run_finish) run_result result;
-    FAIL_IF(run_scenario(&s, true, &result) != STATUS_OK, summary_fault(&result.summary, f));
+    if (run_scenario(&s, true, &result) != STATUS_OK) {
+        return summary_fault(&result.summary, f);
+    }
     c->touched = true;
     c->at_touch = row_bodies(row_before_landing(&result));
     c->peak = result.summary.first_pulse_peak_N;
@@ -138,9 +151,21 @@ static status compute_cell(const parameters *p, double value[QUANTITIES], fault 
     // the predictors at the same state, for which they have an answer
     sure(predict_energy(p, &c.at_touch, &energy, NULL));
     sure(predict_impact_dynamics(p, &c.at_touch, &dynamics, NULL));
-    value[FORCE_ENERGY] = energy.holds ? energy.force : (double)NAN;
-    value[FORCE_DYNAMICS] = dynamics.holds ? dynamics.force : (double)NAN;
-    value[DELAY_DYNAMICS] = dynamics.holds ? dynamics.delay : (double)NAN;
+    if (energy.holds) {
+        value[FORCE_ENERGY] = energy.force;
+    } else {
+        value[FORCE_ENERGY] = (double)NAN;
+    }
+    if (dynamics.holds) {
+        value[FORCE_DYNAMICS] = dynamics.force;
+    } else {
+        value[FORCE_DYNAMICS] = (double)NAN;
+    }
+    if (dynamics.holds) {
+        value[DELAY_DYNAMICS] = dynamics.delay;
+    } else {
+        value[DELAY_DYNAMICS] = (double)NAN;
+    }
     return STATUS_OK;
 }
 
@@ -169,8 +194,10 @@ static status compute_table(const parameters *defaults, const thesis_table *sour
 
         fault why = {.text = ""};
         status result = compute_cell(&p, value, &why);
-        FAULT_AT_IF(result != STATUS_OK, f, result, why.path, "Table %s, %s model, %g V: %.900s",
-                    source->name, model, voltages[v], why.text);
+        if (result != STATUS_OK) {
+            return fault_set_at(f, result, why.path, "Table %s, %s model, %g V: %.900s",
+                                source->name, model, voltages[v], why.text);
+        }
         for (int i = 0; i < QUANTITIES; i++) {
             rows[i].computed[v] = value[i];
         }
@@ -200,16 +227,17 @@ status tables_compute(thesis_tables *t, fault *f)
             parameters p;
             take_defaults(&p, models[m].kind);
             t->row_count += QUANTITIES;
-            TRY(compute_table(&p, &thesis[k], models[m].name, t->rows + t->row_count - QUANTITIES,
-                              f));
+            TRY(compute_table(&p, &thesis[k], models[m].name,
+                              t->rows + t->row_count - QUANTITIES, f));
         }
     }
     return STATUS_OK;
 }
 
-// Rows of the same table and quantity, the computed ones `scale` times those of `from` plus
-// `shift`.
-static void add_fitted_row(thesis_tables *t, const table_row *from, double scale, double shift)
+// Rows of the same table and quantity, the computed ones `scale` times those of `from`
+// plus `shift`.
+static void add_fitted_row(thesis_tables *t, const table_row *from, double scale,
+                           double shift)
 {
     table_row *row = &t->rows[t->row_count++];
     *row = *from;
@@ -241,7 +269,8 @@ void tables_compute_fitted(thesis_tables *t)
     take_defaults(&printed, ARM_PRINTED);
     parameters_defaults(&set, ARM_PRINTED);
     for (size_t i = 0; i < sizeof fitted / sizeof fitted[0]; i++) {
-        sure(parameter_set_text(&set, parameter_index(fitted[i].path), fitted[i].value, NULL));
+        sure(parameter_set_text(&set, parameter_index(fitted[i].path), fitted[i].value,
+                                NULL));
     }
     sure(parameters_resolve(&set, NULL));
 
@@ -259,7 +288,8 @@ bool tables_printed(const char *table, const char *quantity, double *values)
 {
     for (int t = 0; t < STIFFNESSES; t++) {
         for (int q = 0; q < QUANTITIES; q++) {
-            if (strcmp(thesis[t].name, table) == 0 && strcmp(quantity_names[q], quantity) == 0) {
+            if (strcmp(thesis[t].name, table) == 0 &&
+                strcmp(quantity_names[q], quantity) == 0) {
                 memcpy(values, thesis[t].printed[q], sizeof thesis[t].printed[q]);
                 return true;
             }
@@ -285,5 +315,8 @@ double tables_mean_error(const thesis_tables *t, const char *model, const char *
             }
         }
     }
-    return count > 0 ? sum / count : (double)NAN;
+    if (count > 0) {
+        return sum / count;
+    }
+    return (double)NAN;
 }

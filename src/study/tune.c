@@ -13,7 +13,7 @@
 #include "src/base/expression.h"
 #include "src/base/words.h"
 
-// --- judging --------------------------------------------------------------------------------
+// --- judging ---------------------------------------------------------------------------
 
 // What an expression is of: a law's runs, or a run's quantities.
 typedef struct judged {
@@ -26,7 +26,8 @@ typedef struct judged {
 static const char growth_key[] = "growth_per_s";
 enum { GROWTH = 10000 };
 
-// The number of a key: quantities of the run or the law in their order, -1 if there is none.
+// The number of a key: quantities of the run or the law in their order, -1 if there is
+// none.
 static int find_key(void *context, const char *name, const char **near)
 {
     const judged *of = context;
@@ -49,14 +50,24 @@ static int find_key(void *context, const char *name, const char **near)
 static double value_of_key(const void *context, int key)
 {
     const judged *of = context;
-    return key == GROWTH ? of->growth : of->law != NULL ? robust_value(of->law, key) : of->run[key];
+    if (key == GROWTH) {
+        return of->growth;
+    }
+    if (of->law != NULL) {
+        return robust_value(of->law, key);
+    }
+    return of->run[key];
 }
 
 static status evaluate(const char *text, judged *of, double *value, fault *f)
 {
     expression e;
     const status code = expression_read(&e, text, find_key, of, f);
-    *value = code == STATUS_OK ? expression_evaluate(&e, value_of_key, of) : (double)NAN;
+    if (code == STATUS_OK) {
+        *value = expression_evaluate(&e, value_of_key, of);
+    } else {
+        *value = (double)NAN;
+    }
     return code;
 }
 
@@ -67,7 +78,8 @@ static status read_subject(const char *text, judged *of, double *excess, fault *
     char left[512];
     double a = 0, b = 0;
     FAULT_IF(sign == NULL || sign[1] != '=' || sign - text >= (long)sizeof left, f,
-             STATUS_BAD_ARGUMENT, "'%.100s' is no condition, expected EXPR<=X or EXPR>=X", text);
+             STATUS_BAD_ARGUMENT, "'%.100s' is no condition, expected EXPR<=X or EXPR>=X",
+             text);
     snprintf(left, sizeof left, "%.*s", (int)(sign - text), text);
     TRY(evaluate(left, of, &a, f));
     TRY(evaluate(sign + 2, of, &b, f));
@@ -87,30 +99,40 @@ static status judge(const tune_request *asked, judged *of, tune_result *out, fau
         code = read_subject(asked->subject, of, &excess, &why);
     }
     FAULT_IF(code != STATUS_OK, f, code, "--%s %.900s", option, why.text);
-    out->rank = !isfinite(out->value) || isnan(excess)
-                    ? TUNE_REFUSED * 1e100 * (2 - (of->law != NULL ? of->law->settled : 0))
-                : excess > 0 ? TUNE_REFUSED * (1 + fmin(excess, 1e90))
-                             : out->value;
+    if (!isfinite(out->value) || isnan(excess)) {
+        out->rank = TUNE_REFUSED * 1e100 * (2 - (of->law != NULL ? of->law->settled : 0));
+    } else if (excess > 0) {
+        out->rank = TUNE_REFUSED * (1 + fmin(excess, 1e90));
+    } else {
+        out->rank = out->value;
+    }
     return STATUS_OK;
 }
 
 status tune_apply(const tuning *t, const double *values, scenario *s, fault *f)
 {
-    return sweep_axes_scenario(t->plan.axes, t->asked.vary_count, values, t->asked.base, s, f);
+    return sweep_axes_scenario(t->plan.axes, t->asked.vary_count, values, t->asked.base,
+                               s, f);
 }
 
 // Finds the growth where an expression asks for it; of the scenario, nothing drawn.
-static status find_growth(const tune_request *asked, const scenario *s, double *growth, fault *f)
+static status find_growth(const tune_request *asked, const scenario *s, double *growth,
+                          fault *f)
 {
-    const bool wanted = strstr(asked->minimise, growth_key) != NULL ||
-                        (asked->subject != NULL && strstr(asked->subject, growth_key) != NULL);
-    FAULT_IF(wanted && (asked->growth == NULL || s->parameters.control.law == LAW_NONE), f,
-             STATUS_BAD_ARGUMENT, "'%s' needs a control law", growth_key);
-    return wanted ? asked->growth(s, growth, f) : STATUS_OK;
+    const bool wanted =
+        strstr(asked->minimise, growth_key) != NULL ||
+        (asked->subject != NULL && strstr(asked->subject, growth_key) != NULL);
+    FAULT_IF(wanted && (asked->growth == NULL || s->parameters.control.law == LAW_NONE),
+             f, STATUS_BAD_ARGUMENT, "'%s' needs a control law", growth_key);
+    if (wanted) {
+        return asked->growth(s, growth, f);
+    }
+    return STATUS_OK;
 }
 
 status tune_evaluate(tuning *t, size_t evaluation, const double *values, const char *name,
-                     sweep_store *store, const sweep_options *options, tune_result *out, fault *f)
+                     sweep_store *store, const sweep_options *options, tune_result *out,
+                     fault *f)
 {
     assert(evaluation < t->most);
     const tune_request *asked = &t->asked;
@@ -124,12 +146,16 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
     only.context = word; // of the progress line
     only.share = (sweep_share){(int)evaluation + 1, (int)t->most};
     for (size_t i = 0; i < t->each; i++) {
-        memcpy(t->plan.drawn + sweep_share_run(only.share, i) * (size_t)t->plan.axis_count, values,
-               (size_t)asked->vary_count * sizeof *values);
+        memcpy(t->plan.drawn +
+                   sweep_share_run(only.share, i) * (size_t)t->plan.axis_count,
+               values, (size_t)asked->vary_count * sizeof *values);
     }
-    TRY_MEMORY(column != NULL, f);
+    if (column == NULL) {
+        return fault_no_memory(f);
+    }
     TRY(sweep_run(&t->plan, store, &only, &progress, f));
-    FAULT_IF(progress.done < progress.total, f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
+    FAULT_IF(progress.done < progress.total, f, STATUS_STOPPED, "%s",
+             status_text(STATUS_STOPPED));
 
     out->computed = progress.done_now;
 
@@ -137,17 +163,20 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
     for (int k = 0; k < asked->vary_count; k++) {
         TRY(store->quantity(store, only.share, t->plan.axes[k].name, column, NULL, f));
         FAULT_IF(!isnan(column[0]) && column[0] != values[k], f, STATUS_BAD_ARGUMENT,
-                 "the database is of another search: run %zu has %s = %g, not %g", evaluation + 1,
-                 t->plan.axes[k].name, column[0], values[k]);
+                 "the database is of another search: run %zu has %s = %g, not %g",
+                 evaluation + 1, t->plan.axes[k].name, column[0], values[k]);
     }
 
     // what came out
     judged of = {asked->over != NULL ? &out->law : NULL, run, (double)NAN};
     scenario derived;
     TRY(tune_apply(t, values, &derived, f));
-    TRY_MEMORY(find_growth(asked, &derived, &of.growth, NULL) != STATUS_NO_MEMORY, f);
-    TRY(of.law != NULL ? robust_law_of(&out->law, name, &t->plan, only.share, store, f)
-                       : STATUS_OK);
+    if (find_growth(asked, &derived, &of.growth, NULL) == STATUS_NO_MEMORY) {
+        return fault_no_memory(f);
+    }
+    if (of.law != NULL) {
+        TRY(robust_law_of(&out->law, name, &t->plan, only.share, store, f));
+    }
     for (int q = 0; q < summary_count && of.law == NULL; q++) {
         TRY(store->quantity(store, only.share, summary_table[q].key, column, NULL, f));
         run[q] = column[0];
@@ -155,7 +184,7 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
     return judge(asked, &of, out, f);
 }
 
-// --- what is asked for ----------------------------------------------------------------------
+// --- what is asked for -----------------------------------------------------------------
 
 // Whether everything but what is varied can be right.
 static status check(const tune_request *asked, fault *f)
@@ -170,9 +199,11 @@ static status check(const tune_request *asked, fault *f)
                      "this program was built without NLopt, whose minimisers tune needs");
 #endif
     FAULT_IF(over != NULL && over->case_count > 0, f, STATUS_BAD_ARGUMENT,
-             "'%.200s' has cases, expected lines PATH=a:b or PATH=v1,v2 only", over->file);
+             "'%.200s' has cases, expected lines PATH=a:b or PATH=v1,v2 only",
+             over->file);
     FAULT_IF(over != NULL && asked->base->parameters.control.law == LAW_NONE, f,
-             STATUS_BAD_ARGUMENT, "%s has no control law, and runs over a set are judged by one",
+             STATUS_BAD_ARGUMENT,
+             "%s has no control law, and runs over a set are judged by one",
              asked->base->name);
     TRY(judge(asked, &of, &unused, f));
     return find_growth(asked, asked->base, &of.growth, f);
@@ -183,7 +214,8 @@ static status check(const tune_request *asked, fault *f)
 static status make_plan(tuning *t, uint64_t seed, fault *f)
 {
     const tune_request *asked = &t->asked;
-    const int varied = asked->vary_count, drawn = asked->over != NULL ? asked->over->count : 0;
+    const int varied = asked->vary_count,
+              drawn = asked->over != NULL ? asked->over->count : 0;
     char *lines[2 * SWEEP_MOST_AXES];
     SCOPED(sweep_finish) sweep draws = {0};
     sweep_request request = {.vary = lines,
@@ -195,9 +227,13 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
              "at most %d parameters can be varied", SWEEP_MOST_AXES);
     memcpy(lines, asked->vary, (size_t)varied * sizeof *lines);
     if (drawn > 0) {
-        const sweep_request set = {
-            asked->over->lines,       drawn, SWEEP_LATIN, t->each, seed, asked->over->file,
-            asked->over->line_numbers};
+        const sweep_request set = {asked->over->lines,
+                                   drawn,
+                                   SWEEP_LATIN,
+                                   t->each,
+                                   seed,
+                                   asked->over->file,
+                                   asked->over->line_numbers};
         memcpy(lines + varied, asked->over->lines, (size_t)drawn * sizeof *lines);
         TRY(sweep_init(&draws, asked->base, &set, f));
     }
@@ -205,13 +241,17 @@ static status make_plan(tuning *t, uint64_t seed, fault *f)
     TRY(sweep_plan(&t->plan, &request, f));
     for (int i = 0; i < varied; i++) {
         FAULT_IF(!t->plan.axes[i].is_range, f, STATUS_BAD_ARGUMENT,
-                 "--vary %.200s: expected a range, %s=a:b", asked->vary[i], t->plan.axes[i].name);
+                 "--vary %.200s: expected a range, %s=a:b", asked->vary[i],
+                 t->plan.axes[i].name);
     }
     for (size_t i = 0; i < request.runs * (size_t)(varied + drawn); i++) {
         const size_t run = i / (size_t)(varied + drawn);
         const int axis = (int)(i % (size_t)(varied + drawn));
-        t->plan.drawn[i] =
-            axis < varied ? (double)NAN : sweep_value(&draws, run / t->most, axis - varied);
+        if (axis < varied) {
+            t->plan.drawn[i] = (double)NAN;
+        } else {
+            t->plan.drawn[i] = sweep_value(&draws, run / t->most, axis - varied);
+        }
     }
     t->plan.base = asked->base;
     t->plan.chosen_by = t->chosen_by;
@@ -232,17 +272,25 @@ status tune_init(tuning *t, const tune_request *asked, fault *f)
 #endif
 
     // as many evaluations as runs of each
-    t->each = asked->over != NULL ? (size_t)sqrt((double)asked->runs) : 1;
+    if (asked->over != NULL) {
+        t->each = (size_t)sqrt((double)asked->runs);
+    } else {
+        t->each = 1;
+    }
     t->most = asked->runs / t->each;
     t->ranks = calloc(t->most, sizeof *t->ranks);
     if (asprintf(&t->chosen_by,
                  "tune --minimise '%s' --subject '%s', %zu runs each, NLopt %d.%d.%d",
-                 asked->minimise, asked->subject != NULL ? asked->subject : "", t->each, version[0],
-                 version[1], version[2]) < 0) {
+                 asked->minimise, asked->subject != NULL ? asked->subject : "", t->each,
+                 version[0], version[1], version[2]) < 0) {
         t->chosen_by = NULL;
     }
-    status code = t->ranks != NULL && t->chosen_by != NULL ? make_plan(t, asked->seed, f)
-                                                           : fault_no_memory(f);
+    status code;
+    if (t->ranks != NULL && t->chosen_by != NULL) {
+        code = make_plan(t, asked->seed, f);
+    } else {
+        code = fault_no_memory(f);
+    }
     if (code != STATUS_OK) {
         tune_finish(t);
     }
@@ -274,7 +322,7 @@ void tune_finish(tuning *t)
     }
 }
 
-// --- the search -----------------------------------------------------------------------------
+// --- the search ------------------------------------------------------------------------
 
 #ifdef WITH_NLOPT
 typedef struct search {
@@ -288,8 +336,8 @@ typedef struct search {
     fault *fault;
 } search;
 
-// Rank of the values at these shares of the ranges, for NLopt; what was evaluated before is looked
-// up.
+// Rank of the values at these shares of the ranges, for NLopt; what was evaluated before
+// is looked up.
 static double rank_of(unsigned n, const double *shares, double *gradient, void *context)
 {
     search *s = context;
@@ -306,13 +354,14 @@ static double rank_of(unsigned n, const double *shares, double *gradient, void *
         values[i] = sweep_axis_value_at(&t->plan.axes[i], share);
     }
     for (size_t e = 0; e < t->done; e++) {
-        if (memcmp(t->plan.drawn + e * (size_t)t->plan.axis_count, values, n * sizeof *values) ==
-            0) {
+        if (memcmp(t->plan.drawn + e * (size_t)t->plan.axis_count, values,
+                   n * sizeof *values) == 0) {
             return t->ranks[e];
         }
     }
 
-    s->code = tune_evaluate(t, t->done, values, "tuned", s->store, s->options, &found, s->fault);
+    s->code = tune_evaluate(t, t->done, values, "tuned", s->store, s->options, &found,
+                            s->fault);
     const bool better = s->code == STATUS_OK && found.rank < t->best.rank;
     const bool computed = found.computed > 0;
     s->untold |= better;
@@ -334,8 +383,8 @@ static double rank_of(unsigned n, const double *shares, double *gradient, void *
     return t->ranks[t->done > 0 ? t->done - 1 : 0];
 }
 
-// Lets a method of NLopt begin at the best so far, with steps of that share of the ranges, for so
-// many evaluations.
+// Lets a method of NLopt begin at the best so far, with steps of that share of the
+// ranges, for so many evaluations.
 static void minimise(search *s, nlopt_algorithm method, double step, size_t most)
 {
     double start[SWEEP_MOST_AXES], least;

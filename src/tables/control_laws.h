@@ -1,46 +1,50 @@
-// The built-in control laws, in one list: a law is added here and as a file in src/rig/laws, and
-// nowhere else. It makes the choices of control.law, the declarations of src/rig/laws/laws.h, the
-// rig's table of controllers and the manual.
+// The built-in control laws, in one list: a law is added here and as a file in
+// src/rig/laws, and nowhere else. It makes the choices of control.law, the declarations
+// of src/rig/laws/laws.h, the rig's table of controllers and the manual.
 #pragma once
 
 #include <stdint.h>
 
-// Each law: name in the enumeration below, prefix of the controller (hybrid: hybrid_law), word in
-// scenarios; what it reads of belief.* (src/tables/feature_bits.h), and what besides where the
-// wanted force moves; which of its parameters it ignores, with blanks around them; one line that
-// says what it does, without a full stop.
-#define CONTROL_LAWS(LAW)                                                                          \
-    LAW(OPEN_LOOP, open_loop, "open-loop", 0, 0,                                                   \
-        " force kv contact_threshold force_gain integral_gain ",                                   \
-        "the constant command of the approach, nothing else")                                      \
-    LAW(HYBRID, hybrid, "hybrid", TOLD_PATH, 0, "",                                                \
-        "approach, impact and force mode of the thesis, 5.2 to 5.4")                               \
-    LAW(FORCE_PD, force_pd, "force-pd", HAS(TOLD_TORQUE), TOLD_ARM, " integral_gain ",             \
-        "static torque 2 f l, force error and damping by the tachometer")                          \
-    LAW(FORCE_INTEGRAL, force_integral, "force-integral", 0, 0, " kv force_gain ",                 \
-        "from contact on the integral of the force error")                                         \
-    LAW(REVERSE_TORQUE, reverse_torque, "reverse-torque", TOLD_PATH, 0, "",                        \
-        "full command backwards for a while after contact, then the force mode of hybrid")         \
-    LAW(SPEED_LIMIT, speed_limit, "speed-limit", TOLD_PATH, 0, "",                                 \
-        "hybrid with the hub's speed limited on the way")                                          \
-    LAW(BANG_BANG, bang_bang, "bang-bang", TOLD_PATH, 0, "",                                       \
-        "full command forwards and back on the way, then hybrid")                                  \
-    LAW(DISCONTINUOUS, discontinuous, "discontinuous", HAS(TOLD_TORQUE), TOLD_ARM,                 \
-        " integral_gain ",                                                                         \
-        "force-pd while the sensor feels the wall, the approach while it does not")                \
-    LAW(RECOVERING, recovering, "recovering", TOLD_PATH, 0, "",                                    \
-        "hybrid that goes back to position control where contact is lost")                         \
-    LAW(OPTIMAL, optimal, "optimal", TOLD_PATH | HAS(TOLD_DELAY), 0, "",                           \
-        "state feedback with an observer on the linearised arm")                                   \
-    LAW(PREDICTIVE, predictive, "predictive", TOLD_PATH | HAS(TOLD_DELAY), 0, "",                  \
-        "optimal behind an approach that keeps to a limit on the force")                           \
-    LAW(INVERSE_DYNAMICS, inverse_dynamics, "inverse-dynamics", TOLD_PATH | HAS(TOLD_DELAY), 0,    \
-        "", "computed torque through the inverse of the flexible arm, played back open-loop")      \
-    LAW(OBSERVER, observer, "observer", TOLD_MODEL, 0, "",                                         \
-        "observer of arm, wall and unknown torque, feedback by synthesis, contact found again")    \
-    LAW(IMPEDANCE, impedance, "impedance", TOLD_PATH, 0, "",                                       \
-        "a spring and a damper tie the hub to a point that moves into the wall")                   \
-    LAW(ADMITTANCE, admittance, "admittance", TOLD_HUB, TOLD_ARM | HAS(TOLD_DELAY), "",            \
+// Each law: name in the enumeration below, prefix of the controller (hybrid: hybrid_law),
+// word in scenarios; what it reads of belief.* (src/tables/feature_bits.h), and what
+// besides where the wanted force moves; which of its parameters it ignores, with blanks
+// around them; one line that says what it does, without a full stop.
+#define CONTROL_LAWS(LAW)                                                                \
+    LAW(OPEN_LOOP, open_loop, "open-loop", 0, 0,                                         \
+        " force kv contact_threshold force_gain integral_gain ",                         \
+        "the constant command of the approach, nothing else")                            \
+    LAW(HYBRID, hybrid, "hybrid", TOLD_PATH, 0, "",                                      \
+        "approach, impact and force mode of the thesis, 5.2 to 5.4")                     \
+    LAW(FORCE_PD, force_pd, "force-pd", HAS(TOLD_TORQUE), TOLD_ARM, " integral_gain ",   \
+        "static torque 2 f l, force error and damping by the tachometer")                \
+    LAW(FORCE_INTEGRAL, force_integral, "force-integral", 0, 0, " kv force_gain ",       \
+        "from contact on the integral of the force error")                               \
+    LAW(REVERSE_TORQUE, reverse_torque, "reverse-torque", TOLD_PATH, 0, "",              \
+        "full command backwards for a while after contact, then the force mode of "      \
+        "hybrid")                                                                        \
+    LAW(SPEED_LIMIT, speed_limit, "speed-limit", TOLD_PATH, 0, "",                       \
+        "hybrid with the hub's speed limited on the way")                                \
+    LAW(BANG_BANG, bang_bang, "bang-bang", TOLD_PATH, 0, "",                             \
+        "full command forwards and back on the way, then hybrid")                        \
+    LAW(DISCONTINUOUS, discontinuous, "discontinuous", HAS(TOLD_TORQUE), TOLD_ARM,       \
+        " integral_gain ",                                                               \
+        "force-pd while the sensor feels the wall, the approach while it does not")      \
+    LAW(RECOVERING, recovering, "recovering", TOLD_PATH, 0, "",                          \
+        "hybrid that goes back to position control where contact is lost")               \
+    LAW(OPTIMAL, optimal, "optimal", TOLD_PATH | HAS(TOLD_DELAY), 0, "",                 \
+        "state feedback with an observer on the linearised arm")                         \
+    LAW(PREDICTIVE, predictive, "predictive", TOLD_PATH | HAS(TOLD_DELAY), 0, "",        \
+        "optimal behind an approach that keeps to a limit on the force")                 \
+    LAW(INVERSE_DYNAMICS, inverse_dynamics, "inverse-dynamics",                          \
+        TOLD_PATH | HAS(TOLD_DELAY), 0, "",                                              \
+        "computed torque through the inverse of the flexible arm, played back "          \
+        "open-loop")                                                                     \
+    LAW(OBSERVER, observer, "observer", TOLD_MODEL, 0, "",                               \
+        "observer of arm, wall and unknown torque, feedback by synthesis, contact "      \
+        "found again")                                                                   \
+    LAW(IMPEDANCE, impedance, "impedance", TOLD_PATH, 0, "",                             \
+        "a spring and a damper tie the hub to a point that moves into the wall")         \
+    LAW(ADMITTANCE, admittance, "admittance", TOLD_HUB, TOLD_ARM | HAS(TOLD_DELAY), "",  \
         "the force's error moves a mass that the hub follows under position control")
 
 // Values of control.law.
@@ -55,9 +59,11 @@ typedef enum control_law {
     LAW_COUNT
 } control_law;
 
-// The choices of control.law in the order of the enumeration, "none|open-loop|...|playback".
+// The choices of control.law in the order of the enumeration,
+// "none|open-loop|...|playback".
 #define CONTROL_LAW_WORD(name, prefix, word, ...) "|" word
-#define CONTROL_LAW_CHOICES                       "none" CONTROL_LAWS(CONTROL_LAW_WORD) "|plugin|process|playback"
+#define CONTROL_LAW_CHOICES                                                              \
+    "none" CONTROL_LAWS(CONTROL_LAW_WORD) "|plugin|process|playback"
 
 typedef struct control_law_info {
     const char *word;                      // in scenarios

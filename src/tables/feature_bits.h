@@ -12,7 +12,8 @@ enum {
     FEATURE_HUB_SPRING,
     FEATURE_TIP_MASS,
     FEATURE_TILTED,
-    FEATURE_UNLIKE,  // links or joints differ, stiffen, or are damped by more than stiffness
+    FEATURE_UNLIKE,  // links or joints differ, stiffen, or are damped by more than
+                     // stiffness
     FEATURE_WALL,    // there is one, and then: it is
     FEATURE_STRUCK,  // met as a rigid body: it does not give, or has a face with a mass
     FEATURE_BOUNCES, // some impact is not plastic
@@ -41,7 +42,8 @@ enum {
     FEATURE_PROCESS,
     FEATURE_PLAYBACK,
     FEATURE_LOCKABLE, // the law can be held in a mode
-    FEATURE_READ, // it reads this very parameter, to which control.settings gives no other value
+    FEATURE_READ,     // it reads this very parameter, to which control.settings gives no
+                      // other value
     FEATURE_ALONE,
     FEATURE_FORCE_READ,  // the law reads the commanded force
     FEATURE_FORCE_STEPS, // the script changes it
@@ -67,15 +69,17 @@ enum {
 typedef uint64_t feature_set;
 #define HAS(name) ((feature_set)1 << FEATURE_##name)
 
-// What the engine `pair` does not take of two links, and what the thesis's predictors do not.
+// What the engine `pair` does not take of two links, and what the thesis's predictors do
+// not.
 #define NOT_OF_PAIR (NOT_OF_THESIS | HAS(ELECTRIC))
-#define NOT_OF_THESIS                                                                              \
+#define NOT_OF_THESIS                                                                    \
     (HAS(LIMITED) | HAS(GIVES) | HAS(MOVES) | HAS(TILTED) | HAS(TIP_MASS) | HAS(UNLIKE))
 
-// What a law may read of the nominal model: friction and torque; with the arm's masses and k2; with
-// the wall; with all that an estimate follows.
+// What a law may read of the nominal model: friction and torque; with the arm's masses
+// and k2; with the wall; with all that an estimate follows.
 #define TOLD_HUB  (HAS(TOLD_FRICTION) | HAS(TOLD_TORQUE))
 #define TOLD_ARM  (TOLD_HUB | HAS(TOLD_MASS) | HAS(TOLD_INERTIA) | HAS(TOLD_K2))
 #define TOLD_PATH (TOLD_ARM | HAS(TOLD_WALL))
-#define TOLD_MODEL                                                                                 \
-    (TOLD_PATH | HAS(TOLD_HUB_SPRING) | HAS(TOLD_DAMPING) | HAS(TOLD_DELAY) | HAS(TOLD_LINKS))
+#define TOLD_MODEL                                                                       \
+    (TOLD_PATH | HAS(TOLD_HUB_SPRING) | HAS(TOLD_DAMPING) | HAS(TOLD_DELAY) |            \
+     HAS(TOLD_LINKS))

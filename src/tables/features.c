@@ -10,19 +10,22 @@
 
 static feature_set when(bool condition, feature_set bits)
 {
-    return condition ? bits : 0;
+    if (condition) {
+        return bits;
+    }
+    return 0;
 }
 
 static feature_set arm_features(const parameters *p)
 {
     const arm_parameters *a = &p->arm;
     const bool joint = a->links > 1 || a->hub_joint == HUB_BEAM;
-    const bool unlike = !parameters_even_links(a) || a->stiffening != 0 || a->air_drag != 0 ||
-                        a->modal_ratios[0] != '\0';
+    const bool unlike = !parameters_even_links(a) || a->stiffening != 0 ||
+                        a->air_drag != 0 || a->modal_ratios[0] != '\0';
     const feature_set method[] = {HAS(EVENT), HAS(NEWMARK), HAS(ALPHA)};
     return when(a->model == ARM_PRINTED, HAS(PRINTED)) |
-           when(a->model != ARM_PRINTED, HAS(CORRECTED)) | when(a->links == 2, HAS(TWO_LINKS)) |
-           when(joint, HAS(JOINT) | HAS(BENDS)) |
+           when(a->model != ARM_PRINTED, HAS(CORRECTED)) |
+           when(a->links == 2, HAS(TWO_LINKS)) | when(joint, HAS(JOINT) | HAS(BENDS)) |
            when(a->hub_joint == HUB_SPRING, HAS(HUB_SPRING) | HAS(BENDS)) |
            when(a->tip_mass != 0, HAS(TIP_MASS)) | when(a->tilt != 0, HAS(TILTED)) |
            when(unlike, HAS(UNLIKE)) |
@@ -37,7 +40,8 @@ static feature_set motor_features(const parameters *p)
     const bool law = p->control.law != LAW_NONE;
     return when(volts, HAS(VOLTAGE_DRIVE)) | when(!volts, HAS(CURRENT_DRIVE)) |
            when(volts || !IS_SET(p, motor.transconductance), HAS(AMPLIFIED)) |
-           when(law || m->voltage != 0, HAS(DRIVEN)) | when(volts && m->back_emf > 0, HAS(BRAKED)) |
+           when(law || m->voltage != 0, HAS(DRIVEN)) |
+           when(volts && m->back_emf > 0, HAS(BRAKED)) |
            when(m->inductance > 0, HAS(ELECTRIC)) |
            when(volts && m->current_limit > 0, HAS(ELECTRIC) | HAS(LIMITED));
 }
@@ -50,10 +54,11 @@ static feature_set wall_features(const wall_parameters *w)
                                          HAS(MOVES) | HAS(MOVES_BY_FORMULA),
                                          HAS(MOVES) | HAS(MOVES_BY_FILE)};
     const bool struck = w->contact == WALL_RIGID || w->mass > 0;
-    return w->kind == WALL_NONE
-               ? 0
-               : HAS(WALL) | motion[w->motion] | contact[w->contact] | when(struck, HAS(STRUCK)) |
-                     when(struck && w->restitution > 0, HAS(BOUNCES));
+    if (w->kind == WALL_NONE) {
+        return 0;
+    }
+    return HAS(WALL) | motion[w->motion] | contact[w->contact] |
+           when(struck, HAS(STRUCK)) | when(struck && w->restitution > 0, HAS(BOUNCES));
 }
 
 static feature_set rig_features(const parameters *p)
@@ -61,10 +66,12 @@ static feature_set rig_features(const parameters *p)
     const control_parameters *c = &p->control;
     const sensor_parameters *s = &p->sensor;
     const bool noise = s->tachometer_noise > 0 || s->fsr_noise > 0 ||
-                       (s->piezo && s->piezo_noise > 0) || (s->film && s->film_noise > 0) ||
+                       (s->piezo && s->piezo_noise > 0) ||
+                       (s->film && s->film_noise > 0) ||
                        (s->accelerometer && s->accelerometer_noise > 0);
     return when(c->law == LAW_NONE, HAS(NO_LAW)) | when(c->law != LAW_NONE, HAS(LAW)) |
-           when(c->law == LAW_PLUGIN, HAS(PLUGIN)) | when(c->law == LAW_PROCESS, HAS(PROCESS)) |
+           when(c->law == LAW_PLUGIN, HAS(PLUGIN)) |
+           when(c->law == LAW_PROCESS, HAS(PROCESS)) |
            when(c->law == LAW_PLAYBACK, HAS(PLAYBACK)) |
            when(c->force_amplitude > 0, HAS(FORCE_WAVES)) | when(s->piezo, HAS(PIEZO)) |
            when(s->film, HAS(FILM)) | when(s->accelerometer, HAS(ACCELEROMETER)) |
@@ -74,13 +81,14 @@ static feature_set rig_features(const parameters *p)
 
 feature_set features_of(const parameters *p)
 {
-    return arm_features(p) | motor_features(p) | wall_features(&p->wall) | rig_features(p);
+    return arm_features(p) | motor_features(p) | wall_features(&p->wall) |
+           rig_features(p);
 }
 
-// --- which parameters act --------------------------------------------------------------------
+// --- which parameters act --------------------------------------------------------------
 
-// Parameters act where a set of features has one bit at least of each of their rules. The first
-// rule that is not met says why they do not.
+// Parameters act where a set of features has one bit at least of each of their rules. The
+// first rule that is not met says why they do not.
 typedef struct rule {
     const char *paths; // patterns with blanks between them
     feature_set any;
@@ -91,25 +99,25 @@ typedef struct rule {
 #define ONE_LINK "one link has no joint"
 #define NOT_READ "the control law does not use it"
 
-#define OF_LAWS                                                                                    \
-    "control.approach_voltage control.k[pv] control.gains control.coefficients "                   \
-    "control.transition_time control.contact_threshold control.force_gain control.integral_gain "  \
-    "control.speed_limit control.reverse_time control.switch_share control.travel_time "           \
+#define OF_LAWS                                                                          \
+    "control.approach_voltage control.k[pv] control.gains control.coefficients "         \
+    "control.transition_time control.contact_threshold control.force_gain "              \
+    "control.integral_gain "                                                             \
+    "control.speed_limit control.reverse_time control.switch_share control.travel_time " \
     "control.arrival_speed"
 
 static const rule rules[] = {
     // models and methods
     {"printed.*", HAS(PRINTED), "it belongs to arm.model = printed"},
-    {"wall.[!ka]* method.rest_speed printed.force_* printed.program printed.reevaluation "
-     "printed.clamp_force "
-     "printed.feed_newmark_acceleration",
+    {"wall.[!ka]* method.rest_speed printed.force_* printed.program "
+     "printed.reevaluation printed.clamp_force printed.feed_newmark_acceleration",
      HAS(WALL), "there is no wall (wall.kind)"},
-    {"arm.damping_ratio arm.modal_ratios arm.joint_stiffness arm.link_lengths arm.air_drag "
-     "arm.stiffening arm.tip_mass arm.tilt wall.restitution method.rest_speed "
-     "method.residual_bound",
+    {"arm.damping_ratio arm.modal_ratios arm.joint_stiffness "
+     "arm.link_lengths arm.air_drag arm.stiffening arm.tip_mass arm.tilt "
+     "wall.restitution method.rest_speed method.residual_bound",
      HAS(CORRECTED), "the printed model has none", true},
-    {"arm.modal_ratios arm.joint_stiffness arm.link_lengths arm.air_drag arm.stiffening "
-     "motor.inductance wall.contact wall.motion method.engine",
+    {"arm.modal_ratios arm.joint_stiffness arm.link_lengths arm.air_drag "
+     "arm.stiffening motor.inductance wall.contact wall.motion method.engine",
      HAS(EVENT), "it runs with method.name = event only", true},
     {"motor.current_limit", HAS(EVENT) | HAS(CURRENT_DRIVE),
      "under a voltage it runs with method.name = event only", true},
@@ -118,7 +126,8 @@ static const rule rules[] = {
     {"printed.feed_newmark_acceleration", HAS(REEVALUATED),
      "nothing is re-evaluated (printed.reevaluation)"},
     {"method.beta method.gamma", HAS(NEWMARK), "it belongs to method.name = newmark"},
-    {"method.spectral_radius", HAS(ALPHA), "it belongs to method.name = generalized-alpha"},
+    {"method.spectral_radius", HAS(ALPHA),
+     "it belongs to method.name = generalized-alpha"},
     {"method.engine", HAS(PAIR), "the stiff engine alone takes this arm"},
     {"method.tolerance", HAS(STIFF), "the stiff engine does not integrate this run"},
 
@@ -133,8 +142,10 @@ static const rule rules[] = {
     // motor
     {"motor.voltage", HAS(NO_LAW), "the control law commands the voltage"},
     {"motor.inductance", HAS(VOLTAGE_DRIVE), "it is for motor.drive = voltage", true},
-    {"motor.transconductance", HAS(CURRENT_DRIVE), "it is for motor.drive = current", true},
-    {"motor.amplifier_gain", HAS(AMPLIFIED), "motor.transconductance says what a command gives"},
+    {"motor.transconductance", HAS(CURRENT_DRIVE), "it is for motor.drive = current",
+     true},
+    {"motor.amplifier_gain", HAS(AMPLIFIED),
+     "motor.transconductance says what a command gives"},
     {"motor.back_emf", HAS(VOLTAGE_DRIVE) | HAS(LAW),
      "the amplifier holds a current (motor.drive)"},
     {"motor.resistance", HAS(AMPLIFIED) | HAS(LAW),
@@ -150,7 +161,8 @@ static const rule rules[] = {
     {"wall.stiffness wall.damping", HAS(GIVES), "the wall does not give (wall.contact)"},
     {"wall.exponent", HAS(HUNT_CROSSLEY), "it is for wall.contact = hunt-crossley"},
     {"wall.mass", HAS(KELVIN_VOIGT),
-     "it is for wall.contact = kelvin-voigt, on whose spring and damper the face stands", true},
+     "it is for wall.contact = kelvin-voigt, on whose spring and damper the face stands",
+     true},
     {"wall.motion_time", HAS(MOVES), "the wall rests (wall.motion)"},
     {"wall.motion_amplitude wall.motion_frequency", HAS(MOVES_BY_FORMULA),
      "it is for wall.motion = sine or step"},
@@ -160,22 +172,25 @@ static const rule rules[] = {
     {"control.[!l]* control.lock sensor.* belief.*", HAS(LAW),
      "no control law is on (control.law)"},
     {"control.plugin", HAS(PLUGIN), "it belongs to control.law = plugin"},
-    {"control.command control.answer_time", HAS(PROCESS), "it belongs to control.law = process"},
+    {"control.command control.answer_time", HAS(PROCESS),
+     "it belongs to control.law = process"},
     {"control.playback_*", HAS(PLAYBACK), "it belongs to control.law = playback"},
     {"control.lock", HAS(LOCKABLE), "this law cannot be held in a mode"},
     {OF_LAWS, HAS(READ), NOT_READ},
     {OF_LAWS, HAS(ALONE), "control.settings gives it another value"},
     {"control.seed", HAS(CHANCE), "there is neither noise nor jitter"},
-    {"control.force_rate control.force_amplitude control.force_frequency", HAS(FORCE_READ),
-     "the control law does not use the force"},
+    {"control.force_rate control.force_amplitude control.force_frequency",
+     HAS(FORCE_READ), "the control law does not use the force"},
     {"control.force_rate", HAS(FORCE_STEPS), "control.force does not change"},
-    {"control.force_frequency", HAS(FORCE_WAVES), "the sine has no control.force_amplitude"},
+    {"control.force_frequency", HAS(FORCE_WAVES),
+     "the sine has no control.force_amplitude"},
     {"control.k2_table belief.k2_factor", HAS(TOLD_K2), NOT_READ},
     {"belief.mass_factor", HAS(TOLD_MASS), NOT_READ},
     {"belief.inertia_factor", HAS(TOLD_INERTIA), NOT_READ},
     {"belief.friction_factor", HAS(TOLD_FRICTION), NOT_READ},
     {"belief.torque_factor", HAS(TOLD_TORQUE), NOT_READ},
-    {"belief.hub_spring_factor", HAS(HUB_SPRING), "there is no hub spring (arm.hub_joint)"},
+    {"belief.hub_spring_factor", HAS(HUB_SPRING),
+     "there is no hub spring (arm.hub_joint)"},
     {"belief.hub_spring_factor", HAS(TOLD_HUB_SPRING), NOT_READ},
     {"belief.wall_error", HAS(TOLD_WALL), NOT_READ},
     {"belief.delay_error", HAS(TOLD_DELAY), NOT_READ},
@@ -184,12 +199,14 @@ static const rule rules[] = {
     // sensors
     {"sensor.piezo_*", HAS(PIEZO), "no piezo sensor is fitted (sensor.piezo)"},
     {"sensor.film_*", HAS(FILM), "no piezo film is fitted (sensor.film)"},
-    {"sensor.accelerometer_*", HAS(ACCELEROMETER), "none is fitted (sensor.accelerometer)"},
+    {"sensor.accelerometer_*", HAS(ACCELEROMETER),
+     "none is fitted (sensor.accelerometer)"},
     {"sensor.*_noise sensor.*_error sensor.*_offset sensor.*_bits sensor.*_range "
-     "sensor.*_rise_time sensor.*_leak_time sensor.encoder_counts sensor.tachometer_ripple* "
-     "sensor.fsr_hysteresis",
+     "sensor.*_rise_time sensor.*_leak_time sensor.encoder_counts "
+     "sensor.tachometer_ripple* sensor.fsr_hysteresis",
      HAS(IMPERFECT), "the sensors are ideal (sensor.ideal)"},
-    {"sensor.tachometer_ripple_count", HAS(RIPPLE), "there is no sensor.tachometer_ripple"},
+    {"sensor.tachometer_ripple_count", HAS(RIPPLE),
+     "there is no sensor.tachometer_ripple"},
 };
 
 enum { RULES = sizeof rules / sizeof rules[0], NAME = 64 };
@@ -217,8 +234,8 @@ static bool one_fits(const char *patterns, const char *path)
     return false;
 }
 
-// The rules of a parameter, a bit each. They are looked up once; threads that meet here find the
-// same.
+// The rules of a parameter, a bit each. They are looked up once; threads that meet here
+// find the same.
 static uint64_t rules_of(int parameter)
 {
     static _Atomic uint64_t known[sizeof(((parameters *)0)->set)];
@@ -251,7 +268,10 @@ const char *features_inert(feature_set features, int parameter)
 {
     assert(parameter >= 0 && parameter < parameter_count);
     const rule *broken = rule_not_met(features, parameter);
-    return broken != NULL ? broken->why : NULL;
+    if (broken != NULL) {
+        return broken->why;
+    }
+    return NULL;
 }
 
 status features_check(const parameters *p, fault *f)
@@ -268,8 +288,11 @@ status features_check(const parameters *p, fault *f)
         parameters_defaults(&other, ARM_CORRECTED);
         parameter_format(p, i, value, sizeof value);
         parameter_format(&other, i, usual, sizeof usual);
-        REFUSE_IF(strcmp(value, usual) != 0, parameter_table[i].path, f, "%s = %s, but %s",
-                  parameter_table[i].path, value, broken->why);
+        if (strcmp(value, usual) != 0) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, parameter_table[i].path,
+                                "%s = %s, but %s", parameter_table[i].path, value,
+                                broken->why);
+        }
     }
     return STATUS_OK;
 }

@@ -10,8 +10,9 @@
 // Reads "FORCE:K2" at the start of text; *rest is what follows it and blanks.
 static bool read_entry(const char *text, double *force, double *k2, const char **rest)
 {
-    return decimal_read(text, force, rest) && **rest == ':' && decimal_read(*rest + 1, k2, rest) &&
-           *force >= 0 && *k2 > 0 && isfinite(*force) && isfinite(*k2);
+    return decimal_read(text, force, rest) && **rest == ':' &&
+           decimal_read(*rest + 1, k2, rest) && *force >= 0 && *k2 > 0 &&
+           isfinite(*force) && isfinite(*k2);
 }
 
 status k2_table_read(k2_table *t, const char *text, fault *f)
@@ -23,18 +24,27 @@ status k2_table_read(k2_table *t, const char *text, fault *f)
         int i = t->count, length = (int)strcspn(entry, " ");
 
         // a pair of numbers, as long as there is room
-        REFUSE_IF(i == K2_TABLE_MOST, "control.k2_table", f,
-                  "control.k2_table has more than %d entries of FORCE:K2", K2_TABLE_MOST);
-        REFUSE_IF(!read_entry(entry, &t->force[i], &t->k2[i], &rest), "control.k2_table", f,
-                  "control.k2_table: '%.*s' is wrong, expected FORCE:K2 such as "
-                  "1.5:4.92, a force from 0 N and a stiffness above 0 N m/rad",
-                  length, entry);
+        if (i == K2_TABLE_MOST) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, "control.k2_table",
+                                "control.k2_table has more than %d entries of FORCE:K2",
+                                K2_TABLE_MOST);
+        }
+        if (!read_entry(entry, &t->force[i], &t->k2[i], &rest)) {
+            return fault_set_at(
+                f, STATUS_BAD_SCENARIO, "control.k2_table",
+                "control.k2_table: '%.*s' is wrong, expected FORCE:K2 such as "
+                "1.5:4.92, a force from 0 N and a stiffness above 0 N m/rad",
+                length, entry);
+        }
 
         // in growing order, so that there is one k2 between any two of them
-        REFUSE_IF(i > 0 && !(t->force[i] > t->force[i - 1]), "control.k2_table", f,
-                  "control.k2_table: the force of '%.*s' is not above the one before "
-                  "it, expected growing forces",
-                  length, entry);
+        if (i > 0 && !(t->force[i] > t->force[i - 1])) {
+            return fault_set_at(
+                f, STATUS_BAD_SCENARIO, "control.k2_table",
+                "control.k2_table: the force of '%.*s' is not above the one before "
+                "it, expected growing forces",
+                length, entry);
+        }
         t->count++;
     }
     return STATUS_OK;
@@ -64,6 +74,7 @@ double k2_table_at(const k2_table *t, double force)
     }
 
     // linear between two entries
-    double share = (force - t->force[above - 1]) / (t->force[above] - t->force[above - 1]);
+    double share =
+        (force - t->force[above - 1]) / (t->force[above] - t->force[above - 1]);
     return t->k2[above - 1] + share * (t->k2[above] - t->k2[above - 1]);
 }

@@ -1,14 +1,16 @@
 // The parameters: every number, word and text of a run, in the order of `impactlab show`.
 //
-// Read twice: parameters.h makes of each row the field of its struct, parameters.c its line of
-// parameter_table. A row is
-//     REAL(group, field, meaning, unit, from, to, ...)  BOOLEAN(group, field, meaning, ...)
-//     CHOICE(group, field, meaning, last, words, ...)   TEXT(group, field, meaning, without, ...)
-//     INTEGER(group, field, meaning, from, to, ...)     LIST(group, field, meaning, unit, from, to)
-// with its default, one for both models or DEFAULTS(corrected, printed), and TIMED where it may
-// change during a run; a text says what it is `without` anybody giving it. The path is group.field,
-// a range includes both its ends, a meaning is one sentence without a full stop. A parameter is
-// added here and nowhere else. A row wraps where it reads best, so that the formatter is off.
+// Read twice: parameters.h makes of each row the field of its struct, parameters.c its
+// line of parameter_table. A row is
+//     REAL(group, field, meaning, unit, from, to, ...)  BOOLEAN(group, field, meaning,
+//     ...) CHOICE(group, field, meaning, last, words, ...)   TEXT(group, field, meaning,
+//     without, ...) INTEGER(group, field, meaning, from, to, ...)     LIST(group, field,
+//     meaning, unit, from, to)
+// with its default, one for both models or DEFAULTS(corrected, printed), and TIMED where
+// it may change during a run; a text says what it is `without` anybody giving it. The
+// path is group.field, a range includes both its ends, a meaning is one sentence without
+// a full stop. A parameter is added here and nowhere else. A row wraps where it reads
+// best, so that the formatter is off.
 
 // clang-format off
 GROUP(arm_parameters)

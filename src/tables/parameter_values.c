@@ -38,10 +38,16 @@ double parameter_get(const parameters *p, int index)
 {
     const parameter_info *info = row_of(index);
     const void *at = (const char *)p + info->offset;
-    return info->type == PARAMETER_REAL      ? *(const double *)at
-           : info->type == PARAMETER_BOOLEAN ? *(const bool *)at
-           : parameter_is_text(info)         ? 0
-                                             : *(const int *)at;
+    if (info->type == PARAMETER_REAL) {
+        return *(const double *)at;
+    }
+    if (info->type == PARAMETER_BOOLEAN) {
+        return *(const bool *)at;
+    }
+    if (parameter_is_text(info)) {
+        return 0;
+    }
+    return *(const int *)at;
 }
 
 void parameters_restore_defaults(parameters *p)
@@ -67,24 +73,38 @@ void parameters_defaults(parameters *p, arm_model_kind model)
 static status check_number(const parameter_info *info, double value, fault *f)
 {
     const char *unit = info->unit, *space = unit[0] ? " " : "";
-    REFUSE_IF(!isfinite(value), info->path, f, "%s is not a finite number, expected %g to %g%s%s",
-              info->path, info->minimum, info->maximum, space, unit);
-    REFUSE_IF(info->type != PARAMETER_REAL && info->type != PARAMETER_LIST && value != floor(value),
-              info->path, f, "%s = %g is not a whole number", info->path, value);
-    REFUSE_IF(value < info->minimum || value > info->maximum, info->path, f,
-              "%s = %g is out of range, expected %g to %g%s%s", info->path, value, info->minimum,
-              info->maximum, space, unit);
-    REFUSE_IF(value != 0 && fabs(value) < LEAST, info->path, f,
-              "%s = %g is too small to be computed with, expected 0 or at least %g%s%s", info->path,
-              value, LEAST, space, unit);
+    if (!isfinite(value)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s is not a finite number, expected %g to %g%s%s",
+                            info->path, info->minimum, info->maximum, space, unit);
+    }
+    if (info->type != PARAMETER_REAL && info->type != PARAMETER_LIST &&
+        value != floor(value)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s = %g is not a whole number", info->path, value);
+    }
+    if (value < info->minimum || value > info->maximum) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s = %g is out of range, expected %g to %g%s%s", info->path,
+                            value, info->minimum, info->maximum, space, unit);
+    }
+    if (value != 0 && fabs(value) < LEAST) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, info->path,
+            "%s = %g is too small to be computed with, expected 0 or at least %g%s%s",
+            info->path, value, LEAST, space, unit);
+    }
     return STATUS_OK;
 }
 
 status parameter_set_number(parameters *p, int index, double value, fault *f)
 {
     const parameter_info *info = row_of(index);
-    REFUSE_IF(parameter_is_text(info), info->path, f, "%s is a %s and takes no number", info->path,
-              info->type == PARAMETER_LIST ? "list" : "text");
+    if (parameter_is_text(info)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                            "%s is a %s and takes no number", info->path,
+                            info->type == PARAMETER_LIST ? "list" : "text");
+    }
     TRY(check_number(info, value, f));
     store(p, info, value);
     p->set[index] = 1;
@@ -101,43 +121,57 @@ static int choice_index(const char *choices, const char *text, size_t length)
         if (n == length && strncmp(c, text, n) == 0) {
             return index;
         }
-        c = bar ? bar + 1 : NULL;
+        if (bar) {
+            c = bar + 1;
+        } else {
+            c = NULL;
+        }
     }
     return -1;
 }
 
 // Reads "0.1" or "0.1 rad" into value; text holds no surrounding space.
-static status parse_quantity(const parameter_info *info, const char *text, double *value, fault *f)
+static status parse_quantity(const parameter_info *info, const char *text, double *value,
+                             fault *f)
 {
     const char *unit, *digits = text + strspn(text, "+-.");
     if (!decimal_read(text, value, &unit)) {
         // strtod's own words for what is not finite, with or without YAML's dot
-        bool infinite = strncasecmp(digits, "inf", 3) == 0 || strncasecmp(digits, "nan", 3) == 0;
-        const char *type = info->type == PARAMETER_INTEGER ? "a whole number" : "a number";
+        bool infinite =
+            strncasecmp(digits, "inf", 3) == 0 || strncasecmp(digits, "nan", 3) == 0;
+        const char *type =
+            info->type == PARAMETER_INTEGER ? "a whole number" : "a number";
         return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
-                            "%s = '%.60s' is not %s, expected %g to %g%s%s", info->path, text,
-                            infinite ? "finite" : type, info->minimum, info->maximum,
-                            info->unit[0] ? " " : "", info->unit);
+                            "%s = '%.60s' is not %s, expected %g to %g%s%s", info->path,
+                            text, infinite ? "finite" : type, info->minimum,
+                            info->maximum, info->unit[0] ? " " : "", info->unit);
     }
 
     // a unit is no conversion: only the parameter's own may stand there
     if (*unit != '\0' && strcmp(unit, info->unit) != 0) {
-        REFUSE_IF(info->unit[0] == '\0', info->path, f,
-                  "%s = '%.60s' carries a unit, expected a pure number", info->path, text);
+        if (info->unit[0] == '\0') {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s = '%.60s' carries a unit, expected a pure number",
+                                info->path, text);
+        }
         return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
-                            "%s = '%.60s' is in '%.20s', expected %s", info->path, text, unit,
-                            info->unit);
+                            "%s = '%.60s' is in '%.20s', expected %s", info->path, text,
+                            unit, info->unit);
     }
     return STATUS_OK;
 }
 
 // A text of one line is stored as it is.
-static status store_text(parameters *p, int index, const char *text, size_t length, fault *f)
+static status store_text(parameters *p, int index, const char *text, size_t length,
+                         fault *f)
 {
     const parameter_info *info = row_of(index);
     for (size_t i = 0; i < length; i++) {
-        REFUSE_IF(is_control(text[i]), info->path, f,
-                  "%s holds a control character, expected one line of text", info->path);
+        if (is_control(text[i])) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s holds a control character, expected one line of text",
+                                info->path);
+        }
     }
 
     // zeroes behind the text make equal parameters equal byte by byte
@@ -149,7 +183,8 @@ static status store_text(parameters *p, int index, const char *text, size_t leng
 }
 
 // Reads "[10, 12 N m/rad, 9]" and stores it as "10, 12, 9".
-static status store_list(parameters *p, int index, const char *text, size_t length, fault *f)
+static status store_list(parameters *p, int index, const char *text, size_t length,
+                         fault *f)
 {
     const parameter_info *info = row_of(index);
     char list[PARAMETER_TEXT_SIZE] = "";
@@ -173,20 +208,32 @@ static status store_list(parameters *p, int index, const char *text, size_t leng
 
         // a number of the parameter's unit and range, and no comma too many
         double value;
-        REFUSE_IF(first == last, info->path, f,
-                  "%s: number %d is missing, expected numbers with commas between them", info->path,
-                  count + 1);
+        if (first == last) {
+            return fault_set_at(
+                f, STATUS_BAD_SCENARIO, info->path,
+                "%s: number %d is missing, expected numbers with commas between them",
+                info->path, count + 1);
+        }
         TRY(parse_quantity(info, word, &value, f));
         TRY(check_number(info, value, f));
 
         // in as few digits as give it back
         number_format_short(number, value);
-        used +=
-            (size_t)snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "", number);
-        REFUSE_IF(count == PARAMETER_LIST_MOST || used >= sizeof list, info->path, f,
-                  "%s is too long, expected at most %d numbers and 127 characters", info->path,
-                  PARAMETER_LIST_MOST);
-        text = comma != NULL && comma + 1 == end ? comma : comma != NULL ? comma + 1 : end;
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s",
+                                 used > 0 ? ", " : "", number);
+        if (count == PARAMETER_LIST_MOST || used >= sizeof list) {
+            return fault_set_at(
+                f, STATUS_BAD_SCENARIO, info->path,
+                "%s is too long, expected at most %d numbers and 127 characters",
+                info->path, PARAMETER_LIST_MOST);
+        }
+        if (comma != NULL && comma + 1 == end) {
+            text = comma;
+        } else if (comma != NULL) {
+            text = comma + 1;
+        } else {
+            text = end;
+        }
     }
     memcpy((char *)p + info->offset, list, sizeof list);
     p->set[index] = 1;
@@ -194,27 +241,32 @@ static status store_list(parameters *p, int index, const char *text, size_t leng
 }
 
 // Reads a word without surrounding space as the number of a parameter that is no text.
-static status parse_word(const parameter_info *info, const char *word, double *value, fault *f)
+static status parse_word(const parameter_info *info, const char *word, double *value,
+                         fault *f)
 {
     size_t length = strlen(word);
     if (info->type == PARAMETER_CHOICE) {
         int choice = choice_index(info->choices, word, length);
         *value = choice;
-        return choice >= 0 ? STATUS_OK
-                           : fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
-                                          "%s = '%.60s' is not known, expected one of %s",
-                                          info->path, word, info->choices);
+        if (!(choice >= 0)) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s = '%.60s' is not known, expected one of %s",
+                                info->path, word, info->choices);
+        }
+        return STATUS_OK;
     }
 
     // of each pair of words the first is false
     if (info->type == PARAMETER_BOOLEAN) {
-        int choice =
-            choice_index("false|true|False|True|FALSE|TRUE|no|yes|off|on|0|1", word, length);
+        int choice = choice_index("false|true|False|True|FALSE|TRUE|no|yes|off|on|0|1",
+                                  word, length);
         *value = choice % 2;
-        return choice >= 0
-                   ? STATUS_OK
-                   : fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
-                                  "%s = '%.60s' is neither true nor false", info->path, word);
+        if (!(choice >= 0)) {
+            return fault_set_at(f, STATUS_BAD_SCENARIO, info->path,
+                                "%s = '%.60s' is neither true nor false", info->path,
+                                word);
+        }
+        return STATUS_OK;
     }
     return parse_quantity(info, word, value, f);
 }
@@ -224,8 +276,11 @@ static status set_setting(parameters *p, const char *text, fault *f)
 {
     char name[PARAMETER_TEXT_SIZE];
     const size_t length = strcspn(text, " =");
-    REFUSE_IF(length == 1 || length > sizeof name || text[length] != '=', setting_info.path, f,
-              "control.settings%.60s is no setting, expected .NAME=NUMBER", text);
+    if (length == 1 || length > sizeof name || text[length] != '=') {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, setting_info.path,
+                            "control.settings%.60s is no setting, expected .NAME=NUMBER",
+                            text);
+    }
     snprintf(name, sizeof name, "%.*s", (int)length - 1, text + 1);
     return settings_set_text(p, name, text + length + 1, f);
 }
@@ -251,8 +306,10 @@ status parameter_set_text(parameters *p, int index, const char *text, fault *f)
     }
 
     char word[PARAMETER_TEXT_SIZE];
-    REFUSE_IF(length == 0 || length >= sizeof word, info->path, f, "%s has %s", info->path,
-              length ? "a value of more than 127 characters" : "no value");
+    if (length == 0 || length >= sizeof word) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, info->path, "%s has %s", info->path,
+                            length ? "a value of more than 127 characters" : "no value");
+    }
     memcpy(word, text, length);
     word[length] = '\0';
 

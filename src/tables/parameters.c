@@ -11,27 +11,28 @@
 #include "src/tables/control_laws.h"
 #include "src/tables/feature_bits.h"
 
-// What a row of the list comes to: path and place, meaning, type, unit and range, and the rest.
-#define ROW(group, field, meaning, kind, in, from, to, ...)                                        \
-    {.path = #group "." #field,                                                                    \
-     .offset = offsetof(parameters, group.field),                                                  \
-     .type = PARAMETER_##kind,                                                                     \
-     .unit = in,                                                                                   \
-     .minimum = from,                                                                              \
-     .maximum = to,                                                                                \
-     .description = meaning,                                                                       \
+// What a row of the list comes to: path and place, meaning, type, unit and range, and the
+// rest.
+#define ROW(group, field, meaning, kind, in, from, to, ...)                              \
+    {.path = #group "." #field,                                                          \
+     .offset = offsetof(parameters, group.field),                                        \
+     .type = PARAMETER_##kind,                                                           \
+     .unit = in,                                                                         \
+     .minimum = from,                                                                    \
+     .maximum = to,                                                                      \
+     .description = meaning,                                                             \
      __VA_ARGS__},
-#define REAL(group, field, meaning, in, from, to, ...)                                             \
+#define REAL(group, field, meaning, in, from, to, ...)                                   \
     ROW(group, field, meaning, REAL, in, from, to, __VA_ARGS__)
-#define INTEGER(group, field, meaning, from, to, ...)                                              \
+#define INTEGER(group, field, meaning, from, to, ...)                                    \
     ROW(group, field, meaning, INTEGER, "", from, to, __VA_ARGS__)
-#define BOOLEAN(group, field, meaning, ...)                                                        \
+#define BOOLEAN(group, field, meaning, ...)                                              \
     ROW(group, field, meaning, BOOLEAN, "", 0, 1, __VA_ARGS__)
-#define CHOICE(group, field, meaning, last, words, ...)                                            \
+#define CHOICE(group, field, meaning, last, words, ...)                                  \
     ROW(group, field, meaning, CHOICE, "", 0, last, .choices = words, __VA_ARGS__)
-#define TEXT(group, field, meaning, ...)                                                           \
+#define TEXT(group, field, meaning, ...)                                                 \
     ROW(group, field, meaning, TEXT, "", 0, 1, .choices = __VA_ARGS__)
-#define LIST(group, field, meaning, in, from, to)                                                  \
+#define LIST(group, field, meaning, in, from, to)                                        \
     ROW(group, field, meaning, LIST, in, from, to, .choices = NULL)
 #define GROUP(name)
 #define END_GROUP(name)
@@ -42,8 +43,8 @@
 // The default follows from other parameters, see parameters_resolve.
 #define DERIVED (double)NAN
 
-// k1 with which the printed model reproduces the thesis's tables. The thesis prints
-// 169 468 N m/rad, with which its own algorithm at h = 1 ms chatters; 90 lies in the range
+// k1 with which the printed model reproduces the thesis's tables. The thesis prints 169
+// 468 N m/rad, with which its own algorithm at h = 1 ms chatters; 90 lies in the range
 // 85-100 that matches Tables 4.1-4.3 best (docs/explanation/model.md).
 #define K1_PRINTED_TABLES 90.0
 #define K1_THESIS         169468.0882
@@ -60,13 +61,14 @@ const parameter_info parameter_table[] = {
 
 const int parameter_count = (int)(sizeof parameter_table / sizeof parameter_table[0]);
 
-_Static_assert(sizeof parameter_table / sizeof parameter_table[0] <= sizeof(((parameters *)0)->set),
+_Static_assert(sizeof parameter_table / sizeof parameter_table[0] <=
+                   sizeof(((parameters *)0)->set),
                "parameters.set has room for every parameter");
 _Static_assert(sizeof parameter_table / sizeof parameter_table[0] <= UCHAR_MAX + 1,
                "a byte has room for every index");
 
-// The index of the parameter that begins at each offset, filled in before the program begins:
-// resolving a set of parameters asks a hundred times.
+// The index of the parameter that begins at each offset, filled in before the program
+// begins: resolving a set of parameters asks a hundred times.
 static unsigned char index_at[sizeof(parameters)];
 
 static __attribute__((constructor)) void fill_indices(void)
@@ -122,15 +124,16 @@ const char *parameter_suggest(const char *path)
 const control_law_info control_law_table[LAW_COUNT] = {
     [LAW_NONE] = {"none", "no rig: the bare arm under motor.voltage", 0, 0, ""},
     [LAW_PLUGIN] = {"plugin", "a controller of one's own", TOLD_MODEL, 0, ""},
-    [LAW_PROCESS] = {"process", "a program of one's own, in any language", TOLD_MODEL, 0, ""},
+    [LAW_PROCESS] = {"process", "a program of one's own, in any language", TOLD_MODEL, 0,
+                     ""},
     [LAW_PLAYBACK] = {"playback", "a recorded command, from a CSV file", 0, 0, ""},
-#define LAW(name, prefix, word, told, moving, ignored, description)                                \
+#define LAW(name, prefix, word, told, moving, ignored, description)                      \
     [LAW_##name] = {word, description, told, moving, ignored},
     CONTROL_LAWS(LAW)
 #undef LAW
 };
 
-// --- usual ranges --------------------------------------------------------------------------------
+// --- usual ranges ----------------------------------------------------------------------
 
 #define FEWEST_DECADES 3    // from this many on a range is logarithmic
 #define MOST_DECADES   6    // a wider range shows those near the default
@@ -143,7 +146,10 @@ static double power_of_ten(int k)
     for (int i = 0; i < abs(k); i++) {
         power *= 10;
     }
-    return k < 0 ? 1 / power : power;
+    if (k < 0) {
+        return 1 / power;
+    }
+    return power;
 }
 
 // The largest whole number k for which 10^k is not above a positive number.
@@ -167,30 +173,40 @@ static double round_up(double x)
     return 10 * decade;
 }
 
-bool parameter_usual_range(int parameter, double value, double *range_low, double *range_high,
-                           bool *logarithmic)
+bool parameter_usual_range(int parameter, double value, double *range_low,
+                           double *range_high, bool *logarithmic)
 {
     assert(parameter >= 0 && parameter < parameter_count);
     const parameter_info *info = &parameter_table[parameter];
-    FAIL_IF((info->type != PARAMETER_REAL && info->type != PARAMETER_INTEGER) || !isfinite(value),
-            false);
+    if ((info->type != PARAMETER_REAL && info->type != PARAMETER_INTEGER) ||
+        !isfinite(value)) {
+        return false;
+    }
     parameters defaults;
     parameters_defaults(&defaults, ARM_CORRECTED);
     double usual = fabs(parameter_get(&defaults, parameter));
     double low = info->minimum, high = info->maximum;
-    usual = isfinite(usual) ? usual : 0;
+    if (!isfinite(usual)) {
+        usual = 0;
+    }
 
     // decades: all of them, or some near the default up to the value
     *logarithmic = low > 0 && high / low >= power_of_ten(FEWEST_DECADES) * (1 - 1e-9);
     const double size = fmax(usual, fabs(value));
-    if (*logarithmic && high / low > power_of_ten(MOST_DECADES) * (1 + 1e-9) && usual > 0) {
+    if (*logarithmic && high / low > power_of_ten(MOST_DECADES) * (1 + 1e-9) &&
+        usual > 0) {
         const int below = decade_of(usual), above = below + (power_of_ten(below) < usual);
         low = fmax(low, fmin(value, power_of_ten(below - 2)));
         high = fmin(high, fmax(value, power_of_ten(above + 2)));
     } else if (!*logarithmic && high - low > WIDE * fmax(size, 1e-12)) {
-        // one much wider than suits the default, or the value once that is far from it, in part
-        double reach = round_up(usual > 0 ? 4 * usual : info->type == PARAMETER_REAL ? 0.1 : 10);
-        reach = fabs(value) > reach ? round_up(fabs(value)) : reach;
+        // one much wider than suits the default, or the value once that is far from it,
+        // in part
+        double reach = round_up(usual > 0                      ? 4 * usual
+                                : info->type == PARAMETER_REAL ? 0.1
+                                                               : 10);
+        if (fabs(value) > reach) {
+            reach = round_up(fabs(value));
+        }
         high = fmin(high, reach);
         low = fmax(low, -reach);
     }

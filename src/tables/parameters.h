@@ -1,7 +1,7 @@
 // Every parameter of a run, and the one table that describes them: parameter_list.h.
 //
-// The table feeds scenario files, --set, sweeps, `show`, validation messages, the terminal's
-// sliders and the manual.
+// The table feeds scenario files, --set, sweeps, `show`, validation messages, the
+// terminal's sliders and the manual.
 #pragma once
 
 #include <stdbool.h>
@@ -22,7 +22,11 @@ typedef enum wall_motion_kind {
     MOTION_FILE
 } wall_motion_kind;
 typedef enum motor_drive { DRIVE_VOLTAGE, DRIVE_CURRENT } motor_drive;
-typedef enum method_kind { METHOD_EVENT, METHOD_NEWMARK, METHOD_GENERALIZED_ALPHA } method_kind;
+typedef enum method_kind {
+    METHOD_EVENT,
+    METHOD_NEWMARK,
+    METHOD_GENERALIZED_ALPHA
+} method_kind;
 typedef enum engine_kind { ENGINE_AUTO, ENGINE_PAIR, ENGINE_STIFF } engine_kind;
 typedef enum printed_program { PROGRAM_EQUATIONS, PROGRAM_LISTING } printed_program;
 typedef enum listing_reevaluation {
@@ -52,9 +56,10 @@ typedef enum force_sensor { FORCE_BY_FSR, FORCE_BY_PIEZO } force_sensor;
 
 enum { CONTROL_MOST_DELAY = 5 }; // from a sample to its command [periods]
 
-// arm_parameters, motor_parameters and so on: a field for each row of the list. A choice is an
-// index of its words, a list a text of numbers. belief.*, the nominal model that a controller is
-// told of the arm on the rig, has factors of the truth and differences from it.
+// arm_parameters, motor_parameters and so on: a field for each row of the list. A choice
+// is an index of its words, a list a text of numbers. belief.*, the nominal model that a
+// controller is told of the arm on the rig, has factors of the truth and differences from
+// it.
 #define GROUP(name)                typedef struct name {
 #define REAL(group, field, ...)    double field;
 #define INTEGER(group, field, ...) int field;
@@ -62,8 +67,8 @@ enum { CONTROL_MOST_DELAY = 5 }; // from a sample to its command [periods]
 #define BOOLEAN(group, field, ...) bool field;
 #define TEXT(group, field, ...)    char field[PARAMETER_TEXT_SIZE];
 #define LIST(group, field, ...)    char field[PARAMETER_TEXT_SIZE];
-#define END_GROUP(name)                                                                            \
-    }                                                                                              \
+#define END_GROUP(name)                                                                  \
+    }                                                                                    \
     name;
 #include "src/tables/parameter_list.h"
 #undef GROUP
@@ -86,8 +91,8 @@ typedef struct parameters {
     control_parameters control;
     nominal_model_parameters belief;
     sensor_parameters sensor;
-    bool code_allowed; // the user allows the scenario to start a program or load a plug-in; no file
-                       // can allow it
+    bool code_allowed;      // the user allows the scenario to start a program or load a
+                            // plug-in; no file can allow it
     unsigned char set[160]; // set[i] is 1 if parameter i was given, 0 if it is a default
 } parameters;
 
@@ -97,7 +102,8 @@ typedef enum parameter_type {
     PARAMETER_BOOLEAN,
     PARAMETER_CHOICE,
     PARAMETER_TEXT, // of at most PARAMETER_TEXT_SIZE - 1 bytes; has no number, no range
-    PARAMETER_LIST  // of numbers, kept as such a text "10, 12, 9"; unit and range are each number's
+    PARAMETER_LIST // of numbers, kept as such a text "10, 12, 9"; unit and range are each
+                   // number's
 } parameter_type;
 
 typedef struct parameter_info {
@@ -108,9 +114,9 @@ typedef struct parameter_info {
     double default_corrected;
     double default_printed;
     double minimum, maximum; // both included
-    const char *choices;     // "rigid|spring" in the order of the enumeration; of a text what it is
-                             // where nothing gives it; else NULL
-    bool timed;              // may be changed during a run
+    const char *choices; // "rigid|spring" in the order of the enumeration; of a text what
+                         // it is where nothing gives it; else NULL
+    bool timed;          // may be changed during a run
     const char *description; // one sentence without a full stop
 } parameter_info;
 
@@ -124,34 +130,37 @@ static inline bool parameter_is_text(const parameter_info *info)
     return info->type == PARAMETER_TEXT || info->type == PARAMETER_LIST;
 }
 
-// The numbers of a list as it is kept; returns how many there are, 0 for the empty list, which is
-// the default.
+// The numbers of a list as it is kept; returns how many there are, 0 for the empty list,
+// which is the default.
 int parameter_list_numbers(const char *list, double numbers[PARAMETER_LIST_MOST]);
 
 // Length of each link [m], lengths[links], of resolved parameters.
 void parameters_link_lengths(const arm_parameters *a, double *lengths);
 
-// Stiffness of the joint before each link [N m/rad], stiffness[links], of resolved parameters: that
-// of the hub's spring or the beam's root (0 with a rigid hub), then of the inner joints.
+// Stiffness of the joint before each link [N m/rad], stiffness[links], of resolved
+// parameters: that of the hub's spring or the beam's root (0 with a rigid hub), then of
+// the inner joints.
 void parameters_joint_stiffness(const arm_parameters *a, double *stiffness);
 
-// Whether all links have one length and all joints the stiffness of one beam, as they do without
-// lists; a hub spring of its own does not count.
+// Whether all links have one length and all joints the stiffness of one beam, as they do
+// without lists; a hub spring of its own does not count.
 bool parameters_even_links(const arm_parameters *a);
 
 // How far behind the wall an arm may start, by rounding, as a share of its length.
 #define START_ROUNDING 1e-15
 
-// The range in which a value of a parameter is usually tried [its unit], that of a slider: all that
-// it may be, or where that is much wider than its default what lies about the default and the
-// value; logarithmic where it spans decades. False if the parameter is not a number.
+// The range in which a value of a parameter is usually tried [its unit], that of a
+// slider: all that it may be, or where that is much wider than its default what lies
+// about the default and the value; logarithmic where it spans decades. False if the
+// parameter is not a number.
 bool parameter_usual_range(int parameter, double value, double *low, double *high,
                            bool *logarithmic);
 
 // Index of a path in the table, or -1.
 int parameter_find(const char *path);
 
-// Index of the parameter of a field, PARAMETER_INDEX(arm.k2); a misspelt one does not compile.
+// Index of the parameter of a field, PARAMETER_INDEX(arm.k2); a misspelt one does not
+// compile.
 #define PARAMETER_INDEX(field) parameter_at(offsetof(parameters, field))
 
 // Index of the parameter that starts at an offset of struct parameters.
@@ -160,30 +169,31 @@ int parameter_at(size_t offset);
 // Index of a path that the program itself names: an unknown one fails an assertion.
 int parameter_index(const char *path);
 
-// Index of a path as people write it; -1, with a sentence in f that names the nearest, if there is
-// no such parameter.
+// Index of a path as people write it; -1, with a sentence in f that names the nearest, if
+// there is no such parameter.
 int parameter_look_up(const char *path, fault *f);
 
-// The path of that name in another group, or the nearest to a misspelt one (for "did you mean");
-// NULL if there is none.
+// The path of that name in another group, or the nearest to a misspelt one (for "did you
+// mean"); NULL if there is none.
 const char *parameter_suggest(const char *path);
 
 // All defaults of the given model (arm_model_kind), nothing marked as set.
 void parameters_defaults(parameters *p, arm_model_kind model);
 
-// Gives all parameters that are not marked as set, except arm.model itself, their defaults for
-// p->arm.model.
+// Gives all parameters that are not marked as set, except arm.model itself, their
+// defaults for p->arm.model.
 void parameters_restore_defaults(parameters *p);
 
-// Parses text as a value of parameter `index` and stores it, marked as set. A trailing unit equal
-// to the parameter's own is accepted ("0.1 rad"); the numbers of a list stand between commas, in
-// brackets or not ("[10, 12 N m/rad]"). ".NAME=VALUE" gives one number of control.settings a value
-// (src/tables/settings.h). On a wrong type, a value that is not finite or
-// one out of range nothing is stored and f says what was wrong and what was expected.
+// Parses text as a value of parameter `index` and stores it, marked as set. A trailing
+// unit equal to the parameter's own is accepted ("0.1 rad"); the numbers of a list stand
+// between commas, in brackets or not ("[10, 12 N m/rad]"). ".NAME=VALUE" gives one number
+// of control.settings a value (src/tables/settings.h). On a wrong type, a value that is
+// not finite or one out of range nothing is stored and f says what was wrong and what was
+// expected.
 status parameter_set_text(parameters *p, int index, const char *text, fault *f);
 
-// Stores a number (an enumeration's index for a choice, 0 or 1 for a boolean), checked as above. A
-// text takes no number.
+// Stores a number (an enumeration's index for a choice, 0 or 1 for a boolean), checked as
+// above. A text takes no number.
 status parameter_set_number(parameters *p, int index, double value, fault *f);
 
 // The value as a number; NaN where an optional parameter has none, 0 for a text.
@@ -192,21 +202,22 @@ double parameter_get(const parameters *p, int index);
 // The value as text, as a scenario file would give it, without its unit.
 void parameter_format(const parameters *p, int index, char *text, size_t size);
 
-// Fills what depends on other parameters: defaults that follow arm.model for everything not set,
-// arm.link_inertia of a uniform link, arm.EI or arm.k2 from the one that was given, and arm.k1 of a
-// beam's root. Checks combinations (arm.link_inertia with N != 2, arm.EI beside arm.k2, the printed
-// model with N != 2 ...). Call after the last parameter was set.
+// Fills what depends on other parameters: defaults that follow arm.model for everything
+// not set, arm.link_inertia of a uniform link, arm.EI or arm.k2 from the one that was
+// given, and arm.k1 of a beam's root. Checks combinations (arm.link_inertia with N != 2,
+// arm.EI beside arm.k2, the printed model with N != 2 ...). Call after the last parameter
+// was set.
 status parameters_resolve(parameters *p, fault *f);
 
-// Whether the controller's clock can be kept: CONTROL_MOST_DELAY commands under way at most, and
-// samples in order. A sentence in f if not; parameters_resolve asks it, too.
+// Whether the controller's clock can be kept: CONTROL_MOST_DELAY commands under way at
+// most, and samples in order. A sentence in f if not; parameters_resolve asks it, too.
 status parameters_check_timing(const parameters *p, fault *f);
 
-// Whether a parameter of resolved parameters may be given another value. False, with the reason in
-// f, for one that follows from others there: arm.k1 of a beam's root, arm.k2 and arm.EI beside
-// arm.joint_stiffness.
+// Whether a parameter of resolved parameters may be given another value. False, with the
+// reason in f, for one that follows from others there: arm.k1 of a beam's root, arm.k2
+// and arm.EI beside arm.joint_stiffness.
 status parameter_may_change(const parameters *p, int index, fault *f);
 
-// Lets what depends on parameter `index` follow it in resolved parameters, as a change during a run
-// asks for it: arm.k2, arm.EI and the root of a beam.
+// Lets what depends on parameter `index` follow it in resolved parameters, as a change
+// during a run asks for it: arm.k2, arm.EI and the root of a beam.
 void parameters_follow(parameters *p, int index);

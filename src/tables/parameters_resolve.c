@@ -24,28 +24,47 @@ static status resolve_wall(parameters *p, fault *f)
 
     // defaults that depend on the law
     if (isnan(w->stiffness)) {
-        w->stiffness = hertz ? HERTZ_STIFFNESS : SOFT_STIFFNESS;
+        if (hertz) {
+            w->stiffness = HERTZ_STIFFNESS;
+        } else {
+            w->stiffness = SOFT_STIFFNESS;
+        }
     }
     if (isnan(w->damping)) {
-        w->damping = hertz ? 1.5 * RESTITUTION_LOSS * w->stiffness : SOFT_DAMPING;
+        if (hertz) {
+            w->damping = 1.5 * RESTITUTION_LOSS * w->stiffness;
+        } else {
+            w->damping = SOFT_DAMPING;
+        }
     }
 
-    REFUSE_IF(w->mass > 0 && w->mass < LEAST_FACE, BLAME1(p, wall.mass), f,
-              "wall.mass = %g kg, expected 0 (none) or at least %g kg", w->mass, LEAST_FACE);
+    if (w->mass > 0 && w->mass < LEAST_FACE) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, wall.mass),
+                            "wall.mass = %g kg, expected 0 (none) or at least %g kg",
+                            w->mass, LEAST_FACE);
+    }
 
     // what a wall that moves needs, and cannot be combined with
-    REFUSE_IF(moves && w->motion == MOTION_FILE && w->motion_file[0] == '\0',
-              BLAME2(p, wall.motion, wall.motion_file), f,
-              "wall.motion = file needs a CSV file in wall.motion_file");
-    REFUSE_IF(moves && w->mass > 0 && w->kind != WALL_PLANE, BLAME2(p, wall.motion, wall.kind), f,
-              "wall.motion shakes along the wall's normal, but the face of a point (wall.mass) "
-              "gives across the last link, which turns: expected wall.kind = plane");
-    REFUSE_IF(
-        moves && p->arm.links == 1 && p->arm.hub_joint == HUB_RIGID && !gives &&
-            p->motor.stiction > 0,
-        BLAME2(p, wall.motion, motor.stiction), f,
-        "a rigid wall that moves would drive a single link against the hub's stiction, whose force "
-        "is not determined: expected motor.stiction = 0, more links or a wall that gives");
+    if (moves && w->motion == MOTION_FILE && w->motion_file[0] == '\0') {
+        return fault_set_at(f, STATUS_BAD_SCENARIO,
+                            BLAME2(p, wall.motion, wall.motion_file),
+                            "wall.motion = file needs a CSV file in wall.motion_file");
+    }
+    if (moves && w->mass > 0 && w->kind != WALL_PLANE) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, wall.motion, wall.kind),
+            "wall.motion shakes along the wall's normal, but the face of a point "
+            "(wall.mass) gives across the last link, which turns: expected "
+            "wall.kind = plane");
+    }
+    if (moves && p->arm.links == 1 && p->arm.hub_joint == HUB_RIGID && !gives &&
+        p->motor.stiction > 0) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, wall.motion, motor.stiction),
+            "a rigid wall that moves would drive a single link against the hub's "
+            "stiction, whose force is not determined: expected motor.stiction = "
+            "0, more links or a wall that gives");
+    }
     return STATUS_OK;
 }
 
@@ -54,9 +73,13 @@ static status check_engine(const parameters *p, fault *f)
 {
     const feature_set features = features_of(p);
     const bool takes = (features & HAS(TWO_LINKS)) != 0 && (features & NOT_OF_PAIR) == 0;
-    REFUSE_IF(p->method.engine == ENGINE_PAIR && !takes, BLAME1(p, method.engine), f,
-              "method.engine = pair takes two equal bare links in a level plane on a rigid wall at "
-              "rest, with a motor whose current follows at once; expected auto or stiff");
+    if (p->method.engine == ENGINE_PAIR && !takes) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME1(p, method.engine),
+            "method.engine = pair takes two equal bare links in a level plane on "
+            "a rigid wall at rest, with a motor whose current follows at once; "
+            "expected auto or stiff");
+    }
     return STATUS_OK;
 }
 
@@ -64,14 +87,20 @@ status parameters_check_timing(const parameters *p, fault *f)
 {
     const control_parameters *c = &p->control;
     const double period = 1 / c->rate;
-    REFUSE_IF(c->delay * c->rate + c->delay_periods > CONTROL_MOST_DELAY,
-              BLAME3(p, control.delay_periods, control.delay, control.rate), f,
-              "control.delay_periods = %g and control.delay = %g s are together longer than %d "
-              "periods of %g s (control.rate)",
-              c->delay_periods, c->delay, CONTROL_MOST_DELAY, period);
-    REFUSE_IF(c->jitter * c->rate > 1, BLAME2(p, control.jitter, control.rate), f,
-              "control.jitter = %g s is more than the period of %g s (control.rate)", c->jitter,
-              period);
+    if (c->delay * c->rate + c->delay_periods > CONTROL_MOST_DELAY) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO,
+            BLAME3(p, control.delay_periods, control.delay, control.rate),
+            "control.delay_periods = %g and control.delay = %g s are together "
+            "longer than %d periods of %g s (control.rate)",
+            c->delay_periods, c->delay, CONTROL_MOST_DELAY, period);
+    }
+    if (c->jitter * c->rate > 1) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, control.jitter, control.rate),
+            "control.jitter = %g s is more than the period of %g s (control.rate)",
+            c->jitter, period);
+    }
     return STATUS_OK;
 }
 
@@ -80,40 +109,66 @@ static status check_control(const parameters *p, fault *f)
 {
     const control_parameters *c = &p->control;
     k2_table table;
-    REFUSE_IF(c->law == LAW_PLUGIN && c->plugin[0] == '\0', BLAME2(p, control.law, control.plugin),
-              f, "control.law = plugin needs the file of a shared object in control.plugin");
-    REFUSE_IF(c->law == LAW_PROCESS && c->command[0] == '\0',
-              BLAME2(p, control.law, control.command), f,
-              "control.law = process needs the program to start in control.command");
-    REFUSE_IF(c->law == LAW_PLAYBACK && c->playback_file[0] == '\0',
-              BLAME2(p, control.law, control.playback_file), f,
-              "control.law = playback needs a CSV file in control.playback_file");
+    if (c->law == LAW_PLUGIN && c->plugin[0] == '\0') {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, control.law, control.plugin),
+            "control.law = plugin needs the file of a shared object in control.plugin");
+    }
+    if (c->law == LAW_PROCESS && c->command[0] == '\0') {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, control.law, control.command),
+            "control.law = process needs the program to start in control.command");
+    }
+    if (c->law == LAW_PLAYBACK && c->playback_file[0] == '\0') {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME2(p, control.law, control.playback_file),
+            "control.law = playback needs a CSV file in control.playback_file");
+    }
     TRY(k2_table_read(&table, c->k2_table, f));
     return parameters_check_timing(p, f);
 }
 
-// Fits a sensor that a controller is to read, which somebody may have left out.
-#define FIT(p, wanted, group, choice, word, name, f)                                               \
-    do {                                                                                           \
-        const bool wants_ = (p)->group.choice == (wanted);                                         \
-        (p)->sensor.name = (p)->sensor.name || (wants_ && !IS_SET(p, sensor.name));                \
-        REFUSE_IF(wants_ && !(p)->sensor.name, BLAME2(p, group.choice, sensor.name), f,            \
-                  #group "." #choice " = " word " needs the sensor that sensor." #name             \
-                         " = false leaves out");                                                   \
-    } while (0)
+// Fits a sensor that a controller is to read (`wanted`), which somebody may have left
+// out: `sensor` is the index of its parameter, `chosen` that of the choice that reads it.
+static status fit_sensor(parameters *p, bool wanted, int chosen, int sensor, bool *fitted,
+                         fault *f)
+{
+    if (!wanted || *fitted) {
+        return STATUS_OK;
+    }
+    if (p->set[sensor]) {
+        char word[PARAMETER_TEXT_SIZE];
+        parameter_format(p, chosen, word, sizeof word);
+        return fault_set_at(f, STATUS_BAD_SCENARIO,
+                            first_given(p, (const int[]){chosen, sensor, -1}),
+                            "%s = %s needs the sensor that %s = false leaves out",
+                            parameter_table[chosen].path, word,
+                            parameter_table[sensor].path);
+    }
+    *fitted = true;
+    return STATUS_OK;
+}
 
 static status resolve_sensors(parameters *p, fault *f)
 {
-    FIT(p, IMPACT_ANGLE_BY_FILM, control, impact_angle, "film", film, f);
-    FIT(p, IMPACT_ANGLE_BY_ACCELEROMETER, control, impact_angle, "accelerometer", accelerometer, f);
-    FIT(p, FORCE_BY_PIEZO, sensor, force, "piezo", piezo, f);
+    const int source = p->control.impact_angle;
+    const int angle = PARAMETER_INDEX(control.impact_angle);
+    TRY(fit_sensor(p, source == IMPACT_ANGLE_BY_FILM, angle, PARAMETER_INDEX(sensor.film),
+                   &p->sensor.film, f));
+    TRY(fit_sensor(p, source == IMPACT_ANGLE_BY_ACCELEROMETER, angle,
+                   PARAMETER_INDEX(sensor.accelerometer), &p->sensor.accelerometer, f));
+    TRY(fit_sensor(p, p->sensor.force == FORCE_BY_PIEZO, PARAMETER_INDEX(sensor.force),
+                   PARAMETER_INDEX(sensor.piezo), &p->sensor.piezo, f));
 
     // rise and leak are a band-pass: its lower edge lies below its upper one
     const double leak = p->sensor.piezo_leak_time, rise = p->sensor.piezo_rise_time;
-    REFUSE_IF(leak > 0 && leak < rise, BLAME2(p, sensor.piezo_leak_time, sensor.piezo_rise_time), f,
-              "sensor.piezo_leak_time = %g s is shorter than sensor.piezo_rise_time = %g s, "
-              "expected a longer one or 0",
-              leak, rise);
+    if (leak > 0 && leak < rise) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO,
+                            BLAME2(p, sensor.piezo_leak_time, sensor.piezo_rise_time),
+                            "sensor.piezo_leak_time = %g s is shorter than "
+                            "sensor.piezo_rise_time = %g s, expected a longer one or 0",
+                            leak, rise);
+    }
     return STATUS_OK;
 }
 
@@ -121,15 +176,25 @@ static status resolve_sensors(parameters *p, fault *f)
 static status check_printed(const parameters *p, fault *f)
 {
     const arm_parameters *a = &p->arm;
-    REFUSE_IF(a->links != 2, BLAME1(p, arm.links), f,
-              "the printed model has two links, but arm.links = %d", a->links);
-    REFUSE_IF(a->hub_joint != HUB_SPRING, BLAME1(p, arm.hub_joint), f,
-              "the printed model has a hub spring, but arm.hub_joint = %s",
-              a->hub_joint == HUB_BEAM ? "beam" : "rigid");
-    REFUSE_IF(p->method.name != METHOD_NEWMARK, BLAME1(p, method.name), f,
-              "the printed model runs with method.name = newmark only");
-    REFUSE_IF(p->wall.kind == WALL_PLANE, BLAME1(p, wall.kind), f,
-              "the printed model knows wall.kind = point or none, not plane");
+    if (a->links != 2) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.links),
+                            "the printed model has two links, but arm.links = %d",
+                            a->links);
+    }
+    if (a->hub_joint != HUB_SPRING) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, arm.hub_joint),
+                            "the printed model has a hub spring, but arm.hub_joint = %s",
+                            a->hub_joint == HUB_BEAM ? "beam" : "rigid");
+    }
+    if (p->method.name != METHOD_NEWMARK) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, BLAME1(p, method.name),
+                            "the printed model runs with method.name = newmark only");
+    }
+    if (p->wall.kind == WALL_PLANE) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, BLAME1(p, wall.kind),
+            "the printed model knows wall.kind = point or none, not plane");
+    }
     return STATUS_OK;
 }
 
@@ -162,5 +227,8 @@ status parameters_resolve(parameters *p, fault *f)
     TRY(check_control(p, f));
     TRY(resolve_sensors(p, f));
     TRY(features_check(p, f));
-    return p->arm.model == ARM_PRINTED ? check_printed(p, f) : STATUS_OK;
+    if (p->arm.model == ARM_PRINTED) {
+        return check_printed(p, f);
+    }
+    return STATUS_OK;
 }

@@ -22,12 +22,15 @@ const parameter_info setting_info = {
     .description = "parameter that only this law, plug-in or process has",
 };
 
-// --- paths ------------------------------------------------------------------------------------
+// --- paths -----------------------------------------------------------------------------
 
 const char *settings_name(const char *path)
 {
     const size_t length = sizeof group - 1;
-    return strncmp(path, group, length) == 0 ? path + length : NULL;
+    if (strncmp(path, group, length) == 0) {
+        return path + length;
+    }
+    return NULL;
 }
 
 int settings_look_up(const char *path, const char **name, fault *f)
@@ -45,16 +48,16 @@ int settings_look_up(const char *path, const char **name, fault *f)
     }
     if (!good) {
         fault_set(f, STATUS_BAD_ARGUMENT,
-                  "'%.80s' names no setting, expected control.settings.NAME with a NAME of 1 to %d "
-                  "characters without blanks",
+                  "'%.80s' names no setting, expected control.settings.NAME with a "
+                  "NAME of 1 to %d characters without blanks",
                   path, NAME_MOST);
         return -1;
     }
     return PARAMETER_INDEX(control.settings);
 }
 
-int settings_look_up_value(const char *path, const char **value, char room[PARAMETER_TEXT_SIZE],
-                           fault *f)
+int settings_look_up_value(const char *path, const char **value,
+                           char room[PARAMETER_TEXT_SIZE], fault *f)
 {
     const char *name;
     const int index = settings_look_up(path, &name, f);
@@ -71,7 +74,7 @@ int settings_look_up_value(const char *path, const char **value, char room[PARAM
     return index;
 }
 
-// --- the text ---------------------------------------------------------------------------------
+// --- the text --------------------------------------------------------------------------
 
 bool settings_next(const char **rest, setting *s)
 {
@@ -112,7 +115,10 @@ bool settings_get(const parameters *p, const char *name, double *value)
 status settings_set(parameters *p, const char *name, double value, fault *f)
 {
     char number[NUMBER_TEXT], text[2 * PARAMETER_TEXT_SIZE] = "";
-    REFUSE_IF(!isfinite(value), setting_info.path, f, "%s%s is not a finite number", group, name);
+    if (!isfinite(value)) {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, setting_info.path,
+                            "%s%s is not a finite number", group, name);
+    }
     number_format_short(number, value);
 
     // the others stay; what has its name makes room for it, else it comes last
@@ -131,13 +137,17 @@ status settings_set(parameters *p, const char *name, double value, fault *f)
             snprintf(text + used, sizeof text - used, "%s%s=%s", between, name, number);
             written = true;
         } else {
-            snprintf(text + used, sizeof text - used, "%s%.*s", between, (int)s.length, s.word);
+            snprintf(text + used, sizeof text - used, "%s%.*s", between, (int)s.length,
+                     s.word);
         }
     }
-    REFUSE_IF(strlen(text) >= PARAMETER_TEXT_SIZE, setting_info.path, f,
-              "%s%s = %s has no room beside the other settings, which are at most %d "
-              "characters together",
-              group, name, number, PARAMETER_TEXT_SIZE - 1);
+    if (strlen(text) >= PARAMETER_TEXT_SIZE) {
+        return fault_set_at(
+            f, STATUS_BAD_SCENARIO, setting_info.path,
+            "%s%s = %s has no room beside the other settings, which are at most "
+            "%d characters together",
+            group, name, number, PARAMETER_TEXT_SIZE - 1);
+    }
     memset(p->control.settings, 0, sizeof p->control.settings);
     memcpy(p->control.settings, text, strlen(text));
     p->set[PARAMETER_INDEX(control.settings)] = 1;
@@ -149,7 +159,9 @@ status settings_set_text(parameters *p, const char *name, const char *text, faul
     const char *end;
     double value;
     text += strspn(text, " \t\n\v\f\r");
-    REFUSE_IF(!decimal_read(text, &value, &end) || *end != '\0', setting_info.path, f,
-              "%s%s = '%.60s' is not a number", group, name, text);
+    if (!decimal_read(text, &value, &end) || *end != '\0') {
+        return fault_set_at(f, STATUS_BAD_SCENARIO, setting_info.path,
+                            "%s%s = '%.60s' is not a number", group, name, text);
+    }
     return settings_set(p, name, value, f);
 }

@@ -1,7 +1,9 @@
-// The numbers of control.settings, each of which is a path of its own: control.settings.NAME.
+// The numbers of control.settings, each of which is a path of its own:
+// control.settings.NAME.
 //
-// They are one text, "NAME=VALUE NAME=VALUE": which of them a control law, a plug-in or a program
-// has is known when the run starts, so that any NAME takes any finite number here.
+// They are one text, "NAME=VALUE NAME=VALUE": which of them a control law, a plug-in or a
+// program has is known when the run starts, so that any NAME takes any finite number
+// here.
 #pragma once
 
 #include "src/tables/parameters.h"
@@ -12,17 +14,19 @@ extern const parameter_info setting_info;
 // The NAME of control.settings.NAME as it stands in the path; NULL of any other path.
 const char *settings_name(const char *path);
 
-// The index of a parameter by its path, as parameter_look_up, or of control.settings by that of one
-// of them: *name is then its NAME, within the path, else NULL. -1, with a sentence in f, if there
-// is no such parameter.
+// The index of a parameter by its path, as parameter_look_up, or of control.settings by
+// that of one of them: *name is then its NAME, within the path, else NULL. -1, with a
+// sentence in f, if there is no such parameter.
 int settings_look_up(const char *path, const char **name, fault *f);
 
-// As parameter_look_up, and what gives the parameter a value: of a path control.settings.NAME the
-// index is that of control.settings, and *value ".NAME=VALUE", which stands in `room`.
-int settings_look_up_value(const char *path, const char **value, char room[PARAMETER_TEXT_SIZE],
-                           fault *f);
+// As parameter_look_up, and what gives the parameter a value: of a path
+// control.settings.NAME the index is that of control.settings, and *value ".NAME=VALUE",
+// which stands in `room`.
+int settings_look_up_value(const char *path, const char **value,
+                           char room[PARAMETER_TEXT_SIZE], fault *f);
 
-// The number of that name. False if the text has none of the name, or one that is no number.
+// The number of that name. False if the text has none of the name, or one that is no
+// number.
 bool settings_get(const parameters *p, const char *name, double *value);
 
 // Gives one of them a value, in its place or behind the others; f says what was expected.
@@ -37,8 +41,8 @@ typedef struct setting {
     char value[PARAMETER_TEXT_SIZE]; // empty without '='
 } setting;
 
-// Reads the first setting of *rest, a text shorter than PARAMETER_TEXT_SIZE, and moves *rest behind
-// it. Returns false if there is none.
+// Reads the first setting of *rest, a text shorter than PARAMETER_TEXT_SIZE, and moves
+// *rest behind it. Returns false if there is none.
 bool settings_next(const char **rest, setting *s);
 
 // Reads the value of a setting; false if it is no number.

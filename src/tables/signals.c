@@ -24,7 +24,9 @@ int signal_find_any(const char *name)
 {
     int i = signal_find(name);
     for (int d = SIGNALS_AT_MOST; i < 0 && d < SIGNALS_AT_MOST + DERIVED_SIGNALS; d++) {
-        i = table[d].name != NULL && strcmp(table[d].name, name) == 0 ? d : i;
+        if (table[d].name != NULL && strcmp(table[d].name, name) == 0) {
+            i = d;
+        }
     }
     return i;
 }
@@ -53,7 +55,7 @@ bool signal_is_state(int index)
            index == SIGNAL_INDEX(controller_mode);
 }
 
-// --- derived signals --------------------------------------------------------------------------
+// --- derived signals -------------------------------------------------------------------
 
 enum { DERIVED_NAME = 256 };
 
@@ -69,7 +71,8 @@ static int find_recorded(void *context, const char *name, const char **near)
     return signal_find(name);
 }
 
-// The unit of an expression: terms have the same, a factor without a unit keeps it; else "".
+// The unit of an expression: terms have the same, a factor without a unit keeps it; else
+// "".
 static const char *unit_of(const expression *e)
 {
     const char *stack[EXPRESSION_STEPS]; // NULL: a number
@@ -81,12 +84,26 @@ static const char *unit_of(const expression *e)
         } else if (s->what != EXPRESSION_MINUS) {
             const char *a = stack[--top], *b = stack[top + 1];
             const bool same = a != NULL && b != NULL && strcmp(a, b) == 0;
-            const bool sum = s->what != EXPRESSION_MULTIPLY && s->what != EXPRESSION_DIVIDE;
+            const bool sum =
+                s->what != EXPRESSION_MULTIPLY && s->what != EXPRESSION_DIVIDE;
             const bool scaled = b == NULL || (a == NULL && s->what != EXPRESSION_DIVIDE);
-            stack[top] = scaled ? (a != NULL ? a : b) : sum && same ? a : "";
+            if (scaled) {
+                if (a != NULL) {
+                    stack[top] = a;
+                } else {
+                    stack[top] = b;
+                }
+            } else if (sum && same) {
+                stack[top] = a;
+            } else {
+                stack[top] = "";
+            }
         }
     }
-    return stack[0] != NULL ? stack[0] : "";
+    if (stack[0] != NULL) {
+        return stack[0];
+    }
+    return "";
 }
 
 int signal_derive(int place, const char *text, fault *f)
@@ -101,18 +118,21 @@ int signal_derive(int place, const char *text, fault *f)
         }
     }
     name[length] = '\0';
-    FAIL_IF(expression_read(&e, text, find_recorded, NULL, f) != STATUS_OK, -1);
+    if (expression_read(&e, text, find_recorded, NULL, f) != STATUS_OK) {
+        return -1;
+    }
 
     derived[place].expression = e;
     snprintf(derived[place].name, DERIVED_NAME, "%s", name);
-    table[SIGNALS_AT_MOST + place] = (signal_info){.name = derived[place].name,
-                                                   .symbol = derived[place].name,
-                                                   .ascii = derived[place].name,
-                                                   .unit = unit_of(&e),
-                                                   .description = "an expression of yours",
-                                                   .quantity = derived[place].name,
-                                                   .colour = place % 8,
-                                                   .optional = true};
+    table[SIGNALS_AT_MOST + place] =
+        (signal_info){.name = derived[place].name,
+                      .symbol = derived[place].name,
+                      .ascii = derived[place].name,
+                      .unit = unit_of(&e),
+                      .description = "an expression of yours",
+                      .quantity = derived[place].name,
+                      .colour = place % 8,
+                      .optional = true};
     return SIGNALS_AT_MOST + place;
 }
 
@@ -121,7 +141,7 @@ bool signal_is_derived(int index)
     return index >= SIGNALS_AT_MOST;
 }
 
-// --- values -----------------------------------------------------------------------------------
+// --- values ----------------------------------------------------------------------------
 
 static double recorded_value(const void *row, int index)
 {
@@ -133,8 +153,9 @@ static double recorded_value(const void *row, int index)
 double signal_value(const sample *row, int index)
 {
     assert(index >= 0 && index < SIGNALS_AT_MOST + DERIVED_SIGNALS);
-    return signal_is_derived(index)
-               ? expression_evaluate(&derived[index - SIGNALS_AT_MOST].expression, recorded_value,
-                                     row)
-               : recorded_value(row, index);
+    if (signal_is_derived(index)) {
+        return expression_evaluate(&derived[index - SIGNALS_AT_MOST].expression,
+                                   recorded_value, row);
+    }
+    return recorded_value(row, index);
 }

@@ -43,7 +43,13 @@ double summary_value(const summary *s, int index)
 
 const char *summary_status(const summary *s)
 {
-    return s->status != STATUS_OK ? "failed" : s->inaccurate ? "inaccurate" : "ok";
+    if (s->status != STATUS_OK) {
+        return "failed";
+    }
+    if (s->inaccurate) {
+        return "inaccurate";
+    }
+    return "ok";
 }
 
 status summary_fault(const summary *s, fault *f)

@@ -24,10 +24,17 @@ void printed_arm_init(printed_arm *a, const parameters *p)
 double printed_sign(double velocity)
 {
     const double edge = 1e-5;
-    return velocity > edge ? 1 : velocity < -edge ? -1 : 0;
+    if (velocity > edge) {
+        return 1;
+    }
+    if (velocity < -edge) {
+        return -1;
+    }
+    return 0;
 }
 
-// Mass terms of (2.16) and (2.17) at a bend, with their parts that do and do not vary with it.
+// Mass terms of (2.16) and (2.17) at a bend, with their parts that do and do not vary
+// with it.
 typedef struct mass_terms {
     double m22, m23; // factors of alpha2, alpha3 in (2.16) [kg m2]
     double m32, m33; // the same in (2.17) [kg m2]
@@ -38,8 +45,9 @@ typedef struct mass_terms {
 static mass_terms mass_terms_at(const printed_arm *a, const double q[3])
 {
     double l = a->link_length, e = a->centre, m = a->link_mass;
-    mass_terms t = {
-        .coupling = m * l * e, .c = inline_cos(q[2] - q[1]), .s = inline_sin(q[2] - q[1])};
+    mass_terms t = {.coupling = m * l * e,
+                    .c = inline_cos(q[2] - q[1]),
+                    .s = inline_sin(q[2] - q[1])};
     t.m22 = m * e * e + m * l * l + a->link_inertia + t.coupling * t.c;
     t.m23 = m * e * e + a->link_inertia + t.coupling * t.c;
     t.m32 = t.coupling * t.c;
@@ -48,13 +56,22 @@ static mass_terms mass_terms_at(const printed_arm *a, const double q[3])
 }
 
 // Levers of the contact force in (2.16) and (2.17) [m].
-static void force_levers(const printed_arm *a, const double q[3], double *both, double *last)
+static void force_levers(const printed_arm *a, const double q[3], double *both,
+                         double *last)
 {
     double l = a->link_length, c = inline_cos(q[2] - q[1]);
     double reach = wall_along(&a->wall, inline_cos(q[2]),
                               inline_sin(q[2])); // of the contact point, along link 3
-    *last = a->switches.force_at_link_end ? l : reach - l * c;
-    *both = a->switches.force_at_link_end ? l + l * c : reach;
+    if (a->switches.force_at_link_end) {
+        *last = l;
+    } else {
+        *last = reach - l * c;
+    }
+    if (a->switches.force_at_link_end) {
+        *both = l + l * c;
+    } else {
+        *both = reach;
+    }
 }
 
 void printed_residual(const printed_arm *a, const double q[3], const double w[3],
@@ -82,8 +99,9 @@ void printed_residual(const printed_arm *a, const double q[3], const double w[3]
 }
 
 // Derivatives of the force's torques in (2.16) and (2.17) by theta2 and theta3.
-static void add_force_derivatives(const printed_arm *a, const double q[3], const mass_terms *t,
-                                  double force, double jacobian[4][4])
+static void add_force_derivatives(const printed_arm *a, const double q[3],
+                                  const mass_terms *t, double force,
+                                  double jacobian[4][4])
 {
     double l = a->link_length, both, last;
     force_levers(a, q, &both, &last);
@@ -96,29 +114,31 @@ static void add_force_derivatives(const printed_arm *a, const double q[3], const
         jacobian[1][1] += force * l * t->s;
         jacobian[1][2] -= force * l * t->s;
     } else {
-        double turn =
-            -wall_right_of(&a->wall, inline_cos(q[2]), inline_sin(q[2])); // d reach / d theta3
+        double turn = -wall_right_of(&a->wall, inline_cos(q[2]),
+                                     inline_sin(q[2])); // d reach / d theta3
         jacobian[1][2] += force * turn;
         jacobian[2][1] -= force * l * t->s;
         jacobian[2][2] += force * (turn + l * t->s);
     }
 }
 
-void printed_newmark_jacobian(const printed_arm *a, newmark_slopes slopes, const double q[3],
-                              const double w[3], const double alpha[3], double force,
-                              double jacobian[4][4])
+void printed_newmark_jacobian(const printed_arm *a, newmark_slopes slopes,
+                              const double q[3], const double w[3], const double alpha[3],
+                              double force, double jacobian[4][4])
 {
     mass_terms t = mass_terms_at(a, q);
     double da = slopes.acceleration, dv = slopes.velocity;
     double ps = t.coupling * t.s, pc = t.coupling * t.c;
     double counted_twice = a->switches.spring_counted_twice ? a->k2 : 0;
 
-    // what the bend alone changes in (2.16) and (2.17): the cosines of the mass terms and the sines
-    // of the velocity terms; theta3 raises the bend, theta2 lowers it
-    double bend2 = -ps * (alpha[1] + alpha[2]) - pc * (w[2] * w[2] - w[1] * w[1]) - counted_twice;
+    // what the bend alone changes in (2.16) and (2.17): the cosines of the mass terms and
+    // the sines of the velocity terms; theta3 raises the bend, theta2 lowers it
+    double bend2 =
+        -ps * (alpha[1] + alpha[2]) - pc * (w[2] * w[2] - w[1] * w[1]) - counted_twice;
     double bend3 = -ps * alpha[1] + pc * w[1] * w[1] + a->k2;
 
-    // by the angles, with what they change in velocities and accelerations; then the force's part
+    // by the angles, with what they change in velocities and accelerations; then the
+    // force's part
     memset(jacobian, 0, 16 * sizeof(double));
     jacobian[0][0] = a->hub_inertia * da + a->k1 + a->motor.damping * dv;
     jacobian[0][1] = -a->k1;
@@ -137,7 +157,8 @@ double printed_penetration(const printed_arm *a, const double q[3])
            a->link_length * inline_sin(q[2] - q[1]);
 }
 
-void printed_constraint_gradient(const printed_arm *a, const double q[3], double gradient[3])
+void printed_constraint_gradient(const printed_arm *a, const double q[3],
+                                 double gradient[3])
 {
     double projected = a->link_length * inline_cos(q[2] - q[1]);
     gradient[0] = 0;
@@ -145,8 +166,8 @@ void printed_constraint_gradient(const printed_arm *a, const double q[3], double
     gradient[2] = wall_along(&a->wall, inline_cos(q[2]), inline_sin(q[2])) - projected;
 }
 
-bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[3], double alpha[3],
-                        double *force)
+bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[3],
+                        double alpha[3], double *force)
 {
     static const double rest[3] = {0, 0, 0};
     mass_terms t = mass_terms_at(a, q);
@@ -154,18 +175,22 @@ bool printed_reevaluate(const printed_arm *a, const double q[3], const double w[
     force_levers(a, q, &both, &last);
     printed_constraint_gradient(a, q, gradient);
 
-    // without accelerations and force the residuals are what the linear system has to balance
+    // without accelerations and force the residuals are what the linear system has to
+    // balance
     printed_residual(a, q, w, rest, 0, residual);
 
-    // two links and (3.13), d2g/dt2 = 0, whose product w2 w3 the listing puts on the wrong side
-    double curvature = -wall_right_of(&a->wall, inline_cos(q[2]), inline_sin(q[2])) + l * t.s;
+    // two links and (3.13), d2g/dt2 = 0, whose product w2 w3 the listing puts on the
+    // wrong side
+    double curvature =
+        -wall_right_of(&a->wall, inline_cos(q[2]), inline_sin(q[2])) + l * t.s;
     double cross = 2 * l * t.s * w[1] * w[2];
     bool listed = a->switches.reevaluation == REEVALUATE_LISTING;
     double matrix[9] = {t.m22,       t.m23,       both, //
                         t.m32,       t.m33,       last, //
                         gradient[1], gradient[2], listed ? cross : 0.0};
     double vector[3] = {-residual[1], -residual[2],
-                        -l * t.s * w[1] * w[1] - curvature * w[2] * w[2] + (listed ? 0.0 : cross)};
+                        -l * t.s * w[1] * w[1] - curvature * w[2] * w[2] +
+                            (listed ? 0.0 : cross)};
     if (!dense_solve(3, matrix, vector)) {
         return false;
     }

@@ -18,15 +18,17 @@ typedef struct made {
     void *state;
 } made;
 
-// Whether a call was refused, as a call should be; `left` is what it should not have made.
+// Whether a call was refused, as a call should be; `left` is what it should not have
+// made.
 static int refused(const made *m, int status, const void *left)
 {
     if (status != IMPACTLAB_OK) {
-        const int well = m->error.status == status && m->error.sentence[0] != '\0' && left == NULL;
+        const int well =
+            m->error.status == status && m->error.sentence[0] != '\0' && left == NULL;
         fprintf(m->out, "%s\n", m->error.sentence);
         if (!well) {
-            fprintf(stderr, "status %d, %d, something left: %d\n", status, m->error.status,
-                    left != NULL);
+            fprintf(stderr, "status %d, %d, something left: %d\n", status,
+                    m->error.status, left != NULL);
             exit(2);
         }
     }
@@ -41,7 +43,9 @@ static int open_all(made *m)
            refused(m, impactlab_scenario_open(&m->scenario, "corrected/first-impact", e),
                    m->scenario) ||
            refused(m, impactlab_scenario_set_all(m->scenario, sets, 2, e), NULL) ||
-           refused(m, impactlab_scenario_add_change(m->scenario, 0.1, "motor.voltage", "1", e),
+           refused(m,
+                   impactlab_scenario_add_change(m->scenario, 0.1, "motor.voltage", "1",
+                                                 e),
                    NULL) ||
            refused(m, impactlab_scenario_copy(&m->copy, m->scenario, e), m->copy) ||
            refused(m, impactlab_scenario_yaml(m->copy, &m->yaml, e), m->yaml);
@@ -53,17 +57,20 @@ static int run_once(made *m)
     impactlab_prediction said[4];
     double frequencies[2];
     size_t count;
-    return refused(m, impactlab_run_create(&m->run, m->copy, IMPACTLAB_KEEP_ROWS, e), NULL) ||
+    return refused(m, impactlab_run_create(&m->run, m->copy, IMPACTLAB_KEEP_ROWS, e),
+                   NULL) ||
            refused(m, impactlab_run_json(m->run, &m->json, e), m->json) ||
            refused(m, impactlab_run_csv(m->run, &m->csv, e), m->csv) ||
            refused(m, impactlab_run_predictions(m->run, said, 4, &count, e), NULL) ||
-           refused(m, impactlab_modes(m->copy, 0, 0, frequencies, NULL, 2, &count, e), NULL);
+           refused(m, impactlab_modes(m->copy, 0, 0, frequencies, NULL, 2, &count, e),
+                   NULL);
 }
 
 static int step_through(made *m)
 {
     impactlab_error *e = &m->error;
-    if (refused(m, impactlab_loop_create(&m->loop, m->copy, IMPACTLAB_KEEP_ROWS, e), m->loop) ||
+    if (refused(m, impactlab_loop_create(&m->loop, m->copy, IMPACTLAB_KEEP_ROWS, e),
+                m->loop) ||
         refused(m, impactlab_loop_step_until(m->loop, 0.25, e), NULL)) {
         return 1;
     }
@@ -100,8 +107,10 @@ int call_everything(FILE *out)
     const int ended =
         open_all(&m) || run_once(&m) || step_through(&m) ||
         refused(&m, impactlab_run_quantity(m.run, "peak_force_N", &peak, e), NULL) ||
-        refused(&m, impactlab_run_quantity(m.stepped, "peak_force_N", &stepped, e), NULL) ||
-        refused(&m, impactlab_batch(m.copy, paths, 1, volts, 3, 2, add_up, &sum, e), NULL);
+        refused(&m, impactlab_run_quantity(m.stepped, "peak_force_N", &stepped, e),
+                NULL) ||
+        refused(&m, impactlab_batch(m.copy, paths, 1, volts, 3, 2, add_up, &sum, e),
+                NULL);
     if (!ended) {
         // times have other digits every time, but no key may be lost
         size_t lines = 0;

@@ -73,6 +73,7 @@ int free_handles(void **state)
 
 void check_refused(int status, const char *words)
 {
-    fail_if(status == IMPACTLAB_OK || told.status != status || strstr(told.sentence, words) == NULL,
+    fail_if(status == IMPACTLAB_OK || told.status != status ||
+                strstr(told.sentence, words) == NULL,
             "status %d, %d: '%s' has no '%s'", status, told.status, told.sentence, words);
 }

@@ -1,4 +1,5 @@
-// Shared by tests of the library: handles of each kind, and checks of the sentences of calls.
+// Shared by tests of the library: handles of each kind, and checks of the sentences of
+// calls.
 #pragma once
 
 #include "../check.h"

@@ -1,15 +1,16 @@
 // Wrong arguments to libimpactlab: each call reports what is wrong and changes nothing.
 #include "handles.h"
 
-// --- missing arguments ------------------------------------------------------------------------
+// --- missing arguments -----------------------------------------------------------------
 
-// A call without the argument of that name is refused by its name, with an error and without.
-#define LACKS(name, ...)                                                                           \
-    do {                                                                                           \
-        impactlab_error *error = &told;                                                            \
-        check_refused(__VA_ARGS__, name);                                                          \
-        error = NULL;                                                                              \
-        assert_int_equal(__VA_ARGS__, IMPACTLAB_BAD_ARGUMENT);                                     \
+// A call without the argument of that name is refused by its name, with an error and
+// without.
+#define LACKS(name, ...)                                                                 \
+    do {                                                                                 \
+        impactlab_error *error = &told;                                                  \
+        check_refused(__VA_ARGS__, name);                                                \
+        error = NULL;                                                                    \
+        assert_int_equal(__VA_ARGS__, IMPACTLAB_BAD_ARGUMENT);                           \
     } while (0)
 
 TEST_OF_HANDLES(scenarios_say_what_they_lack)
@@ -82,7 +83,8 @@ TEST_OF_HANDLES(runs_say_what_they_lack)
     LACKS("predictions", impactlab_run_predictions(h->run, NULL, 4, &count, error));
     LACKS("written", impactlab_run_predictions(h->run, said, 4, NULL, error));
     LACKS("scenario", impactlab_modes(NULL, 0, 0, &value, NULL, 1, &count, error));
-    LACKS("frequencies", impactlab_modes(h->scenario, 0, 0, NULL, NULL, 1, &count, error));
+    LACKS("frequencies",
+          impactlab_modes(h->scenario, 0, 0, NULL, NULL, 1, &count, error));
     LACKS("count", impactlab_modes(h->scenario, 0, 0, &value, NULL, 1, NULL, error));
 }
 
@@ -147,21 +149,28 @@ TEST_OF_HANDLES(nothing_has_nothing)
     impactlab_text_free(NULL);
 }
 
-// --- wrong arguments --------------------------------------------------------------------------
+// --- wrong arguments -------------------------------------------------------------------
 
 TEST_OF_HANDLES(names_that_are_not_known)
 {
     impactlab_series series;
     char room[16];
     double value;
-    check_refused(impactlab_run_quantity(h->run, "peak_force", &value, &told), "peak_force_N");
-    check_refused(impactlab_run_quantity(h->run, "zzzzzzzzzzzz", &value, &told), "no quantity");
+    check_refused(impactlab_run_quantity(h->run, "peak_force", &value, &told),
+                  "peak_force_N");
+    check_refused(impactlab_run_quantity(h->run, "zzzzzzzzzzzz", &value, &told),
+                  "no quantity");
     check_refused(impactlab_run_signal(h->run, "forse", &series, &told), "'force'");
-    check_refused(impactlab_loop_signal(h->loop, "zzzzzzzzzzzz", &value, &told), "no signal");
-    check_refused(impactlab_loop_set_input(h->loop, "motor.volt", 1, &told), "motor.voltage");
-    check_refused(impactlab_loop_set_text(h->loop, "motor.volt", "1", &told), "motor.voltage");
-    check_refused(impactlab_scenario_number(h->scenario, "arm.k", &value, &told), "arm.k");
-    check_refused(impactlab_scenario_text(h->scenario, "arm.k", room, 16, &told), "arm.k");
+    check_refused(impactlab_loop_signal(h->loop, "zzzzzzzzzzzz", &value, &told),
+                  "no signal");
+    check_refused(impactlab_loop_set_input(h->loop, "motor.volt", 1, &told),
+                  "motor.voltage");
+    check_refused(impactlab_loop_set_text(h->loop, "motor.volt", "1", &told),
+                  "motor.voltage");
+    check_refused(impactlab_scenario_number(h->scenario, "arm.k", &value, &told),
+                  "arm.k");
+    check_refused(impactlab_scenario_text(h->scenario, "arm.k", room, 16, &told),
+                  "arm.k");
     check_refused(impactlab_scenario_set_number(h->scenario, "arm.k", 1, &told), "arm.k");
     check_refused(impactlab_scenario_add_change(h->scenario, 0, "motor.volt", "1", &told),
                   "motor.voltage");
@@ -180,15 +189,18 @@ TEST_OF_HANDLES(numbers_that_cannot_be)
     check_refused(impactlab_loop_step_until(h->loop, nan, &told), "not finite");
     check_refused(impactlab_loop_command(h->loop, nan, &told), "not finite");
     check_refused(impactlab_loop_push(h->loop, nan, &told), "not finite");
-    check_refused(impactlab_loop_set_input(h->loop, "wall.angle", nan, &told), "wall.angle");
+    check_refused(impactlab_loop_set_input(h->loop, "wall.angle", nan, &told),
+                  "wall.angle");
     check_refused(impactlab_loop_set_text(h->loop, "motor.voltage", "1 m", &told), "V");
     check_refused(impactlab_loop_set_text(h->loop, "arm.links", "4", &told), "arm.links");
     check_refused(impactlab_scenario_add_push(s, 0.1, nan, &told), "not finite");
     check_refused(impactlab_scenario_add_push(s, 0.4, 1, &told), "0.3 s");
-    check_refused(impactlab_scenario_add_change(s, nan, "motor.voltage", "1", &told), "instant");
+    check_refused(impactlab_scenario_add_change(s, nan, "motor.voltage", "1", &told),
+                  "instant");
     check_refused(impactlab_scenario_add_change(s, 0.1, "motor.voltage", "much", &told),
                   "motor.voltage");
-    check_refused(impactlab_scenario_add_change(s, 0.1, "arm.links", "4", &told), "arm.links");
+    check_refused(impactlab_scenario_add_change(s, 0.1, "arm.links", "4", &told),
+                  "arm.links");
     check_refused(impactlab_scenario_set_number(s, "arm.k2", -1, &told), "arm.k2");
     check_refused(impactlab_loop_set_input(h->loop, "arm.links", 4, &told), "arm.links");
 
@@ -214,9 +226,11 @@ TEST_OF_HANDLES(sets_are_taken_whole_or_not)
 {
     const char *const wrong[] = {"motor.voltage=3", "arm.k2=soft"};
     const char *const holed[] = {"motor.voltage=3", NULL, "arm.k2=5"};
-    const char *const together[] = {"arm.links=4", "wall.kind=plane", "motor.voltage=3 V"};
+    const char *const together[] = {"arm.links=4", "wall.kind=plane",
+                                    "motor.voltage=3 V"};
     check_refused(impactlab_scenario_set_all(h->scenario, wrong, 2, &told), "arm.k2");
-    check_refused(impactlab_scenario_set_all(h->scenario, holed, 3, &told), "assignments[i]");
+    check_refused(impactlab_scenario_set_all(h->scenario, holed, 3, &told),
+                  "assignments[i]");
     assert_true(number_of(h->scenario, "motor.voltage") == 1);
     check_done(impactlab_scenario_set_all(h->scenario, together, 3, &told));
     check_done(impactlab_scenario_set_all(h->scenario, NULL, 0, &told));
@@ -231,7 +245,8 @@ static void push(void *memory, const controller_input *in, controller_output *ou
     out->command = 1;
 }
 
-// The rig calls parts of a controller without asking again, so that one without them is refused.
+// The rig calls parts of a controller without asking again, so that one without them is
+// refused.
 TEST_OF_HANDLES(controllers_are_whole)
 {
     static const char *const modes[] = {"push", NULL};
@@ -254,23 +269,29 @@ TEST_OF_HANDLES(controllers_are_whole)
 
     impactlab_run *run;
     for (size_t i = 0; i < COUNT(lacking); i++) {
-        check_refused(impactlab_run_create_with(&run, h->scenario, 0, &lacking[i], NULL, &told),
+        check_refused(impactlab_run_create_with(&run, h->scenario, 0, &lacking[i], NULL,
+                                                &told),
                       "the controller");
         assert_null(run);
     }
     check_done(impactlab_run_create_with(&run, h->scenario, 0, &whole, NULL, &told));
     impactlab_run_destroy(run);
 
-    // one that wants all the memory there could be gets none, and not less than it asked for
+    // one that wants all the memory there could be gets none, and not less than it asked
+    // for
     controller greedy = whole;
     greedy.memory_size = SIZE_MAX;
-    assert_int_equal(impactlab_run_create_with(&run, h->scenario, 0, &greedy, NULL, &told),
+    assert_int_equal(impactlab_run_create_with(&run, h->scenario, 0, &greedy, NULL,
+                                               &told),
                      IMPACTLAB_NO_MEMORY);
     impactlab_run_destroy(run);
 
     // and one with a number of its own
-    const controller_parameter gain = {
-        .name = "gain", .unit = "", .initial = 1, .maximum = 2, .description = "of nothing"};
+    const controller_parameter gain = {.name = "gain",
+                                       .unit = "",
+                                       .initial = 1,
+                                       .maximum = 2,
+                                       .description = "of nothing"};
     controller numbered = whole;
     numbered.parameters = &gain;
     numbered.parameter_count = 1;
@@ -291,13 +312,16 @@ TEST_OF_HANDLES(batches_look_before_they_run)
     const double volts[] = {1, 2, 3};
     size_t taken = 0;
     impactlab_scenario *s = h->scenario;
-    check_refused(impactlab_batch(NULL, paths, 1, volts, 3, 1, take, &taken, &told), "scenario");
+    check_refused(impactlab_batch(NULL, paths, 1, volts, 3, 1, take, &taken, &told),
+                  "scenario");
     check_refused(impactlab_batch(s, NULL, 1, volts, 3, 1, take, &taken, &told), "paths");
-    check_refused(impactlab_batch(s, paths, 1, NULL, 3, 1, take, &taken, &told), "values");
+    check_refused(impactlab_batch(s, paths, 1, NULL, 3, 1, take, &taken, &told),
+                  "values");
     check_refused(impactlab_batch(s, paths, 1, volts, 3, 1, NULL, &taken, &told), "take");
     check_refused(impactlab_batch(s, unknown, 1, volts, 3, 1, take, &taken, &told),
                   "motor.voltage");
-    check_refused(impactlab_batch(s, none, 1, volts, 3, 1, take, &taken, &told), "paths[i]");
+    check_refused(impactlab_batch(s, none, 1, volts, 3, 1, take, &taken, &told),
+                  "paths[i]");
     assert_int_equal(taken, 0);
 
     // on all processors, on far too many threads, and the same run several times
@@ -310,7 +334,8 @@ TEST_OF_HANDLES(batches_look_before_they_run)
     // an impossible value is reported before any run
     const char *const two[] = {"arm.k2", "motor.voltage"};
     const double values[] = {5, 1, -5, 1};
-    check_refused(impactlab_batch(s, two, 2, values, 2, 1, take, &taken, &told), "arm.k2");
+    check_refused(impactlab_batch(s, two, 2, values, 2, 1, take, &taken, &told),
+                  "arm.k2");
     assert_int_equal(taken, 8);
 }
 
@@ -322,15 +347,18 @@ TEST_OF_HANDLES(states_of_others_are_refused)
     check_done(impactlab_loop_save_state(h->loop, bytes, size, &told));
     check_done(impactlab_scenario_set(h->scenario, "motor.voltage", "2", &told));
     own_loop *other = loop_of(h->scenario, IMPACTLAB_COMMAND);
-    check_refused(impactlab_loop_restore_state(other, bytes, size, &told), "another scenario");
+    check_refused(impactlab_loop_restore_state(other, bytes, size, &told),
+                  "another scenario");
 
     // one with a script that sets a number or a text, likewise
-    check_done(impactlab_scenario_add_change(h->scenario, 0.1, "motor.voltage", "1", &told));
+    check_done(
+        impactlab_scenario_add_change(h->scenario, 0.1, "motor.voltage", "1", &told));
     own_loop *changed = loop_of(h->scenario, IMPACTLAB_COMMAND);
     check_done(impactlab_scenario_add_push(h->scenario, 0.1, 1e-3, &told));
     own_loop *scripted = loop_of(h->scenario, IMPACTLAB_COMMAND);
     check_done(impactlab_loop_save_state(changed, bytes, size, &told));
-    check_refused(impactlab_loop_restore_state(scripted, bytes, size, &told), "another scenario");
+    check_refused(impactlab_loop_restore_state(scripted, bytes, size, &told),
+                  "another scenario");
 }
 
 // A caller who passes no fault gets the same status, on success and on failure.
@@ -347,16 +375,20 @@ TEST_OF_HANDLES(an_error_may_be_left_out)
     assert_int_equal(impactlab_scenario_parse(&made, text, strlen(text), NULL),
                      IMPACTLAB_BAD_SCENARIO);
     assert_null(made);
-    assert_int_not_equal(impactlab_scenario_set_all(h->scenario, wrong, COUNT(wrong), NULL),
+    assert_int_not_equal(impactlab_scenario_set_all(h->scenario, wrong, COUNT(wrong),
+                                                    NULL),
                          IMPACTLAB_OK);
     assert_int_equal(impactlab_scenario_set_all(h->scenario, right, COUNT(right), NULL),
                      IMPACTLAB_OK);
-    assert_int_equal(impactlab_scenario_set(h->scenario, "arm.k2", "6", NULL), IMPACTLAB_OK);
-    assert_int_equal(impactlab_scenario_number(h->scenario, "arm.k2", &value, NULL), IMPACTLAB_OK);
+    assert_int_equal(impactlab_scenario_set(h->scenario, "arm.k2", "6", NULL),
+                     IMPACTLAB_OK);
+    assert_int_equal(impactlab_scenario_number(h->scenario, "arm.k2", &value, NULL),
+                     IMPACTLAB_OK);
     assert_true(value == 6);
     assert_int_equal(impactlab_scenario_yaml(h->scenario, &yaml, NULL), IMPACTLAB_OK);
     impactlab_text_free(yaml);
-    assert_int_equal(impactlab_run_quantity(h->run, "impacts", &value, NULL), IMPACTLAB_OK);
+    assert_int_equal(impactlab_run_quantity(h->run, "impacts", &value, NULL),
+                     IMPACTLAB_OK);
     assert_int_equal(impactlab_run_quantity(h->run, "no such", &value, NULL),
                      IMPACTLAB_BAD_ARGUMENT);
 }

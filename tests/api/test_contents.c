@@ -9,7 +9,8 @@ TEST_OF_HANDLES(codes_have_texts)
     assert_string_not_equal(impactlab_status_text(-1), "");
     for (int code = IMPACTLAB_OK; code <= IMPACTLAB_IMPOSSIBLE_MEAN; code++) {
         for (int other = IMPACTLAB_OK; other < code; other++) {
-            assert_string_not_equal(impactlab_status_text(code), impactlab_status_text(other));
+            assert_string_not_equal(impactlab_status_text(code),
+                                    impactlab_status_text(other));
         }
     }
 }
@@ -19,7 +20,8 @@ TEST_OF_HANDLES(tables_are_whole)
 {
     size_t rows = 0, timed = 0;
     double value;
-    for (const impactlab_parameter *p; (p = impactlab_parameter_at(rows)) != NULL; rows++) {
+    for (const impactlab_parameter *p; (p = impactlab_parameter_at(rows)) != NULL;
+         rows++) {
         value = number_of(h->scenario, p->path);
         assert_true(p->description[0] != '\0' && p->minimum <= p->maximum);
         assert_int_equal(strcmp(p->type, "choice") == 0, p->choices[0] != '\0');
@@ -43,7 +45,8 @@ TEST_OF_HANDLES(tables_are_whole)
         assert_memory_equal(&value, &all[quantities], sizeof value);
     }
     assert_int_equal(quantities, known);
-    assert_true(strspn(impactlab_version(), "0123456789.") == strlen(impactlab_version()));
+    assert_true(strspn(impactlab_version(), "0123456789.") ==
+                strlen(impactlab_version()));
 }
 
 TEST_OF_HANDLES(names_copies_and_defaults)
@@ -101,7 +104,8 @@ TEST_OF_HANDLES(runs_have_what_was_asked_for)
     assert_int_equal(count, 2);
     check_done(impactlab_scenario_set(h->scenario, "wall.kind", "none", &told));
     own_run *free_run = run_of(h->scenario, IMPACTLAB_KEEP_ROWS);
-    check_refused(impactlab_run_predictions(free_run, said, 2, &count, &told), "did not touch");
+    check_refused(impactlab_run_predictions(free_run, said, 2, &count, &told),
+                  "did not touch");
 }
 
 // The printed equations have no modes, and a run that fails has what it came to.
@@ -114,7 +118,8 @@ TEST_OF_HANDLES(what_there_is_not)
     assert_true(count == 1 && frequency > 0);
     check_done(impactlab_scenario_set(h->scenario, "control.command", "true", &told));
     check_done(impactlab_scenario_set(h->scenario, "control.law", "process", &told));
-    assert_int_equal(impactlab_run_create(&failed, h->scenario, IMPACTLAB_KEEP_ROWS, &told),
+    assert_int_equal(impactlab_run_create(&failed, h->scenario, IMPACTLAB_KEEP_ROWS,
+                                          &told),
                      IMPACTLAB_NOT_ALLOWED);
     assert_non_null(failed);
     assert_string_equal(impactlab_run_status(failed), "failed");
@@ -129,8 +134,8 @@ TEST_OF_HANDLES(what_there_is_not)
     check_refused(impactlab_scenario_add_push(h->scenario, 0.1, 1e-3, &told), "pushes");
 }
 
-// The reason why a loop stopped is kept for all later calls; a law that is not available gives no
-// loop.
+// The reason why a loop stopped is kept for all later calls; a law that is not available
+// gives no loop.
 TEST_OF_HANDLES(loops_stay_stopped)
 {
     impactlab_error first;
@@ -140,7 +145,8 @@ TEST_OF_HANDLES(loops_stay_stopped)
     impactlab_loop *loop = loop_of(h->scenario, 0);
     assert_int_equal(impactlab_loop_step(loop, &first), IMPACTLAB_NOT_ALLOWED);
     check_refused(impactlab_loop_step_until(loop, 1, &told), first.sentence);
-    check_refused(impactlab_loop_set_input(loop, "motor.voltage", 1, &told), first.sentence);
+    check_refused(impactlab_loop_set_input(loop, "motor.voltage", 1, &told),
+                  first.sentence);
     check_refused(impactlab_loop_push(loop, 1, &told), first.sentence);
     check_done(impactlab_loop_run(loop, &run, &told));
     assert_string_equal(impactlab_run_status(run), "failed");

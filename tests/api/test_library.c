@@ -21,7 +21,7 @@ static void check_same(double a, double b)
     assert_memory_equal(&a, &b, sizeof a);
 }
 
-// --- runs -------------------------------------------------------------------------------------
+// --- runs ------------------------------------------------------------------------------
 
 TEST(rows_are_read_in_place)
 {
@@ -32,7 +32,8 @@ TEST(rows_are_read_in_place)
     check_done(impactlab_run_signal(run, "time", &time, &told));
     check_done(impactlab_run_signal(run, "force", &force, &told));
     check_done(impactlab_run_angles(run, &angles, &told));
-    assert_true(force.count > 1000 && force.count == time.count && angles.rows == force.count);
+    assert_true(force.count > 1000 && force.count == time.count &&
+                angles.rows == force.count);
 
     // the largest recorded force is near the located peak, never above it
     double largest = 0, before = -1;
@@ -84,7 +85,7 @@ TEST(predictions_and_modes)
     assert_true(fabs(shapes[0] - shapes[1]) < 1e-6);
 }
 
-// --- errors -----------------------------------------------------------------------------------
+// --- errors ----------------------------------------------------------------------------
 
 TEST(mistakes_are_told)
 {
@@ -93,17 +94,23 @@ TEST(mistakes_are_told)
     impactlab_loop *loop;
 
     // wrong names name the nearest
-    check_refused(impactlab_scenario_set(scenario, "motor.voltag", "1", &told), "motor.voltage");
-    check_refused(impactlab_scenario_open(&none, "corrected/frist-impact", &told), "first-impact");
+    check_refused(impactlab_scenario_set(scenario, "motor.voltag", "1", &told),
+                  "motor.voltage");
+    check_refused(impactlab_scenario_open(&none, "corrected/frist-impact", &told),
+                  "first-impact");
     assert_null(none);
 
     // wrong values change nothing
-    assert_int_not_equal(impactlab_scenario_set(scenario, "motor.voltage", "much", &told), 0);
+    assert_int_not_equal(impactlab_scenario_set(scenario, "motor.voltage", "much", &told),
+                         0);
     assert_string_equal(told.parameter, "motor.voltage");
-    assert_int_not_equal(impactlab_scenario_set_number(scenario, "wall.angle", (double)NAN, &told),
+    assert_int_not_equal(impactlab_scenario_set_number(scenario, "wall.angle",
+                                                       (double)NAN, &told),
                          0);
     check_done(impactlab_scenario_set_number(scenario, "wall.angle", 2.9, &told));
-    assert_int_not_equal(impactlab_scenario_set_number(scenario, "initial.angle", -0.4, &told), 0);
+    assert_int_not_equal(impactlab_scenario_set_number(scenario, "initial.angle", -0.4,
+                                                       &told),
+                         0);
     assert_string_equal(told.parameter, "initial.angle");
     check_same(number_of(scenario, "initial.angle"), 0);
     check_same(number_of(scenario, "motor.voltage"), 1);
@@ -111,15 +118,18 @@ TEST(mistakes_are_told)
     // and no call without its arguments gets anywhere
     assert_int_equal(impactlab_run_create(&run, NULL, 0, &told), IMPACTLAB_BAD_ARGUMENT);
     assert_null(run);
-    assert_int_equal(impactlab_run_create(&run, scenario, 1000, &told), IMPACTLAB_BAD_ARGUMENT);
-    assert_int_equal(impactlab_scenario_set(NULL, NULL, NULL, NULL), IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(impactlab_run_create(&run, scenario, 1000, &told),
+                     IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(impactlab_scenario_set(NULL, NULL, NULL, NULL),
+                     IMPACTLAB_BAD_ARGUMENT);
     assert_null(impactlab_signal_at(100000));
     impactlab_run_destroy(NULL);
     impactlab_scenario_destroy(NULL);
     impactlab_loop_destroy(NULL);
 
     // a loop knows its flags
-    assert_int_equal(impactlab_loop_create(&loop, scenario, 1000, &told), IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(impactlab_loop_create(&loop, scenario, 1000, &told),
+                     IMPACTLAB_BAD_ARGUMENT);
     assert_null(loop);
 }
 
@@ -138,7 +148,8 @@ TEST(files_with_faults_are_refused)
     };
     impactlab_scenario *scenario;
     for (EACH(c, faulty)) {
-        assert_int_equal(impactlab_scenario_parse(&scenario, c->text, strlen(c->text), &told),
+        assert_int_equal(impactlab_scenario_parse(&scenario, c->text, strlen(c->text),
+                                                  &told),
                          IMPACTLAB_BAD_SCENARIO);
         assert_null(scenario);
         const char *place = formatted("text:%d:%d: ", c->line, c->column);
@@ -151,7 +162,8 @@ TEST(files_with_faults_are_refused)
     // what is of no place in a file has none, and is of its parameter
     static const char *const sets[] = {"motor.voltage=2", "wall.angle=wide"};
     scenario = opened(first_impact);
-    assert_int_equal(impactlab_scenario_set_all(scenario, sets, 2, &told), IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(impactlab_scenario_set_all(scenario, sets, 2, &told),
+                     IMPACTLAB_BAD_ARGUMENT);
     assert_int_equal(told.line, 0);
     assert_int_equal(told.column, 0);
     assert_string_equal(told.parameter, "wall.angle");
@@ -161,15 +173,16 @@ TEST(files_with_faults_are_refused)
     assert_int_equal(told.line, 0);
 }
 
-// --- loops ------------------------------------------------------------------------------------
+// --- loops -----------------------------------------------------------------------------
 
 // The corrected arm and the printed one, with a rig and bare.
 TEST(a_stepped_run_is_the_run)
 {
     static const char *const names[] = {"compare/hybrid", "compare/hybrid-printed-arm",
                                         "thesis/fig-3-4"};
-    static const char *const keys[] = {"peak_force_N", "first_pulse_peak_N", "time_to_peak_s",
-                                       "steady_force_N", "settling_time_s"};
+    static const char *const keys[] = {"peak_force_N", "first_pulse_peak_N",
+                                       "time_to_peak_s", "steady_force_N",
+                                       "settling_time_s"};
     for (EACH(c, names)) {
         own_scenario *scenario = opened(*c);
         own_run *run = run_of(scenario, 0), *stepped;
@@ -184,8 +197,8 @@ TEST(a_stepped_run_is_the_run)
     }
 }
 
-// The printed model knows nothing between its rows: a loop ends at the first one that is due. An
-// input there is what the script does at that instant.
+// The printed model knows nothing between its rows: a loop ends at the first one that is
+// due. An input there is what the script does at that instant.
 TEST(the_printed_arm_stops_at_its_rows)
 {
     own_scenario *scenario = opened("thesis/fig-3-4");
@@ -203,7 +216,8 @@ TEST(the_printed_arm_stops_at_its_rows)
     check_same(angles.values[0], signal_of(loop, "hub_angle"));
 
     // half the voltage from there on, as a script has it
-    check_done(impactlab_scenario_add_change(scenario, 10 * step, "motor.voltage", "0.5", &told));
+    check_done(impactlab_scenario_add_change(scenario, 10 * step, "motor.voltage", "0.5",
+                                             &told));
     own_run *run = run_of(scenario, 0);
     check_done(impactlab_loop_set_input(loop, "motor.voltage", 0.5, &told));
     check_done(impactlab_loop_step_until(loop, 1000, &told));
@@ -234,7 +248,8 @@ static void push_softly(void *memory, const controller_input *in, controller_out
     out->command = commanded(in->encoder, in->force);
 }
 
-// A program that reads and commands in a loop is the same controller as one that is called back.
+// A program that reads and commands in a loop is the same controller as one that is
+// called back.
 TEST(commands_come_from_outside)
 {
     static const char *const modes[] = {"push", NULL};
@@ -271,7 +286,8 @@ static void fall_silent(void *memory, const controller_input *in, controller_out
     }
 }
 
-// What nobody answers is no command of 0 V: the run ends there and says who did not answer.
+// What nobody answers is no command of 0 V: the run ends there and says who did not
+// answer.
 TEST(a_controller_that_does_not_answer_ends_the_run)
 {
     static const char *const modes[] = {"push", NULL};
@@ -283,7 +299,8 @@ TEST(a_controller_that_does_not_answer_ends_the_run)
     own_scenario *scenario = opened(first_impact);
     own_run *run;
     impactlab_series time;
-    check_refused(impactlab_run_create_with(&run, scenario, IMPACTLAB_KEEP_ROWS, &law, NULL, &told),
+    check_refused(impactlab_run_create_with(&run, scenario, IMPACTLAB_KEEP_ROWS, &law,
+                                            NULL, &told),
                   "at t = 0.5 s the controller 'silent' did not answer");
     assert_string_equal(impactlab_run_status(run), "failed");
 
@@ -292,7 +309,7 @@ TEST(a_controller_that_does_not_answer_ends_the_run)
     assert_true(time.count > 500);
 }
 
-// --- stops ------------------------------------------------------------------------------------
+// --- stops -----------------------------------------------------------------------------
 
 // Counts how often it was asked, and says yes from a question on.
 typedef struct asked {
@@ -323,7 +340,8 @@ TEST(a_question_ends_a_run)
     own_scenario *scenario = endless(&a);
     own_run *run, *whole;
     impactlab_series time;
-    check_refused(impactlab_run_create(&run, scenario, IMPACTLAB_KEEP_ROWS, &told), "stopped");
+    check_refused(impactlab_run_create(&run, scenario, IMPACTLAB_KEEP_ROWS, &told),
+                  "stopped");
     assert_int_equal(told.status, IMPACTLAB_STOPPED);
     assert_int_equal(a.count, 5);
     check_done(impactlab_run_signal(run, "time", &time, &told));
@@ -400,13 +418,17 @@ TEST(states_come_back)
                 step_to(both[k], (share + 0.1) * end);
                 check_same(force, signal_of(both[k], "force"));
             }
-            assert_int_not_equal(impactlab_loop_restore_state(loop, bytes, size - 1, &told), 0);
+            assert_int_not_equal(impactlab_loop_restore_state(loop, bytes, size - 1,
+                                                              &told),
+                                 0);
 
             // a bit that is another is noticed, wherever it is, and changes nothing
             unsigned char *const damaged = bytes;
             for (size_t at = 0; at < size; at += 1 + size / 997) {
                 damaged[at] ^= (unsigned char)(1u << at % 8);
-                assert_int_not_equal(impactlab_loop_restore_state(loop, bytes, size, &told), 0);
+                assert_int_not_equal(impactlab_loop_restore_state(loop, bytes, size,
+                                                                  &told),
+                                     0);
                 damaged[at] ^= (unsigned char)(1u << at % 8);
             }
             check_same(force, signal_of(loop, "force"));
@@ -447,7 +469,8 @@ TEST(a_process_goes_on_from_a_state)
     check_same(gap, signal_of(loop, "gap"));
 }
 
-// A mode's name holds a law in it as the script's action does; a name that it has not is refused.
+// A mode's name holds a law in it as the script's action does; a name that it has not is
+// refused.
 TEST(texts_act_at_once)
 {
     own_scenario *scenario = opened("compare/hybrid");
@@ -455,12 +478,14 @@ TEST(texts_act_at_once)
     set(scenario, "run.duration", "0.4");
     own_loop *loop = loop_of(scenario, 0);
     check_done(impactlab_loop_step_until(loop, 0.1, &told));
-    assert_int_not_equal(impactlab_loop_set_text(loop, "control.lock", "sideways", &told), 0);
+    assert_int_not_equal(impactlab_loop_set_text(loop, "control.lock", "sideways", &told),
+                         0);
     check_done(impactlab_loop_set_text(loop, "control.lock", "approach", &told));
     check_done(impactlab_loop_step_until(loop, 1, &told));
     check_same(signal_of(loop, "controller_mode"), 0);
 
-    check_done(impactlab_scenario_add_change(scenario, 0.1, "control.lock", "approach", &told));
+    check_done(
+        impactlab_scenario_add_change(scenario, 0.1, "control.lock", "approach", &told));
     check_done(impactlab_run_create(&run, scenario, 0, &told));
     check_same(peak_of_loop(loop), quantity_of(run, "peak_force_N"));
 }
@@ -482,13 +507,15 @@ TEST(inputs_act_at_once)
 
     // what holds from the start cannot be set, and an arm without a rig has no sensors
     impactlab_reading reading;
-    assert_int_equal(impactlab_loop_set_input(loop, "arm.links", 4, &told), IMPACTLAB_BAD_ARGUMENT);
-    assert_int_equal(impactlab_loop_read_sensors(loop, &reading, &told), IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(impactlab_loop_set_input(loop, "arm.links", 4, &told),
+                     IMPACTLAB_BAD_ARGUMENT);
+    assert_int_equal(impactlab_loop_read_sensors(loop, &reading, &told),
+                     IMPACTLAB_BAD_ARGUMENT);
     assert_int_equal(impactlab_loop_command(loop, 1, &told), IMPACTLAB_BAD_ARGUMENT);
     check_done(impactlab_loop_step(loop, &told));
 }
 
-// --- batches ----------------------------------------------------------------------------------
+// --- batches ---------------------------------------------------------------------------
 
 typedef struct collected {
     double peak[500];
@@ -527,8 +554,8 @@ static int keep_work(void *context, const impactlab_outcome *outcome)
     return 0;
 }
 
-// Of a batch that is stopped the runs that were done come, each under its own number, and those
-// that fail among them.
+// Of a batch that is stopped the runs that were done come, each under its own number, and
+// those that fail among them.
 TEST(a_stopped_batch_has_the_right_rows)
 {
     static const char *const paths[] = {"run.duration", "control.law"};
@@ -547,7 +574,8 @@ TEST(a_stopped_batch_has_the_right_rows)
         values[i][0] = i % 4 == 2 ? 90000 : 0.001 * (i + 1);
         values[i][1] = i % 4 == 1 ? plugin : number_of(single, "control.law");
     }
-    check_refused(impactlab_batch(scenario, paths, 2, values[0], 40, 2, keep_work, &d, &told),
+    check_refused(impactlab_batch(scenario, paths, 2, values[0], 40, 2, keep_work, &d,
+                                  &told),
                   "stopped");
     assert_int_equal(told.status, IMPACTLAB_STOPPED);
     assert_true(a.count >= 30 && d.count > 0 && d.count <= 30);
@@ -558,7 +586,8 @@ TEST(a_stopped_batch_has_the_right_rows)
         } else if (i % 4 == 1 && d.status[i] >= 0) {
             assert_int_equal(d.status[i], IMPACTLAB_NOT_ALLOWED);
         } else if (d.status[i] >= 0) {
-            check_done(impactlab_scenario_set_number(single, "run.duration", values[i][0], &told));
+            check_done(impactlab_scenario_set_number(single, "run.duration", values[i][0],
+                                                     &told));
             own_run *run = run_of(single, 0);
             assert_int_equal(d.status[i], IMPACTLAB_OK);
             check_same(d.work[i], quantity_of(run, "motor_work_J"));
@@ -581,16 +610,19 @@ TEST(batches_are_runs)
     assert_int_equal(one.count, 500);
 
     // as a run by itself
-    check_done(impactlab_scenario_set_number(scenario, "motor.voltage", volts[250], &told));
+    check_done(
+        impactlab_scenario_set_number(scenario, "motor.voltage", volts[250], &told));
     own_run *run = run_of(scenario, 0);
     check_same(one.peak[250], quantity_of(run, "peak_force_N"));
 
     // the taker may have enough, and a wrong value is found before anything runs
-    assert_int_equal(impactlab_batch(scenario, paths, 1, volts, 500, 1, collect, &few, &told),
+    assert_int_equal(impactlab_batch(scenario, paths, 1, volts, 500, 1, collect, &few,
+                                     &told),
                      IMPACTLAB_STOPPED);
     assert_int_equal(few.count, 7);
     volts[499] = (double)NAN;
-    assert_int_not_equal(impactlab_batch(scenario, paths, 1, volts, 500, 1, collect, &few, &told),
+    assert_int_not_equal(impactlab_batch(scenario, paths, 1, volts, 500, 1, collect, &few,
+                                         &told),
                          0);
     assert_non_null(strstr(told.sentence, "run 499"));
     assert_int_equal(few.count, 7);
@@ -611,7 +643,8 @@ TEST(scenarios_are_written_and_read)
     assert_int_equal(impactlab_scenario_is_set(again, "arm.tip_mass"), 0);
     assert_string_equal(impactlab_scenario_name(again), "text");
     impactlab_scenario_destroy(again);
-    check_done(impactlab_scenario_parse_named(&again, yaml, strlen(yaml), first_impact, &told));
+    check_done(
+        impactlab_scenario_parse_named(&again, yaml, strlen(yaml), first_impact, &told));
     assert_string_equal(impactlab_scenario_name(again), first_impact);
     assert_int_not_equal(impactlab_scenario_add_push(scenario, -1, 0.001, &told), 0);
 

@@ -1,5 +1,5 @@
-// Requests for memory of libimpactlab refused one after the other: each call that is refused says
-// so and leaves nothing, or what comes out is whole.
+// Requests for memory of libimpactlab refused one after the other: each call that is
+// refused says so and leaves nothing, or what comes out is whole.
 #include "calls.h"
 
 #include "tests/refused_requests.h"

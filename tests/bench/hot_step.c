@@ -1,5 +1,6 @@
-// The hot step alone, for counting its instructions: goes through a stretch of a motion again and
-// again and prints how many time steps that were. tests/bench/instructions.sh runs it.
+// The hot step alone, for counting its instructions: goes through a stretch of a motion
+// again and again and prints how many time steps that were. tests/bench/instructions.sh
+// runs it.
 //
 //   hot_step METHOD LINKS free|contact PASSES
 #include <stdio.h>
@@ -48,9 +49,15 @@ int main(int argc, char **argv)
         !set(&p, "wall.kind", "plane") || parameters_resolve(&p, &f) != STATUS_OK) {
         return 2;
     }
-    // the stretches of src/study/bench.c: two links before the hub sticks, many when they rest
+    // the stretches of src/study/bench.c: two links before the hub sticks, many when they
+    // rest
     bool contact = strcmp(argv[3], "contact") == 0, two = p.arm.links == 2;
-    double from = !contact ? 0.05 : two ? 0.30 : 0.7, to = !contact ? 0.25 : two ? 0.36 : 0.9;
+    double from = !contact ? 0.05
+                  : two    ? 0.30
+                           : 0.7,
+           to = !contact ? 0.25
+                : two    ? 0.36
+                         : 0.9;
     arm_init(&a, &p);
     motion *m = motion_create(&a, &p.method);
     double *start = m != NULL ? malloc((size_t)m->size * sizeof *start) : NULL;

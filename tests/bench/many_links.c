@@ -1,7 +1,8 @@
-// The cost of many links, for docs/explanation/methods.md: chains that strike a plane wall, from
-// contact on, and chains from rest, in processor time.
+// The cost of many links, for docs/explanation/methods.md: chains that strike a plane
+// wall, from contact on, and chains from rest, in processor time.
 //
-//   many_links [DAMPING LINKS...]     share of critical damping, 0.01 or 0; the usual rows without
+//   many_links [DAMPING LINKS...]     share of critical damping, 0.01 or 0; the usual
+//   rows without
 
 #include "src/base/clock.h"
 #include "src/contact/contact_machine.h"
@@ -22,10 +23,10 @@ static void give_up(const char *what)
     exit(1);
 }
 
-// Moves an arm from an angle and a velocity of all links on [rad], [rad/s], until so long after
-// first contact, or for so long [s].
-static passage pass(const parameters *p, double angle, double velocity, double after_contact,
-                    double duration)
+// Moves an arm from an angle and a velocity of all links on [rad], [rad/s], until so long
+// after first contact, or for so long [s].
+static passage pass(const parameters *p, double angle, double velocity,
+                    double after_contact, double duration)
 {
     const double began = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
     passage o = {0};
@@ -52,8 +53,9 @@ static passage pass(const parameters *p, double angle, double velocity, double a
         }
         if (r.event == MOTION_IMPACT) {
             o.momentum += r.impulse;
-            duration =
-                o.impacts++ == 0 ? fmin(duration, m->state[SLOT_TIME] + after_contact) : duration;
+            duration = o.impacts++ == 0
+                           ? fmin(duration, m->state[SLOT_TIME] + after_contact)
+                           : duration;
         }
     }
     o.momentum += state_quadratures(m, m->state)[QUADRATURE_FORCE];
@@ -64,31 +66,34 @@ static passage pass(const parameters *p, double angle, double velocity, double a
 }
 
 // The quickest of some.
-static passage best_pass(const parameters *p, double angle, double velocity, double after_contact,
-                         double duration)
+static passage best_pass(const parameters *p, double angle, double velocity,
+                         double after_contact, double duration)
 {
     passage best = pass(p, angle, velocity, after_contact, duration);
     for (int i = 1; i < TRIES; i++) {
-        best.took = fmin(best.took, pass(p, angle, velocity, after_contact, duration).took);
+        best.took =
+            fmin(best.took, pass(p, angle, velocity, after_contact, duration).took);
     }
     return best;
 }
 
 static parameters chain_of(int links, double damping)
 {
-    return parameters_with("arm.links=%d arm.damping_ratio=%g arm.hub_joint=beam wall.kind=plane",
-                           links, damping);
+    return parameters_with(
+        "arm.links=%d arm.damping_ratio=%g arm.hub_joint=beam wall.kind=plane", links,
+        damping);
 }
 
-// The first 50 ms after the tip meets the wall at 0.7 m/s: what they take beyond the way to it.
+// The first 50 ms after the tip meets the wall at 0.7 m/s: what they take beyond the way
+// to it.
 static void print_struck(int links, double damping)
 {
     const double in_contact = 0.05;
     const parameters p = chain_of(links, damping);
     const passage way = best_pass(&p, 0.095, 0.7, 1e-12, 1);
     const passage whole = best_pass(&p, 0.095, 0.7, in_contact, 1);
-    printf("| %d | %g %% | %d | %.4f | %.1e | %.2f |\n", links, 100 * damping, whole.impacts,
-           1e3 * whole.momentum, whole.open,
+    printf("| %d | %g %% | %d | %.4f | %.1e | %.2f |\n", links, 100 * damping,
+           whole.impacts, 1e3 * whole.momentum, whole.open,
            1e6 * (whole.took - way.took) / (1e3 * in_contact * links));
     fflush(stdout);
 }
@@ -98,17 +103,17 @@ static void print_from_rest(int links, double damping, double duration)
 {
     const parameters p = chain_of(links, damping);
     const passage o = best_pass(&p, 0, 0, HUGE_VAL, duration);
-    printf("| %d | %g %% | %g s | %d | %.1e | %.2f |\n", links, 100 * damping, duration, o.impacts,
-           o.open, 1e6 * o.took / (1e3 * duration * links));
+    printf("| %d | %g %% | %g s | %d | %.1e | %.2f |\n", links, 100 * damping, duration,
+           o.impacts, o.open, 1e6 * o.took / (1e3 * duration * links));
     fflush(stdout);
 }
 
 int main(int argc, char **argv)
 {
-    static const int damped[] = {8, 16, 32, 64, 128, 256, 1024}, undamped[] = {8, 16, 32, 64, 128};
-    printf(
-        "| links | damping | impacts | momentum of 50 ms [mN s] | residual, share of energy put in "
-        "| us x N per ms |\n|---|---|---|---|---|---|\n");
+    static const int damped[] = {8, 16, 32, 64, 128, 256, 1024},
+                     undamped[] = {8, 16, 32, 64, 128};
+    printf("| links | damping | impacts | momentum of 50 ms [mN s] | residual, share "
+           "of energy put in | us x N per ms |\n|---|---|---|---|---|---|\n");
     for (int i = 2; i < argc; i++) {
         print_struck(atoi(argv[i]), atof(argv[1]));
     }

@@ -1,12 +1,14 @@
-// Whole runs of two links, for counting their instructions and for timing two commits in turns:
-// 1 s against the wall, again and again. tests/bench/instructions.sh and in_turns.sh run it.
+// Whole runs of two links, for counting their instructions and for timing two commits in
+// turns: 1 s against the wall, again and again. tests/bench/instructions.sh and
+// in_turns.sh run it.
 //
-//   whole_runs single|rows|rig PASSES      one run a pass: bare, with its rows, under a control law
-//   whole_runs batch PASSES [WIDTH]        256 a pass, 0.5 to 1.5 V, on one thread, WIDTH arms at
+//   whole_runs single|rows|rig PASSES      one run a pass: bare, with its rows, under a
+//   control law whole_runs batch PASSES [WIDTH]        256 a pass, 0.5 to 1.5 V, on one
+//   thread, WIDTH arms at
 //                                          most side by side
 //
-// Prints the number of runs and the microseconds of computing each took. Compiled with -DBEFORE it
-// knows batches only and fits commit 57dad42, whose folders had other names.
+// Prints the number of runs and the microseconds of computing each took. Compiled with
+// -DBEFORE it knows batches only and fits commit 57dad42, whose folders had other names.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,7 +54,10 @@ static status make_run(void *context, size_t i, scenario *made, fault *f)
 
 static status run_batch(scenario *s)
 {
-    const batch runs = {.context = s, .count = BATCH, .make = make_run, .summaries = summaries};
+    const batch runs = {.context = s,
+                        .count = BATCH,
+                        .make = make_run,
+                        .summaries = summaries};
     return batch_run(&runs, 1, NULL);
 }
 #endif

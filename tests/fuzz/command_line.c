@@ -1,7 +1,7 @@
-// Command lines made from the tables of options: each option in one of its spellings, with values
-// of its type and others, in the order of the bytes. A line is refused with a sentence and status
-// 2, or the command runs on a small scenario and ends with a known status, saying why where it is
-// not 0; nothing that is said has control characters.
+// Command lines made from the tables of options: each option in one of its spellings,
+// with values of its type and others, in the order of the bytes. A line is refused with a
+// sentence and status 2, or the command runs on a small scenario and ends with a known
+// status, saying why where it is not 0; nothing that is said has control characters.
 #include "tests/fuzz/fuzz.h"
 
 #include <getopt.h>
@@ -56,40 +56,45 @@ static char *value_for(source *s, line *l, const option_row *o)
     }
     case OPTION_FILE:
     case OPTION_SCENARIO:
-        return strdup(ONE_OF(s, "small.yaml", "printed.yaml", "two.set", "none", ".", "/dev/null"));
+        return strdup(
+            ONE_OF(s, "small.yaml", "printed.yaml", "two.set", "none", ".", "/dev/null"));
     case OPTION_RESULT:
     case OPTION_PICTURE:
     case OPTION_PLACE:
-        return strdup(ONE_OF(s, "out.json", "out.csv", "out.svg", "out.png", "-", "/dev/full",
-                             "none/out.svg", ".", "out.sqlite"));
+        return strdup(ONE_OF(s, "out.json", "out.csv", "out.svg", "out.png", "-",
+                             "/dev/full", "none/out.svg", ".", "out.sqlite"));
     case OPTION_QUANTITY:
-        return strdup(
-            ONE_OF(s, "peak_force_N", "first_contact_s", "impacts", "peak_force", "", "energy_J"));
+        return strdup(ONE_OF(s, "peak_force_N", "first_contact_s", "impacts",
+                             "peak_force", "", "energy_J"));
     case OPTION_NUMBER:
     case OPTION_NUMBERS:
     case OPTION_LENGTH:
     case OPTION_WHOLE:
         // at both ends of its range and beyond
         snprintf(text, sizeof text, "%g", next(s) % 2 == 0 ? o->low : o->low + 1);
-        return strdup(next(s) % 3 > 0 ? text
-                                      : ONE_OF(s, "0", "-1", "2", "1e308", "nan", "inf", "1e-320",
-                                               "85mm", "2 s", "0x2", "", "18446744073709551616"));
+        return strdup(next(s) % 3 > 0
+                          ? text
+                          : ONE_OF(s, "0", "-1", "2", "1e308", "nan", "inf", "1e-320",
+                                   "85mm", "2 s", "0x2", "", "18446744073709551616"));
     case OPTION_SIZE:
-        return strdup(ONE_OF(s, "64x48", "1x1", "0x0", "9x", "x9", "99999999999x2", "-3x3"));
+        return strdup(
+            ONE_OF(s, "64x48", "1x1", "0x0", "9x", "x9", "99999999999x2", "-3x3"));
     case OPTION_PARAMETERS:
         return strdup(ONE_OF(s, "motor.voltage=3", "motor.voltage=1:3:2", "arm.k2=4,6",
                              "arm.links=3", "wall.kind=plane", "wall.kind=none",
-                             "control.law=hybrid", "arm.model=printed", "motor.voltage", "=",
-                             "arm.k3=1", "method.name=event,newmark", "run.duration=0.05",
-                             "control.seed=1:2", "wall.angle=nan", "arm.k2=0:0:2"));
+                             "control.law=hybrid", "arm.model=printed", "motor.voltage",
+                             "=", "arm.k3=1", "method.name=event,newmark",
+                             "run.duration=0.05", "control.seed=1:2", "wall.angle=nan",
+                             "arm.k2=0:0:2"));
     default:
         return strdup(ONE_OF(s, "hybrid,force-pd", "1/2", "3/2", "force,last_angle",
-                             "0.01:2,0.02:0", "DejaVu Sans", "a", "", "peak_force_N,impacts",
-                             ":seek 0.01<Enter>D"));
+                             "0.01:2,0.02:0", "DejaVu Sans", "a", "",
+                             "peak_force_N,impacts", ":seek 0.01<Enter>D"));
     }
 }
 
-// "--name value", "--name=value", "-n value", a beginning of the name, or another option's alias.
+// "--name value", "--name=value", "-n value", a beginning of the name, or another
+// option's alias.
 static void add_option(source *s, line *l, const command *c)
 {
     int count = 0;
@@ -165,21 +170,23 @@ static void write_text(const char *path, const char *text)
 static void make_files(void)
 {
     fuzz_folder();
-    write_text(
-        "small.yaml",
-        "title: small\nrun: {duration: 0.02 s}\ninitial: {angle: -0.001}\nwall: {angle: 0}\n");
-    write_text("printed.yaml", "title: printed\narm: {model: printed}\nrun: {duration: 0.02 s}\n");
+    write_text("small.yaml", "title: small\nrun: {duration: 0.02 s}\ninitial: {angle: "
+                             "-0.001}\nwall: {angle: 0}\n");
+    write_text("printed.yaml",
+               "title: printed\narm: {model: printed}\nrun: {duration: 0.02 s}\n");
     write_text("two.set", "case one: arm.k2=4\ncase two: motor.voltage=2\n");
     write_text("recipe.yaml",
                "runs:\n  - {scenario: small.yaml}\npanels:\n  - {signals: [force]}\n");
 }
 
-// What was said since the stream was rewound has no control characters. Returns its length.
+// What was said since the stream was rewound has no control characters. Returns its
+// length.
 static long check_said(FILE *stream)
 {
     fflush(stream);
     const long length = ftell(stream);
-    char *text = mmap(NULL, (size_t)length + 1, PROT_READ, MAP_PRIVATE, fileno(stream), 0);
+    char *text =
+        mmap(NULL, (size_t)length + 1, PROT_READ, MAP_PRIVATE, fileno(stream), 0);
     FUZZ_CHECK(text != MAP_FAILED);
     for (long i = 0; i < length; i++) {
         const unsigned char c = (unsigned char)text[i];
@@ -191,7 +198,8 @@ static long check_said(FILE *stream)
     return length;
 }
 
-// From now on the standard streams are files in memory; a broken promise is told on the descriptor.
+// From now on the standard streams are files in memory; a broken promise is told on the
+// descriptor.
 static void take_streams(void)
 {
     static bool taken;
@@ -219,7 +227,8 @@ static void try_line(source *s)
     memcpy(words, l.words, sizeof words);
     optind = 0;
     if (arguments_read(&a, c, l.count, words, &code)) {
-        FUZZ_CHECK(code == EXIT_DONE && a.operand_count >= c->least && a.operand_count <= c->most);
+        FUZZ_CHECK(code == EXIT_DONE && a.operand_count >= c->least &&
+                   a.operand_count <= c->most);
         if (may_run(&a, &l)) {
             code = check_results(&a);
             code = code == EXIT_DONE ? command_run(&a) : code;

@@ -1,5 +1,5 @@
-// Any file in the place of a sweep's database: opened, continued, read, merged or refused with a
-// sentence; never taken for another sweep.
+// Any file in the place of a sweep's database: opened, continued, read, merged or refused
+// with a sentence; never taken for another sweep.
 #include "tests/fuzz/fuzz.h"
 
 #include <unistd.h>
@@ -14,7 +14,8 @@ static void read_store(sweep_store *store, const sweep *s)
     fault f = {0};
     FUZZ_CHECK(s->run_count <= 64);
     FUZZ_CHECK(store->count <= s->run_count);
-    fuzz_done(sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values, &failed, &f),
+    fuzz_done(sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values,
+                                   &failed, &f),
               &f);
     char *text = NULL;
     size_t size = 0;

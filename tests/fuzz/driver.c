@@ -1,5 +1,5 @@
-// Calls a fuzz target without libFuzzer: with every file of the folders on the command line, and
-// with ROUNDS deterministic mutations of each.
+// Calls a fuzz target without libFuzzer: with every file of the folders on the command
+// line, and with ROUNDS deterministic mutations of each.
 //
 // TARGET ROUNDS FOLDER...
 #include "tests/fuzz/fuzz.h"
@@ -62,14 +62,16 @@ static size_t mutate(char *text, size_t size)
     }
 
     // what a damaged file may hold
-    const char *piece = FUZZ_PICK(
-        which, "{", "}", "[", "]", ":", "- ", "\n", "\n  ", "#", "\"", "'", "|\n", ">\n", "&a ",
-        "*a", "!!str ", "---\n", "...\n", "\t", "\xff", "\xc3", "\xef\xbb\xbf", "\xe2\x80\xa8",
-        "%YAML 1.1\n", "? ", "null", "~", "nan", "-1", "1e999", ".inf", "0x1p9", "\"\\0\"",
-        "\"\\e\"", "arm:", "k2: ", "script:\n  - at: 0.1\n    push: 1\n",
-        "set: {motor.voltage: 2 V}", "expect:\n  impacts: {value: 3, tolerance: 0}\n", "at: 1e9",
-        "links: 3", "model: printed", "tolerance: -1", "first_contact_s: null\n", "duration: 1e5",
-        "<<: ");
+    const char *piece =
+        FUZZ_PICK(which, "{", "}", "[", "]", ":", "- ", "\n", "\n  ", "#", "\"", "'",
+                  "|\n", ">\n", "&a ", "*a", "!!str ", "---\n", "...\n", "\t", "\xff",
+                  "\xc3", "\xef\xbb\xbf", "\xe2\x80\xa8", "%YAML 1.1\n", "? ", "null",
+                  "~", "nan", "-1", "1e999", ".inf", "0x1p9", "\"\\0\"", "\"\\e\"",
+                  "arm:", "k2: ", "script:\n  - at: 0.1\n    push: 1\n",
+                  "set: {motor.voltage: 2 V}",
+                  "expect:\n  impacts: {value: 3, tolerance: 0}\n", "at: 1e9", "links: 3",
+                  "model: printed", "tolerance: -1", "first_contact_s: null\n",
+                  "duration: 1e5", "<<: ");
     return insert(text, size, at, piece, strlen(piece));
 }
 
@@ -92,7 +94,8 @@ static void call(const char *text, size_t size)
 }
 
 // A file as it is, then with one to eight damages, again and again.
-static int try_file(const char *path, const struct stat *about, int kind, struct FTW *where)
+static int try_file(const char *path, const struct stat *about, int kind,
+                    struct FTW *where)
 {
     static char original[MOST_BYTES], text[MOST_BYTES];
     (void)about;

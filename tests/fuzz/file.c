@@ -38,7 +38,8 @@ const char *fuzz_file(const uint8_t *data, size_t size)
         snprintf(path, sizeof path, "/tmp/impactlab-fuzz-%ld", (long)getpid());
     }
 
-    // a new file each time: some file systems wait for the disk when an old one is emptied
+    // a new file each time: some file systems wait for the disk when an old one is
+    // emptied
     unlink(path);
     int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     FUZZ_CHECK(file >= 0);
@@ -55,7 +56,8 @@ static void fail(void *context, const char *sentence)
 
 void fuzz_scenario(scenario *s, const char *yaml)
 {
-    FUZZ_CHECK(scenario_parse(s, yaml, strlen(yaml), "f", "base", fail, NULL) == STATUS_OK);
+    FUZZ_CHECK(scenario_parse(s, yaml, strlen(yaml), "f", "base", fail, NULL) ==
+               STATUS_OK);
 }
 
 char *fuzz_written(const scenario *s)
@@ -81,7 +83,8 @@ void fuzz_count_placed(void *count, const char *sentence, const char *file)
     int line = 0, column = 0, length = 0;
     FUZZ_CHECK(strncmp(sentence, file, name) == 0);
     sscanf(sentence + name, ":%d:%d: %n", &line, &column, &length);
-    FUZZ_CHECK(line >= 1 && column >= 1 && length > 0 && sentence[name + (size_t)length] != '\0');
+    FUZZ_CHECK(line >= 1 && column >= 1 && length > 0 &&
+               sentence[name + (size_t)length] != '\0');
     for (const char *c = sentence; *c != '\0'; c++) {
         FUZZ_CHECK((unsigned char)*c >= 0x20 && *c != 0x7f);
     }

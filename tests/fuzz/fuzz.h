@@ -1,5 +1,5 @@
-// Shared by the fuzz targets. Each target is a program with one function that takes any bytes;
-// libFuzzer calls it (tests/fuzz/run), or driver.c with mutations of the corpus.
+// Shared by the fuzz targets. Each target is a program with one function that takes any
+// bytes; libFuzzer calls it (tests/fuzz/run), or driver.c with mutations of the corpus.
 #pragma once
 
 #include <ctype.h>
@@ -16,7 +16,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 // Ends the program where a promise is broken; unlike an assertion it is always looked at.
-#define FUZZ_CHECK(promise) ((promise) ? (void)0 : fuzz_fail(__FILE__, __LINE__, #promise))
+#define FUZZ_CHECK(promise)                                                              \
+    ((promise) ? (void)0 : fuzz_fail(__FILE__, __LINE__, #promise))
 
 static inline void fuzz_fail(const char *file, int line, const char *promise)
 {
@@ -64,13 +65,16 @@ static inline uint8_t next(source *s)
     return s->at < s->size ? s->data[s->at++] : 0;
 }
 
-// One of the texts, by a number or by the next byte: FUZZ_PICK(7, "a", "b"), ONE_OF(s, "a", "b").
-#define FUZZ_PICK(number, ...)                                                                     \
-    (((const char *const[]){                                                                       \
-        __VA_ARGS__})[(number) % (sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))])
+// One of the texts, by a number or by the next byte: FUZZ_PICK(7, "a", "b"), ONE_OF(s,
+// "a", "b").
+#define FUZZ_PICK(number, ...)                                                           \
+    (((const char *const[]){                                                             \
+        __VA_ARGS__})[(number) %                                                         \
+                      (sizeof((const char *const[]){__VA_ARGS__}) / sizeof(char *))])
 #define ONE_OF(s, ...) FUZZ_PICK(next(s), __VA_ARGS__)
 
-// Any letters, of no path that leaves the folder and no number that takes minutes to compute.
+// Any letters, of no path that leaves the folder and no number that takes minutes to
+// compute.
 static inline void fuzz_letters(source *s, char *text, size_t most)
 {
     int digits = 0;
@@ -82,18 +86,20 @@ static inline void fuzz_letters(source *s, char *text, size_t most)
     *text = '\0';
 }
 
-// Makes a folder of the target's own the current one, which goes with the program, and empties it.
+// Makes a folder of the target's own the current one, which goes with the program, and
+// empties it.
 void fuzz_folder(void);
 
-// Writes the bytes into a file of the target's own, which the next call replaces. Returns its path.
+// Writes the bytes into a file of the target's own, which the next call replaces. Returns
+// its path.
 const char *fuzz_file(const uint8_t *data, size_t size);
 
-// A scenario of a text that is a good one, what it writes (to be freed), and one that counts the
-// sentences about a bad one, each of which is one.
+// A scenario of a text that is a good one, what it writes (to be freed), and one that
+// counts the sentences about a bad one, each of which is one.
 void fuzz_scenario(scenario *s, const char *yaml);
 char *fuzz_written(const scenario *s);
 void fuzz_count(void *count, const char *sentence);
 
-// The same of sentences that begin with the file's name, line and column; none shows anything that
-// a terminal would obey.
+// The same of sentences that begin with the file's name, line and column; none shows
+// anything that a terminal would obey.
 void fuzz_count_placed(void *count, const char *sentence, const char *file);

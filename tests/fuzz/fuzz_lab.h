@@ -1,4 +1,5 @@
-// A lab that a fuzz target opens, and what its screen must hold: cells that a terminal may show.
+// A lab that a fuzz target opens, and what its screen must hold: cells that a terminal
+// may show.
 #pragma once
 
 #include <math.h>

@@ -1,5 +1,5 @@
-// JSON from outside: the line that a program answers a sample with, and a file of earlier times for
-// bench. Each is taken whole, with the numbers that it says, or refused.
+// JSON from outside: the line that a program answers a sample with, and a file of earlier
+// times for bench. Each is taken whole, with the numbers that it says, or refused.
 #include "tests/fuzz/fuzz.h"
 
 #include "src/rig/external/process_lines.h"

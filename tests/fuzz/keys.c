@@ -1,7 +1,7 @@
-// Keys as lab --keys takes them, made from the table of commands: each command with arguments of
-// the kind that its help names and with others, keys by their names, and any letters. The lab draws
-// after each piece, cells that a terminal may show; a text with a key that is none says so. Files
-// are written into a folder of the target's own.
+// Keys as lab --keys takes them, made from the table of commands: each command with
+// arguments of the kind that its help names and with others, keys by their names, and any
+// letters. The lab draws after each piece, cells that a terminal may show; a text with a
+// key that is none says so. Files are written into a folder of the target's own.
 #include "tests/fuzz/fuzz_lab.h"
 
 #include "src/tables/signals.h"
@@ -10,7 +10,8 @@
 
 enum { MOST_PIECES = 24, PIECE = 200 };
 
-// An argument for a command: a word of its help, something that such words stand for, or letters.
+// An argument for a command: a word of its help, something that such words stand for, or
+// letters.
 static void add_argument(source *s, const explorer_command *c, char *text, size_t room)
 {
     const size_t used = strlen(text);
@@ -29,20 +30,22 @@ static void add_argument(source *s, const explorer_command *c, char *text, size_
         snprintf(text + used, room - used, "%.*s", (int)strcspn(word, "|]"), word);
         return;
     case 3:
-        snprintf(text + used, room - used, "%s", signal_table[next(s) % signal_count].name);
+        snprintf(text + used, room - used, "%s",
+                 signal_table[next(s) % signal_count].name);
         return;
     case 4:
-        snprintf(text + used, room - used, "%s", summary_table[next(s) % summary_count].key);
+        snprintf(text + used, room - used, "%s",
+                 summary_table[next(s) % summary_count].key);
         return;
     default:
         snprintf(text + used, room - used, "%s",
-                 ONE_OF(s, "0.05", "end", "-1", "2", "0", "nan", "1e9", "0.02 0.08", "auto", "off",
-                        "next", "up", "motor.voltage 3", "arm.k2=3:5:3", "wall.angle 0.2",
-                        "wall.angle 9", "control.law hybrid", "run.duration 0.05", "force gap",
-                        "force", "out.csv", "out.yaml", "out.svg", "out.png", "out.txt",
-                        "none/out.csv", "1 a name", "x step 5", "x nothing",
-                        "F2 set motor.voltage 2", "impact", "hybrid", "1 2", "134", "Control",
-                        "2 0.5"));
+                 ONE_OF(s, "0.05", "end", "-1", "2", "0", "nan", "1e9", "0.02 0.08",
+                        "auto", "off", "next", "up", "motor.voltage 3", "arm.k2=3:5:3",
+                        "wall.angle 0.2", "wall.angle 9", "control.law hybrid",
+                        "run.duration 0.05", "force gap", "force", "out.csv", "out.yaml",
+                        "out.svg", "out.png", "out.txt", "none/out.csv", "1 a name",
+                        "x step 5", "x nothing", "F2 set motor.voltage 2", "impact",
+                        "hybrid", "1 2", "134", "Control", "2 0.5"));
     }
 }
 
@@ -62,9 +65,10 @@ static void make_piece(source *s, char text[PIECE])
     switch (next(s) % 4) {
     case 0:
         snprintf(text, PIECE, "%s",
-                 ONE_OF(s, "<Space>", "<Enter>", "<Esc>", "<Tab>", "<Up>", "<Down>", "<Left>",
-                        "<Right>", "<PgUp>", "<S-Up>", "<S-Left>", "<C-r>", "<F1>", "<Home>",
-                        "<End>", "<Delete>", "<Backspace>", "<C-l>", "<", "<no key>", "<>"));
+                 ONE_OF(s, "<Space>", "<Enter>", "<Esc>", "<Tab>", "<Up>", "<Down>",
+                        "<Left>", "<Right>", "<PgUp>", "<S-Up>", "<S-Left>", "<C-r>",
+                        "<F1>", "<Home>", "<End>", "<Delete>", "<Backspace>", "<C-l>",
+                        "<", "<no key>", "<>"));
         return;
     case 1:
         // not the keys that open scenarios

@@ -1,6 +1,6 @@
-// Lessons of scenario files: what is read keeps the promises of lesson.h and reads back from its
-// own copy; now and then it is gone through in the lab, by its own commands, with wrong answers
-// before.
+// Lessons of scenario files: what is read keeps the promises of lesson.h and reads back
+// from its own copy; now and then it is gone through in the lab, by its own commands,
+// with wrong answers before.
 #include "tests/fuzz/fuzz_lab.h"
 
 #include "src/tables/summary.h"
@@ -13,10 +13,13 @@ static void check_step(const lesson_step *s)
     FUZZ_CHECK(s->check >= LESSON_READ && s->check <= LESSON_RATIO);
     FUZZ_CHECK(s->quantity >= 0 && s->quantity < summary_count);
     FUZZ_CHECK(s->parameter >= 0 && s->parameter < parameter_count);
-    FUZZ_CHECK(isfinite(s->within) && s->within >= 0 && isfinite(s->offset) && isfinite(s->value));
+    FUZZ_CHECK(isfinite(s->within) && s->within >= 0 && isfinite(s->offset) &&
+               isfinite(s->value));
     FUZZ_CHECK(s->check != LESSON_RATIO || s->low <= s->high);
-    FUZZ_CHECK(s->check != LESSON_CHOICE || (s->right >= 0 && s->right < s->choice_count));
-    FUZZ_CHECK(s->check != LESSON_PINNED || (s->pinned >= 1 && s->pinned <= LESSON_PINNED_RUNS));
+    FUZZ_CHECK(s->check != LESSON_CHOICE ||
+               (s->right >= 0 && s->right < s->choice_count));
+    FUZZ_CHECK(s->check != LESSON_PINNED ||
+               (s->pinned >= 1 && s->pinned <= LESSON_PINNED_RUNS));
     FUZZ_CHECK(s->command_count >= 0 && s->command_count <= LESSON_COMMANDS);
 }
 
@@ -45,12 +48,13 @@ static void check_copy(const scenario *s)
     free(text);
 }
 
-// Whether a line may be carried out here: one that writes no file, asks for no consent and takes no
-// minutes.
+// Whether a line may be carried out here: one that writes no file, asks for no consent
+// and takes no minutes.
 static bool is_harmless(const char *line)
 {
-    static const char *const words[] = {"set",  "seek",   "pin",  "branch", "law",  "lock",
-                                        "open", "answer", "undo", "redo",   "touch"};
+    static const char *const words[] = {"set",  "seek", "pin",  "branch",
+                                        "law",  "lock", "open", "answer",
+                                        "undo", "redo", "touch"};
     const size_t length = strcspn(line, " ");
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
         if (strlen(words[i]) == length && strncmp(words[i], line, length) == 0) {
@@ -60,11 +64,12 @@ static bool is_harmless(const char *line)
     return strcmp(line, "continue") == 0;
 }
 
-// Goes through it: asks too early, answers wrongly, then does what the file says; the screen is
-// drawn after each.
+// Goes through it: asks too early, answers wrongly, then does what the file says; the
+// screen is drawn after each.
 static void play(const scenario *s)
 {
-    static const char *const before[] = {"continue", "answer 0", "answer 1e9", "answer x"};
+    static const char *const before[] = {"continue", "answer 0", "answer 1e9",
+                                         "answer x"};
     explorer ex;
     scenario own;
     screen shown = {0};
@@ -75,7 +80,8 @@ static void play(const scenario *s)
     }
     ex.state.size = (screen_size){100, 30};
 
-    const int steps = s->lesson.step_count < MOST_STEPS ? s->lesson.step_count : MOST_STEPS;
+    const int steps =
+        s->lesson.step_count < MOST_STEPS ? s->lesson.step_count : MOST_STEPS;
     for (int i = 0; i < steps && !ex.state.quit; i++) {
         const lesson_step *step = &s->lesson.steps[i];
         const int early = (int)(sizeof before / sizeof before[0]);
@@ -98,7 +104,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     scenario s;
     int reported = 0;
     char *text = fuzz_text(data, size);
-    const status code = scenario_parse(&s, text, size, "f", "name", fuzz_count, &reported);
+    const status code =
+        scenario_parse(&s, text, size, "f", "name", fuzz_count, &reported);
     FUZZ_CHECK((code == STATUS_OK) == (reported == 0));
     if (code == STATUS_OK) {
         check_lesson(&s.lesson);

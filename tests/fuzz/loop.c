@@ -1,6 +1,6 @@
-// Calls of the library on a loop, one a line: each does what it says or is refused with a sentence
-// and changes nothing; bytes of a state are put back whole, and refused when damaged. What comes
-// after a refusal is the next line.
+// Calls of the library on a loop, one a line: each does what it says or is refused with a
+// sentence and changes nothing; bytes of a state are put back whole, and refused when
+// damaged. What comes after a refusal is the next line.
 #include "tests/fuzz/fuzz.h"
 
 #include "src/api/impactlab/impactlab.h"
@@ -9,7 +9,8 @@
 enum { MOST_CALLS = 40, MOST_STATE = 1 << 16 };
 
 static const char *const scenarios[] = {"corrected/first-impact", "compare/hybrid",
-                                        "compare/hybrid-printed-arm", "corrected/twenty-links"};
+                                        "compare/hybrid-printed-arm",
+                                        "corrected/twenty-links"};
 
 // The loop in hand, with a state of it that was kept.
 typedef struct hand {
@@ -72,8 +73,10 @@ static void look(hand *h)
     }
     FUZZ_CHECK(impactlab_loop_run(h->loop, &run, &error) == IMPACTLAB_OK);
     double steady, peak;
-    FUZZ_CHECK(impactlab_run_quantity(run, "steady_force_N", &steady, &error) == IMPACTLAB_OK);
-    FUZZ_CHECK(impactlab_run_quantity(run, "peak_force_N", &peak, &error) == IMPACTLAB_OK);
+    FUZZ_CHECK(impactlab_run_quantity(run, "steady_force_N", &steady, &error) ==
+               IMPACTLAB_OK);
+    FUZZ_CHECK(impactlab_run_quantity(run, "peak_force_N", &peak, &error) ==
+               IMPACTLAB_OK);
     FUZZ_CHECK(mean_is_within(steady, peak, 0, 1));
     FUZZ_CHECK(impactlab_run_json(run, &text, &error) == IMPACTLAB_OK && text[0] == '{');
     impactlab_text_free(text);
@@ -134,10 +137,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char *text = fuzz_text(data, size), *rest = text, *line = strsep(&rest, "\n");
 
     // the first line chooses the loop, which is short
-    const char *name = scenarios[(size_t)line[0] % (sizeof scenarios / sizeof scenarios[0])];
-    const int flags = line[0] != '\0' ? line[1] & (IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND) : 0;
+    const char *name =
+        scenarios[(size_t)line[0] % (sizeof scenarios / sizeof scenarios[0])];
+    const int flags =
+        line[0] != '\0' ? line[1] & (IMPACTLAB_KEEP_ROWS | IMPACTLAB_COMMAND) : 0;
     FUZZ_CHECK(impactlab_scenario_open(&chosen, name, &error) == IMPACTLAB_OK);
-    FUZZ_CHECK(impactlab_scenario_set(chosen, "run.duration", "0.4 s", &error) == IMPACTLAB_OK);
+    FUZZ_CHECK(impactlab_scenario_set(chosen, "run.duration", "0.4 s", &error) ==
+               IMPACTLAB_OK);
     FUZZ_CHECK(impactlab_loop_create(&h.loop, chosen, flags, &error) == IMPACTLAB_OK);
     impactlab_scenario_destroy(chosen);
     h.kept_size = 0;

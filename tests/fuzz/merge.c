@@ -1,7 +1,8 @@
-// Parts of a sweep that somebody changed on the way: each line of the input is carried out as SQL
-// on one of two parts, as the SQL of somebody else's program would be. They are refused with a
-// sentence, or merge to runs of the sweep: planned values, each run once, and numbers that are
-// finite; and the sweep goes on in what was merged, or says why not.
+// Parts of a sweep that somebody changed on the way: each line of the input is carried
+// out as SQL on one of two parts, as the SQL of somebody else's program would be. They
+// are refused with a sentence, or merge to runs of the sweep: planned values, each run
+// once, and numbers that are finite; and the sweep goes on in what was merged, or says
+// why not.
 #include "tests/fuzz/fuzz.h"
 
 #include <sqlite3.h>
@@ -21,7 +22,8 @@ static void write_part(const sweep *s, int part, const char *path)
     unlink(path);
     if (bytes[part] != NULL) {
         FILE *file = fopen(path, "wb");
-        FUZZ_CHECK(file != NULL && fwrite(bytes[part], 1, sizes[part], file) == sizes[part]);
+        FUZZ_CHECK(file != NULL &&
+                   fwrite(bytes[part], 1, sizes[part], file) == sizes[part]);
         fclose(file);
         return;
     }
@@ -38,7 +40,8 @@ static void write_part(const sweep *s, int part, const char *path)
     sizes[part] = (size_t)ftell(file);
     rewind(file);
     bytes[part] = malloc(sizes[part]);
-    FUZZ_CHECK(bytes[part] != NULL && fread(bytes[part], 1, sizes[part], file) == sizes[part]);
+    FUZZ_CHECK(bytes[part] != NULL &&
+               fread(bytes[part], 1, sizes[part], file) == sizes[part]);
     fclose(file);
 }
 
@@ -74,8 +77,8 @@ static void check_merged(const sweep *s, const char *path, const sweep_merged *m
     size_t count;
     FUZZ_CHECK(merged->total == RUNS);
     FUZZ_CHECK(store->count == merged->runs);
-    FUZZ_CHECK(sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values, NULL, &f) ==
-               STATUS_OK);
+    FUZZ_CHECK(sweep_store_quantity(store, (sweep_share){0}, "peak_force_N", values, NULL,
+                                    &f) == STATUS_OK);
     for (int i = 0; i < RUNS; i++) {
         FUZZ_CHECK(!isinf(values[i]));
     }

@@ -7,7 +7,8 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const trace_panel panels[] = {{.signals = {"force"}}, {.signals = {"hub_angle"}}};
+    static const trace_panel panels[] = {{.signals = {"force"}},
+                                         {.signals = {"hub_angle"}}};
     trace t;
     fault f = {0};
     char *name = NULL;
@@ -15,8 +16,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     // every column, then one by its name
     for (int i = 0; i < 2; i++) {
-        const status code =
-            overlay_read_column(&t, path, i == 0 ? NULL : "probe", 0.25, panels, 2, &name, &f);
+        const status code = overlay_read_column(&t, path, i == 0 ? NULL : "probe", 0.25,
+                                                panels, 2, &name, &f);
         FUZZ_CHECK(code != STATUS_OK || t.row_count > 0);
         fuzz_done(code, &f);
         for (size_t row = 0; code == STATUS_OK && row < t.row_count; row++) {

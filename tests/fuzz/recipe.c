@@ -1,6 +1,6 @@
-// Recipes of figures: each is read or refused with sentences that name the place, and what is read
-// keeps the promises of its model; its caller ends it in both cases. Now and then one is opened,
-// with its runs, and drawn.
+// Recipes of figures: each is read or refused with sentences that name the place, and
+// what is read keeps the promises of its model; its caller ends it in both cases. Now and
+// then one is opened, with its runs, and drawn.
 #include "tests/fuzz/fuzz.h"
 
 #include "render/figures/figures.h"
@@ -18,12 +18,14 @@ static void check_panel(const recipe *r, const recipe_panel *p)
     FUZZ_CHECK(p->signal_count >= 0 && p->signal_count <= TRACE_SIGNALS);
     FUZZ_CHECK(p->source_count >= 0 && p->source_count <= RECIPE_SOURCES);
     FUZZ_CHECK(p->of < r->source_count && p->less < r->source_count);
-    FUZZ_CHECK(isfinite(p->shown.weight) && isfinite(p->shown.y.low) && isfinite(p->shown.y.high));
+    FUZZ_CHECK(isfinite(p->shown.weight) && isfinite(p->shown.y.low) &&
+               isfinite(p->shown.y.high));
     for (int i = 0; i < p->source_count; i++) {
         FUZZ_CHECK(p->sources[i] >= 0 && p->sources[i] < r->source_count);
     }
     for (int i = 0; i < p->shown.note_count; i++) {
-        FUZZ_CHECK(isfinite(p->notes[i].x) && isfinite(p->notes[i].y) && p->notes[i].text != NULL);
+        FUZZ_CHECK(isfinite(p->notes[i].x) && isfinite(p->notes[i].y) &&
+                   p->notes[i].text != NULL);
     }
 }
 
@@ -59,7 +61,8 @@ static void draw(const uint8_t *data, size_t size)
         return;
     }
 
-    cairo_surface_t *surface = cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
+    cairo_surface_t *surface =
+        cairo_recording_surface_create(CAIRO_CONTENT_COLOR_ALPHA, NULL);
     cairo_t *cr = cairo_create(surface);
     fuzz_done(artwork_paint(&art, cr, NULL, &f), &f);
     cairo_destroy(cr);
@@ -73,7 +76,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     recipe r = {0};
     int reported = 0;
     char *text = fuzz_text(data, size);
-    const bool is_read = recipe_read(&r, "recipe.yaml", text, size, check_sentence, &reported);
+    const bool is_read =
+        recipe_read(&r, "recipe.yaml", text, size, check_sentence, &reported);
     FUZZ_CHECK(is_read == (reported == 0));
     if (is_read) {
         check_recipe(&r);

@@ -1,5 +1,5 @@
-// Damaged scenario files: the reader may refuse them, with a sentence and a place, but never crash,
-// and what it accepts must keep the promises of scenario.h.
+// Damaged scenario files: the reader may refuse them, with a sentence and a place, but
+// never crash, and what it accepts must keep the promises of scenario.h.
 #include "tests/fuzz/fuzz.h"
 
 #include "src/run/run.h"
@@ -22,7 +22,8 @@ static void check_value(const parameters *p, int index)
 
     for (int i = 0; i < count; i++) {
         FUZZ_CHECK(isfinite(numbers[i]));
-        FUZZ_CHECK(!p->set[index] || (numbers[i] >= info->minimum && numbers[i] <= info->maximum));
+        FUZZ_CHECK(!p->set[index] ||
+                   (numbers[i] >= info->minimum && numbers[i] <= info->maximum));
     }
 }
 
@@ -35,7 +36,8 @@ static void check_accepted(const scenario *s)
     }
     for (int i = 0; i < s->action_count; i++) {
         const action *a = &s->actions[i];
-        FUZZ_CHECK(isfinite(a->value) && a->time >= 0 && a->time <= s->parameters.run.duration);
+        FUZZ_CHECK(isfinite(a->value) && a->time >= 0 &&
+                   a->time <= s->parameters.run.duration);
         FUZZ_CHECK(i == 0 || s->actions[i - 1].time <= a->time);
         FUZZ_CHECK(a->kind == ACTION_PUSH || parameter_table[a->parameter].timed);
     }

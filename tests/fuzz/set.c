@@ -1,6 +1,6 @@
-// A set as impactlab robust reads it: refused with a sentence that names the file, or lines and
-// cases with their numbers; each case is a scenario or refused with its line. Callers clean up
-// after every refusal.
+// A set as impactlab robust reads it: refused with a sentence that names the file, or
+// lines and cases with their numbers; each case is a scenario or refused with its line.
+// Callers clean up after every refusal.
 #include "tests/fuzz/fuzz.h"
 
 #include "src/study/robust.h"

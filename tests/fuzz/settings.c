@@ -1,5 +1,5 @@
-// Settings as --set takes them, one a line: each is refused with a sentence, or leaves parameters
-// within their ranges.
+// Settings as --set takes them, one a line: each is refused with a sentence, or leaves
+// parameters within their ranges.
 #include "tests/fuzz/fuzz.h"
 
 enum { MOST_SETTINGS = 32 };
@@ -16,10 +16,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     for (int i = 0; code == STATUS_OK && i < parameter_count; i++) {
         const double value = parameter_get(&s.parameters, i);
         FUZZ_CHECK(isfinite(value));
-        FUZZ_CHECK(!s.parameters.set[i] ||
-                   (value >= parameter_table[i].minimum && value <= parameter_table[i].maximum));
+        FUZZ_CHECK(!s.parameters.set[i] || (value >= parameter_table[i].minimum &&
+                                            value <= parameter_table[i].maximum));
     }
-    // what was set is written so that it is read; bytes of another character set no file can hold
+    // what was set is written so that it is read; bytes of another character set no file
+    // can hold
     bool ascii = true;
     for (size_t i = 0; i < size; i++) {
         ascii = ascii && data[i] < 0x80;

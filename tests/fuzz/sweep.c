@@ -1,5 +1,5 @@
-// What --vary takes, one a line; the first byte chooses the sampling: refused with a sentence, or a
-// sweep in which every run has valid values.
+// What --vary takes, one a line; the first byte chooses the sampling: refused with a
+// sentence, or a sweep in which every run has valid values.
 #include "tests/fuzz/fuzz.h"
 
 #include "src/study/sweep.h"
@@ -14,7 +14,8 @@ static void check_runs(const sweep *s)
         for (int axis = 0; axis < s->axis_count; axis++) {
             const parameter_info *info = &parameter_table[s->axes[axis].parameter];
             const double value = sweep_value(s, run % s->run_count, axis);
-            FUZZ_CHECK(isfinite(value) && value >= info->minimum && value <= info->maximum);
+            FUZZ_CHECK(isfinite(value) && value >= info->minimum &&
+                       value <= info->maximum);
         }
     }
 }
@@ -34,7 +35,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const sweep_request request = {.vary = lines,
                                    .vary_count = count,
                                    .sampling = (sweep_sampling)(data[0] % 3),
-                                   .runs = data[0] % 3 == SWEEP_GRID ? 0 : 1 + data[0] / 3,
+                                   .runs =
+                                       data[0] % 3 == SWEEP_GRID ? 0 : 1 + data[0] / 3,
                                    .seed = data[0]};
     if (fuzz_done(sweep_init(&s, &base, &request, &f), &f)) {
         check_runs(&s);

@@ -1,6 +1,6 @@
-// The lab under any bytes: two a step. The first chooses a key, a piece of a command, the mouse, a
-// byte of an escape sequence or a new size, the second which; then the screen is drawn, of cells
-// that a terminal may show.
+// The lab under any bytes: two a step. The first chooses a key, a piece of a command, the
+// mouse, a byte of an escape sequence or a new size, the second which; then the screen is
+// drawn, of cells that a terminal may show.
 #include "tests/fuzz/fuzz_lab.h"
 
 #include "ui/terminal/escape_sequence.h"
@@ -13,20 +13,23 @@ static void step(explorer *ex, escape_sequence *sequence, uint8_t kind, uint8_t 
     switch (kind % 5) {
     case 0:
         // not those that leave, and no files are written: s and the prompt's own words
-        if (which >= ' ' && which != 'q' && which != 'Q' && which != 's' && which != ':') {
+        if (which >= ' ' && which != 'q' && which != 'Q' && which != 's' &&
+            which != ':') {
             explorer_key(ex, which);
         }
         break;
     case 1:
-        explorer_carry_out(ex, FUZZ_PICK(which, "set motor.voltage 2", "set wall.angle 0.1",
-                                         "seek 0.05", "branch", "undo", "set motor.voltage x",
-                                         "panes 27", "theme mono", "law hybrid", "law none",
-                                         "set run.duration 0.2", "colours 16", "mouse off",
-                                         "key x seek 0", "redo"));
+        explorer_carry_out(ex,
+                           FUZZ_PICK(which, "set motor.voltage 2", "set wall.angle 0.1",
+                                     "seek 0.05", "branch", "undo", "set motor.voltage x",
+                                     "panes 27", "theme mono", "law hybrid", "law none",
+                                     "set run.duration 0.2", "colours 16", "mouse off",
+                                     "key x seek 0", "redo"));
         break;
     case 2:
-        report =
-            (pointer_event){.kind = (pointer_kind)(kind / 5 % 5), .x = which % 130, .y = which / 3};
+        report = (pointer_event){.kind = (pointer_kind)(kind / 5 % 5),
+                                 .x = which % 130,
+                                 .y = which / 3};
         explorer_point(ex, report);
         break;
     case 3:

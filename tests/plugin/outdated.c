@@ -7,8 +7,9 @@ static void sample(void *memory, const controller_input *input, controller_outpu
     output->command = input->voltage;
 }
 
-static const controller outdated = {
-    .interface = CONTROLLER_INTERFACE - 1, .name = "outdated", .sample = sample};
+static const controller outdated = {.interface = CONTROLLER_INTERFACE - 1,
+                                    .name = "outdated",
+                                    .sample = sample};
 
 const controller *impactlab_controller(void);
 

@@ -1,6 +1,6 @@
-// A controller of one's own, complete: after contact the command rises slowly from a part of the
-// static one to all of it, with damping from the tachometer. docs/howto/controller.md is
-// about such.
+// A controller of one's own, complete: after contact the command rises slowly from a part
+// of the static one to all of it, with damping from the tachometer.
+// docs/howto/controller.md is about such.
 #include <math.h>
 
 #include "src/rig/controller.h"
@@ -47,7 +47,8 @@ static void sample(void *memory, const controller_input *input, controller_outpu
     output->command = c->approach_voltage;
     if (mode == PUSH) {
         double share = 1 - 0.5 * exp(-(input->time - c->touch_time) / c->rise_time);
-        double torque = share * 2 * c->force * c->rig.link_length - c->damping * input->tachometer;
+        double torque =
+            share * 2 * c->force * c->rig.link_length - c->damping * input->tachometer;
         output->command = torque / c->rig.torque_per_volt;
     }
 }

@@ -4,7 +4,8 @@ enum { MOST_STEPS = 2000000 };
 
 #define SHORTEST 1e-14 // step [s]
 
-// Momentum at the instants of the outcome that lie within the step just tried, by shorter steps.
+// Momentum at the instants of the outcome that lie within the step just tried, by shorter
+// steps.
 static void take_samples(simulation *s, double h)
 {
     chain_outcome *o = s->o;
@@ -14,7 +15,8 @@ static void take_samples(simulation *s, double h)
             return;
         }
         try_step(s, fmax(time - s->t, 1e-15));
-        o->momentum[o->samples++] = s->impulses + s->sums[SUM_FORCE] + s->added[SUM_FORCE];
+        o->momentum[o->samples++] =
+            s->impulses + s->sums[SUM_FORCE] + s->added[SUM_FORCE];
     }
 }
 
@@ -50,7 +52,8 @@ static void note_peak(simulation *s, double h)
         when = h;
     }
     for (int i = 0; i < 34 && x > 0; i++) { // golden section
-        const double u = b - 0.6180339887498949 * (b - a), v = a + 0.6180339887498949 * (b - a);
+        const double u = b - 0.6180339887498949 * (b - a),
+                     v = a + 0.6180339887498949 * (b - a);
         try_step(s, u);
         const double fu = force_at(s, s->end);
         try_step(s, v);
@@ -112,8 +115,9 @@ static void begin(simulation *s, const chain_start *start)
         double dy[MOST];
         answer r;
         rate_of(s, &s->now, s->y, dy, &r);
-        s->now.limited =
-            fabs(r.free_current) > a->motor.current_limit ? (r.free_current > 0 ? 1 : -1) : 0;
+        s->now.limited = fabs(r.free_current) > a->motor.current_limit
+                             ? (r.free_current > 0 ? 1 : -1)
+                             : 0;
     }
 
     // at rest on the wall
@@ -133,7 +137,8 @@ chain_outcome implicit_outcome_of(const chain_start *start, double tolerance)
     static simulation s;
     s = (simulation){.a = &a, .tolerance = tolerance, .o = &o};
     begin(&s, start);
-    double end = isnan(o.first_contact) ? start->duration : start->after_contact, next = 1e-6;
+    double end = isnan(o.first_contact) ? start->duration : start->after_contact,
+           next = 1e-6;
     bool know = false;
     for (long steps = 0; s.t < end; steps++) {
         if (steps > MOST_STEPS || next < SHORTEST) {

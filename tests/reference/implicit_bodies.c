@@ -81,7 +81,8 @@ touch touch_at(const simulation *s, const double *q, const double *w)
         t.g = -1;
         return t;
     }
-    if (a->wall.kind == WALL_PLANE) { // the tip's distance from a line through the hub's axis
+    if (a->wall.kind ==
+        WALL_PLANE) { // the tip's distance from a line through the hub's axis
         const double direction = atan2(a->wall.sine, a->wall.cosine);
         for (int k = 0; k < N; k++) {
             const double l = arm_link_of(s->a, k).length, z = q[f + k] - direction;
@@ -93,8 +94,8 @@ touch touch_at(const simulation *s, const double *q, const double *w)
         const double c = cos(q[f + N - 1]), si = sin(q[f + N - 1]), spin = w[f + N - 1];
         double x = a->wall.x, y = a->wall.y, vx = 0, vy = 0, ax = 0, ay = 0;
         for (int k = 0; k < N - 1; k++) {
-            const double l = arm_link_of(s->a, k).length, ck = cos(q[f + k]), sk = sin(q[f + k]),
-                         wk = w[f + k];
+            const double l = arm_link_of(s->a, k).length, ck = cos(q[f + k]),
+                         sk = sin(q[f + k]), wk = w[f + k];
             x -= l * ck;
             y -= l * sk;
             vx -= l * sk * wk;
@@ -105,7 +106,8 @@ touch touch_at(const simulation *s, const double *q, const double *w)
         }
         t.g = si * x - c * y;
         t.j[f + N - 1] = c * x + si * y;
-        t.velocity_terms = (c * ay - si * ax) - t.g * spin * spin - 2 * spin * (c * vx + si * vy);
+        t.velocity_terms =
+            (c * ay - si * ax) - t.g * spin * spin - 2 * spin * (c * vx + si * vy);
     }
     for (int i = 0; i < s->n; i++) {
         t.rate += t.j[i] * w[i];
@@ -114,7 +116,8 @@ touch touch_at(const simulation *s, const double *q, const double *w)
 }
 
 // Torques of the joints into Q, and the power that their dampers and the air take.
-static double passive_torques(const simulation *s, const double *q, const double *w, double *Q)
+static double passive_torques(const simulation *s, const double *q, const double *w,
+                              double *Q)
 {
     const arm *a = s->a;
     const int N = a->links, f = s->first;
@@ -124,8 +127,11 @@ static double passive_torques(const simulation *s, const double *q, const double
         const double bend = q[i] - q[i - 1], rate = w[i] - w[i - 1];
         const arm_link link = arm_link_of(a, k);
         // a joint stands for a whole link's bending, a beam's root for half a link's
-        const double share = k > 0 ? a->stiffening : a->root_bends ? 4 * a->stiffening : 0;
-        double torque = link.stiffness * bend * (1 + share * bend * bend) + link.damping * rate;
+        const double share = k > 0           ? a->stiffening
+                             : a->root_bends ? 4 * a->stiffening
+                                             : 0;
+        double torque =
+            link.stiffness * bend * (1 + share * bend * bend) + link.damping * rate;
         power += link.damping * rate * rate;
         for (int row = 0; row < a->damped_modes; row++) {
             double sum = 0;
@@ -141,8 +147,8 @@ static double passive_torques(const simulation *s, const double *q, const double
     // air: a force against the velocity of each piece of the beam
     double vx = 0, vy = 0, velocity_x[MOST_BODIES], velocity_y[MOST_BODIES];
     for (int k = 0; k < N && a->air_drag > 0; k++) {
-        const double l = arm_link_of(s->a, k).length, c = cos(q[f + k]), si = sin(q[f + k]),
-                     wk = w[f + k];
+        const double l = arm_link_of(s->a, k).length, c = cos(q[f + k]),
+                     si = sin(q[f + k]), wk = w[f + k];
         velocity_x[k] = vx - l / 2 * si * wk;
         velocity_y[k] = vy + l / 2 * c * wk;
         vx -= l * si * wk;
@@ -153,8 +159,8 @@ static double passive_torques(const simulation *s, const double *q, const double
         Q[f + k] -= spin * wk;
         for (int i = 0; i <= k; i++) {
             const double lever = i < k ? arm_link_of(s->a, i).length : l / 2;
-            Q[f + i] -=
-                whole * lever * (cos(q[f + i]) * velocity_y[k] - sin(q[f + i]) * velocity_x[k]);
+            Q[f + i] -= whole * lever *
+                        (cos(q[f + i]) * velocity_y[k] - sin(q[f + i]) * velocity_x[k]);
         }
     }
     return power;
@@ -229,7 +235,8 @@ void rate_of(const simulation *s, const phase *p, const double *y, double *dy, a
     if (motor->electric) {
         const double drive = motor->gain * motor->voltage - motor->back_emf * w[0];
         r->free_current = motor->inductance > 0 ? other[0] : drive / motor->resistance;
-        r->current = p->limited != 0 ? p->limited * motor->current_limit : r->free_current;
+        r->current =
+            p->limited != 0 ? p->limited * motor->current_limit : r->free_current;
         if (motor->inductance > 0) {
             current_rate = (drive - motor->resistance * r->current) / motor->inductance;
             r->free_current = r->current + (p->limited != 0 ? current_rate : 0);
@@ -249,7 +256,8 @@ void rate_of(const simulation *s, const phase *p, const double *y, double *dy, a
     double pressed = 0, face_rate = 0, face_acceleration = 0;
     if (p->contact && gives && !face) {
         pressed = law_force(wall, t.g, t.rate);
-        r->wall = (pressed - wall->stiffness * pow(fmax(t.g, 0), wall->exponent)) * t.rate;
+        r->wall =
+            (pressed - wall->stiffness * pow(fmax(t.g, 0), wall->exponent)) * t.rate;
     } else if (p->contact && face) { // arm and face move as one
         const double pushed = wall->stiffness * t.g + wall->damping * t.rate;
         for (int i = 0; i < n; i++) {

@@ -52,7 +52,8 @@ static double locate(simulation *s, event e, double h, double from, double to)
 {
     double y[MOST];
     between_stages(s, from, y);
-    double fa = from > 0 ? event_value(s, y, e) : event_value(s, s->y, e), a = from * h, b = to * h;
+    double fa = from > 0 ? event_value(s, y, e) : event_value(s, s->y, e), a = from * h,
+           b = to * h;
     try_step(s, b);
     double fb = event_value(s, s->end, e);
     fa = fa > 0 ? fa : least_of(e);
@@ -118,8 +119,8 @@ event first_event(simulation *s, double h, double *at, bool *too_long)
             *too_long = true;
             return EVENTS;
         }
-        const double x =
-            locate(s, (event)e, h, (double)(first - 1) / SAMPLES, (double)first / SAMPLES);
+        const double x = locate(s, (event)e, h, (double)(first - 1) / SAMPLES,
+                                (double)first / SAMPLES);
         if (found == EVENTS || x < *at) {
             *at = x;
             found = (event)e;
@@ -140,7 +141,8 @@ void resolve(simulation *s, bool touching, event left)
     for (int contact = 1; contact >= 0; contact--) {
         for (int friction = -1; friction <= 1; friction++) {
             phase p = s->now;
-            if ((!choice && contact != p.contact) || (choice && left == RELEASES && contact) ||
+            if ((!choice && contact != p.contact) ||
+                (choice && left == RELEASES && contact) ||
                 (rests && left == SLIPS_FORWARD && friction != 1) ||
                 (rests && left == SLIPS_BACKWARD && friction != -1) ||
                 (!rests && friction != (stiction == 0 ? 1
@@ -217,7 +219,8 @@ void happen(simulation *s, event e)
         const double speed = impact(s);
         note_contact(s, speed, s->impulses - before);
     } else if (e == TOUCHES) {
-        const double face_rate = s->now.parted ? face_return(&a->wall, s->y[2 * n + 1]) : 0;
+        const double face_rate =
+            s->now.parted ? face_return(&a->wall, s->y[2 * n + 1]) : 0;
         s->now.contact = true;
         s->now.parted = false;
         note_contact(s, touch_at(s, s->y, s->y + n).rate - face_rate, 0);

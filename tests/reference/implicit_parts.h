@@ -1,4 +1,5 @@
-// The parts of the implicit simulation: the arm in a phase, a step, events that end a phase.
+// The parts of the implicit simulation: the arm in a phase, a step, events that end a
+// phase.
 #pragma once
 
 #include <math.h>
@@ -9,8 +10,8 @@
 
 #define TINY_GAP 1e-14 // that counts as none [m]
 
-// The state: angles q[n], velocities w[n], the motor's current, depth and velocity of the wall's
-// face.
+// The state: angles q[n], velocities w[n], the motor's current, depth and velocity of the
+// wall's face.
 enum { MOST_BODIES = 26, ROWS = MOST_BODIES + 1, MOST = 2 * MOST_BODIES + 3, STAGES = 3 };
 enum { SAMPLES = 8 }; // of a step, between which events are looked for
 
@@ -46,9 +47,10 @@ typedef struct simulation {
     double y[MOST], t, h;
     phase now;
     double sums[SUMS];
-    double largest_rate, largest_angle;            // scales of what an iteration changes
-    double start;                                  // angle of all bodies at the start [rad]
-    double turned[MOST_BODIES], rate[MOST_BODIES]; // scales of errors, each body's largest
+    double largest_rate, largest_angle; // scales of what an iteration changes
+    double start;                       // angle of all bodies at the start [rad]
+    double turned[MOST_BODIES],
+        rate[MOST_BODIES]; // scales of errors, each body's largest
     double tolerance;
     double jacobian[MOST][MOST]; // of the rates, at the step's start
     double stage[STAGES][MOST];  // of the step tried: state at the stages
@@ -69,8 +71,8 @@ typedef enum event {
     EVENTS
 } event;
 
-// Factors the n x n matrix m, whose rows are `width` apart, by elimination with pivots, and solves
-// with it in place.
+// Factors the n x n matrix m, whose rows are `width` apart, by elimination with pivots,
+// and solves with it in place.
 void factor(int n, int width, double *m, int *pivot);
 void solve_factored(int n, int width, const double *m, const int *pivot, double *b);
 
@@ -79,8 +81,8 @@ void build_chain(simulation *s);
 touch touch_at(const simulation *s, const double *q, const double *w);
 void mass_matrix(const simulation *s, const double *q, double m[][ROWS]);
 
-// What an impulse of 1 N s of the wall changes: velocities in `change`, the hub's held if asked.
-// Returns the change of the penetration's rate [m/s].
+// What an impulse of 1 N s of the wall changes: velocities in `change`, the hub's held if
+// asked. Returns the change of the penetration's rate [m/s].
 double yield_of(const simulation *s, const touch *t, bool held, double change[ROWS]);
 
 // How fast a massless face at `depth` [m] moves that is on its way back [m/s].
@@ -92,19 +94,20 @@ void rate_of(const simulation *s, const phase *p, const double *y, double *dy, a
 // The derivative of the rates by differences, at the step's start.
 void find_jacobian(simulation *s);
 
-// A step of length h from s->y: stages, end and quadratures. Returns the error of the embedded
-// formula relative to the tolerance, HUGE_VAL where Newton's iteration does not converge.
+// A step of length h from s->y: stages, end and quadratures. Returns the error of the
+// embedded formula relative to the tolerance, HUGE_VAL where Newton's iteration does not
+// converge.
 double try_step(simulation *s, double h);
 
 // The collocation polynomial through start and stages at x of the step.
 void between_stages(const simulation *s, double x, double *y);
 
-// The first event of the step just tried; its instant in *at [s]. `too_long` asks for a shorter
-// step.
+// The first event of the step just tried; its instant in *at [s]. `too_long` asks for a
+// shorter step.
 event first_event(simulation *s, double h, double *at, bool *too_long);
 
-// The one combination of contact and friction that violates nothing, of two the one in contact;
-// `left` was just left and is no candidate.
+// The one combination of contact and friction that violates nothing, of two the one in
+// contact; `left` was just left and is no candidate.
 void resolve(simulation *s, bool touching, event left);
 
 // Goes through an event.

@@ -5,7 +5,8 @@ enum { MOST_ITERATIONS = 12 };
 
 static double node[STAGES], weight[STAGES][STAGES];
 
-// Butcher's matrix from the nodes (4 -+ sqrt 6)/10, 1: the integrals of Lagrange's polynomials.
+// Butcher's matrix from the nodes (4 -+ sqrt 6)/10, 1: the integrals of Lagrange's
+// polynomials.
 static void find_coefficients(void)
 {
     const double root = sqrt(6.0);
@@ -30,7 +31,9 @@ void find_jacobian(simulation *s)
     rate_of(s, &s->now, s->y, base, &r);
     memcpy(y, s->y, sizeof y);
     for (int k = 0; k < d; k++) {
-        const double scale = k < s->n ? 1 : k < 2 * s->n ? s->largest_rate : fmax(fabs(y[k]), 1e-3);
+        const double scale = k < s->n       ? 1
+                             : k < 2 * s->n ? s->largest_rate
+                                            : fmax(fabs(y[k]), 1e-3);
         const double by = 1e-7 * scale;
         y[k] = s->y[k] + by;
         rate_of(s, &s->now, y, moved, &r);
@@ -44,8 +47,9 @@ void find_jacobian(simulation *s)
     }
 }
 
-// The largest entry of a difference of two states, each as a share of its scale: of an iteration
-// the arm's, of an error each body's own, as one on a stiff wall moves far less than the hub.
+// The largest entry of a difference of two states, each as a share of its scale: of an
+// iteration the arm's, of an error each body's own, as one on a stiff wall moves far less
+// than the hub.
 static double size_of(const simulation *s, const double *y, bool error)
 {
     double most = 0;
@@ -71,7 +75,8 @@ static void find_rates(simulation *s, double z[][MOST], double rate[][MOST], ans
 }
 
 // Newton's iteration for z = h A f(y + z). False where it does not converge.
-static bool find_stages(simulation *s, double h, double z[][MOST], double rate[][MOST], answer *r)
+static bool find_stages(simulation *s, double h, double z[][MOST], double rate[][MOST],
+                        answer *r)
 {
     enum { WIDTH = STAGES * MOST };
     static double m[WIDTH * WIDTH];
@@ -79,7 +84,8 @@ static bool find_stages(simulation *s, double h, double z[][MOST], double rate[]
     int pivot[WIDTH];
     for (int i = 0; i < all; i++) {
         for (int k = 0; k < all; k++) {
-            m[i * WIDTH + k] = (i == k) - h * weight[i / d][k / d] * s->jacobian[i % d][k % d];
+            m[i * WIDTH + k] =
+                (i == k) - h * weight[i / d][k / d] * s->jacobian[i % d][k % d];
         }
     }
     factor(all, WIDTH, m, pivot);
@@ -134,8 +140,8 @@ double try_step(simulation *s, double h)
         s->added[SUM_FRICTION] += s->now.friction != 0 ? b * r[i].friction * hub : 0;
     }
 
-    // the embedded formula of order 3 (Hairer and Wanner, IV.8): its weight at the start is the
-    // inverse of the real eigenvalue of the inverse of Butcher's matrix
+    // the embedded formula of order 3 (Hairer and Wanner, IV.8): its weight at the start
+    // is the inverse of the real eigenvalue of the inverse of Butcher's matrix
     const double gamma = (6 + cbrt(81) - cbrt(9)) / 30, root = sqrt(6.0);
     const double e[] = {-(13 + 7 * root) / 3, (-13 + 7 * root) / 3, -1.0 / 3};
     static double m[MOST][MOST];

@@ -61,8 +61,9 @@ static void note_step(simulation *s)
 static void note_energy(simulation *s)
 {
     const int n = s->arm.bodies;
-    double residual = body_energy(&s->arm, s->y, s->y + n) - s->y[2 * n] + s->y[2 * n + 1] +
-                      s->y[2 * n + 2] + s->y[2 * n + 4] + s->impact_loss - s->start_energy;
+    double residual = body_energy(&s->arm, s->y, s->y + n) - s->y[2 * n] +
+                      s->y[2 * n + 1] + s->y[2 * n + 2] + s->y[2 * n + 4] +
+                      s->impact_loss - s->start_energy;
     s->answer->energy_residual = fmax(s->answer->energy_residual, fabs(residual));
 }
 
@@ -117,8 +118,8 @@ static bool impact(simulation *s)
     if (approach > 0.0) {
         body_penetration(arm, s->y, s->y + n, gradient, NULL);
         double before = body_energy(arm, s->y, s->y + n);
-        if (!balance_solve(arm, s->y, gradient, true, false, NULL, -(1.0 + restitution) * approach,
-                           dw, &p, &unused)) {
+        if (!balance_solve(arm, s->y, gradient, true, false, NULL,
+                           -(1.0 + restitution) * approach, dw, &p, &unused)) {
             return simulation_complain(s, "the impact is singular");
         }
         for (int i = 0; i < n; i++) {
@@ -255,7 +256,8 @@ static bool run(simulation *s)
     return true;
 }
 
-bool reference_simulate(const reference_case *c, reference_answer *answer, char *message, int size)
+bool reference_simulate(const reference_case *c, reference_answer *answer, char *message,
+                        int size)
 {
     simulation s = {.c = c, .answer = answer, .message = message, .message_size = size};
     *answer = (reference_answer){.first_contact = NOTHING,
@@ -275,8 +277,8 @@ bool reference_simulate(const reference_case *c, reference_answer *answer, char 
     s.flow.arm = &s.arm;
     s.size = 2 * s.arm.bodies + EXTRA;
     s.system = (gsl_odeiv2_system){simulation_derivative, NULL, (size_t)s.size, &s.flow};
-    s.driver = gsl_odeiv2_driver_alloc_y_new(&s.system, gsl_odeiv2_step_rk8pd, c->longest_step,
-                                             c->tolerance, c->tolerance);
+    s.driver = gsl_odeiv2_driver_alloc_y_new(&s.system, gsl_odeiv2_step_rk8pd,
+                                             c->longest_step, c->tolerance, c->tolerance);
     if (!s.driver) {
         return simulation_complain(&s, "no memory for the integrator");
     }

@@ -10,7 +10,8 @@ enum { REFERENCE_SAMPLES = 501 }; // of the momentum, from first contact on
 
 #define REFERENCE_INTERVAL 1e-4 // between them [s]
 
-// What is simulated. The arm starts straight, at rest and at angle zero unless said otherwise.
+// What is simulated. The arm starts straight, at rest and at angle zero unless said
+// otherwise.
 typedef struct reference_case {
     const char *name;
     int links;           // N, 1 to 64
@@ -29,9 +30,10 @@ typedef struct reference_case {
 
 // What comes out. What did not occur is NaN.
 typedef struct reference_answer {
-    double first_contact;       // [s]
-    double first_impulse;       // [N s]
-    double first_approach;      // speed of the gap's closing just before the first impact [m/s]
+    double first_contact; // [s]
+    double first_impulse; // [N s]
+    double
+        first_approach; // speed of the gap's closing just before the first impact [m/s]
     double first_pulse_peak;    // largest force from first contact to first release [N]
     double first_pulse_delay;   // of that force, after first contact [s]
     double first_pulse;         // first contact to first release [s]
@@ -45,21 +47,23 @@ typedef struct reference_answer {
     double largest_touch;       // largest gap of the widest one not counted [m]
     double slowest_approach;    // of all impacts [m/s]
     double last_impact;         // instant of the last impact [s]
-    double weakest_hold;        // smallest |f| that decided hold or release after an impact [N]
-    double final_hub_angle;     // [rad]
-    double motor_work;          // of the torque the command makes, back EMF not taken off [J]
-    double viscous_loss;        // back EMF and viscous friction [J]
-    double damping_loss;        // structural damping [J]
-    double friction_loss;       // Coulomb friction [J]
-    double impact_loss;         // [J]
-    double energy_residual;     // largest |energy - work + losses| over the run [J]
-    double largest_gap_error;   // largest |gap| of a step in contact before its projection [m]
+    double weakest_hold; // smallest |f| that decided hold or release after an impact [N]
+    double final_hub_angle; // [rad]
+    double motor_work;      // of the torque the command makes, back EMF not taken off [J]
+    double viscous_loss;    // back EMF and viscous friction [J]
+    double damping_loss;    // structural damping [J]
+    double friction_loss;   // Coulomb friction [J]
+    double impact_loss;     // [J]
+    double energy_residual; // largest |energy - work + losses| over the run [J]
+    double
+        largest_gap_error; // largest |gap| of a step in contact before its projection [m]
 
-    // impulses and integral of the force until k intervals after first contact [N s]; as many of
-    // them as the run is long enough for
+    // impulses and integral of the force until k intervals after first contact [N s]; as
+    // many of them as the run is long enough for
     double momentum[REFERENCE_SAMPLES];
     int samples;
 } reference_answer;
 
 // Simulates the case. On failure returns false with a sentence in message (size bytes).
-bool reference_simulate(const reference_case *c, reference_answer *answer, char *message, int size);
+bool reference_simulate(const reference_case *c, reference_answer *answer, char *message,
+                        int size);

@@ -7,8 +7,8 @@
 
 // --- the arm
 
-// First frequency of the straight chain with its hub held, or with it the first link where that is
-// fixed to it.
+// First frequency of the straight chain with its hub held, or with it the first link
+// where that is fixed to it.
 static double first_clamped_frequency(const body_chain *arm)
 {
     const int n = arm->bodies - 1; // body 0 rests
@@ -81,8 +81,8 @@ void body_chain_build(body_chain *arm, const reference_case *c)
     arm->restitution = c->restitution;
 }
 
-double body_penetration(const body_chain *arm, const double *q, const double *w, double *gradient,
-                        double *bias)
+double body_penetration(const body_chain *arm, const double *q, const double *w,
+                        double *gradient, double *bias)
 {
     const int last = arm->bodies - 1;
     const double l = arm->length;
@@ -134,7 +134,8 @@ double body_gap(const body_chain *arm, const double *q, const double *w)
     return -body_penetration(arm, q, w, gradient, NULL);
 }
 
-static void mass_matrix(const body_chain *arm, const double *q, double m[BODIES_MAX][BODIES_MAX])
+static void mass_matrix(const body_chain *arm, const double *q,
+                        double m[BODIES_MAX][BODIES_MAX])
 {
     double c[BODIES_MAX], s[BODIES_MAX];
     for (int i = 0; i < arm->bodies; i++) {
@@ -174,7 +175,8 @@ static bool solve_dense(int n, double a[UNKNOWNS_MAX][UNKNOWNS_MAX], double *x)
     size_t order[UNKNOWNS_MAX];
     int sign;
     gsl_permutation pivots = {size, order};
-    gsl_matrix_view matrix = gsl_matrix_view_array_with_tda(a[0], size, size, UNKNOWNS_MAX);
+    gsl_matrix_view matrix =
+        gsl_matrix_view_array_with_tda(a[0], size, size, UNKNOWNS_MAX);
     gsl_vector_view unknowns = gsl_vector_view_array(x, size);
     gsl_linalg_LU_decomp(&matrix.matrix, &pivots, &sign);
     for (int k = 0; k < n; k++) {
@@ -186,9 +188,9 @@ static bool solve_dense(int n, double a[UNKNOWNS_MAX][UNKNOWNS_MAX], double *x)
     return true;
 }
 
-bool balance_solve(const body_chain *arm, const double *q, const double *gradient, bool touching,
-                   bool sticking, const double *right, double along, double *x, double *f,
-                   double *s)
+bool balance_solve(const body_chain *arm, const double *q, const double *gradient,
+                   bool touching, bool sticking, const double *right, double along,
+                   double *x, double *f, double *s)
 {
     double a[UNKNOWNS_MAX][UNKNOWNS_MAX], b[UNKNOWNS_MAX] = {0};
     double m[BODIES_MAX][BODIES_MAX];
@@ -238,15 +240,16 @@ bool balance_find(const body_chain *arm, const double *y, contact_mode mode, bal
         }
     }
     for (int i = 0; i + 1 < n; i++) {
-        double torque = arm->stiffness[i] * (q[i + 1] - q[i]) + arm->damping[i] * (w[i + 1] - w[i]);
+        double torque =
+            arm->stiffness[i] * (q[i + 1] - q[i]) + arm->damping[i] * (w[i + 1] - w[i]);
         right[i] += torque;
         right[i + 1] -= torque;
     }
     right[0] += arm->motor_torque - arm->motor_drag * w[0] - mode.sliding * arm->coulomb;
 
     body_penetration(arm, q, w, gradient, &bias);
-    bool done = balance_solve(arm, q, gradient, mode.touching, mode.sliding == 0, right, -bias,
-                              out->acceleration, &out->force, &out->friction);
+    bool done = balance_solve(arm, q, gradient, mode.touching, mode.sliding == 0, right,
+                              -bias, out->acceleration, &out->force, &out->friction);
     if (mode.sliding != 0) {
         out->friction = mode.sliding * arm->coulomb;
     }
@@ -258,8 +261,8 @@ bool balance_find(const body_chain *arm, const double *y, contact_mode mode, bal
 }
 
 // How far a mode is from being admissible at this state; zero if it is.
-static double inadmissible(const body_chain *arm, contact_mode mode, bool may_touch, bool at_rest,
-                           const balance *b)
+static double inadmissible(const body_chain *arm, contact_mode mode, bool may_touch,
+                           bool at_rest, const balance *b)
 {
     double worst = 0.0;
     if (mode.touching) {
@@ -275,7 +278,8 @@ static double inadmissible(const body_chain *arm, contact_mode mode, bool may_to
     return worst;
 }
 
-bool mode_resolve(const body_chain *arm, const double *y, bool may_touch, contact_mode *mode)
+bool mode_resolve(const body_chain *arm, const double *y, bool may_touch,
+                  contact_mode *mode)
 {
     const double hub_speed = y[arm->bodies];
     double best = NEVER;

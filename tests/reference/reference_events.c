@@ -42,8 +42,8 @@ int simulation_derivative(double t, const double y[], double dydt[], void *conte
 
 bool simulation_complain(simulation *s, const char *what)
 {
-    snprintf(s->message, (size_t)s->message_size, "%s: %s at t = %.15g s", s->c->name, what,
-             s->time);
+    snprintf(s->message, (size_t)s->message_size, "%s: %s at t = %.15g s", s->c->name,
+             what, s->time);
     return false;
 }
 
@@ -177,7 +177,8 @@ double event_offset(simulation *s, event_function e)
         bool dips = v0 - 2.0 * vm + v1 > 0.0 && x > 0.0 && x < 1.0 && v0 > 0.0 &&
                     bottom < 0.1 * fmin(v0, v1);
         if (dips) {
-            // just after release the gap grows with the third power of time, so it is rounding only
+            // just after release the gap grows with the third power of time, so it is
+            // rounding only
             double at = extreme_at(s, e, 1.0, 0.0, s->span);
             if (event_value_at(s, e, at) < (e == GAP_OPEN ? -GAP_ROUNDING : 0.0)) {
                 hi = at;
@@ -187,7 +188,8 @@ double event_offset(simulation *s, event_function e)
     if (isinf(hi)) {
         return NEVER;
     }
-    // just after a change of mode the function starts at zero, up to rounding: find where it rose
+    // just after a change of mode the function starts at zero, up to rounding: find where
+    // it rose
     double edge = 0.0;
     if (lo == 0.0 && v0 <= 0.0) {
         double probe = hi, value;

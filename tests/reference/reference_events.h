@@ -1,5 +1,5 @@
-// Steps of the independent simulation within one contact mode, and the functions whose signs end
-// it.
+// Steps of the independent simulation within one contact mode, and the functions whose
+// signs end it.
 #pragma once
 
 #include <gsl/gsl_odeiv2.h>
@@ -55,7 +55,8 @@ bool simulation_complain(simulation *s, const char *what);
 // State after tau from `from`, in the present mode.
 bool simulation_advance(simulation *s, const double *from, double tau, double *to);
 
-// Brings a touching state back onto gap = 0 and rate of gap = 0, the hub held if it sticks.
+// Brings a touching state back onto gap = 0 and rate of gap = 0, the hub held if it
+// sticks.
 bool simulation_project(simulation *s, double *y);
 
 // The contact force of a state in the present mode [N].
@@ -70,10 +71,10 @@ double event_value_at(simulation *s, event_function e, double tau);
 // Golden-section search over [lo, hi] for the least value of sign * (event function).
 double extreme_at(simulation *s, event_function e, double sign, double lo, double hi);
 
-// Where the parabola through three equally spaced values has its extremum, in units of the whole
-// interval; NaN if it is straight.
+// Where the parabola through three equally spaced values has its extremum, in units of
+// the whole interval; NaN if it is straight.
 double parabola_vertex(double v0, double vm, double v1);
 
-// Looks for the first zero of one event function in the present step; returns its offset, just
-// past the zero, or NEVER.
+// Looks for the first zero of one event function in the present step; returns its offset,
+// just past the zero, or NEVER.
 double event_offset(simulation *s, event_function e);

@@ -1,4 +1,5 @@
-// Reads the command line by the rows of a command's options; the rows that several commands share.
+// Reads the command line by the rows of a command's options; the rows that several
+// commands share.
 #include "ui/commands/command.h"
 
 #include <assert.h>
@@ -18,30 +19,31 @@
 #include "src/base/text_stream.h"
 #include "src/base/words.h"
 
-// --- shared options ---------------------------------------------------------------------------
+// --- shared options --------------------------------------------------------------------
 
-#define SHARED_OPTIONS(...)                                                                        \
-    {                                                                                              \
-        "Options", (const option_row[]){__VA_ARGS__},                                              \
-            (int)(sizeof(option_row[]){__VA_ARGS__} / sizeof(option_row))                          \
+#define SHARED_OPTIONS(...)                                                              \
+    {                                                                                    \
+        "Options", (const option_row[]){__VA_ARGS__},                                    \
+            (int)(sizeof(option_row[]){__VA_ARGS__} / sizeof(option_row))                \
     }
 
-const option_table set_options =
-    SHARED_OPTIONS(OPTION(PARAMETERS, "set", "PATH=VALUE",
-                          "give a parameter another value (may be repeated)", PLACE(sets)),
-                   OPTION(FLAG, "allow-code", NULL,
-                          "let the scenario start the program or load the plug-in that it names",
-                          PLACE(allow_code)));
+const option_table set_options = SHARED_OPTIONS(
+    OPTION(PARAMETERS, "set", "PATH=VALUE",
+           "give a parameter another value (may be repeated)", PLACE(sets)),
+    OPTION(FLAG, "allow-code", NULL,
+           "let the scenario start the program or load the plug-in that it names",
+           PLACE(allow_code)));
 const option_table vary_options = SHARED_OPTIONS(
     OPTION(PARAMETERS, "vary", "PATH=a:b:n",
            "vary a parameter: n values from a to b (may be repeated)", PLACE(varies)));
-const option_table json_options = SHARED_OPTIONS(OPTION(
-    RESULT, "json", "FILE|-", "write the results as JSON; - is the standard output", PLACE(json)));
-const option_table drawn_options =
-    SHARED_OPTIONS(OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}",
-                          "draw the study; a CSV of what is drawn beside it", PLACE(plot)));
-const option_table quiet_options =
-    SHARED_OPTIONS(OPTION(FLAG, "quiet", NULL, "print no summary", PLACE(quiet), .letter = 'q'));
+const option_table json_options = SHARED_OPTIONS(
+    OPTION(RESULT, "json", "FILE|-",
+           "write the results as JSON; - is the standard output", PLACE(json)));
+const option_table drawn_options = SHARED_OPTIONS(
+    OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}",
+           "draw the study; a CSV of what is drawn beside it", PLACE(plot)));
+const option_table quiet_options = SHARED_OPTIONS(
+    OPTION(FLAG, "quiet", NULL, "print no summary", PLACE(quiet), .letter = 'q'));
 
 // its place is nowhere: the program prints the help
 const option_table help_options =
@@ -51,46 +53,52 @@ static const option_row view_rows[] = {
     OPTION(CHOICE, "gl", "osmesa|egl|cairo|auto",
            "what draws the arm (auto: the first that is installed)", PLACE(gl)),
     OPTION(WORD, "camera", "three-quarter|top|side|tip",
-           "where it is seen from (three-quarter); or two angles as -60,40: degrees from the arm's "
-           "heading and above the floor",
+           "where it is seen from (three-quarter); or two angles as -60,40: "
+           "degrees from the arm's heading and above the floor",
            PLACE(camera)),
-    OPTION(NUMBER, "exaggerate", "X", "draw the arm's bending X times as large, and say so",
-           PLACE(exaggerate), .low = 1, .high = 1000),
-    OPTION(FLAG, "inset", NULL, "show the contact from near by in a corner, too", PLACE(inset)),
-    OPTION(SIZE, "size", "WIDTHxHEIGHT", "of the picture in pixels (1280x720)", PLACE(size),
-           .high = 100000, .unit = "pixels"),
+    OPTION(NUMBER, "exaggerate", "X",
+           "draw the arm's bending X times as large, and say so", PLACE(exaggerate),
+           .low = 1, .high = 1000),
+    OPTION(FLAG, "inset", NULL, "show the contact from near by in a corner, too",
+           PLACE(inset)),
+    OPTION(SIZE, "size", "WIDTHxHEIGHT", "of the picture in pixels (1280x720)",
+           PLACE(size), .high = 100000, .unit = "pixels"),
 };
 const option_table view_options = OPTION_TABLE("The arm in space", view_rows);
 
 static const option_row page_rows[] = {
-    OPTION(LENGTH, "width", "85mm|180mm", "width of the page; everything is laid out anew",
-           PLACE(width), .low = 60, .high = 400),
-    OPTION(LENGTH, "height", "60mm", "height of a plot (as its panels want)", PLACE(height),
-           .low = 20, .high = 600),
+    OPTION(LENGTH, "width", "85mm|180mm",
+           "width of the page; everything is laid out anew", PLACE(width), .low = 60,
+           .high = 400),
+    OPTION(LENGTH, "height", "60mm", "height of a plot (as its panels want)",
+           PLACE(height), .low = 20, .high = 600),
     OPTION(TEXT, "font", "serif|sans|NAME", "family of all letters (sans)", PLACE(font)),
-    OPTION(NUMBER, "font-size", "PT", "size of labels (8); others go with it, none below 6",
-           PLACE(font_size), .low = 6, .high = 24, .unit = "pt"),
-    OPTION(CHOICE, "theme", "light|dark|mono", "colours on white, on near black, or greys (light)",
-           PLACE(theme)),
-    OPTION(FLAG, "bare", NULL, "without title and caption, which go to a .txt beside", PLACE(bare)),
+    OPTION(NUMBER, "font-size", "PT",
+           "size of labels (8); others go with it, none below 6", PLACE(font_size),
+           .low = 6, .high = 24, .unit = "pt"),
+    OPTION(CHOICE, "theme", "light|dark|mono",
+           "colours on white, on near black, or greys (light)", PLACE(theme)),
+    OPTION(FLAG, "bare", NULL, "without title and caption, which go to a .txt beside",
+           PLACE(bare)),
     OPTION(FLAG, "transparent", NULL, "without a ground", PLACE(transparent)),
-    OPTION(NUMBER, "dpi", "N", "resolution of a PNG (200)", PLACE(dpi), .low = 30, .high = 1200),
+    OPTION(NUMBER, "dpi", "N", "resolution of a PNG (200)", PLACE(dpi), .low = 30,
+           .high = 1200),
     OPTION(FILE, "overlay", "FILE.csv[:COLUMN][@SHIFT]",
            "points of measured data over recorded signals", PLACE(overlay)),
     OPTION(TEXT, "signals", "A,B+C", "recorded signals to show: panels, joined by +",
            PLACE(signals)),
-    OPTION(NUMBER, "from", "X", "where the horizontal axis begins", PLACE(from), .low = -1e9,
-           .high = 1e9, .initial = (double)NAN),
+    OPTION(NUMBER, "from", "X", "where the horizontal axis begins", PLACE(from),
+           .low = -1e9, .high = 1e9, .initial = (double)NAN),
     OPTION(NUMBER, "to", "X", "where it ends", PLACE(to), .low = -1e9, .high = 1e9,
            .initial = (double)NAN),
-    OPTION(RESULT, "latex", "FILE.tex", "write the figure environment with caption and label",
-           PLACE(latex)),
+    OPTION(RESULT, "latex", "FILE.tex",
+           "write the figure environment with caption and label", PLACE(latex)),
     OPTION(FLAG, "mono", NULL, "the same as --theme mono", PLACE(mono)),
     OPTION(FLAG, "dark", NULL, "the same as --theme dark", PLACE(dark)),
 };
 const option_table page_options = OPTION_TABLE("Pictures", page_rows);
 
-// --- values -----------------------------------------------------------------------------------
+// --- values ----------------------------------------------------------------------------
 
 static int read_number(const option_row *o, const char *text, double *value)
 {
@@ -103,8 +111,8 @@ static int read_number(const option_row *o, const char *text, double *value)
     if (!isinf(o->high)) {
         snprintf(limit, sizeof limit, " to %g", o->high);
     }
-    return complain("--%s %s: expected a number from %g%s%s%s", o->name, text, o->low, limit,
-                    unit[0] != '\0' ? " " : "", unit);
+    return complain("--%s %s: expected a number from %g%s%s%s", o->name, text, o->low,
+                    limit, unit[0] != '\0' ? " " : "", unit);
 }
 
 // A length in millimetres; without a unit it is one already.
@@ -127,23 +135,26 @@ static int read_length(const option_row *o, const char *text, double *value)
         }
     }
 
-    return complain("--%s %s: expected a length from %gmm to %gmm, such as 85mm, 8.5cm or 3.35in",
-                    o->name, text, o->low, o->high);
+    return complain(
+        "--%s %s: expected a length from %gmm to %gmm, such as 85mm, 8.5cm or 3.35in",
+        o->name, text, o->low, o->high);
 }
 
 static int read_whole(const option_row *o, const char *text, uint64_t *value)
 {
     // 2^64 and what lies beyond stand for the largest number there is
-    uint64_t low = (uint64_t)o->low, high = o->high < 0x1p64 ? (uint64_t)o->high : UINT64_MAX;
+    uint64_t low = (uint64_t)o->low,
+             high = o->high < 0x1p64 ? (uint64_t)o->high : UINT64_MAX;
 
     // signs and spaces, which strtoull would take, are refused by the first character
     char *end;
     errno = 0;
     unsigned long long number = strtoull(text, &end, 10);
-    COMPLAIN_IF(!isdigit((unsigned char)text[0]) || *end != '\0' || errno != 0 || number < low ||
-                    number > high,
-                "--%s %s: expected a whole number from %llu to %llu", o->name, text,
-                (unsigned long long)low, (unsigned long long)high);
+    if (!isdigit((unsigned char)text[0]) || *end != '\0' || errno != 0 || number < low ||
+        number > high) {
+        return complain("--%s %s: expected a whole number from %llu to %llu", o->name,
+                        text, (unsigned long long)low, (unsigned long long)high);
+    }
     *value = number;
     return EXIT_DONE;
 }
@@ -155,9 +166,10 @@ static int read_size(const option_row *o, const char *text, grid_size *size)
     if (*rest == 'x') {
         height = strtol(rest + 1, &rest, 10);
     }
-    COMPLAIN_IF(*rest != '\0' || width < 1 || width > o->high || height < 1 || height > o->high,
-                "--%s %s: expected width x height in %s, like 120x40, at most %g", o->name, text,
-                o->unit, o->high);
+    if (*rest != '\0' || width < 1 || width > o->high || height < 1 || height > o->high) {
+        return complain("--%s %s: expected width x height in %s, like 120x40, at most %g",
+                        o->name, text, o->unit, o->high);
+    }
     *size = (grid_size){(int)width, (int)height};
     return EXIT_DONE;
 }
@@ -169,14 +181,22 @@ static int check_choice(const option_row *o, const char *text)
     for (const char *word = o->value, *end; *word != '\0'; word = end + (*end == '|')) {
         end = word + strcspn(word, "|");
         const int bytes = (int)(end - word);
-        if (bytes > 0 && strlen(text) == (size_t)bytes && memcmp(word, text, strlen(text)) == 0) {
+        if (bytes > 0 && strlen(text) == (size_t)bytes &&
+            memcmp(word, text, strlen(text)) == 0) {
             return EXIT_DONE;
         }
 
         // as people write them: "a, b or c"
-        const char *joint = word == o->value ? "" : *end == '|' ? ", " : " or ";
-        length +=
-            (size_t)snprintf(words + length, sizeof words - length, "%s%.*s", joint, bytes, word);
+        const char *joint = "";
+        if (word != o->value) {
+            if (*end == '|') {
+                joint = ", ";
+            } else {
+                joint = " or ";
+            }
+        }
+        length += (size_t)snprintf(words + length, sizeof words - length, "%s%.*s", joint,
+                                   bytes, word);
         assert(length < sizeof words);
     }
     return complain("--%s %s: expected %s", o->name, text, words);
@@ -188,13 +208,17 @@ static int check_quantity(const option_row *o, const char *key)
     if (summary_find(key) >= 0) {
         return EXIT_DONE;
     }
-    COMPLAIN_IF(near != NULL, "--%s %s: there is no such quantity, did you mean %s?", o->name, key,
-                near);
-    return complain("--%s %s: there is no such quantity (impactlab run --json lists them)", o->name,
-                    key);
+    if (near != NULL) {
+        return complain("--%s %s: there is no such quantity, did you mean %s?", o->name,
+                        key, near);
+    }
+    return complain(
+        "--%s %s: there is no such quantity (impactlab run --json lists them)", o->name,
+        key);
 }
 
-// Checks a value by its row and stores it; lists have room for it. Returns the exit status.
+// Checks a value by its row and stores it; lists have room for it. Returns the exit
+// status.
 static int option_store(arguments *a, const option_row *o, char *text)
 {
     void *place = option_place(a, o);
@@ -221,16 +245,20 @@ static int option_store(arguments *a, const option_row *o, char *text)
     // texts are kept as they are, and checked where only some are known
     default:
         *(const char **)place = text;
-        return o->type == OPTION_CHOICE     ? check_choice(o, text)
-               : o->type == OPTION_QUANTITY ? check_quantity(o, text)
-                                            : EXIT_DONE;
+        if (o->type == OPTION_CHOICE) {
+            return check_choice(o, text);
+        }
+        if (o->type == OPTION_QUANTITY) {
+            return check_quantity(o, text);
+        }
+        return EXIT_DONE;
     }
 }
 
 // getopt_long's value of the option in row i is ROW_VALUE + i, apart from all letters
 enum { ROW_VALUE = 256 };
 
-// --- getopt ---------------------------------------------------------------------------------
+// --- getopt ----------------------------------------------------------------------------
 
 // Another command that has an option of this name, without dashes; NULL if none has.
 static const command *owner_of_option(const char *name)
@@ -252,14 +280,19 @@ static int complain_option(const command *self, int found, const char *text)
     char shown[96];
     const option_row *o;
 
-    COMPLAIN_IF(found == ':', "option %s needs a value (see impactlab %s --help)", text,
-                self->name);
+    if (found == ':') {
+        return complain("option %s needs a value (see impactlab %s --help)", text,
+                        self->name);
+    }
 
     // one that is right elsewhere
     snprintf(shown, sizeof shown, "%.*s", (int)strcspn(text, "="), text);
     const command *owner = owner_of_option(shown + strspn(shown, "-"));
-    COMPLAIN_IF(owner != NULL, "%s has no option %s, that is one of %s (see impactlab %s --help)",
-                self->name, shown, owner->name, self->name);
+    if (owner != NULL) {
+        return complain(
+            "%s has no option %s, that is one of %s (see impactlab %s --help)",
+            self->name, shown, owner->name, self->name);
+    }
 
     // the nearest option is offered
     nearest_word near = nearest_begin(shown + strspn(shown, "-"));
@@ -267,9 +300,12 @@ static int complain_option(const command *self, int found, const char *text)
         nearest_try(&near, o->name);
     }
 
-    COMPLAIN_IF(near.best != NULL && near.distance > 0, "%s has no option %s, did you mean --%s?",
-                self->name, shown, near.best);
-    return complain("%s has no option %s (see impactlab %s --help)", self->name, shown, self->name);
+    if (near.best != NULL && near.distance > 0) {
+        return complain("%s has no option %s, did you mean --%s?", self->name, shown,
+                        near.best);
+    }
+    return complain("%s has no option %s (see impactlab %s --help)", self->name, shown,
+                    self->name);
 }
 
 // Fills getopt's tables with the options of the command.
@@ -299,11 +335,14 @@ static void option_lists(const command *self, struct option *longs, char *shorts
     *shorts = '\0';
 }
 
-// Adds a word to the command line that pictures remember, in quotes where a shell needs them.
+// Adds a word to the command line that pictures remember, in quotes where a shell needs
+// them.
 static void remember(arguments *a, const char *before, const char *word)
 {
-    bool plain = word[0] != '\0' && word[strcspn(word, " \t\n'\"\\$&|;<>()*?[]{}#~`!")] == '\0';
-    const char *quote = plain ? "" : "'", *so_far = a->command_line ? a->command_line : "";
+    bool plain =
+        word[0] != '\0' && word[strcspn(word, " \t\n'\"\\$&|;<>()*?[]{}#~`!")] == '\0';
+    const char *quote = plain ? "" : "'",
+               *so_far = a->command_line ? a->command_line : "";
     size_t size = strlen(so_far) + strlen(before) + strlen(word) + 4;
     char *longer = malloc(size);
     loss_unless(longer != NULL);
@@ -314,7 +353,8 @@ static void remember(arguments *a, const char *before, const char *word)
     }
 }
 
-// Takes every option in its turn. True if help was asked for; *exit_status says what went wrong.
+// Takes every option in its turn. True if help was asked for; *exit_status says what went
+// wrong.
 static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
 {
     struct option longs[2 * COMMAND_OPTIONS + 1];
@@ -334,7 +374,8 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
         // a row of the command's or of every command's table
         int i = 0;
         const option_row *o;
-        while ((o = command_option(a->command, i))->letter != found && found != ROW_VALUE + i) {
+        while ((o = command_option(a->command, i))->letter != found &&
+               found != ROW_VALUE + i) {
             i++;
         }
 
@@ -342,9 +383,11 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
             return true;
         }
 
-        *exit_status = given[i] && o->type != OPTION_FLAG && !option_is_list(o->type)
-                           ? complain("option --%s was given twice", o->name)
-                           : option_store(a, o, optarg);
+        if (given[i] && o->type != OPTION_FLAG && !option_is_list(o->type)) {
+            *exit_status = complain("option --%s was given twice", o->name);
+        } else {
+            *exit_status = option_store(a, o, optarg);
+        }
         given[i] = true;
         // where results are written to does not change them
         if (!option_is_written(o)) {
@@ -357,7 +400,7 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
     return false;
 }
 
-// --- the whole command line -----------------------------------------------------------------
+// --- the whole command line ------------------------------------------------------------
 
 // What is read must stay: FILE, or FILE.csv:COLUMN@SHIFT.
 static int check_kept(const char *text)
@@ -373,7 +416,9 @@ static int check_kept(const char *text)
             code = whole_file_keeps(file, &why);
         }
     }
-    COMPLAIN_IF(code != STATUS_OK, "'%s' %s", file, why.text);
+    if (code != STATUS_OK) {
+        return complain("'%s' %s", file, why.text);
+    }
     return EXIT_DONE;
 }
 
@@ -384,32 +429,47 @@ static int check_places(const arguments *a)
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
         const char *path = option_written(a, o);
         struct stat there;
-        COMPLAIN_IF(path != NULL && o->replaces != NULL && stat(path, &there) == 0 &&
-                        S_ISREG(there.st_mode) && there.st_size > 0 && !o->replaces(path),
-                    "--%s %s: a file of another kind is there and is kept, expected another place",
-                    o->name, path);
-        COMPLAIN_IF(path != NULL && !whole_file_add_result(path),
-                    "two results cannot both be written to %s",
-                    strcmp(path, "-") == 0 ? "the standard output" : path);
+        if (path != NULL && o->replaces != NULL && stat(path, &there) == 0 &&
+            S_ISREG(there.st_mode) && there.st_size > 0 && !o->replaces(path)) {
+            return complain("--%s %s: a file of another kind is there and is kept, "
+                            "expected another place",
+                            o->name, path);
+        }
+        if (path != NULL && !whole_file_add_result(path)) {
+            return complain("two results cannot both be written to %s",
+                            strcmp(path, "-") == 0 ? "the standard output" : path);
+        }
     }
 
     // the text of a picture that has none of its own
-    g_autofree char *text = a->bare && a->plot != NULL ? artwork_beside(a->plot, ".txt") : NULL;
-    COMPLAIN_IF(text != NULL && !whole_file_add_result(text),
-                "two results cannot both be written to %s", text);
+    g_autofree char *text =
+        a->bare && a->plot != NULL ? artwork_beside(a->plot, ".txt") : NULL;
+    if (text != NULL && !whole_file_add_result(text)) {
+        return complain("two results cannot both be written to %s", text);
+    }
 
-    // what the command line names; what that names in its turn is looked at when it is read
+    // what the command line names; what that names in its turn is looked at when it is
+    // read
     for (int i = 0; i < a->operand_count; i++) {
-        TRY_EXIT(check_kept(a->operands[i]));
+        int ended = check_kept(a->operands[i]);
+        if (ended != EXIT_DONE) {
+            return ended;
+        }
     }
     for (int i = 0; (o = command_option(a->command, i)) != NULL; i++) {
         const option_list *list = option_place(a, o);
         for (int k = 0; o->type == OPTION_FILES && k < list->count; k++) {
-            TRY_EXIT(check_kept(list->items[k]));
+            int ended = check_kept(list->items[k]);
+            if (ended != EXIT_DONE) {
+                return ended;
+            }
         }
         const char *const *file = option_place(a, o);
         if (o->type == OPTION_FILE && *file != NULL) {
-            TRY_EXIT(check_kept(*file));
+            int ended = check_kept(*file);
+            if (ended != EXIT_DONE) {
+                return ended;
+            }
         }
     }
     return EXIT_DONE;
@@ -418,11 +478,14 @@ static int check_places(const arguments *a)
 static int check_operands(const arguments *a)
 {
     const command *self = a->command;
-    COMPLAIN_IF(a->operand_count < self->least, "%s needs %s (see impactlab %s --help)", self->name,
-                self->operands, self->name);
-    COMPLAIN_IF(a->operand_count > self->most,
-                "%s does not know what to do with '%s' (see impactlab %s --help)", self->name,
-                a->operands[self->most], self->name);
+    if (a->operand_count < self->least) {
+        return complain("%s needs %s (see impactlab %s --help)", self->name,
+                        self->operands, self->name);
+    }
+    if (a->operand_count > self->most) {
+        return complain("%s does not know what to do with '%s' (see impactlab %s --help)",
+                        self->name, a->operands[self->most], self->name);
+    }
     return check_places(a);
 }
 
@@ -437,7 +500,8 @@ static bool prepare(arguments *a, int argc)
         void *place = option_place(a, o);
         if (option_is_list(o->type)) {
             option_list *list = place;
-            list->items = calloc((size_t)argc + 1, sizeof *list->items + sizeof *list->numbers);
+            list->items =
+                calloc((size_t)argc + 1, sizeof *list->items + sizeof *list->numbers);
             room = room && list->items != NULL;
         } else if (o->type == OPTION_NUMBER) {
             *(double *)place = o->initial;
@@ -446,7 +510,8 @@ static bool prepare(arguments *a, int argc)
     return room;
 }
 
-bool arguments_read(arguments *a, const command *self, int argc, char **argv, int *exit_status)
+bool arguments_read(arguments *a, const command *self, int argc, char **argv,
+                    int *exit_status)
 {
     assert(argc > 0);
     *a = (arguments){.command = self};
@@ -481,7 +546,8 @@ bool arguments_read(arguments *a, const command *self, int argc, char **argv, in
 void arguments_finish(arguments *a)
 {
     const option_row *o;
-    for (int i = 0; a->command != NULL && (o = command_option(a->command, i)) != NULL; i++) {
+    for (int i = 0; a->command != NULL && (o = command_option(a->command, i)) != NULL;
+         i++) {
         if (option_is_list(o->type)) {
             free(((option_list *)option_place(a, o))->items);
         }
@@ -508,7 +574,9 @@ int check_results(const arguments *a)
         if (f.code == STATUS_OK) {
             f.code = whole_file_check(path, &f);
         }
-        result = f.code == STATUS_OK ? result : worse(result, complain_fault(&f));
+        if (f.code != STATUS_OK) {
+            result = worse(result, complain_fault(&f));
+        }
     }
     return result;
 }

@@ -14,32 +14,32 @@
 #include "ui/commands/interrupts.h"
 
 // One line a command: its name as a C word, in the order in which they are listed.
-#define COMMANDS(X)                                                                                \
-    X(lab)                                                                                         \
-    X(lesson)                                                                                      \
-    X(list)                                                                                        \
-    X(show)                                                                                        \
-    X(check)                                                                                       \
-    X(run)                                                                                         \
-    X(predict)                                                                                     \
-    X(modes)                                                                                       \
-    X(sweep)                                                                                       \
-    X(merge)                                                                                       \
-    X(compare)                                                                                     \
-    X(converge)                                                                                    \
-    X(solve)                                                                                       \
-    X(study)                                                                                       \
-    X(identify)                                                                                    \
-    X(calibrate)                                                                                   \
-    X(robust)                                                                                      \
-    X(linear)                                                                                      \
-    X(tune)                                                                                        \
-    X(animate)                                                                                     \
-    X(plot)                                                                                        \
-    X(tables)                                                                                      \
-    X(figures)                                                                                     \
-    X(report)                                                                                      \
-    X(bench)                                                                                       \
+#define COMMANDS(X)                                                                      \
+    X(lab)                                                                               \
+    X(lesson)                                                                            \
+    X(list)                                                                              \
+    X(show)                                                                              \
+    X(check)                                                                             \
+    X(run)                                                                               \
+    X(predict)                                                                           \
+    X(modes)                                                                             \
+    X(sweep)                                                                             \
+    X(merge)                                                                             \
+    X(compare)                                                                           \
+    X(converge)                                                                          \
+    X(solve)                                                                             \
+    X(study)                                                                             \
+    X(identify)                                                                          \
+    X(calibrate)                                                                         \
+    X(robust)                                                                            \
+    X(linear)                                                                            \
+    X(tune)                                                                              \
+    X(animate)                                                                           \
+    X(plot)                                                                              \
+    X(tables)                                                                            \
+    X(figures)                                                                           \
+    X(report)                                                                            \
+    X(bench)                                                                             \
     X(help)
 
 #define COMMAND_DECLARED(name) extern const command name##_command;
@@ -69,14 +69,16 @@ int complain_command(const char *name)
     for (int i = 0; i < command_count; i++) {
         nearest_try(&near, command_table[i]->name);
     }
-    COMPLAIN_IF(near.best != NULL, "there is no command '%s', did you mean '%s'?", name, near.best);
+    if (near.best != NULL) {
+        return complain("there is no command '%s', did you mean '%s'?", name, near.best);
+    }
 
     // nothing is near: all there are
     char known[256] = "";
     size_t length = 0;
     for (int i = 0; i < command_count && length < sizeof known; i++) {
-        length += (size_t)snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "",
-                                   command_table[i]->name);
+        length += (size_t)snprintf(known + length, sizeof known - length, "%s%s",
+                                   i ? ", " : "", command_table[i]->name);
     }
     return complain("there is no command '%s', only %s", name, known);
 }
@@ -90,10 +92,17 @@ const option_table *command_options(const command *c, int i)
 {
     int own = 0; // tables that come before --help
     assert(i >= 0 && i <= COMMAND_TABLES);
-    while (c->options[own] != NULL && strcmp(c->options[own]->title, help_options.title) == 0) {
+    while (c->options[own] != NULL &&
+           strcmp(c->options[own]->title, help_options.title) == 0) {
         own++;
     }
-    return i < own ? c->options[i] : i == own ? &help_options : c->options[i - 1];
+    if (i < own) {
+        return c->options[i];
+    }
+    if (i == own) {
+        return &help_options;
+    }
+    return c->options[i - 1];
 }
 
 const option_row *command_option(const command *c, int i)
@@ -109,7 +118,8 @@ const option_row *command_option(const command *c, int i)
     return NULL;
 }
 
-// The text an option's place holds, NULL if it was not given. Only for types that store a text.
+// The text an option's place holds, NULL if it was not given. Only for types that store a
+// text.
 static const char *option_text(const arguments *a, const option_row *o)
 {
     assert(o->type >= OPTION_TEXT && o->type <= OPTION_QUANTITY);
@@ -118,15 +128,19 @@ static const char *option_text(const arguments *a, const option_row *o)
 
 bool option_is_written(const option_row *o)
 {
-    return o->type == OPTION_RESULT || o->type == OPTION_PICTURE || o->type == OPTION_PLACE;
+    return o->type == OPTION_RESULT || o->type == OPTION_PICTURE ||
+           o->type == OPTION_PLACE;
 }
 
 const char *option_written(const arguments *a, const option_row *o)
 {
-    return option_is_written(o) ? option_text(a, o) : NULL;
+    if (option_is_written(o)) {
+        return option_text(a, o);
+    }
+    return NULL;
 }
 
-// --- what they share --------------------------------------------------------------------------
+// --- what they share -------------------------------------------------------------------
 
 int complain(const char *format, ...)
 {
@@ -176,7 +190,11 @@ void tell_fault(void *context, const char *sentence)
 {
     told_faults *t = context;
     tell_first_fault(t);
-    t->first = t->count++ == 0 ? strdup(sentence) : NULL;
+    if (t->count++ == 0) {
+        t->first = strdup(sentence);
+    } else {
+        t->first = NULL;
+    }
     if (t->first == NULL) {
         report_to_stderr(NULL, sentence);
     }
@@ -193,7 +211,10 @@ int tell_unopened(told_faults *t, status code, const char *name_or_file)
         t->first = NULL;
     }
     tell_first_fault(t);
-    return code == STATUS_NO_MEMORY ? EXIT_FAILED : EXIT_BAD_ARGUMENTS;
+    if (code == STATUS_NO_MEMORY) {
+        return EXIT_FAILED;
+    }
+    return EXIT_BAD_ARGUMENTS;
 }
 
 void complain_sentence(void *context, const char *sentence)
@@ -242,7 +263,8 @@ int with_scenario(const char *name_or_file, const arguments *a,
 int command_run(const arguments *a)
 {
     const command *c = a->command;
-    return interrupts_end(c->use != NULL ? with_scenario(a->operands[0], a, c->use) : c->run(a));
+    return interrupts_end(c->use != NULL ? with_scenario(a->operands[0], a, c->use)
+                                         : c->run(a));
 }
 
 RESULT_WRITER(write_value, json_t, json_write(stream, found))
@@ -257,16 +279,22 @@ int write_json(const char *path, json_t *value)
     return result;
 }
 
-int write_file(const char *path, result_writer *write, const scenario *s, const void *found)
+int write_file(const char *path, result_writer *write, const scenario *s,
+               const void *found)
 {
     whole_file file;
     fault f = {0};
     if (path == NULL || write == NULL) {
         return EXIT_DONE;
     }
-    FAIL_IF(whole_file_open(&file, path, &f) != STATUS_OK, complain_fault(&f));
+    if (whole_file_open(&file, path, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
     write(file.stream, s, found);
-    return whole_file_commit(&file, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    if (whole_file_commit(&file, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    return EXIT_DONE;
 }
 
 int write_results(const arguments *a, const command_results *r, const scenario *s,
@@ -303,7 +331,10 @@ int write_results(const arguments *a, const command_results *r, const scenario *
 
 int worse(int a, int b)
 {
-    return a > b ? a : b;
+    if (a > b) {
+        return a;
+    }
+    return b;
 }
 
 bool summary_wanted(const arguments *a)
@@ -356,7 +387,7 @@ bool terminal_has_utf8(void)
            (strcasestr(name, ".UTF-8") != NULL || strcasestr(name, ".utf8") != NULL);
 }
 
-// --- longer texts -----------------------------------------------------------------------------
+// --- longer texts ----------------------------------------------------------------------
 
 void print_indented(FILE *stream, const char *text, int bytes, int width, int indent)
 {
@@ -366,7 +397,9 @@ void print_indented(FILE *stream, const char *text, int bytes, int width, int in
     while ((text += strspn(text, " \n")) < end) {
         char word[256];
         int length = (int)strcspn(text, " \n");
-        length = length < end - text ? length : (int)(end - text);
+        if (!(length < end - text)) {
+            length = (int)(end - text);
+        }
         snprintf(word, sizeof word, "%.*s", length, text);
 
         // a word goes to the next line if this one has no room for it
@@ -379,7 +412,11 @@ void print_indented(FILE *stream, const char *text, int bytes, int width, int in
             fprintf(stream, "%s%*s", column > 0 ? "\n" : "", indent, "");
         }
         print_printable(stream, "%s%.*s", fits ? " " : "", length, text);
-        column = fits ? column + 1 + wide : indent + wide;
+        if (fits) {
+            column = column + 1 + wide;
+        } else {
+            column = indent + wide;
+        }
         text += length;
     }
     fprintf(stream, "%s", column > 0 ? "\n" : "");

@@ -33,47 +33,52 @@ static const offer offers[] = {
 };
 
 // The texts of a shell. In each of them stands
-//   of a command:  %c its name, %s its summary, %W the words that an operand may be, %O its
-//   options,
-//                  %1 the place of the word among the operands, %y "yes" if it takes scenarios
-//   of an option:  %o its name, %l its letter, %h its help, %v the name of its value, %w its words,
+//   of a command:  %c its name, %s its summary, %W the words that an operand may be, %O
+//   its options,
+//                  %1 the place of the word among the operands, %y "yes" if it takes
+//                  scenarios
+//   of an option:  %o its name, %l its letter, %h its help, %v the name of its value, %w
+//   its words,
 //                  %= "=" if it has a value, %* "*" if it may be repeated,
-//                  %L `letter` if it has one, %V `value` if it has one, %x what is offered for it
+//                  %L `letter` if it has one, %V `value` if it has one, %x what is
+//                  offered for it
 //   of all:        %C the commands, %P the parameters, %Q the quantities
 typedef struct shell {
     const char *name;
-    const char *escaped;                  // characters of helps that get a backslash
-    const char *head, *listed, *commands; // before all, for each command, before the commands
-    const char *begin, *option, *end;     // of a command
-    const char *letter, *value;           // of an option
-    const char *words, *scenarios;        // of a command whose operands are these
-    bool words_first;                     // before the options
+    const char *escaped; // characters of helps that get a backslash
+    const char *head, *listed,
+        *commands;                    // before all, for each command, before the commands
+    const char *begin, *option, *end; // of a command
+    const char *letter, *value;       // of an option
+    const char *words, *scenarios;    // of a command whose operands are these
+    bool words_first;                 // before the options
     const char *tail;
     const char *offers[OFFERS];
 } shell;
 
 static const shell shells[] = {
     {.name = "bash",
-     .head = "# bash completion for impactlab\n"
-             "_impactlab_words() {\n"
-             "    COMPREPLY+=($(compgen -W \"$1\" -- \"$word\"))\n"
-             "}\n"
-             "_impactlab_files() {\n"
-             "    local IFS=$'\\n'\n"
-             "    compopt -o filenames\n"
-             "    COMPREPLY+=($(compgen -f -- \"$word\"))\n"
-             "}\n"
-             "_impactlab() {\n"
-             "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
-             "    local command=${COMP_WORDS[1]} options='' operands='' scenarios=''\n"
-             "    local parameters='%P'\n"
-             "    local quantities='%Q'\n"
-             "    COMPREPLY=()\n"
-             "    if [ \"$COMP_CWORD\" = 1 ]; then\n"
-             "        _impactlab_words '%C --help --version'\n"
-             "        return\n"
-             "    fi\n"
-             "    case $command in\n",
+     .head =
+         "# bash completion for impactlab\n"
+         "_impactlab_words() {\n"
+         "    COMPREPLY+=($(compgen -W \"$1\" -- \"$word\"))\n"
+         "}\n"
+         "_impactlab_files() {\n"
+         "    local IFS=$'\\n'\n"
+         "    compopt -o filenames\n"
+         "    COMPREPLY+=($(compgen -f -- \"$word\"))\n"
+         "}\n"
+         "_impactlab() {\n"
+         "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n"
+         "    local command=${COMP_WORDS[1]} options='' operands='' scenarios=''\n"
+         "    local parameters='%P'\n"
+         "    local quantities='%Q'\n"
+         "    COMPREPLY=()\n"
+         "    if [ \"$COMP_CWORD\" = 1 ]; then\n"
+         "        _impactlab_words '%C --help --version'\n"
+         "        return\n"
+         "    fi\n"
+         "    case $command in\n",
      .begin = "    %c)\n        case $before in\n",
      .option = "%V",
      .value = "        '--%o'%L) %x; return ;;\n",
@@ -96,8 +101,10 @@ static const shell shells[] = {
      .offers = {[OFFER_NOTHING] = "return",
                 [OFFER_WORDS] = "_impactlab_words '%w'",
                 [OFFER_FILES] = "_impactlab_files",
-                [OFFER_PARAMETERS] = "_impactlab_words \"$parameters\"; compopt -o nospace",
-                [OFFER_SCENARIOS] = "_impactlab_words \"$(" SCENARIO_NAMES ")\"; _impactlab_files",
+                [OFFER_PARAMETERS] =
+                    "_impactlab_words \"$parameters\"; compopt -o nospace",
+                [OFFER_SCENARIOS] =
+                    "_impactlab_words \"$(" SCENARIO_NAMES ")\"; _impactlab_files",
                 [OFFER_QUANTITIES] = "_impactlab_words \"$quantities\""}},
     {.name = "zsh",
      .escaped = "[]:\\",
@@ -150,13 +157,15 @@ static const shell shells[] = {
              "    " SCENARIO_NAMES "\n"
              "end\n"
              "complete -c impactlab -f\n"
-             "complete -c impactlab -n __fish_use_subcommand -l version -d 'Print the version'\n",
+             "complete -c impactlab -n __fish_use_subcommand -l version -d 'Print the "
+             "version'\n",
      .begin = "complete -c impactlab -n __fish_use_subcommand -f -a %c -d '%s'\n",
      .words = "complete -c impactlab -n '__fish_seen_subcommand_from %c' -a '%W'\n",
      .scenarios = "complete -c impactlab -n '__fish_seen_subcommand_from %c' -F -a "
                   "'(__impactlab_scenarios)'\n",
      .words_first = true,
-     .option = "complete -c impactlab -n '__fish_seen_subcommand_from %c' -l %o%L%V -d '%h'\n",
+     .option =
+         "complete -c impactlab -n '__fish_seen_subcommand_from %c' -l %o%L%V -d '%h'\n",
      .letter = " -s %l",
      .value = "%x",
      .offers = {[OFFER_NOTHING] = " -x",
@@ -184,15 +193,30 @@ static const char *listed_word(char list, const command *c, int i)
     const option_row *o = list == 'O' ? command_option(c, i) : NULL;
     switch (list) {
     case 'C':
-        return i < command_count ? command_table[i]->name : NULL;
+        if (i < command_count) {
+            return command_table[i]->name;
+        }
+        return NULL;
     case 'P':
-        return i < parameter_count ? parameter_table[i].path : NULL;
+        if (i < parameter_count) {
+            return parameter_table[i].path;
+        }
+        return NULL;
     case 'Q':
-        return i < summary_count ? summary_table[i].key : NULL;
+        if (i < summary_count) {
+            return summary_table[i].key;
+        }
+        return NULL;
     case 'O':
-        return o != NULL ? o->name : NULL;
+        if (o != NULL) {
+            return o->name;
+        }
+        return NULL;
     default:
-        return c->operand_word != NULL ? c->operand_word(i) : NULL;
+        if (c->operand_word != NULL) {
+            return c->operand_word(i);
+        }
+        return NULL;
     }
 }
 
@@ -203,21 +227,34 @@ static const char *letter_text(char letter, const command *c, const option_row *
     case 'c':
         return c->name;
     case '1':
-        return c->takes_scenarios ? "1" : "*";
+        if (c->takes_scenarios) {
+            return "1";
+        }
+        return "*";
     case 'y':
-        return c->takes_scenarios ? "yes" : "";
+        if (c->takes_scenarios) {
+            return "yes";
+        }
+        return "";
     case 'o':
         return o->name;
     case '=':
-        return o->type != OPTION_FLAG ? "=" : "";
+        if (o->type != OPTION_FLAG) {
+            return "=";
+        }
+        return "";
     case '*':
-        return option_is_list(o->type) ? "*" : "";
+        if (option_is_list(o->type)) {
+            return "*";
+        }
+        return "";
     default:
         return NULL;
     }
 }
 
-// A text of the shell (NULL: none), of a command and an option of it (NULL where there is none).
+// A text of the shell (NULL: none), of a command and an option of it (NULL where there is
+// none).
 static void put(FILE *stream, const shell *h, const char *text, const command *c,
                 const option_row *o)
 {
@@ -229,7 +266,10 @@ static void put(FILE *stream, const shell *h, const char *text, const command *c
         } else if ((word = letter_text(letter, c, o)) != NULL) {
             fputs(word, stream);
         } else if (strchr("shv", letter) != NULL) {
-            put_quoted(stream, h, letter == 's' ? c->summary : letter == 'h' ? o->help : o->value);
+            put_quoted(stream, h,
+                       letter == 's'   ? c->summary
+                       : letter == 'h' ? o->help
+                                       : o->value);
         } else if (letter == 'l') {
             fputc(o->letter, stream);
         } else if (letter == 'L') {
@@ -244,8 +284,8 @@ static void put(FILE *stream, const shell *h, const char *text, const command *c
             }
         } else {
             for (int i = 0; (word = listed_word(letter, c, i)) != NULL; i++) {
-                fprintf(stream, "%s%s%s%s", i > 0 ? " " : "", letter == 'O' ? "--" : "", word,
-                        letter == 'P' ? "=" : "");
+                fprintf(stream, "%s%s%s%s", i > 0 ? " " : "", letter == 'O' ? "--" : "",
+                        word, letter == 'P' ? "=" : "");
             }
         }
     }

@@ -14,7 +14,7 @@
 #include "ui/commands/progress.h"
 #include "ui/commands/pictures.h"
 
-// --- figures ----------------------------------------------------------------------------------
+// --- figures ---------------------------------------------------------------------------
 
 #define DEFAULT_FOLDER  "figures"
 #define DEFAULT_FORMATS "png"
@@ -32,9 +32,9 @@ static int check_ids(const arguments *a)
         for (int k = 0; (known = thesis_figure_at(k)) != NULL; k++) {
             nearest_try(&near, known->id);
         }
-        return complain(
-            "there is no figure '%s', did you mean '%s'? (impactlab figures --help lists all)",
-            a->operands[i], near.best ? near.best : thesis_figure_at(0)->id);
+        return complain("there is no figure '%s', did you mean '%s'? (impactlab figures "
+                        "--help lists all)",
+                        a->operands[i], near.best ? near.best : thesis_figure_at(0)->id);
     }
     return EXIT_DONE;
 }
@@ -65,11 +65,12 @@ static void draw_one(void *context, size_t i, void *scratch, void *result)
     status *code = result;
     text_stream tex;
     if (text_stream_open(&tex)) {
-        *code = figure_draw(drawn->figure->id, &list->options, list->folder, list->formats,
-                            tex.stream, &drawn->fault);
+        *code = figure_draw(drawn->figure->id, &list->options, list->folder,
+                            list->formats, tex.stream, &drawn->fault);
         drawn->tex = text_stream_close(&tex, NULL);
     }
-    *code = drawn->fault.code = drawn->tex != NULL ? *code : fault_no_memory(&drawn->fault);
+    *code = drawn->fault.code =
+        drawn->tex != NULL ? *code : fault_no_memory(&drawn->fault);
 }
 
 // Prints every figure whose predecessors have been printed.
@@ -100,8 +101,8 @@ static status take_one(void *context, size_t i, const void *result, fault *f)
     return STATUS_OK;
 }
 
-// Draws the figures that were asked for, on as many threads as there are processors, and writes
-// their environments.
+// Draws the figures that were asked for, on as many threads as there are processors, and
+// writes their environments.
 static status draw_and_write(figure_list *list, const arguments *a, fault *f)
 {
     const pool_work work = {.context = list,
@@ -111,8 +112,11 @@ static status draw_and_write(figure_list *list, const arguments *a, fault *f)
                             .collect = take_one,
                             .stop = &interrupted};
     for (size_t i = 0; i < list->count; i++) {
-        list->figures[i].figure =
-            a->operand_count > 0 ? thesis_figure_find(a->operands[i]) : thesis_figure_at((int)i);
+        if (a->operand_count > 0) {
+            list->figures[i].figure = thesis_figure_find(a->operands[i]);
+        } else {
+            list->figures[i].figure = thesis_figure_at((int)i);
+        }
     }
 
     // slow ones first, so that no thread is left with one at the end
@@ -143,20 +147,33 @@ static status draw_and_write(figure_list *list, const arguments *a, fault *f)
 static int figures(const arguments *a)
 {
     fault f = {0};
-    size_t count = a->operand_count > 0 ? (size_t)a->operand_count : (size_t)thesis_figure_count();
+    size_t count =
+        a->operand_count > 0 ? (size_t)a->operand_count : (size_t)thesis_figure_count();
     figure_list list = {.count = count,
                         .quiet = !summary_wanted(a),
                         .folder = a->output ? a->output : DEFAULT_FOLDER,
                         .formats = a->format ? a->format : DEFAULT_FORMATS};
 
     int code = EXIT_DONE;
-    TRY_EXIT(check_ids(a));
-    TRY_EXIT(read_picture_options(a, &list.options));
+    int ended = check_ids(a);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
+    ended = read_picture_options(a, &list.options);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
 
-    // lists of figures to be drawn and of their results; an interrupt leaves those that are drawn
+    // lists of figures to be drawn and of their results; an interrupt leaves those that
+    // are drawn
     interrupts_catch();
     list.figures = calloc(count, sizeof *list.figures + sizeof *list.order);
-    const status drawn = list.figures != NULL ? draw_and_write(&list, a, &f) : fault_no_memory(&f);
+    status drawn;
+    if (list.figures != NULL) {
+        drawn = draw_and_write(&list, a, &f);
+    } else {
+        drawn = fault_no_memory(&f);
+    }
     if (drawn != STATUS_OK) {
         code = complain_fault(&f);
     } else if (a->json != NULL) {
@@ -164,8 +181,9 @@ static int figures(const arguments *a)
         for (size_t i = 0; i < count; i++) {
             const thesis_figure *which = list.figures[i].figure;
             if (list.figures[i].taken && list.figures[i].fault.code == STATUS_OK) {
-                json_add(array, json_of("id:t folder:t file:t formats:t caption:t", which->id,
-                                        list.folder, which->file, list.formats, which->caption));
+                json_add(array,
+                         json_of("id:t folder:t file:t formats:t caption:t", which->id,
+                                 list.folder, which->file, list.formats, which->caption));
             }
         }
         code = write_json(a->json, array);
@@ -174,8 +192,9 @@ static int figures(const arguments *a)
         code = worse(code, complain_fault(list.failed));
     }
     if (drawn == STATUS_OK && interrupted != 0 && list.drawn < count) {
-        code = worse(EXIT_FAILED, complain("stopped: %zu of %zu figures were drawn and are kept",
-                                           list.drawn, count));
+        code = worse(EXIT_FAILED,
+                     complain("stopped: %zu of %zu figures were drawn and are kept",
+                              list.drawn, count));
     }
     for (size_t i = 0; list.figures != NULL && i < count; i++) {
         free(list.figures[i].tex);
@@ -187,7 +206,10 @@ static int figures(const arguments *a)
 static const char *figure_word(int i)
 {
     const thesis_figure *which = thesis_figure_at(i);
-    return which != NULL ? which->id : NULL;
+    if (which != NULL) {
+        return which->id;
+    }
+    return NULL;
 }
 
 static const option_row rows[] = {
@@ -198,53 +220,78 @@ static const option_row rows[] = {
 const command figures_command = {
     CALLED("figures", THESIS, "Draw the figures and tables of the thesis"),
     OPERANDS("[ID]...", 0, 1 << 20),
-    .help = "Without IDs all of them, into the folder 'figures' unless -o says otherwise; a CSV of "
-            "what is\ndrawn stands beside each.\n\n"
-            "IDs are the thesis's numbers: 2.1 to 2.6, 3.1 to 3.11, 4.1 to 4.6, 5.1 to 5.7, T2.1, "
-            "T3.1, T3.2,\nT4.1 to T4.3; forces, delays: those printed as points with residuals; "
-            "errors: how near they\ncome out; beta-gamma: the map of Newmark's parameters.\n",
+    .help =
+        "Without IDs all of them, into the folder 'figures' unless -o says otherwise; a "
+        "CSV of "
+        "what is\ndrawn stands beside each.\n\n"
+        "IDs are the thesis's numbers: 2.1 to 2.6, 3.1 to 3.11, 4.1 to 4.6, 5.1 to 5.7, "
+        "T2.1, "
+        "T3.1, T3.2,\nT4.1 to T4.3; forces, delays: those printed as points with "
+        "residuals; "
+        "errors: how near they\ncome out; beta-gamma: the map of Newmark's parameters.\n",
     .operand_word = figure_word,
     .options = {&json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
     .run = figures,
 };
 
-// --- plot -------------------------------------------------------------------------------------
+// --- plot ------------------------------------------------------------------------------
 
 static int plot(const arguments *a)
 {
     figure_options o;
 
     // what can be refused before the recipe is read
-    TRY_EXIT(read_picture_options(a, &o));
-    COMPLAIN_IF(o.overlay != NULL || o.signals != NULL,
-                "a recipe says itself which signals and data it shows, --%s is for runs",
-                o.overlay != NULL ? "overlay" : "signals");
+    int ended = read_picture_options(a, &o);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
+    if (o.overlay != NULL || o.signals != NULL) {
+        return complain(
+            "a recipe says itself which signals and data it shows, --%s is for runs",
+            o.overlay != NULL ? "overlay" : "signals");
+    }
 
     // the recipe's name with .png, in the present folder, unless there is another
     const char *slash = strrchr(a->operands[0], '/');
-    const char *name = slash != NULL ? slash + 1 : a->operands[0], *dot = strrchr(name, '.');
+    const char *name = slash != NULL ? slash + 1 : a->operands[0],
+               *dot = strrchr(name, '.');
     const int length = dot != NULL && dot != name ? (int)(dot - name) : (int)strlen(name);
     SCOPED(free_kept) char *path = NULL;
     if (a->plot != NULL ? asprintf(&path, "%s", a->plot) < 0
                         : asprintf(&path, "%.*s.png", length, name) < 0) {
         path = NULL;
     }
-    TRY_FAULT(path != NULL ? picture_check_path(path, &f) : fault_no_memory(&f));
+    fault f = {0};
+    if (path != NULL) {
+        if (picture_check_path(path, &f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+    } else {
+        if (fault_no_memory(&f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+    }
 
     // what the command line does not name: the picture, and what stands beside it
-    g_autofree char *csv = artwork_beside(path, ".csv"), *text = artwork_beside(path, ".txt");
+    g_autofree char *csv = artwork_beside(path, ".csv"),
+                    *text = artwork_beside(path, ".txt");
     const bool named = a->plot != NULL;
-    COMPLAIN_IF((!named && !whole_file_add_result(path)) || !whole_file_add_result(csv) ||
-                    (a->bare && !named && !whole_file_add_result(text)),
-                "two results cannot both be written to %s or beside it", path);
+    if ((!named && !whole_file_add_result(path)) || !whole_file_add_result(csv) ||
+        (a->bare && !named && !whole_file_add_result(text))) {
+        return complain("two results cannot both be written to %s or beside it", path);
+    }
 
     // faults in the recipe are reported as they are found and leave `why` empty
     interrupts_catch();
     SCOPED(artwork_finish) artwork art = {0};
     fault why = {0};
-    FAIL_IF(recipe_open(a->operands[0], &o, report_to_stderr, NULL, &art, &why) != STATUS_OK,
-            why.code != STATUS_OK ? complain_fault(&why) : EXIT_BAD_ARGUMENTS);
-    TRY_FAULT(artwork_publish(&art, &o, path, true, &f));
+    if (recipe_open(a->operands[0], &o, report_to_stderr, NULL, &art, &why) !=
+        STATUS_OK) {
+        return why.code != STATUS_OK ? complain_fault(&why) : EXIT_BAD_ARGUMENTS;
+    }
+    if (artwork_publish(&art, &o, path, true, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
 
     // a default name is not known to the user yet
     if (!a->quiet) {
@@ -254,21 +301,23 @@ static int plot(const arguments *a)
 }
 
 static const option_row plot_rows[] = {
-    OPTION(PICTURE, "output", "FILE.{png,pdf,svg}", "where to draw it (the recipe's name, as PNG)",
-           PLACE(plot), .letter = 'o'),
+    OPTION(PICTURE, "output", "FILE.{png,pdf,svg}",
+           "where to draw it (the recipe's name, as PNG)", PLACE(plot), .letter = 'o'),
 };
 
 const command plot_command = {
-    CALLED("plot", PICTURES, "Draw a figure from a recipe: runs, data and tables in panels"),
+    CALLED("plot", PICTURES,
+           "Draw a figure from a recipe: runs, data and tables in panels"),
     OPERANDS("RECIPE.yaml", 1, 1),
-    .help = "A recipe names runs with changed parameters, measured data and the databases of "
-            "sweeps, and the\npanels that show them. A CSV of what is drawn stands beside the "
-            "picture. Examples are in\nscenarios/recipes, all keys in docs/reference/recipes.md.\n",
+    .help = "A recipe names runs with changed parameters, measured data and the "
+            "databases of sweeps, and the\npanels that show them. A CSV of what "
+            "is drawn stands beside the picture. Examples are "
+            "in\nscenarios/recipes, all keys in docs/reference/recipes.md.\n",
     .options = {OWN_OPTIONS(plot_rows), &quiet_options, &page_options},
     .run = plot,
 };
 
-// --- report -----------------------------------------------------------------------------------
+// --- report ----------------------------------------------------------------------------
 
 static int report(const arguments *a)
 {
@@ -285,7 +334,9 @@ static int report(const arguments *a)
                  monitor->pieces, steps);
         return EXIT_FAILED;
     }
-    FAIL_IF(code != STATUS_OK, complain_fault(&f));
+    if (code != STATUS_OK) {
+        return complain_fault(&f);
+    }
     if (!a->quiet) {
         say("%s/report.html\n%s/report.pdf\n", folder, folder);
     }
@@ -299,10 +350,11 @@ static const option_row report_rows[] = {
 const command report_command = {
     CALLED("report", THESIS, "Figures and tables as one web page and one PDF"),
     SCENARIOS("[SCENARIO|RECIPE.yaml]...", 0, 64),
-    .help = "Of the scenarios and recipes named, or without any of the whole thesis. Into the "
-            "folder 'report' unless -o says otherwise. The page needs no other file and "
-            "no network. Under\neach item stand its scenario, its model and the command that "
-            "makes it again.\n^C ends it and leaves the report of before (exit status 130).\n",
+    .help = "Of the scenarios and recipes named, or without any of the whole "
+            "thesis. Into the folder 'report' unless -o says otherwise. The page "
+            "needs no other file and no network. Under\neach item stand its "
+            "scenario, its model and the command that makes it again.\n^C ends "
+            "it and leaves the report of before (exit status 130).\n",
     .options = {OWN_OPTIONS(report_rows), &quiet_options},
     .run = report,
 };

@@ -1,5 +1,5 @@
-// What --help prints, what the manual, the tables and the commands say about words, and the
-// command `help`.
+// What --help prints, what the manual, the tables and the commands say about words, and
+// the command `help`.
 #include "ui/commands/command.h"
 
 #include <errno.h>
@@ -53,7 +53,9 @@ void print_help(FILE *stream, const command *self)
     const char *title = "";
     int widest = 0;
     for (int i = 0; (o = command_option(self, i)) != NULL; i++) {
-        widest = option_width(o) > widest ? option_width(o) : widest;
+        if (option_width(o) > widest) {
+            widest = option_width(o);
+        }
     }
     for (int i = 0; (t = command_options(self, i)) != NULL; i++) {
         if (strcmp(t->title, title) != 0) {
@@ -62,9 +64,9 @@ void print_help(FILE *stream, const command *self)
         title = t->title;
         for (o = t->rows; o < t->rows + t->count; o++) {
             const char letter[] = {'-', o->letter, ',', '\0'};
-            fprintf(stream, "  %-3s --%s%s%s%*s  %s\n", o->letter != 0 ? letter : "", o->name,
-                    o->value ? " " : "", o->value ? o->value : "", widest - option_width(o), "",
-                    o->help);
+            fprintf(stream, "  %-3s --%s%s%s%*s  %s\n", o->letter != 0 ? letter : "",
+                    o->name, o->value ? " " : "", o->value ? o->value : "",
+                    widest - option_width(o), "", o->help);
         }
     }
 }
@@ -86,22 +88,23 @@ void print_commands(FILE *stream)
         fprintf(stream, "\n%s:\n", titles[group]);
         for (int i = 0; i < command_count; i++) {
             if ((int)command_table[i]->group == group) {
-                fprintf(stream, "  %-9s  %s\n", command_table[i]->name, command_table[i]->summary);
+                fprintf(stream, "  %-9s  %s\n", command_table[i]->name,
+                        command_table[i]->summary);
             }
         }
     }
 
-    fprintf(
-        stream,
-        "\nimpactlab COMMAND --help tells more about a command, impactlab help QUESTION searches\n"
-        "the manual.\n"
-        "Exit status: 0 done; 1 the run failed or is inaccurate, or a file could not be written;\n"
-        "2 bad arguments or a bad scenario; 130 ended by ^C.\n");
+    fprintf(stream, "\nimpactlab COMMAND --help tells more about a command, impactlab "
+                    "help QUESTION searches\n"
+                    "the manual.\n"
+                    "Exit status: 0 done; 1 the run failed or is inaccurate, or a file "
+                    "could not be written;\n"
+                    "2 bad arguments or a bad scenario; 130 ended by ^C.\n");
 }
 
 enum { HITS = 6, PASSAGE = 330, INDENT = 4, MEANINGS = 8, TEXTS = COMMAND_OPTIONS + 2 };
 
-// --- what there is to be found ------------------------------------------------------------------
+// --- what there is to be found ---------------------------------------------------------
 
 static search_entry section_entry(int i)
 {
@@ -114,7 +117,8 @@ static search_entry parameter_entry(int i)
     static const char *texts[2];
     texts[0] = parameter_table[i].description;
     texts[1] = parameter_table[i].choices;
-    return (search_entry){parameter_table[i].path, "parameter", texts, texts[1] != NULL ? 2 : 1};
+    return (search_entry){parameter_table[i].path, "parameter", texts,
+                          texts[1] != NULL ? 2 : 1};
 }
 
 static search_entry quantity_entry(int i)
@@ -160,28 +164,36 @@ static void list_sources(search_source sources[SOURCES])
     sources[COMMANDS] = (search_source){command_count, command_entry};
 }
 
-// --- how it is shown ----------------------------------------------------------------------------
+// --- how it is shown -------------------------------------------------------------------
 
 // Name of a thing, without its explanation.
 static void print_name(FILE *stream, int source, int index, const search_entry *e)
 {
-    const char *unit = source == PARAMETERS   ? parameter_table[index].unit
-                       : source == QUANTITIES ? summary_table[index].unit
-                       : source == SIGNALS    ? signal_table[index].unit
-                                              : "";
+    const char *unit;
+    if (source == PARAMETERS) {
+        unit = parameter_table[index].unit;
+    } else if (source == QUANTITIES) {
+        unit = summary_table[index].unit;
+    } else if (source == SIGNALS) {
+        unit = signal_table[index].unit;
+    } else {
+        unit = "";
+    }
     if (source == SECTIONS) {
         fprintf(stream, "%s, \"%s\"\n", manual_section_at(index).page, e->title);
     } else {
-        fprintf(stream, "%s %s%s%s%s\n", source == COMMANDS ? "impactlab" : e->above, e->title,
-                unit[0] != '\0' ? " [" : "", unit, unit[0] != '\0' ? "]" : "");
+        fprintf(stream, "%s %s%s%s%s\n", source == COMMANDS ? "impactlab" : e->above,
+                e->title, unit[0] != '\0' ? " [" : "", unit, unit[0] != '\0' ? "]" : "");
     }
 }
 
 // How to go on from a thing, before and behind its name; nothing for a page.
 static const char *const ways_on[SOURCES][2] = {
     [PARAMETERS] = {"impactlab show SCENARIO lists it, --set ", "=VALUE changes it"},
-    [QUANTITIES] = {"impactlab run SCENARIO --json - has it, sweep --quantity ", " draws it"},
-    [SIGNALS] = {"impactlab run SCENARIO --csv FILE has it, --plot FILE --signals ", " draws it"},
+    [QUANTITIES] = {"impactlab run SCENARIO --json - has it, sweep --quantity ",
+                    " draws it"},
+    [SIGNALS] = {"impactlab run SCENARIO --csv FILE has it, --plot FILE --signals ",
+                 " draws it"},
     [COMMANDS] = {"impactlab ", " --help"},
 };
 
@@ -216,8 +228,8 @@ static void print_hit(FILE *stream, const search_source *sources, const search_h
     }
 }
 
-// Prints what answers a question best: each hit with the passage that fits, and where to read on.
-// Returns how many hits there are.
+// Prints what answers a question best: each hit with the passage that fits, and where to
+// read on. Returns how many hits there are.
 static int print_answers(FILE *stream, const char *question)
 {
     search_source sources[SOURCES];
@@ -254,12 +266,12 @@ int print_meanings(FILE *stream, const char *words)
     return count;
 }
 
-// --- the command ----------------------------------------------------------------------------
+// --- the command -----------------------------------------------------------------------
 
 RESULT_WRITER(write_page, command, write_man_page(stream, found))
 
-// All man pages, FOLDER/impactlab.1 and FOLDER/impactlab-COMMAND.1. The folder is made if it is not
-// there.
+// All man pages, FOLDER/impactlab.1 and FOLDER/impactlab-COMMAND.1. The folder is made if
+// it is not there.
 static int write_pages(const char *folder)
 {
     int result = EXIT_DONE;
@@ -272,7 +284,9 @@ static int write_pages(const char *folder)
         char path[4096];
         const int length = snprintf(path, sizeof path, "%s/impactlab%s%s.1", folder,
                                     c != NULL ? "-" : "", c != NULL ? c->name : "");
-        COMPLAIN_IF(length >= (int)sizeof path, "--man-pages %s: the name is too long", folder);
+        if (length >= (int)sizeof path) {
+            return complain("--man-pages %s: the name is too long", folder);
+        }
         result = worse(result, write_file(path, write_page, NULL, c));
     }
     return result;
@@ -284,17 +298,23 @@ static int answer(const arguments *a)
     char question[512] = "";
     size_t length = 0;
     for (int i = 0; i < a->operand_count && length < sizeof question; i++) {
-        length +=
-            (size_t)snprintf(question + length, sizeof question - length, "%s ", a->operands[i]);
+        length += (size_t)snprintf(question + length, sizeof question - length, "%s ",
+                                   a->operands[i]);
     }
     if (print_answers(stdout, question) > 0) {
         return EXIT_DONE;
     }
-    TRY_FAULT(loss_noted() ? fault_no_memory(&f) : STATUS_OK);
-    return a->operand_count == 1 && strchr(a->operands[0], ' ') == NULL
-               ? complain_command(a->operands[0])
-               : complain("nothing is known of these words, expected some that the manual, a "
-                          "parameter, a quantity or a command has");
+    fault f = {0};
+    if (loss_noted()) {
+        if (fault_no_memory(&f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+    }
+    if (a->operand_count == 1 && strchr(a->operands[0], ' ') == NULL) {
+        return complain_command(a->operands[0]);
+    }
+    return complain("nothing is known of these words, expected some that the manual, a "
+                    "parameter, a quantity or a command has");
 }
 
 static int help(const arguments *a)
@@ -302,7 +322,10 @@ static int help(const arguments *a)
     const command *about = a->operand_count == 1 ? command_find(a->operands[0]) : NULL;
 
     if (a->operand_count > 0 && about == NULL) {
-        return a->man ? complain_command(a->operands[0]) : answer(a);
+        if (a->man) {
+            return complain_command(a->operands[0]);
+        }
+        return answer(a);
     }
 
     if (a->completion != NULL) {
@@ -329,28 +352,33 @@ static int help(const arguments *a)
 
 static const char *command_word(int i)
 {
-    return i < command_count ? command_table[i]->name : NULL;
+    if (i < command_count) {
+        return command_table[i]->name;
+    }
+    return NULL;
 }
 
 static const option_row rows[] = {
-    OPTION(FLAG, "man", NULL, "write the man page instead, of the command or of impactlab",
-           PLACE(man)),
+    OPTION(FLAG, "man", NULL,
+           "write the man page instead, of the command or of impactlab", PLACE(man)),
     OPTION(PLACE, "man-pages", "FOLDER", "write the man pages of all commands as files",
            PLACE(man_pages)),
     OPTION(CHOICE, "completion", "bash|zsh|fish",
-           "write what this shell needs to complete commands and options", PLACE(completion)),
-    OPTION(CHOICE, "reference", REFERENCE_PAGES,
-           "write a chapter of the manual from the program's tables, the last as a man page",
-           PLACE(reference)),
+           "write what this shell needs to complete commands and options",
+           PLACE(completion)),
+    OPTION(
+        CHOICE, "reference", REFERENCE_PAGES,
+        "write a chapter of the manual from the program's tables, the last as a man page",
+        PLACE(reference)),
 };
 
 const command help_command = {
     CALLED("help", PROGRAM, "The commands, how to call one, or an answer to a question"),
     OPERANDS("[COMMAND|QUESTION...]", 0, 32),
-    .help = "A QUESTION is some words, as in: impactlab help settling time. It is looked up in the "
-            "pages of the\nmanual, the parameters, the quantities and signals of a run, and the "
-            "commands; the best hits are\nprinted with the passage that fits and where to read "
-            "on.\n",
+    .help = "A QUESTION is some words, as in: impactlab help settling time. It "
+            "is looked up in the pages of the\nmanual, the parameters, the "
+            "quantities and signals of a run, and the commands; the best hits "
+            "are\nprinted with the passage that fits and where to read on.\n",
     .operand_word = command_word,
     .options = {OWN_OPTIONS(rows)},
     .run = help,

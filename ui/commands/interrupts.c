@@ -9,7 +9,8 @@
 
 enum {
     SIGNALS = 2,
-    MOST_WAITED = 5, // time for runs under way after a signal, where they may be finished [s]
+    MOST_WAITED =
+        5, // time for runs under way after a signal, where they may be finished [s]
 };
 
 volatile sig_atomic_t interrupted;
@@ -61,7 +62,8 @@ int interrupts_end(int result)
     if (interrupted != 0) {
         fflush(stdout);
         if (result == 0) {
-            fputs("impactlab: interrupted when all was computed: the results are whole\n", stderr);
+            fputs("impactlab: interrupted when all was computed: the results are whole\n",
+                  stderr);
         }
         fflush(NULL);
         signal(interrupted, SIG_DFL);

@@ -17,29 +17,33 @@
 #define FRAME         (1.0 / 60) // shortest time between two pictures [s]
 #define LONGEST_PAUSE 0.1        // between two pictures while something moves [s]
 #define PATIENCE      0.01       // a run that takes longer is computed meanwhile [s]
-#define LONGEST_FRAME 0.25       // a longer pause (suspended, dragged about) counts as this [s]
+// a longer pause (suspended, dragged about) counts as this [s]
+#define LONGEST_FRAME 0.25
 
 enum { INPUTS_AT_ONCE = 32 }; // between two pictures, at most
 
 static const char first_scenario[] = "corrected/first-impact";
 
-// --- without a terminal -----------------------------------------------------------------------
+// --- without a terminal ----------------------------------------------------------------
 
 // Carries out a file of commands, one a line. Stops at the first that fails.
 static int run_script(explorer *ex, const char *path)
 {
     char line[LINE_TEXT];
     FILE *stream = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
-    COMPLAIN_IF(stream == NULL, "%s cannot be read: %s", path, strerror(errno));
+    if (stream == NULL) {
+        return complain("%s cannot be read: %s", path, strerror(errno));
+    }
 
     // line by line until one fails or quits
     int code = EXIT_DONE;
-    for (int number = 1; code == EXIT_DONE && !ex->state.quit && fgets(line, sizeof line, stream);
+    for (int number = 1;
+         code == EXIT_DONE && !ex->state.quit && fgets(line, sizeof line, stream);
          number++) {
         if (strchr(line, '\n') == NULL && !feof(stream)) {
-            code = complain(
-                "%s:%d: no command, expected a text of less than %d bytes and the end of the line",
-                path, number, LINE_TEXT);
+            code = complain("%s:%d: no command, expected a text of less than %d bytes "
+                            "and the end of the line",
+                            path, number, LINE_TEXT);
             break;
         }
         line[strcspn(line, "\r\n")] = '\0';
@@ -74,8 +78,11 @@ static int print_screen(explorer *ex)
 static int run_off_screen(explorer *ex, const arguments *a)
 {
     fault f = {0};
-    ex->state.size =
-        a->size.width > 0 ? (screen_size){a->size.width, a->size.height} : (screen_size){120, 40};
+    if (a->size.width > 0) {
+        ex->state.size = (screen_size){a->size.width, a->size.height};
+    } else {
+        ex->state.size = (screen_size){120, 40};
+    }
     int code = a->script != NULL ? run_script(ex, a->script) : EXIT_DONE;
     if (code == EXIT_DONE && a->keys != NULL && !explorer_keys(ex, a->keys, &f)) {
         code = complain_fault(&f);
@@ -92,7 +99,7 @@ static int run_off_screen(explorer *ex, const arguments *a)
     return code;
 }
 
-// --- on a terminal ----------------------------------------------------------------------------
+// --- on a terminal ---------------------------------------------------------------------
 
 static void take_input(explorer *ex, terminal_input in)
 {
@@ -118,10 +125,18 @@ static void show(explorer *ex, screen *s, picture_layer *layer)
 
     // with pictures if the terminal draws them and they are wanted
     const terminal_pixels t = terminal_pixels_known();
-    s->pictures = l->pixels && t.there ? layer : NULL;
+    if (l->pixels && t.there) {
+        s->pictures = layer;
+    } else {
+        s->pictures = NULL;
+    }
     layer->cell_width = t.cell_width;
     layer->cell_height = t.cell_height;
-    layer->ground = t.has_ground ? t.ground : theme_grounds(l->theme)[0];
+    if (t.has_ground) {
+        layer->ground = t.ground;
+    } else {
+        layer->ground = theme_grounds(l->theme)[0];
+    }
     if ((width != s->width || height != s->height) && !screen_resize(s, width, height)) {
         return;
     }
@@ -154,17 +169,21 @@ static bool run_on_terminal(explorer *ex)
             drawn = now;
             dirty = false;
 
-            // half of the processor is left to others, but ten pictures a second are shown, as far
-            // as the rate that was asked for [kB/s] lets them
+            // half of the processor is left to others, but ten pictures a second are
+            // shown, as far as the rate that was asked for [kB/s] lets them
             const double took = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - spent;
-            const double bytes = (double)(terminal_sent() - sent), rate = ex->state.looks.rate;
+            const double bytes = (double)(terminal_sent() - sent),
+                         rate = ex->state.looks.rate;
             pause = fmin(fmax(FRAME, 2 * took), LONGEST_PAUSE);
-            pause = rate > 0 ? fmax(pause, bytes / (1e3 * rate)) : pause;
+            if (rate > 0) {
+                pause = fmax(pause, bytes / (1e3 * rate));
+            }
         }
 
         bool waits = dirty || explorer_is_busy(ex);
         // a picture that took longer than a frame leaves nothing to wait for
-        double left = fmax(0, dirty ? pause - (clock_seconds(CLOCK_MONOTONIC) - drawn) : pause);
+        double left =
+            fmax(0, dirty ? pause - (clock_seconds(CLOCK_MONOTONIC) - drawn) : pause);
         left = fmin(waits ? left : HUGE_VAL, recovery_keep(ex, taken_any, now));
         terminal_input in = terminal_wait(isfinite(left) ? left : -1);
         now = clock_seconds(CLOCK_MONOTONIC);
@@ -172,14 +191,17 @@ static bool run_on_terminal(explorer *ex)
         // what was computed, and time going on
         dirty |= explorer_follow(ex);
         if (ex->state.playback.playing) {
-            act_advance(&ex->state, now - last < LONGEST_FRAME ? now - last : LONGEST_FRAME);
+            act_advance(&ex->state,
+                        now - last < LONGEST_FRAME ? now - last : LONGEST_FRAME);
             dirty = true;
         }
 
-        // all input that has arrived, so that keys never wait for pictures that are out of date
+        // all input that has arrived, so that keys never wait for pictures that are out
+        // of date
         last = now;
         taken_any = in.kind != TERMINAL_NONE;
-        for (int taken = 0; in.kind != TERMINAL_NONE && !ex->state.quit && !leave; taken++) {
+        for (int taken = 0; in.kind != TERMINAL_NONE && !ex->state.quit && !leave;
+             taken++) {
             dirty = true;
             leave = in.kind == TERMINAL_LEAVE;
             take_input(ex, in);
@@ -200,14 +222,18 @@ static bool run_on_terminal(explorer *ex)
     return !leave;
 }
 
-// What the terminal can be expected to show: the console of Linux has no braille in its fonts.
+// What the terminal can be expected to show: the console of Linux has no braille in its
+// fonts.
 static glyph_set usual_glyphs(void)
 {
     const char *name = getenv("TERM");
     if (!terminal_has_utf8()) {
         return GLYPHS_ASCII;
     }
-    return name != NULL && strcmp(name, "linux") == 0 ? GLYPHS_BLOCKS : GLYPHS_BRAILLE;
+    if (name != NULL && strcmp(name, "linux") == 0) {
+        return GLYPHS_BLOCKS;
+    }
+    return GLYPHS_BRAILLE;
 }
 
 static int open_explorer(explorer *ex, const arguments *a)
@@ -218,29 +244,44 @@ static int open_explorer(explorer *ex, const arguments *a)
     // a session brings its own scenarios: the lab opens, and then it
     const char *named = a->operand_count > 0 ? a->operands[0] : first_scenario;
     const bool is_session = named[text_stem(named, ".session")] != '\0';
-    TRY_EXIT(open_scenario(&s, is_session ? first_scenario : named, a));
+    int ended = open_scenario(&s, is_session ? first_scenario : named, a);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
 
     bool live = a->keys == NULL && a->script == NULL && a->size.width == 0;
-    TRY_FAULT(explorer_init(ex, &s, live ? PATIENCE : HUGE_VAL, &f));
+    fault f = {0};
+    if (explorer_init(ex, &s, live ? PATIENCE : HUGE_VAL, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
 
     // the terminal's own looks, then those that were kept
     char line[LINE_TEXT];
     ex->state.looks.glyphs = usual_glyphs();
     if (live) {
-        ex->state.looks.theme = terminal_is_light() ? COLOURS_LIGHT : COLOURS_DARK;
+        if (terminal_is_light()) {
+            ex->state.looks.theme = COLOURS_LIGHT;
+        } else {
+            ex->state.looks.theme = COLOURS_DARK;
+        }
         explorer_load_settings(ex);
         if (a->operand_count == 0) {
             explorer_welcome(ex);
         }
-        const bool wide = wcwidth(L'\u28ff') == 1; // the locale is there and knows braille
-        ex->state.looks.glyphs = wide ? ex->state.looks.glyphs : GLYPHS_ASCII;
+        const bool wide =
+            wcwidth(L'\u28ff') == 1; // the locale is there and knows braille
+        if (!wide) {
+            ex->state.looks.glyphs = GLYPHS_ASCII;
+        }
     }
 
     // what the command line says comes last
-    const char *const settings[3][2] = {
-        {"glyphs", a->glyphs}, {"theme", a->theme}, {"colours", a->colours}};
+    const char *const settings[3][2] = {{"glyphs", a->glyphs},
+                                        {"theme", a->theme},
+                                        {"colours", a->colours}};
     for (int i = 0; i < 3; i++) {
-        snprintf(line, sizeof line, "%s %s", settings[i][0], settings[i][1] ? settings[i][1] : "");
+        snprintf(line, sizeof line, "%s %s", settings[i][0],
+                 settings[i][1] ? settings[i][1] : "");
         if (settings[i][1] != NULL && !explorer_carry_out(ex, line)) {
             code = complain("--%s: %s", settings[i][0], ex->state.message.text);
         }
@@ -255,7 +296,8 @@ static int open_explorer(explorer *ex, const arguments *a)
     return code;
 }
 
-// Opens the lab with the named scenario and runs it until the user leaves; with --keys, --script or
+// Opens the lab with the named scenario and runs it until the user leaves; with --keys,
+// --script or
 // --size it prints the screen instead. Returns the exit status.
 static int explore(const arguments *a)
 {
@@ -263,9 +305,14 @@ static int explore(const arguments *a)
     fault f = {0};
 
     bool off_screen = a->keys != NULL || a->script != NULL || a->size.width > 0;
-    FAIL_IF(!off_screen && !terminal_usable(&f), complain_fault(&f));
+    if (!off_screen && !terminal_usable(&f)) {
+        return complain_fault(&f);
+    }
 
-    TRY_EXIT(open_explorer(&ex, a));
+    int ended = open_explorer(&ex, a);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
     int code = EXIT_DONE;
     if (off_screen) {
         code = run_off_screen(&ex, a);
@@ -290,25 +337,27 @@ static int explore(const arguments *a)
 // --- the command
 
 static const option_row rows[] = {
-    OPTION(TEXT, "keys", "KEYS", "press these keys: characters, and <Right>, <Enter>, <C-l>...",
-           PLACE(keys)),
+    OPTION(TEXT, "keys", "KEYS",
+           "press these keys: characters, and <Right>, <Enter>, <C-l>...", PLACE(keys)),
     OPTION(FILE, "script", "FILE|-", "carry out commands, one a line, as : takes them",
            PLACE(script)),
-    OPTION(SIZE, "size", "WIDTHxHEIGHT", "print a screen of this size in characters (120x40)",
-           PLACE(size), .high = 1000, .unit = "characters"),
-    OPTION(CHOICE, "glyphs", "braille|blocks|ascii", "characters to draw with", PLACE(glyphs)),
+    OPTION(SIZE, "size", "WIDTHxHEIGHT",
+           "print a screen of this size in characters (120x40)", PLACE(size),
+           .high = 1000, .unit = "characters"),
+    OPTION(CHOICE, "glyphs", "braille|blocks|ascii", "characters to draw with",
+           PLACE(glyphs)),
     OPTION(CHOICE, "theme", "dark|light|mono", "colours for that ground", PLACE(theme)),
-    OPTION(CHOICE, "colours", "auto|true|256|16|mono", "how many of them the terminal has",
-           PLACE(colours), .alias = "colors"),
+    OPTION(CHOICE, "colours", "auto|true|256|16|mono",
+           "how many of them the terminal has", PLACE(colours), .alias = "colors"),
 };
 const option_table lab_options = OPTION_TABLE("Options", rows);
 
 const command lab_command = {
     CALLED("lab", ONE_RUN, "Explore a run on the terminal"),
     SCENARIOS("[SCENARIO|FILE.session]", 0, 1),
-    .help = "Opens corrected/first-impact if no scenario is named; ? lists the keys. With --keys, "
-            "--script or\n--size nothing is shown live: the keys are pressed, then the script's "
-            "screen is printed as text.\n",
+    .help = "Opens corrected/first-impact if no scenario is named; ? lists the "
+            "keys. With --keys, --script or\n--size nothing is shown live: the "
+            "keys are pressed, then the script's screen is printed as text.\n",
     .options = {&set_options, &lab_options, &quiet_options},
     .run = explore,
 };

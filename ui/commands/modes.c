@@ -58,8 +58,9 @@ static void print_set(const arm *a, const mode_set *set, const char *hub, const 
     int angles = a->dof < ANGLES_SHOWN ? a->dof : ANGLES_SHOWN;
 
     printf("\nHub %s, tip %s\n", hub, tip);
-    printf("%s\n", shown > 0 ? "  mode  frequency [Hz]   [rad/s]   angles, the largest is 1"
-                             : "  nothing can move");
+    printf("%s\n", shown > 0
+                       ? "  mode  frequency [Hz]   [rad/s]   angles, the largest is 1"
+                       : "  nothing can move");
 
     for (int mode = 0; mode < shown; mode++) {
         printf("  %4d  %14.5g  %8.5g  ", mode + 1, set->frequencies[mode] / TWO_PI,
@@ -114,18 +115,25 @@ static int plot_modes(const arguments *args, const scenario *s, const void *foun
     size_t points = (size_t)a->links + 1;
     SCOPED(free_kept)
     double *numbers = calloc((size_t)HOLDS * MODES_DRAWN * 2 * points, sizeof *numbers);
-    FAIL_IF(numbers == NULL, worse(EXIT_FAILED, complain("out of memory")));
+    if (numbers == NULL) {
+        return worse(EXIT_FAILED, complain("out of memory"));
+    }
 
     // a panel for each way of holding the arm, a curve for each of its first modes
     for (int i = 0; i < HOLDS; i++) {
         int shown = sets[i].count < MODES_DRAWN ? sets[i].count : MODES_DRAWN;
         for (int m = 0; m < shown; m++) {
-            double *x = numbers + (size_t)(i * MODES_DRAWN + m) * 2 * points, *y = x + points;
+            double *x = numbers + (size_t)(i * MODES_DRAWN + m) * 2 * points,
+                   *y = x + points;
             deflections(a, sets[i].shapes + m * a->dof, x, y);
             snprintf(labels[i][m], sizeof labels[i][m], "%.3g\u2009Hz",
                      sets[i].frequencies[m] / TWO_PI);
             series[i][m] = curve_of(labels[i][m], labels[i][m], x, y, points, colours[m]);
-            series[i][m].marker = a->links <= 40 ? MARKER_CIRCLE : MARKER_NONE;
+            if (a->links <= 40) {
+                series[i][m].marker = MARKER_CIRCLE;
+            } else {
+                series[i][m].marker = MARKER_NONE;
+            }
         }
         snprintf(headings[i], sizeof headings[i], "hub %s, tip %s", holds[i].hub_name,
                  holds[i].tip_name);
@@ -139,12 +147,14 @@ static int plot_modes(const arguments *args, const scenario *s, const void *foun
                                    .series = series[i],
                                    .series_count = shown};
     }
-    const figure fig = {
-        .x = {.name = "position", .label = "Position along the arm", .unit = "m", .room = 0.02},
-        .panels = panels,
-        .panel_count = HOLDS,
-        .columns = 2,
-        .shared_y = true};
+    const figure fig = {.x = {.name = "position",
+                              .label = "Position along the arm",
+                              .unit = "m",
+                              .room = 0.02},
+                        .panels = panels,
+                        .panel_count = HOLDS,
+                        .columns = 2,
+                        .shared_y = true};
     return publish_titled(args, s, "first modes of the arm", &fig);
 }
 
@@ -152,8 +162,8 @@ static void print_modes(const scenario *s, const void *found)
 {
     const arm_modes *m = found;
     say_title(s);
-    printf("small vibrations of the straight arm, %d link%s, without damping\n", m->arm.links,
-           m->arm.links == 1 ? "" : "s");
+    printf("small vibrations of the straight arm, %d link%s, without damping\n",
+           m->arm.links, m->arm.links == 1 ? "" : "s");
     for (int i = 0; i < HOLDS; i++) {
         print_set(&m->arm, &m->sets[i], holds[i].hub_name, holds[i].tip_name);
     }
@@ -165,9 +175,11 @@ static int modes(const arguments *args, scenario *s)
     arm_modes m = {0};
     fault f = {.code = STATUS_OK};
     // errata B1: no natural frequencies without a symmetric stiffness
-    COMPLAIN_IF(s->parameters.arm.model == ARM_PRINTED,
-                "the printed equations have no symmetric stiffness and so no natural frequencies, "
-                "try --set arm.model=corrected");
+    if (s->parameters.arm.model == ARM_PRINTED) {
+        return complain(
+            "the printed equations have no symmetric stiffness and so no natural "
+            "frequencies, try --set arm.model=corrected");
+    }
 
     arm_init(&m.arm, &s->parameters);
     const size_t n = (size_t)m.arm.dof;
@@ -175,13 +187,16 @@ static int modes(const arguments *args, scenario *s)
         mode_set *set = &m.sets[i];
         set->frequencies = calloc(n, sizeof *set->frequencies);
         set->shapes = calloc(n * n, sizeof *set->shapes);
-        f.code = set->frequencies != NULL && set->shapes != NULL
-                     ? modes_compute(&m.arm, holds[i].hub, holds[i].tip, &set->count,
-                                     set->frequencies, set->shapes)
-                     : STATUS_NO_MEMORY;
+        if (set->frequencies != NULL && set->shapes != NULL) {
+            f.code = modes_compute(&m.arm, holds[i].hub, holds[i].tip, &set->count,
+                                   set->frequencies, set->shapes);
+        } else {
+            f.code = STATUS_NO_MEMORY;
+        }
     }
 
-    int result = f.code == STATUS_OK ? write_results(args, &r, s, &m, true) : complain_fault(&f);
+    int result =
+        f.code == STATUS_OK ? write_results(args, &r, s, &m, true) : complain_fault(&f);
     for (int i = 0; i < HOLDS; i++) {
         free(m.sets[i].frequencies);
         free(m.sets[i].shapes);
@@ -194,9 +209,10 @@ static const option_row rows[] = {PLOT_OPTION("draw the first modes' shapes")};
 const command modes_command = {
     CALLED("modes", ONE_RUN, "Natural frequencies and shapes of the arm"),
     ONE_SCENARIO,
-    .help = "Small vibrations about the straight arm without damping and friction, for a hub that "
-            "is locked (held by\nthe controller) or free, and a tip that is free or pinned to the "
-            "wall.\n",
-    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
+    .help = "Small vibrations about the straight arm without damping and "
+            "friction, for a hub that is locked (held by\nthe controller) or "
+            "free, and a tip that is free or pinned to the wall.\n",
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
+                &page_options},
     .use = modes,
 };

@@ -15,12 +15,26 @@
 // --theme, or its older spellings.
 static int read_theme(const arguments *a, figure_theme *theme)
 {
-    const char *word = a->theme != NULL ? a->theme : a->mono ? "mono" : a->dark ? "dark" : "light";
-    COMPLAIN_IF(a->mono + a->dark + (a->theme != NULL) > 1,
-                "--theme, --mono and --dark cannot go together");
-    *theme = strcmp(word, "mono") == 0   ? THEME_MONO
-             : strcmp(word, "dark") == 0 ? THEME_DARK
-                                         : THEME_COLOUR;
+    const char *word;
+    if (a->theme != NULL) {
+        word = a->theme;
+    } else if (a->mono) {
+        word = "mono";
+    } else if (a->dark) {
+        word = "dark";
+    } else {
+        word = "light";
+    }
+    if (a->mono + a->dark + (a->theme != NULL) > 1) {
+        return complain("--theme, --mono and --dark cannot go together");
+    }
+    if (strcmp(word, "mono") == 0) {
+        *theme = THEME_MONO;
+    } else if (strcmp(word, "dark") == 0) {
+        *theme = THEME_DARK;
+    } else {
+        *theme = THEME_COLOUR;
+    }
     return EXIT_DONE;
 }
 
@@ -42,36 +56,55 @@ int read_picture_options(const arguments *a, figure_options *o)
                           .latex = a->latex,
                           .command = a->command_line};
 
-    TRY_EXIT(read_theme(a, &o->look.theme));
-    COMPLAIN_IF(ranged && !(a->from < a->to),
-                "--from and --to go together, the first below the second");
+    int ended = read_theme(a, &o->look.theme);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
+    if (ranged && !(a->from < a->to)) {
+        return complain("--from and --to go together, the first below the second");
+    }
     if (ranged) {
         o->from = a->from;
         o->to = a->to;
     }
-    TRY_FAULT(o->look.font != NULL ? text_check_family(o->look.font, &f) : STATUS_OK);
+    fault f = {0};
+    if (o->look.font != NULL) {
+        if (text_check_family(o->look.font, &f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+    }
     return EXIT_DONE;
 }
 
 static int publish_figure(const arguments *a, const figure *fig)
 {
     figure_options o;
-    TRY_EXIT(read_picture_options(a, &o));
+    int ended = read_picture_options(a, &o);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
     g_autofree char *csv = artwork_beside(a->plot, ".csv");
-    TRY_FAULT(figure_publish(fig, &o, a->plot, whole_file_result_at(csv) == NULL, &f));
+    fault f = {0};
+    if (figure_publish(fig, &o, a->plot, whole_file_result_at(csv) == NULL, &f) !=
+        STATUS_OK) {
+        return complain_fault(&f);
+    }
     return EXIT_DONE;
 }
 
-int publish_titled(const arguments *a, const scenario *s, const char *shows, const figure *fig)
+int publish_titled(const arguments *a, const scenario *s, const char *shows,
+                   const figure *fig)
 {
     char title[256 + SCENARIO_CHANGES], changes[SCENARIO_CHANGES];
-    snprintf(title, sizeof title, "%s: %s%s", s->name, shows, scenario_changes(s, changes));
+    snprintf(title, sizeof title, "%s: %s%s", s->name, shows,
+             scenario_changes(s, changes));
     figure titled = *fig;
     titled.title = title;
     return publish_figure(a, &titled);
 }
 
-int publish_study(const arguments *a, const scenario *s, const char *shows, const figure *fig)
+int publish_study(const arguments *a, const scenario *s, const char *shows,
+                  const figure *fig)
 {
     figure drawn = *fig;
     drawn.x.scale = SCALE_LOGARITHMIC;
@@ -88,21 +121,30 @@ int publish_owned(const arguments *a, owned_figure *o)
     return code;
 }
 
-int publish_runs(const arguments *a, const char *title, const trace_run *runs, int run_count)
+int publish_runs(const arguments *a, const char *title, const trace_run *runs,
+                 int run_count)
 {
     assert(run_count > 0);
     figure_options o;
     fault why = {0};
-    TRY_EXIT(read_picture_options(a, &o));
+    int ended = read_picture_options(a, &o);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
     owned_figure *r = run_figure_create(title, NULL, 0, runs, run_count, &o, &why);
-    FAIL_IF(r == NULL, complain_fault(&why));
+    if (r == NULL) {
+        return complain_fault(&why);
+    }
 
     SCOPED(artwork_finish) artwork drawn = artwork_of_owned(r);
-    TRY_FAULT(artwork_publish(&drawn, &o, a->plot, false, &f));
+    fault f = {0};
+    if (artwork_publish(&drawn, &o, a->plot, false, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
     return EXIT_DONE;
 }
 
-// --- the arm in space -------------------------------------------------------------------------
+// --- the arm in space ------------------------------------------------------------------
 
 enum { DEFAULT_INSTANTS = 5 };
 
@@ -113,7 +155,11 @@ scene_options read_view(const arguments *a)
                        .exaggerate = a->exaggerate,
                        .inset = a->inset,
                        .transparent = a->transparent};
-    o.theme = a->theme != NULL && strcmp(a->theme, "dark") == 0 ? THEME_DARK : THEME_COLOUR;
+    if (a->theme != NULL && strcmp(a->theme, "dark") == 0) {
+        o.theme = THEME_DARK;
+    } else {
+        o.theme = THEME_COLOUR;
+    }
 
     // the words were checked before
     bool known = (a->gl == NULL || scene_renderer_find(a->gl, &o.renderer)) &&
@@ -126,23 +172,35 @@ scene_options read_view(const arguments *a)
 int check_view(const arguments *a)
 {
     camera_view unused;
-    COMPLAIN_IF(a->camera != NULL && !camera_read(a->camera, &unused),
-                "there is no camera '%s', expected three-quarter, top, side, tip, or two angles "
-                "such as -60,40 (elevation 1 to 90 degrees)",
-                a->camera);
+    if (a->camera != NULL && !camera_read(a->camera, &unused)) {
+        return complain(
+            "there is no camera '%s', expected three-quarter, top, side, tip, or "
+            "two angles such as -60,40 (elevation 1 to 90 degrees)",
+            a->camera);
+    }
     return EXIT_DONE;
 }
 
 int check_scene(const arguments *a)
 {
-    TRY_EXIT(check_view(a));
+    int ended = check_view(a);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
 
     // there is a picture for each instant, and a limit to them
-    COMPLAIN_IF(a->instants.count > SCENE_INSTANTS, "--at was given %d times, expected at most %d",
-                a->instants.count, SCENE_INSTANTS);
+    if (a->instants.count > SCENE_INSTANTS) {
+        return complain("--at was given %d times, expected at most %d", a->instants.count,
+                        SCENE_INSTANTS);
+    }
 
     // before the run, which may take long
-    TRY_FAULT(a->scene != NULL ? scene_check_path(a->scene, &f) : STATUS_OK);
+    fault f = {0};
+    if (a->scene != NULL) {
+        if (scene_check_path(a->scene, &f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+    }
     return EXIT_DONE;
 }
 
@@ -160,8 +218,14 @@ int write_scene(const arguments *a, const scenario *s, const run_result *result)
         count = DEFAULT_INSTANTS;
         scene_instants(result, times, count);
     }
-    const scene_picture shown = {
-        .scenario = s, .result = result, .options = read_view(a), .times = times, .count = count};
-    TRY_FAULT(scene_write(&shown, a->scene, &f));
+    const scene_picture shown = {.scenario = s,
+                                 .result = result,
+                                 .options = read_view(a),
+                                 .times = times,
+                                 .count = count};
+    fault f = {0};
+    if (scene_write(&shown, a->scene, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
     return EXIT_DONE;
 }

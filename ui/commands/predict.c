@@ -23,12 +23,13 @@ static bool read_commands(const char *text, command_list *list)
     while (rest != NULL && *rest != '\0') {
         const int i = list->count;
         double time, volts;
-        bool read = i < MOST_COMMANDS && decimal_read(rest, &time, &rest) && *rest == ':' &&
-                    decimal_read(rest + 1, &volts, &rest) && (*rest == ',' || *rest == '\0');
+        bool read = i < MOST_COMMANDS && decimal_read(rest, &time, &rest) &&
+                    *rest == ':' && decimal_read(rest + 1, &volts, &rest) &&
+                    (*rest == ',' || *rest == '\0');
         if (!read || !isfinite(time) || !isfinite(volts) || time < 0 ||
             (i > 0 && !(time > list->times[i - 1]))) {
-            complain("--then %s: expected TIME:VOLTS,... such as 0:2,0.01:-3, at most %d of them, "
-                     "times in seconds from the touch on and growing",
+            complain("--then %s: expected TIME:VOLTS,... such as 0:2,0.01:-3, at most %d "
+                     "of them, times in seconds from the touch on and growing",
                      text, MOST_COMMANDS);
             return false;
         }
@@ -59,18 +60,20 @@ static json_t *predict_object(const scenario *s, const void *found)
         const prediction_answer *answer = &p->answers[i];
         const prediction *said = &answer->prediction;
         const bool known = prediction_known(answer);
-        json_add(array, json_of("method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
-                                "equivalent_restitution:n inductance_changes_peak_N:n",
-                                answer->name, known ? answer->note : prediction_reason(answer),
-                                known ? json_boolean(said->holds) : json_null(), said->force,
-                                said->delay, said->impulse, said->restitution, said->inductance));
+        json_add(
+            array,
+            json_of("method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
+                    "equivalent_restitution:n inductance_changes_peak_N:n",
+                    answer->name, known ? answer->note : prediction_reason(answer),
+                    known ? json_boolean(said->holds) : json_null(), said->force,
+                    said->delay, said->impulse, said->restitution, said->inductance));
     }
 
     // the same pulse in the run
     json_t *simulation = json_of("peak_N:n time_to_peak_s:n impulse_Ns:n", came->peak,
                                  came->time_to_peak, came->impulse);
-    return json_of("scenario:t t_s:n predictions:o simulation:o", s->name, p->row->time, array,
-                   simulation);
+    return json_of("scenario:t t_s:n predictions:o simulation:o", s->name, p->row->time,
+                   array, simulation);
 }
 
 static void print_line(const char *label, double force, double delay, double impulse)
@@ -86,12 +89,15 @@ static void print_line(const char *label, double force, double delay, double imp
 static void print_inductance(const scenario *s, const prediction *linearised)
 {
     const motor_parameters *motor = &s->parameters.motor;
-    printf("\n  The current lags by L/R = %.3g ms", 1e3 * motor->inductance / motor->resistance);
+    printf("\n  The current lags by L/R = %.3g ms",
+           1e3 * motor->inductance / motor->resistance);
     if (!isnan(linearised->inductance)) {
         printf(", which changes the peak by %.3g N (%.2g %%)", linearised->inductance,
-               100 * linearised->inductance / (linearised->force - linearised->inductance));
+               100 * linearised->inductance /
+                   (linearised->force - linearised->inductance));
     }
-    printf(";\n  only the linearised arm follows it, to the others it follows at once.\n");
+    printf(
+        ";\n  only the linearised arm follows it, to the others it follows at once.\n");
 }
 
 static void print_predictions(const scenario *s, const void *found)
@@ -105,13 +111,15 @@ static void print_predictions(const scenario *s, const void *found)
     printf("%s at %.6g s, predicted from the instant before it\n\n",
            first ? "first contact" : "first contact after a flight", came->time);
 
-    printf("  last free row at %.6g s: hub, first and last link at %.5g, %.5g, %.5g rad,\n"
-           "  turning with %.5g, %.5g, %.5g rad/s\n\n",
-           row->time, row->hub_angle, row->first_angle, row->last_angle, row->hub_velocity,
-           row->first_velocity, row->last_velocity);
+    printf(
+        "  last free row at %.6g s: hub, first and last link at %.5g, %.5g, %.5g rad,\n"
+        "  turning with %.5g, %.5g, %.5g rad/s\n\n",
+        row->time, row->hub_angle, row->first_angle, row->last_angle, row->hub_velocity,
+        row->first_velocity, row->last_velocity);
 
     // the predictors, then what they should have found
-    printf("  %-30s %14s %14s %14s\n", "first pulse", "peak [N]", "after [ms]", "impulse [N s]");
+    printf("  %-30s %14s %14s %14s\n", "first pulse", "peak [N]", "after [ms]",
+           "impulse [N s]");
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
         const prediction *p = &answers[i].prediction;
         if (answers[i].outcome == PREDICTION_HOLDS) {
@@ -126,10 +134,10 @@ static void print_predictions(const scenario *s, const void *found)
 
     const prediction *pulse = &answers[PREDICTOR_LINEARISED].prediction;
     if (!isnan(pulse->restitution)) {
-        printf(
-            "\n  Kinetic energy given back by the end of the pulse, of the largest energy in the\n"
-            "  springs (e_eq of 4.1.1): %.4g\n",
-            pulse->restitution);
+        printf("\n  Kinetic energy given back by the end of the pulse, of the largest "
+               "energy in the\n"
+               "  springs (e_eq of 4.1.1): %.4g\n",
+               pulse->restitution);
     }
     if (s->parameters.motor.inductance > 0) {
         print_inductance(s, pulse);
@@ -140,7 +148,8 @@ static void print_predictions(const scenario *s, const void *found)
     }
 }
 
-// The peak that each predictor says, one below the other, with that of the simulation as a line.
+// The peak that each predictor says, one below the other, with that of the simulation as
+// a line.
 static int plot_predictions(const arguments *a, const scenario *s, const void *found)
 {
     const prediction_answer *answers = ((const predicted *)found)->answers;
@@ -150,7 +159,11 @@ static int plot_predictions(const arguments *a, const scenario *s, const void *f
     // a tick for each, but no point where a predictor does not hold
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
         bool holds = answers[i].outcome == PREDICTION_HOLDS;
-        peak[i] = holds ? answers[i].prediction.force : (double)NAN;
+        if (holds) {
+            peak[i] = answers[i].prediction.force;
+        } else {
+            peak[i] = (double)NAN;
+        }
         place[i] = PREDICTOR_COUNT - i; // the first one uppermost
         ticks[PREDICTOR_COUNT - 1 - i] = (figure_tick){place[i], answers[i].label};
     }
@@ -179,32 +192,42 @@ static int plot_predictions(const arguments *a, const scenario *s, const void *f
                                 .weight = 1.6};
 
     // zero is on the axis, so that peaks compare by their distance from it
-    const figure fig = {
-        .x = {.name = "peak", .label = "Peak force", .unit = "N", .room = 0.06, .with_zero = true},
-        .panels = &panel,
-        .panel_count = 1,
-        .common_legend = true};
+    const figure fig = {.x = {.name = "peak",
+                              .label = "Peak force",
+                              .unit = "N",
+                              .room = 0.06,
+                              .with_zero = true},
+                        .panels = &panel,
+                        .panel_count = 1,
+                        .common_legend = true};
     return publish_titled(a, s, "peak of the first pulse, predicted and simulated", &fig);
 }
 
 static int report(const arguments *a, const scenario *s, const run_result *result)
 {
-    static const command_results r = {predict_object, print_predictions, plot_predictions};
+    static const command_results r = {predict_object, print_predictions,
+                                      plot_predictions};
     predicted p = {.result = result};
     command_list then;
-    FAIL_IF(!read_commands(a->then, &then), EXIT_BAD_ARGUMENTS);
+    if (!read_commands(a->then, &then)) {
+        return EXIT_BAD_ARGUMENTS;
+    }
 
-    p.row = predict_first_contact(s, result, &(voltage_profile){then.count, then.times, then.volts},
+    p.row = predict_first_contact(s, result,
+                                  &(voltage_profile){then.count, then.times, then.volts},
                                   p.answers);
     if (p.row == NULL) {
-        complain("%s has no free flight that ends in a contact, there is nothing to predict",
-                 s->name);
+        complain(
+            "%s has no free flight that ends in a contact, there is nothing to predict",
+            s->name);
         return EXIT_FAILED;
     }
 
     // what there was no memory for is no answer
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
-        FAIL_IF(p.answers[i].fault.code == STATUS_NO_MEMORY, complain_fault(&p.answers[i].fault));
+        if (p.answers[i].fault.code == STATUS_NO_MEMORY) {
+            return complain_fault(&p.answers[i].fault);
+        }
     }
     return write_results(a, &r, s, &p, true);
 }
@@ -234,10 +257,12 @@ static const option_row rows[] = {
 
 const command predict_command = {
     CALLED("predict", ONE_RUN,
-           "Predict the peak force from the instant before contact, beside what then happens"),
+           "Predict the peak force from the instant before contact, beside what then "
+           "happens"),
     ONE_SCENARIO,
-    .help = "On a terminal a run of more than a second tells how far it is; ^C ends it (exit "
-            "status 130), and nothing\nis predicted.\n",
-    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
+    .help = "On a terminal a run of more than a second tells how far it is; ^C "
+            "ends it (exit status 130), and nothing\nis predicted.\n",
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
+                &page_options},
     .use = predict_and_report,
 };

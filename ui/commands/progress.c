@@ -10,7 +10,7 @@
 
 #include "src/base/clock.h"
 
-// --- runs and pieces --------------------------------------------------------------------------
+// --- runs and pieces -------------------------------------------------------------------
 
 #define FIRST_NOTE 1.0 // after this work is worth a word [s]
 #define NEXT_NOTE  0.2 // [s]
@@ -36,10 +36,12 @@ static void *tick(void *argument)
     while (sem_clockwait(&t->over, CLOCK_MONOTONIC, &next) != 0) {
         if (t->pieces != NULL) {
             fprintf(stderr, "\rimpactlab: %d of %d %s (^C stops) ",
-                    atomic_load_explicit(&interrupts_monitor.pieces, memory_order_relaxed),
+                    atomic_load_explicit(&interrupts_monitor.pieces,
+                                         memory_order_relaxed),
                     t->total, t->pieces);
         } else {
-            fprintf(stderr, "\rimpactlab: %.*f of %g s (^C stops) ", t->duration < 10 ? 3 : 1,
+            fprintf(stderr, "\rimpactlab: %.*f of %g s (^C stops) ",
+                    t->duration < 10 ? 3 : 1,
                     atomic_load_explicit(&interrupts_monitor.time, memory_order_relaxed),
                     t->duration);
         }
@@ -109,17 +111,20 @@ int work_finish(const arguments *a, status code, const fault *f, const command_r
     }
 
     // what there is
-    const bool nothing = r->kept == NULL || (interrupts_monitor.pieces == 0 && r->none != NULL);
+    const bool nothing =
+        r->kept == NULL || (interrupts_monitor.pieces == 0 && r->none != NULL);
     const int result = nothing ? EXIT_DONE : write_results(a, r, s, found, false);
     const char *none = r->none != NULL ? r->none : "nothing is written";
-    complain("stopped: %d of %d %s were done, %s", interrupts_monitor.pieces, ticker.total,
-             ticker.pieces, nothing ? none : r->kept);
+    complain("stopped: %d of %d %s were done, %s", interrupts_monitor.pieces,
+             ticker.total, ticker.pieces, nothing ? none : r->kept);
     return worse(result, EXIT_FAILED);
 }
 
-status run_with_progress(const arguments *a, const scenario *s, bool keep_trace, run_result *result)
+status run_with_progress(const arguments *a, const scenario *s, bool keep_trace,
+                         run_result *result)
 {
-    const run_options options = {.keep_trace = keep_trace, .monitor = &interrupts_monitor};
+    const run_options options = {.keep_trace = keep_trace,
+                                 .monitor = &interrupts_monitor};
     ticker.pieces = NULL;
     ticker.duration = s->parameters.run.duration;
     begin(a);
@@ -135,7 +140,7 @@ int run_stopped(const scenario *s, const char *what_became)
     return EXIT_FAILED;
 }
 
-// --- sweeps -----------------------------------------------------------------------------------
+// --- sweeps ----------------------------------------------------------------------------
 
 enum { BAR_LENGTH = 24 };
 
@@ -144,11 +149,21 @@ static const char full_bar[BAR_LENGTH + 1] = "========================";
 int many_runs_jobs(const arguments *a)
 {
     long count = sysconf(_SC_NPROCESSORS_ONLN);
-    int processors = count < 1 ? 1 : count > SWEEP_MOST_JOBS ? SWEEP_MOST_JOBS : (int)count;
-    return a->jobs > 0 ? (int)a->jobs : processors;
+    int processors = 1;
+    if (!(count < 1)) {
+        if (count > SWEEP_MOST_JOBS) {
+            processors = SWEEP_MOST_JOBS;
+        } else {
+            processors = (int)count;
+        }
+    }
+    if (a->jobs > 0) {
+        return (int)a->jobs;
+    }
+    return processors;
 }
 
-// --- progress -------------------------------------------------------------------------------
+// --- progress --------------------------------------------------------------------------
 
 // The progress bar, a line that is overwritten.
 static void show_progress(void *context, const sweep_progress *p)
@@ -164,7 +179,8 @@ static void show_progress(void *context, const sweep_progress *p)
         if (s < 3600) {
             snprintf(left, sizeof left, ", %ld:%02ld left", s / 60, s % 60);
         } else {
-            snprintf(left, sizeof left, ", %ld:%02ld:%02ld left", s / 3600, s / 60 % 60, s % 60);
+            snprintf(left, sizeof left, ", %ld:%02ld:%02ld left", s / 3600, s / 60 % 60,
+                     s % 60);
         }
     }
 
@@ -175,7 +191,8 @@ static void show_progress(void *context, const sweep_progress *p)
 
     snprintf(line, sizeof line, "%s%s[%.*s%*s] %3zu %%  %zu of %zu runs%s%s",
              word != NULL ? word : "", word != NULL ? " " : "", filled, full_bar,
-             BAR_LENGTH - filled, "", 100 * p->done / p->total, p->done, p->total, failed, left);
+             BAR_LENGTH - filled, "", 100 * p->done / p->total, p->done, p->total, failed,
+             left);
     fprintf(stderr, "\r%-78.78s", line);
 }
 
@@ -185,7 +202,8 @@ sweep_options many_runs_begin(const arguments *a, const char *word)
     return (sweep_options){.jobs = many_runs_jobs(a),
                            .stop = &interrupted,
                            .abandon = &interrupts_abandon,
-                           .report = isatty(STDERR_FILENO) && !a->quiet ? show_progress : NULL,
+                           .report =
+                               isatty(STDERR_FILENO) && !a->quiet ? show_progress : NULL,
                            .context = (void *)word};
 }
 
@@ -199,8 +217,8 @@ void many_runs_end(const sweep_options *o)
 void many_runs_tell_failure(const sweep_progress *p)
 {
     assert(p->failed > 0);
-    complain("%zu of %zu runs failed; run %zu: %s", p->failed, p->done_now, p->first_failed + 1,
-             p->first_failure);
+    complain("%zu of %zu runs failed; run %zu: %s", p->failed, p->done_now,
+             p->first_failed + 1, p->first_failure);
 }
 
 int many_runs_stopped(const char *db, size_t done, size_t total, const char *what_became)

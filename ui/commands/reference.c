@@ -1,5 +1,5 @@
-// Pages from the tables of commands, options, parameters, signals and quantities: man pages, and
-// chapters of the manual.
+// Pages from the tables of commands, options, parameters, signals and quantities: man
+// pages, and chapters of the manual.
 #include "ui/commands/command.h"
 
 #include <ctype.h>
@@ -15,10 +15,10 @@
 #include "src/tables/signals.h"
 #include "src/tables/summary.h"
 
-// --- text in pages ------------------------------------------------------------------------------
+// --- text in pages ---------------------------------------------------------------------
 
-// Text of a man page, in which troff finds no request and no escape of its own, or of a table's
-// cell or paragraph in which Markdown finds no marks of its own.
+// Text of a man page, in which troff finds no request and no escape of its own, or of a
+// table's cell or paragraph in which Markdown finds no marks of its own.
 static void put_escaped(FILE *stream, bool man, const char *text, int bytes)
 {
     for (int i = 0; i < bytes; i++) {
@@ -33,8 +33,8 @@ static void put_escaped(FILE *stream, bool man, const char *text, int bytes)
     }
 }
 
-// Prints a page's text: %s a text as it is, %u in capital letters, %m for troff, %t for Markdown,
-// %g a number.
+// Prints a page's text: %s a text as it is, %u in capital letters, %m for troff, %t for
+// Markdown, %g a number.
 static void put(FILE *stream, const char *format, ...)
 {
     va_list list;
@@ -59,7 +59,7 @@ static void put(FILE *stream, const char *format, ...)
     va_end(list);
 }
 
-// --- man pages --------------------------------------------------------------------------------
+// --- man pages -------------------------------------------------------------------------
 // One a command, and one of impactlab.
 
 static void put_paragraphs(FILE *stream, const char *text)
@@ -95,46 +95,52 @@ static void put_terms(FILE *stream, const char *title, const term *terms)
 
 static const term exit_status[] = {
     {"0", "Done."},
-    {"1", "The run failed or is inaccurate, an expectation was not met, or a file could not be "
-          "written."},
+    {"1", "The run failed or is inaccurate, an expectation was not met, or a "
+          "file could not be written."},
     {"2", "Bad arguments or a bad scenario."},
     {"130", "Ended by ^C; what was computed is kept, and a second ^C ends at once."},
     {NULL},
 };
 
 static const term environment[] = {
-    {"IMPACTLAB_SCENARIOS",
-     "Folders with further scenarios, separated by colons; of two of one name theirs counts."},
-    {"NO_COLOR", "If not empty, the terminal lab shows no colours unless --colours or its settings "
-                 "ask for them."},
-    {"COLORTERM", "If truecolor or 24bit, the terminal has colours by red, green and blue."},
-    {"XDG_CONFIG_HOME",
-     "Where the terminal lab keeps its settings, in impactlab/lab; ~/.config if not set."},
-    {"XDG_STATE_HOME", "Where the terminal lab keeps what is not saved, in impactlab, until it is "
-                       "left; ~/.local/state if not set."},
+    {"IMPACTLAB_SCENARIOS", "Folders with further scenarios, separated by colons; of two "
+                            "of one name theirs counts."},
+    {"NO_COLOR", "If not empty, the terminal lab shows no colours unless --colours or "
+                 "its settings ask for them."},
+    {"COLORTERM",
+     "If truecolor or 24bit, the terminal has colours by red, green and blue."},
+    {"XDG_CONFIG_HOME", "Where the terminal lab keeps its settings, in impactlab/lab; "
+                        "~/.config if not set."},
+    {"XDG_STATE_HOME",
+     "Where the terminal lab keeps what is not saved, in impactlab, until "
+     "it is left; ~/.local/state if not set."},
     {NULL},
 };
 
 static const term examples[] = {
     {"impactlab run corrected/first-impact --set motor.voltage=5",
      "How hard does the arm hit at 5 V?"},
-    {"impactlab run corrected/first-impact --json - | jq .peak_force_N", "The peak force alone."},
+    {"impactlab run corrected/first-impact --json - | jq .peak_force_N",
+     "The peak force alone."},
     {NULL},
 };
 
 static void write_overview(FILE *stream)
 {
-    put(stream, ".SH NAME\nimpactlab \\- impact and force control of a flexible robot arm\n"
-                ".SH SYNOPSIS\n\\fBimpactlab\\fR [\\fICOMMAND\\fR [\\fIARGUMENT\\fR]...]\n"
-                ".SH DESCRIPTION\n");
-    put_paragraphs(
-        stream,
-        "impactlab simulates a robot arm, a hub turned by a motor with a beam of one or more links "
-        "on it, that hits a rigid wall and goes on pressing against it. A SCENARIO is a name that "
-        "impactlab list prints, or a file. Without a command the arm is explored on the terminal; "
-        "where there is none, the scenarios are listed.\n\n"
-        "Options may stand before or after the other arguments. Files are written whole or not at "
-        "all. impactlab --version prints the version.");
+    put(stream,
+        ".SH NAME\nimpactlab \\- impact and force control of a flexible robot arm\n"
+        ".SH SYNOPSIS\n\\fBimpactlab\\fR [\\fICOMMAND\\fR [\\fIARGUMENT\\fR]...]\n"
+        ".SH DESCRIPTION\n");
+    put_paragraphs(stream, "impactlab simulates a robot arm, a hub turned by a motor "
+                           "with a beam of one or more links "
+                           "on it, that hits a rigid wall and goes on pressing against "
+                           "it. A SCENARIO is a name that "
+                           "impactlab list prints, or a file. Without a command the arm "
+                           "is explored on the terminal; "
+                           "where there is none, the scenarios are listed.\n\n"
+                           "Options may stand before or after the other arguments. Files "
+                           "are written whole or not at "
+                           "all. impactlab --version prints the version.");
 
     put(stream, ".SH COMMANDS\n");
     for (int i = 0; i < command_count; i++) {
@@ -145,7 +151,8 @@ static void write_overview(FILE *stream)
     put_terms(stream, "Environment", environment);
     put_terms(stream, "Exit status", exit_status);
     put_terms(stream, "Examples", examples);
-    put(stream, ".SH SEE ALSO\n\\fBimpactlab\\-scenario\\fR(5), \\fBlibimpactlab\\fR(3)\n");
+    put(stream,
+        ".SH SEE ALSO\n\\fBimpactlab\\-scenario\\fR(5), \\fBlibimpactlab\\fR(3)\n");
 }
 
 static void write_command(FILE *stream, const command *c)
@@ -166,8 +173,10 @@ static void write_command(FILE *stream, const command *c)
         title = t->title;
         for (const option_row *o = t->rows; o < t->rows + t->count; o++) {
             const char letter[] = {o->letter, '\0'};
-            put(stream, o->letter != 0 ? ".TP\n\\fB\\-%s\\fR, \\fB" : ".TP\n\\fB", letter);
-            put(stream, o->value != NULL ? "\\-\\-%m \\fI%m" : "\\-\\-%m", o->name, o->value);
+            put(stream, o->letter != 0 ? ".TP\n\\fB\\-%s\\fR, \\fB" : ".TP\n\\fB",
+                letter);
+            put(stream, o->value != NULL ? "\\-\\-%m \\fI%m" : "\\-\\-%m", o->name,
+                o->value);
             put(stream, "\\fR\n%m\n", o->help);
         }
     }
@@ -178,7 +187,8 @@ static void write_command(FILE *stream, const command *c)
 void write_man_page(FILE *stream, const command *c)
 {
     // a page of its own for each command, named as man looks it up
-    put(stream, c != NULL ? ".TH IMPACTLAB\\-%u" : ".TH IMPACTLAB", c != NULL ? c->name : "");
+    put(stream, c != NULL ? ".TH IMPACTLAB\\-%u" : ".TH IMPACTLAB",
+        c != NULL ? c->name : "");
     put(stream, " 1 \"\" \"impactlab %s\"\n", lab_version());
     if (c == NULL) {
         write_overview(stream);
@@ -187,24 +197,33 @@ void write_man_page(FILE *stream, const command *c)
     }
 }
 
-// --- chapters ---------------------------------------------------------------------------------
+// --- chapters --------------------------------------------------------------------------
 // In Markdown; and the man page of scenario files.
 
 // What is said of a parameter.
 typedef struct parameter_words {
     char range[RANGE_TEXT];
-    char initial[2 * PARAMETER_TEXT_SIZE + 16]; // its default, also of the printed model if other
+    char initial[2 * PARAMETER_TEXT_SIZE +
+                 16]; // its default, also of the printed model if other
 } parameter_words;
 
-const char *format_range(const parameter_info *info, const char *separator, char text[RANGE_TEXT])
+const char *format_range(const parameter_info *info, const char *separator,
+                         char text[RANGE_TEXT])
 {
-    const char *choices = info->type == PARAMETER_CHOICE    ? info->choices
-                          : info->type == PARAMETER_BOOLEAN ? "true|false"
-                          : info->type == PARAMETER_TEXT    ? "text"
-                                                            : NULL;
+    const char *choices;
+    if (info->type == PARAMETER_CHOICE) {
+        choices = info->choices;
+    } else if (info->type == PARAMETER_BOOLEAN) {
+        choices = "true|false";
+    } else if (info->type == PARAMETER_TEXT) {
+        choices = "text";
+    } else {
+        choices = NULL;
+    }
     if (choices == NULL) {
-        snprintf(text, RANGE_TEXT, "%s%g to %g", info->type == PARAMETER_LIST ? "list of " : "",
-                 info->minimum, info->maximum);
+        snprintf(text, RANGE_TEXT, "%s%g to %g",
+                 info->type == PARAMETER_LIST ? "list of " : "", info->minimum,
+                 info->maximum);
         return text;
     }
     size_t length = 0;
@@ -215,8 +234,10 @@ const char *format_range(const parameter_info *info, const char *separator, char
     return text;
 }
 
-// The default under a model as scenario files would give it, "derived" if other parameters give it.
-static void format_default(int index, arm_model_kind model, char text[PARAMETER_TEXT_SIZE])
+// The default under a model as scenario files would give it, "derived" if other
+// parameters give it.
+static void format_default(int index, arm_model_kind model,
+                           char text[PARAMETER_TEXT_SIZE])
 {
     parameters p;
     parameters_defaults(&p, model);
@@ -235,7 +256,8 @@ static parameter_words words_of(int index)
     format_default(index, ARM_CORRECTED, corrected);
     format_default(index, ARM_PRINTED, printed);
     snprintf(w.initial, sizeof w.initial,
-             strcmp(corrected, printed) != 0 ? "%s (printed: %s)" : "%s", corrected, printed);
+             strcmp(corrected, printed) != 0 ? "%s (printed: %s)" : "%s", corrected,
+             printed);
     return w;
 }
 
@@ -244,28 +266,29 @@ static const char *group_that_begins(int index, char group[32])
 {
     const char *path = parameter_table[index].path;
     const int length = (int)(strchr(path, '.') - path);
-    const bool begins =
-        index == 0 || strncmp(path, parameter_table[index - 1].path, (size_t)length + 1) != 0;
+    const bool begins = index == 0 || strncmp(path, parameter_table[index - 1].path,
+                                              (size_t)length + 1) != 0;
     snprintf(group, 32, "%.*s", begins ? length : 0, path);
     return group;
 }
 
 static void write_parameters(FILE *stream)
 {
-    put(stream, "# Parameters\n\nEvery parameter of a scenario, by its path. A default is "
-                "\"derived\" if it follows from other parameters; *timed* ones may change during a "
-                "run.\n");
+    put(stream, "# Parameters\n\nEvery parameter of a scenario, by its path. A "
+                "default is \"derived\" if it follows from other parameters; *timed* "
+                "ones may change during a run.\n");
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         const parameter_words w = words_of(i);
         char group[32];
         if (group_that_begins(i, group)[0] != '\0') {
             put(stream,
-                "\n## %s\n\n| path | default | unit | range | meaning |\n|---|---|---|---|---|\n",
+                "\n## %s\n\n| path | default | unit | range | meaning "
+                "|\n|---|---|---|---|---|\n",
                 group);
         }
-        put(stream, "| `%s` | %s | %s | %s | %t%s |\n", info->path, w.initial, info->unit, w.range,
-            info->description, info->timed ? "; *timed*" : "");
+        put(stream, "| `%s` | %s | %s | %s | %t%s |\n", info->path, w.initial, info->unit,
+            w.range, info->description, info->timed ? "; *timed*" : "");
     }
 }
 
@@ -273,18 +296,19 @@ static void write_parameters(FILE *stream)
 
 static void write_signals(FILE *stream)
 {
-    put(stream,
-        "# Signals\n\nWhat a run records at every row: columns of `--csv`, names for `--signals`, "
-        "panes and recipes.\n\n| name | symbol | unit | meaning |\n|---|---|---|---|\n");
+    put(stream, "# Signals\n\nWhat a run records at every row: columns of `--csv`, "
+                "names for `--signals`, panes and recipes.\n\n| name | symbol | unit "
+                "| meaning |\n|---|---|---|---|\n");
     for (const signal_info *s = signal_table; s < signal_table + signal_count; s++) {
-        put(stream, "| `%s` | %t | %s | %t%s |\n", s->name, s->ascii, s->unit, s->description,
-            s->optional ? "; only if recorded" : "");
+        put(stream, "| `%s` | %t | %s | %t%s |\n", s->name, s->ascii, s->unit,
+            s->description, s->optional ? "; only if recorded" : "");
     }
 }
 
 static void write_quantities(FILE *stream)
 {
-    put(stream, "# Quantities\n\nThe numbers of a run: keys of `run --json`, `expect`, sweeps and "
+    put(stream, "# Quantities\n\nThe numbers of a run: keys of `run --json`, `expect`, "
+                "sweeps and "
                 "comparisons. One that did not occur is null.\n\n"
                 "| key | unit | meaning |\n|---|---|---|\n");
     for (const summary_info *s = summary_table; s < summary_table + summary_count; s++) {
@@ -295,8 +319,8 @@ static void write_quantities(FILE *stream)
 
 static void write_events(FILE *stream)
 {
-    put(stream, "# Events\n\nWhat happens between rows, located in time: `events` of `run "
-                "--json`.\n\n| kind | what happens |\n|---|---|\n");
+    put(stream, "# Events\n\nWhat happens between rows, located in time: `events` of "
+                "`run --json`.\n\n| kind | what happens |\n|---|---|\n");
     for (int i = 0; event_description(i) != NULL; i++) {
         put(stream, "| `%s` | %t |\n", event_name((event_kind)i), event_description(i));
     }
@@ -317,8 +341,8 @@ static void put_law_parameters(FILE *stream, const controller *c)
             put(stream, "- `%s`, by default %s: %t\n", path, words_of(known).initial,
                 parameter_table[known].description);
         } else {
-            put(stream, "- in `control.settings`: `%s`, %g %s (%g to %g), %t\n", p.name, p.initial,
-                p.unit != NULL ? p.unit : "", p.minimum, p.maximum,
+            put(stream, "- in `control.settings`: `%s`, %g %s (%g to %g), %t\n", p.name,
+                p.initial, p.unit != NULL ? p.unit : "", p.minimum, p.maximum,
                 p.description != NULL ? p.description : "");
         }
     }
@@ -326,8 +350,8 @@ static void put_law_parameters(FILE *stream, const controller *c)
 
 static void write_laws(FILE *stream)
 {
-    put(stream, "# Control laws and their parameters\n\nThe choices of `control.law`, what each "
-                "does, and the parameters that it reads.\n");
+    put(stream, "# Control laws and their parameters\n\nThe choices of "
+                "`control.law`, what each does, and the parameters that it reads.\n");
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
         put(stream, "\n## %s\n\n%t.\n\n", control_law_table[law].word,
             control_law_table[law].description);
@@ -353,10 +377,12 @@ static void write_scenario_man(FILE *stream)
         "expect:\n"
         "  impacts: {value: 3, tolerance: 2}\n.fi\n"
         ".SH DESCRIPTION\n"
-        "A scenario is one YAML file. Every key may be left out. The path arm.k2 below is the key "
+        "A scenario is one YAML file. Every key may be left out. The path arm.k2 below "
+        "is the key "
         "k2 in the group arm. A value may carry the unit that is given here; nothing is "
         "converted.\n.PP\n"
-        "title, description, script, expect, panes and lesson stand beside the groups; the manual "
+        "title, description, script, expect, panes and lesson stand beside the groups; "
+        "the manual "
         "describes them under \\(lqScenario files\\(rq.\n",
         lab_version());
     for (int i = 0; i < parameter_count; i++) {
@@ -367,8 +393,8 @@ static void write_scenario_man(FILE *stream)
             put(stream, ".SH %u\n", group);
         }
         put(stream, ".TP\n\\fB%m\\fR%s%s\n%m.\nDefault: %s; range: %s%s.\n", info->path,
-            info->unit[0] != '\0' ? " in " : "", info->unit, info->description, w.initial, w.range,
-            info->timed ? "; may change during a run" : "");
+            info->unit[0] != '\0' ? " in " : "", info->unit, info->description, w.initial,
+            w.range, info->timed ? "; may change during a run" : "");
     }
     put(stream, ".SH SEE ALSO\n\\fBimpactlab\\fR(1), \\fBimpactlab\\-check\\fR(1), "
                 "\\fBlibimpactlab\\fR(3)\n");

@@ -21,14 +21,17 @@ static const char *value_text(const parameters *p, const char *path, char *text)
     return text;
 }
 
-// What has to be said of a number: a rigid contact stops the last link at once, the lighter the
-// more links there are, and presses the harder after it.
+// What has to be said of a number: a rigid contact stops the last link at once, the
+// lighter the more links there are, and presses the harder after it.
 static const char *remark_on(const parameters *p, int index)
 {
-    const bool peak =
-        index == SUMMARY_INDEX(peak_force_N) || index == SUMMARY_INDEX(first_pulse_peak_N);
+    const bool peak = index == SUMMARY_INDEX(peak_force_N) ||
+                      index == SUMMARY_INDEX(first_pulse_peak_N);
     const bool chain = p->arm.links > 2 && p->wall.contact == WALL_RIGID;
-    return peak && chain ? ", no limit as the links grow" : "";
+    if (peak && chain) {
+        return ", no limit as the links grow";
+    }
+    return "";
 }
 
 static void print_quantities(const parameters *p, const summary *m)
@@ -99,18 +102,20 @@ static void print_expectations(const scenario *s, const summary *m)
         double value = summary_value(m, e->quantity);
         bool met = expectation_is_met(e, value);
 
-        snprintf(found, sizeof found, isnan(value) ? "none" : "%.5g%s%s", value, space, unit);
+        snprintf(found, sizeof found, isnan(value) ? "none" : "%.5g%s%s", value, space,
+                 unit);
         snprintf(wanted, sizeof wanted, e->is_null ? "none" : "%g within %g", e->value,
                  e->tolerance);
 
         printf("  %s %s: %s (expected %s)\n",
-               met ? (ticks ? "\u2713" : "ok ") : (ticks ? "\u2717" : "NOT MET"), label, found,
-               wanted);
+               met ? (ticks ? "\u2713" : "ok ") : (ticks ? "\u2717" : "NOT MET"), label,
+               found, wanted);
     }
 }
 
 RESULT_GIVEN(json_t *, run_json, run_result, return export_run(s, found))
-RESULT_WRITER(write_signals, run_result, export_csv(stream, &found->trace, s->parameters.arm.links))
+RESULT_WRITER(write_signals, run_result,
+              export_csv(stream, &found->trace, s->parameters.arm.links))
 
 static int plot_signals(const arguments *a, const scenario *s, const void *found)
 {
@@ -135,7 +140,8 @@ static void print_run(const scenario *s, const void *found)
            p->wall.kind == WALL_NONE ? "no" : value_text(p, "wall.kind", wall), drive,
            value_text(p, "method.name", method), p->method.step, p->run.duration);
 
-    // what failed before its first step has no numbers: the sentence that follows says why
+    // what failed before its first step has no numbers: the sentence that follows says
+    // why
     if (result->summary.status != STATUS_OK && result->summary.steps == 0) {
         return;
     }
@@ -150,22 +156,25 @@ static int run_and_report(const arguments *a, scenario *s)
     bool keep_trace = a->csv != NULL || a->plot != NULL || a->scene != NULL;
 
     // what the file expects is said of its own parameters, not of changed ones
-    s->expectation_count = a->sets.count > 0 ? 0 : s->expectation_count;
+    if (a->sets.count > 0) {
+        s->expectation_count = 0;
+    }
     status code = run_with_progress(a, s, keep_trace, &result);
 
     // results are written of a run that failed, too
     static const command_results r = {run_json, print_run, plot_signals, write_signals,
                                       .draws_part = true};
     int exit_status = a->scene != NULL ? write_scene(a, s, &result) : EXIT_DONE;
-    exit_status = worse(exit_status, write_results(a, &r, s, &result, code != STATUS_STOPPED));
+    exit_status =
+        worse(exit_status, write_results(a, &r, s, &result, code != STATUS_STOPPED));
 
     if (code == STATUS_STOPPED) {
         exit_status = run_stopped(s, "the results are those of this time");
     } else if (code != STATUS_OK) {
         complain("%s failed: %s", s->name,
                  result.summary.message[0] ? result.summary.message : status_text(code));
-        exit_status =
-            worse(exit_status, code == STATUS_BAD_SCENARIO ? EXIT_BAD_ARGUMENTS : EXIT_FAILED);
+        exit_status = worse(exit_status, code == STATUS_BAD_SCENARIO ? EXIT_BAD_ARGUMENTS
+                                                                     : EXIT_FAILED);
     } else if (result.summary.inaccurate) {
         complain("%s is inaccurate: %s", s->name, result.summary.message);
         exit_status = worse(exit_status, EXIT_FAILED);
@@ -175,18 +184,20 @@ static int run_and_report(const arguments *a, scenario *s)
 
     idle_value idle;
     for (int place = 0; effect_next_idle(s, &place, &idle);) {
-        print_printable(stderr, "impactlab: note: %s has no effect: %s\n", idle.path, idle.why);
+        print_printable(stderr, "impactlab: note: %s has no effect: %s\n", idle.path,
+                        idle.why);
     }
 
     // what the amplifier makes of a voltage beyond its limit changes the run: say so
     const motor_parameters *m = &s->parameters.motor;
     if (s->parameters.control.law == LAW_NONE && fabs(m->voltage) > m->voltage_limit) {
         fprintf(stderr,
-                "impactlab: note: motor.voltage = %g V is beyond motor.voltage_limit: the "
-                "amplifier gets %g V\n",
+                "impactlab: note: motor.voltage = %g V is beyond "
+                "motor.voltage_limit: the amplifier gets %g V\n",
                 m->voltage, motor_limited_voltage(m, m->voltage));
     }
-    if (code == STATUS_OK && run_check_expectations(s, &result, report_to_stderr, NULL) > 0) {
+    if (code == STATUS_OK &&
+        run_check_expectations(s, &result, report_to_stderr, NULL) > 0) {
         exit_status = worse(exit_status, EXIT_FAILED);
     }
 
@@ -197,14 +208,22 @@ static int run_and_report(const arguments *a, scenario *s)
 static int run(const arguments *a)
 {
     figure_options pictures;
-    TRY_EXIT(check_scene(a));
-    TRY_EXIT(read_picture_options(a, &pictures));
+    int ended = check_scene(a);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
+    ended = read_picture_options(a, &pictures);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
     return with_scenario(a->operands[0], a, run_and_report);
 }
 
 static const option_row rows[] = {
-    OPTION(RESULT, "csv", "FILE|-", "write the recorded signals, one row a step", PLACE(csv)),
-    OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}", "draw the recorded signals", PLACE(plot)),
+    OPTION(RESULT, "csv", "FILE|-", "write the recorded signals, one row a step",
+           PLACE(csv)),
+    OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}", "draw the recorded signals",
+           PLACE(plot)),
     OPTION(PLACE, "scene", "FILE.png", "draw the arm", PLACE(scene)),
     OPTION(NUMBERS, "at", "T", "draw the arm at this instant [s] (may be repeated)",
            PLACE(instants), .high = 1e5),
@@ -213,12 +232,13 @@ static const option_row rows[] = {
 const command run_command = {
     CALLED("run", ONE_RUN, "Simulate a scenario and sum it up"),
     ONE_SCENARIO,
-    .help = "SCENARIO is a name from impactlab list, or a file. What a scenario file expects is "
-            "checked unless\n--set changed something. A run that fails still writes what it has "
-            "until then, and so does one that ^C ends (exit status 130). On a terminal a run of "
-            "more than a second\ntells how far it is.\nThe scene shows the arm at every --at, or "
-            "from the start to the peak force of the first pulse.\n",
-    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options,
-                &view_options},
+    .help = "SCENARIO is a name from impactlab list, or a file. What a scenario "
+            "file expects is checked unless\n--set changed something. A run that "
+            "fails still writes what it has until then, and so does one that ^C "
+            "ends (exit status 130). On a terminal a run of more than a "
+            "second\ntells how far it is.\nThe scene shows the arm at every "
+            "--at, or from the start to the peak force of the first pulse.\n",
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
+                &page_options, &view_options},
     .run = run,
 };

@@ -16,7 +16,7 @@
 #include "src/tables/settings.h"
 #include "src/tables/summary.h"
 
-// --- list -------------------------------------------------------------------------------------
+// --- list ------------------------------------------------------------------------------
 
 // The names of all scenarios, and what --json writes of them.
 typedef struct listing {
@@ -31,7 +31,8 @@ static int open_listing(listing *l, const arguments *a)
     fault f = {0};
     *l = (listing){.all = a->json != NULL ? json_array() : NULL};
     const bool room = a->json == NULL || l->all != NULL;
-    if ((room ? scenario_list(&l->names, &l->count, &f) : fault_no_memory(&f)) != STATUS_OK) {
+    if ((room ? scenario_list(&l->names, &l->count, &f) : fault_no_memory(&f)) !=
+        STATUS_OK) {
         json_decref(l->all);
         return complain_fault(&f);
     }
@@ -45,7 +46,10 @@ static int close_listing(listing *l, const arguments *a, int result)
         free(l->names[i]);
     }
     free(l->names);
-    return a->json != NULL ? worse(result, write_json(a->json, l->all)) : result;
+    if (a->json != NULL) {
+        return worse(result, write_json(a->json, l->all));
+    }
+    return result;
 }
 
 // What a list says of a scenario.
@@ -73,20 +77,29 @@ static int read_listed(const char *name, listed *l)
         snprintf(l->title, sizeof l->title, "%s", s.title != NULL ? s.title : "");
         scenario_finish(&s);
     }
-    return !l->faulty || f.code == STATUS_BAD_SCENARIO ? EXIT_DONE : complain_fault(&f);
+    if (!(!l->faulty || f.code == STATUS_BAD_SCENARIO)) {
+        return complain_fault(&f);
+    }
+    return EXIT_DONE;
 }
 
-// A line of each or, for a program, an object of name and title, which is null of one with faults.
+// A line of each or, for a program, an object of name and title, which is null of one
+// with faults.
 static int list(const arguments *a)
 {
     listing l;
     int width = 0, result = EXIT_DONE;
-    TRY_EXIT(open_listing(&l, a));
+    int ended = open_listing(&l, a);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
 
     // the titles of all stand in a column
     for (int i = 0; i < l.count; i++) {
         const int length = (int)strlen(l.names[i]);
-        width = length > width ? length : width;
+        if (length > width) {
+            width = length;
+        }
     }
     for (int i = 0; i < l.count; i++) {
         const char *name = l.names[i];
@@ -113,16 +126,20 @@ const command list_command = {
     .run = list,
 };
 
-// --- lesson -----------------------------------------------------------------------------------
+// --- lesson ----------------------------------------------------------------------------
 
 static int run_lesson(const arguments *a)
 {
     listing l;
     bool found = false;
-    COMPLAIN_IF(a->json != NULL && a->operand_count > 0,
-                "--json lists the lessons, expected no name beside it");
+    if (a->json != NULL && a->operand_count > 0) {
+        return complain("--json lists the lessons, expected no name beside it");
+    }
     int code = EXIT_DONE;
-    TRY_EXIT(open_listing(&l, a));
+    int ended = open_listing(&l, a);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
 
     // without a name all of them, otherwise the one with that name
     const char *wanted = a->operand_count > 0 ? a->operands[0] : NULL;
@@ -155,16 +172,17 @@ static int run_lesson(const arguments *a)
 const command lesson_command = {
     CALLED("lesson", ONE_RUN, "Experiments step by step, on the terminal"),
     OPERANDS("[NAME]", 0, 1),
-    .help = "Opens a lesson in the lab: steps with questions, checked by the run itself. Without a "
-            "name it lists them.\nIn the lab y goes on and A answers; :lesson lists the lessons "
-            "there.\n",
+    .help = "Opens a lesson in the lab: steps with questions, checked by the run "
+            "itself. Without a name it lists them.\nIn the lab y goes on and A "
+            "answers; :lesson lists the lessons there.\n",
     .options = {&set_options, &json_options, &lab_options, &quiet_options},
     .run = run_lesson,
 };
 
-// --- show -------------------------------------------------------------------------------------
+// --- show ------------------------------------------------------------------------------
 
-// Each number of control.settings under its path: where the law is known with its unit and range.
+// Each number of control.settings under its path: where the law is known with its unit
+// and range.
 static void print_settings(const scenario *s)
 {
     const controller *law = controller_of(s->parameters.control.law);
@@ -181,8 +199,8 @@ static void print_settings(const scenario *s)
         snprintf(path, sizeof path, "control.settings.%s", c.name);
         number_format_short(value, is_given ? given : c.initial);
         snprintf(range, sizeof range, "%g to %g", c.minimum, c.maximum);
-        say("%-33s %c %18s %-9s  %-29s  %s\n", path, is_given ? '=' : ' ', value, c.unit, range,
-            c.description);
+        say("%-33s %c %18s %-9s  %-29s  %s\n", path, is_given ? '=' : ' ', value, c.unit,
+            range, c.description);
     }
 
     // of a controller that is loaded when the run starts what was given
@@ -191,7 +209,8 @@ static void print_settings(const scenario *s)
     while (settings_next(&rest, &given)) {
         char path[2 * PARAMETER_TEXT_SIZE];
         snprintf(path, sizeof path, "control.settings.%s", given.name);
-        say("%-33s = %18s %-9s  %-29s  %s\n", path, given.value, "", "", setting_info.description);
+        say("%-33s = %18s %-9s  %-29s  %s\n", path, given.value, "", "",
+            setting_info.description);
     }
 }
 
@@ -216,7 +235,8 @@ static void print_expectations(const scenario *s)
         if (e->is_null) {
             printf("  %s does not occur\n", summary_table[e->quantity].key);
         } else {
-            printf("  %s = %g within %g\n", summary_table[e->quantity].key, e->value, e->tolerance);
+            printf("  %s = %g within %g\n", summary_table[e->quantity].key, e->value,
+                   e->tolerance);
         }
     }
 }
@@ -236,8 +256,8 @@ static json_t *show_object(const scenario *s)
 
     // what describes it, and all values whether given or not
     return json_of("scenario:t title:t description:t parameters:o given:o", s->name,
-                   scenario_titled(s, title), s->description, export_parameters(&s->parameters),
-                   given);
+                   scenario_titled(s, title), s->description,
+                   export_parameters(&s->parameters), given);
 }
 
 static int print_scenario(const arguments *a, scenario *s)
@@ -248,14 +268,15 @@ static int print_scenario(const arguments *a, scenario *s)
     say_title(s);
     print_indented(stdout, s->description, (int)strlen(s->description), 96, 0);
 
-    printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n", "parameter",
-           "value", "unit", "range");
+    printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n",
+           "parameter", "value", "unit", "range");
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
         char value[128], range[RANGE_TEXT];
         parameter_format(&s->parameters, i, value, sizeof value);
-        say("%-33s %c %18s %-9s  %-29s  %s\n", info->path, s->parameters.set[i] ? '=' : ' ', value,
-            info->unit, format_range(info, "|", range), info->description);
+        say("%-33s %c %18s %-9s  %-29s  %s\n", info->path,
+            s->parameters.set[i] ? '=' : ' ', value, info->unit,
+            format_range(info, "|", range), info->description);
         if (i == PARAMETER_INDEX(control.settings)) {
             print_settings(s);
         }
@@ -286,15 +307,16 @@ static int show(const arguments *a)
 }
 
 const command show_command = {
-    CALLED("show", ONE_RUN, "The resolved parameters of a scenario, with units and ranges"),
+    CALLED("show", ONE_RUN,
+           "The resolved parameters of a scenario, with units and ranges"),
     ONE_SCENARIO,
-    .help = "A parameter marked with = was given by the scenario or by --set, the others have "
-            "their defaults.\n",
+    .help = "A parameter marked with = was given by the scenario or by --set, "
+            "the others have their defaults.\n",
     .options = {&set_options, &json_options},
     .run = show,
 };
 
-// --- check ------------------------------------------------------------------------------------
+// --- check -----------------------------------------------------------------------------
 
 // What came of the files so far.
 typedef struct checking {
@@ -330,8 +352,12 @@ static int check_one(const char *file, const arguments *a, checking *c)
     c->faults = json_array();
 
     // a file under test, or the name of a scenario
-    status code = access(file, F_OK) == 0 ? scenario_read(&s, file, NULL, take_fault, c)
-                                          : scenario_open(&s, file, take_fault, c);
+    status code;
+    if (access(file, F_OK) == 0) {
+        code = scenario_read(&s, file, NULL, take_fault, c);
+    } else {
+        code = scenario_open(&s, file, take_fault, c);
+    }
     json_t *idle = json_array();
     if (code == STATUS_OK) {
         tell_idle(&s, file);
@@ -349,7 +375,8 @@ static int check_one(const char *file, const arguments *a, checking *c)
         result = tell_unopened(&c->told, code, file);
     }
 
-    json_add(c->files, json_of("file:t faults:o without_effect:o", file, c->faults, idle));
+    json_add(c->files,
+             json_of("file:t faults:o without_effect:o", file, c->faults, idle));
     return result;
 }
 
@@ -370,9 +397,9 @@ static int check(const arguments *a)
 const command check_command = {
     CALLED("check", ONE_RUN, "Validate scenario files"),
     SCENARIOS("FILE...", 1, 1 << 20),
-    .help = "Every fault is printed as FILE:LINE:COLUMN: what is wrong and what was expected. A "
-            "value that has\nno effect is warned of by FILE:LINE, and is no fault (exit status "
-            "0).\n",
+    .help = "Every fault is printed as FILE:LINE:COLUMN: what is wrong and what "
+            "was expected. A value that has\nno effect is warned of by "
+            "FILE:LINE, and is no fault (exit status 0).\n",
     .options = {&json_options},
     .run = check,
 };

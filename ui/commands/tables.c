@@ -12,8 +12,8 @@ static json_t *tables_object(const scenario *s, const void *found)
     json_t *rows = json_array();
     for (int i = 0; i < t->row_count; i++) {
         const table_row *row = &t->rows[i];
-        json_t *line = json_of("table:t k2_factor:n model:t quantity:t", row->table, row->k2_factor,
-                               row->model, row->quantity);
+        json_t *line = json_of("table:t k2_factor:n model:t quantity:t", row->table,
+                               row->k2_factor, row->model, row->quantity);
         json_add(rows, json_members(line, "voltage_V:o printed:o computed:o",
                                     json_numbers(t->voltage, TABLE_VOLTAGES),
                                     json_numbers(row->printed, TABLE_VOLTAGES),
@@ -32,7 +32,8 @@ static const struct {
     {"delay_simulation", "delay of the peak, simulation"},
 };
 
-static void print_cells(const char *name, const double *values, double scale, const char *format)
+static void print_cells(const char *name, const double *values, double scale,
+                        const char *format)
 {
     printf("    %-12s", name);
     for (int i = 0; i < TABLE_VOLTAGES; i++) {
@@ -61,12 +62,14 @@ static void print_row(const thesis_tables *t, const table_row *row)
 
 // Constants the thesis never prints, inferred from its tables (errata A), and why.
 static const char *const inferred[] = {
-    "k1 = 90 N m/rad: with the printed 169 468 the thesis's own algorithm chatters at 1 ms; 85 to "
-    "100 bring its tables out",
-    "torque per volt of command 0.4377 N m/V: amplifier gain 6.02 times kT/Ra; matches the forces",
-    "kT = 2.443 N m/A: the printed 0.249092 kg m/A in SI units, equal to kB as it must be",
-    "links of 0.5 m and a contact point at 1 m in the direction of 0.1 rad: from the listing's "
-    "formulas",
+    "k1 = 90 N m/rad: with the printed 169 468 the thesis's own "
+    "algorithm chatters at 1 ms; 85 to 100 bring its tables out",
+    "torque per volt of command 0.4377 N m/V: amplifier gain 6.02 times kT/Ra; matches "
+    "the forces",
+    "kT = 2.443 N m/A: the printed 0.249092 kg m/A in SI units, equal to kB as it must "
+    "be",
+    "links of 0.5 m and a contact point at 1 m in the direction of 0.1 "
+    "rad: from the listing's formulas",
 };
 enum { INFERRED = sizeof inferred / sizeof inferred[0] };
 
@@ -80,8 +83,8 @@ static void print_tables(const scenario *s, const void *found)
         const table_row *row = &t->rows[i], *before = i > 0 ? row - 1 : NULL;
         if (before == NULL || strcmp(before->table, row->table) != 0 ||
             strcmp(before->model, row->model) != 0) {
-            printf("%sTable %s, %g times the nominal k2, %s%s\n", i > 0 ? "\n" : "", row->table,
-                   row->k2_factor, row->model, fitted ? "" : " model");
+            printf("%sTable %s, %g times the nominal k2, %s%s\n", i > 0 ? "\n" : "",
+                   row->table, row->k2_factor, row->model, fitted ? "" : " model");
         }
         print_row(t, row);
     }
@@ -104,7 +107,8 @@ static void print_tables(const scenario *s, const void *found)
         return;
     }
 
-    printf("\nInferred, since the thesis does not print them (docs/explanation/model.md):\n");
+    printf("\nInferred, since the thesis does not print them "
+           "(docs/explanation/model.md):\n");
     for (int i = 0; i < INFERRED; i++) {
         printf("  %s\n", inferred[i]);
     }
@@ -122,24 +126,31 @@ static int tables(const arguments *a)
     } else {
         code = tables_compute(&t, &f);
     }
-    FAIL_IF(code != STATUS_OK && code != STATUS_STOPPED, complain_fault(&f));
+    if (code != STATUS_OK && code != STATUS_STOPPED) {
+        return complain_fault(&f);
+    }
     const int result = write_results(a, &r, NULL, &t, code == STATUS_OK);
-    FAIL_IF(code == STATUS_OK, result);
+    if (code == STATUS_OK) {
+        return result;
+    }
     complain("stopped: the cells that were not computed are empty");
     return worse(result, EXIT_FAILED);
 }
 
 static const option_row rows[] = {
-    OPTION(FLAG, "fitted", NULL, "what comes nearest to the printed delays instead", PLACE(fitted)),
+    OPTION(FLAG, "fitted", NULL, "what comes nearest to the printed delays instead",
+           PLACE(fitted)),
 };
 
 const command tables_command = {
-    CALLED("tables", THESIS, "Tables 4.1-4.3 of the thesis: printed, computed, difference"),
+    CALLED("tables", THESIS,
+           "Tables 4.1-4.3 of the thesis: printed, computed, difference"),
     NO_OPERANDS,
-    .help = "Each row is computed with the equations as the thesis prints them and with the "
-            "corrected ones. --fitted shows the delays of the simulation with seven numbers and "
-            "switches of the printed\nmodel fitted to them, and those of the impact dynamics by "
-            "the integral that belongs to (4.19)\n(docs/explanation/thesis.md).\n",
+    .help = "Each row is computed with the equations as the thesis prints them "
+            "and with the corrected ones. --fitted shows the delays of the "
+            "simulation with seven numbers and switches of the printed\nmodel "
+            "fitted to them, and those of the impact dynamics by the integral "
+            "that belongs to (4.19)\n(docs/explanation/thesis.md).\n",
     .options = {&json_options, OWN_OPTIONS(rows), &quiet_options},
     .run = tables,
 };

@@ -1,5 +1,5 @@
-// Lines that are carried out: typed after `:`, of scripts, of keys, of the settings. And the
-// commands that give keys another meaning.
+// Lines that are carried out: typed after `:`, of scripts, of keys, of the settings. And
+// the commands that give keys another meaning.
 #include "ui/explorer/explorer.h"
 
 #include <ctype.h>
@@ -12,7 +12,7 @@
 #include "ui/explorer/state/user_files.h"
 #include "ui/terminal/keys.h"
 
-// --- lines ------------------------------------------------------------------------------------
+// --- lines -----------------------------------------------------------------------------
 
 static action_function *const functions[] = {
 #define COMMAND_FUNCTION(group, name, keys, argument, help) act_##name,
@@ -50,8 +50,9 @@ bool explorer_execute(explorer_state *st, const char *line)
     }
 
     // without the blanks at its end
-    FAIL_IF(snprintf(text, sizeof text, "%s", line) >= LINE_TEXT,
-            act_refuse(st, "the line is too long"));
+    if (snprintf(text, sizeof text, "%s", line) >= LINE_TEXT) {
+        return act_refuse(st, "the line is too long");
+    }
     for (size_t n = strlen(text); n > 0 && isspace((unsigned char)text[n - 1]); n--) {
         text[n - 1] = '\0';
     }
@@ -76,23 +77,29 @@ bool explorer_carry_out(explorer *ex, const char *line)
     return done;
 }
 
-// --- keys -------------------------------------------------------------------------------------
+// --- keys ------------------------------------------------------------------------------
 
 // Reads the key that begins an argument, and where the rest of it does.
-static bool read_key(explorer_state *st, const char *argument, int *key, const char **rest)
+static bool read_key(explorer_state *st, const char *argument, int *key,
+                     const char **rest)
 {
     int length = (int)strcspn(argument, " \t");
     *key = key_of_name(argument, (size_t)length);
     *rest = argument + length + strspn(argument + length, " \t");
 
     // what cannot be bound
-    FAIL_IF(length == 0,
-            act_refuse(st, "a key is a character or a name such as Space, PgUp, F1, S-Left "
-                           "or C-r"));
-    FAIL_IF(*key == 0, act_refuse(st, "there is no key '%.*s'", length, argument));
-    FAIL_IF(*key == ':' || *key == KEY_CODE_ESCAPE || *key == ('c' & 0x1f),
-            act_refuse(st, "%.*s keeps its meaning: the way to the prompt, back or out", length,
-                       argument));
+    if (length == 0) {
+        return act_refuse(
+            st, "a key is a character or a name such as Space, PgUp, F1, S-Left or C-r");
+    }
+    if (*key == 0) {
+        return act_refuse(st, "there is no key '%.*s'", length, argument);
+    }
+    if (*key == ':' || *key == KEY_CODE_ESCAPE || *key == ('c' & 0x1f)) {
+        return act_refuse(st,
+                          "%.*s keeps its meaning: the way to the prompt, back or out",
+                          length, argument);
+    }
     return true;
 }
 
@@ -100,7 +107,8 @@ static bool read_key(explorer_state *st, const char *argument, int *key, const c
 static bool bind_key(explorer_state *st, int key, const char *line)
 {
     return key_bind(&st->keys, key, line) ||
-           act_refuse(st, "there are %d keys of your own already, no more fit", USER_KEYS);
+           act_refuse(st, "there are %d keys of your own already, no more fit",
+                      USER_KEYS);
 }
 
 bool act_key(explorer_state *st, const char *argument)
@@ -108,7 +116,9 @@ bool act_key(explorer_state *st, const char *argument)
     const char *line;
     char name[KEY_NAME], before[LINE_TEXT] = "";
     int key;
-    NEED(read_key(st, argument, &key, &line));
+    if (!read_key(st, argument, &key, &line)) {
+        return false;
+    }
 
     // without a command it is asked what the key does
     key_name(key, name, sizeof name);
@@ -125,8 +135,8 @@ bool act_key(explorer_state *st, const char *argument)
         return false;
     }
     const bool other = before[0] != '\0' && strcmp(before, line) != 0;
-    return act_tell(st, other ? "%s does '%s' now, no longer '%s'" : "%s does '%s' now", name, line,
-                    before);
+    return act_tell(st, other ? "%s does '%s' now, no longer '%s'" : "%s does '%s' now",
+                    name, line, before);
 }
 
 bool act_unkey(explorer_state *st, const char *argument)
@@ -134,7 +144,9 @@ bool act_unkey(explorer_state *st, const char *argument)
     const char *rest;
     char name[KEY_NAME];
     int key;
-    NEED(read_key(st, argument, &key, &rest));
+    if (!read_key(st, argument, &key, &rest)) {
+        return false;
+    }
     if (rest[0] != '\0') {
         st->message.at = (int)(rest - argument);
         return act_refuse(st, "unkey takes one key, what is '%s' for?", rest);
@@ -151,17 +163,22 @@ bool act_unkey(explorer_state *st, const char *argument)
     }
 
     // one of the explorer's own does nothing then
-    FAIL_IF(built_in == NULL, act_refuse(st, "%s does nothing as it is", name));
+    if (built_in == NULL) {
+        return act_refuse(st, "%s does nothing as it is", name);
+    }
     return bind_key(st, key, "") &&
-           act_tell(st, "%s does nothing now, no longer '%s' (unkey it again to have that back)",
-                    name, built_in);
+           act_tell(
+               st,
+               "%s does nothing now, no longer '%s' (unkey it again to have that back)",
+               name, built_in);
 }
 
-// --- settings ---------------------------------------------------------------------------------
+// --- settings --------------------------------------------------------------------------
 
-#define REMEMBERED                                                                                 \
-    " theme glyphs colours pixels closeup mouse bending colourby rate lanes slow speed panes "     \
-    "axis "                                                                                        \
+#define REMEMBERED                                                                       \
+    " theme glyphs colours pixels closeup mouse bending colourby rate lanes slow speed " \
+    "panes "                                                                             \
+    "axis "                                                                              \
     "key unkey "
 
 // Whether a line's first word is one of some with blanks round each.
@@ -174,14 +191,17 @@ static bool begins_with_one(const char *line, const char *words)
 
 bool explorer_look(explorer_state *st, const char *line)
 {
-    return begins_with_one(line, " panes axis zoom mark trace phase spectrum signal lanes limit "
-                                 "residual band note colourby ")
-               ? explorer_execute(st, line)
-               : act_refuse(st, "'%.60s' does not belong into a session", line);
+    if (begins_with_one(line,
+                        " panes axis zoom mark trace phase spectrum signal lanes limit "
+                        "residual band note colourby ")) {
+        return explorer_execute(st, line);
+    }
+    return act_refuse(st, "'%.60s' does not belong into a session", line);
 }
 
 // Executes a line of the file; errors are reported with line and column.
-static bool execute_line(explorer_state *st, const char *path, int number, const char *line)
+static bool execute_line(explorer_state *st, const char *path, int number,
+                         const char *line)
 {
     const int begin = (int)strspn(line, " \t");
 
@@ -189,11 +209,12 @@ static bool execute_line(explorer_state *st, const char *path, int number, const
     st->message.at = begin;
     const bool taken =
         strchr("#", line[begin]) != NULL || begins_with_one(line + begin, REMEMBERED);
-    const bool done = taken ? explorer_execute(st, line) : act_refuse(st, "this is no setting");
+    const bool done =
+        taken ? explorer_execute(st, line) : act_refuse(st, "this is no setting");
 
     // the place in the file comes before what is wrong
-    return done || act_refuse(st, "%s:%d:%d is ignored: %.200s", path, number, st->message.at + 1,
-                              st->message.text);
+    return done || act_refuse(st, "%s:%d:%d is ignored: %.200s", path, number,
+                              st->message.at + 1, st->message.text);
 }
 
 void explorer_load_settings(explorer *ex)
@@ -256,8 +277,8 @@ static void write_settings(const explorer_state *st, FILE *stream)
     for (const look_choice *c = look_choices; c->command != NULL; c++) {
         fprintf(stream, "%s %s\n", c->command, look_word(&st->looks, c));
     }
-    fprintf(stream, "bending %g\nrate %g\nspeed %g\nslow %g\n", st->looks.bending, st->looks.rate,
-            st->playback.speed, st->playback.slow);
+    fprintf(stream, "bending %g\nrate %g\nspeed %g\nslow %g\n", st->looks.bending,
+            st->looks.rate, st->playback.speed, st->playback.slow);
 
     // panes that the user did not choose are those that suit the scenario
     fputs(st->panes.chosen ? "panes " : "", stream);
@@ -274,24 +295,30 @@ bool act_remember(explorer_state *st, const char *argument)
 {
     char path[1024];
     whole_file file;
-    FAIL_IF(!user_file(USER_SETTINGS, "lab", path, sizeof path, true),
-            act_refuse(st, "there is no folder for settings (XDG_CONFIG_HOME or HOME)"));
-    FAIL_IF(st->settings_broken,
-            act_refuse(st, "%s has faults and is left alone: mend or remove it", path));
+    if (!user_file(USER_SETTINGS, "lab", path, sizeof path, true)) {
+        return act_refuse(st,
+                          "there is no folder for settings (XDG_CONFIG_HOME or HOME)");
+    }
+    if (st->settings_broken) {
+        return act_refuse(st, "%s has faults and is left alone: mend or remove it", path);
+    }
 
     // whole or not at all
-    NEED(act_worked(st, whole_file_open(&file, path, &st->fault)));
+    if (!act_worked(st, whole_file_open(&file, path, &st->fault))) {
+        return false;
+    }
     write_settings(st, file.stream);
     return act_worked(st, whole_file_commit(&file, &st->fault)) &&
            act_tell(st, "settings kept in %s", path);
 }
 
-// --- the first visit --------------------------------------------------------------------------
+// --- the first visit -------------------------------------------------------------------
 
 void explorer_welcome(explorer *ex)
 {
     char path[1024];
-    if (!user_file(USER_SETTINGS, "visited", path, sizeof path, true) || access(path, F_OK) == 0) {
+    if (!user_file(USER_SETTINGS, "visited", path, sizeof path, true) ||
+        access(path, F_OK) == 0) {
         return;
     }
     FILE *stream = fopen(path, "w");

@@ -13,7 +13,11 @@ static bool word_between_bars(const char *words, int i, char *text)
 {
     for (; i > 0 && words != NULL; i--) {
         words = strchr(words, '|');
-        words = words != NULL ? words + 1 : NULL;
+        if (words != NULL) {
+            words = words + 1;
+        } else {
+            words = NULL;
+        }
     }
     text_cut(words != NULL ? words : "", "|", text, CANDIDATE);
     return words != NULL;
@@ -23,12 +27,15 @@ static bool word_between_bars(const char *words, int i, char *text)
 static bool parameter_value(int parameter, int i, char *text)
 {
     const parameter_info *info = parameter >= 0 ? &parameter_table[parameter] : NULL;
-    return info != NULL && (info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN) &&
-           word_between_bars(info->type == PARAMETER_CHOICE ? info->choices : "true|false", i,
-                             text);
+    return info != NULL &&
+           (info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN) &&
+           word_between_bars(info->type == PARAMETER_CHOICE ? info->choices
+                                                            : "true|false",
+                             i, text);
 }
 
-// The i-th of the words that a command's argument chooses from; those in capitals stand for others.
+// The i-th of the words that a command's argument chooses from; those in capitals stand
+// for others.
 static bool argument_word(const char *argument, int i, char *text)
 {
     char word[CANDIDATE];
@@ -46,10 +53,12 @@ typedef struct place {
     int word; // 0: the command
     char command[32];
     char first[LINE_TEXT]; // argument, where it is complete
-    char kind[LINE_TEXT];  // of word, as the command's description has it, without brackets
+    char
+        kind[LINE_TEXT]; // of word, as the command's description has it, without brackets
 } place;
 
-// What a command's description says of its n-th argument, from 1; the last one may be repeated.
+// What a command's description says of its n-th argument, from 1; the last one may be
+// repeated.
 static void read_kind(const char *argument, int n, char *kind)
 {
     size_t length = 0;
@@ -92,25 +101,56 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
 
     // names of one kind, by the command's description or its name
     if (p->word == 0) {
-        name = i < explorer_command_count ? explorer_command_table[i].name : NULL;
+        if (i < explorer_command_count) {
+            name = explorer_command_table[i].name;
+        } else {
+            name = NULL;
+        }
     } else if (is_of(p, "PATH")) {
-        name = i < parameter_count ? parameter_table[i].path : NULL;
+        if (i < parameter_count) {
+            name = parameter_table[i].path;
+        } else {
+            name = NULL;
+        }
     } else if (is_of(p, "QUANTITY")) {
-        name = i < summary_count ? summary_table[i].key : NULL;
+        if (i < summary_count) {
+            name = summary_table[i].key;
+        } else {
+            name = NULL;
+        }
     } else if (is_of(p, "SIGNAL")) {
-        name = i < signal_count ? signal_table[i].name : NULL;
+        if (i < signal_count) {
+            name = signal_table[i].name;
+        } else {
+            name = NULL;
+        }
     } else if (strcmp(p->command, "set") == 0) {
         return p->word == 2 && parameter_value(parameter_of_name(p->first), i, text);
     } else if (strcmp(p->command, "law") == 0) {
-        name = i < LAW_COUNT ? control_law_table[i].word : i == LAW_COUNT ? "off" : NULL;
+        if (i < LAW_COUNT) {
+            name = control_law_table[i].word;
+        } else if (i == LAW_COUNT) {
+            name = "off";
+        } else {
+            name = NULL;
+        }
     } else if (is_of(p, "MODE")) {
         const law_modes *m = state_law_modes(st);
-        name = i < m->count        ? m->names[i]
-               : i == m->count     ? "next"
-               : i == m->count + 1 ? "off"
-                                   : NULL;
+        if (i < m->count) {
+            name = m->names[i];
+        } else if (i == m->count) {
+            name = "next";
+        } else if (i == m->count + 1) {
+            name = "off";
+        } else {
+            name = NULL;
+        }
     } else if (strcmp(p->command, "open") == 0) {
-        name = i < st->scenarios.count ? st->scenarios.names[i] : NULL;
+        if (i < st->scenarios.count) {
+            name = st->scenarios.names[i];
+        } else {
+            name = NULL;
+        }
     } else {
         return is_of(p, "|") && argument_word(p->kind, i, text);
     }
@@ -119,7 +159,8 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
     return name != NULL;
 }
 
-// Whether a candidate or its last part (motor.VOLTAGE, thesis/FIG-3-4) begins with what is typed.
+// Whether a candidate or its last part (motor.VOLTAGE, thesis/FIG-3-4) begins with what
+// is typed.
 static bool fits(const char *name, const char *word)
 {
     const char *part = strpbrk(name, "./");
@@ -148,7 +189,8 @@ static void put_word(prompt *p, const char *word, const char *after)
 }
 
 // As far as all candidates agree, and what they are.
-static bool complete_common(explorer_state *st, char fitting[FITTING][CANDIDATE], int count)
+static bool complete_common(explorer_state *st, char fitting[FITTING][CANDIDATE],
+                            int count)
 {
     prompt *p = &st->prompt;
     char listed[512] = "", *common = fitting[0];

@@ -1,9 +1,10 @@
-// The explorer, the interactive part of the program, without its terminal: it takes keys, the mouse
-// and command lines, and draws on a grid of cells.
+// The explorer, the interactive part of the program, without its terminal: it takes keys,
+// the mouse and command lines, and draws on a grid of cells.
 //
-// Its layers, each depending only on those before it: state/ (what is shown and how), actions/ (the
-// actions of commands, which return results), panels/ (parts of the screen, which read the state
-// and write a layout), and in this folder keys, mouse, the table of commands and the settings.
+// Its layers, each depending only on those before it: state/ (what is shown and how),
+// actions/ (the actions of commands, which return results), panels/ (parts of the screen,
+// which read the state and write a layout), and in this folder keys, mouse, the table of
+// commands and the settings.
 #pragma once
 
 #include <pthread.h>
@@ -20,7 +21,8 @@ typedef struct pointer_grip {
     int x, y;     // the cell it was at last
 } pointer_grip;
 
-// The file that outlives a lab's end unless its user ends it, and the one that is offered.
+// The file that outlives a lab's end unless its user ends it, and the one that is
+// offered.
 typedef struct recovery {
     char path[1024], left[1024]; // this lab's, and one that another lab left, "" for none
     int lock, left_lock;         // descriptors that hold their locks, -1 for none
@@ -40,11 +42,12 @@ typedef struct explorer {
     layout layout; // of the picture drawn last
     pointer_grip grip;
     recovery recovery;
-    char first_failure[MESSAGE_TEXT]; // message of the first line that failed, "" if none has
+    char first_failure[MESSAGE_TEXT]; // message of the first line that failed, "" if none
+                                      // has
 } explorer;
 
-// Opens the explorer on a scenario, taken over also on failure. Waits for runs not longer than
-// `patience` [s] (HUGE_VAL: for their end); explorer_follow then brings the rest.
+// Opens the explorer on a scenario, taken over also on failure. Waits for runs not longer
+// than `patience` [s] (HUGE_VAL: for their end); explorer_follow then brings the rest.
 status explorer_init(explorer *ex, scenario *s, double patience, fault *f);
 void explorer_finish(explorer *ex);
 
@@ -57,16 +60,16 @@ bool explorer_is_busy(const explorer *ex);
 // Draws everything; the layout depends on the screen's size.
 void explorer_draw(explorer *ex, screen *s);
 
-// --- lines ------------------------------------------------------------------------------------
+// --- lines -----------------------------------------------------------------------------
 
-// Executes a line; an empty one or a comment does nothing. The result's `at` counts from the
-// beginning of the line.
+// Executes a line; an empty one or a comment does nothing. The result's `at` counts from
+// the beginning of the line.
 bool explorer_execute(explorer_state *st, const char *line);
 
 // The same, with the result's message shown on the message line. False if it failed.
 bool explorer_carry_out(explorer *ex, const char *line);
 
-// --- keys -------------------------------------------------------------------------------------
+// --- keys ------------------------------------------------------------------------------
 
 // A key was pressed.
 void explorer_key(explorer *ex, int key);
@@ -75,42 +78,42 @@ void explorer_key(explorer *ex, int key);
 // elsewhere, so that what was copied never acts as keys.
 void explorer_paste(explorer *ex, int character);
 
-// Presses the keys of a text: characters, and names in angle brackets ("<Space>", "<Right>",
-// "<C-l>"). False, with the reason in f, at an unknown name.
+// Presses the keys of a text: characters, and names in angle brackets ("<Space>",
+// "<Right>", "<C-l>"). False, with the reason in f, at an unknown name.
 bool explorer_keys(explorer *ex, const char *text, fault *f);
 
-// --- the mouse --------------------------------------------------------------------------------
+// --- the mouse -------------------------------------------------------------------------
 
 // Handles an event of the mouse.
 void explorer_point(explorer *ex, pointer_event e);
 
-// --- completion -------------------------------------------------------------------------------
+// --- completion ------------------------------------------------------------------------
 
-// Completes the prompt's last word as far as all candidates agree and lists them if there are
-// several; called again it cycles through them.
+// Completes the prompt's last word as far as all candidates agree and lists them if there
+// are several; called again it cycles through them.
 bool complete_prompt(explorer_state *st);
 
-// --- sessions ---------------------------------------------------------------------------------
+// --- sessions --------------------------------------------------------------------------
 
-// Opens a session's file: its runs are pinned beside those there are. False, with the message why,
-// and nothing changed, if it cannot be.
+// Opens a session's file: its runs are pinned beside those there are. False, with the
+// message why, and nothing changed, if it cannot be.
 bool explorer_open_session(explorer_state *st, const char *path);
 
 // Writes one of what there is. Errors of writing stay in the stream; STATUS_NO_MEMORY, or
 // STATUS_CANNOT_WRITE for a pane that no line can say.
 status explorer_write_session(explorer_state *st, FILE *stream, fault *f);
 
-// --- recovery ---------------------------------------------------------------------------------
+// --- recovery --------------------------------------------------------------------------
 
-// Finds a place for the recovery file, and offers the newest that a lab left, which no other lab
-// offers meanwhile. True if there is one.
+// Finds a place for the recovery file, and offers the newest that a lab left, which no
+// other lab offers meanwhile. True if there is one.
 bool recovery_begin(explorer *ex);
 // Takes the answer to that: true if the key was one. Any other ends the offer.
 bool recovery_answer(explorer *ex, int key);
 
-// Writes the file if something may have changed, on a thread of its own and not more than once a
-// second. Returns after how many seconds at most to call again. A file that cannot be written is
-// told once.
+// Writes the file if something may have changed, on a thread of its own and not more than
+// once a second. Returns after how many seconds at most to call again. A file that cannot
+// be written is told once.
 double recovery_keep(explorer *ex, bool changed, double now);
 
 // Removes the file if the user ended the lab; else what was changed last is written.
@@ -119,12 +122,12 @@ void recovery_end(explorer *ex, bool orderly);
 // Carries out a line that says how runs are looked at, and none that does anything else.
 bool explorer_look(explorer_state *st, const char *line);
 
-// --- settings ---------------------------------------------------------------------------------
+// --- settings --------------------------------------------------------------------------
 
-// Shows the page of a first visit, unless there was one: then a file in the folder of settings says
-// so. Without such a folder nothing is shown.
+// Shows the page of a first visit, unless there was one: then a file in the folder of
+// settings says so. Without such a folder nothing is shown.
 void explorer_welcome(explorer *ex);
 
-// Executes the commands of the settings file, if there is one. Faulty lines are reported on the
-// message line and ignored.
+// Executes the commands of the settings file, if there is one. Faulty lines are reported
+// on the message line and ignored.
 void explorer_load_settings(explorer *ex);

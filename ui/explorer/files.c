@@ -19,8 +19,8 @@ static status write_figure(const explorer_state *st, const char *path, fault *f)
     for (int i = 0; i < st->note_count; i++) {
         notes[i] = (figure_mark){.x = st->notes[i].time, .label = st->notes[i].text};
     }
-    return plot_run(&s->effective, &s->run, s->has_other ? &s->other : NULL, notes, st->note_count,
-                    path, f);
+    return plot_run(&s->effective, &s->run, s->has_other ? &s->other : NULL, notes,
+                    st->note_count, path, f);
 }
 
 // The rows of the run.
@@ -64,27 +64,30 @@ static const struct {
 };
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
-// --- names of files ---------------------------------------------------------------------------
+// --- names of files --------------------------------------------------------------------
 
 static bool exists(const char *path)
 {
     return access(path, F_OK) == 0;
 }
 
-// Says that a file was written, or is there already, by its whole path, or its name as given if
-// there is none.
+// Says that a file was written, or is there already, by its whole path, or its name as
+// given if there is none.
 static bool tell_file(explorer_state *st, bool done, const char *name)
 {
     char *found = realpath(name, NULL), path[MESSAGE_TEXT / 2];
     snprintf(path, sizeof path, "%s", found != NULL ? found : name);
     free(found);
-    return done ? act_tell(st, "saved %s", path)
-                : act_refuse(st, "%s is there already: another name, or :save! %.100s replaces it",
-                             path, name);
+    if (done) {
+        return act_tell(st, "saved %s", path);
+    }
+    return act_refuse(st,
+                      "%s is there already: another name, or :save! %.100s replaces it",
+                      path, name);
 }
 
-// Asks for a name and proposes one that no file has: the scenario's, what the last change changed,
-// and a number if need be.
+// Asks for a name and proposes one that no file has: the scenario's, what the last change
+// changed, and a number if need be.
 static void propose_name(explorer_state *st, const char *command, const char *ending)
 {
     const session *s = &st->session;
@@ -92,7 +95,8 @@ static void propose_name(explorer_state *st, const char *command, const char *en
     text_add(stem, 59, "%s", scenario_leaf(s->base.name));
 
     // what the last change changed
-    const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
+    const session_input *last =
+        s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
     if (last != NULL && last->kind == SESSION_INPUT_PUSH) {
         text_add(stem, sizeof stem, "-push");
     } else if (last != NULL) {
@@ -102,7 +106,9 @@ static void propose_name(explorer_state *st, const char *command, const char *en
 
     // letters, digits and a few marks only; the first that is free
     for (char *c = stem; *c != '\0'; c++) {
-        *c = isalnum((unsigned char)*c) || strchr(".-_", *c) != NULL ? *c : '-';
+        if (!(isalnum((unsigned char)*c) || strchr(".-_", *c) != NULL)) {
+            *c = '-';
+        }
     }
     snprintf(name, sizeof name, "%s%s", stem, ending);
     for (int i = 2; exists(name) && i < 10000; i++) {
@@ -111,7 +117,7 @@ static void propose_name(explorer_state *st, const char *command, const char *en
     prompt_open(&st->prompt, name, "%s ", command);
 }
 
-// --- the commands -----------------------------------------------------------------------------
+// --- the commands ----------------------------------------------------------------------
 
 // Whether the file is none that the run or the measured data were read from.
 static bool is_free(explorer_state *st, const char *name)
@@ -122,10 +128,12 @@ static bool is_free(explorer_state *st, const char *name)
     whole_file_add_result(name);
     bool kept = outside_keep(&s->effective.parameters, &st->fault) == STATUS_OK;
     for (size_t i = 0; i < sizeof read / sizeof read[0]; i++) {
-        kept = kept && (read[i] == NULL || whole_file_keeps(read[i], &st->fault) == STATUS_OK);
+        kept = kept &&
+               (read[i] == NULL || whole_file_keeps(read[i], &st->fault) == STATUS_OK);
     }
     whole_file_forget_results();
-    return kept || act_refuse(st, "%.200s is a file that this run reads: another name", name);
+    return kept ||
+           act_refuse(st, "%.200s is a file that this run reads: another name", name);
 }
 
 // Writes what the name's ending asks for; a file that is there is replaced.
@@ -135,10 +143,16 @@ static bool save_over(explorer_state *st, const char *name)
     while (kind < KINDS && name[text_stem(name, kinds[kind].ending)] == '\0') {
         kind++;
     }
-    NEED((kind < KINDS && !kinds[kind].needs_whole_run) || act_need_whole_run(st));
-    FAIL_IF(kind == KINDS,
-            act_refuse(st, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt"));
-    NEED(is_free(st, name));
+    if (!((kind < KINDS && !kinds[kind].needs_whole_run) || act_need_whole_run(st))) {
+        return false;
+    }
+    if (kind == KINDS) {
+        return act_refuse(
+            st, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt");
+    }
+    if (!is_free(st, name)) {
+        return false;
+    }
 
     status code;
     whole_file file;
@@ -148,7 +162,9 @@ static bool save_over(explorer_state *st, const char *name)
         kinds[kind].write(st, file.stream);
         code = whole_file_commit(&file, &st->fault);
     }
-    NEED(act_worked(st, code));
+    if (!act_worked(st, code)) {
+        return false;
+    }
     if (kinds[kind].write == write_scenario) {
         st->saved_version = state_run_id(st);
     }
@@ -160,16 +176,22 @@ bool act_save(explorer_state *st, const char *argument)
     // without a name the prompt proposes one
     if (argument[0] == '\0') {
         propose_name(st, "save", ".png");
-        return act_tell(st, ".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
-                            "gives this run; .txt: the screen");
+        return act_tell(
+            st, ".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
+                "gives this run; .txt: the screen");
     }
-    return exists(argument) ? tell_file(st, false, argument) : save_over(st, argument);
+    if (exists(argument)) {
+        return tell_file(st, false, argument);
+    }
+    return save_over(st, argument);
 }
 
 bool act_save_now(explorer_state *st, const char *argument)
 {
-    return argument[0] == '\0' ? act_refuse(st, "save! takes the file that it is to replace")
-                               : save_over(st, argument);
+    if (argument[0] == '\0') {
+        return act_refuse(st, "save! takes the file that it is to replace");
+    }
+    return save_over(st, argument);
 }
 
 // The arm in space at the cursor's instant.
@@ -185,9 +207,13 @@ bool act_scene(explorer_state *st, const char *argument)
     }
 
     // nothing is replaced, and nothing incomplete is drawn
-    FAIL_IF(exists(argument),
-            act_refuse(st, "%.200s is there already: give the scene another name", argument));
-    NEED(act_need_whole_run(st));
+    if (exists(argument)) {
+        return act_refuse(st, "%.200s is there already: give the scene another name",
+                          argument);
+    }
+    if (!act_need_whole_run(st)) {
+        return false;
+    }
 
     // the cursor's instant
     const scene_picture picture = {.scenario = &s->effective,
@@ -199,10 +225,10 @@ bool act_scene(explorer_state *st, const char *argument)
            tell_file(st, true, argument);
 }
 
-// --- the clipboard ----------------------------------------------------------------------------
+// --- the clipboard ---------------------------------------------------------------------
 
-// The command that gives this run; where changes have instants or the scenario was changed as it
-// was opened no command does, and the scenario itself is written.
+// The command that gives this run; where changes have instants or the scenario was
+// changed as it was opened no command does, and the scenario itself is written.
 static void write_command(explorer_state *st, FILE *stream)
 {
     const session *s = &st->session;
@@ -243,13 +269,18 @@ bool act_copy(explorer_state *st, const char *argument)
     while (i < 3 && strcmp(argument[0] != '\0' ? argument : "value", what[i].word) != 0) {
         i++;
     }
-    FAIL_IF(i == 3, act_refuse(st, "copy takes value, run or screen"));
+    if (i == 3) {
+        return act_refuse(st, "copy takes value, run or screen");
+    }
     free(st->copied);
     st->copied = NULL;
     FILE *stream = open_memstream(&st->copied, &size);
     if (stream != NULL) {
         what[i].write(st, stream);
     }
-    FAIL_IF(stream == NULL || fclose(stream) != 0, act_worked(st, STATUS_NO_MEMORY));
-    return act_tell(st, "%s is on the clipboard of a terminal that knows OSC 52", what[i].word);
+    if (stream == NULL || fclose(stream) != 0) {
+        return act_worked(st, STATUS_NO_MEMORY);
+    }
+    return act_tell(st, "%s is on the clipboard of a terminal that knows OSC 52",
+                    what[i].word);
 }

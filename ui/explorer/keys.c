@@ -1,12 +1,12 @@
-// What keys and the mouse do: in the prompt, in a page, by the table of keys; the panel under the
-// mouse.
+// What keys and the mouse do: in the prompt, in a page, by the table of keys; the panel
+// under the mouse.
 #include "ui/explorer/explorer.h"
 
 #include <string.h>
 
 #include "ui/terminal/keys.h"
 
-// --- keys -------------------------------------------------------------------------------------
+// --- keys ------------------------------------------------------------------------------
 
 bool explorer_keys(explorer *ex, const char *text, fault *f)
 {
@@ -14,15 +14,22 @@ bool explorer_keys(explorer *ex, const char *text, fault *f)
         // a character by itself, unless it begins a name
         const char *close = *text == '<' ? strchr(text, '>') : NULL;
         const bool plain = (unsigned char)*text < 0x80;
-        const int key = close != NULL ? key_of_name(text + 1, (size_t)(close - text - 1))
-                        : plain       ? *text++
-                                      : (int)glyph_decode(&text);
+        int key;
+        if (close != NULL) {
+            key = key_of_name(text + 1, (size_t)(close - text - 1));
+        } else if (plain) {
+            key = *text++;
+        } else {
+            key = (int)glyph_decode(&text);
+        }
         if (close != NULL && key == 0) {
-            fault_set(f, STATUS_BAD_ARGUMENT, "there is no key '%.*s'", (int)(close - text + 1),
-                      text);
+            fault_set(f, STATUS_BAD_ARGUMENT, "there is no key '%.*s'",
+                      (int)(close - text + 1), text);
             return false;
         }
-        text = close != NULL ? close + 1 : text;
+        if (close != NULL) {
+            text = close + 1;
+        }
         explorer_key(ex, key);
     }
     return true;
@@ -66,7 +73,8 @@ static bool key_in_palette(explorer_state *st, int key)
 {
     const bool down = key == KEY_CODE_DOWN || key == ('n' & 0x1f);
     const bool up = key == KEY_CODE_UP || key == ('p' & 0x1f);
-    const bool moves = palette_shows(&st->prompt) && (down || (up && st->palette.selected >= 0));
+    const bool moves =
+        palette_shows(&st->prompt) && (down || (up && st->palette.selected >= 0));
     if (moves) {
         act_move_in_palette(st, down ? 1 : -1);
     }
@@ -99,11 +107,16 @@ static void key_in_prompt(explorer *ex, int key)
     } else {
         // other words, another list
         prompt_type(p, key);
-        ex->state.palette.selected = p->searches ? 0 : -1;
+        if (p->searches) {
+            ex->state.palette.selected = 0;
+        } else {
+            ex->state.palette.selected = -1;
+        }
     }
 }
 
-// Keys in a panel's filter: Enter keeps it and continues with the selection, Esc clears it.
+// Keys in a panel's filter: Enter keeps it and continues with the selection, Esc clears
+// it.
 static void key_in_filter(explorer *ex, int key)
 {
     explorer_state *st = &ex->state;
@@ -112,7 +125,11 @@ static void key_in_filter(explorer *ex, int key)
     if (leaves(key)) {
         st->filters.text[filtered][0] = '\0';
     }
-    st->filters.typing = enters || leaves(key) ? PANEL_NONE : filtered;
+    if (enters || leaves(key)) {
+        st->filters.typing = PANEL_NONE;
+    } else {
+        st->filters.typing = filtered;
+    }
     if (key == KEY_CODE_UP || key == KEY_CODE_DOWN) {
         explorer_carry_out(ex, key == KEY_CODE_UP ? "select -1" : "select");
     } else if (enters && filtered == PANEL_PARAMETERS && !st->parameters.on_heading) {
@@ -129,7 +146,8 @@ static void escape(explorer *ex)
     explorer_state *st = &ex->state;
     char *filter = st->filters.text[st->side.panel];
 
-    // a computation is stopped first, and nothing else; then a filter, the sweep, else the mark
+    // a computation is stopped first, and nothing else; then a filter, the sweep, else
+    // the mark
     if (st->session.computing != NULL) {
         explorer_carry_out(ex, "stop");
         return;
@@ -153,10 +171,14 @@ static void key_by_table(explorer *ex, int key)
     const bool asked = st->asked_to_quit;
 
     // the answers to what is asked come before the table
-    const char *bound = key == 's' && asked ? "session save"
-                        : key == 'y' && st->session.run.summary.status == STATUS_NOT_ALLOWED
-                            ? "allow"
-                            : key_line(&st->keys, key);
+    const char *bound = "session save";
+    if (!(key == 's' && asked)) {
+        if (key == 'y' && st->session.run.summary.status == STATUS_NOT_ALLOWED) {
+            bound = "allow";
+        } else {
+            bound = key_line(&st->keys, key);
+        }
+    }
     if (bound != NULL) {
         // a copy: the command may be one that binds keys
         char line[LINE_TEXT];
@@ -178,7 +200,11 @@ static void key_by_table(explorer *ex, int key)
 void explorer_key(explorer *ex, int key)
 {
     explorer_state *st = &ex->state;
-    key = key == '\n' ? KEY_CODE_ENTER : key == 127 || key == 8 ? KEY_CODE_BACKSPACE : key;
+    if (key == '\n') {
+        key = KEY_CODE_ENTER;
+    } else if (key == 127 || key == 8) {
+        key = KEY_CODE_BACKSPACE;
+    }
 
     // the page of a first visit takes no key
     if (st->page == PANEL_WELCOME) {
@@ -211,12 +237,13 @@ void explorer_paste(explorer *ex, int character)
     const bool blank = character == '\n' || character == '\r' || character == '\t';
     if (!typing) {
         act_warn(st, "pasted text does nothing here, : opens the prompt for it");
-    } else if (blank || (character >= ' ' && character < KEY_CODE_FIRST && character != 127)) {
+    } else if (blank ||
+               (character >= ' ' && character < KEY_CODE_FIRST && character != 127)) {
         explorer_key(ex, blank ? ' ' : character);
     }
 }
 
-// --- the mouse --------------------------------------------------------------------------------
+// --- the mouse -------------------------------------------------------------------------
 
 // Passes a gesture to the panel of its hit area; false if it has no effect.
 static bool give(explorer *ex, const panel_gesture *g)
@@ -240,7 +267,8 @@ static bool give(explorer *ex, const panel_gesture *g)
 // Whether a page is open and a part is not of it.
 static bool is_behind_page(const explorer_state *st, panel_id id)
 {
-    return st->page != PANEL_NONE && (id == PANEL_NONE || panel_place_of(id) < PLACE_PAGE);
+    return st->page != PANEL_NONE &&
+           (id == PANEL_NONE || panel_place_of(id) < PLACE_PAGE);
 }
 
 static void press(explorer *ex, pointer_event e)
@@ -263,7 +291,10 @@ static void press(explorer *ex, pointer_event e)
 static void drag(explorer *ex, pointer_event e)
 {
     pointer_grip *grip = &ex->grip;
-    panel_gesture g = {.event = e, .hit = grip->hit, .across = e.x - grip->x, .up = grip->y - e.y};
+    panel_gesture g = {.event = e,
+                       .hit = grip->hit,
+                       .across = e.x - grip->x,
+                       .up = grip->y - e.y};
     grip->dragged |= g.across != 0 || g.up != 0;
     g.dragged = grip->dragged;
     grip->x = e.x;
@@ -311,7 +342,9 @@ void explorer_point(explorer *ex, pointer_event e)
         drag(ex, e);
         break;
     case POINTER_RELEASE:
-        give(ex, &(panel_gesture){.event = e, .hit = ex->grip.hit, .dragged = ex->grip.dragged});
+        give(ex, &(panel_gesture){.event = e,
+                                  .hit = ex->grip.hit,
+                                  .dragged = ex->grip.dragged});
         ex->grip = (pointer_grip){0};
         break;
     default:

@@ -1,5 +1,5 @@
-// The recovery file: what would be lost if the lab ended now. It outlives every end of the program
-// but the one that its user asks for, and the next start offers it.
+// The recovery file: what would be lost if the lab ended now. It outlives every end of
+// the program but the one that its user asks for, and the next start offers it.
 //
 // It holds what `:session save` writes, and is locked as long as its lab lives.
 #include <dirent.h>
@@ -23,7 +23,7 @@
 // Of as many letters; what begins with the first one is offered.
 static const char offered[] = "recovery", declined[] = "declined";
 
-// --- writing ----------------------------------------------------------------------------------
+// --- writing ---------------------------------------------------------------------------
 
 // On a thread of its own, so that no key waits for a disk.
 static void *write_text(void *context)
@@ -37,7 +37,9 @@ static void *write_text(void *context)
         fputs(r->text, file.stream);
         r->code = whole_file_commit(&file, &r->fault);
         close(r->code == STATUS_OK ? r->lock : lock);
-        r->lock = r->code == STATUS_OK ? lock : r->lock;
+        if (r->code == STATUS_OK) {
+            r->lock = lock;
+        }
     }
     atomic_store(&r->done, true);
     return NULL;
@@ -55,7 +57,8 @@ static void end_writing(explorer *ex)
     r->text = NULL;
     if (r->code != STATUS_OK && !r->told) {
         const char *why = r->fault.text[0] != '\0' ? r->fault.text : status_text(r->code);
-        r->told = act_warn(&ex->state, "your changes would not outlive a crash: %.400s", why);
+        r->told =
+            act_warn(&ex->state, "your changes would not outlive a crash: %.400s", why);
     }
 }
 
@@ -102,7 +105,13 @@ double recovery_keep(explorer *ex, bool changed, double now)
         begin_writing(ex);
         r->due = now + APART;
     }
-    return r->writes ? LOOK : r->changed ? fmax(0, r->due - now) : HUGE_VAL;
+    if (r->writes) {
+        return LOOK;
+    }
+    if (r->changed) {
+        return fmax(0, r->due - now);
+    }
+    return HUGE_VAL;
 }
 
 void recovery_end(explorer *ex, bool orderly)
@@ -119,14 +128,15 @@ void recovery_end(explorer *ex, bool orderly)
     close(r->lock);
 }
 
-// --- offering ---------------------------------------------------------------------------------
+// --- offering --------------------------------------------------------------------------
 
 bool recovery_begin(explorer *ex)
 {
     recovery *r = &ex->recovery;
     char name[64];
     struct stat about;
-    snprintf(name, sizeof name, "%s-%012lld-%d.session", offered, (long long)time(NULL), getpid());
+    snprintf(name, sizeof name, "%s-%012lld-%d.session", offered, (long long)time(NULL),
+             getpid());
     user_file(USER_STATE, name, r->path, sizeof r->path, true);
     r->lock = r->left_lock = -1;
 
@@ -136,8 +146,8 @@ bool recovery_begin(explorer *ex)
     DIR *folder = opendir(r->left);
     for (struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;) {
         const char *found = entry->d_name;
-        const bool newer =
-            strncmp(found, offered, strlen(offered)) == 0 && strcmp(found, r->left + length) > 0;
+        const bool newer = strncmp(found, offered, strlen(offered)) == 0 &&
+                           strcmp(found, r->left + length) > 0;
         const int lock = newer ? whole_file_lock_left(dirfd(folder), found) : -1;
         if (lock >= 0) {
             close(r->left_lock);
@@ -154,8 +164,8 @@ bool recovery_begin(explorer *ex)
     }
     strftime(name, sizeof name, "%e %b at %H:%M", localtime(&about.st_mtime));
     return act_warn(&ex->state,
-                    "a lab ended on %s with work that was not saved: y goes on with it, n keeps it "
-                    "as a file, after any other key the next start asks again",
+                    "a lab ended on %s with work that was not saved: y goes on with it, "
+                    "n keeps it as a file, after any other key the next start asks again",
                     name);
 }
 
@@ -164,7 +174,9 @@ bool recovery_answer(explorer *ex, int key)
     recovery *r = &ex->recovery;
     explorer_state *st = &ex->state;
     char path[sizeof r->left], kept[sizeof r->left];
-    FAIL_IF(r->left[0] == '\0', false);
+    if (r->left[0] == '\0') {
+        return false;
+    }
     memcpy(path, r->left, sizeof path);
     memcpy(kept, path, sizeof kept);
     memcpy(strrchr(kept, '/') + 1, declined, strlen(declined));

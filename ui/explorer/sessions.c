@@ -13,7 +13,7 @@
 
 static const char ending[] = ".session";
 
-// --- saving -----------------------------------------------------------------------------------
+// --- saving ----------------------------------------------------------------------------
 
 // Adds a line on how the runs are looked at, if it is needed.
 static void add_line(session_file *file, bool needed, const char *format, ...)
@@ -32,7 +32,8 @@ static void add_line(session_file *file, bool needed, const char *format, ...)
     }
 }
 
-// A pane's own lines; `number` is the one it has where only panes that are shown are defined.
+// A pane's own lines; `number` is the one it has where only panes that are shown are
+// defined.
 static void add_pane(const explorer_state *st, session_file *file, int index, int number)
 {
     static const char *const views[] = {"trace", "phase", "residual", "spectrum"};
@@ -44,10 +45,12 @@ static void add_pane(const explorer_state *st, session_file *file, int index, in
     }
     add_line(file, index >= PANES_OF_TABLE && p->shown, "%s%s", views[p->view], signals);
 
-    // axes and hidden signals of what can be shown again; a lesson hides signals of its own
+    // axes and hidden signals of what can be shown again; a lesson hides signals of its
+    // own
     const bool again = p->count > 0 && (index < PANES_OF_TABLE || p->shown);
     const bool fixed = p->scaling == AXIS_FIXED;
-    add_line(file, again && fixed, "axis %.17g %.17g %d", p->fixed.low, p->fixed.high, number);
+    add_line(file, again && fixed, "axis %.17g %.17g %d", p->fixed.low, p->fixed.high,
+             number);
     add_line(file, again && !fixed && p->scaling != AXIS_AUTO, "axis %s %d",
              axis_scaling_words[p->scaling], number);
     add_line(file, again && (p->hidden != 0 || st->lesson.on), "signal all %d", number);
@@ -81,8 +84,8 @@ static void add_looks(const explorer_state *st, session_file *file)
     add_line(file, st->looks.by_run, "colourby run");
     add_line(file, band >= 0, "band %s %.17g", band >= 0 ? signal_table[band].name : "",
              st->band.bound);
-    add_line(file, limit >= 0, "limit %s %.17g", limit >= 0 ? signal_table[limit].name : "",
-             st->limit.bound);
+    add_line(file, limit >= 0, "limit %s %.17g",
+             limit >= 0 ? signal_table[limit].name : "", st->limit.bound);
     add_line(file, st->mark.set, "mark %.17g", st->mark.time);
 }
 
@@ -132,17 +135,24 @@ static status write_session(explorer_state *st, const char *path, fault *f)
 static bool save_session(explorer_state *st, const char *path)
 {
     // a file is replaced only if it is the one this visit goes on with
-    FAIL_IF(access(path, F_OK) == 0 && strcmp(path, st->session_path) != 0,
-            act_refuse(st, "%.200s is there already: give the session another name", path));
-    NEED(act_need_whole_run(st) && act_worked(st, write_session(st, path, &st->fault)));
+    if (access(path, F_OK) == 0 && strcmp(path, st->session_path) != 0) {
+        return act_refuse(st, "%.200s is there already: give the session another name",
+                          path);
+    }
+    if (!(act_need_whole_run(st) &&
+          act_worked(st, write_session(st, path, &st->fault)))) {
+        return false;
+    }
     snprintf(st->session_path, sizeof st->session_path, "%s", path);
     st->saved_version = state_run_id(st);
     st->kept_pins = st->pinned.pinned;
-    FAIL_IF(strchr(path, '\'') != NULL, act_tell(st, "kept in %.200s", path));
+    if (strchr(path, '\'') != NULL) {
+        return act_tell(st, "kept in %.200s", path);
+    }
     return act_tell(st, "kept: impactlab lab '%.200s' goes on with it", path);
 }
 
-// --- opening ----------------------------------------------------------------------------------
+// --- opening ---------------------------------------------------------------------------
 
 // Computes a pinned run of a file and pins it.
 static status pin_kept(explorer_state *st, const kept_run *k, fault *f)
@@ -163,11 +173,16 @@ static bool take_session(explorer_state *st, const session_file *file)
 {
     session fresh;
     const int before = st->pinned.count, baseline = st->pinned.baseline;
-    FAIL_IF(before + file->run_count - 1 > PINNED_RUNS,
-            act_refuse(st, "its %d pinned runs have no room beside the %d here: R drops some",
-                       file->run_count - 1, before));
+    if (before + file->run_count - 1 > PINNED_RUNS) {
+        return act_refuse(
+            st, "its %d pinned runs have no room beside the %d here: R drops some",
+            file->run_count - 1, before);
+    }
     fault *f = &st->fault;
-    NEED(act_worked(st, session_reopen(&fresh, &file->runs[0].from, st->session.patience, f)));
+    if (!act_worked(st, session_reopen(&fresh, &file->runs[0].from, st->session.patience,
+                                       f))) {
+        return false;
+    }
     status code = STATUS_OK;
     for (int i = 1; i < file->run_count && code == STATUS_OK; i++) {
         code = pin_kept(st, &file->runs[i], f);
@@ -175,8 +190,14 @@ static bool take_session(explorer_state *st, const session_file *file)
 
     // the baseline is the file's, else the one that was
     const int kept = file->baseline >= 0 ? before + file->baseline : baseline;
-    st->pinned.baseline = kept < st->pinned.count ? kept : st->pinned.count - 1;
-    code = code == STATUS_OK ? state_take_session(st, &fresh, f) : code;
+    if (kept < st->pinned.count) {
+        st->pinned.baseline = kept;
+    } else {
+        st->pinned.baseline = st->pinned.count - 1;
+    }
+    if (code == STATUS_OK) {
+        code = state_take_session(st, &fresh, f);
+    }
     if (code != STATUS_OK) {
         while (st->pinned.count > before) {
             run_list_drop(&st->pinned, st->pinned.count - 1);
@@ -191,7 +212,9 @@ static bool take_session(explorer_state *st, const session_file *file)
 bool explorer_open_session(explorer_state *st, const char *path)
 {
     static session_file file;
-    NEED(act_worked(st, session_file_read(&file, path, &st->fault)));
+    if (!act_worked(st, session_file_read(&file, path, &st->fault))) {
+        return false;
+    }
 
     // then how they are looked at; a line that says nothing of that is told
     bool done = take_session(st, &file);
@@ -202,19 +225,23 @@ bool explorer_open_session(explorer_state *st, const char *path)
         }
     }
     if (done && said.text[0] == '\0' && session_file_is_outdated(&file)) {
-        said = (message_line){.text = "a file that a run reads has changed since it was kept"};
+        said = (message_line){
+            .text = "a file that a run reads has changed since it was kept"};
     }
     if (done) {
         snprintf(st->session_path, sizeof st->session_path, "%s", path);
         st->saved_version = state_run_id(st);
         st->kept_pins = st->pinned.pinned;
         act_hush(st);
-        done = said.text[0] != '\0'
-                   ? act_warn(st, "%.200s: %.400s", path, said.text)
-                   : act_tell_failed_run(st) ||
-                         act_tell(st, "%.200s: %d change%s, %d pinned run%s", path,
-                                  st->session.input_count, st->session.input_count == 1 ? "" : "s",
-                                  st->pinned.count, st->pinned.count == 1 ? "" : "s");
+        if (said.text[0] != '\0') {
+            done = act_warn(st, "%.200s: %.400s", path, said.text);
+        } else {
+            done =
+                act_tell_failed_run(st) ||
+                act_tell(st, "%.200s: %d change%s, %d pinned run%s", path,
+                         st->session.input_count, st->session.input_count == 1 ? "" : "s",
+                         st->pinned.count, st->pinned.count == 1 ? "" : "s");
+        }
     }
     session_file_finish(&file);
     return done;
@@ -230,13 +257,18 @@ bool act_session(explorer_state *st, const char *argument)
                     "session save ");
         return true;
     }
-    FAIL_IF((!saves && strcmp(word, "open") != 0) || path[0] == '\0',
-            act_refuse(st, "session takes save or open, and a file such as lab.session"));
+    if ((!saves && strcmp(word, "open") != 0) || path[0] == '\0') {
+        return act_refuse(st,
+                          "session takes save or open, and a file such as lab.session");
+    }
 
     // a name without the ending by which the lab knows a session gets it
     char whole[LINE_TEXT];
     const bool there = !saves && access(path, F_OK) == 0;
     const int stem = (int)(there ? strlen(path) : text_stem(path, ending));
     snprintf(whole, sizeof whole, "%.*s%s", stem, path, there ? "" : ending);
-    return saves ? save_session(st, whole) : explorer_open_session(st, whole);
+    if (saves) {
+        return save_session(st, whole);
+    }
+    return explorer_open_session(st, whole);
 }

@@ -10,26 +10,26 @@
 
 enum { WORDS = 16, WORD = 32, TERMS = WORDS * (WORD + 8) };
 
-// All things and their passages, words without their endings (Porter 1980), and the words of titles
-// as they are spelt. Passages of the thing with number n have the numbers from n PASSAGES on.
+// All things and their passages, words without their endings (Porter 1980), and the words
+// of titles as they are spelt. Passages of the thing with number n have the numbers from
+// n PASSAGES on.
 static const char tables[] =
-    "BEGIN;"
-    "CREATE VIRTUAL TABLE thing USING fts5(source UNINDEXED, item UNINDEXED, title, above, body, "
-    "tokenize = 'porter');"
-    "CREATE VIRTUAL TABLE passage USING fts5(body, tokenize = 'porter');"
-    "CREATE VIRTUAL TABLE title USING fts5(body);"
-    "CREATE VIRTUAL TABLE spelling USING fts5vocab(title, row);";
+    "BEGIN;CREATE VIRTUAL TABLE thing USING fts5(source UNINDEXED, item UNINDEXED, "
+    "title, above, body, tokenize = 'porter');CREATE VIRTUAL TABLE passage USING "
+    "fts5(body, tokenize = 'porter');CREATE VIRTUAL TABLE title USING "
+    "fts5(body);CREATE VIRTUAL TABLE spelling USING fts5vocab(title, row);";
 #define PASSAGES "10000"
 
-// The best things for the terms ?1, at most ?2, each with its best passage. The score is Okapi BM25
-// (Robertson and Zaragoza 2009), where a word in a title counts as twelve.
+// The best things for the terms ?1, at most ?2, each with its best passage. The score is
+// Okapi BM25 (Robertson and Zaragoza 2009), where a word in a title counts as twelve.
 static const char best_things[] =
     "SELECT source, item, (SELECT passage.rowid % " PASSAGES " FROM passage "
-    "WHERE passage MATCH ?1 AND passage.rowid / " PASSAGES " = thing.rowid "
-    "ORDER BY bm25(passage), passage.rowid LIMIT 1) "
-    "FROM thing WHERE thing MATCH ?1 ORDER BY bm25(thing, 0, 0, 12, 4, 1), rowid LIMIT ?2";
-static const char titled_things[] = "SELECT source, item, NULL FROM thing "
-                                    "WHERE thing MATCH 'title:' || ?1 ORDER BY rowid LIMIT ?2";
+    "WHERE passage MATCH ?1 AND passage.rowid / " PASSAGES
+    " = thing.rowid ORDER BY bm25(passage), passage.rowid LIMIT 1) FROM thing WHERE "
+    "thing MATCH ?1 ORDER BY bm25(thing, 0, 0, 12, 4, 1), rowid LIMIT ?2";
+static const char titled_things[] =
+    "SELECT source, item, NULL FROM thing "
+    "WHERE thing MATCH 'title:' || ?1 ORDER BY rowid LIMIT ?2";
 
 typedef struct question_words {
     char words[WORDS][WORD];
@@ -40,10 +40,9 @@ typedef struct question_words {
 static bool says_little(const char *word)
 {
     static const char little[] =
-        " a an and are at be by can do does for from get has have how i if in is it make me mean "
-        "my need of on one or should so take that the then there this to use used want was "
-        "what "
-        "when where which why will with write you your ";
+        " a an and are at be by can do does for from get has have how i if in is it "
+        "make me mean my need of on one or should so take that the then there this to "
+        "use used want was what when where which why will with write you your ";
     char padded[WORD + 2];
     snprintf(padded, sizeof padded, " %s ", word);
     return strstr(little, padded) != NULL;
@@ -56,7 +55,8 @@ static void read_words(question_words *q, const char *question, bool all)
     while (q->count < WORDS && *question != '\0') {
         char *word = q->words[q->count];
         int length = 0;
-        for (; isalnum((unsigned char)*question) || (unsigned char)*question >= 0x80; question++) {
+        for (; isalnum((unsigned char)*question) || (unsigned char)*question >= 0x80;
+             question++) {
             if (length < WORD - 1) {
                 word[length++] = (char)tolower((unsigned char)*question);
             }
@@ -78,32 +78,38 @@ static sqlite3 *open_tables(const search_source *sources, int source_count)
         for (int i = 0; i < sources[s].count; i++, thing++) {
             const search_entry e = sources[s].entry(i);
             for (int t = 0; t < e.text_count; t++) {
-                sqlite3_str_appendf(script,
-                                    "INSERT INTO passage(rowid, body) VALUES "
-                                    "(%d * " PASSAGES " + %d, %Q);",
-                                    thing, t, e.texts[t]);
+                sqlite3_str_appendf(
+                    script,
+                    "INSERT INTO passage(rowid, body) VALUES (%d * " PASSAGES
+                    " + %d, %Q);",
+                    thing, t, e.texts[t]);
             }
-            sqlite3_str_appendf(script,
-                                "INSERT INTO thing SELECT %d, %d, %Q, %Q, group_concat(body, ' ') "
-                                "FROM passage WHERE rowid >= %d * " PASSAGES ";"
-                                "INSERT INTO title VALUES (%Q);",
-                                s, i, e.title, e.above, thing, e.title);
+            sqlite3_str_appendf(
+                script,
+                "INSERT INTO thing SELECT %d, %d, %Q, %Q, group_concat(body, ' ') "
+                "FROM passage WHERE rowid >= %d * " PASSAGES ";"
+                "INSERT INTO title VALUES (%Q);",
+                s, i, e.title, e.above, thing, e.title);
         }
     }
     sqlite3_str_appendall(script, "COMMIT;");
     char *sql = sqlite3_str_finish(script);
-    const bool made = sql != NULL && sqlite3_exec(database, sql, NULL, NULL, NULL) == SQLITE_OK;
+    const bool made =
+        sql != NULL && sqlite3_exec(database, sql, NULL, NULL, NULL) == SQLITE_OK;
     sqlite3_free(sql);
     loss_unless(made);
     if (!made) {
         sqlite3_close(database);
     }
-    return made ? database : NULL;
+    if (made) {
+        return database;
+    }
+    return NULL;
 }
 
 // Runs a statement on the terms and takes its rows as hits; returns how many there are.
-static int take_hits(sqlite3 *database, const char *sql, const char *terms, search_hit *hits,
-                     int most)
+static int take_hits(sqlite3 *database, const char *sql, const char *terms,
+                     search_hit *hits, int most)
 {
     sqlite3_stmt *rows = NULL;
     int count = 0, code = sqlite3_prepare_v2(database, sql, -1, &rows, NULL);
@@ -121,8 +127,8 @@ static int take_hits(sqlite3 *database, const char *sql, const char *terms, sear
     return count;
 }
 
-// Takes the word of a title that is nearest to one that occurs nowhere in its place, if one is
-// near: one letter in four.
+// Takes the word of a title that is nearest to one that occurs nowhere in its place, if
+// one is near: one letter in four.
 static void correct_word(sqlite3 *database, char word[WORD])
 {
     search_hit found;
@@ -139,7 +145,8 @@ static void correct_word(sqlite3 *database, char word[WORD])
     sqlite3_prepare_v2(database, "SELECT term FROM spelling", -1, &rows, NULL);
     while (sqlite3_step(rows) == SQLITE_ROW) {
         const char *candidate = (const char *)sqlite3_column_text(rows, 0);
-        const int distance = candidate != NULL ? edit_distance(word, candidate, least) : least;
+        const int distance =
+            candidate != NULL ? edit_distance(word, candidate, least) : least;
         if (distance < least) {
             least = distance;
             snprintf(best, sizeof best, "%s", candidate);

@@ -19,16 +19,18 @@ typedef struct search_source {
 // A thing that was found.
 typedef struct search_hit {
     int source, index; // which it is
-    int text;          // the paragraph that fits best, the first where only the title does
+    int text; // the paragraph that fits best, the first where only the title does
 } search_hit;
 
-// Finds what fits a question, the best first: at most `most` hits; returns how many. Words are
-// compared without their usual endings, misspelt ones are corrected; words such as "how" and "the"
-// do not count beside others. Without memory a loss is noted (text_stream.h).
+// Finds what fits a question, the best first: at most `most` hits; returns how many.
+// Words are compared without their usual endings, misspelt ones are corrected; words such
+// as "how" and "the" do not count beside others. Without memory a loss is noted
+// (text_stream.h).
 int search_find(const search_source *sources, int source_count, const char *question,
                 search_hit *hits, int most);
 
-// Finds the things in whose titles all the words stand, in order of the sources; returns how many.
+// Finds the things in whose titles all the words stand, in order of the sources; returns
+// how many.
 int search_titles(const search_source *sources, int source_count, const char *words,
                   search_hit *hits, int most);
 

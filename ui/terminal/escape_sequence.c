@@ -4,9 +4,18 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WHEEL = 64, DRAG = 32, SHIFT = 4, META = 8, CONTROL = 16, OLD_RELEASE = 3, OLD_OFFSET = 32 };
+enum {
+    WHEEL = 64,
+    DRAG = 32,
+    SHIFT = 4,
+    META = 8,
+    CONTROL = 16,
+    OLD_RELEASE = 3,
+    OLD_OFFSET = 32
+};
 
-static sequence_result mouse(int button, int column, int row, bool pressed, pointer_event *report)
+static sequence_result mouse(int button, int column, int row, bool pressed,
+                             pointer_event *report)
 {
     int plain = button & ~(SHIFT | META | CONTROL);
     *report = (pointer_event){.x = column - 1,
@@ -16,15 +25,26 @@ static sequence_result mouse(int button, int column, int row, bool pressed, poin
 
     // only the wheel and the first button mean something here
     if (plain == WHEEL || plain == WHEEL + 1) {
-        report->kind = plain == WHEEL ? POINTER_WHEEL_UP : POINTER_WHEEL_DOWN;
-        return pressed ? SEQUENCE_MOUSE : SEQUENCE_OVER;
+        if (plain == WHEEL) {
+            report->kind = POINTER_WHEEL_UP;
+        } else {
+            report->kind = POINTER_WHEEL_DOWN;
+        }
+        if (pressed) {
+            return SEQUENCE_MOUSE;
+        }
+        return SEQUENCE_OVER;
     }
     if (plain != 0 && plain != DRAG && plain != OLD_RELEASE) {
         return SEQUENCE_OVER;
     }
-    report->kind = !pressed || plain == OLD_RELEASE ? POINTER_RELEASE
-                   : plain == DRAG                  ? POINTER_DRAG
-                                                    : POINTER_PRESS;
+    if (!pressed || plain == OLD_RELEASE) {
+        report->kind = POINTER_RELEASE;
+    } else if (plain == DRAG) {
+        report->kind = POINTER_DRAG;
+    } else {
+        report->kind = POINTER_PRESS;
+    }
     return SEQUENCE_MOUSE;
 }
 
@@ -39,11 +59,17 @@ static sequence_result end(escape_sequence *e, int last, pointer_event *report)
         return mouse(button, column, row, last == 'M', report);
     }
     if (last == '~' && (strcmp(e->text, "200") == 0 || strcmp(e->text, "201") == 0)) {
-        return e->text[2] == '0' ? SEQUENCE_PASTE : SEQUENCE_PASTED;
+        if (e->text[2] == '0') {
+            return SEQUENCE_PASTE;
+        }
+        return SEQUENCE_PASTED;
     }
     e->introducer = '[';
     e->final = (char)last;
-    return e->awaits ? SEQUENCE_ANSWER : SEQUENCE_OVER;
+    if (e->awaits) {
+        return SEQUENCE_ANSWER;
+    }
+    return SEQUENCE_OVER;
 }
 
 // A character of an answer's text, which a bell or ESC \ ends.
@@ -56,7 +82,10 @@ static sequence_result take_string(escape_sequence *e, int character)
     if (ends || escaped || character == '\b' || character == '\r') {
         e->state = SEQUENCE_NONE;
         e->text[e->length] = '\0';
-        return ends ? SEQUENCE_ANSWER : SEQUENCE_OTHER_KEY;
+        if (ends) {
+            return SEQUENCE_ANSWER;
+        }
+        return SEQUENCE_OTHER_KEY;
     }
     if (character == 27) {
         e->state = SEQUENCE_STRING_END;
@@ -66,7 +95,8 @@ static sequence_result take_string(escape_sequence *e, int character)
     return SEQUENCE_GOES_ON;
 }
 
-static sequence_result take_parameter(escape_sequence *e, int character, pointer_event *report)
+static sequence_result take_parameter(escape_sequence *e, int character,
+                                      pointer_event *report)
 {
     // broken off: a control character or another escape begins something new
     if (character < ' ' || character > 0x7e) {
@@ -86,7 +116,8 @@ static sequence_result take_parameter(escape_sequence *e, int character, pointer
     return SEQUENCE_GOES_ON;
 }
 
-sequence_result escape_sequence_take(escape_sequence *e, int character, pointer_event *report)
+sequence_result escape_sequence_take(escape_sequence *e, int character,
+                                     pointer_event *report)
 {
     assert(e->state != SEQUENCE_NONE);
 

@@ -1,8 +1,8 @@
-// Escape sequences on the terminal's input, byte by byte. Mouse reports are decoded, answers of the
-// terminal are passed on while some are expected, and everything else is skipped, so that the
-// letters of an unknown key are not taken for keys. It never waits: a sequence that arrives in
-// pieces is continued when the next piece is there. ESC [ 200 ~ and ESC [ 201 ~ stand before and
-// after pasted text (bracketed paste).
+// Escape sequences on the terminal's input, byte by byte. Mouse reports are decoded,
+// answers of the terminal are passed on while some are expected, and everything else is
+// skipped, so that the letters of an unknown key are not taken for keys. It never waits:
+// a sequence that arrives in pieces is continued when the next piece is there. ESC [ 200
+// ~ and ESC [ 201 ~ stand before and after pasted text (bracketed paste).
 #pragma once
 
 #include "ui/terminal/keys.h"
@@ -37,4 +37,5 @@ typedef enum sequence_result {
 
 // Takes the next character of a sequence that has begun (state SEQUENCE_ESCAPED). With
 // SEQUENCE_MOUSE the report has the event of the mouse.
-sequence_result escape_sequence_take(escape_sequence *e, int character, pointer_event *report);
+sequence_result escape_sequence_take(escape_sequence *e, int character,
+                                     pointer_event *report);

@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
-// As many colours as can be told apart with 4.6 of contrast on both grounds, also without the
-// sensitivity for red or for green, near the hues of Okabe and Ito 2008.
+// As many colours as can be told apart with 4.6 of contrast on both grounds, also without
+// the sensitivity for red or for green, near the hues of Okabe and Ito 2008.
 static const struct {
     rgb dark, light;
 } inks[INK_COUNT] = {
@@ -30,7 +30,11 @@ static const struct {
 
 bool ink_rgb(colour_theme theme, ink i, rgb *colour)
 {
-    *colour = theme == COLOURS_LIGHT ? inks[i].light : inks[i].dark;
+    if (theme == COLOURS_LIGHT) {
+        *colour = inks[i].light;
+    } else {
+        *colour = inks[i].dark;
+    }
     return theme != COLOURS_MONO && i != INK_TEXT && i != INK_TITLE && i != INK_SELECTED;
 }
 
@@ -41,12 +45,15 @@ const rgb *theme_grounds(colour_theme theme)
     return grounds[theme == COLOURS_LIGHT];
 }
 
-// --- measures ---------------------------------------------------------------------------------
+// --- measures --------------------------------------------------------------------------
 
 static double linear(unsigned char value)
 {
     double share = value / 255.0;
-    return share <= 0.04045 ? share / 12.92 : pow((share + 0.055) / 1.055, 2.4);
+    if (share <= 0.04045) {
+        return share / 12.92;
+    }
+    return pow((share + 0.055) / 1.055, 2.4);
 }
 
 static double luminance(rgb c)
@@ -80,16 +87,24 @@ double rgb_distance(rgb a, rgb b)
     return hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]);
 }
 
-// --- terminals with fewer colours -------------------------------------------------------------
+// --- terminals with fewer colours ------------------------------------------------------
 
 rgb colour_256(int index)
 {
     static const unsigned char levels[6] = {0, 95, 135, 175, 215, 255};
 
-    // the PC's text mode, which has the largest difference between bright and dark colours
+    // the PC's text mode, which has the largest difference between bright and dark
+    // colours
     if (index < 16) {
         const unsigned char on = index & 8 ? 255 : 170, off = index & 8 ? 85 : 0;
-        const unsigned char green = index == 3 ? 85 : index & 2 ? on : off; // 3 is brown
+        unsigned char green = 85;
+        if (index != 3) {
+            if (index & 2) {
+                green = on;
+            } else {
+                green = off;
+            }
+        } // 3 is brown
         return (rgb){index & 1 ? on : off, green, index & 4 ? on : off};
     }
     if (index >= 232) {
@@ -105,8 +120,9 @@ static bool is_grey(rgb c)
     return c.red == c.green && c.green == c.blue;
 }
 
-// The nearest colour of 256, or of the first 16 (`few`), that has enough contrast on the grounds
-// and is none of those taken (bits); a grey may stand for a colour if `greys`. -1 if there is none.
+// The nearest colour of 256, or of the first 16 (`few`), that has enough contrast on the
+// grounds and is none of those taken (bits); a grey may stand for a colour if `greys`. -1
+// if there is none.
 static int nearest(colour_theme theme, ink i, bool few, unsigned taken, bool greys)
 {
     // lines need less contrast than text
@@ -141,12 +157,23 @@ static int find_16(colour_theme theme, ink i)
     // curves differ as long as there are colours
     for (int k = i < INK_SERIES_0 ? (int)i : INK_SERIES_0; k <= (int)i; k++) {
         best = nearest(theme, (ink)k, true, taken, false);
-        best = best < 0 ? nearest(theme, (ink)k, true, taken, true) : best;
-        best = best < 0 ? nearest(theme, (ink)k, true, 0, true) : best;
-        taken |= best < 0 ? 0 : 1u << best;
+        if (best < 0) {
+            best = nearest(theme, (ink)k, true, taken, true);
+        }
+        if (best < 0) {
+            best = nearest(theme, (ink)k, true, 0, true);
+        }
+        if (best < 0) {
+            taken |= 0;
+        } else {
+            taken |= 1u << best;
+        }
     }
     // black and white are the text's own, which the user may have exchanged
-    return best == 0 || best == 7 || best == 15 ? -1 : best;
+    if (best == 0 || best == 7 || best == 15) {
+        return -1;
+    }
+    return best;
 }
 
 int ink_index(colour_theme theme, ink i, colour_depth depth)
@@ -165,7 +192,8 @@ int ink_index(colour_theme theme, ink i, colour_depth depth)
 
 bool inks_look_alike(colour_theme theme, colour_depth depth, ink a, ink b)
 {
-    return depth == DEPTH_16 || depth == DEPTH_256
-               ? ink_index(theme, a, depth) == ink_index(theme, b, depth)
-               : a == b;
+    if (depth == DEPTH_16 || depth == DEPTH_256) {
+        return ink_index(theme, a, depth) == ink_index(theme, b, depth);
+    }
+    return a == b;
 }

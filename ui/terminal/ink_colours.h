@@ -1,5 +1,5 @@
-// The colours of inks: one table in red, green and blue for dark and for light backgrounds, from
-// which the colours of terminals with fewer colours are computed.
+// The colours of inks: one table in red, green and blue for dark and for light
+// backgrounds, from which the colours of terminals with fewer colours are computed.
 #pragma once
 
 #include "ui/terminal/screen.h"
@@ -10,15 +10,16 @@ typedef struct rgb {
 
 // The colour of an ink; false if it is the terminal's default text colour.
 bool ink_rgb(colour_theme theme, ink i, rgb *colour);
-// The same as one of 256 colours, or of 16 with any other depth: the nearest one that is readable;
+// The same as one of 256 colours, or of 16 with any other depth: the nearest one that is
+// readable;
 // -1 for the terminal's default.
 int ink_index(colour_theme theme, ink i, colour_depth depth);
 
 // Whether two inks have the same colour on a terminal with that many colours.
 bool inks_look_alike(colour_theme theme, colour_depth depth, ink a, ink b);
 
-// The two backgrounds for which a theme is designed: the plainest one, and the usual one with the
-// least contrast.
+// The two backgrounds for which a theme is designed: the plainest one, and the usual one
+// with the least contrast.
 const rgb *theme_grounds(colour_theme theme);
 
 // The usual colour of one of 256 colours on terminals; those of 16 are the first.

@@ -4,21 +4,21 @@
 #include <stdbool.h>
 
 // Keys that are not characters: code, name and ncurses' code.
-#define KEY_LIST(X)                                                                                \
-    X(LEFT, "Left", KEY_LEFT)                                                                      \
-    X(RIGHT, "Right", KEY_RIGHT)                                                                   \
-    X(UP, "Up", KEY_UP)                                                                            \
-    X(DOWN, "Down", KEY_DOWN)                                                                      \
-    X(HOME, "Home", KEY_HOME)                                                                      \
-    X(END, "End", KEY_END)                                                                         \
-    X(PAGE_UP, "PgUp", KEY_PPAGE)                                                                  \
-    X(PAGE_DOWN, "PgDn", KEY_NPAGE)                                                                \
-    X(BACKSPACE, "Backspace", KEY_BACKSPACE)                                                       \
-    X(DELETE, "Delete", KEY_DC)                                                                    \
-    X(F1, "F1", KEY_F(1))                                                                          \
-    X(SHIFT_LEFT, "S-Left", KEY_SLEFT)                                                             \
-    X(SHIFT_RIGHT, "S-Right", KEY_SRIGHT)                                                          \
-    X(SHIFT_UP, "S-Up", KEY_SR)                                                                    \
+#define KEY_LIST(X)                                                                      \
+    X(LEFT, "Left", KEY_LEFT)                                                            \
+    X(RIGHT, "Right", KEY_RIGHT)                                                         \
+    X(UP, "Up", KEY_UP)                                                                  \
+    X(DOWN, "Down", KEY_DOWN)                                                            \
+    X(HOME, "Home", KEY_HOME)                                                            \
+    X(END, "End", KEY_END)                                                               \
+    X(PAGE_UP, "PgUp", KEY_PPAGE)                                                        \
+    X(PAGE_DOWN, "PgDn", KEY_NPAGE)                                                      \
+    X(BACKSPACE, "Backspace", KEY_BACKSPACE)                                             \
+    X(DELETE, "Delete", KEY_DC)                                                          \
+    X(F1, "F1", KEY_F(1))                                                                \
+    X(SHIFT_LEFT, "S-Left", KEY_SLEFT)                                                   \
+    X(SHIFT_RIGHT, "S-Right", KEY_SRIGHT)                                                \
+    X(SHIFT_UP, "S-Up", KEY_SR)                                                          \
     X(SHIFT_DOWN, "S-Down", KEY_SF)
 
 // The code of a character is its Unicode number.

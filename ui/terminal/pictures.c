@@ -19,7 +19,8 @@ void pictures_clear(screen *s)
     }
 }
 
-// Makes sure that a picture has a surface of its size without an error; false without memory.
+// Makes sure that a picture has a surface of its size without an error; false without
+// memory.
 static bool fit_surface(screen_picture *p, int width, int height)
 {
     const bool fits = p->surface != NULL &&
@@ -38,9 +39,14 @@ cairo_t *picture_begin(screen *s, int x, int y, int width, int height)
     picture_layer *layer = s->pictures;
 
     // kept within the screen
-    width = x + width > s->width ? s->width - x : width;
-    height = y + height > s->height ? s->height - y : height;
-    if (layer == NULL || layer->count == PICTURES || x < 0 || y < 0 || width < 1 || height < 1) {
+    if (x + width > s->width) {
+        width = s->width - x;
+    }
+    if (y + height > s->height) {
+        height = s->height - y;
+    }
+    if (layer == NULL || layer->count == PICTURES || x < 0 || y < 0 || width < 1 ||
+        height < 1) {
         return NULL;
     }
     screen_picture *p = &layer->items[layer->count];
@@ -96,7 +102,8 @@ void picture_end(screen *s, cairo_t *cr)
     }
 }
 
-// The regions of one picture, behind the `count` there are: rows with the same run hang together.
+// The regions of one picture, behind the `count` there are: rows with the same run hang
+// together.
 static int add_regions(const screen *s, int picture, int most_width, int most_height,
                        picture_region *regions, int count)
 {
@@ -106,8 +113,8 @@ static int add_regions(const screen *s, int picture, int most_width, int most_he
     for (int y = p->y; y < p->y + p->height; y++) {
         const cell *row = s->cells + (long)y * s->width;
         for (int x = p->x, length; x<p->x + p->width; x += length> 0 ? length : 1) {
-            for (length = 0;
-                 x + length < s->width && length < most_width && row[x + length].glyph == glyph;) {
+            for (length = 0; x + length < s->width && length < most_width &&
+                             row[x + length].glyph == glyph;) {
                 length++;
             }
 
@@ -147,5 +154,8 @@ rgb picture_ink(const screen *s, colour_theme theme, ink i)
     if (ink_rgb(theme, i, &colour)) {
         return colour;
     }
-    return rgb_contrast(white, ground) > rgb_contrast(black, ground) ? white : black;
+    if (rgb_contrast(white, ground) > rgb_contrast(black, ground)) {
+        return white;
+    }
+    return black;
 }

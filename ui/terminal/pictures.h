@@ -1,5 +1,5 @@
-// Pictures on a screen of cells: pixels instead of some cells, drawn by cairo. Characters and
-// blanks written over a picture afterwards replace it in their cells.
+// Pictures on a screen of cells: pixels instead of some cells, drawn by cairo. Characters
+// and blanks written over a picture afterwards replace it in their cells.
 #pragma once
 
 #include <cairo.h>
@@ -14,7 +14,8 @@ typedef struct screen_picture {
     cairo_surface_t *surface; // RGB24, width x height cells
 } screen_picture;
 
-// The pictures of a screen, kept from one drawing to the next so that their surfaces are reused.
+// The pictures of a screen, kept from one drawing to the next so that their surfaces are
+// reused.
 typedef struct picture_layer {
     int cell_width, cell_height; // [pixels]
     rgb ground;                  // of the terminal
@@ -31,23 +32,25 @@ typedef struct picture_region {
 // Frees the surfaces.
 void pictures_finish(picture_layer *layer);
 
-// Begins a new drawing: no cell shows a picture yet. Does nothing for a screen without pictures.
+// Begins a new drawing: no cell shows a picture yet. Does nothing for a screen without
+// pictures.
 void pictures_clear(screen *s);
 
-// Begins a picture that covers a rectangle of cells, clipped to the screen. The context has pixels
-// as its unit and its origin in the upper left corner; the background is painted. NULL if the
-// screen has no pictures or without memory; the cells are then unchanged. To be ended with
-// picture_end.
+// Begins a picture that covers a rectangle of cells, clipped to the screen. The context
+// has pixels as its unit and its origin in the upper left corner; the background is
+// painted. NULL if the screen has no pictures or without memory; the cells are then
+// unchanged. To be ended with picture_end.
 cairo_t *picture_begin(screen *s, int x, int y, int width, int height);
 
-// Ends the picture that was begun last on that screen. If cairo could not draw all of it, which
-// happens only without memory, a message in its middle replaces it.
+// Ends the picture that was begun last on that screen. If cairo could not draw all of it,
+// which happens only without memory, a message in its middle replaces it.
 void picture_end(screen *s, cairo_t *cr);
 
-// The rectangles in which pictures are visible, at most PICTURE_REGIONS, none wider or higher than
-// `most_width` x `most_height` cells; returns how many.
+// The rectangles in which pictures are visible, at most PICTURE_REGIONS, none wider or
+// higher than `most_width` x `most_height` cells; returns how many.
 int pictures_regions(const screen *s, int most_width, int most_height,
                      picture_region regions[PICTURE_REGIONS]);
 
-// The colour of an ink in pictures; the terminal's default text colour becomes black or white.
+// The colour of an ink in pictures; the terminal's default text colour becomes black or
+// white.
 rgb picture_ink(const screen *s, colour_theme theme, ink i);

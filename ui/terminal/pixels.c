@@ -7,9 +7,9 @@
 #include <string.h>
 #include <zlib.h>
 
-// --- sixel ------------------------------------------------------------------------------------
-// Sixel: a picture in bands of six rows. Each band is drawn once for every colour in it, a
-// character for each column with a bit for each row; repeated characters are counted.
+// --- sixel -----------------------------------------------------------------------------
+// Sixel: a picture in bands of six rows. Each band is drawn once for every colour in it,
+// a character for each column with a bit for each row; repeated characters are counted.
 
 enum { BIN_BITS = 5, BINS = 1 << (3 * BIN_BITS), BAND = 6 };
 
@@ -38,7 +38,13 @@ static int bin_of(uint32_t pixel)
 static int by_count(const void *a, const void *b)
 {
     const colour_bin *x = a, *y = b;
-    return x->count < y->count ? 1 : x->count > y->count ? -1 : x->bin - y->bin;
+    if (x->count < y->count) {
+        return 1;
+    }
+    if (x->count > y->count) {
+        return -1;
+    }
+    return x->bin - y->bin;
 }
 
 // The nearest of the picture's colours.
@@ -48,8 +54,10 @@ static int nearest_colour(const sixel_picture *p, const colour_bin *wanted)
     long least = 4L * 256 * 256;
     for (int i = 0; i < p->colours; i++) {
         const colour_bin *c = &p->bins[i];
-        const long r = (long)c->red - (long)wanted->red, g = (long)c->green - (long)wanted->green;
-        const long b = (long)c->blue - (long)wanted->blue, distance = r * r + g * g + b * b;
+        const long r = (long)c->red - (long)wanted->red,
+                   g = (long)c->green - (long)wanted->green;
+        const long b = (long)c->blue - (long)wanted->blue,
+                   distance = r * r + g * g + b * b;
         if (distance < least) {
             least = distance;
             best = i;
@@ -58,7 +66,8 @@ static int nearest_colour(const sixel_picture *p, const colour_bin *wanted)
     return best;
 }
 
-// Chooses the colours: the means of the commonest bins; other bins take the nearest of them.
+// Chooses the colours: the means of the commonest bins; other bins take the nearest of
+// them.
 static void choose_colours(sixel_picture *p, int most)
 {
     const pixel_block *b = p->block;
@@ -84,7 +93,11 @@ static void choose_colours(sixel_picture *p, int most)
         }
     }
     qsort(p->bins, (size_t)used, sizeof *p->bins, by_count);
-    p->colours = used < most ? used : most;
+    if (used < most) {
+        p->colours = used;
+    } else {
+        p->colours = most;
+    }
     for (int i = 0; i < used; i++) {
         colour_bin *bin = &p->bins[i];
         bin->red /= bin->count;
@@ -177,12 +190,14 @@ bool sixel_write(FILE *stream, const pixel_block *block, int colours)
     return done;
 }
 
-// --- kitty ------------------------------------------------------------------------------------
-// The terminal graphics protocol of kitty: pixels, compressed by zlib, in base 64, in chunks.
+// --- kitty -----------------------------------------------------------------------------
+// The terminal graphics protocol of kitty: pixels, compressed by zlib, in base 64, in
+// chunks.
 
 enum { CHUNK = 4096, CHUNK_BYTES = CHUNK / 4 * 3 };
 
-bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns, int rows)
+bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns,
+                 int rows)
 {
     assert(block->width > 0 && block->height > 0);
     assert(number > 0 && columns > 0 && rows > 0);
@@ -202,9 +217,11 @@ bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns
     const bool done = plain != NULL && packed != NULL &&
                       compress2(packed, &packed_size, plain, size, Z_BEST_SPEED) == Z_OK;
 
-    // the first chunk says what it is, all but the last that more come; no answer is wanted
+    // the first chunk says what it is, all but the last that more come; no answer is
+    // wanted
     for (size_t sent = 0; done && sent < packed_size; sent += CHUNK_BYTES) {
-        const size_t left = packed_size - sent, count = left < CHUNK_BYTES ? left : CHUNK_BYTES;
+        const size_t left = packed_size - sent,
+                     count = left < CHUNK_BYTES ? left : CHUNK_BYTES;
         fputs("\033_G", stream);
         if (sent == 0) {
             fprintf(stream, "a=T,i=%d,p=1,f=24,s=%d,v=%d,c=%d,r=%d,o=z,C=1,q=2,", number,
@@ -222,7 +239,7 @@ bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns
     return done;
 }
 
-// --- what a terminal says ---------------------------------------------------------------------
+// --- what a terminal says --------------------------------------------------------------
 
 enum {
     KITTY_QUESTION = 31, // number of the picture in the question
@@ -236,15 +253,16 @@ enum {
 // version, device attributes
 static const char ask_name[] = "\033[>q\033[c";
 
-// a picture of one pixel, not to be shown; colours and size of sixel pictures; the ground's colour,
-// the size of a cell, device attributes
+// a picture of one pixel, not to be shown; colours and size of sixel pictures; the
+// ground's colour, the size of a cell, device attributes
 #define ASK_KITTY "\033_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\033\\"
 #define ASK_SIXEL "\033[?1;1;0S\033[?2;1;0S"
 #define ASK_REST  "\033]11;?\033\\\033[16t\033[c"
 
 // by whether kitty's protocol and whether sixels are asked for
 static const char *const ask_pixels[2][2] = {{ASK_REST, ASK_SIXEL ASK_REST},
-                                             {ASK_KITTY ASK_REST, ASK_KITTY ASK_SIXEL ASK_REST}};
+                                             {ASK_KITTY ASK_REST,
+                                              ASK_KITTY ASK_SIXEL ASK_REST}};
 
 const char pixel_ask_cell[] = "\033[16t";
 
@@ -307,12 +325,24 @@ static void take_sizes(pixel_answers *a, const char *text, char final)
     int n[4];
     const int count = read_numbers(text, n, 4);
     if (final == 't' && count == 3 && n[0] == 6) {
-        const bool usual =
-            n[1] >= LEAST_CELL && n[1] <= MOST_CELL && n[2] >= LEAST_CELL && n[2] <= MOST_CELL;
-        a->cell_height = usual ? n[1] : 0;
-        a->cell_width = usual ? n[2] : 0;
+        const bool usual = n[1] >= LEAST_CELL && n[1] <= MOST_CELL &&
+                           n[2] >= LEAST_CELL && n[2] <= MOST_CELL;
+        if (usual) {
+            a->cell_height = n[1];
+        } else {
+            a->cell_height = 0;
+        }
+        if (usual) {
+            a->cell_width = n[2];
+        } else {
+            a->cell_width = 0;
+        }
     } else if (final == 'S' && count >= 3 && n[0] == 1 && n[1] == 0) {
-        a->registers = n[2] >= LEAST_REGISTERS ? n[2] : 0;
+        if (n[2] >= LEAST_REGISTERS) {
+            a->registers = n[2];
+        } else {
+            a->registers = 0;
+        }
     } else if (final == 'S' && count == 4 && n[0] == 2 && n[1] == 0) {
         a->most_width = n[2];
         a->most_height = n[3];
@@ -345,8 +375,14 @@ const char *pixel_answers_take(pixel_answers *a, const escape_sequence *answer)
 
 pixel_protocol pixel_answers_protocol(const pixel_answers *a)
 {
-    return a->stage != PIXELS_ANSWERED ? PIXELS_NONE
-           : a->kitty                  ? PIXELS_KITTY
-           : a->sixel                  ? PIXELS_SIXEL
-                                       : PIXELS_NONE;
+    if (a->stage != PIXELS_ANSWERED) {
+        return PIXELS_NONE;
+    }
+    if (a->kitty) {
+        return PIXELS_KITTY;
+    }
+    if (a->sixel) {
+        return PIXELS_SIXEL;
+    }
+    return PIXELS_NONE;
 }

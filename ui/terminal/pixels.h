@@ -1,5 +1,5 @@
-// Pixels on terminals: the two codes that draw them, sixel and the protocol of kitty, and whether a
-// terminal knows one.
+// Pixels on terminals: the two codes that draw them, sixel and the protocol of kitty, and
+// whether a terminal knows one.
 #pragma once
 
 #include <stdbool.h>
@@ -9,7 +9,7 @@
 #include "ui/terminal/escape_sequence.h"
 #include "ui/terminal/ink_colours.h"
 
-// --- codes ------------------------------------------------------------------------------------
+// --- codes -----------------------------------------------------------------------------
 
 // A rectangle of pixels 0xRRGGBB (higher bits are ignored), row by row.
 typedef struct pixel_block {
@@ -20,25 +20,27 @@ typedef struct pixel_block {
 
 enum { SIXEL_COLOURS = 256 }; // most of one picture
 
-// Writes the block as a sixel picture of at most `colours` (2 to SIXEL_COLOURS) colours, drawn from
-// the cursor's cell on. Nearly equal colours are replaced by their mean; if there are more than
-// allowed, the rare ones are replaced by the nearest of the others. False without memory, with
-// nothing written; errors of the stream stay in it.
+// Writes the block as a sixel picture of at most `colours` (2 to SIXEL_COLOURS) colours,
+// drawn from the cursor's cell on. Nearly equal colours are replaced by their mean; if
+// there are more than allowed, the rare ones are replaced by the nearest of the others.
+// False without memory, with nothing written; errors of the stream stay in it.
 bool sixel_write(FILE *stream, const pixel_block *block, int colours);
 
-// Writes the block as picture `number` (above 0) of kitty's protocol, filling columns x rows cells
-// from the cursor on, and replaces the previous one of that number. The cursor does not move. False
-// without memory, with nothing written.
-bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns, int rows);
+// Writes the block as picture `number` (above 0) of kitty's protocol, filling columns x
+// rows cells from the cursor on, and replaces the previous one of that number. The cursor
+// does not move. False without memory, with nothing written.
+bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns,
+                 int rows);
 
-// --- what a terminal says ---------------------------------------------------------------------
-// Whether a terminal draws pictures, and how: the queries to it and its answers. Its name is not
-// used; a terminal that does not answer draws none.
+// --- what a terminal says --------------------------------------------------------------
+// Whether a terminal draws pictures, and how: the queries to it and its answers. Its name
+// is not used; a terminal that does not answer draws none.
 //
-// The first query is for its version and device attributes, which every terminal accepts without a
-// trace on its screen. Only a terminal that answers, and that is not a multiplexer, is asked for
-// the kitty protocol: multiplexers pass such a query on or take it for a title. Each query ends
-// with the device attributes, so that their answer marks the end of the answers.
+// The first query is for its version and device attributes, which every terminal accepts
+// without a trace on its screen. Only a terminal that answers, and that is not a
+// multiplexer, is asked for the kitty protocol: multiplexers pass such a query on or take
+// it for a title. Each query ends with the device attributes, so that their answer marks
+// the end of the answers.
 
 typedef enum pixel_protocol { PIXELS_NONE, PIXELS_SIXEL, PIXELS_KITTY } pixel_protocol;
 
@@ -53,7 +55,8 @@ typedef struct pixel_answers {
     rgb ground; // of the terminal, if known
 } pixel_answers;
 
-// Begins; returns the first query. `multiplexer`: there is one according to the environment.
+// Begins; returns the first query. `multiplexer`: there is one according to the
+// environment.
 const char *pixel_answers_begin(pixel_answers *a, bool multiplexer);
 
 // Reads an answer; returns the next query, "" for none.

@@ -12,8 +12,12 @@ enum { BRAILLE = 0x2800 };
 
 bool screen_resize(screen *s, int width, int height)
 {
-    width = width < 1 ? 1 : width;
-    height = height < 1 ? 1 : height;
+    if (width < 1) {
+        width = 1;
+    }
+    if (height < 1) {
+        height = 1;
+    }
     cell *cells = calloc((size_t)width * (size_t)height, sizeof *cells);
     if (cells == NULL) {
         return false;
@@ -40,7 +44,10 @@ void screen_clear(screen *s)
 static cell *cell_at(screen *s, int x, int y)
 {
     bool inside = x >= 0 && y >= 0 && x < s->width && y < s->height;
-    return inside ? &s->cells[(long)y * s->width + x] : NULL;
+    if (inside) {
+        return &s->cells[(long)y * s->width + x];
+    }
+    return NULL;
 }
 
 void screen_put(screen *s, int x, int y, uint32_t glyph, ink colour)
@@ -57,7 +64,16 @@ uint32_t glyph_decode(const char **text)
     const unsigned char *t = (const unsigned char *)*text;
 
     // the first byte says how many follow, each with six bits
-    int more = t[0] >= 0xf0 ? 3 : t[0] >= 0xe0 ? 2 : t[0] >= 0xc0 ? 1 : 0;
+    int more = 3;
+    if (!(t[0] >= 0xf0)) {
+        if (t[0] >= 0xe0) {
+            more = 2;
+        } else if (t[0] >= 0xc0) {
+            more = 1;
+        } else {
+            more = 0;
+        }
+    }
     uint32_t glyph = more == 0 ? t[0] : t[0] & (0x3fu >> more);
     for (int i = 1; i <= more; i++) {
         if ((t[i] & 0xc0) != 0x80) {
@@ -70,7 +86,10 @@ uint32_t glyph_decode(const char **text)
 
     // what the terminal must not get
     bool stray = more == 0 && t[0] >= 0x80;
-    return stray || is_unprintable(glyph) ? '?' : glyph;
+    if (stray || is_unprintable(glyph)) {
+        return '?';
+    }
+    return glyph;
 }
 
 int text_cells(const char *text)
@@ -115,7 +134,9 @@ int text_wrap(const char *text, int width, text_line *lines, int most, bool *spl
         // up to the last word that is not beyond the width
         for (int cells = 0; *at != '\0' && cells < width; cells++) {
             bool blank = glyph_decode(&at) == ' ';
-            end = !blank && (*at == ' ' || *at == '\0') ? at : end;
+            if (!blank && (*at == ' ' || *at == '\0')) {
+                end = at;
+            }
         }
         if (end == text) {
             // a word that is wider than the line
@@ -137,12 +158,15 @@ int screen_words(screen *s, int x, int y, int room, ink colour, const char *text
     if (text_cells(text) <= room) {
         return screen_text(s, x, y, room, colour, text);
     }
-    return room > 1 && text_wrap(text, room - 1, &words, 1, NULL) > 0
-               ? screen_print(s, x, y, room, colour, "%.*s\u2026", words.bytes, words.start)
-               : 0;
+    if (room > 1 && text_wrap(text, room - 1, &words, 1, NULL) > 0) {
+        return screen_print(s, x, y, room, colour, "%.*s\u2026", words.bytes,
+                            words.start);
+    }
+    return 0;
 }
 
-void screen_frame(screen *s, int x, int y, int width, int height, ink colour, const char *title)
+void screen_frame(screen *s, int x, int y, int width, int height, ink colour,
+                  const char *title)
 {
     int right = x + width - 1, bottom = y + height - 1;
 
@@ -182,12 +206,14 @@ void screen_tint(screen *s, int x, int y, int width, int height, ink colour)
     }
 }
 
-// --- dots -------------------------------------------------------------------------------------
+// --- dots ------------------------------------------------------------------------------
 
 void canvas_dot(const canvas *c, long across, long down, ink colour)
 {
-    static const unsigned char bits[4][2] = {
-        {0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
+    static const unsigned char bits[4][2] = {{0x01, 0x08},
+                                             {0x02, 0x10},
+                                             {0x04, 0x20},
+                                             {0x40, 0x80}};
     if (across < 0 || down < 0 || across >= 2L * c->width || down >= 4L * c->height) {
         return;
     }
@@ -199,7 +225,8 @@ void canvas_dot(const canvas *c, long across, long down, ink colour)
     }
 }
 
-// Cuts the line to the part between low and high along one coordinate; false if nothing is left.
+// Cuts the line to the part between low and high along one coordinate; false if nothing
+// is left.
 static bool clip(double low, double high, double a, double b, double *from, double *to)
 {
     if (a == b) {
@@ -228,7 +255,7 @@ void canvas_line(const canvas *c, double x0, double y0, double x1, double y1, in
     }
 }
 
-// --- glyphs -----------------------------------------------------------------------------------
+// --- glyphs ----------------------------------------------------------------------------
 
 // The dots as a quarter-block character.
 static uint32_t quadrants(uint32_t dots)
@@ -244,7 +271,8 @@ static uint32_t quadrants(uint32_t dots)
 // The dots as the ASCII character that is most like them.
 static uint32_t ascii_dots(uint32_t dots)
 {
-    // by the rows that have dots, the uppermost in the lowest bit: on one side, and on both
+    // by the rows that have dots, the uppermost in the lowest bit: on one side, and on
+    // both
     static const char one[] = "-'-\"-:=|.::|.|||", both[] = "-~-\"-:=|_::|.||#";
     const int upper = ((dots & 0x09) != 0) | ((dots & 0x12) != 0) << 1;
     const int rows = upper | ((dots & 0x24) != 0) << 2 | ((dots & 0xc0) != 0) << 3;
@@ -260,24 +288,44 @@ static uint32_t ascii_glyph(uint32_t glyph)
     while (twins[i - 1] != 0 && (uint32_t)twins[i] != glyph) {
         i += 2;
     }
-    return twins[i - 1] != 0 ? (uint32_t)twins[i - 1] : '?';
+    if (twins[i - 1] != 0) {
+        return (uint32_t)twins[i - 1];
+    }
+    return '?';
 }
 
 uint32_t glyph_in_set(uint32_t glyph, glyph_set set)
 {
     const bool dots = glyph >= BRAILLE && glyph < BRAILLE + 256;
-    return glyph >= GLYPH_PICTURE                 ? ' '
-           : set == GLYPHS_ASCII && dots          ? ascii_dots(glyph - BRAILLE)
-           : set == GLYPHS_ASCII && glyph >= 0x80 ? ascii_glyph(glyph)
-           : set == GLYPHS_BLOCKS && dots         ? quadrants(glyph - BRAILLE)
-                                                  : glyph;
+    if (glyph >= GLYPH_PICTURE) {
+        return ' ';
+    }
+    if (set == GLYPHS_ASCII && dots) {
+        return ascii_dots(glyph - BRAILLE);
+    }
+    if (set == GLYPHS_ASCII && glyph >= 0x80) {
+        return ascii_glyph(glyph);
+    }
+    if (set == GLYPHS_BLOCKS && dots) {
+        return quadrants(glyph - BRAILLE);
+    }
+    return glyph;
 }
 
 void glyph_encode(uint32_t glyph, char *text)
 {
     // one byte, or a first one with the length and six bits in each that follows
     static const unsigned char first[] = {0, 0xc0, 0xe0, 0xf0};
-    const int more = glyph < 0x80 ? 0 : glyph < 0x800 ? 1 : glyph < 0x10000 ? 2 : 3;
+    int more = 0;
+    if (!(glyph < 0x80)) {
+        if (glyph < 0x800) {
+            more = 1;
+        } else if (glyph < 0x10000) {
+            more = 2;
+        } else {
+            more = 3;
+        }
+    }
     *text++ = (char)(first[more] | glyph >> 6 * more);
     for (int i = more; i-- > 0;) {
         *text++ = (char)(0x80 | (glyph >> 6 * i & 0x3f));

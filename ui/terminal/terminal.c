@@ -1,4 +1,5 @@
-// Opening and closing the terminal, and the signals that end or stop the program meanwhile.
+// Opening and closing the terminal, and the signals that end or stop the program
+// meanwhile.
 #include "ui/terminal/terminal.h"
 #include "ui/terminal/terminal_state.h"
 
@@ -13,7 +14,7 @@
 
 terminal_state tty = {.wake = {-1, -1}};
 
-// --- signals ----------------------------------------------------------------------------------
+// --- signals ---------------------------------------------------------------------------
 
 volatile sig_atomic_t terminal_leaving;    // the signal that asks to leave
 volatile sig_atomic_t terminal_suspending; // ^Z was pressed
@@ -23,7 +24,11 @@ static const int signals[] = {SIGINT,    SIGTERM, SIGHUP,  SIGQUIT, SIGWINCH, SI
                               SIGTSTP,   SIGSEGV, SIGABRT, SIGFPE,  SIGBUS,   SIGILL,
                               SIGTRAP,   SIGXCPU, SIGSYS,  SIGUSR1, SIGUSR2,  SIGALRM,
                               SIGVTALRM, SIGPROF, SIGIO,   SIGPWR,  SIGSTKFLT};
-enum { SIGNALS = sizeof signals / sizeof signals[0], POLITE = 7, SIGNAL_STACK = 64 * 1024 };
+enum {
+    SIGNALS = sizeof signals / sizeof signals[0],
+    POLITE = 7,
+    SIGNAL_STACK = 64 * 1024
+};
 static struct sigaction before[SIGNALS];
 static char signal_stack[SIGNAL_STACK];
 
@@ -71,7 +76,8 @@ static void take_signals(void)
         const struct sigaction fatal = {.sa_handler = on_fatal, .sa_flags = SA_ONSTACK};
         sigaction(signals[i], NULL, &before[i]);
 
-        // one that is ignored ends nothing and stays ignored; so does ^Z of a shell without jobs
+        // one that is ignored ends nothing and stays ignored; so does ^Z of a shell
+        // without jobs
         const bool stays = i >= POLITE || signals[i] == SIGTSTP;
         if (!stays || before[i].sa_handler != SIG_IGN) {
             sigaction(signals[i], i < POLITE ? &polite : &fatal, NULL);
@@ -88,7 +94,7 @@ static void give_signals_back(void)
     sigaltstack(&none, NULL);
 }
 
-// --- opening and closing ----------------------------------------------------------------------
+// --- opening and closing ---------------------------------------------------------------
 
 bool terminal_usable(fault *f)
 {
@@ -104,7 +110,8 @@ bool terminal_usable(fault *f)
     }
 
     // one that can place its cursor
-    bool known = name != NULL && name[0] != '\0' && setupterm(name, STDOUT_FILENO, &code) == OK;
+    bool known =
+        name != NULL && name[0] != '\0' && setupterm(name, STDOUT_FILENO, &code) == OK;
     const char *place = known ? tigetstr("cup") : NULL;
     bool usable = place != NULL && place != (const char *)-1;
     if (known) {
@@ -112,9 +119,11 @@ bool terminal_usable(fault *f)
     }
     if (!usable) {
         fault_set(f, STATUS_BAD_ARGUMENT,
-                  "TERM is '%s', %s; the lab needs a terminal that can place its cursor: "
-                  "TERM=xterm-256color suits most (TERM=xterm-256color impactlab)",
-                  name ? name : "", known ? "which cannot place its cursor" : "which is not known");
+                  "TERM is '%s', %s; the lab needs a terminal that can place its "
+                  "cursor: TERM=xterm-256color suits most (TERM=xterm-256color "
+                  "impactlab)",
+                  name ? name : "",
+                  known ? "which cannot place its cursor" : "which is not known");
     }
     return usable;
 }
@@ -136,14 +145,15 @@ static void define_common_keys(void)
     static const struct {
         const char *sequence;
         int key;
-    } keys[] = {{"\033[A", KEY_UP},     {"\033[B", KEY_DOWN},     {"\033[C", KEY_RIGHT},
-                {"\033[D", KEY_LEFT},   {"\033OA", KEY_UP},       {"\033OB", KEY_DOWN},
-                {"\033OC", KEY_RIGHT},  {"\033OD", KEY_LEFT},     {"\033[H", KEY_HOME},
-                {"\033[F", KEY_END},    {"\033OH", KEY_HOME},     {"\033OF", KEY_END},
-                {"\033[1~", KEY_HOME},  {"\033[4~", KEY_END},     {"\033[5~", KEY_PPAGE},
-                {"\033[6~", KEY_NPAGE}, {"\033[3~", KEY_DC},      {"\033OP", KEY_F(1)},
-                {"\033[11~", KEY_F(1)}, {"\033[1;2D", KEY_SLEFT}, {"\033[1;2C", KEY_SRIGHT},
-                {"\033[1;2A", KEY_SR},  {"\033[1;2B", KEY_SF}};
+    } keys[] = {
+        {"\033[A", KEY_UP},     {"\033[B", KEY_DOWN},     {"\033[C", KEY_RIGHT},
+        {"\033[D", KEY_LEFT},   {"\033OA", KEY_UP},       {"\033OB", KEY_DOWN},
+        {"\033OC", KEY_RIGHT},  {"\033OD", KEY_LEFT},     {"\033[H", KEY_HOME},
+        {"\033[F", KEY_END},    {"\033OH", KEY_HOME},     {"\033OF", KEY_END},
+        {"\033[1~", KEY_HOME},  {"\033[4~", KEY_END},     {"\033[5~", KEY_PPAGE},
+        {"\033[6~", KEY_NPAGE}, {"\033[3~", KEY_DC},      {"\033OP", KEY_F(1)},
+        {"\033[11~", KEY_F(1)}, {"\033[1;2D", KEY_SLEFT}, {"\033[1;2C", KEY_SRIGHT},
+        {"\033[1;2A", KEY_SR},  {"\033[1;2B", KEY_SF}};
 
     for (size_t i = 0; i < sizeof keys / sizeof keys[0]; i++) {
         define_key(keys[i].sequence, keys[i].key);
@@ -156,9 +166,9 @@ static void ask_for_pixels(void)
     const char *name = getenv("TERM");
 
     // a multiplexer passes strings on or shows them, and old consoles print them
-    const bool careful = getenv("TMUX") != NULL || getenv("STY") != NULL || name == NULL ||
-                         strncmp(name, "screen", 6) == 0 || strncmp(name, "tmux", 4) == 0 ||
-                         strcmp(name, "linux") == 0;
+    const bool careful = getenv("TMUX") != NULL || getenv("STY") != NULL ||
+                         name == NULL || strncmp(name, "screen", 6) == 0 ||
+                         strncmp(name, "tmux", 4) == 0 || strcmp(name, "linux") == 0;
     const char *question = pixel_answers_begin(&tty.pixels, careful);
     tty.sequence.awaits = true;
     terminal_send(question, strlen(question));
@@ -265,16 +275,25 @@ void terminal_close(void)
 
 void terminal_size(int *width, int *height)
 {
-    *width = COLS > 0 ? COLS : 1;
-    *height = LINES > 0 ? LINES : 1;
+    if (COLS > 0) {
+        *width = COLS;
+    } else {
+        *width = 1;
+    }
+    if (LINES > 0) {
+        *height = LINES;
+    } else {
+        *height = 1;
+    }
 }
 
 void terminal_mouse(bool on)
 {
     if (on != tty.mouse && tty.has_mouse) {
-        // ncurses has to wait for the end of a report that it has begun to read, so it is not asked
-        const char *reports =
-            on ? "\033[?1000h\033[?1002h\033[?1006h" : "\033[?1006l\033[?1002l\033[?1000l";
+        // ncurses has to wait for the end of a report that it has begun to read, so it is
+        // not asked
+        const char *reports = on ? "\033[?1000h\033[?1002h\033[?1006h"
+                                 : "\033[?1006l\033[?1002l\033[?1000l";
         ssize_t ignored = write(STDOUT_FILENO, reports, strlen(reports));
         (void)ignored;
         tty.mouse = on;

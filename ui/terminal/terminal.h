@@ -1,5 +1,5 @@
-// The terminal: shows a screen's cells and reads keys and the mouse. Its former state is restored
-// however the program ends, crashes included.
+// The terminal: shows a screen's cells and reads keys and the mouse. Its former state is
+// restored however the program ends, crashes included.
 #pragma once
 
 #include "src/base/fault.h"
@@ -23,18 +23,19 @@ typedef struct terminal_input {
     pointer_event pointer;
 } terminal_input;
 
-// Whether standard input and output are a terminal that can position its cursor; if not, the reason
-// is in f.
+// Whether standard input and output are a terminal that can position its cursor; if not,
+// the reason is in f.
 bool terminal_usable(fault *f);
 
-// Takes control of the terminal. STATUS_BAD_ARGUMENT, with the reason in f, if it is not usable.
+// Takes control of the terminal. STATUS_BAD_ARGUMENT, with the reason in f, if it is not
+// usable.
 status terminal_open(fault *f);
 
 // Restores it. If a signal asked to leave, ends the program by that signal.
 void terminal_close(void);
 
-// Gives it back by prepared bytes, if it is open, where the program ends at once. Safe in a signal
-// handler.
+// Gives it back by prepared bytes, if it is open, where the program ends at once. Safe in
+// a signal handler.
 void terminal_give_back(void);
 
 void terminal_size(int *width, int *height);
@@ -42,9 +43,10 @@ void terminal_size(int *width, int *height);
 // Waits for input: at most `seconds`, without limit if negative.
 terminal_input terminal_wait(double seconds);
 
-// Shows the cells and the pictures; only what has changed is sent. `whole`: everything anew.
-void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour_depth depth,
-                   bool whole);
+// Shows the cells and the pictures; only what has changed is sent. `whole`: everything
+// anew.
+void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme,
+                   colour_depth depth, bool whole);
 
 // Bytes sent so far past ncurses: pictures are nearly all of them.
 size_t terminal_sent(void);
@@ -60,8 +62,8 @@ typedef struct terminal_pixels {
 // What is known so far. A change is reported as TERMINAL_RESIZE.
 terminal_pixels terminal_pixels_known(void);
 
-// The terminal's number of colours according to its description and the environment: never
-// DEPTH_AUTO. DEPTH_MONO with NO_COLOR.
+// The terminal's number of colours according to its description and the environment:
+// never DEPTH_AUTO. DEPTH_MONO with NO_COLOR.
 colour_depth terminal_depth(void);
 
 // Whether the terminal reports a light background (in COLORFGBG, as some do).

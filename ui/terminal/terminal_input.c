@@ -10,13 +10,14 @@
 
 #include "src/base/clock.h"
 
-#define SEQUENCE_TIME 0.25 // after such a pause what is missing of a sequence does not come [s]
+// after such a pause what is missing of a sequence does not come [s]
+#define SEQUENCE_TIME 0.25
 
 static int key_of_curses(int key)
 {
     switch (key) {
-#define KEY_OF_CURSES(code, name, curses)                                                          \
-    case curses:                                                                                   \
+#define KEY_OF_CURSES(code, name, curses)                                                \
+    case curses:                                                                         \
         return KEY_CODE_##code;
         KEY_LIST(KEY_OF_CURSES)
 #undef KEY_OF_CURSES
@@ -45,8 +46,8 @@ static bool take_answer(void)
     return before.cell_width != now.cell_width || before.cell_height != now.cell_height;
 }
 
-// Goes on with a sequence by the next character. False if that is a key of its own; *in is then the
-// escape before it, if that stood alone.
+// Goes on with a sequence by the next character. False if that is a key of its own; *in
+// is then the escape before it, if that stood alone.
 static bool take_sequence(wint_t key, int kind, terminal_input *in)
 {
     bool escaped = tty.sequence.state == SEQUENCE_ESCAPED;
@@ -68,25 +69,34 @@ static bool take_sequence(wint_t key, int kind, terminal_input *in)
 
     // an answer that changes what can be shown has all drawn anew
     if (result == SEQUENCE_ANSWER) {
-        in->kind = take_answer() ? TERMINAL_RESIZE : TERMINAL_NONE;
+        if (take_answer()) {
+            in->kind = TERMINAL_RESIZE;
+        } else {
+            in->kind = TERMINAL_NONE;
+        }
         return true;
     }
     if (result == SEQUENCE_PASTE || result == SEQUENCE_PASTED) {
         tty.pasting = result == SEQUENCE_PASTE;
     }
-    in->kind = result == SEQUENCE_MOUSE ? TERMINAL_POINTER : TERMINAL_NONE;
+    if (result == SEQUENCE_MOUSE) {
+        in->kind = TERMINAL_POINTER;
+    } else {
+        in->kind = TERMINAL_NONE;
+    }
     return true;
 }
 
-// A key, which is one of pasted text until that ends: however long it takes, or with a key that no
-// terminal pastes where the end was lost.
+// A key, which is one of pasted text until that ends: however long it takes, or with a
+// key that no terminal pastes where the end was lost.
 static terminal_input key_input(int code)
 {
     tty.pasting = tty.pasting && code != KEY_CODE_ESCAPE && code != ('c' & 0x1f);
     return (terminal_input){.kind = TERMINAL_KEY, .code = code, .pasted = tty.pasting};
 }
 
-// The input that has arrived; TERMINAL_NONE if there is none, or only a part of a sequence.
+// The input that has arrived; TERMINAL_NONE if there is none, or only a part of a
+// sequence.
 static terminal_input pending_input(void)
 {
     terminal_input in = {.kind = TERMINAL_NONE};
@@ -109,13 +119,17 @@ static terminal_input pending_input(void)
             return in;
         }
         if (!taken && kind == KEY_CODE_YES) {
-            return key == KEY_RESIZE ? (terminal_input){.kind = TERMINAL_RESIZE}
-                                     : key_input(key_of_curses((int)key));
+            if (key == KEY_RESIZE) {
+                return (terminal_input){.kind = TERMINAL_RESIZE};
+            }
+            return key_input(key_of_curses((int)key));
         }
         if (!taken && key != KEY_CODE_ESCAPE) {
             return key_input((int)key);
         }
-        tty.sequence.state = taken ? tty.sequence.state : SEQUENCE_ESCAPED;
+        if (!taken) {
+            tty.sequence.state = SEQUENCE_ESCAPED;
+        }
     }
 
     // no more came after an escape: it was the key
@@ -126,8 +140,8 @@ static terminal_input pending_input(void)
     return in;
 }
 
-// Gives the terminal back, mouse included, stops until the shell lets us go on, and takes the
-// terminal over again.
+// Gives the terminal back, mouse included, stops until the shell lets us go on, and takes
+// the terminal over again.
 static void suspend(void)
 {
     struct sigaction ours, plain = {.sa_handler = SIG_DFL};
@@ -170,7 +184,8 @@ static terminal_input after_signal(void)
     }
 
     // whatever the signal was, the size is asked for
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 && size.ws_row > 0) {
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 &&
+        size.ws_row > 0) {
         resizeterm(size.ws_row, size.ws_col);
     }
     // of a cell again, too, which a change of size may change, if it was known
@@ -199,9 +214,12 @@ terminal_input terminal_wait(double seconds)
 
         // readable, but there is nothing: its other end was closed
         int waiting = 0;
-        bool ended = in.kind == TERMINAL_NONE && ioctl(STDIN_FILENO, FIONREAD, &waiting) == 0 &&
-                     waiting == 0 && watched[0].revents & (POLLHUP | POLLERR);
-        in.kind = ended ? TERMINAL_LEAVE : in.kind;
+        bool ended = in.kind == TERMINAL_NONE &&
+                     ioctl(STDIN_FILENO, FIONREAD, &waiting) == 0 && waiting == 0 &&
+                     watched[0].revents & (POLLHUP | POLLERR);
+        if (ended) {
+            in.kind = TERMINAL_LEAVE;
+        }
         return in;
     }
 

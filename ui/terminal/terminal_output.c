@@ -1,5 +1,5 @@
-// What the terminal shows: cells by the sequences of its description, in colours that this does not
-// know by those that all terminals with them have; pictures.
+// What the terminal shows: cells by the sequences of its description, in colours that
+// this does not know by those that all terminals with them have; pictures.
 #include "ui/terminal/terminal.h"
 #include "ui/terminal/terminal_state.h"
 
@@ -20,7 +20,7 @@
 #include "ui/terminal/pictures.h"
 #include "ui/terminal/pixels.h"
 
-// --- bytes and cells --------------------------------------------------------------------------
+// --- bytes and cells -------------------------------------------------------------------
 
 static size_t sent_in_all;
 
@@ -34,7 +34,9 @@ void terminal_send(const char *bytes, size_t count)
     sent_in_all += count;
     for (size_t sent = 0; sent < count;) {
         const ssize_t taken = write(STDOUT_FILENO, bytes + sent, count - sent);
-        sent += taken > 0 ? (size_t)taken : 0;
+        if (taken > 0) {
+            sent += (size_t)taken;
+        }
         if (taken < 0 && errno == EAGAIN) {
             struct pollfd room = {STDOUT_FILENO, POLLOUT, 0};
             poll(&room, 1, 1000);
@@ -51,7 +53,8 @@ static int put_byte(int byte)
     return putc(byte, sequences);
 }
 
-// Writes a sequence of the terminal's description, with one number; nothing if it has none.
+// Writes a sequence of the terminal's description, with one number; nothing if it has
+// none.
 static void put_capability(FILE *stream, const char *name, int number)
 {
     const char *text = tigetstr(name);
@@ -73,7 +76,8 @@ static void put_indexed(FILE *stream, int index, colour_depth depth)
     }
 }
 
-// Selects an ink. Bold, dim and underlined cells say without colours what these say elsewhere.
+// Selects an ink. Bold, dim and underlined cells say without colours what these say
+// elsewhere.
 static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
 {
     rgb c;
@@ -82,7 +86,8 @@ static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
     const int index = ink_index(theme, i, depth);
     const bool bright = coloured && depth == DEPTH_16 && COLORS == 8 && index >= 8;
 
-    // many terminals show bold dark colours as bright ones, which are not readable on light ground
+    // many terminals show bold dark colours as bright ones, which are not readable on
+    // light ground
     const bool faint = theme == COLOURS_LIGHT && depth == DEPTH_16 && coloured;
     const bool bold = i == INK_TITLE || i == INK_EVENT || i == INK_WARNING;
     put_capability(stream, "sgr0", 0);
@@ -103,7 +108,8 @@ static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
     }
 }
 
-// Writes the cells that have changed (all of them if `whole`; the terminal is empty then).
+// Writes the cells that have changed (all of them if `whole`; the terminal is empty
+// then).
 static void paint_cells(FILE *stream, const screen *s, glyph_set glyphs, bool whole)
 {
     const char *place = tigetstr("cup");
@@ -112,7 +118,8 @@ static void paint_cells(FILE *stream, const screen *s, glyph_set glyphs, bool wh
         for (int x = 0; x < s->width; x++) {
             long i = (long)y * s->width + x;
             cell c = s->cells[i], *old = &tty.shown.cells[i];
-            bool blank = (c.glyph == ' ' && c.ink != INK_SELECTED) || c.glyph >= GLYPH_PICTURE;
+            bool blank =
+                (c.glyph == ' ' && c.ink != INK_SELECTED) || c.glyph >= GLYPH_PICTURE;
             bool same = whole ? blank : c.glyph == old->glyph && c.ink == old->ink;
             *old = c;
 
@@ -143,7 +150,7 @@ static void paint_cells(FILE *stream, const screen *s, glyph_set glyphs, bool wh
     put_capability(stream, "sgr0", 0);
 }
 
-// --- pictures ---------------------------------------------------------------------------------
+// --- pictures --------------------------------------------------------------------------
 
 enum { LARGEST = 1 << 16 }; // cells of a region
 
@@ -166,13 +173,13 @@ terminal_pixels terminal_pixels_known(void)
                              .ground = a->ground};
 
     // a terminal may say its size in pixels with that in cells only
-    if (known.cell_width == 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 &&
-        size.ws_row > 0) {
+    if (known.cell_width == 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 &&
+        size.ws_col > 0 && size.ws_row > 0) {
         known.cell_width = size.ws_xpixel / size.ws_col;
         known.cell_height = size.ws_ypixel / size.ws_row;
     }
-    known.there =
-        pixel_answers_protocol(a) != PIXELS_NONE && known.cell_width > 1 && known.cell_height > 1;
+    known.there = pixel_answers_protocol(a) != PIXELS_NONE && known.cell_width > 1 &&
+                  known.cell_height > 1;
     return known;
 }
 
@@ -180,7 +187,8 @@ terminal_pixels terminal_pixels_known(void)
 static pixel_block block_of(const screen *s, const picture_region *r)
 {
     const screen_picture *p = &s->pictures->items[r->picture];
-    const int cell_width = s->pictures->cell_width, cell_height = s->pictures->cell_height;
+    const int cell_width = s->pictures->cell_width,
+              cell_height = s->pictures->cell_height;
     const int stride = cairo_image_surface_get_stride(p->surface) / 4;
     const long offset =
         (long)(r->y - p->y) * cell_height * stride + (long)(r->x - p->x) * cell_width;
@@ -195,15 +203,16 @@ static uint64_t hash_of(const pixel_block *b)
     uint64_t hash = 14695981039346656037u;
     for (int y = 0; y < b->height; y++) {
         for (int x = 0; x < b->width; x++) {
-            hash = (hash ^ (b->pixels[(long)y * b->stride + x] & 0xffffff)) * 1099511628211u;
+            hash =
+                (hash ^ (b->pixels[(long)y * b->stride + x] & 0xffffff)) * 1099511628211u;
         }
     }
     return hash;
 }
 
 // Shows the regions that are not on the terminal yet, and remembers them.
-static void write_regions(FILE *stream, const screen *s, const picture_region *regions, int count,
-                          bool whole)
+static void write_regions(FILE *stream, const screen *s, const picture_region *regions,
+                          int count, bool whole)
 {
     const bool kitty = tty.pixels.kitty;
     const int said = tty.pixels.registers;
@@ -241,7 +250,8 @@ static void paint_pictures(FILE *stream, const screen *s, bool whole)
 {
     const pixel_answers *a = &tty.pixels;
     picture_region regions[PICTURE_REGIONS];
-    if (pixel_answers_protocol(a) == PIXELS_NONE || (s->pictures == NULL && shown.count == 0)) {
+    if (pixel_answers_protocol(a) == PIXELS_NONE ||
+        (s->pictures == NULL && shown.count == 0)) {
         return;
     }
 
@@ -265,42 +275,54 @@ void terminal_remove_pictures(void)
     shown.count = 0;
 }
 
-// --- the screen -------------------------------------------------------------------------------
+// --- the screen ------------------------------------------------------------------------
 
 colour_depth terminal_depth(void)
 {
-    const char *none = getenv("NO_COLOR"), *claim = getenv("COLORTERM"), *name = getenv("TERM");
+    const char *none = getenv("NO_COLOR"), *claim = getenv("COLORTERM"),
+               *name = getenv("TERM");
     const char *direct = tigetstr("RGB");
     if (!tty.colours || (none != NULL && none[0] != '\0')) {
         return DEPTH_MONO;
     }
 
     // what the terminal's description says, and what the terminal says of itself
-    bool described = tigetflag("RGB") == 1 || tigetnum("RGB") > 0 || tigetflag("Tc") == 1 ||
+    bool described = tigetflag("RGB") == 1 || tigetnum("RGB") > 0 ||
+                     tigetflag("Tc") == 1 ||
                      (direct != NULL && direct != (const char *)-1) || COLORS > 256;
     bool claimed =
         claim != NULL && (strcmp(claim, "truecolor") == 0 || strcmp(claim, "24bit") == 0);
     // GNU screen and the console hand the claim of the terminal they were started from on
-    bool hearsay = name != NULL && (strcmp(name, "linux") == 0 ||
-                                    (strncmp(name, "screen", 6) == 0 && getenv("TMUX") == NULL));
-    return described || (claimed && !hearsay) ? DEPTH_TRUE : COLORS >= 256 ? DEPTH_256 : DEPTH_16;
+    bool hearsay =
+        name != NULL && (strcmp(name, "linux") == 0 ||
+                         (strncmp(name, "screen", 6) == 0 && getenv("TMUX") == NULL));
+    if (described || (claimed && !hearsay)) {
+        return DEPTH_TRUE;
+    }
+    if (COLORS >= 256) {
+        return DEPTH_256;
+    }
+    return DEPTH_16;
 }
 
 bool terminal_is_light(void)
 {
-    // "foreground;background", with the background's number among the 16 colours at the end
+    // "foreground;background", with the background's number among the 16 colours at the
+    // end
     const char *claim = getenv("COLORFGBG"), *last = claim ? strrchr(claim, ';') : NULL;
     return last != NULL && (strcmp(last, ";7") == 0 || strcmp(last, ";15") == 0);
 }
 
-void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour_depth depth,
-                   bool whole)
+void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme,
+                   colour_depth depth, bool whole)
 {
     assert(s->width > 0 && s->height > 0);
 
     // another size, theme or depth: everything anew
     bool same_size = tty.shown.width == s->width && tty.shown.height == s->height;
-    depth = depth == DEPTH_AUTO ? terminal_depth() : depth;
+    if (depth == DEPTH_AUTO) {
+        depth = terminal_depth();
+    }
     if (!same_size && !screen_resize(&tty.shown, s->width, s->height)) {
         return;
     }
@@ -313,7 +335,8 @@ void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour
         refresh();
     }
 
-    // all at once; a terminal that knows synchronised output shows it at once, others ignore it
+    // all at once; a terminal that knows synchronised output shows it at once, others
+    // ignore it
     text_stream all;
     char *bytes = NULL;
     size_t size;
@@ -335,7 +358,7 @@ void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme, colour
     free(bytes);
 }
 
-// --- the clipboard ----------------------------------------------------------------------------
+// --- the clipboard ---------------------------------------------------------------------
 
 void terminal_copy(const char *text)
 {

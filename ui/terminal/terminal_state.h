@@ -1,5 +1,5 @@
-// The program's only terminal, shared by the files that implement terminal.h: they open it, read
-// from it, draw on it and catch the signals that end the program.
+// The program's only terminal, shared by the files that implement terminal.h: they open
+// it, read from it, draw on it and catch the signals that end the program.
 #pragma once
 
 #include <signal.h>
@@ -32,8 +32,8 @@ extern terminal_state tty;
 extern volatile sig_atomic_t terminal_leaving;    // the signal that asks to leave
 extern volatile sig_atomic_t terminal_suspending; // ^Z was pressed
 
-// Appends to the sequence by which a crash restores the terminal, without padding marks; NULL and
-// ncurses' value for a missing capability are ignored.
+// Appends to the sequence by which a crash restores the terminal, without padding marks;
+// NULL and ncurses' value for a missing capability are ignored.
 void terminal_prepare_crash(const char *text);
 
 // Sends all bytes to the terminal, however slowly it accepts them.

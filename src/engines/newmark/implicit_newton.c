@@ -32,7 +32,8 @@ static void forces_between_links(const arm *a, implicit_sweep *link, const doubl
 
 // Penetration, and how the wall acts at q: direction, lever.
 typedef struct contact_point {
-    double ex, ey, lever, g, angle_force; // angle_force: e' = -r of a point wall, see below
+    double ex, ey, lever, g,
+        angle_force; // angle_force: e' = -r of a point wall, see below
 } contact_point;
 
 static contact_point contact_at(const arm *a, const implicit_sweep *link)
@@ -45,11 +46,13 @@ static contact_point contact_at(const arm *a, const implicit_sweep *link)
         y += l * link[k].s;
     }
     wall_contact at = wall_contact_at(&a->wall, l, x, y, 0, 0, end->c, end->s, 0);
-    return (contact_point){at.ex, at.ey, at.lever, at.penetration, a->wall.kind == WALL_POINT};
+    return (contact_point){at.ex, at.ey, at.lever, at.penetration,
+                           a->wall.kind == WALL_POINT};
 }
 
 // J v from the directions in `link`.
-static double rate_along(const arm *a, const implicit_sweep *link, contact_point p, const double *v)
+static double rate_along(const arm *a, const implicit_sweep *link, contact_point p,
+                         const double *v)
 {
     double sum = 0, l = a->link_length;
     for (int k = 0; k < a->links; k++) {
@@ -76,7 +79,8 @@ static double rate_change(const arm *a, const implicit_sweep *link, contact_poin
     // dg/dt = s w + t'v_base with s = r'd, see wall.h
     double along = 0; // r'v_base
     for (int k = 0; k < last; k++) {
-        double sine = end->s * link[k].c - end->c * link[k].s; // r'(l t_k) = l sin(q_N - q_k)
+        double sine =
+            end->s * link[k].c - end->c * link[k].s; // r'(l t_k) = l sin(q_N - q_k)
         along += l * sine * v[k];
         sum += l * (-sine * v[last] + sine * v[k]) * x[k];
     }
@@ -93,17 +97,18 @@ typedef struct beyond {
     double outer;              // torque of the joint beyond
 } beyond;
 
-// Eliminates the angle of link k, with what it lacks of its balance of torques about its node.
-static inline __attribute__((always_inline)) void eliminate(const arm *a, implicit_sweep *link,
-                                                            int k, implicit_iterate *it,
-                                                            implicit_tangent t, double lever,
-                                                            beyond *b)
+// Eliminates the angle of link k, with what it lacks of its balance of torques about its
+// node.
+static inline __attribute__((always_inline)) void
+eliminate(const arm *a, implicit_sweep *link, int k, implicit_iterate *it,
+          implicit_tangent t, double lever, beyond *b)
 {
     const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
     const double *q = it->q, *w = it->w;
     const int first = a->first;
     implicit_sweep *L = &link[k];
-    const double c = L->c, s = L->s, omega = w[first + k], alpha = it->acceleration[first + k];
+    const double c = L->c, s = L->s, omega = w[first + k],
+                 alpha = it->acceleration[first + k];
 
     // how the node's acceleration changes with the link's angle
     const double across = t.beta - omega * omega, along = alpha + 2 * t.gamma * omega;
@@ -116,8 +121,8 @@ static inline __attribute__((always_inline)) void eliminate(const arm *a, implic
         const double stiffness = k > 0 ? a->joint_stiffness : a->hub_stiffness;
         const double damping = k > 0 ? a->joint_damping : a->hub_joint_damping;
         kappa = stiffness + damping * t.gamma;
-        inner =
-            stiffness * (q[first + k] - q[first + k - 1]) + damping * (omega - w[first + k - 1]);
+        inner = stiffness * (q[first + k] - q[first + k - 1]) +
+                damping * (omega - w[first + k - 1]);
     }
 
     // the balance of torques: residual, and its slope by the angle
@@ -138,10 +143,11 @@ static inline __attribute__((always_inline)) void eliminate(const arm *a, implic
     if (first + k == 0) {
         // the first link turns with the hub
         pivot += a->hub_inertia * t.beta + a->motor.damping * t.gamma;
-        right -= a->hub_inertia * alpha + a->motor.damping * omega - a->motor.torque - it->sliding;
+        right -= a->hub_inertia * alpha + a->motor.damping * omega - a->motor.torque -
+                 it->sliding;
         if (it->stuck) {
-            it->excess =
-                -residual - a->hub_inertia * alpha - a->motor.damping * omega + a->motor.torque;
+            it->excess = -residual - a->hub_inertia * alpha - a->motor.damping * omega +
+                         a->motor.torque;
             right = right1 = 0;
         }
     }
@@ -154,7 +160,8 @@ static inline __attribute__((always_inline)) void eliminate(const arm *a, implic
     L->unit = right1 / pivot;
 
     // the answer of this link and all beyond it
-    const double px = m * half * L->zx + l * zpx + b->hx, py = m * half * L->zy + l * zpy + b->hy;
+    const double px = m * half * L->zx + l * zpx + b->hx,
+                 py = m * half * L->zy + l * zpy + b->hy;
     b->pxx += m - px * L->vx;
     b->pxy -= px * L->vy;
     b->pyx -= py * L->vx;
@@ -183,8 +190,10 @@ static void substitute(const arm *a, const implicit_sweep *link, bool stuck, dou
         const int i = a->first + k;
         const bool fixed = i == 0 && stuck; // a stuck hub stays
         const double parent = i > 0 ? dq[i - 1] : 0, parent1 = i > 0 ? unit[i - 1] : 0;
-        const double d = fixed ? 0 : L->free - L->vx * ax - L->vy * ay + L->to_parent * parent;
-        const double d1 = fixed ? 0 : L->unit - L->vx * bx - L->vy * by + L->to_parent * parent1;
+        const double d =
+            fixed ? 0 : L->free - L->vx * ax - L->vy * ay + L->to_parent * parent;
+        const double d1 =
+            fixed ? 0 : L->unit - L->vx * bx - L->vy * by + L->to_parent * parent1;
         dq[i] = d;
         unit[i] = d1;
         ax += a->link_length * L->zx * d;
@@ -208,7 +217,8 @@ double implicit_correction(const arm *a, implicit_sweep *link, implicit_iterate 
     if (it->contact) {
         point = contact_at(a, link);
     }
-    forces_between_links(a, link, w, it->acceleration, it->force * point.ex, it->force * point.ey);
+    forces_between_links(a, link, w, it->acceleration, it->force * point.ex,
+                         it->force * point.ey);
 
     // elimination from tip to hub; a point wall's force turns with the last link
     beyond b = {.pxx = a->tip_mass, .pyy = a->tip_mass, .ex = point.ex, .ey = point.ey};
@@ -224,8 +234,9 @@ double implicit_correction(const arm *a, implicit_sweep *link, implicit_iterate 
         it->excess = a->motor.torque + b.outer;
     } else if (a->hub_spring) {
         const double pivot = a->hub_inertia * t.beta + a->motor.damping * t.gamma - b.yy;
-        const double residual = a->hub_inertia * it->acceleration[0] + a->motor.damping * w[0] -
-                                a->motor.torque - it->sliding - b.outer;
+        const double residual = a->hub_inertia * it->acceleration[0] +
+                                a->motor.damping * w[0] - a->motor.torque - it->sliding -
+                                b.outer;
         dq[0] = (b.torque0 - residual) / pivot;
         unit[0] = b.torque1 / pivot;
     }
@@ -241,7 +252,8 @@ double implicit_correction(const arm *a, implicit_sweep *link, implicit_iterate 
         df = -(rate + rate_change(a, link, point, w, t.gamma, dq)) /
              rate_change(a, link, point, w, t.gamma, unit);
     } else {
-        df = -(point.g + rate_along(a, link, point, dq)) / rate_along(a, link, point, unit);
+        df = -(point.g + rate_along(a, link, point, dq)) /
+             rate_along(a, link, point, unit);
     }
     for (int i = 0; i < a->dof; i++) {
         dq[i] += df * unit[i];

@@ -1,38 +1,42 @@
-// Newmark's method and generalised-alpha (Chung and Hulbert 1993, in the form of Arnold and Bruls
-// 2007 for constrained systems) on the chain, with a Newton iteration that costs O(N).
+// Newmark's method and generalised-alpha (Chung and Hulbert 1993, in the form of Arnold
+// and Bruls 2007 for constrained systems) on the chain, with a Newton iteration that
+// costs O(N).
 //
-// Unknown are the angles q1 at the end of the step and the contact force f. With algorithmic
-// accelerations A,
+// Unknown are the angles q1 at the end of the step and the contact force f. With
+// algorithmic accelerations A,
 //
-//     q1 = q0 + h w0 + h^2 ((1/2 - beta) A0 + beta A1)                               (3.7)
-//     w1 = w0 + h ((1 - gamma) A0 + gamma A1)                                        (3.6)
-//     (1 - alpha_m) A1 + alpha_m A0 = (1 - alpha_f) a1 + alpha_f a0,
+//     q1 = q0 + h w0 + h^2 ((1/2 - beta) A0 + beta A1) (3.7) w1 = w0 + h ((1 - gamma) A0
+//     + gamma A1)                                        (3.6) (1 - alpha_m) A1 + alpha_m
+//     A0 = (1 - alpha_f) a1 + alpha_f a0,
 //
-// where a1 satisfies the equations of motion at q1, w1 exactly and g(q1) = 0 in contact. Newmark is
-// alpha_m = alpha_f = 0. After the step the velocities are projected onto dg/dt = 0.
+// where a1 satisfies the equations of motion at q1, w1 exactly and g(q1) = 0 in contact.
+// Newmark is alpha_m = alpha_f = 0. After the step the velocities are projected onto
+// dg/dt = 0.
 //
-// Where the step resolves the fastest mode, a1 and f are then evaluated again from q1, w1 and
-// d2g/dt2 = 0: the strategy of section 3.1.3, which keeps the oscillation of the constraint's force
-// out of the results. Where it does not (many links), accelerations of modes faster than the step
-// carry no information: a1 and f stay those of the step's own balance. In contact and just after a
-// jump the step is then one of backward Euler, beta = gamma = 1, which does not use the
-// accelerations before it, with dg/dt = 0 as the constraint, on which the force does no work; the
-// drift of g is removed by bending along a smooth shape that costs next to no strain. It is of
-// first order, but loses energy whatever the step, whereas generalised-alpha, started from the
-// jumps of a thousand links, was seen to gain energy.
+// Where the step resolves the fastest mode, a1 and f are then evaluated again from q1, w1
+// and d2g/dt2 = 0: the strategy of section 3.1.3, which keeps the oscillation of the
+// constraint's force out of the results. Where it does not (many links), accelerations of
+// modes faster than the step carry no information: a1 and f stay those of the step's own
+// balance. In contact and just after a jump the step is then one of backward Euler, beta
+// = gamma = 1, which does not use the accelerations before it, with dg/dt = 0 as the
+// constraint, on which the force does no work; the drift of g is removed by bending along
+// a smooth shape that costs next to no strain. It is of first order, but loses energy
+// whatever the step, whereas generalised-alpha, started from the jumps of a thousand
+// links, was seen to gain energy.
 #include <math.h>
 
 #include "src/engines/newmark/implicit_newton.h"
 #include "src/contact/motion.h"
 
 #define NEWTON_ITERATIONS 30
-// The iteration ends with a correction below this share of the largest angle or of 1 rad. It
-// converges quadratically, or by 1e-5 a step where the lever is left out, so that what is left is
-// below 1e-12.
+// The iteration ends with a correction below this share of the largest angle or of 1 rad.
+// It converges quadratically, or by 1e-5 a step where the lever is left out, so that what
+// is left is below 1e-12.
 #define NEWTON_TOLERANCE 1e-8
 
 // Velocities onto J w = 0 in contact.
-static void project_velocity(const arm *a, motion *m, const double *q, double *w, bool stuck)
+static void project_velocity(const arm *a, motion *m, const double *q, double *w,
+                             bool stuck)
 {
     double *response = m->scratch;
     const double compliance = chain_contact_response(a, m->links, q, stuck, response);
@@ -49,30 +53,33 @@ static void update_rates(motion *m, const implicit_coefficients *k, double h, bo
     double *w1 = state_velocities(m, m->trial), *A1 = state_algorithmic(m, m->trial);
     double *a1 = state_accelerations(m, m->trial);
     const double *q0 = state_angles(m, m->state), *w0 = state_velocities(m, m->state);
-    const double *a0 = state_accelerations(m, m->state), *A0 = state_algorithmic(m, m->state);
+    const double *a0 = state_accelerations(m, m->state),
+                 *A0 = state_algorithmic(m, m->state);
     const double per_square = 1 / (h * h * k->beta), own = 1 / (1 - k->alpha_f);
     for (int i = 0; i < m->dof; i++) {
-        A1[i] = (q1[i] - q0[i] - h * w0[i] - h * h * (0.5 - k->beta) * A0[i]) * per_square;
+        A1[i] =
+            (q1[i] - q0[i] - h * w0[i] - h * h * (0.5 - k->beta) * A0[i]) * per_square;
         w1[i] = w0[i] + h * ((1 - k->gamma) * A0[i] + k->gamma * A1[i]);
-        a1[i] = ((1 - k->alpha_m) * A1[i] + k->alpha_m * A0[i] - k->alpha_f * a0[i]) * own;
+        a1[i] =
+            ((1 - k->alpha_m) * A1[i] + k->alpha_m * A0[i] - k->alpha_f * a0[i]) * own;
     }
     if (stuck) {
         w1[0] = A1[0] = a1[0] = 0;
     }
 }
 
-// Newton's iteration for the angles and the force at the end of the step; it->q etc. point into the
-// trial state.
-static status solve_step(const arm *a, motion *m, double h, const implicit_coefficients *k,
-                         implicit_iterate *it)
+// Newton's iteration for the angles and the force at the end of the step; it->q etc.
+// point into the trial state.
+static status solve_step(const arm *a, motion *m, double h,
+                         const implicit_coefficients *k, implicit_iterate *it)
 {
     const int n = a->dof;
     const double *q0 = state_angles(m, m->state), *w0 = state_velocities(m, m->state);
     double *q1 = state_angles(m, m->trial);
     double *dq = m->scratch + 2 * n, *unit = m->scratch + 3 * n;
 
-    // backward Euler starts from rest: a predictor from the velocities just after a jump would put
-    // the shortest links' angles far off
+    // backward Euler starts from rest: a predictor from the velocities just after a jump
+    // would put the shortest links' angles far off
     const double first = k->beta < 1 ? h : 0, second = 0.5 * h * first;
     implicit_tangent t = {(1 - k->alpha_m) / ((1 - k->alpha_f) * k->beta * h * h),
                           k->gamma / (k->beta * h)};
@@ -95,7 +102,9 @@ static status solve_step(const arm *a, motion *m, double h, const implicit_coeff
             size = fmax(size, fabs(dq[i]));
             largest = fmax(largest, fabs(q1[i]));
         }
-        FAIL_IF(!isfinite(size), STATUS_NOT_FINITE);
+        if (!isfinite(size)) {
+            return STATUS_NOT_FINITE;
+        }
 
         // small enough: the rates that go with the angles found
         if (size <= NEWTON_TOLERANCE * largest) {
@@ -106,22 +115,31 @@ static status solve_step(const arm *a, motion *m, double h, const implicit_coeff
     return STATUS_NEWTON_FAILED;
 }
 
-// The state at the end of a step that does not resolve the fastest mode: what the step's own
-// balance gave.
+// The state at the end of a step that does not resolve the fastest mode: what the step's
+// own balance gave.
 static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
 {
-    double *trial = m->trial, *q = state_angles(m, trial), *w = state_velocities(m, trial);
+    double *trial = m->trial, *q = state_angles(m, trial),
+           *w = state_velocities(m, trial);
     const penetration at = chain_penetration(a, q, w);
     double power = 0;
 
     // the impulse of an impact within the step is not part of the force's impulse
     double impulsive = m->state[SLOT_IMPULSE] / (trial[SLOT_TIME] - m->state[SLOT_TIME]);
-    trial[SLOT_FORCE] = it->contact ? it->force : 0;
+    if (it->contact) {
+        trial[SLOT_FORCE] = it->force;
+    } else {
+        trial[SLOT_FORCE] = 0;
+    }
     if (it->contact && it->force > 0 && m->state[SLOT_IMPULSE] > 0) {
         trial[SLOT_FORCE] = fmax(it->force - impulsive, 0);
     }
 
-    trial[SLOT_FRICTION_TORQUE] = it->stuck ? -it->excess : it->sliding;
+    if (it->stuck) {
+        trial[SLOT_FRICTION_TORQUE] = -it->excess;
+    } else {
+        trial[SLOT_FRICTION_TORQUE] = it->sliding;
+    }
     trial[SLOT_GAP] = -at.depth;
     trial[SLOT_GAP_VELOCITY] = -at.rate;
     trial[SLOT_GAP_ACCELERATION] = 0; // asked for only at events, which evaluate it
@@ -135,14 +153,18 @@ static void keep_balance(const arm *a, motion *m, const implicit_iterate *it)
     trial[SLOT_DAMPING_POWER] = power;
 }
 
-// Removes the drift of the constraint by bending the arm: angles c x (2 - x) with x from 0 at the
-// hub to 1 at the tip, like a beam under a load at its tip.
+// Removes the drift of the constraint by bending the arm: angles c x (2 - x) with x from
+// 0 at the hub to 1 at the tip, like a beam under a load at its tip.
 static void bend_to_wall(const arm *a, motion *m)
 {
     double *q = state_angles(m, m->trial), *shape = m->scratch;
     for (int k = 0; k < a->dof; k++) {
         double x = a->links > 1 ? (double)(k - a->first) / (a->links - 1) : 1;
-        shape[k] = k < a->first ? 0 : x * (2 - x);
+        if (k < a->first) {
+            shape[k] = 0;
+        } else {
+            shape[k] = x * (2 - x);
+        }
     }
 
     // the gap depends on it almost linearly: twice is enough
@@ -155,9 +177,9 @@ static void bend_to_wall(const arm *a, motion *m)
     }
 }
 
-// Whether the trial state holds more energy than the step's start and the motor account for. A jump
-// can leave the shortest links turning by a good part of a radian in a step; the equations of the
-// step then have more than one solution.
+// Whether the trial state holds more energy than the step's start and the motor account
+// for. A jump can leave the shortest links turning by a good part of a radian in a step;
+// the equations of the step then have more than one solution.
 static bool makes_energy(const arm *a, const motion *m)
 {
     double energy[2], weight[2];
@@ -180,7 +202,8 @@ static status step(const arm *a, motion *m, double h, state_extent extent)
 
     // the method's coefficients, or backward Euler's
     const bool euler = !resolved && (mode.contact || m->state[SLOT_JUMPED] != 0);
-    const implicit_coefficients k = euler ? (implicit_coefficients){0, 0, 1, 1} : m->implicit;
+    const implicit_coefficients k =
+        euler ? (implicit_coefficients){0, 0, 1, 1} : m->implicit;
     implicit_iterate it = {.q = state_angles(m, m->trial),
                            .w = state_velocities(m, m->trial),
                            .acceleration = state_accelerations(m, m->trial),
@@ -191,9 +214,11 @@ static status step(const arm *a, motion *m, double h, state_extent extent)
                            .sliding = -mode.friction * a->motor.stiction};
     TRY(solve_step(a, m, h, &k, &it));
 
-    // onto the constraint, with the force evaluated anew where the step resolves all modes
+    // onto the constraint, with the force evaluated anew where the step resolves all
+    // modes
     if (it.contact && resolved) {
-        project_velocity(a, m, state_angles(m, m->trial), state_velocities(m, m->trial), it.stuck);
+        project_velocity(a, m, state_angles(m, m->trial), state_velocities(m, m->trial),
+                         it.stuck);
     }
     if (resolved) {
         motion_evaluate(a, m, m->trial);
@@ -202,7 +227,9 @@ static status step(const arm *a, motion *m, double h, state_extent extent)
             bend_to_wall(a, m);
         }
         keep_balance(a, m, &it);
-        FAIL_IF(k.beta == 1 && makes_energy(a, m), STATUS_UNSTABLE);
+        if (k.beta == 1 && makes_energy(a, m)) {
+            return STATUS_UNSTABLE;
+        }
     }
 
     // quadratures by the trapezoidal rule, with the powers at both ends
@@ -219,7 +246,10 @@ static status step(const arm *a, motion *m, double h, state_extent extent)
 static double advance(const arm *a, motion *m, double remaining, double step_length)
 {
     (void)a, (void)m;
-    return remaining < step_length * (1 + 1e-9) ? remaining : step_length;
+    if (remaining < step_length * (1 + 1e-9)) {
+        return remaining;
+    }
+    return step_length;
 }
 
 static size_t init(const arm *a, void *memory)
@@ -229,9 +259,10 @@ static size_t init(const arm *a, void *memory)
 }
 
 // The same step with other coefficients.
-#define STEPPER(title)                                                                             \
-    {                                                                                              \
-        .name = (title), .init = init, .advance = advance, .state_at = step, .implicit = true      \
+#define STEPPER(title)                                                                   \
+    {                                                                                    \
+        .name = (title), .init = init, .advance = advance, .state_at = step,             \
+        .implicit = true                                                                 \
     }
 const engine newmark_engine = STEPPER("Newmark");
 const engine generalized_alpha_engine = STEPPER("generalised-alpha");

@@ -1,14 +1,15 @@
 // The two-link arm by power series (taylor_kernel.c): a dense engine.
 //
-// The step goes as far as the fastest mode and the rotation let a series of the highest order
-// reach, and is shortened until its last terms are small; where they are small before, as in one
-// that something else ends sooner, the series end with them. Everything within it (events, rows,
-// peaks, quadratures) is a polynomial.
+// The step goes as far as the fastest mode and the rotation let a series of the highest
+// order reach, and is shortened until its last terms are small; where they are small
+// before, as in one that something else ends sooner, the series end with them. Everything
+// within it (events, rows, peaks, quadratures) is a polynomial.
 //
-// Steps that end within an internal step without an event (a sample in contact whose command stays,
-// an instant that a program stops at) continue in it: the state says where it began, the engine's
-// memory holds its series. While commands stay, a step is made for twice as long as the one before;
-// just after a change for twice the time since the change before.
+// Steps that end within an internal step without an event (a sample in contact whose
+// command stays, an instant that a program stops at) continue in it: the state says where
+// it began, the engine's memory holds its series. While commands stay, a step is made for
+// twice as long as the one before; just after a change for twice the time since the
+// change before.
 #include <math.h>
 #include <string.h>
 
@@ -19,16 +20,17 @@
 
 // Steps stay below this over the fastest rate and the angular velocities.
 #define LONGEST_REACH 2.0
-// Limit of (decay rate) x (step): the series of the highest order is stable on the negative real
-// axis to beyond 7.
+// Limit of (decay rate) x (step): the series of the highest order is stable on the
+// negative real axis to beyond 7.
 #define LONGEST_DECAY 4.0
-// On a flat wall the first link turns by no more than this share of what is left to a fold.
+// On a flat wall the first link turns by no more than this share of what is left to a
+// fold.
 #define LONGEST_TURN 0.1
 
 // Less of a step left than this share of it is rounding.
 #define LEAST_LEFT 1e-9
 
-// --- a step -----------------------------------------------------------------------------------
+// --- a step ----------------------------------------------------------------------------
 
 // From angles q and velocities w on.
 static void put_inputs(const arm *a, const motion *m, const double *q, const double *w,
@@ -67,14 +69,18 @@ static void put_inputs(const arm *a, const motion *m, const double *q, const dou
 // The length that is tried from velocities w on, up to `most`.
 static double wanted_step(const arm *a, const double *w, double most)
 {
-    // as far as the fastest mode, the rotation and the fastest decay let the highest order reach
+    // as far as the fastest mode, the rotation and the fastest decay let the highest
+    // order reach
     const double first = w[a->first], second = w[a->first + 1];
     const double links = larger(fabs(first), fabs(second));
-    const double turning = larger(fabs(second - first), fabs(w[0])); // the bend turns, too
-    const double rate = larger(1.2 * larger(links, turning), larger(a->highest_frequency, 1e-3));
+    const double turning =
+        larger(fabs(second - first), fabs(w[0])); // the bend turns, too
+    const double rate =
+        larger(1.2 * larger(links, turning), larger(a->highest_frequency, 1e-3));
     double wanted = LONGEST_REACH / rate;
     wanted = most < wanted ? most : wanted;
-    return a->fastest_decay * wanted > LONGEST_DECAY ? LONGEST_DECAY / a->fastest_decay : wanted;
+    return a->fastest_decay * wanted > LONGEST_DECAY ? LONGEST_DECAY / a->fastest_decay
+                                                     : wanted;
 }
 
 // Records in the state the step that begins there, at most `most` [s] long.
@@ -99,14 +105,15 @@ static void prepare(const arm *a, motion *m)
     const double *kept = state_kept(m, m->state);
     const double *q = kept + KEPT_ANGLES, *w = kept + KEPT_VELOCITIES;
     put_inputs(a, m, q, w, wanted_step(a, w, kept[KEPT_WANTED]), s->lane.block);
-    s->lane.form = (taylor_form){.contact = m->state[SLOT_CONTACT] != 0,
-                                 .point = a->wall.kind == WALL_POINT,
-                                 .hub_spring = a->hub_spring,
-                                 .damped = a->joint_damping > 0 || a->hub_joint_damping > 0};
+    s->lane.form =
+        (taylor_form){.contact = m->state[SLOT_CONTACT] != 0,
+                      .point = a->wall.kind == WALL_POINT,
+                      .hub_spring = a->hub_spring,
+                      .damped = a->joint_damping > 0 || a->hub_joint_damping > 0};
 }
 
-// Whether the state's step continues: to the end of what remains, or, where it was not made for
-// less than that, to its own.
+// Whether the state's step continues: to the end of what remains, or, where it was not
+// made for less than that, to its own.
 static bool goes_on(motion *m, double remaining)
 {
     const double *kept = state_kept(m, m->state);
@@ -115,9 +122,9 @@ static bool goes_on(motion *m, double remaining)
            (left >= remaining || length <= remaining);
 }
 
-// How long a new step is to be at most: what remains, or twice the step that has been used up
-// since where nothing has changed but the instant to go to. Just after a change no more than twice
-// the time since the change before, as the next may come as soon.
+// How long a new step is to be at most: what remains, or twice the step that has been
+// used up since where nothing has changed but the instant to go to. Just after a change
+// no more than twice the time since the change before, as the next may come as soon.
 static double longest_step(motion *m, double remaining)
 {
     const double *kept = state_kept(m, m->state);
@@ -126,8 +133,9 @@ static double longest_step(motion *m, double remaining)
     }
     const double before = kept[KEPT_LENGTH], ahead = kept[KEPT_WANTED] - kept[KEPT_USED];
     const bool same = m->state[SLOT_JUMPED] == 0 && before > 0;
-    return same && fabs(ahead - remaining) > LEAST_LEFT * remaining ? larger(2 * before, remaining)
-                                                                    : remaining;
+    return same && fabs(ahead - remaining) > LEAST_LEFT * remaining
+               ? larger(2 * before, remaining)
+               : remaining;
 }
 
 // Continues in the state's step, whose series may be to be computed again.
@@ -148,9 +156,10 @@ static void take_up(const arm *a, motion *m)
     s->own = true;
 }
 
-// The length of the step whose series are computed: what they allow, but on a flat wall clear of
-// the fold over the hub's axis. There the force has a pole that does not show in the velocities:
-// the velocities' series pass it with small terms, while the force's series diverge.
+// The length of the step whose series are computed: what they allow, but on a flat wall
+// clear of the fold over the hub's axis. There the force has a pole that does not show in
+// the velocities: the velocities' series pass it with small terms, while the force's
+// series diverge.
 static double length_of_step(const arm *a, const taylor_lane *lane)
 {
     const double allowed = lane->block[AT_ALLOWED];
@@ -158,7 +167,8 @@ static double length_of_step(const arm *a, const taylor_lane *lane)
         return allowed;
     }
 
-    // how far the first link turns at most: in contact both stand as far from across the wall
+    // how far the first link turns at most: in contact both stand as far from across the
+    // wall
     const double *q = taylor_term(lane, AT_ANGLE_1);
     const int spacing = taylor_spacing(lane);
     double turn = 0;

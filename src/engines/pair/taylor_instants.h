@@ -1,6 +1,6 @@
 // What series come to at instants of their steps, side by side: those of one arm at LANES
-// instants, or of LANES arms at one each. An instant has the same bits wherever it is computed, and
-// its energies are those of chain_kinetic_energy and chain_strain_energy.
+// instants, or of LANES arms at one each. An instant has the same bits wherever it is
+// computed, and its energies are those of chain_kinetic_energy and chain_strain_energy.
 //
 // With u = t^2 a polynomial is E(u) + t O(u), its even and its odd terms.
 #pragma once
@@ -47,7 +47,8 @@ KERNEL real value_of(coefficients x, int count, real t, real u)
 
 KERNEL real integral_of(coefficients x, int count, real t, real u)
 {
-    real even = term(x, count - 2) * inverse[count - 1], odd = term(x, count - 1) * inverse[count];
+    real even = term(x, count - 2) * inverse[count - 1],
+         odd = term(x, count - 1) * inverse[count];
     for (int n = count - 4; n >= 0; n -= 2) {
         even = even * u + term(x, n) * inverse[n + 1];
         odd = odd * u + term(x, n + 1) * inverse[n + 2];
@@ -55,8 +56,8 @@ KERNEL real integral_of(coefficients x, int count, real t, real u)
     return t * (even + t * odd);
 }
 
-// Value, first and second derivative, p' = O + 2 t (E' + t O'), p'' = 2 E' + 6 t O' + 4 u (E'' + t
-// O''), the dashes on the right by u.
+// Value, first and second derivative, p' = O + 2 t (E' + t O'), p'' = 2 E' + 6 t O' + 4 u
+// (E'' + t O''), the dashes on the right by u.
 KERNEL void derivatives_of(coefficients x, int count, real t, real u, real result[3])
 {
     const real zero = (real){0};
@@ -75,13 +76,15 @@ KERNEL void derivatives_of(coefficients x, int count, real t, real u, real resul
     result[2] = 2 * even1 + 6 * t * odd1 + 8 * u * (even2 + t * odd2);
 }
 
-// Value and first derivative, by the operations of value_and_slope_at (taylor_polynomial.h): terms
-// in pairs, the pairs by turns.
-KERNEL void value_slope_of(coefficients x, int count, real t, double *value, double *slope)
+// Value and first derivative, by the operations of value_and_slope_at
+// (taylor_polynomial.h): terms in pairs, the pairs by turns.
+KERNEL void value_slope_of(coefficients x, int count, real t, double *value,
+                           double *slope)
 {
     const real u = t * t, v = u * u;
     real even[2] = {(real){0}, (real){0}}, odd[2] = {(real){0}, (real){0}};
-    real even1[2] = {(real){0}, (real){0}}, odd1[2] = {(real){0}, (real){0}}, at[2], by_u[2];
+    real even1[2] = {(real){0}, (real){0}}, odd1[2] = {(real){0}, (real){0}}, at[2],
+         by_u[2];
     int n = count - 2;
     if (n % 4 == 0) {
         even[0] = term(x, n);
@@ -104,11 +107,13 @@ KERNEL void value_slope_of(coefficients x, int count, real t, double *value, dou
     put(slope, at[1] + 2 * t * (by_u[0] + t * by_u[1]));
 }
 
-// Gap, its rate and second derivative from directions, velocities and accelerations of the links.
+// Gap, its rate and second derivative from directions, velocities and accelerations of
+// the links.
 KERNEL void gap_of(coefficients x, const bool point, const real s[2], const real c[2],
                    const real w[2], const real al[2], taylor_instants *at)
 {
-    const real l = term(x, AT_LENGTH), wall_x = term(x, AT_WALL_X), wall_y = term(x, AT_WALL_Y);
+    const real l = term(x, AT_LENGTH), wall_x = term(x, AT_WALL_X),
+               wall_y = term(x, AT_WALL_Y);
     const real vx = -l * s[0] * w[0], vy = l * c[0] * w[0];
     const real base_x = l * c[0], base_y = l * s[0], omega = w[1];
     real ex = -s[1], ey = c[1], off = (real){0}, penetration, convective;
@@ -135,15 +140,18 @@ KERNEL void gap_of(coefficients x, const bool point, const real s[2], const real
 }
 
 // Energies of motion and of bending.
-KERNEL void energies_of(coefficients x, const bool hub_spring, const real s[2], const real c[2],
-                        const real q[3], const real w[3], taylor_instants *at)
+KERNEL void energies_of(coefficients x, const bool hub_spring, const real s[2],
+                        const real c[2], const real q[3], const real w[3],
+                        taylor_instants *at)
 {
-    const real l = term(x, AT_LENGTH), mass = term(x, AT_MASS), inertia = term(x, AT_INERTIA);
+    const real l = term(x, AT_LENGTH), mass = term(x, AT_MASS),
+               inertia = term(x, AT_INERTIA);
     const int hub = hub_spring ? 0 : 1;
     real vx = (real){0}, vy = vx, strain = vx;
     real kinetic = term(x, AT_HUB_INERTIA) * w[hub] * w[hub];
     for (int k = 0; k < 2; k++) {
-        const real turn = w[k + 1], across_x = -l * s[k] * turn, across_y = l * c[k] * turn;
+        const real turn = w[k + 1], across_x = -l * s[k] * turn,
+                   across_y = l * c[k] * turn;
         const real cx = vx + across_x / 2, cy = vy + across_y / 2;
         kinetic += mass * (cx * cx + cy * cy) + inertia * turn * turn;
         vx += across_x;
@@ -160,8 +168,8 @@ KERNEL void energies_of(coefficients x, const bool hub_spring, const real s[2], 
 }
 
 // Angles, velocities and accelerations; a stuck hub has no motion.
-KERNEL void motion_of(coefficients x, taylor_form form, real t, real u, mask stuck, real q[3],
-                      real w[3], real al[3])
+KERNEL void motion_of(coefficients x, taylor_form form, real t, real u, mask stuck,
+                      real q[3], real w[3], real al[3])
 {
     const int hub = form.hub_spring ? 0 : 1, count = form.order + 2;
     const real zero = (real){0};

@@ -1,28 +1,30 @@
-// Series of the two-link arm's motion, for LANES arms at once (a power of two; vectors are those of
-// the compiler), as LOOPS: both are given by src/engines/meson.build. The equations stand in
-// taylor_order.h.
+// Series of the two-link arm's motion, for LANES arms at once (a power of two; vectors
+// are those of the compiler), as LOOPS: both are given by src/engines/meson.build. The
+// equations stand in taylor_order.h.
 //
-// Every operation is written out in its order (taylor_numbers.h), so all widths give the same bits.
+// Every operation is written out in its order (taylor_numbers.h), so all widths give the
+// same bits.
 #include "src/engines/pair/taylor_instants.h"
 #include "src/engines/pair/taylor_order.h"
 #include "src/engines/pair/taylor_roots.h"
 
-// The last terms of the velocities stay below this share of 1 rad/s or the largest velocity, and,
-// where the series end before the highest order, those of the losses below this share of 1 J times
-// its square; the first one left out is about ten times smaller.
+// The last terms of the velocities stay below this share of 1 rad/s or the largest
+// velocity, and, where the series end before the highest order, those of the losses below
+// this share of 1 J times its square; the first one left out is about ten times smaller.
 #define LAST_TERMS 4e-12
-// The lowest order at which the series may end: they end with the first even order from it on whose
-// terms are small enough at the wanted length.
+// The lowest order at which the series may end: they end with the first even order from
+// it on whose terms are small enough at the wanted length.
 #define LEAST_ORDER 8
-// A step that is too long for the highest order is shortened by this factor, at most so often.
+// A step that is too long for the highest order is shortened by this factor, at most so
+// often.
 #define SHORTENING       0.875
 #define MOST_SHORTENINGS 200
 
-// --- series -----------------------------------------------------------------------------------
+// --- series ----------------------------------------------------------------------------
 
-// Magnitudes of the coefficients of the two last orders, and what those of the earlier one are
-// multiplied with at the end of a step of a length h: of velocities h^(order - 1), of losses h
-// times that.
+// Magnitudes of the coefficients of the two last orders, and what those of the earlier
+// one are multiplied with at the end of a step of a length h: of velocities h^(order -
+// 1), of losses h times that.
 typedef struct last_terms {
     real before, last, power;
 } last_terms;
@@ -32,8 +34,8 @@ KERNEL mask too_large(last_terms x, real h, real limit)
     return ~MASK((x.last * h + x.before) * x.power <= limit);
 }
 
-// The longest step, up to the one of length h that x is of, whose last terms are small; of the
-// highest order.
+// The longest step, up to the one of length h that x is of, whose last terms are small;
+// of the highest order.
 KERNEL real allowed_step(real h, last_terms x, real limit)
 {
     double shrinking = 1, factor = SHORTENING;
@@ -42,8 +44,8 @@ KERNEL real allowed_step(real h, last_terms x, real limit)
         factor *= factor;
     }
 
-    // all lanes continue until the last of them is short enough, only those that are too long are
-    // cut
+    // all lanes continue until the last of them is short enough, only those that are too
+    // long are cut
     for (int i = 0; i < MOST_SHORTENINGS; i++) {
         const mask bad = too_large(x, h, limit);
         if (!any(bad)) {
@@ -55,8 +57,8 @@ KERNEL real allowed_step(real h, last_terms x, real limit)
     return h;
 }
 
-// Takes what lies beyond an arm's own order out of its lane, where others have gone further;
-// open[i]: the lanes that go beyond the order 2 i.
+// Takes what lies beyond an arm's own order out of its lane, where others have gone
+// further; open[i]: the lanes that go beyond the order 2 i.
 KERNEL void cut_off(real *block, const mask *open, int order)
 {
     for (int n = LEAST_ORDER + 1; n <= order; n++) {
@@ -83,15 +85,18 @@ KERNEL real gap_term(const factors *x, ptrdiff_t n, real l, const int point)
     return point ? l * PART(DIRECTIONS(x, n), 1) - S2 : -(PART(DIRECTION1(x, n), 1) + S2);
 }
 
-// What a step leaves of the function that the wall has watched, and where it ends in between:
-// `count` terms of the gap, or in contact of the force.
-KERNEL void bound_wall(real *block, const int contact, const real *wall, int count, mask jumped)
+// What a step leaves of the function that the wall has watched, and where it ends in
+// between: `count` terms of the gap, or in contact of the force.
+KERNEL void bound_wall(real *block, const int contact, const real *wall, int count,
+                       mask jumped)
 {
     const real zero = (real){0}, one = zero + 1.0, h = block[AT_ALLOWED];
     const real value = zero + (contact ? EDGE_VALUE : EDGE_GAP);
     const enclosure near = enclosure_of(wall, count, h);
-    const real lacking = contact ? zero : EDGE_RATE + LEFT_OUT * (block[AT_EDGE_RATE] - EDGE_RATE);
-    const edge_limits edge = {value, zero + EDGE_RATE, greater(lacking, zero + EDGE_MORE)};
+    const real lacking =
+        contact ? zero : EDGE_RATE + LEFT_OUT * (block[AT_EDGE_RATE] - EDGE_RATE);
+    const edge_limits edge = {value, zero + EDGE_RATE,
+                              greater(lacking, zero + EDGE_MORE)};
     const real first = least_at_first(&near, wall, one, h, jumped, &edge);
     block[AT_WALL_LEAST] = least_of(&near, one, first);
     block[AT_FORCE_MOST] = highest(&near);
@@ -103,8 +108,8 @@ KERNEL void bound_wall(real *block, const int contact, const real *wall, int cou
 }
 
 // The same of the hub: of its velocity, or where it is stuck of what holds it.
-KERNEL void bound_hub(real *block, const real *rates, const real *hold, int order, mask stuck,
-                      mask jumped)
+KERNEL void bound_hub(real *block, const real *rates, const real *hold, int order,
+                      mask stuck, mask jumped)
 {
     const real zero = (real){0}, one = zero + 1.0, h = block[AT_ALLOWED];
     const real sense = choose(MASK(block[AT_FRICTION] < 0), -one, one);
@@ -122,13 +127,15 @@ KERNEL void bound_hub(real *block, const real *rates, const real *hold, int orde
     block[AT_HUB_LEAST] = left;
     block[AT_HUB_ROOT] = zero - 1.0;
     if (any(~stuck & ~MASK(left > 0))) {
-        const enclosed_function gone = {rates, order + 1, &turning, sense, first, h, jumped};
+        const enclosed_function gone = {rates, order + 1, &turning, sense,
+                                        first, h,         jumped};
         block[AT_HUB_ROOT] = choose(stuck, zero - 1.0, first_root(&gone));
     }
 }
 
 // Velocities' coefficients of the orders n and n + 1, as last_terms has them.
-KERNEL last_terms rate_terms(const real *block, ptrdiff_t n, real power, const int hub_spring)
+KERNEL last_terms rate_terms(const real *block, ptrdiff_t n, real power,
+                             const int hub_spring)
 {
     const real *w0 = block + AT_RATE_0, *w1 = block + AT_RATE_1, *w2 = block + AT_RATE_2;
     last_terms x = {magnitude(w1[n]) + magnitude(w2[n]),
@@ -141,7 +148,8 @@ KERNEL last_terms rate_terms(const real *block, ptrdiff_t n, real power, const i
 }
 
 // The same of what is lost, the orders n - 1 and n.
-KERNEL last_terms loss_terms(const real *block, const equations *e, ptrdiff_t n, real power)
+KERNEL last_terms loss_terms(const real *block, const equations *e, ptrdiff_t n,
+                             real power)
 {
     const real *hub_square = block + AT_HUB_SQUARE, *dissipation = block + AT_DISSIPATION;
     last_terms x = {e->viscous * magnitude(hub_square[n - 1]),
@@ -153,11 +161,11 @@ KERNEL last_terms loss_terms(const real *block, const equations *e, ptrdiff_t n,
     return x;
 }
 
-// The lanes whose terms are too large at the wanted length to end with the order n + 1; limit: on
-// those of the velocities, of a share `scale` of them.
+// The lanes whose terms are too large at the wanted length to end with the order n + 1;
+// limit: on those of the velocities, of a share `scale` of them.
 KERNEL mask goes_on(const real *block, const equations *e, const factors *x, ptrdiff_t n,
-                    real power, real limit, real scale, const int contact, const int point,
-                    const int hub_spring)
+                    real power, real limit, real scale, const int contact,
+                    const int point, const int hub_spring)
 {
     const real wanted = block[AT_WANTED], l = e->l, *hold = block + AT_HOLD;
     mask large = too_large(rate_terms(block, n, power, hub_spring), wanted, limit);
@@ -168,7 +176,9 @@ KERNEL mask goes_on(const real *block, const equations *e, const factors *x, ptr
     if (!contact && any(~large)) {
         // of the gap the coefficients so far, which are of one order less
         const last_terms swing = {magnitude(gap_term(x, n, l, point)) * (double)n,
-                                  magnitude(gap_term(x, n + 1, l, point)) * (double)(n + 1), power};
+                                  magnitude(gap_term(x, n + 1, l, point)) *
+                                      (double)(n + 1),
+                                  power};
         large |= too_large(swing, wanted, limit * wanted * l);
     }
     if (!hub_spring && e->sticks && any(~large)) {
@@ -180,21 +190,24 @@ KERNEL mask goes_on(const real *block, const equations *e, const factors *x, ptr
 }
 
 // The gap, as far as the angles are known.
-KERNEL void put_gap(real *block, const equations *e, factors *x, ptrdiff_t order, sums *sum,
-                    const int point)
+KERNEL void put_gap(real *block, const equations *e, factors *x, ptrdiff_t order,
+                    sums *sum, const int point)
 {
-    add_directions(x, order, block[AT_RATE_1 + order], block[AT_RATE_2 + order], sum, point);
+    add_directions(x, order, block[AT_RATE_1 + order], block[AT_RATE_2 + order], sum,
+                   point);
     for (int n = 0; n <= order + 1; n++) {
         block[AT_GAP + n] = gap_term(x, n, e->l, point);
     }
 }
 
 // Last terms of series of this order, all counted as the velocities are.
-KERNEL last_terms all_last_terms(const real *block, const equations *e, ptrdiff_t order, real power,
-                                 real scale, const int contact, const int hub_spring)
+KERNEL last_terms all_last_terms(const real *block, const equations *e, ptrdiff_t order,
+                                 real power, real scale, const int contact,
+                                 const int hub_spring)
 {
     last_terms tail = rate_terms(block, order - 1, power, hub_spring);
-    if (!contact) { // the gap's rate: sines of large swings continue where those have ended
+    if (!contact) { // the gap's rate: sines of large swings continue where those have
+                    // ended
         const real *gap = block + AT_GAP, per_length = 1 / e->l;
         tail.last += magnitude(gap[order + 1]) * (double)(order + 1) * per_length;
         tail.before += magnitude(gap[order]) * (double)order * per_length;
@@ -251,7 +264,8 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     put_start(block, &e, &x, point, hub_spring);
     invert_start(&e, &x, contact, point, hub_spring);
 
-    // as far as the terms matter: an order lower than the highest at which they may be small enough
+    // as far as the terms matter: an order lower than the highest at which they may be
+    // small enough
     const real *w1 = block + AT_RATE_1, *w2 = block + AT_RATE_2;
     const real wanted = block[AT_WANTED];
     const real scale = greater(greater(magnitude(w1[0]), magnitude(w2[0])), zero + 1.0);
@@ -264,8 +278,8 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         add_order(block, &e, &x, hub_rate, n, &last, contact, point, hub_spring);
         power = n > 0 ? power * wanted : power;
         if (n % 2 == 1 && n + 1 >= LEAST_ORDER && n + 1 < TAYLOR_MOST) {
-            const mask large =
-                goes_on(block, &e, &x, n, power, limit, scale, contact, point, hub_spring);
+            const mask large = goes_on(block, &e, &x, n, power, limit, scale, contact,
+                                       point, hub_spring);
             const mask before = n + 1 > LEAST_ORDER ? open[(n - 1) / 2] : ~(mask){0};
             open[(n + 1) / 2] = before & large;
             order = any(open[(n + 1) / 2]) ? order : n + 1;
@@ -292,16 +306,17 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     }
     block[AT_ALLOWED] = h;
 
-    // what the step leaves of the wall's function and the hub's, and where it ends in between
+    // what the step leaves of the wall's function and the hub's, and where it ends in
+    // between
     const mask jumped = MASK(block[AT_EDGE_RATE] >= 0);
     bound_wall(block, contact, block + (contact ? AT_FORCE : AT_GAP),
                contact ? (int)order : (int)order + 2, jumped);
-    bound_hub(block, hub_spring ? block + AT_RATE_0 : w1, block + AT_HOLD, (int)order, e.stuck,
-              jumped);
+    bound_hub(block, hub_spring ? block + AT_RATE_0 : w1, block + AT_HOLD, (int)order,
+              e.stuck, jumped);
     return (int)order;
 }
 
-// --- entries ----------------------------------------------------------------------------------
+// --- entries ---------------------------------------------------------------------------
 
 // Each form has loops of its own.
 KERNEL int of_wall(real *block, taylor_form f, const int contact, const int hub_spring)

@@ -20,7 +20,8 @@ static int widest(void)
 
 int taylor_width(void)
 {
-    const int most = widest(), wanted = atomic_load_explicit(&limit, memory_order_relaxed);
+    const int most = widest(),
+              wanted = atomic_load_explicit(&limit, memory_order_relaxed);
     return wanted > 0 && wanted < most ? wanted : most;
 }
 
@@ -35,7 +36,8 @@ int taylor_limit_width(int width)
 static const taylor_loops *loops_of(int width)
 {
 #if defined __x86_64__
-    const taylor_loops *one = taylor_width() >= 4 ? &taylor_loops_1_avx2 : &taylor_loops_1;
+    const taylor_loops *one =
+        taylor_width() >= 4 ? &taylor_loops_1_avx2 : &taylor_loops_1;
     return width == 8   ? &taylor_loops_8
            : width == 4 ? &taylor_loops_4
            : width == 2 ? &taylor_loops_2
@@ -115,7 +117,8 @@ void taylor_finish(taylor_group *group, taylor_lane *const *lanes, const taylor_
         }
     }
     if (group->form.contact && most > 1) {
-        loops_of(group->width)->pieces(group->block, group->form.order, most, &group->pieces);
+        loops_of(group->width)
+            ->pieces(group->block, group->form.order, most, &group->pieces);
     }
 }
 

@@ -1,6 +1,7 @@
 // Numbers in vectors of LANES (a power of two, given by meson.build): those of the
-// compiler. Every operation is written out in its order, without a branch on what a lane holds but
-// where all take the same value from both ways, so that all widths give the same bits.
+// compiler. Every operation is written out in its order, without a branch on what a lane
+// holds but where all take the same value from both ways, so that all widths give the
+// same bits.
 #pragma once
 
 #include <stdbool.h>
@@ -54,8 +55,8 @@ KERNEL real greater(real x, real y)
     return choose(MASK(x > y), x, y);
 }
 
-// Whether some lane of a mask is set: by the signs of all its lanes at once, where there is an
-// instruction for that.
+// Whether some lane of a mask is set: by the signs of all its lanes at once, where there
+// is an instruction for that.
 KERNEL bool any(mask m)
 {
 #if LANES == 1

@@ -1,38 +1,41 @@
 // The equations of two links by powers of the time, one order after the other: part of
 // taylor_kernel.c.
 //
-// Let d = q2 - q1 be the bend, s and c its sine and cosine, and S, C those of an angle from the
-// wall times a length. The equations of chain.h for two links are those of the momenta
+// Let d = q2 - q1 be the bend, s and c its sine and cosine, and S, C those of an angle
+// from the wall times a length. The equations of chain.h for two links are those of the
+// momenta
 //
 //     p1 = m11 w1 + m12 c w2,     p1' = drive - kv w1 + pull - J1 f
 //     p2 = m12 c w1 + m22 w2,     p2' =               - pull - J2 f
 //     pull = m12 s w1 w2 + k d + kd d'
 //
-// with a hub on a spring taking drive and kv away from p1' into I1 w0' = drive - kv w0 - hub
-// spring. In contact f keeps the gap's derivative, gap' = -(J1 w1 + J2 w2), at zero:
+// with a hub on a spring taking drive and kv away from p1' into I1 w0' = drive - kv w0 -
+// hub spring. In contact f keeps the gap's derivative, gap' = -(J1 w1 + J2 w2), at zero:
 //
 //     point: gap = l s - S2,      J1 = l c,  J2 = C2 - l c,  gap' = l c d' - C2 w2
 //     plane: gap = -(S1 + S2),    J1 = C1,   J2 = C2,        gap' = -(C1 w1 + C2 w2)
 //
-// Put x = sum x_n t^n. Sums and springs go by coefficient, products are Cauchy's,
-// (x y)_n = sum x_j y_(n-j), and sine and cosine of an angle with the velocity v follow from
-// s' = v c, c' = -v s:
+// Put x = sum x_n t^n. Sums and springs go by coefficient, products are Cauchy's, (x y)_n
+// = sum x_j y_(n-j), and sine and cosine of an angle with the velocity v follow from s' =
+// v c, c' = -v s:
 //
 //     n s_n = (v c)_(n-1),     n c_n = -(v s)_(n-1)
 //
-// which are the products that gap' is made of, and p2's as c w1 = c w2 - c d'. Of the n-th
-// coefficient of p1', p2' and the (n+1)-th of gap' all is known but w1_(n+1), w2_(n+1) and f_n,
-// which the matrix of the step's start, inverted once, gives; q_(n+1) = w_n/(n + 1) follows.
+// which are the products that gap' is made of, and p2's as c w1 = c w2 - c d'. Of the
+// n-th coefficient of p1', p2' and the (n+1)-th of gap' all is known but w1_(n+1),
+// w2_(n+1) and f_n, which the matrix of the step's start, inverted once, gives; q_(n+1) =
+// w_n/(n + 1) follows.
 #pragma once
 
 #include "src/engines/pair/taylor_products.h"
 
-// The equations of a step: constants, and the matrix of its start, inverted, in contact without
-// what the wall takes of it, M^-1 - M^-1 J J' M^-1/(J M^-1 J).
+// The equations of a step: constants, and the matrix of its start, inverted, in contact
+// without what the wall takes of it, M^-1 - M^-1 J J' M^-1/(J M^-1 J).
 typedef struct equations {
     real l, k, kd, kh, khd, viscous;
-    real m11, m12, m22; // inertias about the bases, the first carrying the second; their coupling
-    real drive;         // torque of motor and sliding friction
+    real m11, m12,
+        m22;    // inertias about the bases, the first carrying the second; their coupling
+    real drive; // torque of motor and sliding friction
     real s0, c0;        // of the bend
     real coupling;      // m12 c0
     real i11, i12, i22; // of the matrix
@@ -45,7 +48,8 @@ typedef struct equations {
 } equations;
 
 // Puts the state at the start into the series, with the angles' sines and cosines there.
-KERNEL void put_start(real *block, equations *e, factors *x, const int point, const int hub_spring)
+KERNEL void put_start(real *block, equations *e, factors *x, const int point,
+                      const int hub_spring)
 {
     const real q1 = block[AT_START_ANGLE + 1], q2 = block[AT_START_ANGLE + 2];
     block[AT_ANGLE_1] = q1;
@@ -72,8 +76,8 @@ KERNEL void put_start(real *block, equations *e, factors *x, const int point, co
 }
 
 // The matrix of the start, inverted; a stuck rigid hub takes the first row away.
-KERNEL void invert_start(equations *e, const factors *x, const int contact, const int point,
-                         const int hub_spring)
+KERNEL void invert_start(equations *e, const factors *x, const int contact,
+                         const int point, const int hub_spring)
 {
     const real zero = (real){0};
     e->coupling = e->m12 * e->c0;
@@ -107,9 +111,10 @@ typedef struct newest {
     sums sum;
 } newest;
 
-// The directions of the order after n from velocities of order n; `sum` has been left open for
-// them.
-KERNEL void add_directions(factors *x, ptrdiff_t n, real w1, real w2, sums *sum, const int point)
+// The directions of the order after n from velocities of order n; `sum` has been left
+// open for them.
+KERNEL void add_directions(factors *x, ptrdiff_t n, real w1, real w2, sums *sum,
+                           const int point)
 {
     keep_rates(x, n, w2 - w1, w1, w2);
     add_products(sum, x, n, n - 1, TURNING | (point ? 0 : TURNING1), point);
@@ -119,12 +124,13 @@ KERNEL void add_directions(factors *x, ptrdiff_t n, real w1, real w2, sums *sum,
     }
 }
 
-// What joints, motor and friction give to the n-th coefficients of p1' and p2'; a hub on its spring
-// goes on to the next ones.
-KERNEL void push_links(real *block, const equations *e, const newest *last, real *hub_rate,
-                       ptrdiff_t n, const int hub_spring, real push[2])
+// What joints, motor and friction give to the n-th coefficients of p1' and p2'; a hub on
+// its spring goes on to the next ones.
+KERNEL void push_links(real *block, const equations *e, const newest *last,
+                       real *hub_rate, ptrdiff_t n, const int hub_spring, real push[2])
 {
-    const real *q0 = block + AT_ANGLE_0, *q1 = block + AT_ANGLE_1, *q2 = block + AT_ANGLE_2;
+    const real *q0 = block + AT_ANGLE_0, *q1 = block + AT_ANGLE_1,
+               *q2 = block + AT_ANGLE_2;
     const real pull = e->k * (q2[n] - q1[n]) + e->kd * (last->rate2 - last->rate1);
     const real driven = n == 0 ? e->drive : (real){0};
     push[0] = pull;
@@ -144,8 +150,8 @@ KERNEL void push_links(real *block, const equations *e, const newest *last, real
 }
 
 // The n-th coefficient of what springs lose, the hub's at its rates of bending.
-KERNEL void add_dissipation(real *block, const equations *e, const factors *x, const real *hub_rate,
-                            ptrdiff_t n, const int hub_spring)
+KERNEL void add_dissipation(real *block, const equations *e, const factors *x,
+                            const real *hub_rate, ptrdiff_t n, const int hub_spring)
 {
     real lost = e->kd * square(x->v, n);
     if (hub_spring) {
@@ -156,10 +162,12 @@ KERNEL void add_dissipation(real *block, const equations *e, const factors *x, c
 
 // The n-th coefficients, and of angles and velocities those after them.
 //
-// An order waits for what is known last: the products with its rates, then those with the newest
-// directions. Sums take these at their ends, so that little is left to do behind them.
-KERNEL void add_order(real *block, const equations *e, factors *x, real *hub_rate, ptrdiff_t n,
-                      newest *last, const int contact, const int point, const int hub_spring)
+// An order waits for what is known last: the products with its rates, then those with the
+// newest directions. Sums take these at their ends, so that little is left to do behind
+// them.
+KERNEL void add_order(real *block, const equations *e, factors *x, real *hub_rate,
+                      ptrdiff_t n, newest *last, const int contact, const int point,
+                      const int hub_spring)
 {
     const int directions = TURNING | (point ? 0 : TURNING1);
     const real first2 = block[AT_RATE_2];
@@ -172,8 +180,8 @@ KERNEL void add_order(real *block, const equations *e, factors *x, real *hub_rat
     const real hub = hub_spring ? block[AT_RATE_0 + n] : rate1;
     add_directions(x, n, rate1, rate2, sum, point);
 
-    // products: what is known of (c w2)_(n+1), (w1 w2)_n, (s w1 w2)_n, the hub's square; of the
-    // turning of the order after next
+    // products: what is known of (c w2)_(n+1), (w1 w2)_n, (s w1 w2)_n, the hub's square;
+    // of the turning of the order after next
     keep_products(x, n, rate1, rate2, last->product, hub);
     if (contact) {
         keep_levers(x, n, point);
@@ -204,8 +212,10 @@ KERNEL void add_order(real *block, const equations *e, factors *x, real *hub_rat
 
     // velocities, and in contact the force that keeps the gap from changing
     const real coupled = m12 * swung;
-    const real b1 = push[0] * share - coupled, b2 = (push[1] * share + m12 * bent) - coupled;
-    real x1 = e->i11 * b1 + e->i12 * b2, x2 = e->i12 * b1 + e->i22 * b2, force = (real){0};
+    const real b1 = push[0] * share - coupled,
+               b2 = (push[1] * share + m12 * bent) - coupled;
+    real x1 = e->i11 * b1 + e->i12 * b2, x2 = e->i12 * b1 + e->i22 * b2,
+         force = (real){0};
     if (contact) {
         const real closing = point ? PART(sum->turning, 2) - l * bent
                                    : PART(sum->turning1, 0) + PART(sum->turning, 2);

@@ -1,5 +1,6 @@
-// What the step of a two-link arm tells of itself (engine.h): what it comes to at instants of it,
-// the event functions, and what another torque of the motor does at once to one whose hub slides.
+// What the step of a two-link arm tells of itself (engine.h): what it comes to at
+// instants of it, the event functions, and what another torque of the motor does at once
+// to one whose hub slides.
 #include <math.h>
 #include <string.h>
 
@@ -9,10 +10,10 @@
 #include "src/contact/locate.h"
 #include "src/engines/pair/taylor_integrator.h"
 
-// --- states -------------------------------------------------------------------------------------
+// --- states ----------------------------------------------------------------------------
 
-// What one of the instants comes to, into `state`; in contact the gap and its derivatives ought to
-// be zero, and the second one is taken so.
+// What one of the instants comes to, into `state`; in contact the gap and its derivatives
+// ought to be zero, and the second one is taken so.
 static void take_instant(const arm *a, const motion *m, const taylor_instants *at, int i,
                          double *state)
 {
@@ -44,7 +45,8 @@ static void take_instant(const arm *a, const motion *m, const taylor_instants *a
 
     // friction and wall
     const bool stuck = state[SLOT_FRICTION] == HUB_STICK;
-    state[SLOT_FRICTION_TORQUE] = stuck ? at->hold[i] : -state[SLOT_FRICTION] * a->motor.stiction;
+    state[SLOT_FRICTION_TORQUE] =
+        stuck ? at->hold[i] : -state[SLOT_FRICTION] * a->motor.stiction;
     if (s->lane.form.contact) {
         state[SLOT_FORCE] = at->force[i];
         quadrature[QUADRATURE_FORCE] += at->pressed[i];
@@ -57,8 +59,8 @@ static void take_instant(const arm *a, const motion *m, const taylor_instants *a
 }
 
 // The instant h: evaluated with others', where *place says, or into `one`.
-static const taylor_instants *instant_at(taylor_integrator *s, double h, taylor_instants *one,
-                                         int *place)
+static const taylor_instants *instant_at(taylor_integrator *s, double h,
+                                         taylor_instants *one, int *place)
 {
     *place = 0;
     if (s->lane.end == h) {
@@ -85,8 +87,8 @@ status taylor_state_at(const arm *a, motion *m, double h, state_extent extent)
     return STATUS_OK;
 }
 
-void taylor_states_at(const arm *a, motion *m, const double *h, int count, double *const *states,
-                      state_energy *energies)
+void taylor_states_at(const arm *a, motion *m, const double *h, int count,
+                      double *const *states, state_energy *energies)
 {
     taylor_integrator *s = m->memory;
     const int width = taylor_width();
@@ -108,8 +110,8 @@ void taylor_states_at(const arm *a, motion *m, const double *h, int count, doubl
     }
 }
 
-void taylor_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,
-                         int count, value_and_slope *at)
+void taylor_dense_output(const arm *a, motion *m, output_quantity of, double from,
+                         double to, int count, value_and_slope *at)
 {
     taylor_integrator *s = m->memory;
     taylor_lane *lane = &s->lane;
@@ -117,12 +119,14 @@ void taylor_dense_output(const arm *a, motion *m, output_quantity of, double fro
     const int order = lane->form.order;
 
     // forces may be evaluated with others', which began their steps with the steps
-    if (of == OUTPUT_FORCE && count > 0 && lane->pieces == count && from == 0 && lane->end == to) {
+    if (of == OUTPUT_FORCE && count > 0 && lane->pieces == count && from == 0 &&
+        lane->end == to) {
         const taylor_pieces *pieces = &lane->group->pieces;
-        at[0] = (value_and_slope){*taylor_term(lane, AT_FORCE), *taylor_term(lane, AT_FORCE + 1)};
+        at[0] = (value_and_slope){*taylor_term(lane, AT_FORCE),
+                                  *taylor_term(lane, AT_FORCE + 1)};
         for (int i = 0; i < count; i++) {
-            at[i + 1] =
-                (value_and_slope){pieces->force[i][lane->number], pieces->slope[i][lane->number]};
+            at[i + 1] = (value_and_slope){pieces->force[i][lane->number],
+                                          pieces->slope[i][lane->number]};
         }
         return;
     }
@@ -133,7 +137,8 @@ void taylor_dense_output(const arm *a, motion *m, output_quantity of, double fro
     const double *term = taylor_terms(lane, place, terms);
     for (int i = 0; i <= count; i++) {
         const double t = s->used + (from + i * width);
-        at[i] = t > 0 ? value_and_slope_at(term, terms, t) : (value_and_slope){term[0], term[1]};
+        at[i] = t > 0 ? value_and_slope_at(term, terms, t)
+                      : (value_and_slope){term[0], term[1]};
     }
     if (of == OUTPUT_HUB && m->state[SLOT_FRICTION] == HUB_STICK) {
         for (int i = 0; i <= count; i++) {
@@ -142,15 +147,17 @@ void taylor_dense_output(const arm *a, motion *m, output_quantity of, double fro
     }
 }
 
-// --- event functions ----------------------------------------------------------------------------
+// --- event functions -------------------------------------------------------------------
 
 static double rounding_of(const arm *a, const motion *m, const taylor_integrator *s)
 {
-    return motion_rounding_at(a, m->dof, s->kept + KEPT_ANGLES, s->kept + KEPT_VELOCITIES);
+    return motion_rounding_at(a, m->dof, s->kept + KEPT_ANGLES,
+                              s->kept + KEPT_VELOCITIES);
 }
 
-// A function that is to be watched, from the series: only where it comes near zero is it asked for.
-// Just after an event it may begin at zero, as the gap does after a bounce cut short.
+// A function that is to be watched, from the series: only where it comes near zero is it
+// asked for. Just after an event it may begin at zero, as the gap does after a bounce cut
+// short.
 static void prepare_event_function(const arm *a, const motion *m, taylor_integrator *s,
                                    event_function w)
 {
@@ -171,10 +178,12 @@ static void prepare_event_function(const arm *a, const motion *m, taylor_integra
         }
     } else if (w == EVENT_OF_GAP) {
         set_polynomial(p, taylor_term(lane, AT_GAP), spacing, order + 2, 1);
-        const bool inside = p->terms[0] < 0 && p->terms[0] > -EDGE_DEPTH && p->terms[1] > 0;
+        const bool inside =
+            p->terms[0] < 0 && p->terms[0] > -EDGE_DEPTH && p->terms[1] > 0;
         p->terms[0] = inside ? 0 : p->terms[0];
         if (jumped || inside) {
-            const double lacking = EDGE_RATE * (1 + LEFT_OUT * (rounding_of(a, m, s) - 1));
+            const double lacking =
+                EDGE_RATE * (1 + LEFT_OUT * (rounding_of(a, m, s) - 1));
             deflate_root(p, (double[]){EDGE_GAP, EDGE_RATE, fmax(EDGE_MORE, lacking)});
         }
     }
@@ -193,7 +202,8 @@ static void prepare_event_function(const arm *a, const motion *m, taylor_integra
         set_polynomial(&s->far_limit, hold, spacing, order, sign);
         p->terms[0] += stiction;
         s->far_limit.terms[0] += stiction;
-        p->terms[0] = jumped && fabs(p->terms[0]) <= EDGE_VALUE ? EDGE_VALUE : p->terms[0];
+        p->terms[0] =
+            jumped && fabs(p->terms[0]) <= EDGE_VALUE ? EDGE_VALUE : p->terms[0];
     }
 }
 
@@ -206,7 +216,8 @@ static const polynomial *function(const arm *a, const motion *m, event_function 
     return &s->function[w];
 }
 
-value_and_slope taylor_event_function(const arm *a, const motion *m, event_function w, double h)
+value_and_slope taylor_event_function(const arm *a, const motion *m, event_function w,
+                                      double h)
 {
     const taylor_integrator *s = m->memory;
     const polynomial *p = function(a, m, w);
@@ -220,8 +231,8 @@ value_and_slope taylor_event_function(const arm *a, const motion *m, event_funct
     return near.value < far.value ? near : far;
 }
 
-double taylor_second_derivative(const arm *a, const motion *m, event_function w, double from,
-                                double to)
+double taylor_second_derivative(const arm *a, const motion *m, event_function w,
+                                double from, double to)
 {
     taylor_integrator *s = m->memory;
     const polynomial *p = function(a, m, w);
@@ -240,14 +251,16 @@ double taylor_second_derivative(const arm *a, const motion *m, event_function w,
 
 bool taylor_excludes_event(const motion *m, event_function w)
 {
-    // it is above zero from the start, or rises from it, and stays above zero over the whole step
+    // it is above zero from the start, or rises from it, and stays above zero over the
+    // whole step
     const taylor_integrator *s = m->memory;
     const bool wall = w == EVENT_OF_GAP || w == EVENT_OF_FORCE;
     return s->lane.block[wall ? AT_WALL_LEAST : AT_HUB_LEAST] > 0;
 }
 
-// The root of an event function that the series' kernel has found, since the step's start; beyond
-// every step where the function stays clear, negative where the kernel has not found it.
+// The root of an event function that the series' kernel has found, since the step's
+// start; beyond every step where the function stays clear, negative where the kernel has
+// not found it.
 static double known_root(const taylor_integrator *s, int place, bool clear)
 {
     const double root = s->lane.block[place] - s->used;
@@ -264,7 +277,8 @@ void taylor_first_event(const arm *a, motion *m, step_end *end)
     const event_function hub = stuck ? EVENT_OF_STICTION : EVENT_OF_HUB;
     const bool wall_clear =
         taylor_excludes_event(m, wall) || (!now.contact && !wall_stands(&a->wall));
-    const bool hub_clear = taylor_excludes_event(m, hub) || (!stuck && a->motor.stiction == 0);
+    const bool hub_clear =
+        taylor_excludes_event(m, hub) || (!stuck && a->motor.stiction == 0);
 
     *end = (step_end){.length = end->length};
     if (wall_clear && hub_clear) {
@@ -284,7 +298,7 @@ void taylor_first_event(const arm *a, motion *m, step_end *end)
     }
 }
 
-// --- another torque ------------------------------------------------------------------------------
+// --- another torque --------------------------------------------------------------------
 
 // J, the entries of dg/dq, as taylor_order.h has them [m].
 static void levers(const arm *a, const double *q, double bend_cosine, double j[2])
@@ -316,7 +330,8 @@ void taylor_retorque(const arm *a, motion *m, double change)
     double first, second;
     pair_solve(&mass, mass.m12 * c, false, 1, 0, &first, &second);
 
-    // and what the wall makes of it: in contact its force keeps the gap's rate from changing
+    // and what the wall makes of it: in contact its force keeps the gap's rate from
+    // changing
     if (wall_stands(&a->wall)) {
         double j[2], y1, y2;
         levers(a, q, c, j);

@@ -1,5 +1,5 @@
-// An event function over a step of the two-link arm, as a polynomial of the time since its
-// start.
+// An event function over a step of the two-link arm, as a polynomial of the time since
+// its start.
 //
 // Terms are taken in pairs, so that their number is even, the last one zero if need be.
 #pragma once
@@ -21,8 +21,8 @@ typedef struct polynomial {
 } polynomial;
 
 // Takes the `count` terms, which stand `spacing` apart, each times the factor.
-static inline void set_polynomial(polynomial *p, const double *terms, int spacing, int count,
-                                  double factor)
+static inline void set_polynomial(polynomial *p, const double *terms, int spacing,
+                                  int count, double factor)
 {
     p->count = count + count % 2;
     p->divided = false;
@@ -52,9 +52,9 @@ static inline pair terms_at(const double *terms, int n)
     return p;
 }
 
-// The pairs of terms n, n + 1 are coefficients of u = t^2, and again by turns A(v) + u B(v) with
-// v = u^2: four sums side by side, as each waits long for its last term. The values are those of a
-// pair of terms that are x[0] + t x[1].
+// The pairs of terms n, n + 1 are coefficients of u = t^2, and again by turns A(v) + u
+// B(v) with v = u^2: four sums side by side, as each waits long for its last term. The
+// values are those of a pair of terms that are x[0] + t x[1].
 typedef struct turns {
     pair even, odd; // A, B
 } turns;
@@ -91,20 +91,23 @@ static inline double curvature_bound(const polynomial *p, double t)
         n -= 2;
     }
     for (; n >= 4; n -= 4) {
-        bound.odd = bound.odd * v + magnitudes(terms_at(p->terms, n)) * terms_at(falling, n);
-        bound.even =
-            bound.even * v + magnitudes(terms_at(p->terms, n - 2)) * terms_at(falling, n - 2);
+        bound.odd =
+            bound.odd * v + magnitudes(terms_at(p->terms, n)) * terms_at(falling, n);
+        bound.even = bound.even * v +
+                     magnitudes(terms_at(p->terms, n - 2)) * terms_at(falling, n - 2);
     }
     const pair all = bound.even + u * bound.odd;
     return all[0] + t * all[1];
 }
 
-// Divides the function by the time once for each of its first coefficients that is only rounding.
+// Divides the function by the time once for each of its first coefficients that is only
+// rounding.
 static inline void deflate_root(polynomial *p, const double limits[3])
 {
     const int powers = edge_powers(p->terms, limits, 1);
     if (powers > 0) {
-        memmove(p->terms, p->terms + powers, (size_t)(p->count - powers) * sizeof(double));
+        memmove(p->terms, p->terms + powers,
+                (size_t)(p->count - powers) * sizeof(double));
         memset(p->terms + p->count - powers, 0, (size_t)powers * sizeof(double));
         p->divided = true;
     }

@@ -1,8 +1,9 @@
 // The products of which the series of two links are made (taylor_kernel.c), summed up by
 // coefficient.
 //
-// The products of a coefficient are summed up in two turns, even and odd, and those of the newest
-// factors added at last: so additions wait neither for each other nor for what is being computed.
+// The products of a coefficient are summed up in two turns, even and odd, and those of
+// the newest factors added at last: so additions wait neither for each other nor for what
+// is being computed.
 #pragma once
 
 #include <stddef.h>
@@ -10,8 +11,8 @@
 #include "src/engines/pair/taylor_numbers.h"
 #include "src/engines/pair/taylor_series.h"
 
-// Sums of products go four, or two, side by side. Those of a single arm fill a vector so; with
-// several arms each is a vector of its own.
+// Sums of products go four, or two, side by side. Those of a single arm fill a vector so;
+// with several arms each is a vector of its own.
 #if LANES == 1
 typedef double two __attribute__((vector_size(16)));
 typedef double four __attribute__((vector_size(32)));
@@ -76,8 +77,8 @@ enum product_sum { TURNING = 1, PRODUCTS = 2, LEVERED = 4, TURNING1 = 8 };
 
 // Adds the j-th products for the n-th coefficient to these sums.
 #if LANES == 1
-KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n, const int to,
-                         const int point)
+KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n,
+                         const int to, const int point)
 {
     const order_factors *at = &x->of[j];
     (void)point;
@@ -95,8 +96,8 @@ KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n, co
     }
 }
 #else
-KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n, const int to,
-                         const int point)
+KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n,
+                         const int to, const int point)
 {
     if (to & TURNING) {
         const four *next = &x->directions[n + 1 - j];
@@ -113,7 +114,8 @@ KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n, co
     }
     if (to & LEVERED) {
         const four *other = &x->directions[n - j];
-        s->levered.part[0] += x->f[j] * (point ? other->part[0] : x->direction1[n - j].part[0]);
+        s->levered.part[0] +=
+            x->f[j] * (point ? other->part[0] : x->direction1[n - j].part[0]);
         s->levered.part[1] += x->f[j] * other->part[2];
     }
     if (to & TURNING1) {
@@ -123,10 +125,10 @@ KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n, co
 }
 #endif
 
-// Sums for the n-th coefficient from j = 1 to n - 1, two at least: the first and the last are left
-// to be added.
-KERNEL void add_in_turns(sums *even, sums *odd, const factors *x, ptrdiff_t n, const int to,
-                         const int point)
+// Sums for the n-th coefficient from j = 1 to n - 1, two at least: the first and the last
+// are left to be added.
+KERNEL void add_in_turns(sums *even, sums *odd, const factors *x, ptrdiff_t n,
+                         const int to, const int point)
 {
     ptrdiff_t j = 3;
     add_products(even, x, 1, n, to, point);
@@ -140,7 +142,8 @@ KERNEL void add_in_turns(sums *even, sums *odd, const factors *x, ptrdiff_t n, c
     }
 }
 
-KERNEL void inner_sums(const factors *x, ptrdiff_t n, const int to, const int point, sums *result)
+KERNEL void inner_sums(const factors *x, ptrdiff_t n, const int to, const int point,
+                       sums *result)
 {
     // a sum begins with -0, to which any number adds up to itself
     const real none = -(real){0};
@@ -191,7 +194,8 @@ KERNEL real square(const real *x, int n)
     return n % 2 == 0 ? sum + x[n / 2] * x[n / 2] : sum;
 }
 
-// What the newest coefficients are to the products, where that is not read from the series.
+// What the newest coefficients are to the products, where that is not read from the
+// series.
 #if LANES == 1
 #define KEEP(x, n, factor, value) ((x)->of[n].factor = (value))
 #else
@@ -204,7 +208,8 @@ KERNEL void keep_rates(factors *x, ptrdiff_t n, real v, real w1, real w2)
     KEEP(x, n, rate1, TWO(w1, w1));
 }
 
-KERNEL void keep_products(factors *x, ptrdiff_t n, real w1, real w2, real coupled, real hub)
+KERNEL void keep_products(factors *x, ptrdiff_t n, real w1, real w2, real coupled,
+                          real hub)
 {
     const four next = DIRECTIONS(x, n + 1);
     x->coupled[n] = coupled;
@@ -223,11 +228,12 @@ KERNEL void keep_force(factors *x, ptrdiff_t n, real f)
     KEEP(x, n, forces, TWO(f, f));
 }
 
-// Cosines and sines of two angles, and of one, from the sums of the order before, v c and v s.
+// Cosines and sines of two angles, and of one, from the sums of the order before, v c and
+// v s.
 KERNEL void turn(const four *sum, double share, four *direction)
 {
-    *direction = FOUR(PART(*sum, 1) * -share, PART(*sum, 0) * share, PART(*sum, 3) * -share,
-                      PART(*sum, 2) * share);
+    *direction = FOUR(PART(*sum, 1) * -share, PART(*sum, 0) * share,
+                      PART(*sum, 3) * -share, PART(*sum, 2) * share);
 }
 
 KERNEL void turn_one(const two *sum, double share, two *direction)

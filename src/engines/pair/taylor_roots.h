@@ -1,5 +1,5 @@
-// Bounds of the functions that are watched over a step (taylor_kernel.c), from their series, and
-// where they first fall below zero.
+// Bounds of the functions that are watched over a step (taylor_kernel.c), from their
+// series, and where they first fall below zero.
 #pragma once
 
 #include "src/engines/pair/taylor_products.h"
@@ -24,8 +24,8 @@ KERNEL void add_term(four *sum, const four *u, real term)
 #endif
 }
 
-// That of a polynomial for times from 0 to t. A function deviates from its chord of length h by at
-// most h^2/8 times its largest second derivative. Rounding is allowed for.
+// That of a polynomial for times from 0 to t. A function deviates from its chord of
+// length h by at most h^2/8 times its largest second derivative. Rounding is allowed for.
 KERNEL enclosure enclosure_of(const real *terms, int count, real t)
 {
     const real zero = (real){0}, u = t * t, none = zero;
@@ -34,7 +34,8 @@ KERNEL enclosure enclosure_of(const real *terms, int count, real t)
     const int last = count - 1 - count % 2; // of the odd terms
     const real single = count % 2 == 0 ? zero : terms[count - 1];
     four even = FOUR(single, single, single, single), odd = FOUR(none, none, none, none);
-    real even2 = count % 2 == 0 ? zero : magnitude(single) * falling[count - 1], odd2 = zero;
+    real even2 = count % 2 == 0 ? zero : magnitude(single) * falling[count - 1],
+         odd2 = zero;
     for (int n = last; n >= 3; n -= 2) {
         add_term(&even, &squared, terms[n - 1]);
         add_term(&odd, &squared, terms[n]);
@@ -49,7 +50,8 @@ KERNEL enclosure enclosure_of(const real *terms, int count, real t)
         PART(c.ends, i) = PART(even, i) + PART(time, i) * PART(odd, i);
     }
     const real sag = c.curvature * u * 0.125;
-    c.off = sag * 0.0625 + 1e-12 * (sag + magnitude(c.start) + magnitude(PART(c.ends, 3)));
+    c.off =
+        sag * 0.0625 + 1e-12 * (sag + magnitude(c.start) + magnitude(PART(c.ends, 3)));
     return c;
 }
 
@@ -78,12 +80,13 @@ typedef struct edge_limits {
     real value, rate, more;
 } edge_limits;
 
-// Lower bound of sign times a function in the first piece; where an event has left it at zero and
-// it grows from there, the bound of the function divided by the time, or by its square: in that
-// piece, of length h, p = p0 + p1 t + p2 t^2 + r has |p - p0 - p1 t| <= curvature t^2/2, and |r| <=
-// (curvature - 2 |p2|) t^2/6 h/t_end.
-KERNEL real least_at_first(const enclosure *c, const real *terms, real sign, real t, mask jumped,
-                           const edge_limits *limits)
+// Lower bound of sign times a function in the first piece; where an event has left it at
+// zero and it grows from there, the bound of the function divided by the time, or by its
+// square: in that
+// piece, of length h, p = p0 + p1 t + p2 t^2 + r has |p - p0 - p1 t| <= curvature t^2/2,
+// and |r| <= (curvature - 2 |p2|) t^2/6 h/t_end.
+KERNEL real least_at_first(const enclosure *c, const real *terms, real sign, real t,
+                           mask jumped, const edge_limits *limits)
 {
     const real first = sign * c->start - c->off;
     const real rate = sign * terms[1], more = sign * terms[2];
@@ -107,12 +110,12 @@ KERNEL real least_of(const enclosure *c, real sign, real first)
     return lowest(&signed_one, first);
 }
 
-// --- roots --------------------------------------------------------------------------------------
+// --- roots -----------------------------------------------------------------------------
 
 enum { MOST_ITERATIONS = 6 }; // of Newton's method
 
-// A function over steps of length t, positive times its sign at first: what it stays above in
-// the first piece, and whether it has jumped there.
+// A function over steps of length t, positive times its sign at first: what it stays
+// above in the first piece, and whether it has jumped there.
 typedef struct enclosed_function {
     const real *terms;
     int count;
@@ -131,7 +134,10 @@ typedef struct fall {
 KERNEL fall first_zero_crossing(const enclosed_function *f)
 {
     const real zero = (real){0}, off = f->enclosure->off;
-    fall found = {.from = zero, .length = f->t * 0.25, .above = zero + 1.0, .below = zero - 1.0};
+    fall found = {.from = zero,
+                  .length = f->t * 0.25,
+                  .above = zero + 1.0,
+                  .below = zero - 1.0};
     mask all_clear = ~(mask){0};
     real start = f->sign * f->enclosure->start;
     for (int i = 0; i < 4; i++) {
@@ -167,10 +173,10 @@ KERNEL void value_slope_at(const enclosed_function *f, real t, real *value, real
     *slope = f->sign * (odd + 2 * t * (even1 + t * odd1));
 }
 
-// The first instant at which it falls through zero; -1 if it is not found here. Newton's method,
-// until the error of the next step is below the resolution of time. Between the piece's start and a
-// root at a distance l from it the function lies at most curvature l^2/8 below its chord, and stays
-// above zero if it starts above curvature l^2/2.
+// The first instant at which it falls through zero; -1 if it is not found here. Newton's
+// method, until the error of the next step is below the resolution of time. Between the
+// piece's start and a root at a distance l from it the function lies at most curvature
+// l^2/8 below its chord, and stays above zero if it starts above curvature l^2/2.
 static __attribute__((noinline)) real first_root(const enclosed_function *f)
 {
     const real zero = (real){0};
@@ -189,7 +195,8 @@ static __attribute__((noinline)) real first_root(const enclosed_function *f)
         value_slope_at(f, t, &value, &slope);
         const real step = value / slope, next = t - step, way = next - in.from;
         const mask within = MASK(next > in.from) & MASK(next < to) & MASK(slope < 0);
-        const mask settled = MASK(curvature * step * step <= resolution * magnitude(slope));
+        const mask settled =
+            MASK(curvature * step * step <= resolution * magnitude(slope));
         const mask first = MASK(curvature * way * way * (0.5 + 1e-9) < in.above);
         root = choose(open & settled & within & first, next, root);
         open &= ~settled & within;

@@ -1,10 +1,12 @@
-// The stiff engine: Radau IIA of seven stages, order 13, for every arm and wall (stiff_step.h).
+// The stiff engine: Radau IIA of seven stages, order 13, for every arm and wall
+// (stiff_step.h).
 //
-// A step is as long as the error of its velocities and angles allows, whatever is asked of it:
-// rows, stops and the end of a run read its polynomials, and the state keeps it
-// (stiff_integrator.h). A step within which an event function falls below zero is taken again up to
-// that instant, so that an event is where a step ends. After an event a step begins anew, short;
-// after a change of torque it is predicted from the step before, as every other one is.
+// A step is as long as the error of its velocities and angles allows, whatever is asked
+// of it: rows, stops and the end of a run read its polynomials, and the state keeps it
+// (stiff_integrator.h). A step within which an event function falls below zero is taken
+// again up to that instant, so that an event is where a step ends. After an event a step
+// begins anew, short; after a change of torque it is predicted from the step before, as
+// every other one is.
 //
 // Its stages are solved in stiff_stages.c, and stiff_output.c has what it tells.
 #include <float.h>
@@ -17,10 +19,12 @@
 #include "src/engines/pair/taylor_lanes.h"
 #include "src/engines/stiff/stiff_integrator.h"
 
-#define FAST_DECAY   3e4   // beyond it, where nothing else is faster, the tolerance is larger [1/s]
-#define DECAYING     10    // so many times
-#define BOUNCING     0.1   // and of an arm that bounces undamped, which amplifies errors
-#define DRIVEN       0.1   // of a wall that moves: errors of the work of its many contacts add up
+// beyond it, where nothing else is faster, the tolerance is larger [1/s]
+#define FAST_DECAY 3e4
+#define DECAYING   10  // so many times
+#define BOUNCING   0.1 // and of an arm that bounces undamped, which amplifies errors
+// of a wall that moves: errors of the work of its many contacts add up
+#define DRIVEN       0.1
 #define TINY_ENERGY  1e-30 // [J]
 #define LONGEST_TURN 0.25  // in a step, of the way to a fold
 #define FIRST_PHASE  0.1   // of the fastest change, in the first step of a motion
@@ -30,19 +34,24 @@
 #define LEAST_LEFT   1e-13 // share of a step that is continued
 #define SHORTEST     1e-15 // step that can be made [s]
 #define MOST_GROWTH  10
-#define LONGEST      1     // step; what is read of a part of one rounds as the whole does [s]
-#define LEAST_TURN   1e-2  // what the motor does in this turn is the least energy of a scale [rad]
+// step; what is read of a part of one rounds as the whole does [s]
+#define LONGEST 1
+// what the motor does in this turn is the least energy of a scale [rad]
+#define LEAST_TURN   1e-2
 #define AT_EVENT     1e-6  // share of a step by which it may miss its event
 #define SAME_INSTANT 1e-14 // [s]
 #define FACE_PHASE   1.5   // of a face that swings, in a step
-#define WALL_PHASE   0.4   // of a wall that moves: where it leads all that can move, no error shows
+// of a wall that moves: where it leads all that can move, no error shows
+#define WALL_PHASE 0.4
 
 enum { MOST_ATTEMPTS = 100, MOST_ENDS = 10 };
 
-// --- how long a step is -------------------------------------------------------------------------
+// --- how long a step is ----------------------------------------------------------------
 
-// How the event function of the step's end, which is `at` its event, differs from zero, as a time.
-static double miss_of(const stiff_integrator *s, const arm *a, const motion *m, event_function w)
+// How the event function of the step's end, which is `at` its event, differs from zero,
+// as a time.
+static double miss_of(const stiff_integrator *s, const arm *a, const motion *m,
+                      event_function w)
 {
     const double *end = s->end;
     const value_and_slope g = stiff_watched_at(s, w, 1);
@@ -54,15 +63,26 @@ static double miss_of(const stiff_integrator *s, const arm *a, const motion *m, 
         value = end[SLOT_FORCE];
     } else if (w == EVENT_OF_GAP && s->kept[STIFF_GAP] == 0) {
         const bool within = m->wall_gives && end[SLOT_CONTACT] != 0;
-        value = within ? -end[SLOT_GAP] : end[SLOT_GAP];
-        slope = within ? -end[SLOT_GAP_VELOCITY] : end[SLOT_GAP_VELOCITY];
+        if (within) {
+            value = -end[SLOT_GAP];
+        } else {
+            value = end[SLOT_GAP];
+        }
+        if (within) {
+            slope = -end[SLOT_GAP_VELOCITY];
+        } else {
+            slope = end[SLOT_GAP_VELOCITY];
+        }
     } else if (w == EVENT_OF_HUB) {
         value = end[SLOT_FRICTION] * state_velocities(m, s->end)[0];
         slope = end[SLOT_FRICTION] * state_accelerations(m, s->end)[0];
     } else if (w == EVENT_OF_STICTION) {
         value = a->motor.stiction - fabs(end[SLOT_FRICTION_TORQUE]) + s->stiction_excess;
     }
-    return slope < 0 ? value / -slope : 0;
+    if (slope < 0) {
+        return value / -slope;
+    }
+    return 0;
 }
 
 // Evaluates the state at the end of the step kept, which begins at m->state.
@@ -86,8 +106,10 @@ static bool take_stages(stiff_integrator *s, const arm *a, motion *m)
     return true;
 }
 
-// Where the first event function other than `passed` falls below zero in the step, if one does.
-static step_end another_event(stiff_integrator *s, const arm *a, motion *m, event_function passed)
+// Where the first event function other than `passed` falls below zero in the step, if one
+// does.
+static step_end another_event(stiff_integrator *s, const arm *a, motion *m,
+                              event_function passed)
 {
     step_end end = {.length = s->step.length};
     s->passed = 1 + (int)passed;
@@ -97,8 +119,8 @@ static step_end another_event(stiff_integrator *s, const arm *a, motion *m, even
 }
 
 // Takes the step again up to an event within it, until it ends there: no longer than its
-// error allows, and at another event where the first moves to beyond that one. An event that moves
-// out of the step was one of rounding, and does not end it.
+// error allows, and at another event where the first moves to beyond that one. An event
+// that moves out of the step was one of rounding, and does not end it.
 static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, step_end at)
 {
     const double allowed = s->step.length;
@@ -115,8 +137,9 @@ static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, step_end 
             return false;
         }
         double miss = miss_of(s, a, m, at.first);
-        const step_end other =
-            h > at.length * (1 + AT_EVENT) ? another_event(s, a, m, at.first) : (step_end){0};
+        const step_end other = h > at.length * (1 + AT_EVENT)
+                                   ? another_event(s, a, m, at.first)
+                                   : (step_end){0};
         if (other.any) {
             at = other;
             miss = at.length - h;
@@ -150,26 +173,34 @@ static double first_try(const arm *a, motion *m, bool fresh)
     // not beyond where the next change is due, and no scraps before it
     const double due = kept[KEPT_CHANGED] + kept[KEPT_INTERVAL] - m->state[SLOT_TIME];
     if (kept[KEPT_INTERVAL] > 0 && due > SAME_INSTANT) {
-        h = h * 1.0001 > due ? due : 2 * h > due ? 0.5 * due : h;
+        if (h * 1.0001 > due) {
+            h = due;
+        } else if (2 * h > due) {
+            h = 0.5 * due;
+        }
     }
     if (state_face_swings(m, m->state)) {
         const wall_face face = state_face(m->state);
         const wall_model wall = wall_at(&a->wall, m->state[SLOT_TIME]);
         const double rate = wall_face_rate(&wall, face);
-        h = rate > 0 ? smaller(h, FACE_PHASE / rate) : h;
+        if (rate > 0) {
+            h = smaller(h, FACE_PHASE / rate);
+        }
         h = smaller(h, wall_face_lasts(&a->wall, face));
     }
     if (m->wall_moves) {
         const double rate = wall_motion_rate(&a->wall.motion, m->state[SLOT_TIME]);
-        h = rate > 0 ? smaller(h, WALL_PHASE / rate) : h;
+        if (rate > 0) {
+            h = smaller(h, WALL_PHASE / rate);
+        }
         h = smaller(h, wall_motion_lasts(&a->wall.motion, m->state[SLOT_TIME]));
     }
     return h;
 }
 
-// How far the links turn in a step on a rigid flat wall, in shares of what a step may take of the
-// way to a fold over the hub's axis. There the force has a pole that does not show in the
-// velocities.
+// How far the links turn in a step on a rigid flat wall, in shares of what a step may
+// take of the way to a fold over the hub's axis. There the force has a pole that does not
+// show in the velocities.
 static double turn_to_fold(const stiff_integrator *s, const arm *a)
 {
     const stiff_step *p = &s->step;
@@ -188,8 +219,8 @@ static double turn_to_fold(const stiff_integrator *s, const arm *a)
     return turn / (LONGEST_TURN * left);
 }
 
-// Where the step before ended at the drive's limit, or left it, the other of its equations holds,
-// whatever the current's last digits say.
+// Where the step before ended at the drive's limit, or left it, the other of its
+// equations holds, whatever the current's last digits say.
 static void change_drive(stiff_integrator *s, const arm *a, motion *m)
 {
     const double *before = state_kept(m, m->state);
@@ -202,33 +233,44 @@ static void change_drive(stiff_integrator *s, const arm *a, motion *m)
     }
     const bool flows = a->motor.inductance > 0;
     const bool was_limited = (int)before[STIFF_DRIVE] == STIFF_LIMITED;
-    p->drive = !was_limited ? STIFF_LIMITED : flows ? STIFF_FLOWS : STIFF_FOLLOWS;
-    p->current0 = flows ? p->limited : p->current0;
+    if (!was_limited) {
+        p->drive = STIFF_LIMITED;
+    } else if (flows) {
+        p->drive = STIFF_FLOWS;
+    } else {
+        p->drive = STIFF_FOLLOWS;
+    }
+    if (flows) {
+        p->current0 = p->limited;
+    }
 }
 
 // The error that a step of this arm may have, as a share of the momentum.
 static double tolerance_of(const arm *a, const motion *m)
 {
-    const double current = a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
+    const double current =
+        a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
     const double others = fmax(fmax(FAST_DECAY, a->highest_frequency), current);
     const bool decays = a->fastest_decay > others;
-    const bool bounces = a->wall.restitution > 0 && a->fastest_decay <= a->highest_frequency;
+    const bool bounces =
+        a->wall.restitution > 0 && a->fastest_decay <= a->highest_frequency;
     if (m->wall_moves) {
         return m->tolerance * DRIVEN * (decays ? DECAYING : 1);
     }
     return m->tolerance * (decays ? DECAYING : bounces ? BOUNCING : 1);
 }
 
-// What errors of this step are a share of: the largest momentum so far. The least is what the
-// motor's torque makes of the arm in a small turn.
+// What errors of this step are a share of: the largest momentum so far. The least is what
+// the motor's torque makes of the arm in a small turn.
 static double scale_of(const stiff_integrator *s, const arm *a, motion *m, double before)
 {
     const motor_model *motor = &a->motor;
-    const double torque =
-        motor->electric ? motor->torque_constant * motor->gain * motor->voltage / motor->resistance
-                        : motor->torque;
+    const double torque = motor->electric ? motor->torque_constant * motor->gain *
+                                                motor->voltage / motor->resistance
+                                          : motor->torque;
     const double driven = fabs(torque) * LEAST_TURN + TINY_ENERGY;
-    const double least = sqrt(2 * (driven + chain_strain_energy(a, state_angles(m, m->state))));
+    const double least =
+        sqrt(2 * (driven + chain_strain_energy(a, state_angles(m, m->state))));
     return larger(larger(before, least), stiff_momentum(s, s->step.w0));
 }
 
@@ -255,7 +297,8 @@ static void keep_start(stiff_integrator *s, motion *m, double scale)
 static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
 {
     const double *before = state_kept(m, m->state);
-    const double was = before[STIFF_LENGTH], offset = was > 0 ? before[KEPT_USED] / was : 0;
+    const double was = before[STIFF_LENGTH],
+                 offset = was > 0 ? before[KEPT_USED] / was : 0;
     const bool jumped = m->state[SLOT_JUMPED] != 0;
     const bool begins = !(was > 0) || (jumped && before[STIFF_EVENT] != 0);
     const double scale = s->kept[STIFF_SCALE];
@@ -264,7 +307,9 @@ static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
     for (int i = 0; i < MOST_ATTEMPTS && h > SHORTEST; i++, again = true) {
         s->step.length = h;
         if (!stiff_solve_stages(s, fresh, offset, h / was, &rate)) {
-            h = fresh ? h / 3 : h;
+            if (fresh) {
+                h = h / 3;
+            }
             fresh = true;
             continue;
         }
@@ -274,14 +319,18 @@ static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
             continue;
         }
         double error = stiff_error(s, false) / (s->tolerance * scale);
-        if (error > 1 && (begins || again)) { // a decay that is over within the step is no error
+        if (error > 1 &&
+            (begins || again)) { // a decay that is over within the step is no error
             error = stiff_error(s, true) / (s->tolerance * scale);
         }
         const double grow = SAFETY * plain_pow(error + 1e-30, -1.0 / (RADAU_STAGES + 1));
         if (error <= 1) {
             s->kept[STIFF_RATE] = rate;
-            s->kept[STIFF_NEXT] = smaller(h * smaller(again ? 1 : MOST_GROWTH, grow), LONGEST);
-            s->kept[STIFF_LEARNED] = begins ? s->kept[STIFF_NEXT] : s->kept[STIFF_LEARNED];
+            s->kept[STIFF_NEXT] =
+                smaller(h * smaller(again ? 1 : MOST_GROWTH, grow), LONGEST);
+            if (begins) {
+                s->kept[STIFF_LEARNED] = s->kept[STIFF_NEXT];
+            }
             return true;
         }
         h *= larger(0.1, smaller(grow, 0.9));
@@ -289,15 +338,16 @@ static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
     return false;
 }
 
-// Takes a step from m->state, as long as its error allows or up to its first event. False if none
-// can be made.
+// Takes a step from m->state, as long as its error allows or up to its first event. False
+// if none can be made.
 static bool make_step(stiff_integrator *s, const arm *a, motion *m)
 {
     stiff_set_arm(s, a, m);
     stiff_set_start(s, m);
     s->tolerance = tolerance_of(a, m);
     change_drive(s, a, m);
-    memcpy(s->kept, state_kept(m, m->state), (KEPT_COUNT + stiff_kept_size(a)) * sizeof *s->kept);
+    memcpy(s->kept, state_kept(m, m->state),
+           (KEPT_COUNT + stiff_kept_size(a)) * sizeof *s->kept);
     keep_start(s, m, scale_of(s, a, m, s->kept[STIFF_SCALE]));
     if (!solve_within_error(s, a, m) || !take_stages(s, a, m)) {
         return false;
@@ -314,18 +364,21 @@ static bool make_step(stiff_integrator *s, const arm *a, motion *m)
     return true;
 }
 
-// --- the engine ---------------------------------------------------------------------------------
+// --- the engine ------------------------------------------------------------------------
 
 static size_t init(const arm *a, void *memory)
 {
-    const size_t n = (size_t)a->dof, links = (size_t)a->links, modes = (size_t)a->damped_modes;
+    const size_t n = (size_t)a->dof, links = (size_t)a->links,
+                 modes = (size_t)a->damped_modes;
     stiff_integrator none, *s = memory != NULL ? memory : &none;
     stiff_step *p = &s->step;
     layout l = {.block = memory};
     memset(s, 0, sizeof *s);
     s->loops = &stiff_loops_1;
 #if defined __x86_64__
-    s->loops = taylor_width() >= 4 ? &stiff_loops_4 : s->loops;
+    if (taylor_width() >= 4) {
+        s->loops = &stiff_loops_4;
+    }
 #endif
     layout_add(&l, sizeof *s);
     p->stage = layout_add(&l, n * sizeof *p->stage);
@@ -355,7 +408,8 @@ static void take_up(stiff_integrator *s, const arm *a, motion *m)
     const double *kept = state_kept(m, m->state);
     const size_t from = STIFF_LENGTH,
                  size = (KEPT_COUNT + stiff_kept_size(a) - from) * sizeof *kept;
-    if (!s->known || m->step.history_invalid || memcmp(s->kept + from, kept + from, size) != 0) {
+    if (!s->known || m->step.history_invalid ||
+        memcmp(s->kept + from, kept + from, size) != 0) {
         memcpy(s->kept, kept, (KEPT_COUNT + stiff_kept_size(a)) * sizeof *kept);
         s->step.dof = a->dof;
         s->step.links = a->links;
@@ -376,8 +430,9 @@ static double advance(const arm *a, motion *m, double remaining, double step)
     const double *kept = state_kept(m, m->state);
     (void)step;
     const double left = kept[KEPT_LENGTH] - kept[KEPT_USED];
-    const bool goes_on = m->state[SLOT_JUMPED] == 0 && kept[KEPT_LENGTH] > 0 &&
-                         left > (kept[STIFF_EVENT] != 0 ? 0 : LEAST_LEFT * kept[KEPT_LENGTH]);
+    const bool goes_on =
+        m->state[SLOT_JUMPED] == 0 && kept[KEPT_LENGTH] > 0 &&
+        left > (kept[STIFF_EVENT] != 0 ? 0 : LEAST_LEFT * kept[KEPT_LENGTH]);
     if (goes_on) {
         take_up(s, a, m);
     } else if (!make_step(s, a, m)) {
@@ -386,7 +441,8 @@ static double advance(const arm *a, motion *m, double remaining, double step)
     }
     m->step.history_invalid = false;
     m->most_force = function_greatest(&s->force);
-    memcpy(state_kept(m, m->state), s->kept, (KEPT_COUNT + stiff_kept_size(a)) * sizeof *kept);
+    memcpy(state_kept(m, m->state), s->kept,
+           (KEPT_COUNT + stiff_kept_size(a)) * sizeof *kept);
     state_kept(m, m->state)[KEPT_USED] = s->used;
     return smaller(s->kept[KEPT_LENGTH] - s->used, remaining);
 }

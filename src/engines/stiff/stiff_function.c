@@ -5,8 +5,9 @@
 
 #include "src/base/extremes.h"
 
-// A slope that differs from the polynomial's by more than so many times what the function changes
-// in the step is that of a transient which is over before the first stage, or rounding.
+// A slope that differs from the polynomial's by more than so many times what the function
+// changes in the step is that of a transient which is over before the first stage, or
+// rounding.
 #define STEEP 10
 
 void function_through(stiff_function *f, const double *nodes)
@@ -41,11 +42,14 @@ void function_through_rising(stiff_function *f, const double *nodes, double slop
         rise = larger(fabs(nodes[i] - nodes[RADAU_LANES - 1]), rise);
     }
     double more = slope - n * (through.b[1] - through.b[0]);
-    more = fabs(more) <= STEEP * rise ? more : 0;
+    if (!(fabs(more) <= STEEP * rise)) {
+        more = 0;
+    }
     f->degree = n + 1;
     for (int i = 0; i <= n + 1; i++) {
         const double share = (double)i / (n + 1);
-        const double below = i > 0 ? through.b[i - 1] : 0, own = i <= n ? through.b[i] : 0;
+        const double below = i > 0 ? through.b[i - 1] : 0,
+                     own = i <= n ? through.b[i] : 0;
         f->b[i] = share * below + (1 - share) * own + more * radau_slope[i];
     }
 }
@@ -104,7 +108,8 @@ value_and_slope function_at(const stiff_function *f, double x)
 
 double function_curvature(const stiff_function *f, double from, double to)
 {
-    // the second derivative's coefficients, those of the part: first cut at its end, then its start
+    // the second derivative's coefficients, those of the part: first cut at its end, then
+    // its start
     double b[FUNCTION_MOST];
     const int n = f->degree - 2;
     for (int i = 0; i <= n; i++) {

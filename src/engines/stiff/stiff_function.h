@@ -1,10 +1,10 @@
-// Functions of the time within a step as polynomials in Bernstein's form, for the location of
-// events: on the step from 0 to 1 of degree n
+// Functions of the time within a step as polynomials in Bernstein's form, for the
+// location of events: on the step from 0 to 1 of degree n
 //
 //     f(x) = sum of b_i n!/(i! (n-i)!) x^i (1 - x)^(n-i).
 //
-// f lies between the least and the greatest b, so that coefficients that are all above zero prove
-// that f has no root; those of f' are n times the differences of the b.
+// f lies between the least and the greatest b, so that coefficients that are all above
+// zero prove that f has no root; those of f' are n times the differences of the b.
 #pragma once
 
 #include "src/contact/engine.h"
@@ -19,7 +19,8 @@ typedef struct stiff_function {
 
 // Through values at the stages and at the start.
 void function_through(stiff_function *f, const double *nodes);
-// The same with a derivative by x at the start, too, if the stages resolve it; of one degree more.
+// The same with a derivative by x at the start, too, if the stages resolve it; of one
+// degree more.
 void function_through_rising(stiff_function *f, const double *nodes, double slope);
 // The integral from 0, from a value on.
 void function_integrate(stiff_function *f, double start, double factor);

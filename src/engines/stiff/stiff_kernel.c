@@ -1,10 +1,10 @@
-// The loops of a step of the stiff engine, built as LOOPS once for each width of the processor's
-// vectors (src/engines/meson.build). The derivation stands in stiff_step.h.
+// The loops of a step of the stiff engine, built as LOOPS once for each width of the
+// processor's vectors (src/engines/meson.build). The derivation stands in stiff_step.h.
 #include <math.h>
 
 #include "src/engines/stiff/stiff_sweeps.h"
 
-// --- the tangent --------------------------------------------------------------------------------
+// --- the tangent -----------------------------------------------------------------------
 
 // y of a right side without borders, in place.
 KERNEL void solve_bare(const stiff_step *s, complex_lanes *y)
@@ -131,11 +131,14 @@ KERNEL complex_lanes factor_links(stiff_step *s, complex_lanes g, complex_lanes 
 }
 
 // The hub, whose back EMF works through the current.
-KERNEL void factor_hub(stiff_step *s, complex_lanes g, complex_lanes g2, complex_lanes tau)
+KERNEL void factor_hub(stiff_step *s, complex_lanes g, complex_lanes g2,
+                       complex_lanes tau)
 {
-    complex_lanes hub = plus(tau, plus(number(s->hub_inertia), scaled(s->hub_damping, g)));
+    complex_lanes hub =
+        plus(tau, plus(number(s->hub_inertia), scaled(s->hub_damping, g)));
     if (s->drive == STIFF_FOLLOWS) {
-        const double brakes = s->motor->torque_constant * s->motor->back_emf / s->motor->resistance;
+        const double brakes =
+            s->motor->torque_constant * s->motor->back_emf / s->motor->resistance;
         hub = plus(hub, scaled(brakes, g));
     } else if (s->drive == STIFF_FLOWS) {
         const complex_lanes slows =
@@ -169,19 +172,22 @@ KERNEL void factor_borders(stiff_step *s, complex_lanes g, complex_lanes g2)
         double stiffness = s->wall->stiffness, damping = s->wall->damping;
         if (s->wall->law == WALL_HUNT_CROSSLEY) {
             const double power = wall_power(s->wall, depth);
-            stiffness =
-                depth > 0 ? s->wall->exponent * power / depth * (stiffness + damping * rate) : 0;
+            stiffness = depth > 0 ? s->wall->exponent * power / depth *
+                                        (stiffness + damping * rate)
+                                  : 0;
             damping *= power;
         }
         s->wall_damping = damping;
-        s->press =
-            plus(plus(scaled(stiffness, g2), scaled(damping, g)), number(s->wall->face_mass));
+        s->press = plus(plus(scaled(stiffness, g2), scaled(damping, g)),
+                        number(s->wall->face_mass));
     }
     for (int i = 0; i < count; i++) {
         const bool wall = i == s->modes;
         for (int j = 0; j < count; j++) {
             const complex_lanes sum = along(s, stiff_border_row(s, i), s->border[j]);
-            const complex_lanes by = !wall ? g : s->contact == STIFF_GIVES ? s->press : number(-1);
+            const complex_lanes by = !wall                       ? g
+                                     : s->contact == STIFF_GIVES ? s->press
+                                                                 : number(-1);
             const bool one = i == j && !(wall && s->contact == STIFF_RIGID);
             s->corner[i][j] = minus(number(one ? 1 : 0), times(by, sum));
         }
@@ -191,7 +197,8 @@ KERNEL void factor_borders(stiff_step *s, complex_lanes g, complex_lanes g2)
         for (int i = p + 1; i < count; i++) {
             s->corner[i][p] = times(s->corner[i][p], s->corner[p][p]);
             for (int j = p + 1; j < count; j++) {
-                s->corner[i][j] = minus(s->corner[i][j], times(s->corner[i][p], s->corner[p][j]));
+                s->corner[i][j] =
+                    minus(s->corner[i][j], times(s->corner[i][p], s->corner[p][j]));
             }
         }
     }
@@ -234,7 +241,7 @@ static void solve(stiff_step *s, const complex_lanes *target)
     }
 }
 
-// --- an iteration -------------------------------------------------------------------------------
+// --- an iteration ----------------------------------------------------------------------
 
 // Radau's embedded sums of the stages, x of velocities and v of accelerations.
 static void differences(const stiff_step *s, double *x, double *v)
@@ -242,7 +249,8 @@ static void differences(const stiff_step *s, double *x, double *v)
     const lanes low = lanes_at(radau_difference), high = lanes_at(radau_difference + 4);
     for (int k = 0; k < s->dof; k++) {
         const stiff_stage *g = &s->stage[k];
-        const lanes w = low * g->w[0] + high * g->w[1], a = low * g->a[0] + high * g->a[1];
+        const lanes w = low * g->w[0] + high * g->w[1],
+                    a = low * g->a[0] + high * g->a[1];
         x[k] = radau_start * s->w0[k] + ((w[0] + w[2]) + (w[1] + w[3]));
         v[k] = radau_start * s->a0[k] + ((a[0] + a[2]) + (a[1] + a[3]));
     }

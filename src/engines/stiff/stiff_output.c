@@ -1,5 +1,6 @@
-// What a step of the stiff engine tells of itself (engine.h): its states, by the polynomials
-// through its stages, and the event functions, which say when a contact state ends.
+// What a step of the stiff engine tells of itself (engine.h): its states, by the
+// polynomials through its stages, and the event functions, which say when a contact state
+// ends.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -8,19 +9,20 @@
 #include "src/contact/edge_limits.h"
 #include "src/engines/stiff/stiff_integrator.h"
 
-// Share of a power's largest value by which it may differ at a start from what the stages say.
+// Share of a power's largest value by which it may differ at a start from what the stages
+// say.
 #define LITTLE 1e-2
 // Of the current, as a share of its limit.
 #define EDGE_CURRENT 1e-10
-// Shares of a function's largest coefficient: of what is rounding at a start, and of what a force
-// that presses at all stages, or a gap that is open at them, may lack there, where it changes
-// faster than the step shows.
+// Shares of a function's largest coefficient: of what is rounding at a start, and of what
+// a force that presses at all stages, or a gap that is open at them, may lack there,
+// where it changes faster than the step shows.
 #define FLAT  1e-5
 #define LACKS 1e-3
 // A gap that nowhere in a step exceeds this is followed as it grows [m].
 #define LOW_FLIGHT 1e-9
 
-// --- states --------------------------------------------------------------------------------------
+// --- states ----------------------------------------------------------------------------
 
 // What numbers at the stages add up to with such weights.
 static inline double weighted(const double *weight, const double *stages)
@@ -42,14 +44,15 @@ static inline body_motion body_at(const stiff_integrator *s, int k, double x,
 {
     const double h = s->kept[STIFF_LENGTH], w0 = stiff_velocities(s)[k];
     const double *stages = stiff_accelerations(s) + RADAU_LANES * k;
-    return (body_motion){stiff_angles(s)[k] + h * (x * w0 + h * weighted(weight->twice, stages)),
+    return (body_motion){stiff_angles(s)[k] +
+                             h * (x * w0 + h * weighted(weight->twice, stages)),
                          w0 + h * weighted(weight->integral, stages),
                          weighted(weight->value, stages)};
 }
 
-// What the power of a quadrature at the step's start adds there to that by the stages, which have
-// it for a whole step: the next order of the polynomial through them. Nothing where the start shows
-// a transient that they do not.
+// What the power of a quadrature at the step's start adds there to that by the stages,
+// which have it for a whole step: the next order of the polynomial through them. Nothing
+// where the start shows a transient that they do not.
 static double start_adds(const stiff_integrator *s, int of, const radau_weights *weight)
 {
     const double *values = s->kept + STIFF_VALUES + of * RADAU_LANES;
@@ -59,11 +62,15 @@ static double start_adds(const stiff_integrator *s, int of, const radau_weights 
         most = larger(fabs(values[j]), most);
     }
     const double more = values[RADAU_STAGES] - weighted(value, values);
-    return fabs(more) < LITTLE * most ? s->kept[STIFF_LENGTH] * weight->start * more : 0;
+    if (fabs(more) < LITTLE * most) {
+        return s->kept[STIFF_LENGTH] * weight->start * more;
+    }
+    return 0;
 }
 
 // A quadrature there.
-static double quadrature_at(const stiff_integrator *s, int of, const radau_weights *weight)
+static double quadrature_at(const stiff_integrator *s, int of,
+                            const radau_weights *weight)
 {
     return s->kept[STIFF_QUADRATURES + of] +
            s->kept[STIFF_LENGTH] *
@@ -92,8 +99,11 @@ void stiff_state_within(const stiff_integrator *s, const arm *a, motion *m, doub
     if (a->motor.electric) {
         double *current = state_quadratures(m, state) + QUADRATURE_CURRENT;
         const double most = a->motor.current_limit;
-        *current = a->motor.inductance > 0 ? fmax(-most, fmin(*current, most))
-                                           : s->kept[STIFF_QUADRATURES + QUADRATURE_CURRENT];
+        if (a->motor.inductance > 0) {
+            *current = fmax(-most, fmin(*current, most));
+        } else {
+            *current = s->kept[STIFF_QUADRATURES + QUADRATURE_CURRENT];
+        }
     }
 
     // what follows from them
@@ -125,10 +135,10 @@ void stiff_state_within(const stiff_integrator *s, const arm *a, motion *m, doub
            (size_t)m->dof * sizeof(double));
 }
 
-// What sensors see of the state at `time` after the step's start, as the stages have it and not
-// evaluated.
-static void sense_within(const stiff_integrator *s, const arm *a, const motion *m, double time,
-                         double *state)
+// What sensors see of the state at `time` after the step's start, as the stages have it
+// and not evaluated.
+static void sense_within(const stiff_integrator *s, const arm *a, const motion *m,
+                         double time, double *state)
 {
     const double x = time / s->kept[STIFF_LENGTH];
     const int seen[] = {0, a->first, a->dof - 1};
@@ -141,7 +151,8 @@ static void sense_within(const stiff_integrator *s, const arm *a, const motion *
         state_accelerations(m, state)[seen[i]] = at.a;
     }
     state[SLOT_FORCE] = function_at(&s->force, x).value;
-    state_quadratures(m, state)[QUADRATURE_FORCE] = quadrature_at(s, QUADRATURE_FORCE, &weight);
+    state_quadratures(m, state)[QUADRATURE_FORCE] =
+        quadrature_at(s, QUADRATURE_FORCE, &weight);
 }
 
 status stiff_state_at(const arm *a, motion *m, double h, state_extent extent)
@@ -151,7 +162,9 @@ status stiff_state_at(const arm *a, motion *m, double h, state_extent extent)
 
     // by the instant itself, which is the same whatever stops were made on the way
     double time = m->state[SLOT_TIME] + h;
-    time = fabs(time - m->step.aim) <= 4 * DBL_EPSILON * time ? m->step.aim : time;
+    if (fabs(time - m->step.aim) <= 4 * DBL_EPSILON * time) {
+        time = m->step.aim;
+    }
     if (extent == STATE_SENSED) {
         sense_within(s, a, m, time - s->kept[STIFF_TIME], m->trial);
         return STATUS_OK;
@@ -171,7 +184,7 @@ status stiff_state_at(const arm *a, motion *m, double h, state_extent extent)
     return STATUS_OK;
 }
 
-// --- what the contact machine asks ---------------------------------------------------------------
+// --- what the contact machine asks -----------------------------------------------------
 
 static value_and_slope by_time(const stiff_integrator *s, value_and_slope g)
 {
@@ -183,25 +196,29 @@ value_and_slope stiff_watched_at(const stiff_integrator *s, event_function w, do
     value_and_slope near = function_at(&s->function[w], x);
     if (w >= EVENT_OF_STICTION) {
         const value_and_slope far = function_at(&s->far[w], x);
-        near = near.value < far.value ? near : far;
+        if (!(near.value < far.value)) {
+            near = far;
+        }
     }
     return near;
 }
 
-value_and_slope stiff_event_function(const arm *a, const motion *m, event_function w, double h)
+value_and_slope stiff_event_function(const arm *a, const motion *m, event_function w,
+                                     double h)
 {
     const stiff_integrator *s = m->memory;
     (void)a;
     return by_time(s, stiff_watched_at(s, w, (s->used + h) / s->step.length));
 }
 
-double stiff_second_derivative(const arm *a, const motion *m, event_function w, double from,
-                               double to)
+double stiff_second_derivative(const arm *a, const motion *m, event_function w,
+                               double from, double to)
 {
     const stiff_integrator *s = m->memory;
     const double length = s->step.length;
     const double x0 = (s->used + from) / length, x1 = (s->used + to) / length;
-    const stiff_function *f = s->used > 0 && w == EVENT_OF_FORCE ? &s->force : &s->function[w];
+    const stiff_function *f =
+        s->used > 0 && w == EVENT_OF_FORCE ? &s->force : &s->function[w];
     double most = function_curvature(f, x0, x1);
     if (w >= EVENT_OF_STICTION) {
         most = larger(most, function_curvature(&s->far[w], x0, x1));
@@ -215,12 +232,13 @@ double stiff_second_derivative(const arm *a, const motion *m, event_function w, 
 bool stiff_excludes_event(const motion *m, event_function w)
 {
     const stiff_integrator *s = m->memory;
-    return s->passed == 1 + (int)w || (function_least(&s->function[w]) > 0 &&
-                                       (w < EVENT_OF_STICTION || function_least(&s->far[w]) > 0));
+    return s->passed == 1 + (int)w ||
+           (function_least(&s->function[w]) > 0 &&
+            (w < EVENT_OF_STICTION || function_least(&s->far[w]) > 0));
 }
 
-void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from, double to,
-                        int count, value_and_slope *at)
+void stiff_dense_output(const arm *a, motion *m, output_quantity of, double from,
+                        double to, int count, value_and_slope *at)
 {
     const stiff_integrator *s = m->memory;
     const double width = count > 0 ? (to - from) / count : 0;
@@ -245,10 +263,14 @@ void stiff_first_event(const arm *a, motion *m, step_end *end)
     const int event = (int)s->kept[STIFF_EVENT];
     (void)a;
     end->any = event > 0 && end->length >= s->kept[KEPT_LENGTH] - s->used;
-    end->first = end->any ? (event_function)(event - 1) : EVENT_OF_GAP;
+    if (end->any) {
+        end->first = (event_function)(event - 1);
+    } else {
+        end->first = EVENT_OF_GAP;
+    }
 }
 
-// --- event functions ----------------------------------------------------------------------------
+// --- event functions -------------------------------------------------------------------
 
 // The function less what is only rounding at its start (edge_limits.h).
 static void deflate_root(stiff_integrator *s, event_function w, const double limits[3])
@@ -261,23 +283,35 @@ static void deflate_root(stiff_integrator *s, event_function w, const double lim
         s->divided[w] = true;
     }
 
-    // of one that starts flatter still, what is left at the start is rounding; of a force that
-    // presses at all stages, or a gap that is open at all of them, the step's own error, too
+    // of one that starts flatter still, what is left at the start is rounding; of a force
+    // that presses at all stages, or a gap that is open at all of them, the step's own
+    // error, too
     double *start = s->function[w].b;
-    bool holds = (w == EVENT_OF_FORCE && powers > 0) || (w == EVENT_OF_GAP && powers == 3);
+    bool holds =
+        (w == EVENT_OF_FORCE && powers > 0) || (w == EVENT_OF_GAP && powers == 3);
     for (int i = 0; i < RADAU_STAGES && holds; i++) {
-        holds = w == EVENT_OF_FORCE ? s->step.force.at[i] > 0
-                                    : function_at(&s->function[w], radau_node[i]).value > 0;
+        if (w == EVENT_OF_FORCE) {
+            holds = s->step.force.at[i] > 0;
+        } else {
+            holds = function_at(&s->function[w], radau_node[i]).value > 0;
+        }
     }
-    const double share = holds ? LACKS : powers == 3 ? FLAT : 0;
+    double share = LACKS;
+    if (!holds) {
+        if (powers == 3) {
+            share = FLAT;
+        } else {
+            share = 0;
+        }
+    }
     if (*start < 0 && *start > -share * function_greatest(&s->function[w])) {
         *start = -*start;
     }
 }
 
-// Of an arm in contact with a wall that gives: its depth, and of Hunt and Crossley's law, for the
-// force itself, the factor k + c v of the power. Of Kelvin and Voigt's the force with its own slope
-// at the start, which decides whether the arm stays.
+// Of an arm in contact with a wall that gives: its depth, and of Hunt and Crossley's law,
+// for the force itself, the factor k + c v of the power. Of Kelvin and Voigt's the force
+// with its own slope at the start, which decides whether the arm stays.
 static void set_compliant_functions(stiff_integrator *s, const arm *a, const motion *m)
 {
     double law[RADAU_LANES];
@@ -303,7 +337,11 @@ static void set_gap(stiff_integrator *s, const arm *a, const motion *m)
     double start = m->state[SLOT_GAP], rates[RADAU_LANES];
     const wall_model wall = wall_at(&a->wall, m->state[SLOT_TIME]);
     if (m->state[SLOT_JUMPED] != 0 ? fabs(start) <= EDGE_GAP : s->kept[STIFF_GAP] != 0) {
-        start = m->state[SLOT_JUMPED] != 0 ? 0 : s->kept[STIFF_GAP];
+        if (m->state[SLOT_JUMPED] != 0) {
+            start = 0;
+        } else {
+            start = s->kept[STIFF_GAP];
+        }
     }
     for (int i = 0; i < RADAU_LANES; i++) {
         rates[i] = s->step.rate.at[i];
@@ -316,7 +354,11 @@ static void set_gap(stiff_integrator *s, const arm *a, const motion *m)
     function_integrate(&s->gap, start, h);
     memcpy(s->kept + STIFF_GAPS, s->gap.b, sizeof s->gap.b);
     const double end = s->gap.b[s->gap.degree];
-    s->kept[STIFF_GAP] = function_greatest(&s->gap) < LOW_FLIGHT ? end : 0;
+    if (function_greatest(&s->gap) < LOW_FLIGHT) {
+        s->kept[STIFF_GAP] = end;
+    } else {
+        s->kept[STIFF_GAP] = 0;
+    }
 }
 
 // A gap or depth that is less than places are known to all through the step says nothing.
@@ -339,7 +381,8 @@ static void set_wall_functions(stiff_integrator *s, const arm *a, const motion *
     } else if (!now.contact) {
         stiff_function *distance = &s->function[EVENT_OF_GAP];
         *distance = s->gap;
-        if (distance->b[0] < 0 && distance->b[0] > -EDGE_DEPTH && distance->b[1] > distance->b[0]) {
+        if (distance->b[0] < 0 && distance->b[0] > -EDGE_DEPTH &&
+            distance->b[1] > distance->b[0]) {
             distance->b[0] = 0;
             at_edge = true;
         }
@@ -362,7 +405,8 @@ static void set_wall_functions(stiff_integrator *s, const arm *a, const motion *
     }
 }
 
-static void set_hub_functions(stiff_integrator *s, const arm *a, const motion *m, contact_state now)
+static void set_hub_functions(stiff_integrator *s, const arm *a, const motion *m,
+                              contact_state now)
 {
     const bool jumped = m->state[SLOT_JUMPED] != 0;
     if (now.friction != HUB_STICK) {
@@ -388,7 +432,11 @@ static void set_hub_functions(stiff_integrator *s, const arm *a, const motion *m
     *far = *near;
     function_scale(near, sign, a->motor.stiction);
     function_scale(far, -sign, a->motor.stiction);
-    s->stiction_excess = jumped && fabs(near->b[0]) <= EDGE_VALUE ? EDGE_VALUE - near->b[0] : 0;
+    if (jumped && fabs(near->b[0]) <= EDGE_VALUE) {
+        s->stiction_excess = EDGE_VALUE - near->b[0];
+    } else {
+        s->stiction_excess = 0;
+    }
     function_scale(near, 1, s->stiction_excess);
 }
 
@@ -408,8 +456,8 @@ static void set_current_function(stiff_integrator *s, const arm *a)
     if (s->step.drive == STIFF_LIMITED) {
         for (int i = 0; i < RADAU_LANES; i++) {
             const double w = s->step.stage[0].w[i / 4][i % 4];
-            current[i] =
-                side * (motor->gain * motor->voltage - motor->back_emf * w) / motor->resistance;
+            current[i] = side * (motor->gain * motor->voltage - motor->back_emf * w) /
+                         motor->resistance;
         }
         function_through(near, current);
         function_scale(near, 1, -most);

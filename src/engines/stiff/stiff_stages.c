@@ -7,17 +7,18 @@
 #include "src/engines/stiff/stiff_integrator.h"
 
 #define NEWTON_SHARE 3e-3 // of the tolerance, what the iteration leaves
-#define FARTHEST     2    // in lengths of a step, to where its polynomials are extrapolated
-#define LEAST_RATE   1e-4 // of the iteration that is believed
-#define SLOW_RATE    0.6  // and from which on a shorter step is cheaper
-#define LEAST_SHARE  1e-14
-#define LAST_DIGITS  1e-14 // of an angle, as corrections that do not converge show them
-#define MOST_LEFT    30    // times what is wanted, of such corrections
-#define ANGLE_RATE   20    // that makes an angle's error one of velocity [1/s]
+// in lengths of a step, to where its polynomials are extrapolated
+#define FARTHEST    2
+#define LEAST_RATE  1e-4 // of the iteration that is believed
+#define SLOW_RATE   0.6  // and from which on a shorter step is cheaper
+#define LEAST_SHARE 1e-14
+#define LAST_DIGITS 1e-14 // of an angle, as corrections that do not converge show them
+#define MOST_LEFT   30    // times what is wanted, of such corrections
+#define ANGLE_RATE  20    // that makes an angle's error one of velocity [1/s]
 
 enum { MOST_ITERATIONS = 12 };
 
-// --- the arm -------------------------------------------------------------------------------------
+// --- the arm ---------------------------------------------------------------------------
 
 // Whether the drive's current is held at its limit, and which way.
 static void choose_drive(stiff_step *s, const motor_model *m, double current, double w,
@@ -26,15 +27,23 @@ static void choose_drive(stiff_step *s, const motor_model *m, double current, do
     const double limit = m->current_limit, rounding = 1e-11;
     const double wanted = (m->gain * m->voltage - m->back_emf * w) / m->resistance;
     const bool flows = m->inductance > 0;
-    const double side = (flows ? current : wanted) < 0 ? -1 : 1;
-    s->drive = flows ? STIFF_FLOWS : STIFF_FOLLOWS;
+    double side = -1;
+    if (!((flows ? current : wanted) < 0)) {
+        side = 1;
+    }
+    if (flows) {
+        s->drive = STIFF_FLOWS;
+    } else {
+        s->drive = STIFF_FOLLOWS;
+    }
     s->limited = side * limit;
     if (limit == HUGE_VAL || (flows && fabs(current) < limit * (1 - rounding))) {
         return;
     }
 
     // where the voltage would drive it beyond, or is about to
-    const double beyond = side * wanted - limit, grows = -side * m->back_emf * acceleration;
+    const double beyond = side * wanted - limit,
+                 grows = -side * m->back_emf * acceleration;
     if (fabs(beyond) > rounding * limit ? beyond > 0 : grows > 0) {
         s->drive = STIFF_LIMITED;
     }
@@ -80,7 +89,11 @@ void stiff_set_arm(stiff_integrator *integrator, const arm *a, const motion *m)
     s->torque = a->motor.torque;
     const bool held = now.contact && motion_wall_is_rigid(m) && a->dof == 1;
     s->stuck = now.friction == HUB_STICK && !held;
-    s->friction = held ? 0 : now.friction * a->motor.stiction;
+    if (held) {
+        s->friction = 0;
+    } else {
+        s->friction = now.friction * a->motor.stiction;
+    }
     s->motor = &a->motor;
     s->drive = STIFF_DIRECT;
     if (a->motor.electric) {
@@ -91,7 +104,13 @@ void stiff_set_arm(stiff_integrator *integrator, const arm *a, const motion *m)
 
     // the wall
     s->wall = &a->wall;
-    s->contact = !now.contact ? STIFF_FREE : motion_wall_is_rigid(m) ? STIFF_RIGID : STIFF_GIVES;
+    if (!now.contact) {
+        s->contact = STIFF_FREE;
+    } else if (motion_wall_is_rigid(m)) {
+        s->contact = STIFF_RIGID;
+    } else {
+        s->contact = STIFF_GIVES;
+    }
 }
 
 void stiff_set_start(stiff_integrator *integrator, motion *m)
@@ -108,10 +127,10 @@ void stiff_set_start(stiff_integrator *integrator, motion *m)
     }
 }
 
-// --- Newton --------------------------------------------------------------------------------------
+// --- Newton ----------------------------------------------------------------------------
 
-bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset, double ratio,
-                        double *rate)
+bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
+                        double ratio, double *rate)
 {
     stiff_step *s = &integrator->step;
     _Alignas(32) double weight[RADAU_STAGES][RADAU_LANES] = {{0}};
@@ -124,12 +143,13 @@ bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
     }
     for (int i = 0; i < RADAU_LANES && wall_moves(s->wall); i++) {
         const double part = i < RADAU_STAGES ? radau_node[i] : 0;
-        const wall_shift at = wall_motion_at(&s->wall->motion, s->time + part * s->length);
+        const wall_shift at =
+            wall_motion_at(&s->wall->motion, s->time + part * s->length);
         s->shift[0].at[i] = at.place;
         s->shift[1].at[i] = at.velocity;
     }
-    integrator->loops->predict(s, stiff_accelerations(integrator), stiff_force(integrator),
-                               weight[0]);
+    integrator->loops->predict(s, stiff_accelerations(integrator),
+                               stiff_force(integrator), weight[0]);
 
     // with the tangent at the first iterate
     const double scale = integrator->kept[STIFF_SCALE];
@@ -142,21 +162,25 @@ bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
         if (i == 0) {
             integrator->loops->factor(s);
         }
-        const double now = integrator->loops->correct(s), theta = i > 0 ? now / before : *rate;
+        const double now = integrator->loops->correct(s),
+                     theta = i > 0 ? now / before : *rate;
         if (!(now < 1e3 * (1 + scale))) {
             return false;
         }
         if (i > 0) {
             *rate = smaller(larger(theta, LEAST_RATE), 0.5);
         }
-        if (i == 0 ? now * theta < wanted : theta < 1 && now * theta / (1 - theta) < wanted) {
+        if (i == 0 ? now * theta < wanted
+                   : theta < 1 && now * theta / (1 - theta) < wanted) {
             return true;
         }
         if (now < LEAST_SHARE * scale) {
             return true;
         }
-        if (i > 1 && theta > SLOW_RATE) { // as near as the angles' last digits let it come
-            const double rounding = LAST_DIGITS * stiff_momentum(integrator, s->q0) / s->length;
+        if (i > 1 &&
+            theta > SLOW_RATE) { // as near as the angles' last digits let it come
+            const double rounding =
+                LAST_DIGITS * stiff_momentum(integrator, s->q0) / s->length;
             return now < smaller(rounding, MOST_LEFT * wanted);
         }
         before = now;
@@ -176,8 +200,8 @@ void stiff_keep_stages(stiff_integrator *integrator)
         memcpy(a + (size_t)RADAU_LANES * (size_t)k, s->stage[k].a, sizeof s->stage[k].a);
     }
 
-    // what holds one link, or two whose hub is stuck, holds them to the last bit, and presses with
-    // one force throughout unless the current changes
+    // what holds one link, or two whose hub is stuck, holds them to the last bit, and
+    // presses with one force throughout unless the current changes
     const bool rigid = s->contact == STIFF_RIGID && !wall_moves(s->wall);
     const bool one = rigid && s->dof == 1, both = rigid && s->dof == 2 && s->stuck;
     if (one || both) {
@@ -189,10 +213,10 @@ void stiff_keep_stages(stiff_integrator *integrator)
     kept[STIFF_LENGTH] = s->length;
 }
 
-// --- the error ----------------------------------------------------------------------------------
+// --- the error -------------------------------------------------------------------------
 
-// As RADAU5 estimates it: what the embedded formula of order 7 has more than the stages, filtered
-// by the real system.
+// As RADAU5 estimates it: what the embedded formula of order 7 has more than the stages,
+// filtered by the real system.
 
 double stiff_momentum(const stiff_integrator *integrator, const double *w)
 {
@@ -216,8 +240,8 @@ static inline double along(const stiff_step *s, const double *row, const double 
 }
 
 // (M + ...) v + gamma D x, gamma being 1/g of the real system, into `out`.
-static void inertia_and_damping(stiff_step *s, double gamma, const double *v, const double *x,
-                                double *out, double *fx, double *fy)
+static void inertia_and_damping(stiff_step *s, double gamma, const double *v,
+                                const double *x, double *out, double *fx, double *fy)
 {
     // outwards
     double ax = 0, ay = 0, bx = 0, by = 0;
@@ -238,8 +262,8 @@ static void inertia_and_damping(stiff_step *s, double gamma, const double *v, co
         const stiff_pivot *p = &s->pivot[k];
         const int i = s->first + k;
         const double inner = i > 0 ? gamma * l->damping * (x[i] - x[i - 1]) : 0;
-        out[i] = l->inertia * v[i] + p->lc * (ty + 0.5 * fy[k]) - p->ls * (tx + 0.5 * fx[k]) +
-                 inner - outer + gamma * l->turning * x[i];
+        out[i] = l->inertia * v[i] + p->lc * (ty + 0.5 * fy[k]) -
+                 p->ls * (tx + 0.5 * fx[k]) + inner - outer + gamma * l->turning * x[i];
         tx += fx[k];
         ty += fy[k];
         outer = inner;
@@ -293,7 +317,8 @@ static void solve_bare(const stiff_step *s, double *y)
     }
 }
 
-// The same with the borders, the contact's equation having `target` added to its right side.
+// The same with the borders, the contact's equation having `target` added to its right
+// side.
 static void solve(const stiff_step *s, double target, double *y)
 {
     solve_bare(s, y);
@@ -301,9 +326,13 @@ static void solve(const stiff_step *s, double target, double *y)
     double z[STIFF_BORDERS];
     for (int i = 0; i < count; i++) {
         const double sum = along(s, stiff_border_row(s, i), y);
-        z[i] = i < s->modes                ? s->g.r[0] * sum
-               : s->contact == STIFF_GIVES ? target + s->press.r[0] * sum
-                                           : target - sum;
+        if (i < s->modes) {
+            z[i] = s->g.r[0] * sum;
+        } else if (s->contact == STIFF_GIVES) {
+            z[i] = target + s->press.r[0] * sum;
+        } else {
+            z[i] = target - sum;
+        }
         for (int j = 0; j < i; j++) {
             z[i] -= s->corner[i][j].r[0] * z[j];
         }
@@ -321,8 +350,10 @@ static void solve(const stiff_step *s, double target, double *y)
     }
 }
 
-// What the embedded formula adds to a course, `start` being its own part, over the whole step.
-static double quadrature_error(const stiff_step *s, double start, const stiff_nodes *values)
+// What the embedded formula adds to a course, `start` being its own part, over the whole
+// step.
+static double quadrature_error(const stiff_step *s, double start,
+                               const stiff_nodes *values)
 {
     double sum = start;
     for (int i = 0; i < RADAU_STAGES; i++) {
@@ -343,18 +374,20 @@ static double stretched_inertia(const stiff_step *s, double *reach)
     return inertia;
 }
 
-// The error of a current that flows through an inductance, as the momentum that its torque gives
-// the arm while an angle's error counts as one of velocity.
+// The error of a current that flows through an inductance, as the momentum that its
+// torque gives the arm while an angle's error counts as one of velocity.
 static double current_error(const stiff_step *s, double gamma, bool twice)
 {
     const motor_model *m = s->motor;
     const double volts = m->gain * m->voltage - m->back_emf * s->w0[0];
-    const double start = radau_start * (volts - m->resistance * s->current0) / m->inductance;
+    const double start =
+        radau_start * (volts - m->resistance * s->current0) / m->inductance;
     const double filter = 1 + m->resistance / (m->inductance * gamma);
     double reach;
     const double filtered =
         quadrature_error(s, start, &s->current_rate) / (twice ? filter * filter : filter);
-    return m->torque_constant * filtered / (ANGLE_RATE * sqrt(stretched_inertia(s, &reach)));
+    return m->torque_constant * filtered /
+           (ANGLE_RATE * sqrt(stretched_inertia(s, &reach)));
 }
 
 // That of what the wall gives the arm, as the force's polynomial has it.
@@ -362,10 +395,12 @@ static double impulse_error(const stiff_step *s)
 {
     double reach;
     const double inertia = stretched_inertia(s, &reach);
-    return quadrature_error(s, radau_start * s->force0, &s->force) * reach / sqrt(inertia);
+    return quadrature_error(s, radau_start * s->force0, &s->force) * reach /
+           sqrt(inertia);
 }
 
-// Filters errors of angles and velocities by the real system, in place: e - g J e is what they are.
+// Filters errors of angles and velocities by the real system, in place: e - g J e is what
+// they are.
 static void filter(stiff_integrator *integrator, double gamma, double *x, double *w)
 {
     stiff_step *s = &integrator->step;
@@ -379,10 +414,13 @@ static void filter(stiff_integrator *integrator, double gamma, double *x, double
     // with the wall
     double target = 0;
     if (s->contact != STIFF_FREE) {
-        const double along_x = along(s, s->jacobian, x), along_w = along(s, s->jacobian, w);
-        target = s->contact == STIFF_RIGID
-                     ? gamma * gamma * along_x
-                     : -gamma * s->wall_damping * along_x - s->wall->face_mass * along_w;
+        const double along_x = along(s, s->jacobian, x),
+                     along_w = along(s, s->jacobian, w);
+        if (s->contact == STIFF_RIGID) {
+            target = gamma * gamma * along_x;
+        } else {
+            target = -gamma * s->wall_damping * along_x - s->wall->face_mass * along_w;
+        }
     }
     solve(s, target, y);
     for (int k = 0; k < s->dof; k++) {
@@ -411,7 +449,8 @@ double stiff_error(stiff_integrator *integrator, bool twice)
     for (int k = 0; k < s->dof; k++) {
         x[k] *= ANGLE_RATE;
     }
-    const double of_w = stiff_momentum(integrator, w), of_q = stiff_momentum(integrator, x);
+    const double of_w = stiff_momentum(integrator, w),
+                 of_q = stiff_momentum(integrator, x);
     const double of_i = s->drive == STIFF_FLOWS ? current_error(s, gamma, twice) : 0;
     const double of_p = s->contact == STIFF_GIVES ? impulse_error(s) : 0;
     return sqrt(of_w * of_w + of_q * of_q + of_i * of_i + of_p * of_p);

@@ -1,4 +1,5 @@
-// Arithmetic in lanes, and the stages of a step of the stiff engine: part of stiff_kernel.c.
+// Arithmetic in lanes, and the stages of a step of the stiff engine: part of
+// stiff_kernel.c.
 #pragma once
 
 #include "src/base/sincos.h"
@@ -74,14 +75,16 @@ KERNEL lanes to_stages(complex_lanes y, int half)
     return sum;
 }
 
-// --- the stages ----------------------------------------------------------------------------------
+// --- the stages ------------------------------------------------------------------------
 
-static void predict(stiff_step *s, const double *before, const double *force, const double *weight)
+static void predict(stiff_step *s, const double *before, const double *force,
+                    const double *weight)
 {
     // weights of the accelerations for velocities and angles: h a, (h a)^2
     _Alignas(32) double once[RADAU_STAGES][RADAU_LANES], twice[RADAU_STAGES][RADAU_LANES];
     const double h = s->length;
-    const complex_lanes root = {lanes_at(radau_root_real), lanes_at(radau_root_imaginary)};
+    const complex_lanes root = {lanes_at(radau_root_real),
+                                lanes_at(radau_root_imaginary)};
     s->g = scaled(h, inverse(root));
     for (int j = 0; j < RADAU_STAGES; j++) {
         for (int i = 0; i < RADAU_LANES; i++) {
@@ -105,7 +108,8 @@ static void predict(stiff_step *s, const double *before, const double *force, co
         const lanes start = half == 0 ? all(0) : (lanes){0, 0, 0, 1};
         for (int k = 0; k < s->dof; k++) {
             stiff_stage *g = &s->stage[k];
-            lanes a = s->a0[k] * start, w = all(s->w0[k]), q = s->q0[k] + h * s->w0[k] * node;
+            lanes a = s->a0[k] * start, w = all(s->w0[k]),
+                  q = s->q0[k] + h * s->w0[k] * node;
             for (int j = 0; j < RADAU_STAGES; j++) {
                 const double was = before[RADAU_LANES * k + j];
                 a += was * lanes_at(&weight[RADAU_LANES * j + 4 * half]);
@@ -130,8 +134,9 @@ static void predict(stiff_step *s, const double *before, const double *force, co
     }
 }
 
-// The current at the stages from the hub's velocities there. Through an inductance it solves its
-// own collocation: with g of the systems, (L + g Ra) T^-1 i' = T^-1 (volts - Ra i0 - kB w).
+// The current at the stages from the hub's velocities there. Through an inductance it
+// solves its own collocation: with g of the systems, (L + g Ra) T^-1 i' = T^-1 (volts -
+// Ra i0 - kB w).
 KERNEL void follow_current(stiff_step *s)
 {
     const motor_model *m = s->motor;
@@ -148,7 +153,8 @@ KERNEL void follow_current(stiff_step *s)
     }
     stiff_nodes drives;
     for (int half = 0; half < STIFF_HALVES; half++) {
-        drives.half[half] = volts - m->resistance * s->current0 - m->back_emf * s->stage[0].w[half];
+        drives.half[half] =
+            volts - m->resistance * s->current0 - m->back_emf * s->stage[0].w[half];
     }
     const complex_lanes slows = plus(number(m->inductance), scaled(m->resistance, s->g));
     const complex_lanes rate = times(to_systems(drives.half), inverse(slows));
@@ -173,18 +179,19 @@ KERNEL lanes law(const stiff_step *s, lanes depth, lanes rate, lanes acceleratio
     return force;
 }
 
-// What the tip of the arm does at the stages: its acceleration, those, velocities and places of the
-// last link's base, and what the arm has lost.
+// What the tip of the arm does at the stages: its acceleration, those, velocities and
+// places of the last link's base, and what the arm has lost.
 typedef struct stiff_tip {
     lanes ax, ay, base_ax, base_ay, base_vx, base_vy, base_x, base_y, lost;
 } stiff_tip;
 
-// From hub to tip: directions, accelerations, and the forces that they take; weight is what it
-// would take to accelerate all upwards. False where a link turns too far.
+// From hub to tip: directions, accelerations, and the forces that they take; weight is
+// what it would take to accelerate all upwards. False where a link turns too far.
 KERNEL bool sweep_outwards(stiff_step *s, int half, bool account, stiff_tip *tip)
 {
     const lanes zero = all(0);
-    lanes ax = zero, ay = all(s->gravity), vx = zero, vy = zero, x = zero, y = zero, lost = zero;
+    lanes ax = zero, ay = all(s->gravity), vx = zero, vy = zero, x = zero, y = zero,
+          lost = zero;
     within_turn within = all(0) == zero;
     for (int k = 0; k < s->links; k++) {
         const stiff_link *l = &s->link[k];
@@ -200,7 +207,8 @@ KERNEL bool sweep_outwards(stiff_step *s, int half, bool account, stiff_tip *tip
         b->s[half] = sn;
         tip->base_ax = ax, tip->base_ay = ay, tip->base_vx = vx, tip->base_vy = vy;
         tip->base_x = x, tip->base_y = y;
-        const lanes dx = -l->length * (sn * al + c * w2), dy = l->length * (c * al - sn * w2);
+        const lanes dx = -l->length * (sn * al + c * w2),
+                    dy = l->length * (c * al - sn * w2);
         const lanes dvx = -l->length * sn * w, dvy = l->length * c * w;
         lanes fx = l->mass * (ax + 0.5 * dx), fy = l->mass * (ay + 0.5 * dy);
         if (s->drags) {
@@ -260,8 +268,10 @@ KERNEL stiff_contact press(stiff_step *s, int half, bool account, const stiff_ti
         bends = -length * w * w * (at.ex * c + at.ey * sn);
     }
     const lanes reach = at.lever + length * (c * at.ey - sn * at.ex);
-    const lanes along = wall->cosine * at.ey - wall->sine * at.ex; // of the wall's normal, e
-    const lanes rate = at.ex * tip->base_vx + at.ey * tip->base_vy + reach * w + comes * along;
+    const lanes along =
+        wall->cosine * at.ey - wall->sine * at.ex; // of the wall's normal, e
+    const lanes rate =
+        at.ex * tip->base_vx + at.ey * tip->base_vy + reach * w + comes * along;
     s->gap.half[half] = -depth;
     s->rate.half[half] = -rate;
     if (s->contact == STIFF_GIVES) {
@@ -290,8 +300,8 @@ KERNEL stiff_contact press(stiff_step *s, int half, bool account, const stiff_ti
     return at;
 }
 
-// From tip to hub: forces, and what each link's equation lacks; `sum` are those of damped modes.
-// Returns the torque of the joint at the hub, 0 of a rigid one.
+// From tip to hub: forces, and what each link's equation lacks; `sum` are those of damped
+// modes. Returns the torque of the joint at the hub, 0 of a rigid one.
 KERNEL lanes sweep_inwards(stiff_step *s, int half, bool account, const stiff_contact *at,
                            const lanes *sum, stiff_tip *tip)
 {
@@ -307,7 +317,8 @@ KERNEL lanes sweep_inwards(stiff_step *s, int half, bool account, const stiff_co
         lanes inner = all(0);
         if (k + s->first > 0) {
             const stiff_stage *before = g - 1;
-            const lanes bend = g->q[half] - before->q[half], rate = g->w[half] - before->w[half];
+            const lanes bend = g->q[half] - before->q[half],
+                        rate = g->w[half] - before->w[half];
             inner = l->stiffness * bend + l->damping * rate;
             if (s->stiffens) {
                 inner += l->stiffening * bend * bend * bend;
@@ -316,7 +327,8 @@ KERNEL lanes sweep_inwards(stiff_step *s, int half, bool account, const stiff_co
                 tip->lost += l->damping * rate * rate;
             }
         }
-        lanes r = l->inertia * g->a[half] + b->c[half] * hy - b->s[half] * hx - outer + inner;
+        lanes r =
+            l->inertia * g->a[half] + b->c[half] * hy - b->s[half] * hx - outer + inner;
         if (s->drags) {
             r += l->turning * g->w[half];
         }

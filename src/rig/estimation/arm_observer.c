@@ -8,7 +8,8 @@
 #include "src/base/plain_math.h"
 
 enum { N = ESTIMATOR_STATES };
-_Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all modes have room");
+_Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES,
+               "the states of all modes have room");
 
 // What readings and models are worth: standard deviations.
 #define FORCE_NOISE  0.02 // of the force sensor [N]
@@ -20,7 +21,8 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 #define TORQUE_STAYS 0.05 // and in contact, where a wall that yields looks like one [N m]
 #define WALL_DRIFT   1e-3 // of the wall, in a second [rad]
 #define STIFFNESS    0.25 // share by which the stiffness may be wrong
-#define TAILS        4.0  // degrees of freedom of the distribution that misses of readings have
+// degrees of freedom of the distribution that misses of readings have
+#define TAILS        4.0
 #define STIFF_MEMORY 0.5  // over which readings count for the stiffness [s],
 #define STIFF_GUESS  0.15 // and as what the nominal one does [s]
 #define LEAST_STIFF  0.2  // share of it that the arm has at least
@@ -32,7 +34,10 @@ _Static_assert(2 * REDUCED_MODES + 2 <= ESTIMATOR_STATES, "the states of all mod
 // The modes of the present state.
 static const mode_set *modes_of(const arm_observer *o)
 {
-    return o->touches ? &o->arm.contact : &o->arm.free;
+    if (o->touches) {
+        return &o->arm.contact;
+    }
+    return &o->arm.free;
 }
 
 static int count_of(const arm_observer *o)
@@ -80,9 +85,10 @@ static double add_variance(double start, int n, const double *row, const double 
     return start;
 }
 
-// --- the model --------------------------------------------------------------------------------
+// --- the model -------------------------------------------------------------------------
 
-// a_i'' = -w_i^2 a_i - c_i a_i' + h_i (drive + unknown torque - damping hub rate), over h.
+// a_i'' = -w_i^2 a_i - c_i a_i' + h_i (drive + unknown torque - damping hub rate), over
+// h.
 static void sample_model(const arm_observer *o, const mode_set *set, int torque, double h,
                          sampled_model *model)
 {
@@ -104,12 +110,14 @@ static void sample_model(const arm_observer *o, const mode_set *set, int torque,
     sampled_model_init(model, torque + 1, rate, input, h);
 }
 
-const char *arm_observer_init(arm_observer *o, const controller_setup *setup, double force,
-                              double tip_mass, double wall_stiffness)
+const char *arm_observer_init(arm_observer *o, const controller_setup *setup,
+                              double force, double tip_mass, double wall_stiffness)
 {
     memset(o, 0, sizeof *o);
     const char *refusal = reduced_arm_init(&o->arm, setup, tip_mass, wall_stiffness);
-    FAIL_IF(refusal != NULL, refusal);
+    if (refusal != NULL) {
+        return refusal;
+    }
 
     // what the states obey, in each piece of a period
     o->torque_per_volt = setup->torque_per_volt;
@@ -121,7 +129,8 @@ const char *arm_observer_init(arm_observer *o, const controller_setup *setup, do
     for (int k = 0; k < 2; k++) {
         double h = k == 0 ? o->delay : o->period - o->delay;
         sample_model(o, &o->arm.free, 2 * o->arm.free.count, h, &o->free_model[k]);
-        sample_model(o, &o->arm.contact, 2 * o->arm.contact.count + 1, h, &o->contact_model[k]);
+        sample_model(o, &o->arm.contact, 2 * o->arm.contact.count + 1, h,
+                     &o->contact_model[k]);
     }
     return NULL;
 }
@@ -157,7 +166,7 @@ void arm_observer_know_wall(arm_observer *o, double angle)
     o->wall_variance = 0;
 }
 
-// --- what an estimate says --------------------------------------------------------------------
+// --- what an estimate says -------------------------------------------------------------
 
 // An angle by its shape in the modes, seen from the wall in contact [rad].
 static double angle_of(const arm_observer *o, const estimator *e, const double *shape)
@@ -188,8 +197,8 @@ static double balancing_torque(const arm_observer *o, const estimator *e)
     const mode_set *set = modes_of(o);
     double sum = 0;
     for (int i = 0; i < set->count; i++) {
-        sum += set->hub[i] *
-               (arm_observer_square(o, i) * e->z[i] + set->damping[i] * e->z[set->count + i]);
+        sum += set->hub[i] * (arm_observer_square(o, i) * e->z[i] +
+                              set->damping[i] * e->z[set->count + i]);
     }
     return sum / hub_mobility(set);
 }
@@ -199,16 +208,20 @@ double arm_observer_holding_torque(const arm_observer *o, const estimator *e)
     return balancing_torque(o, e) - e->z[arm_observer_torque_index(o)];
 }
 
-// Friction on the hub under a motor torque [N m], against the motion, or what holds at rest.
+// Friction on the hub under a motor torque [N m], against the motion, or what holds at
+// rest.
 static double friction_under(const arm_observer *o, const estimator *e, double drive)
 {
     double rate = arm_observer_rate(o, e), limit = o->stiction;
     if (fabs(rate) > REST) {
-        return rate > 0 ? limit : -limit;
+        if (rate > 0) {
+            return limit;
+        }
+        return -limit;
     }
     // what brings it to rest and holds it there
-    double net =
-        drive + e->z[arm_observer_torque_index(o)] - o->hub_damping * rate - balancing_torque(o, e);
+    double net = drive + e->z[arm_observer_torque_index(o)] - o->hub_damping * rate -
+                 balancing_torque(o, e);
     double stop = rate / (hub_mobility(modes_of(o)) * o->period);
     return fmax(-limit, fmin(net + stop, limit));
 }
@@ -232,8 +245,8 @@ static void force_row(const arm_observer *o, double *row)
     memset(row, 0, N * sizeof *row);
     for (int i = 0; i < n; i++) {
         row[i] = set->momentum[i] * arm_observer_square(o, i) / length;
-        row[n + i] =
-            set->momentum[i] * set->damping[i] / length - at_once * o->hub_damping * set->hub[i];
+        row[n + i] = set->momentum[i] * set->damping[i] / length -
+                     at_once * o->hub_damping * set->hub[i];
     }
     row[arm_observer_torque_index(o)] = at_once;
 }
@@ -242,14 +255,15 @@ double arm_observer_force(const arm_observer *o, const estimator *e, double driv
 {
     double row[N];
     force_row(o, row);
-    double force = arm_observer_force_per_torque(o) * (drive - friction_under(o, e, drive));
+    double force =
+        arm_observer_force_per_torque(o) * (drive - friction_under(o, e, drive));
     return add_products(force, state_count(o), row, e->z);
 }
 
-// --- one sample -------------------------------------------------------------------------------
+// --- one sample ------------------------------------------------------------------------
 
-static void predict(const arm_observer *o, estimator *e, const sampled_model *model, double h,
-                    double voltage)
+static void predict(const arm_observer *o, estimator *e, const sampled_model *model,
+                    double h, double voltage)
 {
     const mode_set *set = modes_of(o);
     const int n = set->count;
@@ -265,7 +279,8 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
     if (o->touches) {
         // a wrong nominal stiffness shows as a wall that moves with the hub
         double bend = angle_of(o, e, set->hub) - e->z[wall_index(o)];
-        double wandering = 2 * STIFFNESS * STIFFNESS * fabs(bend * arm_observer_rate(o, e));
+        double wandering =
+            2 * STIFFNESS * STIFFNESS * fabs(bend * arm_observer_rate(o, e));
         noise[wall_index(o)] = (WALL_DRIFT * WALL_DRIFT + wandering) * h;
     }
 
@@ -283,10 +298,10 @@ static void predict(const arm_observer *o, estimator *e, const sampled_model *mo
     estimator_predict(e, &now, net, noise);
 }
 
-// Down-weights a reading that is far from its expectation, as an impact is no noise. Returns its
-// weight, at most 1.
-static double take_reading(arm_observer *o, const double *row, double offset, double reading,
-                           double deviation)
+// Down-weights a reading that is far from its expectation, as an impact is no noise.
+// Returns its weight, at most 1.
+static double take_reading(arm_observer *o, const double *row, double offset,
+                           double reading, double deviation)
 {
     const int n = state_count(o);
 
@@ -298,12 +313,14 @@ static double take_reading(arm_observer *o, const double *row, double offset, do
     double off = fabs(reading - expected) / sqrt(variance);
     double doubt = off > OUTLIER ? off / OUTLIER : 1;
 
-    // the estimate's own variance is left out: a model is no better for claiming less of it
+    // the estimate's own variance is left out: a model is no better for claiming less of
+    // it
     if (o->moves) {
         double miss = (reading - expected) / deviation;
         o->missed += (TAILS + 1) * plain_log(1 + miss * miss / TAILS);
     }
-    estimator_correct(&o->e, n, row, offset, reading, deviation * deviation * doubt * doubt);
+    estimator_correct(&o->e, n, row, offset, reading,
+                      deviation * deviation * doubt * doubt);
     return 1 / doubt;
 }
 
@@ -331,7 +348,8 @@ static void take_motion(arm_observer *o, const hub_sensors *s, const controller_
         double drive = o->torque_per_volt * in->voltage;
         for (int i = 0; i < n; i++) {
             row[i] = -set->hub[i] * arm_observer_square(o, i);
-            row[n + i] = -set->hub[i] * set->damping[i] - mobility * o->hub_damping * set->hub[i];
+            row[n + i] =
+                -set->hub[i] * set->damping[i] - mobility * o->hub_damping * set->hub[i];
         }
         row[arm_observer_torque_index(o)] = mobility;
         double offset = mobility * (drive - friction_under(o, &o->e, drive));
@@ -353,10 +371,10 @@ static double take_force(arm_observer *o, const controller_input *in)
     return take_reading(o, row, offset, in->force, arm_observer_force_noise(in->force));
 }
 
-// How stiff the arm is in contact: the force over the way of the hub since the touch, both less
-// what the other modes and the motion make of them, by least squares. The nominal one counts as
-// STIFF_TIME of pressing with the wanted force, long enough for vibrations that the model does not
-// show to cancel.
+// How stiff the arm is in contact: the force over the way of the hub since the touch,
+// both less what the other modes and the motion make of them, by least squares. The
+// nominal one counts as STIFF_TIME of pressing with the wanted force, long enough for
+// vibrations that the model does not show to cancel.
 static void learn_stiffness(arm_observer *o, const controller_input *in, double worth)
 {
     const mode_set *set = &o->arm.contact;
@@ -368,14 +386,16 @@ static void learn_stiffness(arm_observer *o, const controller_input *in, double 
 
     // the force of the first mode, nominal and as read
     double nominal = per_mode * bend / set->hub[0];
-    double others = arm_observer_force(o, &o->e, drive) - per_mode * o->stiffness * o->e.z[0];
+    double others =
+        arm_observer_force(o, &o->e, drive) - per_mode * o->stiffness * o->e.z[0];
     double read = in->force - others;
 
-    double kept = 1 - fmin(1, o->period / STIFF_MEMORY), weight = o->period * worth * worth;
+    double kept = 1 - fmin(1, o->period / STIFF_MEMORY),
+           weight = o->period * worth * worth;
     o->stiff_force = kept * o->stiff_force + weight * nominal * read;
     o->stiff_bend = kept * o->stiff_bend + weight * nominal * nominal;
-    double stiffness =
-        (o->stiff_force + o->stiff_nominal) / fmax(o->stiff_bend + o->stiff_nominal, 1e-12);
+    double stiffness = (o->stiff_force + o->stiff_nominal) /
+                       fmax(o->stiff_bend + o->stiff_nominal, 1e-12);
     o->stiffness = fmax(LEAST_STIFF, stiffness);
 }
 
@@ -392,8 +412,10 @@ static void doubt_tip(const arm_observer *o, estimator *e)
     }
 }
 
-// Whether the hub's rate is none that the estimate in flight explains: the tip was struck.
-static bool struck(const arm_observer *o, const hub_sensors *s, const controller_input *in)
+// Whether the hub's rate is none that the estimate in flight explains: the tip was
+// struck.
+static bool struck(const arm_observer *o, const hub_sensors *s,
+                   const controller_input *in)
 {
     const double *hub = o->arm.free.hub;
     const int n = o->arm.free.count;
@@ -402,8 +424,10 @@ static bool struck(const arm_observer *o, const hub_sensors *s, const controller
     return off * off > OUTLIER * OUTLIER * variance;
 }
 
-// The motion since the sample before, the old command first, and what the sensors say of it.
-static void follow_motion(arm_observer *o, const hub_sensors *s, const controller_input *in)
+// The motion since the sample before, the old command first, and what the sensors say of
+// it.
+static void follow_motion(arm_observer *o, const hub_sensors *s,
+                          const controller_input *in)
 {
     const sampled_model *models = o->touches ? o->contact_model : o->free_model;
     if (o->delay > 0) {
@@ -419,8 +443,8 @@ static void follow_motion(arm_observer *o, const hub_sensors *s, const controlle
 }
 
 // The estimate of a tip that is thrown back, beside that of one that stays.
-static void follow_flight(arm_observer *o, const hub_sensors *s, const controller_input *in,
-                          int felt)
+static void follow_flight(arm_observer *o, const hub_sensors *s,
+                          const controller_input *in, int felt)
 {
     const estimator stays = o->e;
     const double missed = o->missed;
@@ -437,8 +461,8 @@ static void follow_flight(arm_observer *o, const hub_sensors *s, const controlle
     o->young = in->time - o->since < YOUNG;
 }
 
-void arm_observer_sample(arm_observer *o, const hub_sensors *s, const controller_input *in,
-                         int felt)
+void arm_observer_sample(arm_observer *o, const hub_sensors *s,
+                         const controller_input *in, int felt)
 {
     // the motion
     o->moves = s->moves;
@@ -466,8 +490,8 @@ estimator arm_observer_ahead(const arm_observer *o, double voltage)
 {
     estimator ahead = o->e;
     if (o->delay > 0) {
-        predict(o, &ahead, o->touches ? &o->contact_model[0] : &o->free_model[0], o->delay,
-                voltage);
+        predict(o, &ahead, o->touches ? &o->contact_model[0] : &o->free_model[0],
+                o->delay, voltage);
     }
     return ahead;
 }

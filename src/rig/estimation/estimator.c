@@ -26,12 +26,13 @@ static void multiply_extended(int size, double out[EXTENDED][EXTENDED],
     memcpy(out, product, sizeof product);
 }
 
-void sampled_model_init(sampled_model *m, int n, double rate[N][N], const double input[N], double h)
+void sampled_model_init(sampled_model *m, int n, double rate[N][N], const double input[N],
+                        double h)
 {
     assert(n > 0 && n <= N && isfinite(h));
 
-    // exponential of the system extended by its constant input: Taylor's series of a 2^-HALVINGS
-    // part of the step, squared back
+    // exponential of the system extended by its constant input: Taylor's series of a
+    // 2^-HALVINGS part of the step, squared back
     enum { HALVINGS = 8, TERMS = 12 };
     double x[EXTENDED][EXTENDED] = {{0}}, power[EXTENDED][EXTENDED] = {{0}};
     double sum[EXTENDED][EXTENDED] = {{0}};
@@ -81,10 +82,11 @@ void sampled_model_step(const sampled_model *m, double *z, double u)
 // A matrix of states, of which the first rows and columns are in use.
 typedef double matrix[N][N];
 
-// out = a b, `rows` x `inner` times `inner` x `columns`, of matrices of states; the factors may be
-// transposed.
-static inline void multiply_states(int rows, int inner, int columns, double *out, const double *a,
-                                   bool transpose_a, const double *b, bool transpose_b)
+// out = a b, `rows` x `inner` times `inner` x `columns`, of matrices of states; the
+// factors may be transposed.
+static inline void multiply_states(int rows, int inner, int columns, double *out,
+                                   const double *a, bool transpose_a, const double *b,
+                                   bool transpose_b)
 {
     for (int i = 0; i < rows; i++) {
         for (int j = 0; j < columns; j++) {
@@ -98,7 +100,8 @@ static inline void multiply_states(int rows, int inner, int columns, double *out
     }
 }
 
-void estimator_predict(estimator *e, const sampled_model *m, double u, const double *noise)
+void estimator_predict(estimator *e, const sampled_model *m, double u,
+                       const double *noise)
 {
     const int n = m->n;
     matrix ap;
@@ -108,7 +111,11 @@ void estimator_predict(estimator *e, const sampled_model *m, double u, const dou
     multiply_states(n, n, n, ap[0], m->a[0], false, e->p[0], false);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
-            e->p[i][j] = i == j ? noise[i] : 0;
+            if (i == j) {
+                e->p[i][j] = noise[i];
+            } else {
+                e->p[i][j] = 0;
+            }
             for (int k = 0; k < n; k++) {
                 e->p[i][j] += ap[i][k] * m->a[j][k];
             }
@@ -116,8 +123,8 @@ void estimator_predict(estimator *e, const sampled_model *m, double u, const dou
     }
 }
 
-void estimator_correct(estimator *e, int n, const double *row, double offset, double reading,
-                       double variance)
+void estimator_correct(estimator *e, int n, const double *row, double offset,
+                       double reading, double variance)
 {
     double spread[N], expected = offset, total = variance;
 
@@ -156,10 +163,11 @@ void estimator_transform(estimator *e, int from, int to,
     multiply_states(to, from, to, e->p[0], product[0], false, t[0], true);
 }
 
-// --- the gain of a regulator --------------------------------------------------------------------
+// --- the gain of a regulator -----------------------------------------------------------
 
 // The product of two square matrices; `out` may be one of them.
-static void multiply(int n, matrix out, matrix a, bool transpose_a, matrix b, bool transpose_b)
+static void multiply(int n, matrix out, matrix a, bool transpose_a, matrix b,
+                     bool transpose_b)
 {
     matrix product;
     multiply_states(n, n, n, product[0], a[0], transpose_a, b[0], transpose_b);
@@ -181,7 +189,9 @@ static bool solve(int n, matrix x, matrix g, matrix h, matrix b)
         }
     }
 
-    FAIL_IF(!dense_solve_columns(n, n, left, right), false);
+    if (!dense_solve_columns(n, n, left, right)) {
+        return false;
+    }
     for (int i = 0; i < n; i++) {
         memcpy(x[i], right + i * n, (size_t)n * sizeof(double));
     }
@@ -194,7 +204,9 @@ static bool riccati(int n, matrix a, matrix g, matrix q, matrix x)
     memcpy(x, q, sizeof(matrix));
     for (int k = 0; k < DOUBLINGS; k++) {
         matrix fa, fg, step;
-        FAIL_IF(!solve(n, fa, g, x, a) || !solve(n, fg, g, x, g), false);
+        if (!solve(n, fa, g, x, a) || !solve(n, fg, g, x, g)) {
+            return false;
+        }
 
         // x + a'x f a, g + a f g a', a f a with f = (I + g x)^-1
         multiply(n, step, x, false, fa, false);
@@ -211,7 +223,9 @@ static bool riccati(int n, matrix a, matrix g, matrix q, matrix x)
                 size = fmax(size, fabs(x[i][j]));
             }
         }
-        FAIL_IF(!isfinite(size), false);
+        if (!isfinite(size)) {
+            return false;
+        }
         if (change <= 1e-14 * size) {
             return true;
         }
@@ -219,7 +233,8 @@ static bool riccati(int n, matrix a, matrix g, matrix q, matrix x)
     return false;
 }
 
-void quadratic_cost_add(quadratic_cost *c, int n, const double *row, double direct, double weight)
+void quadratic_cost_add(quadratic_cost *c, int n, const double *row, double direct,
+                        double weight)
 {
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
@@ -234,7 +249,9 @@ bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gai
 {
     assert(m->n > 0 && m->n <= N && c->growth > 0);
     const int n = m->n;
-    FAIL_IF(!(c->effort > 0), false);
+    if (!(c->effort > 0)) {
+        return false;
+    }
 
     // the cross term goes with u = v - s'z / r
     matrix a = {{0}}, g = {{0}}, q = {{0}}, x = {{0}};
@@ -249,7 +266,9 @@ bool quadratic_gain(const sampled_model *m, const quadratic_cost *c, double *gai
             q[i][j] = c->state[i][j] - c->cross[i] * c->cross[j] / c->effort;
         }
     }
-    FAIL_IF(!riccati(n, a, g, q, x), false);
+    if (!riccati(n, a, g, q, x)) {
+        return false;
+    }
 
     // (r + b'x b)^-1 (b'x A + s')
     double bx[N], weight = c->effort;

@@ -21,17 +21,20 @@ void hub_sensors_start(hub_sensors *s, const controller_input *in)
                        .noise = RATE_NOISE * RATE_NOISE};
 }
 
-// The tachometer's noise is what the third differences of its readings show beyond its ripple.
+// The tachometer's noise is what the third differences of its readings show beyond its
+// ripple.
 static void follow_noise(hub_sensors *s, double rate, double period)
 {
     const double *before = s->rates, ripple = RATE_RIPPLE * rate;
     const double third = rate - 3 * (before[0] - before[1]) - before[2];
     const double share = fmin(1, period / NOISE_MEAN);
-    const double shown = fmin(fmax(0, third * third / 20 - ripple * ripple), MOST_NOISE * s->noise);
+    const double shown =
+        fmin(fmax(0, third * third / 20 - ripple * ripple), MOST_NOISE * s->noise);
     s->noise = fmax(s->noise + share * (shown - s->noise), RATE_NOISE * RATE_NOISE);
 }
 
-controller_input hub_sensors_read(hub_sensors *s, const controller_input *in, double period)
+controller_input hub_sensors_read(hub_sensors *s, const controller_input *in,
+                                  double period)
 {
     controller_input read = *in;
     s->moves = fabs(in->tachometer) > MOVES;
@@ -42,16 +45,22 @@ controller_input hub_sensors_read(hub_sensors *s, const controller_input *in, do
     s->rates[1] = s->rates[0];
     s->rates[0] = in->tachometer;
 
-    // the offset: how much further the hub has turned by the tachometer than by the encoder
+    // the offset: how much further the hub has turned by the tachometer than by the
+    // encoder
     read.tachometer -= (s->turned - in->encoder) / (s->observed + OFFSET_TIME);
     const double ripple = RATE_RIPPLE * read.tachometer;
     s->rate_variance = s->noise + ripple * ripple;
 
     // a count has a uniform error
     const double step = fabs(in->encoder - s->angle);
-    s->count = step > 0 ? fmin(step, s->count) : s->count;
+    if (step > 0) {
+        s->count = fmin(step, s->count);
+    }
     s->angle = in->encoder;
-    s->angle_deviation =
-        isfinite(s->count) ? fmax(HUB_ANGLE_NOISE, COUNT_SHARE * s->count) : HUB_ANGLE_NOISE;
+    if (isfinite(s->count)) {
+        s->angle_deviation = fmax(HUB_ANGLE_NOISE, COUNT_SHARE * s->count);
+    } else {
+        s->angle_deviation = HUB_ANGLE_NOISE;
+    }
     return read;
 }

@@ -1,5 +1,5 @@
-// What the readings of the hub show of its own sensors: the encoder's count, and the tachometer's
-// offset and noise. One for all observers that follow the same readings.
+// What the readings of the hub show of its own sensors: the encoder's count, and the
+// tachometer's offset and noise. One for all observers that follow the same readings.
 #pragma once
 
 #include "src/rig/controller.h"
@@ -22,4 +22,5 @@ typedef struct hub_sensors {
 void hub_sensors_start(hub_sensors *s, const controller_input *in);
 
 // The next sample, a period [s] later; returns it without the tachometer's offset.
-controller_input hub_sensors_read(hub_sensors *s, const controller_input *in, double period);
+controller_input hub_sensors_read(hub_sensors *s, const controller_input *in,
+                                  double period);

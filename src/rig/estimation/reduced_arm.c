@@ -9,8 +9,8 @@
 
 #define PI 3.14159265358979323846
 
-// Modes above half the Nyquist frequency, of which a sample follows a quarter of a period late at
-// least, are left out.
+// Modes above half the Nyquist frequency, of which a sample follows a quarter of a period
+// late at least, are left out.
 #define MODES_BELOW 0.5
 
 // The chain that the setup describes, without motor and wall.
@@ -25,22 +25,33 @@ static void nominal_arm(arm *a, const controller_setup *setup, double tip_mass)
     p.arm.hub_inertia = setup->hub_inertia;
     p.arm.k2 = setup->k2;
     p.arm.damping_ratio = setup->damping_ratio;
-    p.arm.hub_joint = isfinite(setup->hub_spring) ? HUB_SPRING : HUB_RIGID;
-    p.arm.k1 = isfinite(setup->hub_spring) ? setup->hub_spring : p.arm.k1;
+    if (isfinite(setup->hub_spring)) {
+        p.arm.hub_joint = HUB_SPRING;
+    } else {
+        p.arm.hub_joint = HUB_RIGID;
+    }
+    if (isfinite(setup->hub_spring)) {
+        p.arm.k1 = setup->hub_spring;
+    }
 
     // bodies of two links have the inertia they are told, of more that of rods
     double m = p.arm.mass / p.arm.links, l = p.arm.length / p.arm.links;
-    p.arm.link_inertia = setup->links == 2 ? setup->link_inertia : m * l * l / 12;
+    if (setup->links == 2) {
+        p.arm.link_inertia = setup->link_inertia;
+    } else {
+        p.arm.link_inertia = m * l * l / 12;
+    }
     arm_init(a, &p);
 }
 
-// The modes of one state with the quantities of mode_set; shapes come with any scale and leave
-// normalised by M.
-static void take_modes(mode_set *set, const arm *a, const double *mass, double highest, int found,
-                       const double *frequencies, double *shapes)
+// The modes of one state with the quantities of mode_set; shapes come with any scale and
+// leave normalised by M.
+static void take_modes(mode_set *set, const arm *a, const double *mass, double highest,
+                       int found, const double *frequencies, double *shapes)
 {
     const int n = a->dof;
-    double per_stiffness = a->joint_stiffness > 0 ? a->joint_damping / a->joint_stiffness : 0;
+    double per_stiffness =
+        a->joint_stiffness > 0 ? a->joint_damping / a->joint_stiffness : 0;
     set->count = 0;
     for (int k = 0; k < found && set->count < REDUCED_MODES; k++) {
         bool bends_already = set->count > 0 && set->square[set->count - 1] > 0;
@@ -55,7 +66,9 @@ static void take_modes(mode_set *set, const arm *a, const double *mass, double h
                 norm += x[i] * mass[i * n + j] * x[j];
                 momentum += x[i] * mass[i * n + j];
             }
-            tip += i >= a->first ? x[i] / a->links : 0;
+            if (i >= a->first) {
+                tip += x[i] / a->links;
+            }
         }
         double scale = 1 / sqrt(norm);
         for (int i = 0; i < n; i++) {
@@ -85,7 +98,8 @@ static status contact_modes(const arm *a, double wall_stiffness, const chain_mod
 {
     const int n = a->dof;
     if (!isfinite(wall_stiffness)) {
-        return modes_compute(a, HUB_FREE, TIP_PINNED, count, work->frequencies, work->contact);
+        return modes_compute(a, HUB_FREE, TIP_PINNED, count, work->frequencies,
+                             work->contact);
     }
     for (int i = 0; i < n * n; i++) {
         const bool moves_tip = i / n >= a->first && i % n >= a->first;
@@ -94,8 +108,10 @@ static status contact_modes(const arm *a, double wall_stiffness, const chain_mod
         work->copy[i] = work->mass[i];
     }
     *count = n;
-    FAIL_IF(!symmetric_eigen_pair(n, work->contact, work->copy, work->frequencies, work->scratch),
-            STATUS_SINGULAR);
+    if (!symmetric_eigen_pair(n, work->contact, work->copy, work->frequencies,
+                              work->scratch)) {
+        return STATUS_SINGULAR;
+    }
     for (int i = 0; i < n; i++) {
         work->frequencies[i] = sqrt(fmax(work->frequencies[i], 0));
     }
@@ -111,17 +127,23 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
     modes_matrices(a, work->mass, work->stiffness);
 
     // both sets of modes
-    status code = modes_compute(a, HUB_FREE, TIP_FREE, &free_count, work->frequencies, work->free);
+    status code =
+        modes_compute(a, HUB_FREE, TIP_FREE, &free_count, work->frequencies, work->free);
     if (code == STATUS_OK) {
-        take_modes(&r->free, a, work->mass, highest, free_count, work->frequencies, work->free);
+        take_modes(&r->free, a, work->mass, highest, free_count, work->frequencies,
+                   work->free);
         code = contact_modes(a, wall_stiffness, work, &contact_count);
     }
-    FAIL_IF(code != STATUS_OK, code == STATUS_NO_MEMORY
-                                   ? reduced_arm_no_memory
-                                   : "the modes of the arm it believes in cannot be computed");
+    if (code != STATUS_OK) {
+        return code == STATUS_NO_MEMORY
+                   ? reduced_arm_no_memory
+                   : "the modes of the arm it believes in cannot be computed";
+    }
     take_modes(&r->contact, a, work->mass, highest, contact_count, work->frequencies,
                work->contact);
-    FAIL_IF(r->contact.count == 0 || r->free.count < 2, "the arm it believes in does not bend");
+    if (r->contact.count == 0 || r->free.count < 2) {
+        return "the arm it believes in does not bend";
+    }
 
     // the projection of a touch
     r->inertia = 0;
@@ -133,8 +155,8 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
             r->touch[c][f] = 0;
             for (int i = 0; i < n; i++) {
                 for (int j = 0; j < n; j++) {
-                    r->touch[c][f] +=
-                        work->contact[c * n + i] * work->mass[i * n + j] * work->free[f * n + j];
+                    r->touch[c][f] += work->contact[c * n + i] * work->mass[i * n + j] *
+                                      work->free[f * n + j];
                 }
             }
         }
@@ -142,8 +164,8 @@ static const char *reduce(reduced_arm *r, const arm *a, const controller_setup *
     return NULL;
 }
 
-const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, double tip_mass,
-                             double wall_stiffness)
+const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup,
+                             double tip_mass, double wall_stiffness)
 {
     arm a;
     memset(r, 0, sizeof *r);
@@ -153,7 +175,9 @@ const char *reduced_arm_init(reduced_arm *r, const controller_setup *setup, doub
     // one block for the matrices and shapes of the whole chain
     size_t square = (size_t)a.dof * (size_t)a.dof;
     double *block = calloc(5 * square + 3 * (size_t)a.dof, sizeof *block);
-    FAIL_IF(block == NULL, reduced_arm_no_memory);
+    if (block == NULL) {
+        return reduced_arm_no_memory;
+    }
     chain_modes work = {.mass = block,
                         .stiffness = block + square,
                         .free = block + 2 * square,

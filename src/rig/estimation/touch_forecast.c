@@ -6,7 +6,8 @@
 #include "src/base/sincos.h"
 #include "src/predict/predict.h"
 
-void touch_forecast_tell(touch_forecast *t, const parameters *told, const controller_setup *setup)
+void touch_forecast_tell(touch_forecast *t, const parameters *told,
+                         const controller_setup *setup)
 {
     const double l = setup->link_length;
     const bool spring = isfinite(setup->hub_spring);
@@ -16,8 +17,14 @@ void touch_forecast_tell(touch_forecast *t, const parameters *told, const contro
     *p = *told;
     p->arm.model = ARM_CORRECTED;
     p->arm.links = 2;
-    p->arm.hub_joint = spring ? HUB_SPRING : HUB_RIGID;
-    p->arm.k1 = spring ? setup->hub_spring : p->arm.k1;
+    if (spring) {
+        p->arm.hub_joint = HUB_SPRING;
+    } else {
+        p->arm.hub_joint = HUB_RIGID;
+    }
+    if (spring) {
+        p->arm.k1 = setup->hub_spring;
+    }
     p->arm.k2 = setup->k2;
     p->arm.mass = 2 * setup->link_mass;
     p->arm.link_inertia = setup->link_inertia;
@@ -69,5 +76,8 @@ double touch_forecast_sample(touch_forecast *t, const controller_input *in)
     t->arm.motor.voltage = in->voltage;
     const status code = predict_impact_dynamics(&t->arm, &now, &touch, NULL);
     const bool pulse = code == STATUS_OK && touch.impulse > 0 && touch.force > 0;
-    return pulse ? touch.force : 0;
+    if (pulse) {
+        return touch.force;
+    }
+    return 0;
 }

@@ -20,7 +20,8 @@ status playback_open(played_command *p, const control_parameters *control, fault
         code = csv_table_times(&table, clock, &p->times, f);
     }
     if (code == STATUS_OK) {
-        code = csv_table_numbers(&table, control->playback_column, "V", false, &p->command, f);
+        code = csv_table_numbers(&table, control->playback_column, "V", false,
+                                 &p->command, f);
     }
     csv_table_finish(&table);
 
@@ -47,9 +48,10 @@ static void sample(void *memory, const controller_input *in, controller_output *
 {
     const played_command *p = *(played_command *const *)memory;
     const double then = in->time - p->shift;
-    out->command =
-        csv_table_at(p->times, p->command, p->rows, then + instant_tolerance(then), p->linear);
+    out->command = csv_table_at(p->times, p->command, p->rows,
+                                then + instant_tolerance(then), p->linear);
 }
 
-const controller playback_law = ONE_MODE_CONTROLLER(
-    "playback", "playback", sizeof(played_command *), sample, .tune = controller_takes_anything);
+const controller playback_law =
+    ONE_MODE_CONTROLLER("playback", "playback", sizeof(played_command *), sample,
+                        .tune = controller_takes_anything);

@@ -10,7 +10,10 @@ static const controller *exported_controller(void *library)
     controller_entry entry = NULL;
     void *symbol = dlsym(library, CONTROLLER_ENTRY);
     memcpy(&entry, &symbol, sizeof entry);
-    return entry != NULL ? entry() : NULL;
+    if (entry != NULL) {
+        return entry();
+    }
+    return NULL;
 }
 
 status plugin_open(plugin *p, const char *file, fault *f)
@@ -24,15 +27,16 @@ status plugin_open(plugin *p, const char *file, fault *f)
     const controller *law = exported_controller(p->library);
     if (law == NULL) {
         s = fault_set(f, STATUS_BAD_SCENARIO,
-                      "control.plugin = %s has no function %s that returns a controller", file,
-                      CONTROLLER_ENTRY);
+                      "control.plugin = %s has no function %s that returns a controller",
+                      file, CONTROLLER_ENTRY);
     } else if (law->interface != CONTROLLER_INTERFACE) {
         s = fault_set(f, STATUS_BAD_SCENARIO,
-                      "control.plugin = %s was made for version %d of the interface, expected %d; "
-                      "compile it again",
+                      "control.plugin = %s was made for version %d of the interface, "
+                      "expected %d; compile it again",
                       file, law->interface, CONTROLLER_INTERFACE);
     } else if (law->sample == NULL) {
-        s = fault_set(f, STATUS_BAD_SCENARIO, "control.plugin = %s has no function `sample`", file);
+        s = fault_set(f, STATUS_BAD_SCENARIO,
+                      "control.plugin = %s has no function `sample`", file);
     }
 
     // an object that cannot be run is closed again

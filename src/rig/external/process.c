@@ -41,8 +41,8 @@ struct process {
     char failure[1024]; // a sentence, where it cannot
 };
 
-// The controller's memory: what a run remembers of its process. Another run, or this one taken back
-// to an earlier state, may have asked the program something else since.
+// The controller's memory: what a run remembers of its process. Another run, or this one
+// taken back to an earlier state, may have asked the program something else since.
 typedef struct process_memory {
     process *process;    // as the rig left it there
     transcript_node *at; // this run's place on the transcript, NULL where it has none
@@ -84,18 +84,22 @@ status process_failure(const process *p, const char **why)
     return p->code;
 }
 
-// --- what goes wrong --------------------------------------------------------------------------
+// --- what goes wrong -------------------------------------------------------------------
 
 // What the program wrote to its standard error last, as it may be shown on a terminal.
 static void read_last_errors(const process *p, char text[LAST_ERRORS + 1])
 {
     struct stat about;
-    const bool known = p->program.supervisor != 0 && fstat(p->program.errors, &about) == 0;
-    const off_t from = known && about.st_size > LAST_ERRORS ? about.st_size - LAST_ERRORS : 0;
+    const bool known =
+        p->program.supervisor != 0 && fstat(p->program.errors, &about) == 0;
+    const off_t from =
+        known && about.st_size > LAST_ERRORS ? about.st_size - LAST_ERRORS : 0;
     const ssize_t length = known ? pread(p->program.errors, text, LAST_ERRORS, from) : 0;
     text[length > 0 ? length : 0] = '\0';
     for (char *c = text; *c != '\0'; c++) {
-        *c = is_control(*c) ? ' ' : *c;
+        if (is_control(*c)) {
+            *c = ' ';
+        }
     }
 }
 
@@ -110,8 +114,8 @@ static void forget_old_errors(const process *p)
 }
 
 // Ends the program and says why. Always false.
-__attribute__((format(printf, 3, 4))) static bool fail(process *p, status code, const char *format,
-                                                       ...)
+__attribute__((format(printf, 3, 4))) static bool fail(process *p, status code,
+                                                       const char *format, ...)
 {
     char why[512];
     va_list values;
@@ -127,8 +131,9 @@ __attribute__((format(printf, 3, 4))) static bool fail(process *p, status code, 
         snprintf(ended, sizeof ended, " (exit status %d)", exit_status);
     }
     const char *errors = said + strspn(said, " ");
-    snprintf(p->failure, sizeof p->failure, "the process '%.200s' %s%s%s%s", p->begun.command, why,
-             ended, errors[0] != '\0' ? "; it said last: " : "", errors);
+    snprintf(p->failure, sizeof p->failure, "the process '%.200s' %s%s%s%s",
+             p->begun.command, why, ended, errors[0] != '\0' ? "; it said last: " : "",
+             errors);
     make_printable(p->failure, 0);
     p->code = code;
     return false;
@@ -139,7 +144,8 @@ __attribute__((format(printf, 3, 4))) static bool fail(process *p, status code, 
 
 static bool fail_without_memory(process *p)
 {
-    return fail(p, STATUS_NO_MEMORY, "could not be asked: %s", status_text(STATUS_NO_MEMORY));
+    return fail(p, STATUS_NO_MEMORY, "could not be asked: %s",
+                status_text(STATUS_NO_MEMORY));
 }
 
 // Whether the run is to end: the program, too, is ended then.
@@ -157,7 +163,7 @@ static bool run_ends(process *p)
     return ends;
 }
 
-// --- an answer --------------------------------------------------------------------------------
+// --- an answer -------------------------------------------------------------------------
 
 // Reads what has come of the answer. False, with a failure, if there will be none.
 static bool take_in(process *p)
@@ -169,18 +175,21 @@ static bool take_in(process *p)
     }
 
     // at its end it can say no more
-    FAIL_IF(count == 0, FAIL(p, "ended without an answer"));
+    if (count == 0) {
+        return FAIL(p, "ended without an answer");
+    }
 
     // a full buffer without a whole line will never hold one
     p->length += (size_t)count;
     p->line[p->length] = '\0';
-    FAIL_IF(p->length == MOST_LINE && memchr(p->line, '\n', p->length) == NULL,
-            FAIL(p, "answered %d bytes without the end of a line", (int)MOST_LINE));
+    if (p->length == MOST_LINE && memchr(p->line, '\n', p->length) == NULL) {
+        return FAIL(p, "answered %d bytes without the end of a line", (int)MOST_LINE);
+    }
     return true;
 }
 
-// Writes the question and waits for a whole line. False, with a failure, if none came in time or
-// the run is to end.
+// Writes the question and waits for a whole line. False, with a failure, if none came in
+// time or the run is to end.
 static bool exchange(process *p, const char *text)
 {
     const double deadline = clock_seconds(CLOCK_MONOTONIC) + p->answer_time;
@@ -197,18 +206,29 @@ static bool exchange(process *p, const char *text)
         // an end may be ready, but after the deadline
         const double left = 1e3 * (deadline - clock_seconds(CLOCK_MONOTONIC));
         const int ready = poll(ends, 2, (int)ceil(fmin(fmax(left, 0), LOOK_UP)));
-        FAIL_IF(clock_seconds(CLOCK_MONOTONIC) >= deadline,
-                FAIL(p, "gave no answer within control.answer_time = %g s", p->answer_time));
-        FAIL_IF(run_ends(p), false);
+        if (clock_seconds(CLOCK_MONOTONIC) >= deadline) {
+            return FAIL(p, "gave no answer within control.answer_time = %g s",
+                        p->answer_time);
+        }
+        if (run_ends(p)) {
+            return false;
+        }
         forget_old_errors(p);
         if (ready > 0 && ends[1].revents != 0) {
-            ssize_t count =
-                send(p->program.input, text + sent, length - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
-            // one that listens no more may have answered before; its answer, or its end, tells
+            ssize_t count = send(p->program.input, text + sent, length - sent,
+                                 MSG_NOSIGNAL | MSG_DONTWAIT);
+            // one that listens no more may have answered before; its answer, or its end,
+            // tells
             const bool deaf = count < 0 && errno != EAGAIN && errno != EINTR;
-            sent = deaf ? length : sent + (count > 0 ? (size_t)count : 0);
+            if (deaf) {
+                sent = length;
+            } else {
+                sent = sent + (count > 0 ? (size_t)count : 0);
+            }
         }
-        FAIL_IF(ready > 0 && ends[0].revents != 0 && !take_in(p), false);
+        if (ready > 0 && ends[0].revents != 0 && !take_in(p)) {
+            return false;
+        }
     }
     return true;
 }
@@ -224,12 +244,17 @@ static bool understand(process *p, controller_output *out)
     const bool more = length + 1 < p->length;
     p->length = 0;
     const status read = process_read_answer(p->line, length, out);
-    return read == STATUS_NO_MEMORY ? fail_without_memory(p)
-           : read != STATUS_OK
-               ? FAIL(p, "answered '%.*s', expected one line such as {\"command\": 1.5}",
-                      SHOWN_OF_LINE, p->line)
-           : more ? FAIL(p, "answered more than one line to one sample")
-                  : true;
+    if (read == STATUS_NO_MEMORY) {
+        return fail_without_memory(p);
+    }
+    if (read != STATUS_OK) {
+        return FAIL(p, "answered '%.*s', expected one line such as {\"command\": 1.5}",
+                    SHOWN_OF_LINE, p->line);
+    }
+    if (more) {
+        return FAIL(p, "answered more than one line to one sample");
+    }
+    return true;
 }
 
 // Asks the running program one thing. False, with a failure, if that gives no answer.
@@ -239,37 +264,44 @@ static bool ask(process *p, const char *question, controller_output *answer)
     return exchange(p, question) && understand(p, answer);
 }
 
-// --- going on from the past -------------------------------------------------------------------
+// --- going on from the past ------------------------------------------------------------
 
 // Starts the program. False, with a failure, if it cannot be.
 static bool start_program(process *p)
 {
     supervised_program_end(&p->program);
-    p->at = p->transcript != NULL ? p->transcript->begin : NULL;
+    if (p->transcript != NULL) {
+        p->at = p->transcript->begin;
+    } else {
+        p->at = NULL;
+    }
     p->asked = 0;
     p->started++;
     p->length = 0;
     int reason = supervised_program_start(&p->program, p->begun.command);
     if (reason != 0) {
         p->code = STATUS_CONTROLLER_FAILED;
-        snprintf(p->failure, sizeof p->failure, "'%.200s' cannot be started: %s", p->begun.command,
-                 strerror(reason));
+        snprintf(p->failure, sizeof p->failure, "'%.200s' cannot be started: %s",
+                 p->begun.command, strerror(reason));
     }
     return reason == 0;
 }
 
-// Brings the program to the run's place on the transcript: it is started if it does not run or is
-// at another place, and all questions that lead there are repeated. False, with a failure, if it
-// answers otherwise than then, or the way there is not known.
+// Brings the program to the run's place on the transcript: it is started if it does not
+// run or is at another place, and all questions that lead there are repeated. False, with
+// a failure, if it answers otherwise than then, or the way there is not known.
 static bool catch_up(process *p, const process_memory *m, double time)
 {
-    const bool runs = p->program.supervisor != 0, unrecorded = m->at == NULL && m->asked > 0;
+    const bool runs = p->program.supervisor != 0,
+               unrecorded = m->at == NULL && m->asked > 0;
     if (runs && p->at == m->at && p->asked == m->asked &&
         !(unrecorded && p->started != m->started)) {
         return true;
     }
-    FAIL_IF(unrecorded,
-            FAIL(p, "would have to go on from the past, which is not recorded any more"));
+    if (unrecorded) {
+        return FAIL(p,
+                    "would have to go on from the past, which is not recorded any more");
+    }
 
     // the way back to where the program is, or to the beginning
     transcript_node *node = m->at;
@@ -301,7 +333,7 @@ static bool catch_up(process *p, const process_memory *m, double time)
     return same;
 }
 
-// --- the controller ---------------------------------------------------------------------------
+// --- the controller --------------------------------------------------------------------
 
 static const char *take_setup(void *memory, const controller_setup *setup)
 {
@@ -315,7 +347,11 @@ static const char *start(void *memory, const controller_setup *setup)
 {
     // the program is started by the first question that the transcript does not know
     process_memory *m = memory;
-    m->at = m->process->transcript != NULL ? m->process->transcript->begin : NULL;
+    if (m->process->transcript != NULL) {
+        m->at = m->process->transcript->begin;
+    } else {
+        m->at = NULL;
+    }
     m->control = m->process->begun;
     return take_setup(memory, setup);
 }
@@ -325,7 +361,8 @@ static void sample(void *memory, const controller_input *in, controller_output *
     process_memory *m = memory;
     process *p = m->process;
     out->command = (double)NAN;
-    p->code = STATUS_OK; // a run that failed does not come here, one taken back to before may
+    p->code =
+        STATUS_OK; // a run that failed does not come here, one taken back to before may
     char *question = process_question(m->tells_setup ? &m->setup : NULL, &m->control, in);
     if (question == NULL) {
         fail_without_memory(p);
@@ -336,7 +373,8 @@ static void sample(void *memory, const controller_input *in, controller_output *
 
     // what was asked before has its answer
     transcript_node *known = process_transcript_find(m->at, question);
-    const bool answered = known != NULL || (catch_up(p, m, in->time) && ask(p, question, out));
+    const bool answered =
+        known != NULL || (catch_up(p, m, in->time) && ask(p, question, out));
     if (known != NULL) {
         *out = known->answer;
         m->at = known;
@@ -352,5 +390,6 @@ static void sample(void *memory, const controller_input *in, controller_output *
 static const controller_parameter told[] = {{.name = "force"}};
 
 const controller process_law =
-    ONE_MODE_CONTROLLER("process", "process", sizeof(process_memory), sample, .parameters = told,
-                        .parameter_count = 1, .start = start, .tune = take_setup);
+    ONE_MODE_CONTROLLER("process", "process", sizeof(process_memory), sample,
+                        .parameters = told, .parameter_count = 1, .start = start,
+                        .tune = take_setup);

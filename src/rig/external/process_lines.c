@@ -12,22 +12,24 @@
 
 enum { PROTOCOL = 1 }; // of the lines, told in the first one
 
-// --- a question -------------------------------------------------------------------------------
+// --- a question ------------------------------------------------------------------------
 
 // What the program is told about the rig.
 static json_t *setup_object(const controller_setup *s)
 {
-    return json_members(json_object(),
-                        "period:n delay:n voltage_limit:n torque_per_volt:n hub_damping:n "
-                        "stiction:n hub_inertia:n link_mass:n link_length:n link_inertia:n k2:n "
-                        "wall_angle:n hub_spring:n damping_ratio:n links:n",
-                        s->period, s->delay, s->voltage_limit, s->torque_per_volt, s->hub_damping,
-                        s->stiction, s->hub_inertia, s->link_mass, s->link_length, s->link_inertia,
-                        s->k2, s->wall_angle, s->hub_spring, s->damping_ratio, (double)s->links);
+    return json_members(
+        json_object(),
+        "period:n delay:n voltage_limit:n torque_per_volt:n hub_damping:n "
+        "stiction:n hub_inertia:n link_mass:n link_length:n link_inertia:n "
+        "k2:n wall_angle:n hub_spring:n damping_ratio:n links:n",
+        s->period, s->delay, s->voltage_limit, s->torque_per_volt, s->hub_damping,
+        s->stiction, s->hub_inertia, s->link_mass, s->link_length, s->link_inertia, s->k2,
+        s->wall_angle, s->hub_spring, s->damping_ratio, (double)s->links);
 }
 
 // All numbers of control.*, by their names.
-static json_t *control_object(const control_parameters *control, const controller_setup *setup)
+static json_t *control_object(const control_parameters *control,
+                              const controller_setup *setup)
 {
     static const char group[] = "control.";
     parameters all = {.control = *control};
@@ -36,14 +38,17 @@ static json_t *control_object(const control_parameters *control, const controlle
     // from the table, so that a new parameter needs no line here
     for (int i = 0; i < parameter_count; i++) {
         const parameter_info *info = &parameter_table[i];
-        const bool number = info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER;
+        const bool number =
+            info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER;
         if (number && strncmp(info->path, group, sizeof group - 1) == 0) {
-            json_put(object, info->path + sizeof group - 1, json_number(parameter_get(&all, i)));
+            json_put(object, info->path + sizeof group - 1,
+                     json_number(parameter_get(&all, i)));
         }
     }
 
     // as ramp and wave have it now, where the controller gets it from its setup
-    json_put(object, "force", json_number(setup->parameters != NULL ? setup->parameters[0] : 0));
+    json_put(object, "force",
+             json_number(setup->parameters != NULL ? setup->parameters[0] : 0));
     return object;
 }
 
@@ -75,10 +80,10 @@ char *process_question(const controller_setup *setup, const control_parameters *
 
     // what a controller within the program would see
     json_members(object,
-                 "time:n encoder:n tachometer:n force:n voltage:n piezo_force:n film:n "
-                 "accelerometer:n predicted_force:n",
-                 in->time, in->encoder, in->tachometer, in->force, in->voltage, in->piezo_force,
-                 in->film, in->accelerometer, in->predicted_force);
+                 "time:n encoder:n tachometer:n force:n voltage:n piezo_force:n "
+                 "film:n accelerometer:n predicted_force:n",
+                 in->time, in->encoder, in->tachometer, in->force, in->voltage,
+                 in->piezo_force, in->film, in->accelerometer, in->predicted_force);
 
     // enough digits for every bit
     char *line = NULL, *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
@@ -92,12 +97,12 @@ char *process_question(const controller_setup *setup, const control_parameters *
     return line;
 }
 
-// --- an answer --------------------------------------------------------------------------------
+// --- an answer -------------------------------------------------------------------------
 
 // The numbers of an answer.
-#define ANSWERED(field)                                                                            \
-    {                                                                                              \
-#field, offsetof(controller_output, field)                                                 \
+#define ANSWERED(field)                                                                  \
+    {                                                                                    \
+#field, offsetof(controller_output, field)                                       \
     }
 static const struct {
     const char *name;
@@ -114,18 +119,27 @@ status process_read_answer(const char *line, size_t length, controller_output *o
     json_t *object = json_loadb(line, length, 0, &ignored);
 
     // jansson says of a line that it had no memory for what it says of a wrong one
-    FAIL_IF(object == NULL && errno == ENOMEM, STATUS_NO_MEMORY);
+    if (object == NULL && errno == ENOMEM) {
+        return STATUS_NO_MEMORY;
+    }
 
     // what is there must be a number
     bool whole = json_is_object(object);
     for (int i = 0; i < ANSWERS && whole; i++) {
         const json_t *member = json_object_get(object, answers[i].name);
         double *value = (double *)((char *)out + answers[i].offset);
-        *value = json_is_number(member) ? json_number_value(member) : (double)NAN;
+        if (json_is_number(member)) {
+            *value = json_number_value(member);
+        } else {
+            *value = (double)NAN;
+        }
         whole = member == NULL || json_is_null(member) || json_is_number(member);
     }
     json_decref(object);
-    return whole && !isnan(out->command) ? STATUS_OK : STATUS_CONTROLLER_FAILED;
+    if (whole && !isnan(out->command)) {
+        return STATUS_OK;
+    }
+    return STATUS_CONTROLLER_FAILED;
 }
 
 bool process_same_answer(const controller_output *a, const controller_output *b)
@@ -133,16 +147,18 @@ bool process_same_answer(const controller_output *a, const controller_output *b)
     bool same = true;
     for (int i = 0; i < ANSWERS; i++) {
         const size_t at = answers[i].offset;
-        same = same && memcmp((const char *)a + at, (const char *)b + at, sizeof(double)) == 0;
+        same = same &&
+               memcmp((const char *)a + at, (const char *)b + at, sizeof(double)) == 0;
     }
     return same;
 }
 
-// --- transcripts -----------------------------------------------------------------------------
+// --- transcripts -----------------------------------------------------------------------
 
 static const size_t most_text = (size_t)64 << 20; // of all questions [bytes]
 
-transcript_node *process_transcript_find(const transcript_node *before, const char *question)
+transcript_node *process_transcript_find(const transcript_node *before,
+                                         const char *question)
 {
     transcript_node *after = before != NULL ? before->first_after : NULL;
     while (after != NULL && strcmp(after->question, question) != 0) {
@@ -187,7 +203,8 @@ void process_transcript_destroy(process_transcript *t)
 }
 
 transcript_node *process_transcript_add(process_transcript *t, transcript_node *before,
-                                        const char *question, const controller_output *answer)
+                                        const char *question,
+                                        const controller_output *answer)
 {
     transcript_node *node = before != NULL ? new_node(t, question) : NULL;
     if (node != NULL) {

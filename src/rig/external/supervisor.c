@@ -17,7 +17,7 @@ enum {
     LAST_WORDS_MS = 50 // for an ended program to become one that can be waited for
 };
 
-// --- the supervisor: between fork and _exit nothing but system calls ---------------------------
+// --- the supervisor: between fork and _exit nothing but system calls -------------------
 
 static _Noreturn void run_program(const char *command)
 {
@@ -35,8 +35,8 @@ static _Noreturn void run_program(const char *command)
 
 static _Noreturn void supervise(const int theirs[ENDS], const char *command)
 {
-    // the program's ends are the first descriptors; they go by way of higher ones, so that none is
-    // lost, and other programs' ends are above all
+    // the program's ends are the first descriptors; they go by way of higher ones, so
+    // that none is lost, and other programs' ends are above all
     int moved[ENDS];
     for (int i = 0; i < ENDS; i++) {
         moved[i] = fcntl(theirs[i], F_DUPFD, ENDS);
@@ -48,8 +48,8 @@ static _Noreturn void supervise(const int theirs[ENDS], const char *command)
     }
     closefrom(ENDS);
 
-    // what ends the lab or its terminal must not end the supervisor before its work is done; the
-    // program's orphans become its children, so that it can wait for them
+    // what ends the lab or its terminal must not end the supervisor before its work is
+    // done; the program's orphans become its children, so that it can wait for them
     sigset_t all;
     sigfillset(&all);
     sigprocmask(SIG_SETMASK, &all, NULL);
@@ -61,8 +61,8 @@ static _Noreturn void supervise(const int theirs[ENDS], const char *command)
     }
     setpgid(program, program); // whichever of the two comes first
 
-    // what the program writes is not the supervisor's, or its end would never be seen; of the input
-    // it waits for the lab's end
+    // what the program writes is not the supervisor's, or its end would never be seen; of
+    // the input it waits for the lab's end
     close(STDOUT_FILENO);
     close(STDERR_FILENO);
     while (poll(&(struct pollfd){.fd = STDIN_FILENO, .events = POLLRDHUP}, 1, -1) < 0) {
@@ -85,7 +85,7 @@ static _Noreturn void supervise(const int theirs[ENDS], const char *command)
     _exit(ended == program ? told : KILLED);
 }
 
-// --- the lab's side ---------------------------------------------------------------------------
+// --- the lab's side --------------------------------------------------------------------
 
 static void close_ends(const int ends[ENDS])
 {
@@ -98,7 +98,8 @@ static void close_ends(const int ends[ENDS])
 
 int supervised_program_start(supervised_program *program, const char *command)
 {
-    // a socket is written to without a signal; errors go to a file in memory, which never blocks
+    // a socket is written to without a signal; errors go to a file in memory, which never
+    // blocks
     int input[2] = {-1, -1}, output[2] = {-1, -1}, errors = -1;
     const bool made = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, input) == 0 &&
                       pipe2(output, O_CLOEXEC) == 0 &&
@@ -135,5 +136,8 @@ int supervised_program_end(supervised_program *program)
     } while (ended < 0 && errno == EINTR);
     *program = (supervised_program){0};
     const bool told = ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) != KILLED;
-    return told ? WEXITSTATUS(status) : -1;
+    if (told) {
+        return WEXITSTATUS(status);
+    }
+    return -1;
 }

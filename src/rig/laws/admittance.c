@@ -1,13 +1,13 @@
-// Admittance control: the force's error moves a mass against a damper, and the hub follows that
-// mass under position control.
+// Admittance control: the force's error moves a mass against a damper, and the hub
+// follows that mass under position control.
 //
 //     m_a v' + d_a v = f - reading,    theta_a' = v,
 //     T = kp (theta_a - theta) + kv (v - w) + D v + friction + 2 l reading
 //
-// In flight the reading is zero and the mass approaches the speed f/d_a; in contact it comes to
-// rest where the reading is f, whatever the wall's place and the stiffness are. One law for both,
-// without a switch. The last term balances the force with which the beam presses, so that the
-// position control acts on its error only.
+// In flight the reading is zero and the mass approaches the speed f/d_a; in contact it
+// comes to rest where the reading is f, whatever the wall's place and the stiffness are.
+// One law for both, without a switch. The last term balances the force with which the
+// beam presses, so that the position control acts on its error only.
 #include <string.h>
 
 #include "src/rig/laws/laws.h"
@@ -42,7 +42,8 @@ typedef struct admittance_memory {
 static const char *tune(void *memory, const controller_setup *setup)
 {
     admittance_memory *m = memory;
-    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period, m->rig.period == 0);
+    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period,
+                   m->rig.period == 0);
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
     return NULL;
@@ -56,10 +57,14 @@ static void sample(void *memory, const controller_input *in, controller_output *
         m->started = true;
         m->angle = in->encoder;
     }
-    m->mode = in->force > m->p[THRESHOLD] ? CONTACT : APPROACH;
+    if (in->force > m->p[THRESHOLD]) {
+        m->mode = CONTACT;
+    } else {
+        m->mode = APPROACH;
+    }
 
-    // the mass, exactly over a period; a set-point that moves takes the hub with it, and is read a
-    // little later
+    // the mass, exactly over a period; a set-point that moves takes the hub with it, and
+    // is read a little later
     set_point_follow(&m->wanted, r->period);
     const double turn = m->mode == CONTACT ? set_point_turn(&m->wanted, r) : 0;
     const double later = (READ_LATER * r->period + r->delay) * m->wanted.rate;
@@ -72,12 +77,16 @@ static void sample(void *memory, const controller_input *in, controller_output *
     out->mode = m->mode;
     out->desired_angle = m->angle;
     out->desired_velocity = speed;
-    double torque = m->p[KP] * (m->angle - in->encoder) + m->p[KV] * (speed - in->tachometer);
-    torque += m->mode == CONTACT ? set_point_torque(&m->wanted, r) : 0;
+    double torque =
+        m->p[KP] * (m->angle - in->encoder) + m->p[KV] * (speed - in->tachometer);
+    if (m->mode == CONTACT) {
+        torque += set_point_torque(&m->wanted, r);
+    }
     out->command = (torque + r->hub_damping * m->speed + coulomb_friction(r, m->speed) +
                     2 * r->link_length * in->force) /
                    r->torque_per_volt;
 }
 
-const controller admittance_law = CONTROLLER_LAW("admittance", mode_names, table, admittance_memory,
-                                                 .start = tune, .sample = sample, .tune = tune);
+const controller admittance_law =
+    CONTROLLER_LAW("admittance", mode_names, table, admittance_memory, .start = tune,
+                   .sample = sample, .tune = tune);

@@ -1,8 +1,9 @@
-// What the laws share that close the loop over the force reading alone (force-pd, force-integral,
-// discontinuous), and the one that closes none (open-loop): modes, parameters and memory.
+// What the laws share that close the loop over the force reading alone (force-pd,
+// force-integral, discontinuous), and the one that closes none (open-loop): modes,
+// parameters and memory.
 //
-// With the static torque 2 f l of the wanted force f, the hub's velocity w and K the torque per
-// volt, force-pd and discontinuous send in contact
+// With the static torque 2 f l of the wanted force f, the hub's velocity w and K the
+// torque per volt, force-pd and discontinuous send in contact
 //
 //     u = (2 f l - kv w)/K + force_gain (f - reading)
 #include <math.h>
@@ -13,7 +14,15 @@
 enum { APPROACH, CONTACT }; // modes
 
 // Their parameters, by their names in control.*, in the order of the table.
-enum { FORCE_WANTED, APPROACH_VOLTAGE, KV, THRESHOLD, FORCE_GAIN, INTEGRAL_GAIN, PARAMETERS };
+enum {
+    FORCE_WANTED,
+    APPROACH_VOLTAGE,
+    KV,
+    THRESHOLD,
+    FORCE_GAIN,
+    INTEGRAL_GAIN,
+    PARAMETERS
+};
 
 typedef struct force_memory {
     controller_setup rig;
@@ -23,10 +32,11 @@ typedef struct force_memory {
     double integral; // force-integral's command [V]
 } force_memory;
 
-// A controller of this family: its word, whether it can be held in a mode, its sample function.
-#define FORCE_FEEDBACK_LAW(law, obeys, samples)                                                    \
-    CONTROLLER_LAW(law, force_feedback_modes, force_feedback_parameters, force_memory,             \
-                   .lockable = obeys, .start = force_feedback_start, .sample = samples,            \
+// A controller of this family: its word, whether it can be held in a mode, its sample
+// function.
+#define FORCE_FEEDBACK_LAW(law, obeys, samples)                                          \
+    CONTROLLER_LAW(law, force_feedback_modes, force_feedback_parameters, force_memory,   \
+                   .lockable = obeys, .start = force_feedback_start, .sample = samples,  \
                    .tune = force_feedback_tune)
 
 static const char *const force_feedback_modes[] = {"approach", "contact", NULL};
@@ -44,7 +54,8 @@ static const controller_parameter force_feedback_parameters[PARAMETERS] = {
 static const char *force_feedback_tune(void *memory, const controller_setup *setup)
 {
     force_memory *m = memory;
-    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period, m->rig.period == 0);
+    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period,
+                   m->rig.period == 0);
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
     return NULL;
@@ -58,12 +69,18 @@ static const char *force_feedback_start(void *memory, const controller_setup *se
     return refusal;
 }
 
-// Contact once the reading was above the threshold, and from then on, unless the law is held in a
-// mode.
+// Contact once the reading was above the threshold, and from then on, unless the law is
+// held in a mode.
 static void force_feedback_choose_mode(force_memory *m, const controller_input *in)
 {
     bool contact = m->mode == CONTACT || in->force > m->p[THRESHOLD];
-    m->mode = in->wanted_mode >= 0 ? in->wanted_mode : contact ? CONTACT : APPROACH;
+    if (in->wanted_mode >= 0) {
+        m->mode = in->wanted_mode;
+    } else if (contact) {
+        m->mode = CONTACT;
+    } else {
+        m->mode = APPROACH;
+    }
 }
 
 // The law of force-pd, with the torque and the turn of a set-point that moves [V].
@@ -79,7 +96,8 @@ static double force_feedback_command(const force_memory *m, const controller_inp
 // --- open-loop ---
 
 // The constant command of the approach, whatever the sensors read: figures 2.4 to 2.6.
-static void open_loop_sample(void *memory, const controller_input *in, controller_output *out)
+static void open_loop_sample(void *memory, const controller_input *in,
+                             controller_output *out)
 {
     force_memory *m = memory;
     (void)in;
@@ -90,30 +108,45 @@ const controller open_loop_law = FORCE_FEEDBACK_LAW("open-loop", false, open_loo
 
 // --- force-pd ---
 
-// Static torque of the wanted force with feedback of the force error and of the hub's velocity,
-// once contact was felt.
-static void force_pd_sample(void *memory, const controller_input *in, controller_output *out)
+// Static torque of the wanted force with feedback of the force error and of the hub's
+// velocity, once contact was felt.
+static void force_pd_sample(void *memory, const controller_input *in,
+                            controller_output *out)
 {
     force_memory *m = memory;
     set_point_follow(&m->wanted, m->rig.period);
     force_feedback_choose_mode(m, in);
     out->mode = m->mode;
-    out->command = m->mode == CONTACT ? force_feedback_command(m, in) : m->p[APPROACH_VOLTAGE];
+    if (m->mode == CONTACT) {
+        out->command = force_feedback_command(m, in);
+    } else {
+        out->command = m->p[APPROACH_VOLTAGE];
+    }
 }
 
 const controller force_pd_law = FORCE_FEEDBACK_LAW("force-pd", true, force_pd_sample);
 
 // --- discontinuous ---
 
-// One law while the sensor feels the wall and another while it does not, without memory (after
-// Mills): force feedback here, the plain approach there.
-static void discontinuous_sample(void *memory, const controller_input *in, controller_output *out)
+// One law while the sensor feels the wall and another while it does not, without memory
+// (after Mills): force feedback here, the plain approach there.
+static void discontinuous_sample(void *memory, const controller_input *in,
+                                 controller_output *out)
 {
     force_memory *m = memory;
-    bool contact = in->wanted_mode >= 0 ? in->wanted_mode == CONTACT : in->force > m->p[THRESHOLD];
+    bool contact =
+        in->wanted_mode >= 0 ? in->wanted_mode == CONTACT : in->force > m->p[THRESHOLD];
     set_point_follow(&m->wanted, m->rig.period);
-    out->mode = contact ? CONTACT : APPROACH;
-    out->command = contact ? force_feedback_command(m, in) : m->p[APPROACH_VOLTAGE];
+    if (contact) {
+        out->mode = CONTACT;
+    } else {
+        out->mode = APPROACH;
+    }
+    if (contact) {
+        out->command = force_feedback_command(m, in);
+    } else {
+        out->command = m->p[APPROACH_VOLTAGE];
+    }
 }
 
 const controller discontinuous_law =
@@ -121,10 +154,11 @@ const controller discontinuous_law =
 
 // --- force-integral ---
 
-// Explicit integral force control (Youcef-Toumi and Gutz): from contact on the command is the
-// integral of the force's error, u' = integral_gain (f - reading), which filters the impact's
-// spikes.
-static void force_integral_sample(void *memory, const controller_input *in, controller_output *out)
+// Explicit integral force control (Youcef-Toumi and Gutz): from contact on the command is
+// the integral of the force's error, u' = integral_gain (f - reading), which filters the
+// impact's spikes.
+static void force_integral_sample(void *memory, const controller_input *in,
+                                  controller_output *out)
 {
     force_memory *m = memory;
     force_feedback_choose_mode(m, in);

@@ -1,25 +1,25 @@
-// The modes of the thesis's hybrid impact and force controller, 5.2 to 5.4, for it and for the laws
-// that share them: another approach (speed-limit, bang-bang), another answer to the impact
-// (reverse-torque), and the controller that 5.4 calls ideal (recovering).
+// The modes of the thesis's hybrid impact and force controller, 5.2 to 5.4, for it and
+// for the laws that share them: another approach (speed-limit, bang-bang), another answer
+// to the impact (reverse-torque), and the controller that 5.4 calls ideal (recovering).
 //
 // In contact the arm has one degree of freedom, theta, with the wall at theta_imp
 // (docs/explanation/control-design.md):
 //
-//     M theta'' = K u - D theta' - k_st sign(theta') + 4 k2 (theta_imp - theta)       (5.13)
-//     M = I1 + 2 I + m l^2/2                                                         (5.21)
+//     M theta'' = K u - D theta' - k_st sign(theta') + 4 k2 (theta_imp - theta) (5.13) M
+//     = I1 + 2 I + m l^2/2                                                         (5.21)
 //
-// APPROACH sends the constant command. IMPACT follows the quintic (5.15) from the state at contact
-// to rest at the angle at which the beam presses with the wanted force f,
+// APPROACH sends the constant command. IMPACT follows the quintic (5.15) from the state
+// at contact to rest at the angle at which the beam presses with the wanted force f,
 //
-//     theta_f = theta_imp + f l/(2 k2)                                                       (5.23)
+//     theta_f = theta_imp + f l/(2 k2) (5.23)
 //
-// by the inverse of the model along it and feedback of both errors, (5.24). FORCE holds theta_f
-// with the static torque 2 f l in advance, (5.25). Printed coefficients have 6 k2, 3 f l and M = 2
-// m eps^2 instead (errata B2).
+// by the inverse of the model along it and feedback of both errors, (5.24). FORCE holds
+// theta_f with the static torque 2 f l in advance, (5.25). Printed coefficients have 6
+// k2, 3 f l and M = 2 m eps^2 instead (errata B2).
 //
-// theta_imp is what the law is told, or in IMPACT the mean of what a sensor says of it, as 5.2
-// suggests: of film, theta3 - theta2, by (5.8) theta2 + theta3 = 2 theta_imp, or of an
-// accelerometer by (5.13).
+// theta_imp is what the law is told, or in IMPACT the mean of what a sensor says of it,
+// as 5.2 suggests: of film, theta3 - theta2, by (5.8) theta2 + theta3 = 2 theta_imp, or
+// of an accelerometer by (5.13).
 #include <math.h>
 #include <string.h>
 
@@ -49,12 +49,12 @@ enum {
     OWN_FORCE_LIMIT, // of the law speed-limit [N]
     PARAMETERS
 };
-#define HYBRID_PARAMETERS                                                                          \
-    {.name = "force"}, {.name = "approach_voltage"}, {.name = "kp"}, {.name = "kv"},               \
-        {.name = "gains"}, {.name = "coefficients"}, {.name = "transition_time"},                  \
-        {.name = "contact_threshold"},                                                             \
-    {                                                                                              \
-        .name = "impact_angle"                                                                     \
+#define HYBRID_PARAMETERS                                                                \
+    {.name = "force"}, {.name = "approach_voltage"}, {.name = "kp"}, {.name = "kv"},     \
+        {.name = "gains"}, {.name = "coefficients"}, {.name = "transition_time"},        \
+        {.name = "contact_threshold"},                                                   \
+    {                                                                                    \
+        .name = "impact_angle"                                                           \
     }
 
 typedef struct hybrid_memory {
@@ -76,17 +76,18 @@ typedef struct hybrid_memory {
     int readings_without_contact;
 } hybrid_memory;
 
-// A controller of this family: word, modes, table of parameters, start and sample function.
-#define HYBRID_LAW(law, names, table, starts, samples)                                             \
-    CONTROLLER_LAW(law, names, table, hybrid_memory, .lockable = true, .start = starts,            \
+// A controller of this family: word, modes, table of parameters, start and sample
+// function.
+#define HYBRID_LAW(law, names, table, starts, samples)                                   \
+    CONTROLLER_LAW(law, names, table, hybrid_memory, .lockable = true, .start = starts,  \
                    .sample = samples, .tune = starts)
 
 static const char *const hybrid_modes[] = {"approach", "impact", "force", NULL};
 
-// Takes setup and parameters into a hybrid_memory, at the start or later; never refuses. In the
-// impact mode the trajectory is planned anew from where the arm is where t_f changes, for what is
-// left of it; a set-point that moves is added to it.
-// The second is for laws with a parameter of their own behind the shared ones.
+// Takes setup and parameters into a hybrid_memory, at the start or later; never refuses.
+// In the impact mode the trajectory is planned anew from where the arm is where t_f
+// changes, for what is left of it; a set-point that moves is added to it. The second is
+// for laws with a parameter of their own behind the shared ones.
 static const char *hybrid_start(void *memory, const controller_setup *setup)
 {
     hybrid_memory *m = memory;
@@ -110,8 +111,8 @@ static const char *hybrid_start_with_own(void *memory, const controller_setup *s
     return hybrid_start(memory, setup);
 }
 
-// Stiffness of the hub in contact: 6 k2 in (5.13) as printed, 4 k2 once the spring is counted right
-// (errata B2) [N m/rad].
+// Stiffness of the hub in contact: 6 k2 in (5.13) as printed, 4 k2 once the spring is
+// counted right (errata B2) [N m/rad].
 static double contact_stiffness(const hybrid_memory *m)
 {
     return (m->printed ? 6 : 4) * m->rig.k2;
@@ -123,12 +124,15 @@ static double spring_torque(const hybrid_memory *m, double angle)
     return contact_stiffness(m) * (m->impact_angle - angle);
 }
 
-// Inertia of the arm in contact: 2 m eps^2 in (5.13) with eps = l/2; corrected, the bodies' own
-// moments of inertia are there too (errata B2).
+// Inertia of the arm in contact: 2 m eps^2 in (5.13) with eps = l/2; corrected, the
+// bodies' own moments of inertia are there too (errata B2).
 static double contact_inertia(const hybrid_memory *m)
 {
     const controller_setup *r = &m->rig;
-    return m->printed ? r->link_mass * r->link_length * r->link_length / 2 : pressed_inertia(r);
+    if (m->printed) {
+        return r->link_mass * r->link_length * r->link_length / 2;
+    }
+    return pressed_inertia(r);
 }
 
 // Hub angle at which the beam presses with a force, (5.23) [rad].
@@ -138,7 +142,8 @@ static double pressing_angle(const hybrid_memory *m, double force)
 }
 
 // Hub acceleration in contact under the command u, (5.13), (5.21) [rad/s2].
-static double contact_acceleration(const hybrid_memory *m, double angle, double velocity, double u)
+static double contact_acceleration(const hybrid_memory *m, double angle, double velocity,
+                                   double u)
 {
     const controller_setup *r = &m->rig;
     double torque = r->torque_per_volt * u - r->hub_damping * velocity -
@@ -154,31 +159,40 @@ static double hybrid_calculated_force(const hybrid_memory *m, const controller_i
     double mass_term = r->link_mass * eps2 + (m->printed ? 0 : r->link_inertia);
     // corrected: link 3 turns back about a joint that moves on: (m l^2/2 - m l^2/4 - I3)
     double coupling = m->printed ? mass_term : 2 * r->link_mass * eps2 - mass_term;
-    double acceleration = contact_acceleration(m, in->encoder, in->tachometer, in->voltage);
-    return (2 * r->k2 * (in->encoder - r->wall_angle) - coupling * acceleration) / r->link_length;
+    double acceleration =
+        contact_acceleration(m, in->encoder, in->tachometer, in->voltage);
+    return (2 * r->k2 * (in->encoder - r->wall_angle) - coupling * acceleration) /
+           r->link_length;
 }
 
-// Volts of the feedback kp (angle error) + kv (velocity error), read as torque or as volts (B7).
+// Volts of the feedback kp (angle error) + kv (velocity error), read as torque or as
+// volts (B7).
 static double feedback(const hybrid_memory *m, double angle_error, double velocity_error)
 {
     const int gains = (int)m->p[GAINS];
     bool volts = gains == GAINS_VOLTS || (gains == GAINS_PRINTED && m->mode == FORCE);
     double sum = m->p[KP] * angle_error + m->p[KV] * velocity_error;
-    return volts ? sum : sum / m->rig.torque_per_volt;
+    if (volts) {
+        return sum;
+    }
+    return sum / m->rig.torque_per_volt;
 }
 
-// The coefficients of the quintic (5.15) that lead it to rest at the final angle from what the
-// first three say of its start: the solution of (5.18)-(5.20).
+// The coefficients of the quintic (5.15) that lead it to rest at the final angle from
+// what the first three say of its start: the solution of (5.18)-(5.20).
 static void lead_to_end(hybrid_memory *m)
 {
     const double T = m->length, way = pressing_angle(m, m->planned) - m->a[0];
     const double velocity = m->a[1], acceleration = 2 * m->a[2];
     m->a[3] = (20 * way - 12 * velocity * T - 3 * acceleration * T * T) / (2 * T * T * T);
-    m->a[4] = (-30 * way + 16 * velocity * T + 3 * acceleration * T * T) / (2 * T * T * T * T);
-    m->a[5] = (12 * way - 6 * velocity * T - acceleration * T * T) / (2 * T * T * T * T * T);
+    m->a[4] =
+        (-30 * way + 16 * velocity * T + 3 * acceleration * T * T) / (2 * T * T * T * T);
+    m->a[5] =
+        (12 * way - 6 * velocity * T - acceleration * T * T) / (2 * T * T * T * T * T);
 }
 
-// Plans from the present state and command on, so that the command goes on from where it is.
+// Plans from the present state and command on, so that the command goes on from where it
+// is.
 static void plan(hybrid_memory *m, const controller_input *in, double length)
 {
     m->begun = in->time;
@@ -190,22 +204,24 @@ static void plan(hybrid_memory *m, const controller_input *in, double length)
     lead_to_end(m);
 }
 
-// The impact angle that a sample's readings show, NaN where the sensor is not fitted [rad].
+// The impact angle that a sample's readings show, NaN where the sensor is not fitted
+// [rad].
 static double angle_shown(const hybrid_memory *m, const controller_input *in)
 {
     if ((int)m->p[IMPACT_ANGLE] == ANGLE_BY_FILM) {
         return in->encoder + in->film / 2;
     }
 
-    // what of the measured acceleration the motor and friction do not account for is the beam's
-    double missing =
-        in->accelerometer - contact_acceleration(m, in->encoder, in->tachometer, in->voltage);
+    // what of the measured acceleration the motor and friction do not account for is the
+    // beam's
+    double missing = in->accelerometer -
+                     contact_acceleration(m, in->encoder, in->tachometer, in->voltage);
     return m->impact_angle + contact_inertia(m) * missing / contact_stiffness(m);
 }
 
-// Averages what the first readings of the impact mode show; the trajectory's end goes with it. The
-// accelerometer is off scale at the impact and lags behind it for a while, the film loses its
-// charge.
+// Averages what the first readings of the impact mode show; the trajectory's end goes
+// with it. The accelerometer is off scale at the impact and lags behind it for a while,
+// the film loses its charge.
 static void follow_angle(hybrid_memory *m, const controller_input *in)
 {
     const double lag = 0.01, window = 0.1; // [s]
@@ -240,8 +256,8 @@ static void plan_again(hybrid_memory *m, const controller_input *in)
     }
 }
 
-// Goes into the mode the law is held in. False if it is not: then it chooses itself, beginning with
-// the mode that it is in.
+// Goes into the mode the law is held in. False if it is not: then it chooses itself,
+// beginning with the mode that it is in.
 static bool hybrid_held(hybrid_memory *m, const controller_input *in)
 {
     if (in->wanted_mode >= 0 && in->wanted_mode != m->mode) {
@@ -251,8 +267,8 @@ static bool hybrid_held(hybrid_memory *m, const controller_input *in)
 }
 
 // The command that gives a torque and feeds the errors of angle and velocity back [V].
-static double follow(const hybrid_memory *m, const controller_input *in, controller_output *out,
-                     double angle, double velocity, double torque)
+static double follow(const hybrid_memory *m, const controller_input *in,
+                     controller_output *out, double angle, double velocity, double torque)
 {
     out->desired_angle = angle;
     out->desired_velocity = velocity;
@@ -267,7 +283,8 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
     // held in this mode beyond t_f it stays at the trajectory's end
     const double *a = m->a, t = smaller(in->time - m->begun, m->length);
     double angle = a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * (a[4] + t * a[5]))));
-    double velocity = a[1] + t * (2 * a[2] + t * (3 * a[3] + t * (4 * a[4] + t * 5 * a[5])));
+    double velocity =
+        a[1] + t * (2 * a[2] + t * (3 * a[3] + t * (4 * a[4] + t * 5 * a[5])));
     double acceleration = 2 * a[2] + t * (6 * a[3] + t * (12 * a[4] + t * 20 * a[5]));
 
     // with the set-point's way since it was planned
@@ -281,8 +298,9 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
     return follow(m, in, out, angle, velocity, torque);
 }
 
-// Force mode: PD round the final angle with the static torque in advance, (5.25); while the
-// set-point moves, along the angles that go with it, with the model's torque for that [V].
+// Force mode: PD round the final angle with the static torque in advance, (5.25); while
+// the set-point moves, along the angles that go with it, with the model's torque for that
+// [V].
 static double hybrid_force_command(const hybrid_memory *m, const controller_input *in,
                                    controller_output *out)
 {
@@ -305,10 +323,10 @@ static void choose_mode(hybrid_memory *m, const controller_input *in, double imp
     }
 }
 
-// The three modes with their switching, contact and then t_f, behind an approach with the given
-// command [V]. Fills out but for the command, which it returns.
-static double hybrid_command(hybrid_memory *m, const controller_input *in, controller_output *out,
-                             double approach)
+// The three modes with their switching, contact and then t_f, behind an approach with the
+// given command [V]. Fills out but for the command, which it returns.
+static double hybrid_command(hybrid_memory *m, const controller_input *in,
+                             controller_output *out, double approach)
 {
     choose_mode(m, in, m->p[TRANSITION]);
     if (m->replans && m->mode == IMPACT) {
@@ -319,15 +337,24 @@ static double hybrid_command(hybrid_memory *m, const controller_input *in, contr
     }
 
     out->mode = m->mode;
-    out->calculated_force = m->mode == APPROACH ? 0 : hybrid_calculated_force(m, in);
-    return m->mode == IMPACT  ? impact_command(m, in, out)
-           : m->mode == FORCE ? hybrid_force_command(m, in, out)
-                              : approach;
+    if (m->mode == APPROACH) {
+        out->calculated_force = 0;
+    } else {
+        out->calculated_force = hybrid_calculated_force(m, in);
+    }
+    if (m->mode == IMPACT) {
+        return impact_command(m, in, out);
+    }
+    if (m->mode == FORCE) {
+        return hybrid_force_command(m, in, out);
+    }
+    return approach;
 }
 
 // Command that keeps the hub at a speed [rad/s], friction included, with a proportional
 // correction [V].
-static double hybrid_speed_command(const hybrid_memory *m, const controller_input *in, double speed)
+static double hybrid_speed_command(const hybrid_memory *m, const controller_input *in,
+                                   double speed)
 {
     const double gain = 0.5; // [N m s/rad]
     double torque = m->rig.hub_damping * speed + coulomb_friction(&m->rig, speed) +
@@ -337,10 +364,12 @@ static double hybrid_speed_command(const hybrid_memory *m, const controller_inpu
 
 // --- hybrid ---
 
-// The thesis's hybrid impact and force controller, 5.2 to 5.4: approach, impact mode, force mode.
+// The thesis's hybrid impact and force controller, 5.2 to 5.4: approach, impact mode,
+// force mode.
 static const controller_parameter hybrid_parameters[] = {HYBRID_PARAMETERS};
 
-static void hybrid_sample(void *memory, const controller_input *in, controller_output *out)
+static void hybrid_sample(void *memory, const controller_input *in,
+                          controller_output *out)
 {
     hybrid_memory *m = memory;
     out->command = hybrid_command(m, in, out, m->p[APPROACH_VOLTAGE]);
@@ -351,15 +380,21 @@ const controller hybrid_law =
 
 // --- recovering ---
 
-// The controller that 5.4 calls ideal: hybrid, but going back to position control where contact is
-// lost, and through the impact mode again when it returns.
-static const char *const recovering_modes[] = {"approach", "impact", "force", "recover", NULL};
+// The controller that 5.4 calls ideal: hybrid, but going back to position control where
+// contact is lost, and through the impact mode again when it returns.
+static const char *const recovering_modes[] = {"approach", "impact", "force", "recover",
+                                               NULL};
 
-static void recovering_sample(void *memory, const controller_input *in, controller_output *out)
+static void recovering_sample(void *memory, const controller_input *in,
+                              controller_output *out)
 {
     hybrid_memory *m = memory;
     const int lost = 2; // readings without contact in a row
-    m->readings_without_contact = in->force > m->p[THRESHOLD] ? 0 : m->readings_without_contact + 1;
+    if (in->force > m->p[THRESHOLD]) {
+        m->readings_without_contact = 0;
+    } else {
+        m->readings_without_contact = m->readings_without_contact + 1;
+    }
     bool pressing = m->mode == IMPACT || m->mode == FORCE;
     if (!hybrid_held(m, in) && pressing && m->readings_without_contact >= lost) {
         hybrid_begin(m, RECOVER, in);
@@ -372,47 +407,61 @@ static void recovering_sample(void *memory, const controller_input *in, controll
 }
 
 const controller recovering_law =
-    HYBRID_LAW("recovering", recovering_modes, hybrid_parameters, hybrid_start, recovering_sample);
+    HYBRID_LAW("recovering", recovering_modes, hybrid_parameters, hybrid_start,
+               recovering_sample);
 
 // --- reverse-torque ---
 
-// Until contact as the hybrid controller; then the largest command back for control.reverse_time;
-// then its force mode.
+// Until contact as the hybrid controller; then the largest command back for
+// control.reverse_time; then its force mode.
 static const controller_parameter reverse_torque_parameters[] = {HYBRID_PARAMETERS,
-                                                                 {.name = "reverse_time"}};
+                                                                 {.name =
+                                                                      "reverse_time"}};
 
-static void reverse_torque_sample(void *memory, const controller_input *in, controller_output *out)
+static void reverse_torque_sample(void *memory, const controller_input *in,
+                                  controller_output *out)
 {
     hybrid_memory *m = memory;
     choose_mode(m, in, m->p[OWN]); // contact begins the pull back, its time ends it
     out->mode = m->mode;
-    out->calculated_force = m->mode == APPROACH ? 0 : hybrid_calculated_force(m, in);
-    out->command = m->mode == APPROACH ? m->p[APPROACH_VOLTAGE]
-                   : m->mode == IMPACT ? -m->rig.voltage_limit
-                                       : hybrid_force_command(m, in, out);
+    if (m->mode == APPROACH) {
+        out->calculated_force = 0;
+    } else {
+        out->calculated_force = hybrid_calculated_force(m, in);
+    }
+    if (m->mode == APPROACH) {
+        out->command = m->p[APPROACH_VOLTAGE];
+    } else if (m->mode == IMPACT) {
+        out->command = -m->rig.voltage_limit;
+    } else {
+        out->command = hybrid_force_command(m, in, out);
+    }
 }
 
 const controller reverse_torque_law =
-    HYBRID_LAW("reverse-torque", hybrid_modes, reverse_torque_parameters, hybrid_start_with_own,
-               reverse_torque_sample);
+    HYBRID_LAW("reverse-torque", hybrid_modes, reverse_torque_parameters,
+               hybrid_start_with_own, reverse_torque_sample);
 
 // --- speed-limit ---
 
-// The hybrid controller with the hub kept below control.speed_limit on the way to the wall and,
-// where there is a control.force_limit, to speeds at which the impact that the rig predicts for a
-// touch at this instant (predicted_force, (4.20)-(4.22)) keeps to it.
+// The hybrid controller with the hub kept below control.speed_limit on the way to the
+// wall and, where there is a control.force_limit, to speeds at which the impact that the
+// rig predicts for a touch at this instant (predicted_force, (4.20)-(4.22)) keeps to it.
 
-// Command for each newton that the predicted force is off its limit [V/N]. The prediction has the
-// command in it, by the torque at the hub over the arm's length: less than half a newton a volt.
+// Command for each newton that the predicted force is off its limit [V/N]. The prediction
+// has the command in it, by the torque at the hub over the arm's length: less than half a
+// newton a volt.
 #define VOLTS_PER_NEWTON 1
-// Share of the limit that the predicted force is held to: it takes the command in effect to stay,
-// while the impact mode goes on along its plan and comes to press up to a fifth harder.
+// Share of the limit that the predicted force is held to: it takes the command in effect
+// to stay, while the impact mode goes on along its plan and comes to press up to a fifth
+// harder.
 #define SHARE 0.8
 // Speed at which a resting hub is taken, for the sign of its friction [rad/s].
 #define CREEP 1e-3
 
-static const controller_parameter speed_limit_parameters[] = {
-    HYBRID_PARAMETERS, {.name = "speed_limit"}, {.name = "force_limit"}};
+static const controller_parameter speed_limit_parameters[] = {HYBRID_PARAMETERS,
+                                                              {.name = "speed_limit"},
+                                                              {.name = "force_limit"}};
 
 static const char *speed_limit_start(void *memory, const controller_setup *setup)
 {
@@ -425,10 +474,12 @@ static const char *speed_limit_start(void *memory, const controller_setup *setup
 static double force_limited_command(const hybrid_memory *m, const controller_input *in)
 {
     const double left = SHARE * m->p[OWN_FORCE_LIMIT] - in->predicted_force;
-    return hybrid_speed_command(m, in, fmax(in->tachometer, CREEP)) + VOLTS_PER_NEWTON * left;
+    return hybrid_speed_command(m, in, fmax(in->tachometer, CREEP)) +
+           VOLTS_PER_NEWTON * left;
 }
 
-static void speed_limit_sample(void *memory, const controller_input *in, controller_output *out)
+static void speed_limit_sample(void *memory, const controller_input *in,
+                               controller_output *out)
 {
     hybrid_memory *m = memory;
     double limited = fmin(m->p[APPROACH_VOLTAGE], hybrid_speed_command(m, in, m->p[OWN]));
@@ -438,17 +489,19 @@ static void speed_limit_sample(void *memory, const controller_input *in, control
     out->command = hybrid_command(m, in, out, limited);
 }
 
-const controller speed_limit_law = HYBRID_LAW("speed-limit", hybrid_modes, speed_limit_parameters,
-                                              speed_limit_start, speed_limit_sample);
+const controller speed_limit_law =
+    HYBRID_LAW("speed-limit", hybrid_modes, speed_limit_parameters, speed_limit_start,
+               speed_limit_sample);
 
 // --- bang-bang ---
 
-// Full command to control.switch_share of the way, full command back until the hub rests, then the
-// plain approach and the hybrid controller.
+// Full command to control.switch_share of the way, full command back until the hub rests,
+// then the plain approach and the hybrid controller.
 static const controller_parameter bang_bang_parameters[] = {HYBRID_PARAMETERS,
                                                             {.name = "switch_share"}};
 
-static void bang_bang_sample(void *memory, const controller_input *in, controller_output *out)
+static void bang_bang_sample(void *memory, const controller_input *in,
+                             controller_output *out)
 {
     hybrid_memory *m = memory;
     double limit = m->rig.voltage_limit, approach = limit;
@@ -459,14 +512,21 @@ static void bang_bang_sample(void *memory, const controller_input *in, controlle
         m->start_angle = in->encoder;
     }
 
-    // on the last part the command brakes until the arm stands, then it is the plain approach
+    // on the last part the command brakes until the arm stands, then it is the plain
+    // approach
     double gone = in->encoder - m->start_angle, way = m->rig.wall_angle - m->start_angle;
     if (gone >= m->p[OWN] * way) {
         m->reversed = m->reversed || in->tachometer <= 0;
-        approach = m->reversed ? m->p[APPROACH_VOLTAGE] : -limit;
+        if (m->reversed) {
+            approach = m->p[APPROACH_VOLTAGE];
+        } else {
+            approach = -limit;
+        }
     }
-    out->command = hybrid_command(m, in, out, m->reversed ? m->p[APPROACH_VOLTAGE] : approach);
+    out->command =
+        hybrid_command(m, in, out, m->reversed ? m->p[APPROACH_VOLTAGE] : approach);
 }
 
-const controller bang_bang_law = HYBRID_LAW("bang-bang", hybrid_modes, bang_bang_parameters,
-                                            hybrid_start_with_own, bang_bang_sample);
+const controller bang_bang_law =
+    HYBRID_LAW("bang-bang", hybrid_modes, bang_bang_parameters, hybrid_start_with_own,
+               bang_bang_sample);

@@ -1,16 +1,18 @@
-// Impedance control (Hogan, Impedance control, ASME Journal of Dynamic Systems, Measurement and
-// Control 107, 1985): the hub behaves as if a spring and a damper tied it to a point that moves
-// into the wall.
+// Impedance control (Hogan, Impedance control, ASME Journal of Dynamic Systems,
+// Measurement and Control 107, 1985): the hub behaves as if a spring and a damper tied it
+// to a point that moves into the wall.
 //
 //     T = k (theta_v - theta) + d (theta_v' - w) + friction of the point's motion
 //
-// The point goes with the speed that the approach's voltage holds from where the arm starts to
+// The point goes with the speed that the approach's voltage holds from where the arm
+// starts to
 //
 //     theta_e = theta_f + 2 f l/k,      theta_f = theta_imp + f l/(2 k2) (5.23)
 //
-// where spring and beam balance with the wanted force f. It uses no force reading: k sets how much
-// a wrong wall or stiffness changes f, namely by k/(k + 4 k2) of the error under a hard position
-// control. The damper makes the arm in contact critical, d = 2 sqrt(M (k + 4 k2)) with M = I1 + 2 I
+// where spring and beam balance with the wanted force f. It uses no force reading: k sets
+// how much a wrong wall or stiffness changes f, namely by k/(k + 4 k2) of the error under
+// a hard position control. The damper makes the arm in contact critical, d = 2 sqrt(M (k
+// + 4 k2)) with M = I1 + 2 I
 // + m l^2/2.
 #include <math.h>
 #include <string.h>
@@ -43,15 +45,17 @@ typedef struct impedance_memory {
 static const char *tune(void *memory, const controller_setup *setup)
 {
     impedance_memory *m = memory;
-    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period, m->rig.period == 0);
+    set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period,
+                   m->rig.period == 0);
     m->rig = setup_kept(setup);
     memcpy(m->p, setup->parameters, sizeof m->p);
 
     // the approach's speed, and the damper
     double held = setup->torque_per_volt * fabs(m->p[APPROACH_VOLTAGE]) - setup->stiction;
-    m->speed = copysign(fmax(0, held) / fmax(setup->hub_damping, 1e-9), m->p[APPROACH_VOLTAGE]);
-    m->damping =
-        2 * sqrt(pressed_inertia(setup) * (m->p[STIFFNESS] + 4 * setup->k2)) - setup->hub_damping;
+    m->speed =
+        copysign(fmax(0, held) / fmax(setup->hub_damping, 1e-9), m->p[APPROACH_VOLTAGE]);
+    m->damping = 2 * sqrt(pressed_inertia(setup) * (m->p[STIFFNESS] + 4 * setup->k2)) -
+                 setup->hub_damping;
     return NULL;
 }
 
@@ -66,23 +70,33 @@ static void sample(void *memory, const controller_input *in, controller_output *
         m->started = true;
         m->point = in->encoder;
     }
-    m->mode = m->mode == CONTACT || in->force > m->p[THRESHOLD] ? CONTACT : APPROACH;
+    if (m->mode == CONTACT || in->force > m->p[THRESHOLD]) {
+        m->mode = CONTACT;
+    } else {
+        m->mode = APPROACH;
+    }
 
     // the point moves on until it is where it belongs, and then goes with that
     double step = m->speed * r->period, left = end - m->point;
     bool moves = !m->arrived && step * left > 0 && fabs(step) < fabs(left);
     double rate = moves ? m->speed : set_point_turn(&m->wanted, r);
     m->arrived = !moves;
-    m->point = moves ? m->point + step : end;
+    if (moves) {
+        m->point = m->point + step;
+    } else {
+        m->point = end;
+    }
 
     out->mode = m->mode;
     out->desired_angle = m->point;
     out->desired_velocity = rate;
-    const double turning = moves ? r->hub_damping * rate : set_point_torque(&m->wanted, r);
-    out->command = (k * (m->point - in->encoder) + m->damping * (rate - in->tachometer) + turning +
-                    (moves ? coulomb_friction(r, rate) : 0)) /
+    const double turning =
+        moves ? r->hub_damping * rate : set_point_torque(&m->wanted, r);
+    out->command = (k * (m->point - in->encoder) + m->damping * (rate - in->tachometer) +
+                    turning + (moves ? coulomb_friction(r, rate) : 0)) /
                    r->torque_per_volt;
 }
 
-const controller impedance_law = CONTROLLER_LAW("impedance", mode_names, table, impedance_memory,
-                                                .start = tune, .sample = sample, .tune = tune);
+const controller impedance_law =
+    CONTROLLER_LAW("impedance", mode_names, table, impedance_memory, .start = tune,
+                   .sample = sample, .tune = tune);

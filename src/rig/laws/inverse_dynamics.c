@@ -1,39 +1,45 @@
-// Computed torque through the inverse of the linear two-link arm, frequency by frequency, after
-// Bayo's method for flexible arms: which torque moves the tip as planned and then makes it press as
-// planned? It is played back open-loop.
+// Computed torque through the inverse of the linear two-link arm, frequency by frequency,
+// after Bayo's method for flexible arms: which torque moves the tip as planned and then
+// makes it press as planned? It is played back open-loop.
 //
-// The arm. With tip angle y = (q2 + q3)/2 as seen from the hub and bend d = q3 - q2 of the two
-// links, contact force f at the tip, and the inertias M11, M12, M22 of both links about the hub,
-// the last link's equation and the sum of both links' are
+// The arm. With tip angle y = (q2 + q3)/2 as seen from the hub and bend d = q3 - q2 of
+// the two links, contact force f at the tip, and the inertias M11, M12, M22 of both links
+// about the hub, the last link's equation and the sum of both links' are
 //
 //     (M12 + M22) y'' - (M12 - M22)/2 d'' + k2 d = -f l
-//     J y'' + (M22 - M11)/2 d'' + D (y' - d'/2) = torque - friction - 2 f l,  J = M11 + 2 M12 + M22
+//     J y'' + (M22 - M11)/2 d'' + D (y' - d'/2) = torque - friction - 2 f l,  J = M11 + 2
+//     M12 + M22
 //
-// The first has no torque in it. It is what the inverse has to solve for d, for given y and f:
+// The first has no torque in it. It is what the inverse has to solve for d, for given y
+// and f:
 //
-//     d'' - s^2 d = u,     u = g y'' + h f                                                  (a)
-//     s^2 = 2 k2/(M12 - M22),   g = 2 (M12 + M22)/(M12 - M22),   h = 2 l/(M12 - M22)
+//     d'' - s^2 d = u,     u = g y'' + h f (a) s^2 = 2 k2/(M12 - M22),   g = 2 (M12 +
+//     M22)/(M12 - M22),   h = 2 l/(M12 - M22)
 //
-// and the second gives the torque. (+-s are the zeros of the transfer function from torque to tip:
-// one of them unstable, since a tip that is pushed through a bend first goes the other way.)
+// and the second gives the torque. (+-s are the zeros of the transfer function from
+// torque to tip: one of them unstable, since a tip that is pushed through a bend first
+// goes the other way.)
 //
-// The inverse. At every frequency (a) is a division: a part U exp(iwt) of u takes
-// d = -U exp(iwt)/(w^2 + s^2), which is bounded though (a) integrated forwards is not. The
-// plan consists of three pieces with few frequencies each,
+// The inverse. At every frequency (a) is a division: a part U exp(iwt) of u takes d = -U
+// exp(iwt)/(w^2 + s^2), which is bounded though (a) integrated forwards is not. The plan
+// consists of three pieces with few frequencies each,
 //
-//     travel   y'' = A sin(wt) + B (1 - cos(wt)),     w = 2 pi/travel_time,    to the wall
-//     rise     f = F/2 (1 - cos(pi t/transition_time)),  y at the wall
-//     hold     f = F
+//     travel   y'' = A sin(wt) + B (1 - cos(wt)),     w = 2 pi/travel_time,    to the
+//     wall rise     f = F/2 (1 - cos(pi t/transition_time)),  y at the wall hold     f =
+//     F
 //
-// so that neither a discrete transform nor its padding is needed: summed over all frequencies, the
-// transform of a piece gives the piece's own within it and, from the poles at w = +-is,
-// exp(-s |t - t_k|) before and after each joint t_k of two pieces, with the heights that make
-// d continuous. What runs ahead of a joint is why the method is not causal: the hub starts before
-// the tip, bends the beam for it, and turns on into the press before the tip has arrived.
+// so that neither a discrete transform nor its padding is needed: summed over all
+// frequencies, the transform of a piece gives the piece's own within it and, from the
+// poles at w = +-is,
+// exp(-s |t - t_k|) before and after each joint t_k of two pieces, with the heights that
+// make d continuous. What runs ahead of a joint is why the method is not causal: the hub
+// starts before the tip, bends the beam for it, and turns on into the press before the
+// tip has arrived.
 //
-// The touch. A tip that arrives with the rate v is stopped by the wall's impulse P, plastically.
-// The plan holds this too: y'' and f contain -v and P times a delta, P being such that the torque
-// contains none: J v + (M22 - M11)/2 (g v - h P) = 2 l P. The rate of d jumps by h P - g v.
+// The touch. A tip that arrives with the rate v is stopped by the wall's impulse P,
+// plastically. The plan holds this too: y'' and f contain -v and P times a delta, P being
+// such that the torque contains none: J v + (M22 - M11)/2 (g v - h P) = 2 l P. The rate
+// of d jumps by h P - g v.
 #include <math.h>
 
 #include "src/rig/laws/laws.h"
@@ -52,38 +58,43 @@ static const controller_parameter table[PARAMETERS] = {
 enum { WAIT, TRAVEL, RISE, HOLD }; // pieces of the plan; piece k ends at joint k
 enum { DEPARTURE, TOUCH, FULL_FORCE, JOINTS };
 
-#define PI        3.14159265358979323846
-#define LEAD_IN   8.0  // by which the hub starts before the tip, in times 1/s: 0.03 % are lost
-#define EARLY     1.5  // before its time a touch has to be, in times 1/s, to move the plan on
-#define REST_RATE 1e-3 // planned hub velocities below it need no push against friction [rad/s]
+#define PI 3.14159265358979323846
+// by which the hub starts before the tip, in times 1/s: 0.03 % are lost
+#define LEAD_IN 8.0
+// before its time a touch has to be, in times 1/s, to move the plan on
+#define EARLY 1.5
+// planned hub velocities below it need no push against friction [rad/s]
+#define REST_RATE 1e-3
 
 typedef struct inverse_memory {
     controller_setup rig;
     double force, threshold;
-    double zero;                          // s [1/s]
-    double per_tip;                       // g
-    double per_force;                     // h [1/(N s2)]
-    double whole_inertia;                 // J [kg m2]
-    double bend_inertia;                  // (M22 - M11)/2 [kg m2]
-    double sine, cosine;                  // A and B [rad/s2]
-    double travel, rise;                  // frequencies w of the two pieces [rad/s]
-    double joint[JOINTS];                 // their times, from the tip's departure on [s]
-    double ahead[JOINTS], behind[JOINTS]; // heights of the exponentials at each joint [rad]
-    double arrival_rate;                  // v [rad/s]
-    double start_angle;                   // at the first sample [rad]
-    double departure;                     // when the tip departs, on the rig's clock [s]
+    double zero;          // s [1/s]
+    double per_tip;       // g
+    double per_force;     // h [1/(N s2)]
+    double whole_inertia; // J [kg m2]
+    double bend_inertia;  // (M22 - M11)/2 [kg m2]
+    double sine, cosine;  // A and B [rad/s2]
+    double travel, rise;  // frequencies w of the two pieces [rad/s]
+    double joint[JOINTS]; // their times, from the tip's departure on [s]
+    double ahead[JOINTS],
+        behind[JOINTS];  // heights of the exponentials at each joint [rad]
+    double arrival_rate; // v [rad/s]
+    double start_angle;  // at the first sample [rad]
+    double departure;    // when the tip departs, on the rig's clock [s]
     bool started;
 } inverse_memory;
 
-// What the plan asks for at one instant; bend and its rate first as the piece's frequencies give
-// them, then with the exponentials.
+// What the plan asks for at one instant; bend and its rate first as the piece's
+// frequencies give them, then with the exponentials.
 typedef struct moment {
     double tip, tip_rate, tip_acceleration; // y and derivatives [rad], [rad/s], [rad/s2]
     double force;                           // f [N]
     double bend, bend_rate;                 // d and its derivative [rad], [rad/s]
 } moment;
 
-// Piece `piece` of the plan at a time since the tip's departure, which may lie at its ends.
+// Piece `piece` of the plan at a time since the tip's departure, which may lie at its
+// ends.
 static moment piece_at(const inverse_memory *m, int piece, double time)
 {
     const double s2 = m->zero * m->zero;
@@ -91,11 +102,13 @@ static moment piece_at(const inverse_memory *m, int piece, double time)
         return (moment){.tip = m->start_angle};
     }
     if (piece == TRAVEL) {
-        const double w = m->travel, c = inline_cos(w * time), s = inline_sin(w * time), A = m->sine;
-        const double B = m->cosine, at_w = -m->per_tip / (w * w + s2), at_0 = -m->per_tip / s2;
+        const double w = m->travel, c = inline_cos(w * time), s = inline_sin(w * time),
+                     A = m->sine;
+        const double B = m->cosine, at_w = -m->per_tip / (w * w + s2),
+                     at_0 = -m->per_tip / s2;
         return (moment){
-            .tip =
-                m->start_angle + A / w * (time - s / w) + B * (time * time / 2 - (1 - c) / (w * w)),
+            .tip = m->start_angle + A / w * (time - s / w) +
+                   B * (time * time / 2 - (1 - c) / (w * w)),
             .tip_rate = A / w * (1 - c) + B * (time - s / w),
             .tip_acceleration = A * s + B * (1 - c),
             .bend = at_w * (A * s - B * c) + at_0 * B,
@@ -104,8 +117,9 @@ static moment piece_at(const inverse_memory *m, int piece, double time)
     }
 
     // at the wall: the force rises, then stays
-    moment pressed = {
-        .tip = m->rig.wall_angle, .force = m->force, .bend = -m->per_force * m->force / s2};
+    moment pressed = {.tip = m->rig.wall_angle,
+                      .force = m->force,
+                      .bend = -m->per_force * m->force / s2};
     if (piece == RISE) {
         const double w = m->rise, t = time - m->joint[TOUCH], half = m->force / 2;
         const double at_w = -m->per_force / (w * w + s2);
@@ -116,15 +130,18 @@ static moment piece_at(const inverse_memory *m, int piece, double time)
     return pressed;
 }
 
-// Heights of the exponentials at the joints: there d is continuous and its rate jumps by `kick`.
+// Heights of the exponentials at the joints: there d is continuous and its rate jumps by
+// `kick`.
 static void join_pieces(inverse_memory *m)
 {
     double per_impulse = 2 * m->rig.link_length + m->bend_inertia * m->per_force;
     double impulse =
         (m->whole_inertia + m->bend_inertia * m->per_tip) * m->arrival_rate / per_impulse;
     for (int k = 0; k < JOINTS; k++) {
-        moment left = piece_at(m, k, m->joint[k]), right = piece_at(m, k + 1, m->joint[k]);
-        double kick = k == TOUCH ? m->per_force * impulse - m->per_tip * m->arrival_rate : 0;
+        moment left = piece_at(m, k, m->joint[k]),
+               right = piece_at(m, k + 1, m->joint[k]);
+        double kick =
+            k == TOUCH ? m->per_force * impulse - m->per_tip * m->arrival_rate : 0;
         double difference = right.bend - left.bend;
         double sum = (right.bend_rate - left.bend_rate - kick) / m->zero;
         m->ahead[k] = (sum + difference) / 2;
@@ -160,20 +177,34 @@ static double torque_of(const inverse_memory *m, const moment *planned)
                                m->per_tip * planned->tip_acceleration +
                                m->per_force * planned->force;
     double rate = hub_rate(planned);
-    double friction = rate > REST_RATE ? m->rig.stiction : rate < -REST_RATE ? -m->rig.stiction : 0;
-    return m->whole_inertia * planned->tip_acceleration + m->bend_inertia * bend_acceleration +
-           m->rig.hub_damping * rate + 2 * m->rig.link_length * planned->force + friction;
+    double friction;
+    if (rate > REST_RATE) {
+        friction = m->rig.stiction;
+    } else if (rate < -REST_RATE) {
+        friction = -m->rig.stiction;
+    } else {
+        friction = 0;
+    }
+    return m->whole_inertia * planned->tip_acceleration +
+           m->bend_inertia * bend_acceleration + m->rig.hub_damping * rate +
+           2 * m->rig.link_length * planned->force + friction;
 }
 
 static const char *start(void *memory, const controller_setup *setup)
 {
     inverse_memory *m = memory;
-    const double *p = setup->parameters, l = setup->link_length, ml2 = setup->link_mass * l * l;
-    const double m11 = setup->hub_inertia + setup->link_inertia + 1.25 * ml2, m12 = 0.5 * ml2;
+    const double *p = setup->parameters, l = setup->link_length,
+                 ml2 = setup->link_mass * l * l;
+    const double m11 = setup->hub_inertia + setup->link_inertia + 1.25 * ml2,
+                 m12 = 0.5 * ml2;
     const double m22 = setup->link_inertia + 0.25 * ml2;
-    FAIL_IF(!(setup->torque_per_volt > 0), "it needs a motor that turns the hub");
-    FAIL_IF(!(m12 > m22),
-            "the tip's motion has no bounded inverse with a link inertia of m l^2/4 or more");
+    if (!(setup->torque_per_volt > 0)) {
+        return "it needs a motor that turns the hub";
+    }
+    if (!(m12 > m22)) {
+        return "the tip's motion has no bounded inverse with a link inertia of m l^2/4 "
+               "or more";
+    }
 
     // the linear arm, (a) and the sum of both links' equations
     m->rig = setup_kept(setup);
@@ -194,7 +225,8 @@ static const char *start(void *memory, const controller_setup *setup)
     return NULL;
 }
 
-// The plan from the hub's angle at the first sample, at rest: y and y' end at the wall and at v.
+// The plan from the hub's angle at the first sample, at rest: y and y' end at the wall
+// and at v.
 static void plan(inverse_memory *m, const controller_input *in)
 {
     const double T = m->joint[TOUCH], way = m->rig.wall_angle - in->encoder;
@@ -206,9 +238,10 @@ static void plan(inverse_memory *m, const controller_input *in)
     join_pieces(m);
 }
 
-// Playback. A touch well before the planned time advances the plan to the touch; nothing else is
-// fed back. (Just before that time the hub already turns into the press, and the plan is better
-// left unchanged.) Since a command holds for a period, it is the torque at the period's middle.
+// Playback. A touch well before the planned time advances the plan to the touch; nothing
+// else is fed back. (Just before that time the hub already turns into the press, and the
+// plan is better left unchanged.) Since a command holds for a period, it is the torque at
+// the period's middle.
 static void sample(void *memory, const controller_input *in, controller_output *out)
 {
     inverse_memory *m = memory;
@@ -226,12 +259,17 @@ static void sample(void *memory, const controller_input *in, controller_output *
     // where it should be now, and what the torque is to be while the command holds
     moment now = plan_at(m, time);
     moment held = plan_at(m, time + m->rig.delay + m->rig.period / 2);
-    out->mode = time < m->joint[TOUCH] ? MODE_TRAVEL : MODE_PRESS;
+    if (time < m->joint[TOUCH]) {
+        out->mode = MODE_TRAVEL;
+    } else {
+        out->mode = MODE_PRESS;
+    }
     out->command = torque_of(m, &held) / m->rig.torque_per_volt;
     out->desired_angle = now.tip - now.bend / 2;
     out->desired_velocity = hub_rate(&now);
     out->calculated_force = now.force;
 }
 
-const controller inverse_dynamics_law = CONTROLLER_LAW(
-    "inverse-dynamics", mode_names, table, inverse_memory, .start = start, .sample = sample);
+const controller inverse_dynamics_law =
+    CONTROLLER_LAW("inverse-dynamics", mode_names, table, inverse_memory, .start = start,
+                   .sample = sample);

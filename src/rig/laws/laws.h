@@ -1,9 +1,9 @@
-// The built-in control laws. Each is written against src/rig/controller.h and nothing else of the
-// rig. Between its start and its end a law needs nothing of the lab: no file, no allocation, no
-// table of parameters; what a sample computes with stands in its memory and in the values of its
-// setup (tests/law_alone.c holds the laws without the lab). The start of `observer` alone needs the
-// modes of an arm (src/arm/modes.h), and memory for the moment. docs/explanation/control-design.md
-// says where each comes from.
+// The built-in control laws. Each is written against src/rig/controller.h and nothing
+// else of the rig. Between its start and its end a law needs nothing of the lab: no file,
+// no allocation, no table of parameters; what a sample computes with stands in its memory
+// and in the values of its setup (tests/law_alone.c holds the laws without the lab). The
+// start of `observer` alone needs the modes of an arm (src/arm/modes.h), and memory for
+// the moment. docs/explanation/control-design.md says where each comes from.
 #pragma once
 
 #include <math.h>
@@ -14,17 +14,17 @@
 #include "src/rig/controller.h"
 #include "src/tables/control_laws.h"
 
-// A controller: its word, names of modes, table of parameters, type of memory, and its functions
-// and whatever else it has as .start = ..., .sample = ....
-#define CONTROLLER_LAW(law, names, table, memory, ...)                                             \
-    {                                                                                              \
-        .interface = CONTROLLER_INTERFACE, .name = law, .modes = names, .parameters = table,       \
-        .parameter_count = (int)(sizeof table / sizeof table[0]), .memory_size = sizeof(memory),   \
-        __VA_ARGS__                                                                                \
+// A controller: its word, names of modes, table of parameters, type of memory, and its
+// functions and whatever else it has as .start = ..., .sample = ....
+#define CONTROLLER_LAW(law, names, table, memory, ...)                                   \
+    {                                                                                    \
+        .interface = CONTROLLER_INTERFACE, .name = law, .modes = names,                  \
+        .parameters = table, .parameter_count = (int)(sizeof table / sizeof table[0]),   \
+        .memory_size = sizeof(memory), __VA_ARGS__                                       \
     }
 
-// What a law keeps of its setup: all but where the rig's values lie, because its memory may be put
-// into another loop's.
+// What a law keeps of its setup: all but where the rig's values lie, because its memory
+// may be put into another loop's.
 static inline controller_setup setup_kept(const controller_setup *setup)
 {
     controller_setup kept = *setup;
@@ -38,10 +38,10 @@ static inline double coulomb_friction(const controller_setup *setup, double rate
     return rate > 0 ? setup->stiction : rate < 0 ? -setup->stiction : 0;
 }
 
-// A wanted force that changes, as it is told, and a smooth one that follows it: in a step without
-// overshoot, on a ramp without a lag, once its rate is known. The force answers to the hub with
-// 1 - (p/s)^2, s of the arm, for the tip's inertia; so what follows falls off as p^-2, or fast
-// waves would grow.
+// A wanted force that changes, as it is told, and a smooth one that follows it: in a step
+// without overshoot, on a ramp without a lag, once its rate is known. The force answers
+// to the hub with 1 - (p/s)^2, s of the arm, for the tip's inertia; so what follows falls
+// off as p^-2, or fast waves would grow.
 typedef struct set_point {
     double aim;                       // [N]
     double rise;                      // since the sample before [N]
@@ -52,20 +52,23 @@ typedef struct set_point {
 
 #define SET_POINT_RATE 40.0 // of following, w [1/s]
 
-// The wanted force at the start, or anew; of a step the two samples round it tell no rate.
-static inline void set_point_tell(set_point *s, double force, double period, bool at_start)
+// The wanted force at the start, or anew; of a step the two samples round it tell no
+// rate.
+static inline void set_point_tell(set_point *s, double force, double period,
+                                  bool at_start)
 {
     const double before = s->rise;
     s->rise = at_start ? 0 : force - s->aim;
     s->told = !at_start;
     s->aim = force;
-    s->seen_rate =
-        before * s->rise > 0 ? copysign(fmin(fabs(before), fabs(s->rise)), s->rise) / period : 0;
+    s->seen_rate = before * s->rise > 0
+                       ? copysign(fmin(fabs(before), fabs(s->rise)), s->rise) / period
+                       : 0;
     s->force = at_start ? force : s->force;
 }
 
-// At a sample: since the one before e = force - aim has died away further, e'' + 2 w e' + w^2 e =
-// 0.
+// At a sample: since the one before e = force - aim has died away further, e'' + 2 w e' +
+// w^2 e = 0.
 static inline void set_point_follow(set_point *s, double period)
 {
     if (!s->told) {
@@ -80,7 +83,8 @@ static inline void set_point_follow(set_point *s, double period)
         return;
     }
     const double both = falls + w * e;
-    const double left = (e + both * period) * decay, rate = (falls - w * both * period) * decay;
+    const double left = (e + both * period) * decay,
+                 rate = (falls - w * both * period) * decay;
     s->force = s->aim + left;
     s->rate = s->aim_rate + rate;
     s->acceleration = -w * (2 * rate + w * left);
@@ -93,8 +97,8 @@ static inline double pressed_inertia(const controller_setup *r)
            r->link_mass * r->link_length * r->link_length / 2;
 }
 
-// How the hub turns with a set-point that moves [rad/s], and the torque that takes: damping,
-// friction, which ends where the hub as good as rests, and inertia [N m].
+// How the hub turns with a set-point that moves [rad/s], and the torque that takes:
+// damping, friction, which ends where the hub as good as rests, and inertia [N m].
 static inline double set_point_turn(const set_point *s, const controller_setup *r)
 {
     return r->link_length / (2 * r->k2) * s->rate;

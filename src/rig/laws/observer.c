@@ -1,14 +1,14 @@
 // A law that needs no tuning: an observer of arm, wall and unknown torque
-// (src/rig/estimation/arm_observer.h), and feedback of its estimate with gains from Riccati
-// equations. docs/explanation/control-design.md derives it.
+// (src/rig/estimation/arm_observer.h), and feedback of its estimate with gains from
+// Riccati equations. docs/explanation/control-design.md derives it.
 //
-// TRAVEL brings the arm to the wall without vibration, from the guarded distance on no faster than
-// what the commanded force stops; where the wall is not in doubt, in the least time that ends so.
-// PRESS lets the force rise and regulates round the rest in which
-// the beam presses with it. HOLD keeps that rest with the command in the middle of friction's band.
-// RECOVER lands on the wall again, almost at rest, where contact was lost. A wall that throws the
-// tip back again and again is none that an impact without rebound describes: there CATCH moves the
-// hub, not the tip.
+// TRAVEL brings the arm to the wall without vibration, from the guarded distance on no
+// faster than what the commanded force stops; where the wall is not in doubt, in the
+// least time that ends so. PRESS lets the force rise and regulates round the rest in
+// which the beam presses with it. HOLD keeps that rest with the command in the middle of
+// friction's band. RECOVER lands on the wall again, almost at rest, where contact was
+// lost. A wall that throws the tip back again and again is none that an impact without
+// rebound describes: there CATCH moves the hub, not the tip.
 #include <math.h>
 #include <string.h>
 
@@ -17,7 +17,8 @@
 #include "src/rig/laws/observer_design.h"
 
 enum { TRAVEL, PRESS, HOLD, RECOVER, CATCH };
-static const char *const mode_names[] = {"travel", "press", "hold", "recover", "catch", NULL};
+static const char *const mode_names[] = {"travel",  "press", "hold",
+                                         "recover", "catch", NULL};
 
 enum { FORCE_WANTED, APPROACH_VOLTAGE, THRESHOLD, FORCE_LIMIT, WALL_DOUBT, PARAMETERS };
 static const controller_parameter table[PARAMETERS] = {
@@ -30,30 +31,37 @@ static const controller_parameter table[PARAMETERS] = {
      .initial = 0.03,
      .minimum = 0,
      .maximum = 10,
-     .description = "by which the wall may be nearer than believed; 0 comes in the least time"},
+     .description =
+         "by which the wall may be nearer than believed; 0 comes in the least time"},
 };
 
 // The numbers of the law, derived in docs/explanation/control-design.md.
-#define GUARD_BEFORE    0.08  // in which a wall that is nearer than believed is looked for [s],
-#define GUARD_AFTER     0.03  // and one that is further
-#define BIAS_TIME       0.1   // over which the error of the estimated force is averaged [s]
-#define MOST_CORRECTION 0.3   // that it may add to the force aimed at, a share
-#define LOST_AFTER      4e-3  // without a reading that shows force contact is lost [s]
-#define LAND_SPEED      0.035 // of the tip where it returns, for every newton wanted [rad/s/N],
-#define LAND_TIME       0.1   // or the way left over this, if that is faster [s]
-#define BRAKING         0.5   // share of the force that this may press with meanwhile
-#define REST            0.02  // a slower hub is at rest [rad/s]
-#define TURNS           0.005 // a slower hub as good as rests where the set-point moves [rad/s]
-#define HOLD_WITHIN     0.02  // share of the force within which it is held at rest,
-#define HOLD_BEYOND     0.04  // and beyond which it is held no longer,
-#define HOLD_LEAST      0.005 // both on top of this [N]
-#define HOLD_MEAN       0.1   // over which the reading is averaged meanwhile [s]
-#define HOLD_SWING      0.1   // share of the force by which it may swing where it is held,
-#define SWING_MEAN      0.04  // over which that is averaged [s]
+// in which a wall that is nearer than believed is looked for [s],
+#define GUARD_BEFORE 0.08
+#define GUARD_AFTER  0.03 // and one that is further
+// over which the error of the estimated force is averaged [s]
+#define BIAS_TIME       0.1
+#define MOST_CORRECTION 0.3  // that it may add to the force aimed at, a share
+#define LOST_AFTER      4e-3 // without a reading that shows force contact is lost [s]
+// of the tip where it returns, for every newton wanted [rad/s/N],
+#define LAND_SPEED 0.035
+#define LAND_TIME  0.1  // or the way left over this, if that is faster [s]
+#define BRAKING    0.5  // share of the force that this may press with meanwhile
+#define REST       0.02 // a slower hub is at rest [rad/s]
+// a slower hub as good as rests where the set-point moves [rad/s]
+#define TURNS       0.005
+#define HOLD_WITHIN 0.02  // share of the force within which it is held at rest,
+#define HOLD_BEYOND 0.04  // and beyond which it is held no longer,
+#define HOLD_LEAST  0.005 // both on top of this [N]
+#define HOLD_MEAN   0.1   // over which the reading is averaged meanwhile [s]
+// share of the force by which it may swing where it is held,
+#define HOLD_SWING 0.1
+#define SWING_MEAN 0.04 // over which that is averaged [s]
 
 // Of CATCH.
-#define THROWN_BACK   3    // losses of contact after which it begins
-#define CATCH_SPEED   1.0  // share of its whole way that the hub goes in a second at first,
+#define THROWN_BACK 3 // losses of contact after which it begins
+// share of its whole way that the hub goes in a second at first,
+#define CATCH_SPEED   1.0
 #define CATCH_GROWTH  10.0 // what that gains with the way made [1/s],
 #define CATCH_END     0.06 // and the time constant of its end [s]
 #define CATCH_MEAN    0.01 // over which the reading is averaged [s]
@@ -76,7 +84,8 @@ typedef struct observer_memory {
     double moved;        // change of the set-point since the sample before [N]
     double ahead;        // of a set-point that goes on moving is aimed at [N]
     double force_rate;   // of a set-point that moves from sample to sample [N/s]
-    double correction;   // of the force aimed at: what the estimated force is above the reading [N]
+    double correction;   // of the force aimed at: what the estimated force is above the
+                         // reading [N]
     double held_force;   // mean of the reading while it holds [N]
     double mean_force;   // of the reading, over SWING_MEAN [N]
     double swing;        // its mean square about that [N2]
@@ -88,7 +97,7 @@ typedef struct observer_memory {
     double integral;     // of the force error [N]
 } observer_memory;
 
-// --- the arms ---------------------------------------------------------------------------------
+// --- the arms --------------------------------------------------------------------------
 
 static const observer_design *design_of(const observer_memory *m)
 {
@@ -128,8 +137,9 @@ static bool same_rig(const controller_setup *a, const controller_setup *b)
     return a->period == b->period && a->delay == b->delay &&
            a->torque_per_volt == b->torque_per_volt && a->hub_damping == b->hub_damping &&
            a->stiction == b->stiction && a->hub_inertia == b->hub_inertia &&
-           a->link_mass == b->link_mass && a->k2 == b->k2 && a->wall_angle == b->wall_angle &&
-           a->links == b->links && a->hub_spring == b->hub_spring;
+           a->link_mass == b->link_mass && a->k2 == b->k2 &&
+           a->wall_angle == b->wall_angle && a->links == b->links &&
+           a->hub_spring == b->hub_spring;
 }
 
 // The force and its limits may change; what the observers are designed for may not.
@@ -145,29 +155,32 @@ static const char *tune(void *memory, const controller_setup *setup)
     return NULL;
 }
 
-// --- commands ---------------------------------------------------------------------------------
+// --- commands --------------------------------------------------------------------------
 
 static double limited(const observer_memory *m, double command)
 {
     return fmax(-m->rig.voltage_limit, fmin(command, m->rig.voltage_limit));
 }
 
-// Friction to overcome on the way: of the motion, or of the one wanted where the hub rests.
+// Friction to overcome on the way: of the motion, or of the one wanted where the hub
+// rests.
 static double friction_ahead(const observer_memory *m, double rate, double wanted)
 {
     double way = fabs(rate) > REST ? rate : wanted;
     return coulomb_friction(&m->rig, way);
 }
 
-// Speed with which a tip that was thrown back is to meet the wall again: it falls with the way
-// left, and grows with it where the wall is no more [rad/s].
+// Speed with which a tip that was thrown back is to meet the wall again: it falls with
+// the way left, and grows with it where the wall is no more [rad/s].
 static double landing_speed(const observer_memory *m, const estimator *e)
 {
     const double gap = fabs(observer_of(m)->wall - arm_observer_tip(observer_of(m), e));
-    return fmin(fmax(LAND_SPEED * m->p[FORCE_WANTED], gap / LAND_TIME), design_of(m)->touch_speed);
+    return fmin(fmax(LAND_SPEED * m->p[FORCE_WANTED], gap / LAND_TIME),
+                design_of(m)->touch_speed);
 }
 
-// Lands softly: takes the vibration out of the arm, so that all of it turns towards the wall.
+// Lands softly: takes the vibration out of the arm, so that all of it turns towards the
+// wall.
 static double land(const observer_memory *m, const estimator *e)
 {
     const arm_observer *o = observer_of(m);
@@ -190,11 +203,13 @@ static double land(const observer_memory *m, const estimator *e)
               stiction * fmax(-1, fmin(share, 1));
 
     // a tip that is still at the wall is pressed on by what brakes the hub
-    torque = fmax(torque, -BRAKING * m->p[FORCE_WANTED] / fabs(arm_observer_force_per_torque(o)));
+    torque = fmax(torque,
+                  -BRAKING * m->p[FORCE_WANTED] / fabs(arm_observer_force_per_torque(o)));
     return limited(m, torque / m->rig.torque_per_volt);
 }
 
-// Keeps the arm to the plan: the torque it takes, and feedback of all deviations but the angle.
+// Keeps the arm to the plan: the torque it takes, and feedback of all deviations but the
+// angle.
 static double travel(observer_memory *m, const estimator *e)
 {
     const arm_observer *o = observer_of(m);
@@ -202,13 +217,15 @@ static double travel(observer_memory *m, const estimator *e)
     const int n = set->count;
     smooth_approach_slow(&m->plan, design_of(m), arm_observer_tip(o, e),
                          e->z[0] / set->momentum[0]);
-    double speed = smooth_approach_speed(&m->plan, design_of(m)), hub_speed = 0, feedback = 0;
+    double speed = smooth_approach_speed(&m->plan, design_of(m)), hub_speed = 0,
+           feedback = 0;
 
     // all deviations but the angle's
     for (int i = 0; i < n; i++) {
         hub_speed += set->hub[i] * m->plan.state[n + i];
-        feedback += design_of(m)->travel_gain[i] * (m->plan.state[i] - e->z[i]) +
-                    design_of(m)->travel_gain[n + i] * (m->plan.state[n + i] - e->z[n + i]);
+        feedback +=
+            design_of(m)->travel_gain[i] * (m->plan.state[i] - e->z[i]) +
+            design_of(m)->travel_gain[n + i] * (m->plan.state[n + i] - e->z[n + i]);
     }
 
     // and what the plan takes
@@ -233,12 +250,15 @@ static double hurry(observer_memory *m, const estimator *e)
                                 .wall = r->wall_angle,
                                 .force = m->p[FORCE_WANTED]};
     m->hurries = most > 0 && quickest_touch_plan(&m->quickest, &task);
-    return m->hurries ? limited(m, (quickest_touch_next(&m->quickest) - drift) / r->torque_per_volt)
-                      : travel(m, e);
+    if (m->hurries) {
+        return limited(m,
+                       (quickest_touch_next(&m->quickest) - drift) / r->torque_per_volt);
+    }
+    return travel(m, e);
 }
 
-// Rate with which a wrong force in contact runs away, at the stiffness that the readings show
-// [1/s].
+// Rate with which a wrong force in contact runs away, at the stiffness that the readings
+// show [1/s].
 static double divergence(const observer_memory *m)
 {
     return design_of(m)->divergence * sqrt(observer_of(m)->stiffness);
@@ -253,24 +273,31 @@ static double stopping_force(const observer_memory *m, const estimator *e)
     return arm_observer_square(o, 0) * coordinate / (set->hub[0] * o->arm.length);
 }
 
-// Share of the stopping force that the force has at least: a tip that lands comes to it sooner with
-// less.
+// Share of the stopping force that the force has at least: a tip that lands comes to it
+// sooner with less.
 static double least_share(const observer_memory *m)
 {
-    return m->losses > 0 ? 0.25 : 0.5;
+    if (m->losses > 0) {
+        return 0.25;
+    }
+    return 0.5;
 }
 
-// Limits a command so that the force it causes at once stays within the limit. This applies where
-// the force follows a torque at once, which it does not behind a spring at the hub. A motion that
-// the allowed force cannot stop gets more: only braking reduces it, and braking presses.
+// Limits a command so that the force it causes at once stays within the limit. This
+// applies where the force follows a torque at once, which it does not behind a spring at
+// the hub. A motion that the allowed force cannot stop gets more: only braking reduces
+// it, and braking presses.
 static double within_force(const observer_memory *m, const estimator *e, double command)
 {
     const arm_observer *o = observer_of(m);
     double per_volt = arm_observer_force_per_torque(o) * m->rig.torque_per_volt;
     double stopping = stopping_force(m, e), wanted = m->p[FORCE_WANTED];
-    double least = fmax(0, fmin(OBSERVER_LEAST_FORCE * wanted, least_share(m) * stopping));
+    double least =
+        fmax(0, fmin(OBSERVER_LEAST_FORCE * wanted, least_share(m) * stopping));
     double most = m->p[FORCE_LIMIT] > 0 ? m->p[FORCE_LIMIT] : HUGE_VAL;
-    most = stopping > most ? 2 * stopping - wanted : most;
+    if (stopping > most) {
+        most = 2 * stopping - wanted;
+    }
     if (-per_volt * m->rig.voltage_limit > least) {
         double force = arm_observer_force(o, e, m->rig.torque_per_volt * command);
         command += (fmax(least, fmin(force, most)) - force) / per_volt;
@@ -286,7 +313,8 @@ static double mode_at_rest(const observer_memory *m, double force)
 }
 
 // The first mode's way from a coordinate and its rate to a force [N].
-static void plan_rise(observer_memory *m, double time, double coordinate, double rate, double force)
+static void plan_rise(observer_memory *m, double time, double coordinate, double rate,
+                      double force)
 {
     const double limit = m->p[FORCE_LIMIT], stopped = coordinate + rate / divergence(m);
     const force_rise_task task = {
@@ -294,13 +322,17 @@ static void plan_rise(observer_memory *m, double time, double coordinate, double
         .rate = rate,
         .divergence = divergence(m),
         .end = mode_at_rest(m, force),
-        .least =
-            fmax(0, fmin(mode_at_rest(m, OBSERVER_LEAST_FORCE * force), least_share(m) * stopped)),
+        .least = fmax(0, fmin(mode_at_rest(m, OBSERVER_LEAST_FORCE * force),
+                              least_share(m) * stopped)),
         .most = limit > 0 ? mode_at_rest(m, limit) : HUGE_VAL,
         .time = time,
     };
     // no force is wanted: nothing rises
-    m->rise = task.end > 0 ? force_rise_begin(&task) : (force_rise){.begun = time};
+    if (task.end > 0) {
+        m->rise = force_rise_begin(&task);
+    } else {
+        m->rise = (force_rise){.begun = time};
+    }
 }
 
 // It goes on from where the mode is.
@@ -310,10 +342,10 @@ static void begin_rise(observer_memory *m, double time)
     plan_rise(m, time, o->e.z[0], o->e.z[o->arm.contact.count], m->p[FORCE_WANTED]);
 }
 
-// Follows a set-point that changes in contact. The way goes on from where it is to the new force;
-// of a plan made anew at every sample the force is 2 r/s behind a set-point with the rate r, which
-// is aimed at in advance, with a lag of a quarter of that time lest quick waves be amplified
-// without bound.
+// Follows a set-point that changes in contact. The way goes on from where it is to the
+// new force; of a plan made anew at every sample the force is 2 r/s behind a set-point
+// with the rate r, which is aimed at in advance, with a lag of a quarter of that time
+// lest quick waves be amplified without bound.
 static void follow_setpoint(observer_memory *m, double time)
 {
     const double before = m->p[FORCE_WANTED] - m->moved, period = m->rig.period;
@@ -329,9 +361,16 @@ static void follow_setpoint(observer_memory *m, double time)
     }
     m->force_rate = m->moved / period;
     const double lead = 2 / divergence(m), share = fmin(1, 4 * period / lead);
-    m->ahead = goes_on ? m->ahead + share * (lead * m->force_rate - m->ahead) : 0;
-    plan_rise(m, time, way[0], way[1], fmax(0, m->p[FORCE_WANTED] + m->correction + m->ahead));
-    m->rise.time = goes_on ? fmax(m->rise.time, 2 * period) : m->rise.time;
+    if (goes_on) {
+        m->ahead = m->ahead + share * (lead * m->force_rate - m->ahead);
+    } else {
+        m->ahead = 0;
+    }
+    plan_rise(m, time, way[0], way[1],
+              fmax(0, m->p[FORCE_WANTED] + m->correction + m->ahead));
+    if (goes_on) {
+        m->rise.time = fmax(m->rise.time, 2 * period);
+    }
     m->mode = PRESS;
     m->moved = 0;
 }
@@ -340,12 +379,14 @@ static void follow_setpoint(observer_memory *m, double time)
 static double resting_force(const observer_memory *m, const estimator *e)
 {
     const arm_observer *o = observer_of(m);
-    return (arm_observer_holding_torque(o, e) + e->z[arm_observer_torque_index(o)]) / o->arm.length;
+    return (arm_observer_holding_torque(o, e) + e->z[arm_observer_torque_index(o)]) /
+           o->arm.length;
 }
 
-// Friction to overcome in contact. At rest it is proportional to the force wanted there, within the
-// band that friction holds: its full step would change the force by several per cent at once. Half
-// of what is wanted is by the reading, which hub sensors that err do not touch.
+// Friction to overcome in contact. At rest it is proportional to the force wanted there,
+// within the band that friction holds: its full step would change the force by several
+// per cent at once. Half of what is wanted is by the reading, which hub sensors that err
+// do not touch.
 static double friction_pressing(const observer_memory *m, const estimator *e, double aim,
                                 double hub_rate, bool moves)
 {
@@ -360,8 +401,8 @@ static double friction_pressing(const observer_memory *m, const estimator *e, do
     return m->rig.stiction * fmax(-1, fmin(off / (HOLD_WITHIN * force + HOLD_LEAST), 1));
 }
 
-// Keeps the arm to the rise and then at rest: the first mode on its way, the others as its torque
-// bends them.
+// Keeps the arm to the rise and then at rest: the first mode on its way, the others as
+// its torque bends them.
 static double press(const observer_memory *m, const estimator *e, double time)
 {
     const arm_observer *o = observer_of(m);
@@ -382,7 +423,8 @@ static double press(const observer_memory *m, const estimator *e, double time)
     for (int i = 0; i < n; i++) {
         double wanted = i == 0 ? way[0] : set->hub[i] * torque / set->square[i];
         double off = wanted - e->z[i], off_rate = (i == 0 ? way[1] : 0) - e->z[n + i];
-        feedback += design_of(m)->press_gain[i] * off + design_of(m)->press_gain[n + i] * off_rate;
+        feedback += design_of(m)->press_gain[i] * off +
+                    design_of(m)->press_gain[n + i] * off_rate;
     }
 
     torque += m->rig.hub_damping * hub_rate - e->z[arm_observer_torque_index(o)] +
@@ -390,28 +432,31 @@ static double press(const observer_memory *m, const estimator *e, double time)
     return within_force(m, e, torque / m->rig.torque_per_volt + feedback);
 }
 
-// Presses against a wall that throws the tip back. A hub that is moved by a spring and a damper is
-// passive: no wall, however it answers, takes work out of it, and each rebound of the tip loses
-// some to damper and wall. The hub goes slowly to where the arm presses with the wanted force,
-// since a tip thrown back meets the wall again with what the hub has gained; an integral of the
-// force error does the rest. Damper and spring are those of an arm damped at 0.7 of the critical,
-// as far as the lag of the loop leaves them phase.
+// Presses against a wall that throws the tip back. A hub that is moved by a spring and a
+// damper is passive: no wall, however it answers, takes work out of it, and each rebound
+// of the tip loses some to damper and wall. The hub goes slowly to where the arm presses
+// with the wanted force, since a tip thrown back meets the wall again with what the hub
+// has gained; an integral of the force error does the rest. Damper and spring are those
+// of an arm damped at 0.7 of the critical, as far as the lag of the loop leaves them
+// phase.
 static double catch_tip(observer_memory *m, const controller_input *in)
 {
     const controller_setup *r = &m->rig;
     const arm_observer *o = observer_of(m);
-    const double h = o->arm.contact.hub[0], length = o->arm.length, force = m->p[FORCE_WANTED];
+    const double h = o->arm.contact.hub[0], length = o->arm.length,
+                 force = m->p[FORCE_WANTED];
     const double inertia = 1 / (h * h), arm = inertia * arm_observer_square(o, 0);
     const double damping =
         fmin(2 * sqrt(inertia * arm), inertia / (PHASE_LOST * (r->period + r->delay)));
     const double spring = fmax(0, fmin(arm, damping * damping / (2 * inertia) - arm));
 
-    // the way, and at its end the integral, which cannot wind up beyond what friction and a wrong
-    // model explain
+    // the way, and at its end the integral, which cannot wind up beyond what friction and
+    // a wrong model explain
     const double end = force * length / arm, left = end - m->way;
     const double rate = fmin(CATCH_SPEED * end + CATCH_GROWTH * m->way, left / CATCH_END);
     m->way += rate * r->period;
-    m->mean_force += fmin(1, r->period / CATCH_MEAN) * (fmin(in->force, 2 * force) - m->mean_force);
+    m->mean_force +=
+        fmin(1, r->period / CATCH_MEAN) * (fmin(in->force, 2 * force) - m->mean_force);
     const double off = force - m->mean_force;
     if (left < 0.1 * end && fabs(off) > HOLD_WITHIN * force + HOLD_LEAST) {
         const double most = MOST_CORRECTION * force + r->stiction / length;
@@ -429,7 +474,7 @@ static double catch_tip(observer_memory *m, const controller_input *in)
     return limited(m, torque / r->torque_per_volt);
 }
 
-// --- modes ------------------------------------------------------------------------------------
+// --- modes -----------------------------------------------------------------------------
 
 // Where the readings favour another arm, the present mode starts again for that one.
 static void change_arm(observer_memory *m, double time)
@@ -474,11 +519,19 @@ static void follow_contact(observer_memory *m, const controller_input *in)
     }
 
     // it ends with readings that do not
-    m->away = m->felt > 0 ? 0 : m->away + m->rig.period;
+    if (m->felt > 0) {
+        m->away = 0;
+    } else {
+        m->away = m->away + m->rig.period;
+    }
     const bool caught = m->mode == CATCH && m->away < design_of(m)->ramp_time;
     if (touches && m->away >= LOST_AFTER && !caught) {
         const bool brief = in->time - observer_of(m)->since < design_of(m)->ramp_time;
-        m->losses = brief ? m->losses + 1 : 1;
+        if (brief) {
+            m->losses = m->losses + 1;
+        } else {
+            m->losses = 1;
+        }
         const bool returns = m->losses > 1 && arm_observer_returns(observer_of(m));
         if (m->mode != CATCH && (returns || m->losses >= THROWN_BACK)) {
             m->mode = CATCH;
@@ -491,9 +544,9 @@ static void follow_contact(observer_memory *m, const controller_input *in)
     }
 }
 
-// Corrects model errors: once the rise is over, the averaged difference between estimated force and
-// reading is added to the force aimed at. It is bounded and cannot wind up, since it does not
-// integrate the control error.
+// Corrects model errors: once the rise is over, the averaged difference between estimated
+// force and reading is added to the force aimed at. It is bounded and cannot wind up,
+// since it does not integrate the control error.
 static void correct_aim(observer_memory *m, const controller_input *in)
 {
     const arm_observer *o = observer_of(m);
@@ -506,8 +559,9 @@ static void correct_aim(observer_memory *m, const controller_input *in)
     }
 }
 
-// The reading's mean, and how far it swings about it. Just after an impact the sensor is off scale:
-// beyond twice the wanted force a reading says no more than that it is too much.
+// The reading's mean, and how far it swings about it. Just after an impact the sensor is
+// off scale: beyond twice the wanted force a reading says no more than that it is too
+// much.
 static void follow_reading(observer_memory *m, double reading)
 {
     double off = fmin(reading, 2 * m->p[FORCE_WANTED]) - m->mean_force;
@@ -516,8 +570,9 @@ static void follow_reading(observer_memory *m, double reading)
     m->swing += share * (off * off - m->swing);
 }
 
-// Whether the held command is still right. A reading counts as at most five standard deviations
-// off, because the sensor also shows blows on the tip that the hub does not feel.
+// Whether the held command is still right. A reading counts as at most five standard
+// deviations off, because the sensor also shows blows on the tip that the hub does not
+// feel.
 static bool holds_right(observer_memory *m, double reading)
 {
     double force = m->p[FORCE_WANTED], off = reading - m->held_force;
@@ -526,8 +581,8 @@ static bool holds_right(observer_memory *m, double reading)
     return fabs(m->held_force - force) < HOLD_BEYOND * force + HOLD_LEAST;
 }
 
-// Whether friction holds the hub at rest where the force is right, that one stays, and the beam has
-// come to rest.
+// Whether friction holds the hub at rest where the force is right, that one stays, and
+// the beam has come to rest.
 static bool rests_right(const observer_memory *m, const estimator *e, double rate)
 {
     double force = m->p[FORCE_WANTED];
@@ -538,17 +593,23 @@ static bool rests_right(const observer_memory *m, const estimator *e, double rat
 }
 
 // Holds where it rests right, until the reading's mean says otherwise.
-static void choose_hold(observer_memory *m, const estimator *e, const controller_input *in)
+static void choose_hold(observer_memory *m, const estimator *e,
+                        const controller_input *in)
 {
     const arm_observer *o = observer_of(m);
     double rate = fabs(arm_observer_rate(o, e));
     follow_reading(m, in->force);
     if (m->mode == HOLD) {
-        m->mode = holds_right(m, in->force) ? HOLD : PRESS;
+        if (holds_right(m, in->force)) {
+            m->mode = HOLD;
+        } else {
+            m->mode = PRESS;
+        }
     } else if (rests_right(m, e, rate)) {
         m->mode = HOLD;
         m->held_force = resting_force(m, e);
-        m->hold_command = limited(m, arm_observer_holding_torque(o, e) / m->rig.torque_per_volt);
+        m->hold_command =
+            limited(m, arm_observer_holding_torque(o, e) / m->rig.torque_per_volt);
     }
 }
 
@@ -565,11 +626,17 @@ static void sample(void *memory, const controller_input *in, controller_output *
         }
         const double soft = design_of(m)->arrival_speed, doubt = m->p[WALL_DOUBT];
         m->plan = (smooth_approach){.period = m->rig.period,
-                                    .guarded = m->rig.wall_angle - fmin(doubt, GUARD_BEFORE * soft),
-                                    .passed = m->rig.wall_angle + fmin(doubt, GUARD_AFTER * soft)};
+                                    .guarded = m->rig.wall_angle -
+                                               fmin(doubt, GUARD_BEFORE * soft),
+                                    .passed = m->rig.wall_angle +
+                                              fmin(doubt, GUARD_AFTER * soft)};
         smooth_approach_begin(&m->plan, design_of(m), in->encoder);
     } else {
-        m->felt = in->force > m->p[THRESHOLD] ? m->felt + 1 : 0;
+        if (in->force > m->p[THRESHOLD]) {
+            m->felt = m->felt + 1;
+        } else {
+            m->felt = 0;
+        }
         observer_arms_sample(&m->arms, in, m->felt);
         if (observer_arms_choose(&m->arms)) {
             change_arm(m, in->time);
@@ -592,22 +659,37 @@ static void sample(void *memory, const controller_input *in, controller_output *
         if (m->mode == PRESS) {
             correct_aim(m, in);
         }
-        out->command = m->mode == CATCH  ? catch_tip(m, in)
-                       : m->mode == HOLD ? m->hold_command
-                                         : press(m, &ahead, in->time + m->rig.delay);
-        out->desired_angle = o->wall + o->arm.contact.hub[0] * mode_at_rest(m, m->p[FORCE_WANTED]);
+        if (m->mode == CATCH) {
+            out->command = catch_tip(m, in);
+        } else if (m->mode == HOLD) {
+            out->command = m->hold_command;
+        } else {
+            out->command = press(m, &ahead, in->time + m->rig.delay);
+        }
+        out->desired_angle =
+            o->wall + o->arm.contact.hub[0] * mode_at_rest(m, m->p[FORCE_WANTED]);
         out->desired_velocity = 0;
         force_now = arm_observer_force(o, &o->e, m->rig.torque_per_volt * in->voltage);
     } else {
         const bool lands = m->mode == RECOVER;
-        out->desired_velocity =
-            lands ? landing_speed(m, &ahead) : smooth_approach_speed(&m->plan, design_of(m));
-        out->command = lands ? land(m, &ahead) : m->hurries ? hurry(m, &ahead) : travel(m, &ahead);
+        if (lands) {
+            out->desired_velocity = landing_speed(m, &ahead);
+        } else {
+            out->desired_velocity = smooth_approach_speed(&m->plan, design_of(m));
+        }
+        if (lands) {
+            out->command = land(m, &ahead);
+        } else if (m->hurries) {
+            out->command = hurry(m, &ahead);
+        } else {
+            out->command = travel(m, &ahead);
+        }
     }
 
     out->mode = m->mode;
     out->calculated_force = force_now;
 }
 
-const controller observer_law = CONTROLLER_LAW("observer", mode_names, table, observer_memory,
-                                               .start = start, .sample = sample, .tune = tune);
+const controller observer_law =
+    CONTROLLER_LAW("observer", mode_names, table, observer_memory, .start = start,
+                   .sample = sample, .tune = tune);

@@ -10,23 +10,27 @@
 #define PI 3.14159265358979323846
 
 // The numbers of the design, derived in docs/explanation/control-design.md.
-#define TRAVEL_TIME  0.05 // in which the arm takes up a wanted speed [s],
-#define LAND_TIME    0.02 // and after a bounce [s]
-#define SOFT_SPEED   0.2  // of a soft touch, for every newton wanted [rad/s/N],
-#define MOST_SPEED   0.45 // at most [rad/s],
-#define LEAST_SPEED  0.12 // and no less, so as to come in time [rad/s],
-#define LEAST_LINKS  0.32 // nor than this with more than two links [rad/s]
-#define SOFT_EFFORT  0.25 // share of the effort that damping the tip may cost on a wall that gives
-#define LEAST_MARGIN 0.05 // of p h over 1, below which the force does not run away with the motion
+#define TRAVEL_TIME 0.05 // in which the arm takes up a wanted speed [s],
+#define LAND_TIME   0.02 // and after a bounce [s]
+#define SOFT_SPEED  0.2  // of a soft touch, for every newton wanted [rad/s/N],
+#define MOST_SPEED  0.45 // at most [rad/s],
+#define LEAST_SPEED 0.12 // and no less, so as to come in time [rad/s],
+#define LEAST_LINKS 0.32 // nor than this with more than two links [rad/s]
+// share of the effort that damping the tip may cost on a wall that gives
+#define SOFT_EFFORT 0.25
+// of p h over 1, below which the force does not run away with the motion
+#define LEAST_MARGIN 0.05
 
-// Modal coordinates and rates of one state over a period, under a command that gives so much torque
-// each [N m]; the angle of the rotation, which nothing brings back, is left out where `first` is 1.
+// Modal coordinates and rates of one state over a period, under a command that gives so
+// much torque each [N m]; the angle of the rotation, which nothing brings back, is left
+// out where `first` is 1.
 static void command_model(const controller_setup *setup, const mode_set *set, int first,
                           double torque_per_command, sampled_model *model)
 {
     const int n = set->count, k = n - first;
 
-    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}}, input[ESTIMATOR_STATES] = {0};
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {{0}},
+           input[ESTIMATOR_STATES] = {0};
 
     // a_i'' = -w_i^2 a_i - c_i a_i' + h_i (torque - damping hub rate)
     for (int i = 0; i < n; i++) {
@@ -43,10 +47,10 @@ static void command_model(const controller_setup *setup, const mode_set *set, in
     sampled_model_init(model, k + n, rate, input, setup->period);
 }
 
-// Gains for which the energy of the motion, relative to the wanted rotation or to the rest, and an
-// effort together are the least; `first` as of command_model.
-static bool find_gain(const controller_setup *setup, const mode_set *set, int first, double effort,
-                      double *gains)
+// Gains for which the energy of the motion, relative to the wanted rotation or to the
+// rest, and an effort together are the least; `first` as of command_model.
+static bool find_gain(const controller_setup *setup, const mode_set *set, int first,
+                      double effort, double *gains)
 {
     const int n = set->count;
     sampled_model model;
@@ -67,31 +71,33 @@ static bool find_gain(const controller_setup *setup, const mode_set *set, int fi
     return quadratic_gain(&model, &cost, gains + first);
 }
 
-// In flight: the effort with which the rotation alone has a time constant [s]; the angle itself is
-// not fed back.
-static bool find_flight_gain(const observer_design *d, const controller_setup *setup, double time,
-                             double *gains)
+// In flight: the effort with which the rotation alone has a time constant [s]; the angle
+// itself is not fed back.
+static bool find_flight_gain(const observer_design *d, const controller_setup *setup,
+                             double time, double *gains)
 {
     const mode_set *set = &d->observer.arm.free;
     const double time_constant = set->hub[0] * setup->torque_per_volt * time;
     return find_gain(setup, set, 1, time_constant * time_constant, gains);
 }
 
-// In contact: the effort with which the first mode alone is critically damped: a'' = -w^2 a + h K u
-// with u = -a'/sqrt(effort) has 2 w for h K / sqrt(effort). At a wall that gives the tip's swinging
-// is to be damped, too.
+// In contact: the effort with which the first mode alone is critically damped: a'' = -w^2
+// a + h K u with u = -a'/sqrt(effort) has 2 w for h K / sqrt(effort). At a wall that
+// gives the tip's swinging is to be damped, too.
 static bool find_press_gain(observer_design *d, const controller_setup *setup, bool gives)
 {
     const mode_set *set = &d->observer.arm.contact;
     const double drive = set->hub[0] * setup->torque_per_volt;
-    const double effort = (gives ? SOFT_EFFORT : 1) * drive * drive / (4 * set->square[0]);
+    const double effort =
+        (gives ? SOFT_EFFORT : 1) * drive * drive / (4 * set->square[0]);
     return find_gain(setup, set, 0, effort, d->press_gain);
 }
 
-// The speeds. After a touch in uniform rotation v the first mode has a' = p v. With the force as
-// input it obeys a'' = s^2 (a - h L f/w^2), s^2 = w^2/(p h - 1): the force w^2 (a + a'/s)/(h L)
-// stops it, after a time of noticing in which it grows as exp(s t). A constant acceleration for one
-// period of the free arm's first vibration leaves none behind.
+// The speeds. After a touch in uniform rotation v the first mode has a' = p v. With the
+// force as input it obeys a'' = s^2 (a - h L f/w^2), s^2 = w^2/(p h - 1): the force w^2
+// (a + a'/s)/(h L) stops it, after a time of noticing in which it grows as exp(s t). A
+// constant acceleration for one period of the free arm's first vibration leaves none
+// behind.
 static void find_speeds(observer_design *d, const controller_setup *setup,
                         const observer_task *task)
 {
@@ -104,8 +110,8 @@ static void find_speeds(observer_design *d, const controller_setup *setup,
     d->top_speed = fmax(0, held) / fmax(setup->hub_damping, 1e-9);
     d->touch_speed = d->top_speed;
 
-    // the touch is slow enough to be stopped, and fast enough for a rise that begins with the least
-    // force: f = 2 x - w for the stopping force x (observer_paths.h)
+    // the touch is slow enough to be stopped, and fast enough for a rise that begins with
+    // the least force: f = 2 x - w for the stopping force x (observer_paths.h)
     d->divergence = sqrt(square / fmax(p * h - 1, LEAST_MARGIN));
     if (p * h > 1) {
         double s = d->divergence, share = (1 + OBSERVER_LEAST_FORCE) / 2;
@@ -114,13 +120,20 @@ static void find_speeds(observer_design *d, const controller_setup *setup,
         d->touch_speed = fmin(d->touch_speed, share * stopped);
     }
 
-    // a wall that throws back is met softly; more links than two vibrate off under the small
-    // force that a soft touch begins with
-    d->arrival_speed = arm->free.count > 2 ? fmin(d->top_speed, fmax(d->touch_speed, LEAST_LINKS))
-                                           : fmin(fmin(d->touch_speed, MOST_SPEED),
-                                                  fmax(LEAST_SPEED, SOFT_SPEED * task->force));
+    // a wall that throws back is met softly; more links than two vibrate off under the
+    // small force that a soft touch begins with
+    if (arm->free.count > 2) {
+        d->arrival_speed = fmin(d->top_speed, fmax(d->touch_speed, LEAST_LINKS));
+    } else {
+        d->arrival_speed = fmin(fmin(d->touch_speed, MOST_SPEED),
+                                fmax(LEAST_SPEED, SOFT_SPEED * task->force));
+    }
 
-    d->ramp_edge = arm->free.count > 2 ? 2 * PI / sqrt(arm->free.square[2]) : 0;
+    if (arm->free.count > 2) {
+        d->ramp_edge = 2 * PI / sqrt(arm->free.square[2]);
+    } else {
+        d->ramp_edge = 0;
+    }
     d->ramp_time = 2 * PI / sqrt(arm->free.square[1]) + d->ramp_edge;
 }
 
@@ -151,12 +164,15 @@ const char *observer_design_init(observer_design *d, const controller_setup *set
     return NULL;
 }
 
-// --- the arms that the law holds possible ----------------------------------------------------
+// --- the arms that the law holds possible ----------------------------------------------
 
-#define AS_STIFF  1.25      // ratio of stiffnesses up to which an arm is one with that told of
-#define HUB_GIVES (1.0 / 6) // of the beam's compliance at the wall, that of a hub on a spring
-#define NO_DOUBT  28        // of -2 log likelihood, 2 log(1e6),
-#define HANDICAP  30        // more of it where bounces or a wrong inertia look like the arm
+// ratio of stiffnesses up to which an arm is one with that told of
+#define AS_STIFF 1.25
+#define HUB_GIVES                                                                        \
+    (1.0 / 6)       // of the beam's compliance at the wall, that of a hub on a spring
+#define NO_DOUBT 28 // of -2 log likelihood, 2 log(1e6),
+// more of it where bounces or a wrong inertia look like the arm
+#define HANDICAP 30
 
 const observer_design *observer_arms_design(const observer_arms *a)
 {
@@ -172,8 +188,9 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
                                const observer_task *task)
 {
     static const int links[] = {2, 3, 6};
-    static const double masses[] = {0.04, 0.08};       // [kg]
-    static const double walls[] = {60, 150, 375, 940}; // a frequency within a quarter [N/m]
+    static const double masses[] = {0.04, 0.08}; // [kg]
+    static const double walls[] = {60, 150, 375,
+                                   940}; // a frequency within a quarter [N/m]
     a->count = a->on = 0;
     a->thrown = false;
     const char *refusal = observer_design_init(&a->arms[a->count++], setup, task);
@@ -188,7 +205,8 @@ const char *observer_arms_init(observer_arms *a, const controller_setup *setup,
         controller_setup other = *setup;
         other.links = links[i];
         refusal = observer_design_init(d, &other, task);
-        double ratio = refusal == NULL ? reduced_arm_compliance(&d->observer.arm) / told : 1;
+        double ratio =
+            refusal == NULL ? reduced_arm_compliance(&d->observer.arm) / told : 1;
         a->count += fmax(ratio, 1 / ratio) > AS_STIFF;
     }
 
@@ -234,7 +252,8 @@ void observer_arms_know_wall(observer_arms *a, double angle)
 
 void observer_arms_sample(observer_arms *a, const controller_input *in, int felt)
 {
-    const controller_input read = hub_sensors_read(&a->sensors, in, a->arms[0].observer.period);
+    const controller_input read =
+        hub_sensors_read(&a->sensors, in, a->arms[0].observer.period);
     for (int i = 0; i < a->count; i++) {
         arm_observer_sample(&a->arms[i].observer, &a->sensors, &read, felt);
     }
@@ -263,7 +282,8 @@ bool observer_arms_choose(observer_arms *a)
     double least = observer_arms_observer(a)->missed - NO_DOUBT;
     for (int i = 0; i < count; i++) {
         const bool gives = i >= a->giving && i < a->loaded;
-        const double missed = a->arms[i].observer.missed + (i >= a->giving ? HANDICAP : 0);
+        const double missed =
+            a->arms[i].observer.missed + (i >= a->giving ? HANDICAP : 0);
         if (missed < least && !(gives && a->thrown)) {
             best = i;
             least = missed;

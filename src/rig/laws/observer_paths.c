@@ -7,11 +7,11 @@
 
 #include "src/base/plain_math.h"
 
-// --- an approach that leaves no vibration ----------------------------------------------------
+// --- an approach that leaves no vibration ----------------------------------------------
 
-// Share of a change of speed after which the next one may begin. An early one asks for a brisk
-// start, which shows what arm it is; what the arm then falls short by is made at the speed of the
-// touch, which takes long where that is slow.
+// Share of a change of speed after which the next one may begin. An early one asks for a
+// brisk start, which shows what arm it is; what the arm then falls short by is made at
+// the speed of the touch, which takes long where that is slow.
 #define EARLY      0.3
 #define LATE       0.7
 #define FAST_TOUCH 0.3 // speed from which a touch of two links is fast [rad/s]
@@ -34,8 +34,8 @@ double smooth_approach_speed(const smooth_approach *p, const observer_design *d)
     return p->state[set->count] / set->momentum[0];
 }
 
-// Share of a change of speed that is made after a time: the integral of a trapezoid, which is one
-// vibration's period as a box convolved with the next one's.
+// Share of a change of speed that is made after a time: the integral of a trapezoid,
+// which is one vibration's period as a box convolved with the next one's.
 static double share_changed(const observer_design *d, double t)
 {
     const double T = d->ramp_time, edge = d->ramp_edge, top = 1 / (T - edge);
@@ -44,7 +44,10 @@ static double share_changed(const observer_design *d, double t)
         return top * t * t / (2 * edge);
     }
     double left = T - t;
-    return left < edge ? 1 - top * left * left / (2 * edge) : top * (t - edge / 2);
+    if (left < edge) {
+        return 1 - top * left * left / (2 * edge);
+    }
+    return top * (t - edge / 2);
 }
 
 double smooth_approach_follow(smooth_approach *p, const observer_design *d)
@@ -63,8 +66,8 @@ double smooth_approach_follow(smooth_approach *p, const observer_design *d)
     return torque;
 }
 
-// How far the tip goes at most beyond where a change of the rotation's speed by -1 rad/s to rest
-// ends, as the beam bends on [s].
+// How far the tip goes at most beyond where a change of the rotation's speed by -1 rad/s
+// to rest ends, as the beam bends on [s].
 static double swing_beyond(const smooth_approach *p, const observer_design *d)
 {
     const mode_set *set = &d->observer.arm.free;
@@ -91,7 +94,11 @@ void smooth_approach_begin(smooth_approach *p, const observer_design *d, double 
     // from rest to the cruising speed
     if (!(p->overlap > 0)) {
         const bool fast = d->observer.arm.free.count == 2 && soft > FAST_TOUCH;
-        p->overlap = fast ? EARLY : LATE;
+        if (fast) {
+            p->overlap = EARLY;
+        } else {
+            p->overlap = LATE;
+        }
     }
     p->start_angle = angle;
     p->change[0] = fmax(soft, fmin(d->top_speed, room / (p->overlap * T + beyond)));
@@ -101,12 +108,14 @@ void smooth_approach_begin(smooth_approach *p, const observer_design *d, double 
     plan_from(p, d, 0);
 }
 
-void smooth_approach_slow(smooth_approach *p, const observer_design *d, double tip, double turned)
+void smooth_approach_slow(smooth_approach *p, const observer_design *d, double tip,
+                          double turned)
 {
     const double T = d->ramp_time, cruise = p->change[0], soft = d->arrival_speed;
     if (!p->slows && p->changing[0] >= p->overlap * T) {
         const double unmade = fmax(0, T - p->changing[0]);
-        const double way = cruise * (T - unmade * unmade / (2 * T)) + (soft - cruise) * T / 2;
+        const double way =
+            cruise * (T - unmade * unmade / (2 * T)) + (soft - cruise) * T / 2;
         // what speeds the beam up still bends it back where the next change is early
         const double at = p->overlap < LATE ? turned : tip;
         if (p->guarded - p->beyond - at <= way) {
@@ -137,7 +146,7 @@ void smooth_approach_again(smooth_approach *p, const observer_design *d)
     p->slows = slows;
 }
 
-// --- the quickest touch ----------------------------------------------------------------------
+// --- the quickest touch ----------------------------------------------------------------
 
 enum {
     LATER = 2,       // periods by which a plan may be put off
@@ -184,11 +193,11 @@ void quickest_touch_init(quickest_touch *q, const observer_design *d)
     }
 }
 
-// --- torques for both equations -----------------------------------------------------------------
+// --- torques for both equations --------------------------------------------------------
 
-// The torques T_k = clip(x tip_gain_k + y force_gain_k) of n periods have the least sum of squares
-// of all within the limits that add as much to tip and F; x and y are the multipliers of both
-// equations.
+// The torques T_k = clip(x tip_gain_k + y force_gain_k) of n periods have the least sum
+// of squares of all within the limits that add as much to tip and F; x and y are the
+// multipliers of both equations.
 typedef struct two_equations {
     int n;
     double tip, force; // to be added [rad], [N]
@@ -196,7 +205,8 @@ typedef struct two_equations {
     double x, y;
 } two_equations;
 
-// The dual function, which is minimised over x and y: convex, quadratic between the bounds.
+// The dual function, which is minimised over x and y: convex, quadratic between the
+// bounds.
 typedef struct dual {
     double value, slope[2], bend[3]; // bend: second derivatives xx, xy, yy
 } dual;
@@ -211,7 +221,8 @@ static dual dual_at(const quickest_touch *q, const two_equations *e)
 {
     dual d = {.value = -e->x * e->tip - e->y * e->force, .slope = {-e->tip, -e->force}};
     for (int k = 0; k < e->n; k++) {
-        const double a = q->tip_gain[k], b = q->force_gain[k], torque = torque_at(q, e, k);
+        const double a = q->tip_gain[k], b = q->force_gain[k],
+                     torque = torque_at(q, e, k);
         d.value += torque * (e->x * a + e->y * b - torque / 2);
         d.slope[0] += torque * a;
         d.slope[1] += torque * b;
@@ -241,7 +252,8 @@ static bool solve(const quickest_touch *q, two_equations *e)
             return true;
         }
 
-        // Newton's step, regularised so that it exists even with all torques at their bounds
+        // Newton's step, regularised so that it exists even with all torques at their
+        // bounds
         const double a = d.bend[0] + DAMPED * whole.bend[0], b = d.bend[1];
         const double c = d.bend[2] + DAMPED * whole.bend[2], determinant = a * c - b * b;
         const double dx = (b * d.slope[1] - c * d.slope[0]) / determinant;
@@ -266,7 +278,7 @@ static bool solve(const quickest_touch *q, two_equations *e)
     return false;
 }
 
-// --- plans --------------------------------------------------------------------------------------
+// --- plans -----------------------------------------------------------------------------
 
 bool quickest_touch_plan(quickest_touch *q, const quickest_task *task)
 {
@@ -276,7 +288,8 @@ bool quickest_touch_plan(quickest_touch *q, const quickest_task *task)
     }
 
     // torques are measured from the middle of the attainable range
-    const double middle = (task->low + task->high) / 2, half = (task->high - task->low) / 2;
+    const double middle = (task->low + task->high) / 2,
+                 half = (task->high - task->low) / 2;
     const double most = q->planned ? half : (1 - RESERVE) * half;
     const int first = q->planned ? q->left : FIXED + 1;
     const int last = q->planned ? q->left + LATER : QUICKEST_PERIODS;
@@ -310,7 +323,7 @@ double quickest_touch_next(quickest_touch *q)
     return q->torque[--q->left];
 }
 
-// --- from the touch to the wanted force ------------------------------------------------------
+// --- from the touch to the wanted force ------------------------------------------------
 
 #define RISEN   0.05 // share of the wanted force within which the rise is over
 #define SLOWEST 0.98 // share of the wanted force that a motion may lack at most
@@ -322,7 +335,10 @@ static double first_bound(const force_rise_task *task, double off)
     if (2 * off < least - end) {
         return least;
     }
-    return 2 * off > task->most - end && off < task->most - end ? task->most : (double)NAN;
+    if (2 * off > task->most - end && off < task->most - end) {
+        return task->most;
+    }
+    return (double)NAN;
 }
 
 force_rise force_rise_begin(const force_rise_task *task)

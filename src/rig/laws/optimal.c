@@ -5,15 +5,18 @@
 //     M x'' = Kt u - D x' - friction - 4 k2 x,      f = 4 k2 x - mu x'',
 //     M = I1 + 2 I + m l^2/2,     mu = (m l^2/4 - I)/l  (l = 1/2 of the beam)
 //
-// so braking presses, and with f as the input x'' = s^2 (x - f/(4 k2)), s^2 = 4 k2/mu, is unstable.
-// The feedback that makes the sum of (f - command)^2 + effort u^2 least comes from the discrete
-// Riccati equation. What it asks for is limited to commands that keep the force positive.
+// so braking presses, and with f as the input x'' = s^2 (x - f/(4 k2)), s^2 = 4 k2/mu, is
+// unstable. The feedback that makes the sum of (f - command)^2 + effort u^2 least comes
+// from the discrete Riccati equation. What it asks for is limited to commands that keep
+// the force positive.
 //
-// The observer is a Kalman filter: in free flight on both links, so that the wall is found where
-// the tip is when the force sensor first feels it; in contact on theta2, its velocity, the wall's
-// angle and a constant torque, from encoder, tachometer and force sensor.
+// The observer is a Kalman filter: in free flight on both links, so that the wall is
+// found where the tip is when the force sensor first feels it; in contact on theta2, its
+// velocity, the wall's angle and a constant torque, from encoder, tachometer and force
+// sensor.
 //
-// optimal comes in with the constant command; predictive as fast as a limit on the force allows.
+// optimal comes in with the constant command; predictive as fast as a limit on the force
+// allows.
 #include <math.h>
 #include <string.h>
 
@@ -25,10 +28,10 @@ enum { APPROACH, PRESS, HOLD };
 
 // Parameters that both laws have, in this order; OWN is predictive's limit behind them.
 enum { FORCE_WANTED, APPROACH_VOLTAGE, THRESHOLD, OWN };
-#define STATE_FEEDBACK_PARAMETERS                                                                  \
-    {.name = "force"}, {.name = "approach_voltage"},                                               \
-    {                                                                                              \
-        .name = "contact_threshold"                                                                \
+#define STATE_FEEDBACK_PARAMETERS                                                        \
+    {.name = "force"}, {.name = "approach_voltage"},                                     \
+    {                                                                                    \
+        .name = "contact_threshold"                                                      \
     }
 
 typedef struct optimal_memory {
@@ -55,13 +58,13 @@ typedef struct optimal_memory {
 } optimal_memory;
 
 // A controller of this family: word, table of parameters, start function.
-#define STATE_FEEDBACK_LAW(law, table, starts)                                                     \
-    CONTROLLER_LAW(law, state_feedback_modes, table, optimal_memory, .lockable = true,             \
+#define STATE_FEEDBACK_LAW(law, table, starts)                                           \
+    CONTROLLER_LAW(law, state_feedback_modes, table, optimal_memory, .lockable = true,   \
                    .start = starts, .sample = state_feedback_sample, .tune = starts)
 
 static const char *const state_feedback_modes[] = {"approach", "press", "hold", NULL};
 
-enum { FREE_FIRST, FREE_LAST, FREE_FIRST_RATE, FREE_LAST_RATE };    // states in free flight
+enum { FREE_FIRST, FREE_LAST, FREE_FIRST_RATE, FREE_LAST_RATE }; // states in free flight
 enum { PRESSED_ANGLE, PRESSED_RATE, PRESSED_WALL, PRESSED_TORQUE }; // states in contact
 
 // Standard deviations of what the models leave out, a sample each, and of the readings.
@@ -75,7 +78,8 @@ static const double contact_noise[4] = {1e-8, 2e-4, 1e-8, 1e-5};
 #define SHORTFALL      0.0065 // of the aim, a share per newton, as the noise grows [1/N]
 #define MOST_SHORTFALL 0.05   // a share
 
-// Free flight of both links under a torque on the hub: M q'' = torque e1 - D q1' e1 - K q.
+// Free flight of both links under a torque on the hub: M q'' = torque e1 - D q1' e1 - K
+// q.
 static void model_flight(optimal_memory *m)
 {
     const controller_setup *r = &m->rig;
@@ -104,15 +108,17 @@ static void model_flight(optimal_memory *m)
 static void model_contact(optimal_memory *m, double h, sampled_model *model)
 {
     double k = m->stiffness / m->inertia, d = m->rig.hub_damping / m->inertia;
-    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {
-        [PRESSED_ANGLE] = {[PRESSED_RATE] = 1}, [PRESSED_RATE] = {-k, -d, k, 1 / m->inertia}};
+    double rate[ESTIMATOR_STATES][ESTIMATOR_STATES] = {[PRESSED_ANGLE] = {[PRESSED_RATE] =
+                                                                              1},
+                                                       [PRESSED_RATE] = {-k, -d, k,
+                                                                         1 / m->inertia}};
     double input[ESTIMATOR_STATES] = {[PRESSED_RATE] = 1 / m->inertia};
     sampled_model_init(model, 4, rate, input, h);
 }
 
-// Takes setup and parameters, at the start or later, models the arm and finds the gains. What it
-// estimates and the mode stay. The second is for a law with a limit on the force behind the shared
-// parameters.
+// Takes setup and parameters, at the start or later, models the arm and finds the gains.
+// What it estimates and the mode stay. The second is for a law with a limit on the force
+// behind the shared parameters.
 static const char *state_feedback_start(void *memory, const controller_setup *setup)
 {
     optimal_memory *m = memory;
@@ -131,9 +137,14 @@ static const char *state_feedback_start(void *memory, const controller_setup *se
     m->stiffness = 4 * setup->k2;
     m->spring_force = 2 * setup->k2 / l;
     m->mass_force = (quarter - setup->link_inertia) / l;
-    m->divergence = m->mass_force > 0 ? sqrt(m->spring_force / m->mass_force) : HUGE_VAL;
-    FAIL_IF(!(setup->torque_per_volt > 0) || !(m->inertia > 0),
-            "it needs a motor that turns the hub and an arm with inertia");
+    if (m->mass_force > 0) {
+        m->divergence = sqrt(m->spring_force / m->mass_force);
+    } else {
+        m->divergence = HUGE_VAL;
+    }
+    if (!(setup->torque_per_volt > 0) || !(m->inertia > 0)) {
+        return "it needs a motor that turns the hub and an arm with inertia";
+    }
 
     model_flight(m);
     model_contact(m, setup->period, &m->contact);
@@ -148,28 +159,38 @@ static const char *state_feedback_start(void *memory, const controller_setup *se
     double per_torque = m->mass_force / m->inertia;
     double output[2] = {m->spring_force + per_torque * m->stiffness,
                         per_torque * setup->hub_damping};
-    quadratic_cost cost = {.effort = EFFORT, .growth = plain_exp(URGENCY * setup->period)};
+    quadratic_cost cost = {.effort = EFFORT,
+                           .growth = plain_exp(URGENCY * setup->period)};
     quadratic_cost_add(&cost, 2, output, -per_torque * setup->torque_per_volt, 1);
-    FAIL_IF(!quadratic_gain(&plant, &cost, m->gain),
-            "the Riccati equation of its gains has no stabilising solution");
+    if (!quadratic_gain(&plant, &cost, m->gain)) {
+        return "the Riccati equation of its gains has no stabilising solution";
+    }
     return NULL;
 }
 
-static const char *state_feedback_start_with_limit(void *memory, const controller_setup *setup)
+static const char *state_feedback_start_with_limit(void *memory,
+                                                   const controller_setup *setup)
 {
     optimal_memory *m = memory;
     const char *refusal = state_feedback_start(memory, setup);
-    m->force_limit = setup->parameters[OWN] > 0 ? setup->parameters[OWN] : HUGE_VAL;
+    if (setup->parameters[OWN] > 0) {
+        m->force_limit = setup->parameters[OWN];
+    } else {
+        m->force_limit = HUGE_VAL;
+    }
     return refusal;
 }
 
-// Coulomb friction at a velocity, taken as what holds where the hub is as good as at rest.
+// Coulomb friction at a velocity, taken as what holds where the hub is as good as at
+// rest.
 static double friction(const optimal_memory *m, double velocity, double other_torque)
 {
     const double rest = 0.01; // [rad/s]
     const double limit = m->rig.stiction;
-    return fabs(velocity) > rest ? coulomb_friction(&m->rig, velocity)
-                                 : fmax(-limit, fmin(other_torque, limit));
+    if (fabs(velocity) > rest) {
+        return coulomb_friction(&m->rig, velocity);
+    }
+    return fmax(-limit, fmin(other_torque, limit));
 }
 
 // Takes in what the sensors of the hub read: the first state, and that of its rate.
@@ -192,7 +213,7 @@ static void begin_estimate(optimal_memory *m, const double *state, const double 
     }
 }
 
-// --- free flight ----------------------------------------------------------------------------
+// --- free flight -----------------------------------------------------------------------
 
 static void predict_flight(optimal_memory *m, const controller_input *in)
 {
@@ -210,7 +231,8 @@ static void enter_contact(optimal_memory *m, const controller_input *in)
 
     // anywhere on the way between the two samples: variance way^2/12
     begin_estimate(m, (double[]){in->encoder, in->tachometer, (before + after) / 2, 0},
-                   (double[]){ANGLE_VARIANCE, RATE_VARIANCE, way * way / 12 + 1e-6, 1e-4});
+                   (double[]){ANGLE_VARIANCE, RATE_VARIANCE, way * way / 12 + 1e-6,
+                              1e-4});
     m->ceiling = m->force;
     m->flies = false;
 }
@@ -221,8 +243,8 @@ static double braking_force(const optimal_memory *m, double stopping)
     return stopping + 0.2 * fmax(0, stopping - m->force) + 0.01;
 }
 
-// Back to free flight where that is wanted: the tip is taken to be at the wall still, where both
-// links turn against each other.
+// Back to free flight where that is wanted: the tip is taken to be at the wall still,
+// where both links turn against each other.
 static void leave_contact(optimal_memory *m, const controller_input *in)
 {
     const double angle = in->encoder, rate = in->tachometer;
@@ -231,9 +253,10 @@ static void leave_contact(optimal_memory *m, const controller_input *in)
     m->flies = true;
 }
 
-// If the tip touched the wall now: the impact throws the links' velocities onto x' as (4.10)-(4.17)
-// have it, and stopping from there takes at least 4 k2 (x + x'/s), which grows until the controller
-// has noticed. The phase of the vibration is in x and in both velocities.
+// If the tip touched the wall now: the impact throws the links' velocities onto x' as
+// (4.10)-(4.17) have it, and stopping from there takes at least 4 k2 (x + x'/s), which
+// grows until the controller has noticed. The phase of the vibration is in x and in both
+// velocities.
 static double force_of_touch(const optimal_memory *m)
 {
     const double *z = m->e.z;
@@ -243,15 +266,16 @@ static double force_of_touch(const optimal_memory *m)
     return braking_force(m, m->spring_force * (x + rate / m->divergence) * noticed);
 }
 
-// The command of the approach; with a limit on the force, as fast as it allows: the speed that
-// there is, kept up, and the rest in proportion to the remaining margin of force.
+// The command of the approach; with a limit on the force, as fast as it allows: the speed
+// that there is, kept up, and the rest in proportion to the remaining margin of force.
 static double approach(const optimal_memory *m)
 {
     if (m->force_limit == HUGE_VAL) {
         return m->approach_voltage;
     }
-    const double gain = 3;      // [V/N]
-    const double margin = 0.94; // share of the limit that is used, less 0.035 N for the noise
+    const double gain = 3; // [V/N]
+    const double margin =
+        0.94; // share of the limit that is used, less 0.035 N for the noise
     double speed = m->e.z[FREE_FIRST_RATE];
     double keep = m->rig.hub_damping * speed + m->rig.stiction;
     double command = keep / m->rig.torque_per_volt +
@@ -259,14 +283,14 @@ static double approach(const optimal_memory *m)
     return fmin(command, m->approach_voltage);
 }
 
-// --- in contact -----------------------------------------------------------------------------
+// --- in contact ------------------------------------------------------------------------
 
 // Hub acceleration of a state in contact under a torque on the hub [rad/s2].
 static double acceleration(const optimal_memory *m, const double *z, double drive)
 {
     double x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
-    double torque =
-        drive + z[PRESSED_TORQUE] - m->rig.hub_damping * z[PRESSED_RATE] - m->stiffness * x;
+    double torque = drive + z[PRESSED_TORQUE] - m->rig.hub_damping * z[PRESSED_RATE] -
+                    m->stiffness * x;
     return (torque - friction(m, z[PRESSED_RATE], torque)) / m->inertia;
 }
 
@@ -277,8 +301,8 @@ static double contact_force(const optimal_memory *m, const double *z, double dri
 }
 
 // The state after h: the sampled model, or rest where friction holds the hub.
-static void predict_contact(const optimal_memory *m, const sampled_model *model, estimator *e,
-                            double drive)
+static void predict_contact(const optimal_memory *m, const sampled_model *model,
+                            estimator *e, double drive)
 {
     double *z = e->z, x = z[PRESSED_ANGLE] - z[PRESSED_WALL];
     double torque = drive + z[PRESSED_TORQUE] - m->stiffness * x;
@@ -305,7 +329,8 @@ static void observe_contact(optimal_memory *m, const controller_input *in)
     predict_contact(m, &m->contact, e, drive);
     read_hub(e, PRESSED_RATE, in);
 
-    // the force is linear in the state but for friction: row times state, plus what is left
+    // the force is linear in the state but for friction: row times state, plus what is
+    // left
     double whole = m->spring_force + m->mass_force * m->stiffness / m->inertia;
     double row[4] = {whole, m->mass_force * m->rig.hub_damping / m->inertia, -whole,
                      -m->mass_force / m->inertia};
@@ -320,14 +345,15 @@ static void observe_contact(optimal_memory *m, const controller_input *in)
                       deviation * deviation);
 }
 
-// Limits a command so that the force it leaves at once stays positive, and does not brake harder
-// than stopping takes. x + x'/s grows as exp(s t) wherever it is above f/(4 k2): a force a little
-// above 4 k2 times it stops the hub, at ever faster a rate.
+// Limits a command so that the force it leaves at once stays positive, and does not brake
+// harder than stopping takes. x + x'/s grows as exp(s t) wherever it is above f/(4 k2): a
+// force a little above 4 k2 times it stops the hub, at ever faster a rate.
 static double limit_command(optimal_memory *m, const double *z, double command)
 {
     double x = z[PRESSED_ANGLE] - z[PRESSED_WALL], limit = m->rig.voltage_limit;
     double stopping = m->spring_force * (x + z[PRESSED_RATE] / m->divergence);
-    double excess = stopping - m->force, least = fmin(0.1 + 0.05 * m->force, 0.5 * m->force);
+    double excess = stopping - m->force,
+           least = fmin(0.1 + 0.05 * m->force, 0.5 * m->force);
     if (excess > 0) {
         m->ceiling = fmax(m->ceiling, braking_force(m, stopping));
     }
@@ -372,8 +398,8 @@ static double hold(optimal_memory *m, const controller_input *in)
     const double smoothing = 0.05;
     m->held_force += smoothing * (in->force - m->held_force);
 
-    // the held force differs from the command: press again, with the wall's angle that this force
-    // implies
+    // the held force differs from the command: press again, with the wall's angle that
+    // this force implies
     bool wanted = in->wanted_mode == HOLD;
     const double differs = fabs(m->held_force - m->force);
     if (!wanted && (m->wanted.told || differs > 0.05 + 0.05 * m->force)) {
@@ -386,8 +412,8 @@ static double hold(optimal_memory *m, const controller_input *in)
     return m->hold_command;
 }
 
-// Asked to press before there is contact: the feedback round the angle at which the beam would
-// press if the wall were at its nominal place.
+// Asked to press before there is contact: the feedback round the angle at which the beam
+// would press if the wall were at its nominal place.
 static double seek_wall(const optimal_memory *m)
 {
     const double *z = m->e.z;
@@ -401,7 +427,8 @@ static double press(optimal_memory *m, const controller_input *in)
     // the state when the command takes effect
     estimator ahead = m->e;
     if (m->rig.delay > 0) {
-        predict_contact(m, &m->during_delay, &ahead, m->rig.torque_per_volt * in->voltage);
+        predict_contact(m, &m->during_delay, &ahead,
+                        m->rig.torque_per_volt * in->voltage);
     }
 
     // at rest within the tolerance the force is held
@@ -413,28 +440,41 @@ static double press(optimal_memory *m, const controller_input *in)
     double velocity = z[PRESSED_RATE];
     bool rests = fabs(velocity) < 0.02;
     bool wanted = in->wanted_mode == PRESS;
-    if (!wanted && !m->wanted.told && rests && fabs(error) * m->spring_force < tolerance) {
+    if (!wanted && !m->wanted.told && rests &&
+        fabs(error) * m->spring_force < tolerance) {
         begin_hold(m, x);
         return m->hold_command;
     }
 
     // what keeps the aim, friction included, and the feedback round it
     const double aim_rate = m->wanted.seen_rate / m->spring_force;
-    double against = rests ? copysign(m->rig.stiction, aim_rate != 0 ? aim_rate : error)
-                           : friction(m, velocity, 0);
-    double steady =
-        (m->stiffness * aim + m->rig.hub_damping * aim_rate - z[PRESSED_TORQUE] + against) /
-        m->rig.torque_per_volt;
-    return limit_command(m, z, steady + m->gain[0] * error + m->gain[1] * (aim_rate - velocity));
+    double against;
+    if (rests) {
+        against = copysign(m->rig.stiction, aim_rate != 0 ? aim_rate : error);
+    } else {
+        against = friction(m, velocity, 0);
+    }
+    double steady = (m->stiffness * aim + m->rig.hub_damping * aim_rate -
+                     z[PRESSED_TORQUE] + against) /
+                    m->rig.torque_per_volt;
+    return limit_command(m, z,
+                         steady + m->gain[0] * error +
+                             m->gain[1] * (aim_rate - velocity));
 }
 
 // Contact is lost when the sensor has felt nothing for two samples.
 static bool contact_is_lost(optimal_memory *m, const controller_input *in)
 {
     const int most = 2;
-    m->readings_without_force = in->force > m->threshold ? 0 : m->readings_without_force + 1;
+    if (in->force > m->threshold) {
+        m->readings_without_force = 0;
+    } else {
+        m->readings_without_force = m->readings_without_force + 1;
+    }
     const bool lost = m->readings_without_force >= most;
-    m->readings_without_force = lost ? 0 : m->readings_without_force;
+    if (lost) {
+        m->readings_without_force = 0;
+    }
     return lost;
 }
 
@@ -448,7 +488,9 @@ static void observe(optimal_memory *m, const controller_input *in)
 
     } else if (m->flies && in->wanted_mode != APPROACH && in->force > m->threshold) {
         enter_contact(m, in);
-        m->mode = locked ? m->mode : PRESS;
+        if (!locked) {
+            m->mode = PRESS;
+        }
     } else if (m->flies) {
         predict_flight(m, in);
         read_hub(&m->e, FREE_FIRST_RATE, in);
@@ -461,7 +503,8 @@ static void observe(optimal_memory *m, const controller_input *in)
 }
 
 // Observer, mode and command of one sample.
-static void state_feedback_sample(void *memory, const controller_input *in, controller_output *out)
+static void state_feedback_sample(void *memory, const controller_input *in,
+                                  controller_output *out)
 {
     optimal_memory *m = memory;
     observe(m, in);
@@ -470,15 +513,24 @@ static void state_feedback_sample(void *memory, const controller_input *in, cont
     }
 
     // the command of the mode
-    out->command = m->mode == APPROACH ? approach(m)
-                   : m->mode == HOLD   ? hold(m, in)
-                   : m->flies          ? seek_wall(m)
-                                       : press(m, in);
+    if (m->mode == APPROACH) {
+        out->command = approach(m);
+    } else if (m->mode == HOLD) {
+        out->command = hold(m, in);
+    } else if (m->flies) {
+        out->command = seek_wall(m);
+    } else {
+        out->command = press(m, in);
+    }
 
     set_point_follow(&m->wanted, m->rig.period);
     out->mode = m->mode;
     if (m->mode == APPROACH) {
-        out->calculated_force = m->force_limit == HUGE_VAL ? 0 : force_of_touch(m);
+        if (m->force_limit == HUGE_VAL) {
+            out->calculated_force = 0;
+        } else {
+            out->calculated_force = force_of_touch(m);
+        }
         return;
     }
 
@@ -486,10 +538,14 @@ static void state_feedback_sample(void *memory, const controller_input *in, cont
     double wall = m->flies ? m->rig.wall_angle : m->e.z[PRESSED_WALL];
     out->desired_angle = wall + m->force / m->spring_force;
     out->desired_velocity = 0;
-    out->calculated_force = m->mode == HOLD ? m->held_force
-                            : m->flies
-                                ? 0
-                                : contact_force(m, m->e.z, m->rig.torque_per_volt * in->voltage);
+    if (m->mode == HOLD) {
+        out->calculated_force = m->held_force;
+    } else if (m->flies) {
+        out->calculated_force = 0;
+    } else {
+        out->calculated_force =
+            contact_force(m, m->e.z, m->rig.torque_per_volt * in->voltage);
+    }
 }
 
 // --- optimal ---
@@ -502,10 +558,10 @@ const controller optimal_law =
 
 // --- predictive ---
 
-// The optimal law behind an approach that keeps to control.force_limit wherever the wall is: were
-// the tip to touch now, stopping would take at most that force.
+// The optimal law behind an approach that keeps to control.force_limit wherever the wall
+// is: were the tip to touch now, stopping would take at most that force.
 static const controller_parameter predictive_parameters[] = {STATE_FEEDBACK_PARAMETERS,
                                                              {.name = "force_limit"}};
 
-const controller predictive_law =
-    STATE_FEEDBACK_LAW("predictive", predictive_parameters, state_feedback_start_with_limit);
+const controller predictive_law = STATE_FEEDBACK_LAW("predictive", predictive_parameters,
+                                                     state_feedback_start_with_limit);

@@ -23,19 +23,21 @@ enum { FIRST = 28, PASSES = 4, MOST_POINTS = 160, MOST_WINDOWS = 40, PUSHES = 28
 #define FOLLOWED    0.5  // after a push [s]
 #define MOST_PUSHED 10.0 // [N s]
 
-// The law with sines behind it: the one that is measured, and another that keeps the law awake.
-// `inner` holds the law itself, its memory and, of a process, the program.
+// The law with sines behind it: the one that is measured, and another that keeps the law
+// awake. `inner` holds the law itself, its memory and, of a process, the program.
 typedef struct injector {
     rig *inner;
-    double amplitude[2], turn[2];       // [V], [rad] from sample to sample
-    double first, wanted;               // amplitude that one begins with [V], swing of force [N]
-    double awake, awake_hertz;          // the smallest that a law answered [V]
-    long sample;                        // since the window began
-    double complex law, command, force; // sums over the window, with the sine that is measured
-    double mean[3];                     // sums of command, force and its square
+    double amplitude[2], turn[2]; // [V], [rad] from sample to sample
+    double first, wanted;      // amplitude that one begins with [V], swing of force [N]
+    double awake, awake_hertz; // the smallest that a law answered [V]
+    long sample;               // since the window began
+    double complex law, command,
+        force;      // sums over the window, with the sine that is measured
+    double mean[3]; // sums of command, force and its square
 } injector;
 
-static void sample_with_sine(void *memory, const controller_input *in, controller_output *out)
+static void sample_with_sine(void *memory, const controller_input *in,
+                             controller_output *out)
 {
     injector *i;
     double s, c;
@@ -63,7 +65,8 @@ static const char *tune(void *memory, const controller_setup *setup)
 }
 
 // A run that has come to the scenario's end and goes on from there.
-static status begin(run_loop **loop, const scenario *s, const loop_options *options, fault *f)
+static status begin(run_loop **loop, const scenario *s, const loop_options *options,
+                    fault *f)
 {
     scenario longer = *s; // borrows its script
     longer.parameters.run.duration = 1e4;
@@ -71,7 +74,7 @@ static status begin(run_loop **loop, const scenario *s, const loop_options *opti
     return loop_until(*loop, s->parameters.run.duration, f);
 }
 
-// --- sines ------------------------------------------------------------------------------------
+// --- sines -----------------------------------------------------------------------------
 
 // A window of samples, in which the arm has to press and not to let go.
 static status pass_window(run_loop *l, injector *i, double samples, fault *f)
@@ -86,16 +89,17 @@ static status pass_window(run_loop *l, injector *i, double samples, fault *f)
     if (code == STATUS_OK &&
         !(loop_row(l).force > 0 && loop_summary(l).separations <= separations)) {
         code = fault_set(f, STATUS_UNSTABLE,
-                         "at t = %.4g s the arm does not press on the wall: what happens about "
-                         "rest cannot be measured",
+                         "at t = %.4g s the arm does not press on the wall: what happens "
+                         "about rest cannot be measured",
                          loop_time(l));
     }
     return code;
 }
 
-// How large a sine may be: its force swings as far above the noise of the reading as it stays below
-// the force that holds the contact, in equal ratios, from a tenth of that force (laws may sleep
-// where less moves) to half of it. It begins larger than the steps of the D/A converter.
+// How large a sine may be: its force swings as far above the noise of the reading as it
+// stays below the force that holds the contact, in equal ratios, from a tenth of that
+// force (laws may sleep where less moves) to half of it. It begins larger than the steps
+// of the D/A converter.
 static status size_sine(run_loop *l, injector *i, fault *f)
 {
     const double samples = ceil(WINDOW / i->inner->period);
@@ -107,8 +111,10 @@ static status size_sine(run_loop *l, injector *i, fault *f)
     return code;
 }
 
-// The loop gain at about *hertz, which becomes the frequency with whole cycles in whole samples.
-static status measure(run_loop *l, injector *i, double *hertz, double complex *gain, fault *f)
+// The loop gain at about *hertz, which becomes the frequency with whole cycles in whole
+// samples.
+static status measure(run_loop *l, injector *i, double *hertz, double complex *gain,
+                      fault *f)
 {
     const double period = i->inner->period, most = MOST_SINE * i->inner->voltage_limit;
     const double cycles = fmax(CYCLES, ceil(WINDOW * *hertz));
@@ -122,12 +128,21 @@ static status measure(run_loop *l, injector *i, double *hertz, double complex *g
     i->amplitude[1] = 0;
     *gain = complex_of((double)NAN, 0);
 
-    // window after window until the transient is gone; of a noisy one the mean of the later half
+    // window after window until the transient is gone; of a noisy one the mean of the
+    // later half
     int agreed = 0;
     for (int w = 0; w < MOST_WINDOWS && agreed < 2 && code == STATUS_OK; w++) {
         code = pass_window(l, i, samples, f);
-        law += w < MOST_WINDOWS / 2 ? 0 : i->law;
-        command += w < MOST_WINDOWS / 2 ? 0 : i->command;
+        if (w < MOST_WINDOWS / 2) {
+            law += 0;
+        } else {
+            law += i->law;
+        }
+        if (w < MOST_WINDOWS / 2) {
+            command += 0;
+        } else {
+            command += i->command;
+        }
         before = *gain;
         *gain = -i->law / i->command;
 
@@ -137,17 +152,26 @@ static status measure(run_loop *l, injector *i, double *hertz, double complex *g
         const double amplitude = fmin(most, i->amplitude[0] * factor);
         const bool steady = fabs(amplitude - i->amplitude[0]) < 0.2 * i->amplitude[0];
         const bool answers = cabs(*gain) > NOTHING;
-        agreed = steady && cabs(*gain - before) <= AGREE * cabs(*gain) ? agreed + 1 : 0;
-        i->amplitude[0] = steady ? i->amplitude[0] : amplitude;
+        if (steady && cabs(*gain - before) <= AGREE * cabs(*gain)) {
+            agreed = agreed + 1;
+        } else {
+            agreed = 0;
+        }
+        if (!steady) {
+            i->amplitude[0] = amplitude;
+        }
         if (steady && !answers && i->amplitude[1] == 0 && isfinite(i->awake)) {
             i->amplitude[1] = i->awake;
             agreed = 0;
-        } else if (steady && answers && i->amplitude[1] == 0 && i->amplitude[0] < i->awake) {
+        } else if (steady && answers && i->amplitude[1] == 0 &&
+                   i->amplitude[0] < i->awake) {
             i->awake = i->amplitude[0];
             i->awake_hertz = *hertz;
         }
     }
-    *gain = agreed < 2 && command != 0 ? -law / command : *gain;
+    if (agreed < 2 && command != 0) {
+        *gain = -law / command;
+    }
     return code;
 }
 
@@ -168,7 +192,8 @@ static status add(run_loop *l, injector *i, double hertz, linear_response *r, fa
 
 static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f)
 {
-    const double highest = 1 / (2 * i->inner->period), lowest = fmin(LOWEST, highest / 10);
+    const double highest = 1 / (2 * i->inner->period),
+                 lowest = fmin(LOWEST, highest / 10);
     TRY(size_sine(l, i, f));
     for (int k = 0; k < FIRST; k++) {
         TRY(add(l, i, lowest * plain_pow(highest / lowest, k / (FIRST - 1.0)), r, f));
@@ -182,7 +207,8 @@ static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f
             const double complex a = r->gain[k], b = r->gain[k + 1];
             const bool turns = cimag(a) * cimag(b) < 0 && creal(a + b) < 0;
             if (turns || (cabs(a) - 1) * (cabs(b) - 1) < 0) {
-                middles[wanted++] = sqrt(r->frequency[k] * r->frequency[k + 1]) / (2 * M_PI);
+                middles[wanted++] =
+                    sqrt(r->frequency[k] * r->frequency[k + 1]) / (2 * M_PI);
             }
         }
         for (int k = 0; k < wanted; k++) {
@@ -199,11 +225,15 @@ status linear_inject(const scenario *s, linear_response *r, fault *f)
     injector i = {.awake = (double)INFINITY};
     run_loop *l = NULL;
     double *block = calloc(3 * MOST_POINTS, sizeof *block);
-    status code =
-        block != NULL ? rig_create(&i.inner, &s->parameters, NULL, f) : fault_no_memory(f);
+    status code;
+    if (block != NULL) {
+        code = rig_create(&i.inner, &s->parameters, NULL, f);
+    } else {
+        code = fault_no_memory(f);
+    }
     if (code == STATUS_OK && i.inner->withheld) {
-        code =
-            fault_set(f, STATUS_NOT_ALLOWED, "the loop of a program or plug-in needs --allow-code");
+        code = fault_set(f, STATUS_NOT_ALLOWED,
+                         "the loop of a program or plug-in needs --allow-code");
     }
     if (code == STATUS_OK) {
         // the law as it is called and tuned, but for what goes out
@@ -211,11 +241,17 @@ status linear_inject(const scenario *s, linear_response *r, fault *f)
         law.memory_size = sizeof(injector *);
         law.start = controller_takes_anything; // the inner one was started with its rig
         law.sample = sample_with_sine;
-        law.tune = law.tune != NULL ? tune : NULL;
+        if (law.tune != NULL) {
+            law.tune = tune;
+        } else {
+            law.tune = NULL;
+        }
         const loop_options options = {.law = {&law, &i}};
         *r = (linear_response){0, block, (double complex *)(block + MOST_POINTS)};
         code = begin(&l, s, &options, f);
-        code = code == STATUS_OK ? measure_all(l, &i, r, f) : code;
+        if (code == STATUS_OK) {
+            code = measure_all(l, &i, r, f);
+        }
         loop_destroy(l);
     }
     rig_destroy(i.inner);
@@ -226,7 +262,7 @@ status linear_inject(const scenario *s, linear_response *r, fault *f)
     return code;
 }
 
-// --- pushes -----------------------------------------------------------------------------------
+// --- pushes ----------------------------------------------------------------------------
 
 // Whether an impulse at the tip of the kept state loses contact.
 static status loses(run_loop *l, const void *kept, double impulse, bool *lost, fault *f)
@@ -241,7 +277,8 @@ static status loses(run_loop *l, const void *kept, double impulse, bool *lost, f
 }
 
 // The least in one direction, by halves in the logarithm; NaN: none.
-static status least_push(run_loop *l, const void *kept, double direction, double *least, fault *f)
+static status least_push(run_loop *l, const void *kept, double direction, double *least,
+                         fault *f)
 {
     double low = plain_log(1e-9), high = plain_log(MOST_PUSHED);
     bool lost, there;
@@ -264,13 +301,23 @@ status linear_contact_margin(const scenario *s, double *impulse, fault *f)
     if (code == STATUS_OK && loop_row(l).force > 0) {
         void *kept = malloc(loop_saved_size(l));
         double away = (double)NAN, against = (double)NAN;
-        code = kept != NULL ? STATUS_OK : fault_no_memory(f);
+        if (kept != NULL) {
+            code = STATUS_OK;
+        } else {
+            code = fault_no_memory(f);
+        }
         if (code == STATUS_OK) {
             loop_save(l, kept);
             code = least_push(l, kept, -1, &away, f);
-            code = code == STATUS_OK ? least_push(l, kept, 1, &against, f) : code;
+            if (code == STATUS_OK) {
+                code = least_push(l, kept, 1, &against, f);
+            }
             // the other one if one is NaN
-            *impulse = code == STATUS_OK ? fmin(away, against) : (double)NAN;
+            if (code == STATUS_OK) {
+                *impulse = fmin(away, against);
+            } else {
+                *impulse = (double)NAN;
+            }
         }
         free(kept);
     }

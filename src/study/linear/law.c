@@ -1,4 +1,5 @@
-// The loop of a control law about the arm's place of rest, from the law's answers to pulses.
+// The loop of a control law about the arm's place of rest, from the law's answers to
+// pulses.
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +17,8 @@ GIVEN_BACK(rig, rig_destroy)
 
 enum { ANSWERS = 64, MOST_ORDER = 6, MOST_SETTLING = 200000 };
 
-// Periods of further delay of which all poles are found, and halvings of the step that is unstable.
+// Periods of further delay of which all poles are found, and halvings of the step that is
+// unstable.
 enum { MOST_LATE = 32, BISECTIONS = 30 };
 
 #define SETTLING 2.0 // that a law is left at rest, besides its own transition [s]
@@ -30,8 +32,8 @@ typedef struct linear_law {
 } linear_law;
 
 // The readings at rest, with a pulse in one.
-static controller_input rest_input(const linear_arm *arm, const parameters *p, int reading,
-                                   double pulse)
+static controller_input rest_input(const linear_arm *arm, const parameters *p,
+                                   int reading, double pulse)
 {
     const sensor_parameters *fitted = &p->sensor;
     double at[LINEAR_READINGS + 1] = {arm->hub_angle,
@@ -53,8 +55,8 @@ static controller_input rest_input(const linear_arm *arm, const parameters *p, i
 }
 
 // The law's commands after a pulse at the end of a time at rest.
-static status answer(const linear_arm *arm, const parameters *p, int reading, double pulse,
-                     double *commands, fault *f)
+static status answer(const linear_arm *arm, const parameters *p, int reading,
+                     double pulse, double *commands, fault *f)
 {
     SCOPED(rig_destroy_kept) rig *r = NULL;
     TRY(rig_create(&r, p, NULL, f));
@@ -90,7 +92,9 @@ static status learn_reading(linear_law *law, const linear_arm *arm, const parame
 {
     double up[ANSWERS], down[ANSWERS], *h = law->h[reading], even = 0;
     status code = answer(arm, p, reading, PULSE, up, f);
-    code = code == STATUS_OK ? answer(arm, p, reading, -PULSE, down, f) : code;
+    if (code == STATUS_OK) {
+        code = answer(arm, p, reading, -PULSE, down, f);
+    }
     for (int k = 0; k < ANSWERS && code == STATUS_OK; k++) {
         h[k] = (up[k] - down[k]) / (2 * PULSE);
         even = fmax(even, fabs(up[k] + down[k] - 2 * rest[k]) / (2 * PULSE));
@@ -102,7 +106,9 @@ static status learn_reading(linear_law *law, const linear_arm *arm, const parame
     // rounding of the commands is no answer
     const double rounding = 1e-11 * fmax(largest(rest, ANSWERS), 1) / PULSE;
     for (int k = 0; k < ANSWERS; k++) {
-        h[k] = fabs(h[k]) < rounding * 1e-2 ? 0 : h[k];
+        if (fabs(h[k]) < rounding * 1e-2) {
+            h[k] = 0;
+        }
     }
     return code;
 }
@@ -160,8 +166,8 @@ static status learn(linear_law *law, const linear_arm *arm, const parameters *p,
     FAULT_IF(code == STATUS_UNSTABLE || order > MOST_ORDER ||
                  (code == STATUS_OK && arm->force > 0 && silent),
              f, STATUS_UNSTABLE,
-             "the law '%s' has no linear form where the arm rests: its answers to small readings "
-             "do not scale or settle, or there are none",
+             "the law '%s' has no linear form where the arm rests: its answers to "
+             "small readings do not scale or settle, or there are none",
              control_law_table[p->control.law].word);
     return code;
 }
@@ -198,7 +204,8 @@ static status assemble(linear_system *loop, const linear_law *law, const linear_
     return STATUS_OK;
 }
 
-status linear_loop(linear_system *loop, const linear_arm *arm, const parameters *p, fault *f)
+status linear_loop(linear_system *loop, const linear_arm *arm, const parameters *p,
+                   fault *f)
 {
     assert(p->control.law != LAW_NONE);
     linear_law law = {.order = 0};
@@ -217,22 +224,26 @@ void linear_close(linear_system *loop)
 }
 
 // The largest pole of the closed loop with a further delay.
-static status radius_with(const linear_law *law, const linear_arm *arm, const parameters *p,
-                          double delay, double *radius, fault *f)
+static status radius_with(const linear_law *law, const linear_arm *arm,
+                          const parameters *p, double delay, double *radius, fault *f)
 {
     SCOPED(linear_system_finish) linear_system loop = {0};
     parameters later = *p;
     later.control.delay += delay;
     TRY(assemble(&loop, law, arm, &later, f));
     linear_close(&loop);
-    SCOPED(free_kept) double complex *poles = calloc((size_t)loop.states + 1, sizeof *poles);
-    TRY_MEMORY(poles != NULL, f);
+    SCOPED(free_kept)
+    double complex *poles = calloc((size_t)loop.states + 1, sizeof *poles);
+    if (poles == NULL) {
+        return fault_no_memory(f);
+    }
     TRY(linear_poles(&loop, poles, f));
     *radius = cabs(poles[loop.states - 1]);
     return STATUS_OK;
 }
 
-status linear_delay_margin(const linear_arm *arm, const parameters *p, double *delay, fault *f)
+status linear_delay_margin(const linear_arm *arm, const parameters *p, double *delay,
+                           fault *f)
 {
     const double period = 1 / p->control.rate;
     const double last = fmin(*delay, MOST_LATE * period) + 2 * period;

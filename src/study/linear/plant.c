@@ -1,8 +1,9 @@
-// The arm at rest, its equations of motion linearised there, and those from sample to sample.
+// The arm at rest, its equations of motion linearised there, and those from sample to
+// sample.
 //
-// Rates are the derivatives of chain_accelerations by differences of sixth order, which are good to
-// some 1e-12 of a row. A rigid wall leaves angles with J q = 0: the last link's follows from the
-// others.
+// Rates are the derivatives of chain_accelerations by differences of sixth order, which
+// are good to some 1e-12 of a row. A rigid wall leaves angles with J q = 0: the last
+// link's follows from the others.
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -16,10 +17,14 @@
 const char *const linear_output_names[LINEAR_OUTPUTS] = {
     "hub_angle", "hub_velocity", "hub_acceleration", "bending", "tip", "force"};
 
-enum { MOST_BODIES = LINEAR_MOST_LINKS + 1, NEWTON_STEPS = 60, EDGE = 2 * MOST_BODIES + 2 };
+enum {
+    MOST_BODIES = LINEAR_MOST_LINKS + 1,
+    NEWTON_STEPS = 60,
+    EDGE = 2 * MOST_BODIES + 2
+};
 
-// Steps of the differences: of angles, over the number of links, by which they bend; and of all
-// else, in which motions are straight lines or parabolas.
+// Steps of the differences: of angles, over the number of links, by which they bend; and
+// of all else, in which motions are straight lines or parabolas.
 #define ANGLE_STEP 6e-3 // [rad]
 #define OTHER_STEP 0.01 // [rad/s], [A], [V]
 
@@ -29,7 +34,9 @@ status linear_system_init(linear_system *s, int states, int outputs, fault *f)
 {
     const size_t n = (size_t)states, m = (size_t)outputs;
     s->a = calloc(n * n + n + m * n + m + 1, sizeof *s->a);
-    TRY_MEMORY(s->a != NULL, f);
+    if (s->a == NULL) {
+        return fault_no_memory(f);
+    }
     s->states = states;
     s->outputs = outputs;
     s->b = s->a + n * n;
@@ -44,8 +51,8 @@ void linear_system_finish(linear_system *s)
     *s = (linear_system){0};
 }
 
-// An instant z: angles, their rates, the motor's current, its command. What it gives: the angles'
-// accelerations, then the force and the tip's place across the line from the hub.
+// An instant z: angles, their rates, the motor's current, its command. What it gives: the
+// angles' accelerations, then the force and the tip's place across the line from the hub.
 typedef struct workshop {
     arm arm;
     contact_state mode;
@@ -71,7 +78,7 @@ static void evaluate(workshop *w, const double *z, double *out)
     out[w->n + 1] = x * w->across[0] + y * w->across[1];
 }
 
-// --- rest -------------------------------------------------------------------------------------
+// --- rest ------------------------------------------------------------------------------
 
 static void jacobian(const workshop *w, double *j)
 {
@@ -83,8 +90,8 @@ static void jacobian(const workshop *w, double *j)
     }
 }
 
-// What is to vanish at w->rest: accelerations, on a rigid wall with the penetration along J, which
-// accelerations do not have; and what the force or the command lack.
+// What is to vanish at w->rest: accelerations, on a rigid wall with the penetration along
+// J, which accelerations do not have; and what the force or the command lack.
 static void missing(workshop *w, double *residual)
 {
     const int n = w->n;
@@ -93,7 +100,11 @@ static void missing(workshop *w, double *residual)
     w->rest[2 * n] = w->arm.motor.gain * volts / fmax(w->arm.motor.resistance, 1e-300);
     evaluate(w, w->rest, out);
     memcpy(residual, out, (size_t)n * sizeof *residual);
-    residual[n] = isnan(w->wanted) ? volts - w->command : out[n] - w->wanted;
+    if (isnan(w->wanted)) {
+        residual[n] = volts - w->command;
+    } else {
+        residual[n] = out[n] - w->wanted;
+    }
     if (w->rigid) {
         jacobian(w, j);
         const double g = chain_penetration(&w->arm, w->rest, w->rest + n).depth;
@@ -106,8 +117,8 @@ static void missing(workshop *w, double *residual)
     }
 }
 
-// Newton's iteration from the straight arm at the wall; slopes by differences, no further than a
-// wall that gives is deep.
+// Newton's iteration from the straight arm at the wall; slopes by differences, no further
+// than a wall that gives is deep.
 static status find_rest(workshop *w, fault *f)
 {
     const int size = w->n + 1;
@@ -139,16 +150,20 @@ static status find_rest(workshop *w, fault *f)
         }
     }
     missing(w, residual);
-    return change < 1e-9
-               ? STATUS_OK
-               : fault_set(f, STATUS_BAD_ARGUMENT,
-                           "the arm has no place of rest on the wall under this force or command");
+    if (!(change < 1e-9)) {
+        return fault_set(
+            f, STATUS_BAD_ARGUMENT,
+            "the arm has no place of rest on the wall under this force or command");
+    }
+    return STATUS_OK;
 }
 
-// --- linearised -------------------------------------------------------------------------------
+// --- linearised ------------------------------------------------------------------------
 
-// Derivatives of what an instant gives along a direction of z, by sixth-order differences.
-static void differentiate(workshop *w, const double *direction, double step, double *slopes)
+// Derivatives of what an instant gives along a direction of z, by sixth-order
+// differences.
+static void differentiate(workshop *w, const double *direction, double step,
+                          double *slopes)
 {
     static const double weight[3] = {0.75, -0.15, 1.0 / 60};
     double ends[2][MOST_BODIES + 2], z[EDGE];
@@ -168,7 +183,8 @@ static void differentiate(workshop *w, const double *direction, double step, dou
 
 static status linearise(workshop *w, linear_system *s, fault *f)
 {
-    // the angles left: from `first` to the one before `end`, which follows them on a rigid wall
+    // the angles left: from `first` to the one before `end`, which follows them on a
+    // rigid wall
     const int n = w->n, first = w->mode.friction == HUB_STICK ? 1 : 0, end = n - w->rigid;
     const motor_model *m = &w->arm.motor;
     const bool flows = m->electric && m->inductance > 0;
@@ -203,7 +219,11 @@ static status linearise(workshop *w, linear_system *s, fault *f)
         }
         c[LINEAR_HUB_ANGLE * row] = z[0];
         c[LINEAR_HUB_VELOCITY * row] = z[n];
-        c[LINEAR_HUB_ACCELERATION * row] = first == 0 ? slopes[0] : 0;
+        if (first == 0) {
+            c[LINEAR_HUB_ACCELERATION * row] = slopes[0];
+        } else {
+            c[LINEAR_HUB_ACCELERATION * row] = 0;
+        }
         c[LINEAR_BENDING * row] = z[n - 1] - z[w->arm.first];
         c[LINEAR_TIP * row] = slopes[n + 1];
         c[LINEAR_FORCE * row] = slopes[n];
@@ -224,22 +244,33 @@ static status linearise(workshop *w, linear_system *s, fault *f)
 // What cannot be linearised, in words; NULL if it can.
 static const char *refusal(const parameters *p, linear_place place, double force)
 {
-    return p->arm.model == ARM_PRINTED
-               ? "the printed equations have no linear form that conserves energy, try --set "
-                 "arm.model=corrected"
-           : p->arm.links > LINEAR_MOST_LINKS ? "the linear arm has at most 64 links"
-           : place == LINEAR_FREE             ? NULL
-           : p->wall.kind == WALL_NONE        ? "there is no wall to press on"
-           : p->wall.motion != MOTION_NONE    ? "nothing rests on a wall that moves, try --set "
-                                                "wall.motion=none"
-           : force < 0 ? "the arm does not press on the wall under this command"
-           : force == 0 && p->wall.contact == WALL_HUNT_CROSSLEY
-               ? "a Hunt-Crossley wall has no stiffness without a force"
-               : NULL;
+    if (p->arm.model == ARM_PRINTED) {
+        return "the printed equations have no linear form that conserves energy, "
+               "try --set arm.model=corrected";
+    }
+    if (p->arm.links > LINEAR_MOST_LINKS) {
+        return "the linear arm has at most 64 links";
+    }
+    if (place == LINEAR_FREE) {
+        return NULL;
+    }
+    if (p->wall.kind == WALL_NONE) {
+        return "there is no wall to press on";
+    }
+    if (p->wall.motion != MOTION_NONE) {
+        return "nothing rests on a wall that moves, try --set wall.motion=none";
+    }
+    if (force < 0) {
+        return "the arm does not press on the wall under this command";
+    }
+    if (force == 0 && p->wall.contact == WALL_HUNT_CROSSLEY) {
+        return "a Hunt-Crossley wall has no stiffness without a force";
+    }
+    return NULL;
 }
 
-// The arm at a wall of this kind of contact, without Coulomb friction and limits, which are no part
-// of small motions.
+// The arm at a wall of this kind of contact, without Coulomb friction and limits, which
+// are no part of small motions.
 static void put_arm(workshop *w, const parameters *p, int contact)
 {
     parameters smooth = *p;
@@ -253,9 +284,9 @@ static void put_arm(workshop *w, const parameters *p, int contact)
     w->step = ANGLE_STEP / p->arm.links;
 }
 
-// Takes an arm from its rest on a rigid wall into the one that stiffens with its depth, as deep as
-// it presses: from farther off Newton's iteration ends where no arm rests. Such a spring is
-// followed for a small part of its depth.
+// Takes an arm from its rest on a rigid wall into the one that stiffens with its depth,
+// as deep as it presses: from farther off Newton's iteration ends where no arm rests.
+// Such a spring is followed for a small part of its depth.
 static void press_in(workshop *w, const parameters *p, double force)
 {
     double turn[MOST_BODIES];
@@ -272,19 +303,30 @@ static void press_in(workshop *w, const parameters *p, double force)
 }
 
 // The force at rest [N], or why that has no linear form.
-static status press(workshop *w, const parameters *p, linear_place place, double *force, fault *f)
+static status press(workshop *w, const parameters *p, linear_place place, double *force,
+                    fault *f)
 {
     double there[MOST_BODIES + 2];
-    const status code = place != LINEAR_FREE ? find_rest(w, f) : STATUS_OK;
+    status code = STATUS_OK;
+    if (place != LINEAR_FREE) {
+        code = find_rest(w, f);
+    }
     evaluate(w, w->rest, there);
-    *force = place != LINEAR_FREE ? there[w->n] : 0;
+    if (place != LINEAR_FREE) {
+        *force = there[w->n];
+    } else {
+        *force = 0;
+    }
     const char *why = refusal(p, place, fabs(*force) > NO_FORCE ? *force : 0);
-    return code == STATUS_OK && why != NULL ? fault_set(f, STATUS_BAD_ARGUMENT, "%s", why) : code;
+    if (code == STATUS_OK && why != NULL) {
+        return fault_set(f, STATUS_BAD_ARGUMENT, "%s", why);
+    }
+    return code;
 }
 
 // Rest, its numbers, and the slopes there, with the workshop prepared.
-static status linearise_at(workshop *w, linear_arm *out, const parameters *p, linear_place place,
-                           fault *f)
+static status linearise_at(workshop *w, linear_arm *out, const parameters *p,
+                           linear_place place, fault *f)
 {
     double x, y;
     TRY(press(w, p, place, &out->force, f));
@@ -295,25 +337,44 @@ static status linearise_at(workshop *w, linear_arm *out, const parameters *p, li
     out->voltage = w->rest[2 * w->n + 1];
     out->hub_angle = w->rest[0];
     out->bending = w->rest[w->n - 1] - w->rest[w->arm.first];
-    w->mode.friction = place == LINEAR_STUCK ? HUB_STICK : HUB_FORWARD;
+    if (place == LINEAR_STUCK) {
+        w->mode.friction = HUB_STICK;
+    } else {
+        w->mode.friction = HUB_FORWARD;
+    }
     return linearise(w, &out->system, f);
 }
 
 status linear_arm_init(linear_arm *out, const parameters *p, linear_place place, fault *f)
 {
     *out = (linear_arm){.force = 0};
-    const bool touches = place != LINEAR_FREE, held = touches && p->control.law != LAW_NONE;
-    const bool weighs = !held && p->arm.tilt != 0; // which may press or lift, and is seen at rest
-    const char *why = refusal(p, place, held ? p->control.force : weighs ? 1 : p->motor.voltage);
+    const bool touches = place != LINEAR_FREE,
+               held = touches && p->control.law != LAW_NONE;
+    const bool weighs =
+        !held && p->arm.tilt != 0; // which may press or lift, and is seen at rest
+    const char *why = refusal(p, place,
+                              held     ? p->control.force
+                              : weighs ? 1
+                                       : p->motor.voltage);
     FAULT_IF(why != NULL, f, STATUS_BAD_ARGUMENT, "%s", why);
     SCOPED(free_kept) workshop *w = calloc(1, sizeof *w);
-    TRY_MEMORY(w != NULL, f);
+    if (w == NULL) {
+        return fault_no_memory(f);
+    }
 
     // straight; what is pressed into a wall that stiffens is found from a rigid one
     const bool stiffens = touches && p->wall.contact == WALL_HUNT_CROSSLEY;
     w->mode = (contact_state){.contact = touches, .friction = HUB_FORWARD};
-    w->wanted = held ? p->control.force : (double)NAN;
-    w->command = held || !touches ? 0 : p->motor.voltage;
+    if (held) {
+        w->wanted = p->control.force;
+    } else {
+        w->wanted = (double)NAN;
+    }
+    if (held || !touches) {
+        w->command = 0;
+    } else {
+        w->command = p->motor.voltage;
+    }
     put_arm(w, p, stiffens ? WALL_RIGID : p->wall.contact);
     for (int k = 0; k < w->n; k++) {
         w->rest[k] = p->wall.angle;
@@ -325,7 +386,7 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
     return linearise_at(w, out, p, place, f);
 }
 
-// --- between samples ---------------------------------------------------------------------------
+// --- between samples -------------------------------------------------------------------
 
 enum { MOST_LAGS = 6 };
 
@@ -336,12 +397,14 @@ typedef struct lagged_arm {
     linear_system system; // of all readings
 } lagged_arm;
 
-// Adds `share` times an output of the arm, behind a lag [s] if there is one, to a reading.
+// Adds `share` times an output of the arm, behind a lag [s] if there is one, to a
+// reading.
 static void see(lagged_arm *l, int reading, int output, double share, double time)
 {
     const int n = l->arm->states, edge = l->system.states;
     const double *c = l->arm->c + output * n, d = l->arm->d[output];
-    double *row = l->system.c + reading * edge, *direct = &l->system.d[reading], scale = share;
+    double *row = l->system.c + reading * edge, *direct = &l->system.d[reading],
+           scale = share;
     if (time > 0) {
         row[l->states] += share;
         row = l->system.a + l->states * edge;
@@ -372,7 +435,8 @@ static void see_all(lagged_arm *l, const parameters *p)
     sensors s;
     sensors_init(&s, &p->sensor, p->control.seed);
     for (int i = 0; i < n; i++) {
-        memcpy(l->system.a + i * l->system.states, l->arm->a + i * n, (size_t)n * sizeof(double));
+        memcpy(l->system.a + i * l->system.states, l->arm->a + i * n,
+               (size_t)n * sizeof(double));
         l->system.b[i] = l->arm->b[i];
     }
     see(l, READ_ENCODER, LINEAR_HUB_ANGLE, 1, 0);
@@ -393,20 +457,23 @@ static void see_all(lagged_arm *l, const parameters *p)
         }
     }
     if (p->sensor.accelerometer) {
-        see(l, READ_ACCELEROMETER, LINEAR_HUB_ACCELERATION, 1, s.acceleration.time_constant);
+        see(l, READ_ACCELEROMETER, LINEAR_HUB_ACCELERATION, 1,
+            s.acceleration.time_constant);
     }
 }
 
-// Fills in the sampled system of n states and `held` commands on their way, u_k-held first. From
-// exp((A, B; 0, 0) h) = (exp(A h), integral of exp(A t) B; 0, 1): over `late` the older command,
-// then the newer one.
-static status fill(linear_system *out, const linear_system *s, int n, int held, double period,
-                   double late, fault *f)
+// Fills in the sampled system of n states and `held` commands on their way, u_k-held
+// first. From exp((A, B; 0, 0) h) = (exp(A h), integral of exp(A t) B; 0, 1): over `late`
+// the older command, then the newer one.
+static status fill(linear_system *out, const linear_system *s, int n, int held,
+                   double period, double late, fault *f)
 {
     const int size = n + 1, states = out->states;
     const size_t square = (size_t)size * (size_t)size;
     SCOPED(free_kept) double *both = calloc(5 * square, sizeof *both);
-    TRY_MEMORY(both != NULL, f);
+    if (both == NULL) {
+        return fault_no_memory(f);
+    }
     double *before = both + square, *after = before + square, *power = after + square,
            *product = power + square;
     for (int i = 0; i < n; i++) {
@@ -436,7 +503,8 @@ static status fill(linear_system *out, const linear_system *s, int n, int held, 
     return STATUS_OK;
 }
 
-status linear_sample(linear_system *sampled, const linear_arm *rest, const parameters *p, fault *f)
+status linear_sample(linear_system *sampled, const linear_arm *rest, const parameters *p,
+                     fault *f)
 {
     assert(p->control.rate > 0);
     lagged_arm l = {.arm = &rest->system, .states = rest->system.states};
@@ -444,15 +512,16 @@ status linear_sample(linear_system *sampled, const linear_arm *rest, const param
     TRY(linear_system_init(&l.system, l.states + MOST_LAGS, LINEAR_READINGS, f));
     see_all(&l, p);
 
-    // the delay: whole periods, and the rest, in which the command before is still in effect; a
-    // reading at a sample sees the command before the one that comes with it
+    // the delay: whole periods, and the rest, in which the command before is still in
+    // effect; a reading at a sample sees the command before the one that comes with it
     const double period = 1 / p->control.rate,
                  delay = p->control.delay / period + p->control.delay_periods;
     const double whole = floor(delay + 1e-12), part = fmax(0, delay - whole);
     const int held = (int)whole + 1;
     status code = linear_system_init(sampled, l.states + held, LINEAR_READINGS, f);
-    code = code == STATUS_OK ? fill(sampled, &l.system, l.states, held, period, part * period, f)
-                             : code;
+    if (code == STATUS_OK) {
+        code = fill(sampled, &l.system, l.states, held, period, part * period, f);
+    }
     linear_system_finish(&l.system);
     if (code != STATUS_OK) {
         linear_system_finish(sampled);

@@ -1,5 +1,5 @@
-// Poles, zeros and answers of linear systems, by LAPACK; how far a loop gain stays from -1, and
-// where a loop is stable.
+// Poles, zeros and answers of linear systems, by LAPACK; how far a loop gain stays from
+// -1, and where a loop is stable.
 #include <assert.h>
 #include <dlfcn.h>
 #include <math.h>
@@ -16,11 +16,12 @@
 // What is below this share of the terms it is the sum of is rounding.
 #define ROUNDING 1e-11
 
-// Eigenvalues of a general matrix, and linear equations. The last two of dgeev are the lengths of
-// its texts, as Fortran passes them.
-typedef void (*dgeev)(const char *left, const char *right, const int *n, double *a, const int *lda,
-                      double *real, double *imaginary, double *vl, const int *ldvl, double *vr,
-                      const int *ldvr, double *work, const int *size, int *info, size_t, size_t);
+// Eigenvalues of a general matrix, and linear equations. The last two of dgeev are the
+// lengths of its texts, as Fortran passes them.
+typedef void (*dgeev)(const char *left, const char *right, const int *n, double *a,
+                      const int *lda, double *real, double *imaginary, double *vl,
+                      const int *ldvl, double *vr, const int *ldvr, double *work,
+                      const int *size, int *info, size_t, size_t);
 typedef void (*zgesv)(const int *n, const int *columns, double complex *a, const int *lda,
                       int *pivots, double complex *b, const int *ldb, int *info);
 
@@ -54,10 +55,16 @@ static int compare(const void *one, const void *other)
     double complex a, b;
     memcpy(&a, one, sizeof a);
     memcpy(&b, other, sizeof b);
-    const double alike = 1e-9 * cabs(a), sizes = cabs(a) - cabs(b), parts = creal(a) - creal(b);
-    const double by = fabs(sizes) > alike   ? sizes
-                      : fabs(parts) > alike ? parts
-                                            : cimag(b) - cimag(a);
+    const double alike = 1e-9 * cabs(a), sizes = cabs(a) - cabs(b),
+                 parts = creal(a) - creal(b);
+    double by;
+    if (fabs(sizes) > alike) {
+        by = sizes;
+    } else if (fabs(parts) > alike) {
+        by = parts;
+    } else {
+        by = cimag(b) - cimag(a);
+    }
     return (by > 0) - (by < 0);
 }
 
@@ -65,29 +72,34 @@ static int compare(const void *one, const void *other)
 static status eigenvalues(int n, const double *matrix, double complex *values, fault *f)
 {
     FAULT_IF(!load(), f, STATUS_SINGULAR,
-             "poles and zeros need LAPACK, liblapack.so.3, which is not on this machine (Debian: "
-             "apt install liblapack3)");
+             "poles and zeros need LAPACK, liblapack.so.3, which is not on this "
+             "machine (Debian: apt install liblapack3)");
     const size_t square = (size_t)n * (size_t)n;
     const int size = 8 * n, one = 1;
-    SCOPED(free_kept) double *work = calloc(square + (size_t)(size + 2 * n) + 1, sizeof *work);
+    SCOPED(free_kept)
+    double *work = calloc(square + (size_t)(size + 2 * n) + 1, sizeof *work);
     double unused[1];
-    TRY_MEMORY(work != NULL, f);
+    if (work == NULL) {
+        return fault_no_memory(f);
+    }
 
     // those of the transpose, which Fortran sees, are the same
     double *copy = work + size, *real = copy + square, *imaginary = real + n;
     int info = 0;
     memcpy(copy, matrix, square * sizeof *copy);
     if (n > 0) {
-        eigenvalues_of("N", "N", &n, copy, &n, real, imaginary, unused, &one, unused, &one, work,
-                       &size, &info, 1, 1);
+        eigenvalues_of("N", "N", &n, copy, &n, real, imaginary, unused, &one, unused,
+                       &one, work, &size, &info, 1, 1);
     }
     for (int i = 0; i < n; i++) {
         values[i] = complex_of(real[i], imaginary[i]);
     }
     qsort(values, (size_t)n, sizeof *values, compare);
-    return info == 0
-               ? STATUS_OK
-               : fault_set(f, STATUS_SINGULAR, "LAPACK found no eigenvalues of the linear arm");
+    if (info != 0) {
+        return fault_set(f, STATUS_SINGULAR,
+                         "LAPACK found no eigenvalues of the linear arm");
+    }
+    return STATUS_OK;
 }
 
 status linear_poles(const linear_system *s, double complex *values, fault *f)
@@ -95,13 +107,15 @@ status linear_poles(const linear_system *s, double complex *values, fault *f)
     return eigenvalues(s->states, s->a, values, f);
 }
 
-status linear_zeros(const linear_system *s, int output, int *count, double complex *values,
-                    fault *f)
+status linear_zeros(const linear_system *s, int output, int *count,
+                    double complex *values, fault *f)
 {
     assert(output >= 0 && output < s->outputs);
     const int n = s->states;
     SCOPED(free_kept) double *row = calloc((size_t)(n * n + 2 * n) + 1, sizeof *row);
-    TRY_MEMORY(row != NULL, f);
+    if (row == NULL) {
+        return fault_no_memory(f);
+    }
     double *next = row + n, *matrix = next + n;
 
     // the output's derivative, row x + direct u, that sees the input first
@@ -119,14 +133,21 @@ status linear_zeros(const linear_system *s, int output, int *count, double compl
             }
         }
         memcpy(row, next, (size_t)n * sizeof *row);
-        direct = fabs(direct) > ROUNDING * terms ? direct : 0;
+        if (!(fabs(direct) > ROUNDING * terms)) {
+            direct = 0;
+        }
     }
 
-    // the command that keeps it at zero leaves the zeros, and that many poles at the origin
+    // the command that keeps it at zero leaves the zeros, and that many poles at the
+    // origin
     for (int i = 0; i < n * n && direct != 0; i++) {
         matrix[i] = s->a[i] - s->b[i / n] * row[i % n] / direct;
     }
-    *count = direct != 0 ? n - order : 0;
+    if (direct != 0) {
+        *count = n - order;
+    } else {
+        *count = 0;
+    }
     const status code = eigenvalues(direct != 0 ? n : 0, matrix, values, f);
     memmove(values, values + order, (size_t)*count * sizeof *values);
     return code;
@@ -134,7 +155,10 @@ status linear_zeros(const linear_system *s, int output, int *count, double compl
 
 double linear_damping(double complex s)
 {
-    return cabs(s) > 0 ? -creal(s) / cabs(s) : (double)NAN;
+    if (cabs(s) > 0) {
+        return -creal(s) / cabs(s);
+    }
+    return (double)NAN;
 }
 
 double complex linear_answer(const linear_system *s, int output, double complex point,
@@ -157,25 +181,37 @@ double complex linear_answer(const linear_system *s, int output, double complex 
     for (int i = 0; i < n; i++) {
         sum += s->b[i] * x[i];
     }
-    return n == 0 || info == 0 ? sum : complex_of((double)NAN, 0);
+    if (n == 0 || info == 0) {
+        return sum;
+    }
+    return complex_of((double)NAN, 0);
 }
 
-// --- answers over frequency --------------------------------------------------------------------
+// --- answers over frequency ------------------------------------------------------------
 
-// Frequencies: so many in equal ratios, of a loop over so many decades below half its rate, and so
-// many about each vibration, out to where it no longer shows.
-enum { EVEN = 1500, ABOUT = 40, MOST_FREQUENCIES = 20000, BISECTIONS = 40, RUN_BISECTIONS = 12 };
+// Frequencies: so many in equal ratios, of a loop over so many decades below half its
+// rate, and so many about each vibration, out to where it no longer shows.
+enum {
+    EVEN = 1500,
+    ABOUT = 40,
+    MOST_FREQUENCIES = 20000,
+    BISECTIONS = 40,
+    RUN_BISECTIONS = 12
+};
 #define DECADES 1e4
 
 // Puts frequencies for a system with the given poles in order; returns how many.
-static int choose_frequencies(const double complex *poles, int states, double period, double *w)
+static int choose_frequencies(const double complex *poles, int states, double period,
+                              double *w)
 {
     double low = M_PI / period / DECADES, high = M_PI / period;
     int count = 0;
     if (period == 0) {
         low = high = 1;
         for (int i = states - 1; i >= 0; i--) { // the fastest first
-            low = cabs(poles[i]) > 1e-6 ? cabs(poles[i]) : low;
+            if (cabs(poles[i]) > 1e-6) {
+                low = cabs(poles[i]);
+            }
         }
         high = 10 * fmax(high, states > 0 ? cabs(poles[states - 1]) : 0);
         low *= 0.01;
@@ -186,7 +222,8 @@ static int choose_frequencies(const double complex *poles, int states, double pe
     for (int i = 0; i < states && period > 0; i++) {
         const double size = cabs(poles[i]), at = size > 0 ? carg(poles[i]) / period : 0;
         const double width = size > 0 ? fabs(plain_log(size)) / period : 0;
-        for (int k = -ABOUT / 2; k <= ABOUT / 2 && at > 0 && count < MOST_FREQUENCIES; k++) {
+        for (int k = -ABOUT / 2; k <= ABOUT / 2 && at > 0 && count < MOST_FREQUENCIES;
+             k++) {
             const double off = fmax(width, 1e-9 * at) * (plain_exp(0.3 * abs(k)) - 1);
             const double near = k < 0 ? at - off : at + off;
             if (near > 0 && near < high) {
@@ -198,16 +235,20 @@ static int choose_frequencies(const double complex *poles, int states, double pe
     return count;
 }
 
-status linear_respond(const linear_system *s, int output, double period, linear_response *r,
-                      fault *f)
+status linear_respond(const linear_system *s, int output, double period,
+                      linear_response *r, fault *f)
 {
     assert(period >= 0);
     const size_t n = (size_t)s->states;
     *r = (linear_response){0};
     double *block = calloc(3 * MOST_FREQUENCIES, sizeof *block);
     SCOPED(free_kept) double complex *scratch = calloc(n * (n + 2) + 1, sizeof *scratch);
-    const status code =
-        block != NULL && scratch != NULL ? linear_poles(s, scratch, f) : fault_no_memory(f);
+    status code;
+    if (block != NULL && scratch != NULL) {
+        code = linear_poles(s, scratch, f);
+    } else {
+        code = fault_no_memory(f);
+    }
     if (code != STATUS_OK) {
         free(block);
         return code;
@@ -217,13 +258,16 @@ status linear_respond(const linear_system *s, int output, double period, linear_
     for (int i = 0; i < r->count; i++) {
         double sine, cosine;
         inline_sincos(r->frequency[i] * period, &sine, &cosine);
-        r->gain[i] = period > 0 ? -linear_answer(s, output, complex_of(cosine, sine), scratch)
-                                : linear_answer(s, output, complex_of(0, block[i]), scratch);
+        if (period > 0) {
+            r->gain[i] = -linear_answer(s, output, complex_of(cosine, sine), scratch);
+        } else {
+            r->gain[i] = linear_answer(s, output, complex_of(0, block[i]), scratch);
+        }
     }
     return STATUS_OK;
 }
 
-// --- margins ----------------------------------------------------------------------------------
+// --- margins ---------------------------------------------------------------------------
 
 #define MOST_GAIN_DB 120.0 // no law is off by a factor of a million; beyond is rounding
 
@@ -259,8 +303,10 @@ linear_margins linear_margins_of(const linear_response *r)
         if ((size - 1) * (then - 1) <= 0 && size != then) {
             const double share = plain_log(size) / (plain_log(size) - plain_log(then));
             const double complex one = here + share * (next - here);
-            const double w = r->frequency[i] + share * (r->frequency[i + 1] - r->frequency[i]);
-            const double left = plain_atan2(-cimag(one), -creal(one)); // beyond -180 degrees
+            const double w =
+                r->frequency[i] + share * (r->frequency[i + 1] - r->frequency[i]);
+            const double left =
+                plain_atan2(-cimag(one), -creal(one)); // beyond -180 degrees
             m.phase_deg = fmin(m.phase_deg, fabs(left) * 180 / M_PI);
             m.delay_s = fmin(m.delay_s, (left >= 0 ? left : left + 2 * M_PI) / w);
         }
@@ -275,7 +321,7 @@ linear_margins linear_margins_of(const linear_response *r)
     return m;
 }
 
-// --- where a loop is stable -------------------------------------------------------------------
+// --- where a loop is stable ------------------------------------------------------------
 
 static status growth_of(const scenario *s, linear_place place, double *growth, fault *f)
 {
@@ -284,15 +330,18 @@ static status growth_of(const scenario *s, linear_place place, double *growth, f
     TRY(linear_arm_init(&arm, &s->parameters, place, f));
     TRY(linear_loop(&loop, &arm, &s->parameters, f));
     linear_close(&loop);
-    SCOPED(free_kept) double complex *poles = calloc((size_t)loop.states + 1, sizeof *poles);
-    TRY_MEMORY(poles != NULL, f);
+    SCOPED(free_kept)
+    double complex *poles = calloc((size_t)loop.states + 1, sizeof *poles);
+    if (poles == NULL) {
+        return fault_no_memory(f);
+    }
     TRY(linear_poles(&loop, poles, f));
     *growth = plain_log(cabs(poles[loop.states - 1])) * s->parameters.control.rate;
     return STATUS_OK;
 }
 
-status linear_stability(const scenario *s, linear_place place, bool by_runs, double *number,
-                        fault *f)
+status linear_stability(const scenario *s, linear_place place, bool by_runs,
+                        double *number, fault *f)
 {
     *number = (double)NAN;
     if (!by_runs) {
@@ -301,9 +350,11 @@ status linear_stability(const scenario *s, linear_place place, bool by_runs, dou
     SCOPED(run_finish) run_result result;
     const status code = run_scenario(s, false, &result);
     *number = result.summary.settling_time_s;
-    return code == STATUS_NO_MEMORY || code == STATUS_NOT_ALLOWED || code == STATUS_STOPPED
-               ? summary_fault(&result.summary, f)
-               : STATUS_OK;
+    if (code == STATUS_NO_MEMORY || code == STATUS_NOT_ALLOWED ||
+        code == STATUS_STOPPED) {
+        return summary_fault(&result.summary, f);
+    }
+    return STATUS_OK;
 }
 
 status linear_growth(const scenario *s, double *growth, fault *f)
@@ -312,8 +363,8 @@ status linear_growth(const scenario *s, double *growth, fault *f)
 }
 
 // Where stability changes between the i-th value of a single axis and the one before.
-static status find_limit(const linear_survey *y, size_t i, linear_place place, bool by_runs,
-                         double *limit, fault *f)
+static status find_limit(const linear_survey *y, size_t i, linear_place place,
+                         bool by_runs, double *limit, fault *f)
 {
     double from = y->sweep.axes[0].values[i - 1], to = y->sweep.axes[0].values[i];
     const bool at_start = linear_is_stable(by_runs, y->numbers[by_runs][i - 1]);
@@ -347,8 +398,8 @@ static status survey_one(linear_survey *y, size_t i, linear_place place, fault *
     return STATUS_OK;
 }
 
-status linear_survey_begin(linear_survey *y, const scenario *s, const sweep_request *request,
-                           fault *f)
+status linear_survey_begin(linear_survey *y, const scenario *s,
+                           const sweep_request *request, fault *f)
 {
     *y = (linear_survey){.limit_count = 0};
     TRY(sweep_init(&y->sweep, s, request, f));
@@ -365,12 +416,14 @@ status linear_survey_begin(linear_survey *y, const scenario *s, const sweep_requ
     return STATUS_OK;
 }
 
-status linear_survey_make(linear_survey *y, linear_place place, run_monitor *monitor, fault *f)
+status linear_survey_make(linear_survey *y, linear_place place, run_monitor *monitor,
+                          fault *f)
 {
     for (; y->done < y->sweep.run_count; y->done++) {
         TRY(survey_one(y, y->done, place, f));
         run_monitor_count(monitor);
-        FAULT_IF(run_monitor_stops(monitor), f, STATUS_STOPPED, "%s", status_text(STATUS_STOPPED));
+        FAULT_IF(run_monitor_stops(monitor), f, STATUS_STOPPED, "%s",
+                 status_text(STATUS_STOPPED));
     }
     return STATUS_OK;
 }

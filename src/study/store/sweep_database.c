@@ -7,7 +7,8 @@
 #include "src/base/whole_file.h"
 #include "src/tables/summary.h"
 
-// Of a value or a row: what is stored is shorter, what a file may make up on reading need not be.
+// Of a value or a row: what is stored is shorter, what a file may make up on reading need
+// not be.
 enum { MOST_BYTES = 16 << 20 };
 
 status database_fault(const sweep_database *store, fault *f)
@@ -16,40 +17,48 @@ status database_fault(const sweep_database *store, fault *f)
     const char *why = sqlite3_errmsg(store->database);
     const char *path = store->path ? store->path : "the results in memory";
 
-    FAIL_IF(code == SQLITE_NOMEM, fault_no_memory(f));
-    FAULT_IF(code == SQLITE_NOTADB, f, STATUS_BAD_ARGUMENT, "'%s' is no SQLite database", path);
-    FAULT_IF(code == SQLITE_CORRUPT, f, STATUS_CANNOT_READ, "'%s' is damaged: %s", path, why);
+    if (code == SQLITE_NOMEM) {
+        return fault_no_memory(f);
+    }
+    FAULT_IF(code == SQLITE_NOTADB, f, STATUS_BAD_ARGUMENT, "'%s' is no SQLite database",
+             path);
+    FAULT_IF(code == SQLITE_CORRUPT, f, STATUS_CANNOT_READ, "'%s' is damaged: %s", path,
+             why);
 
     // what is asked of it is always the same, so that tables of others are at fault
     FAULT_IF(code == SQLITE_ERROR || code == SQLITE_TOOBIG, f, STATUS_BAD_ARGUMENT,
              "'%s' is not laid out as this program does it: %s", path, why);
-    FAULT_IF(code != SQLITE_READONLY && sqlite3_db_readonly(store->database, "main") == 1, f,
-             STATUS_CANNOT_READ, "'%s' cannot be read: %s", path, why);
-    FAIL_IF(sqlite3_extended_errcode(store->database) == SQLITE_READONLY_DBMOVED,
-            database_moved_fault(store, f));
+    FAULT_IF(code != SQLITE_READONLY && sqlite3_db_readonly(store->database, "main") == 1,
+             f, STATUS_CANNOT_READ, "'%s' cannot be read: %s", path, why);
+    if (sqlite3_extended_errcode(store->database) == SQLITE_READONLY_DBMOVED) {
+        return database_moved_fault(store, f);
+    }
     return fault_set(f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", path, why);
 }
 
 status database_moved_fault(const sweep_database *store, fault *f)
 {
     return fault_set(f, STATUS_CANNOT_WRITE,
-                     "'%s' was deleted, moved or replaced while runs were added to it; those since "
-                     "then are lost",
+                     "'%s' was deleted, moved or replaced while runs were added to it; "
+                     "those since then are lost",
                      store->path);
 }
 
 status database_execute(sweep_database *store, const char *sql, fault *f)
 {
-    return sqlite3_exec(store->database, sql, NULL, NULL, NULL) == SQLITE_OK
-               ? STATUS_OK
-               : database_fault(store, f);
+    if (sqlite3_exec(store->database, sql, NULL, NULL, NULL) == SQLITE_OK) {
+        return STATUS_OK;
+    }
+    return database_fault(store, f);
 }
 
-status database_prepare(sweep_database *store, sqlite3_stmt **statement, const char *sql, fault *f)
+status database_prepare(sweep_database *store, sqlite3_stmt **statement, const char *sql,
+                        fault *f)
 {
-    return sqlite3_prepare_v2(store->database, sql, -1, statement, NULL) == SQLITE_OK
-               ? STATUS_OK
-               : database_fault(store, f);
+    if (sqlite3_prepare_v2(store->database, sql, -1, statement, NULL) == SQLITE_OK) {
+        return STATUS_OK;
+    }
+    return database_fault(store, f);
 }
 
 bool database_next(sweep_database *store, sqlite3_stmt *rows, status *code, fault *f)
@@ -64,8 +73,8 @@ bool database_next(sweep_database *store, sqlite3_stmt *rows, status *code, faul
 }
 
 // The last number that a query gives, 0 if it gives none.
-static status database_query_number(sweep_database *store, const char *sql, long long *number,
-                                    fault *f)
+static status database_query_number(sweep_database *store, const char *sql,
+                                    long long *number, fault *f)
 {
     sqlite3_stmt *statement;
     *number = 0;
@@ -85,10 +94,12 @@ status database_recognise(sweep_database *store, bool *empty, fault *f)
     // one that holds something must hold a sweep
     TRY(database_query_number(store, "PRAGMA application_id", &mark, f));
     TRY(database_query_number(store, "PRAGMA user_version", &layout, f));
-    return *empty || (mark == atoll(APPLICATION_ID) && layout == atoll(LAYOUT))
-               ? STATUS_OK
-               : fault_set(f, STATUS_BAD_ARGUMENT,
-                           "'%s' is a database that holds no sweep of this program", store->path);
+    if (!(*empty || (mark == atoll(APPLICATION_ID) && layout == atoll(LAYOUT)))) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%s' is a database that holds no sweep of this program",
+                         store->path);
+    }
+    return STATUS_OK;
 }
 
 int database_columns(const sweep *s, run_column columns[RUN_MOST_COLUMNS])
@@ -97,39 +108,51 @@ int database_columns(const sweep *s, run_column columns[RUN_MOST_COLUMNS])
     columns[count++] = (run_column){{"run", "run", ""}, "INTEGER PRIMARY KEY"};
     for (const sweep_axis *a = s->axes; a < s->axes + s->axis_count; a++) {
         const parameter_info *info = sweep_axis_parameter(a);
-        columns[count++] = (run_column){{a->name, a->name, info->unit},
-                                        sweep_axis_has_words(a)           ? "TEXT NOT NULL"
-                                        : info->type == PARAMETER_INTEGER ? "INTEGER NOT NULL"
-                                                                          : "REAL NOT NULL",
-                                        .quote = "\""};
+        columns[count++] =
+            (run_column){{a->name, a->name, info->unit},
+                         sweep_axis_has_words(a)           ? "TEXT NOT NULL"
+                         : info->type == PARAMETER_INTEGER ? "INTEGER NOT NULL"
+                                                           : "REAL NOT NULL",
+                         .quote = "\""};
     }
     columns[count++] = (run_column){{"status", "status", ""}, "TEXT NOT NULL"};
     columns[count++] = (run_column){{"message", "message", ""}, "TEXT NOT NULL"};
     for (const summary_info *q = summary_table; q < summary_table + summary_count; q++) {
-        columns[count++] = (run_column){{q->key, q->name, q->unit}, "REAL", "\"", q->timing};
+        columns[count++] =
+            (run_column){{q->key, q->name, q->unit}, "REAL", "\"", q->timing};
     }
     return count;
 }
 
-status database_use(sweep_database *store, sqlite3_str *sql, sqlite3_stmt **statement, fault *f)
+status database_use(sweep_database *store, sqlite3_str *sql, sqlite3_stmt **statement,
+                    fault *f)
 {
     char *text = sqlite3_str_finish(sql);
-    const status code = text == NULL        ? fault_no_memory(f)
-                        : statement == NULL ? database_execute(store, text, f)
-                                            : database_prepare(store, statement, text, f);
+    status code;
+    if (text == NULL) {
+        code = fault_no_memory(f);
+    } else if (statement == NULL) {
+        code = database_execute(store, text, f);
+    } else {
+        code = database_prepare(store, statement, text, f);
+    }
     sqlite3_free(text);
     return code;
 }
 
-// The text in that column of the row that a statement stands on; NULL if there is none, one that
-// does not end where it ends, or no memory for it.
+// The text in that column of the row that a statement stands on; NULL if there is none,
+// one that does not end where it ends, or no memory for it.
 static const char *text_at(sqlite3_stmt *row, int column)
 {
     const char *text = sqlite3_column_type(row, column) == SQLITE_TEXT
                            ? (const char *)sqlite3_column_text(row, column)
                            : NULL;
-    const bool whole = text != NULL && strlen(text) == (size_t)sqlite3_column_bytes(row, column);
-    return whole ? text : NULL;
+    const bool whole =
+        text != NULL && strlen(text) == (size_t)sqlite3_column_bytes(row, column);
+    if (whole) {
+        return text;
+    }
+    return NULL;
 }
 
 static bool is_number(sqlite3_stmt *row, int column)
@@ -138,7 +161,8 @@ static bool is_number(sqlite3_stmt *row, int column)
     return type == SQLITE_FLOAT || type == SQLITE_INTEGER;
 }
 
-// Whether the row that a statement stands on has in that column what the sweep gives run `run`.
+// Whether the row that a statement stands on has in that column what the sweep gives run
+// `run`.
 static bool is_value(const sweep *s, size_t run, int axis, sqlite3_stmt *row, int column)
 {
     if (sweep_axis_has_words(&s->axes[axis])) {
@@ -152,9 +176,9 @@ static bool is_value(const sweep *s, size_t run, int axis, sqlite3_stmt *row, in
            (isnan(planned) || sqlite3_column_double(row, column) == planned);
 }
 
-// Whether that column, of the outcome, has what this program writes there: how the run ended, a
-// message, finite numbers, and nothing where a quantity did not occur; what is counted always does
-// in a run that did not fail.
+// Whether that column, of the outcome, has what this program writes there: how the run
+// ended, a message, finite numbers, and nothing where a quantity did not occur; what is
+// counted always does in a run that did not fail.
 static bool is_outcome(int word, bool failed, sqlite3_stmt *row, int column)
 {
     const int quantity = word - RUN_OUTCOME_COLUMNS;
@@ -167,22 +191,24 @@ static bool is_outcome(int word, bool failed, sqlite3_stmt *row, int column)
                (is_number(row, column) && isfinite(sqlite3_column_double(row, column)));
     }
     const char *text = text_at(row, column);
-    return text != NULL && (word > 0 || strcmp(text, "ok") == 0 ||
-                            strcmp(text, "inaccurate") == 0 || strcmp(text, "failed") == 0);
+    return text != NULL &&
+           (word > 0 || strcmp(text, "ok") == 0 || strcmp(text, "inaccurate") == 0 ||
+            strcmp(text, "failed") == 0);
 }
 
-// Checks the row that a statement stands on: SQLite lets others write anything into any column.
-static status check_row(const sweep_database *store, sqlite3_stmt *row, unsigned char *seen,
-                        fault *f)
+// Checks the row that a statement stands on: SQLite lets others write anything into any
+// column.
+static status check_row(const sweep_database *store, sqlite3_stmt *row,
+                        unsigned char *seen, fault *f)
 {
     const sweep *s = store->sweep;
     const long long run = sqlite3_column_int64(row, 0);
     FAULT_IF(sqlite3_column_type(row, 0) != SQLITE_INTEGER || run < 1 ||
                  (unsigned long long)run > s->run_count,
-             f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu", store->path, run,
-             s->run_count);
-    FAULT_IF(seen[run - 1]++, f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld twice", store->path,
-             run);
+             f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld of a sweep of %zu", store->path,
+             run, s->run_count);
+    FAULT_IF(seen[run - 1]++, f, STATUS_BAD_ARGUMENT, "'%s' holds run %lld twice",
+             store->path, run);
 
     // what was put in, as planned
     int column = RUN_FIRST_VALUE;
@@ -191,8 +217,9 @@ static status check_row(const sweep_database *store, sqlite3_stmt *row, unsigned
             const char *found = (const char *)sqlite3_column_text(row, column);
             char text[SWEEP_VALUE_TEXT];
             sweep_value_text(s, (size_t)run - 1, i, text, sizeof text);
-            return fault_set(f, STATUS_BAD_ARGUMENT, "'%s' has %s = %.60s in run %lld, expected %s",
-                             store->path, s->axes[i].name, found != NULL ? found : "nothing", run,
+            return fault_set(f, STATUS_BAD_ARGUMENT,
+                             "'%s' has %s = %.60s in run %lld, expected %s", store->path,
+                             s->axes[i].name, found != NULL ? found : "nothing", run,
                              text);
         }
     }
@@ -202,13 +229,15 @@ static status check_row(const sweep_database *store, sqlite3_stmt *row, unsigned
     const bool failed = ended != NULL && strcmp(ended, "failed") == 0;
     for (int i = 0; i < RUN_OUTCOME_COLUMNS + summary_count; i++, column++) {
         FAULT_IF(!is_outcome(i, failed, row, column), f, STATUS_BAD_ARGUMENT,
-                 "'%s' has values of another kind in run %lld than this program writes, under %s",
+                 "'%s' has values of another kind in run %lld than this program writes, "
+                 "under %s",
                  store->path, run, sqlite3_column_name(row, column));
     }
     return STATUS_OK;
 }
 
-status database_check_runs(sweep_database *store, unsigned char *seen, size_t *count, fault *f)
+status database_check_runs(sweep_database *store, unsigned char *seen, size_t *count,
+                           fault *f)
 {
     run_column expected[RUN_MOST_COLUMNS];
     const int columns = database_columns(store->sweep, expected);
@@ -222,13 +251,15 @@ status database_check_runs(sweep_database *store, unsigned char *seen, size_t *c
         const char *name = i < found ? sqlite3_column_name(rows, i) : NULL;
         if (name == NULL || strcmp(name, expected[i].told.key) != 0) {
             code = fault_set(f, STATUS_BAD_ARGUMENT,
-                             "'%s' has %.60s in column %d of its runs, expected %s", store->path,
-                             name != NULL ? name : "nothing", i + 1, expected[i].told.key);
+                             "'%s' has %.60s in column %d of its runs, expected %s",
+                             store->path, name != NULL ? name : "nothing", i + 1,
+                             expected[i].told.key);
         }
     }
     if (code == STATUS_OK && found != columns) {
-        code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' has %d columns of runs, expected %d",
-                         store->path, found, columns);
+        code =
+            fault_set(f, STATUS_BAD_ARGUMENT, "'%s' has %d columns of runs, expected %d",
+                      store->path, found, columns);
     }
 
     // row by row
@@ -244,13 +275,15 @@ status database_check_runs(sweep_database *store, unsigned char *seen, size_t *c
 
 // --- opening ---
 
-// A journal that an interrupted sweep left is rolled back, and one of a transaction over several
-// databases then has SQLite delete the file it names at its end. This program makes no such one.
+// A journal that an interrupted sweep left is rolled back, and one of a transaction over
+// several databases then has SQLite delete the file it names at its end. This program
+// makes no such one.
 static status check_journal(const sweep_database *store, fault *f)
 {
     static const unsigned char mark[] = {0xd9, 0xd5, 0x05, 0xf9, 0x20, 0xa1, 0x63, 0xd7};
     unsigned char end[sizeof mark];
-    const char *name = sqlite3_filename_journal(sqlite3_db_filename(store->database, "main"));
+    const char *name =
+        sqlite3_filename_journal(sqlite3_db_filename(store->database, "main"));
     FILE *journal = name != NULL ? fopen(name, "rb") : NULL;
     if (journal == NULL) {
         return STATUS_OK;
@@ -261,11 +294,13 @@ static status check_journal(const sweep_database *store, fault *f)
                             fread(end, sizeof end, 1, journal) == 1 &&
                             memcmp(end, mark, sizeof mark) == 0;
     fclose(journal);
-    return names_file ? fault_set(f, STATUS_BAD_ARGUMENT,
-                                  "'%s' is no journal of this program: it names another file, "
-                                  "which would be deleted; remove the journal, or do without '%s'",
-                                  name, store->path)
-                      : STATUS_OK;
+    if (names_file) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%s' is no journal of this program: it names another file, "
+                         "which would be deleted; remove the journal, or do without '%s'",
+                         name, store->path);
+    }
+    return STATUS_OK;
 }
 
 status database_open(sweep_database *store, int flags, fault *f)
@@ -275,17 +310,25 @@ status database_open(sweep_database *store, int flags, fault *f)
     if ((flags & SQLITE_OPEN_READONLY) != 0) {
         fault why = {0};
         FILE *file = whole_file_open_to_read(store->path, &why);
-        FAIL_IF(file == NULL, whole_file_unread(store->path, &why, f));
+        if (file == NULL) {
+            return whole_file_unread(store->path, &why, f);
+        }
         fclose(file);
     }
-    if (sqlite3_open_v2(store->path ? store->path : ":memory:", &store->database, flags, NULL) !=
-        SQLITE_OK) {
-        return store->database == NULL ? fault_no_memory(f) : database_fault(store, f);
+    if (sqlite3_open_v2(store->path ? store->path : ":memory:", &store->database, flags,
+                        NULL) != SQLITE_OK) {
+        if (store->database == NULL) {
+            return fault_no_memory(f);
+        }
+        return database_fault(store, f);
     }
     sqlite3_db_config(store->database, SQLITE_DBCONFIG_DEFENSIVE, 1, NULL);
     sqlite3_db_config(store->database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_db_config(store->database, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
     sqlite3_db_config(store->database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, NULL);
     sqlite3_limit(store->database, SQLITE_LIMIT_LENGTH, MOST_BYTES);
-    return store->path != NULL ? check_journal(store, f) : STATUS_OK;
+    if (store->path != NULL) {
+        return check_journal(store, f);
+    }
+    return STATUS_OK;
 }

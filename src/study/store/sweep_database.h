@@ -7,16 +7,18 @@
 #include "src/study/sweep_run.h"
 #include "src/study/sweep_definition.h"
 
-// Marks a database as ours (PRAGMA application_id): "ILSw". The layout's version is user_version.
+// Marks a database as ours (PRAGMA application_id): "ILSw". The layout's version is
+// user_version.
 #define APPLICATION_ID "1229738871"
 #define LAYOUT         "1"
 
-// Of the table `run`: number of the run, then the varied values, status and message, then the
-// quantities of the summary.
+// Of the table `run`: number of the run, then the varied values, status and message, then
+// the quantities of the summary.
 enum {
     RUN_FIRST_VALUE = 1,
     RUN_OUTCOME_COLUMNS = 2,
-    RUN_MOST_COLUMNS = RUN_FIRST_VALUE + SWEEP_MOST_AXES + RUN_OUTCOME_COLUMNS + SUMMARY_NUMBERS
+    RUN_MOST_COLUMNS =
+        RUN_FIRST_VALUE + SWEEP_MOST_AXES + RUN_OUTCOME_COLUMNS + SUMMARY_NUMBERS
 };
 
 typedef struct run_column {
@@ -42,18 +44,20 @@ static inline sweep_database *database_of(sweep_store *store)
     return (sweep_database *)store; // its first member
 }
 
-// Opens the database file store->path, or memory where it is NULL, with SQLite's open flags.
-// Whatever an untrusted file could execute (triggers, views, functions in a schema) is disabled.
+// Opens the database file store->path, or memory where it is NULL, with SQLite's open
+// flags. Whatever an untrusted file could execute (triggers, views, functions in a
+// schema) is disabled.
 status database_open(sweep_database *store, int flags, fault *f);
 
-// True in *empty if the database holds nothing; STATUS_BAD_ARGUMENT if what it holds is no sweep of
-// this program.
+// True in *empty if the database holds nothing; STATUS_BAD_ARGUMENT if what it holds is
+// no sweep of this program.
 status database_recognise(sweep_database *store, bool *empty, fault *f);
 
-// STATUS_BAD_ARGUMENT unless the table `run` has the columns of store->sweep, in their order, and
-// in each row a run of it, once, with the values that the sweep gives it and finite numbers; marks
-// those in seen[run_count], of zeros, and counts them.
-status database_check_runs(sweep_database *store, unsigned char *seen, size_t *count, fault *f);
+// STATUS_BAD_ARGUMENT unless the table `run` has the columns of store->sweep, in their
+// order, and in each row a run of it, once, with the values that the sweep gives it and
+// finite numbers; marks those in seen[run_count], of zeros, and counts them.
+status database_check_runs(sweep_database *store, unsigned char *seen, size_t *count,
+                           fault *f);
 
 // The columns of the table `run` of a sweep; returns how many.
 int database_columns(const sweep *s, run_column columns[RUN_MOST_COLUMNS]);
@@ -64,15 +68,19 @@ status database_fault(const sweep_database *store, fault *f);
 // That the file is no longer where it was opened.
 status database_moved_fault(const sweep_database *store, fault *f);
 
-// Executes (statement NULL) or prepares the statement that was put together, NULL without memory.
-status database_use(sweep_database *store, sqlite3_str *sql, sqlite3_stmt **statement, fault *f);
+// Executes (statement NULL) or prepares the statement that was put together, NULL without
+// memory.
+status database_use(sweep_database *store, sqlite3_str *sql, sqlite3_stmt **statement,
+                    fault *f);
 
 // Executes statements that give no rows.
 status database_execute(sweep_database *store, const char *sql, fault *f);
 
 // Prepares a statement; the caller finalizes it, also on failure.
-status database_prepare(sweep_database *store, sqlite3_stmt **statement, const char *sql, fault *f);
+status database_prepare(sweep_database *store, sqlite3_stmt **statement, const char *sql,
+                        fault *f);
 
-// Steps to the next row of a prepared statement, as long as *code is STATUS_OK. At the end, which a
-// fault of the database in *code may be, false: then the statement is finalized.
+// Steps to the next row of a prepared statement, as long as *code is STATUS_OK. At the
+// end, which a fault of the database in *code may be, false: then the statement is
+// finalized.
 bool database_next(sweep_database *store, sqlite3_stmt *rows, status *code, fault *f);

@@ -29,7 +29,8 @@ static void bind_row(sweep_database *store, size_t run, const summary *result)
 
     // how it ended, and with what numbers
     sqlite3_bind_text(row, column++, summary_status(result), -1, SQLITE_STATIC);
-    sqlite3_bind_text(row, column++, result->message, -1, SQLITE_STATIC); // until the step
+    sqlite3_bind_text(row, column++, result->message, -1,
+                      SQLITE_STATIC); // until the step
     for (int i = 0; i < summary_count; i++) {
         const double value = summary_value(result, i);
         (isfinite(value) ? sqlite3_bind_double(row, column++, value)
@@ -49,15 +50,18 @@ status sweep_store_put(sweep_store *of, size_t run, const summary *result, fault
     // the row, within a transaction that is committed every now and then
     bind_row(store, run, result);
     const bool done = sqlite3_step(store->insert) == SQLITE_DONE;
-    const status code = done ? STATUS_OK : database_fault(store, f);
+    status code = STATUS_OK;
+    if (!done) {
+        code = database_fault(store, f);
+    }
     sqlite3_reset(store->insert);
     of->present[run] |= done;
     of->count += done;
     return code;
 }
 
-status sweep_store_quantity(sweep_store *of, sweep_share share, const char *key, double *values,
-                            size_t *failed, fault *f)
+status sweep_store_quantity(sweep_store *of, sweep_share share, const char *key,
+                            double *values, size_t *failed, fault *f)
 {
     sweep_database *store = database_of(of);
     const long long total = (long long)store->sweep->run_count;
@@ -74,18 +78,25 @@ status sweep_store_quantity(sweep_store *of, sweep_share share, const char *key,
     char *sql =
         share.parts == 0
             ? sqlite3_mprintf("SELECT run, status, \"%w\" FROM run", key)
-            : sqlite3_mprintf("WITH RECURSIVE part(n) AS (SELECT %lld UNION ALL SELECT n + %lld "
-                              "FROM part WHERE n + %lld <= %lld) "
-                              "SELECT run, status, \"%w\" FROM run WHERE run IN part",
-                              first, step, step, total, key);
+            : sqlite3_mprintf(
+                  "WITH RECURSIVE part(n) AS (SELECT %lld UNION ALL SELECT n + %lld "
+                  "FROM part WHERE n + %lld <= %lld) "
+                  "SELECT run, status, \"%w\" FROM run WHERE run IN part",
+                  first, step, step, total, key);
 
     // a run that failed, or has no such quantity, stays missing
-    status code = sql ? database_prepare(store, &rows, sql, f) : fault_no_memory(f);
+    status code;
+    if (sql) {
+        code = database_prepare(store, &rows, sql, f);
+    } else {
+        code = fault_no_memory(f);
+    }
     while (database_next(store, rows, &code, f)) {
         long long run = sqlite3_column_int64(rows, 0);
         const char *ended = (const char *)sqlite3_column_text(rows, 1);
         if (run < first || run > total || ended == NULL) {
-            code = fault_set(f, STATUS_BAD_ARGUMENT, "'%s' holds a row that is no run of the sweep",
+            code = fault_set(f, STATUS_BAD_ARGUMENT,
+                             "'%s' holds a row that is no run of the sweep",
                              store->path ? store->path : "memory");
             continue;
         }
@@ -103,7 +114,7 @@ status sweep_store_quantity(sweep_store *of, sweep_share share, const char *key,
     return code;
 }
 
-// --- as files ---------------------------------------------------------------------------------
+// --- as files --------------------------------------------------------------------------
 
 // One by one, as there may be millions.
 status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
@@ -135,14 +146,18 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
         result_headings(&csv, columns, count);
     }
     while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
-        json_t *object = json ? json_object() : NULL; // NULL loses whatever is put into it
+        json_t *object =
+            json ? json_object() : NULL; // NULL loses whatever is put into it
         for (int k = 0; k < count; k++) {
             const int type = sqlite3_column_type(rows, at[k]);
-            const result_cell cell =
-                type == SQLITE_TEXT
-                    ? (result_cell){(const char *)sqlite3_column_text(rows, at[k]), 0}
-                    : (result_cell){NULL, type == SQLITE_NULL ? (double)NAN
-                                                              : sqlite3_column_double(rows, at[k])};
+            result_cell cell;
+            if (type == SQLITE_TEXT) {
+                cell = (result_cell){(const char *)sqlite3_column_text(rows, at[k]), 0};
+            } else {
+                cell = (result_cell){NULL, type == SQLITE_NULL
+                                               ? (double)NAN
+                                               : sqlite3_column_double(rows, at[k])};
+            }
             if (json) {
                 result_put(object, columns[k].key, cell);
             } else {
@@ -159,10 +174,13 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
         json_decref(object);
     }
     fputs(json ? "\n  ]\n}\n" : "", stream);
-    return sqlite3_finalize(rows) == SQLITE_OK ? STATUS_OK : database_fault(store, f);
+    if (sqlite3_finalize(rows) == SQLITE_OK) {
+        return STATUS_OK;
+    }
+    return database_fault(store, f);
 }
 
-// --- columns, for whoever draws them ------------------------------------------------------------
+// --- columns, for whoever draws them ---------------------------------------------------
 
 // Takes row number `at` that a statement stands on, with a number in each of its columns.
 static status take_row(const sweep_database *store, sqlite3_stmt *row, int key_count,
@@ -172,7 +190,9 @@ static status take_row(const sweep_database *store, sqlite3_stmt *row, int key_c
         // room for 64 of them, then for twice as many whenever it is full
         if (at == 0 || (at >= 64 && (at & (at - 1)) == 0)) {
             double *more = realloc(columns[k], (at > 0 ? 2 * at : 64) * sizeof *more);
-            TRY_MEMORY(more != NULL, f);
+            if (more == NULL) {
+                return fault_no_memory(f);
+            }
             columns[k] = more;
         }
         columns[k][at] = sqlite3_column_double(row, k);
@@ -188,17 +208,19 @@ static status find_column(sweep_database *store, const char *key, fault *f)
 {
     sqlite3_stmt *found;
     int count = 0;
-    status code = database_prepare(store, &found,
-                                   "SELECT 1 FROM pragma_table_info('run') WHERE name = ?1", f);
+    status code =
+        database_prepare(store, &found,
+                         "SELECT 1 FROM pragma_table_info('run') WHERE name = ?1", f);
     sqlite3_bind_text(found, 1, key, -1, SQLITE_STATIC);
     while (database_next(store, found, &code, f)) {
         count++;
     }
-    return code != STATUS_OK || count > 0
-               ? code
-               : fault_set(f, STATUS_CANNOT_READ,
-                           "%s: no column '%s' in it, expected the database of a sweep",
-                           store->path, key);
+    if (code != STATUS_OK || count > 0) {
+        return code;
+    }
+    return fault_set(f, STATUS_CANNOT_READ,
+                     "%s: no column '%s' in it, expected the database of a sweep",
+                     store->path, key);
 }
 
 // Opens the rows of runs that have a number in every column.
@@ -238,8 +260,8 @@ bool sweep_store_is(const char *path)
     return is;
 }
 
-status sweep_table_read(const char *path, const char *const *keys, int key_count, double **columns,
-                        size_t *count, fault *f)
+status sweep_table_read(const char *path, const char *const *keys, int key_count,
+                        double **columns, size_t *count, fault *f)
 {
     assert(key_count >= 1 && key_count <= SWEEP_TABLE_COLUMNS);
     sweep_database store = {.path = (char *)path, .lock = -1};
@@ -252,8 +274,12 @@ status sweep_table_read(const char *path, const char *const *keys, int key_count
     // read only: nothing is created where no file is
     bool empty;
     status code = database_open(&store, SQLITE_OPEN_READONLY, f);
-    code = code == STATUS_OK ? database_recognise(&store, &empty, f) : code;
-    code = code == STATUS_OK ? query(&store, keys, key_count, &rows, f) : code;
+    if (code == STATUS_OK) {
+        code = database_recognise(&store, &empty, f);
+    }
+    if (code == STATUS_OK) {
+        code = query(&store, keys, key_count, &rows, f);
+    }
     while (database_next(&store, rows, &code, f)) {
         code = take_row(&store, rows, key_count, columns, (*count)++, f);
     }
@@ -264,6 +290,8 @@ status sweep_table_read(const char *path, const char *const *keys, int key_count
         free(columns[k]);
         columns[k] = NULL;
     }
-    *count = code == STATUS_OK ? *count : 0;
+    if (code != STATUS_OK) {
+        *count = 0;
+    }
     return code;
 }

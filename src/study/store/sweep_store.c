@@ -13,22 +13,22 @@
 #include "src/study/store/sweep_database.h"
 #include "src/base/whole_file.h"
 
-// Creates the tables `sweep` and `run` and marks the database as a sweep; in a transaction of the
-// caller's.
+// Creates the tables `sweep` and `run` and marks the database as a sweep; in a
+// transaction of the caller's.
 static status make_tables(sweep_database *store, fault *f)
 {
-    TRY(database_execute(store,
-                         "PRAGMA application_id = " APPLICATION_ID ";"
-                         "PRAGMA user_version = " LAYOUT ";"
-                         "CREATE TABLE sweep (key TEXT UNIQUE NOT NULL, value TEXT NOT NULL)",
-                         f));
+    TRY(database_execute(
+        store,
+        "PRAGMA application_id = " APPLICATION_ID ";PRAGMA user_version = " LAYOUT ";"
+        "CREATE TABLE sweep (key TEXT UNIQUE NOT NULL, value TEXT NOT NULL)",
+        f));
     run_column columns[RUN_MOST_COLUMNS];
     const int count = database_columns(store->sweep, columns);
     sqlite3_str *sql = sqlite3_str_new(store->database);
     for (int i = 0; i < count; i++) {
         const char *quote = columns[i].quote != NULL ? columns[i].quote : "";
-        sqlite3_str_appendf(sql, "%s%s%w%s %s", i == 0 ? "CREATE TABLE run (" : ", ", quote,
-                            columns[i].told.key, quote, columns[i].type);
+        sqlite3_str_appendf(sql, "%s%s%w%s %s", i == 0 ? "CREATE TABLE run (" : ", ",
+                            quote, columns[i].told.key, quote, columns[i].type);
     }
     sqlite3_str_appendall(sql, ")");
     return database_use(store, sql, NULL, f);
@@ -40,8 +40,9 @@ static status prepare_insert(sweep_database *store, fault *f)
     run_column columns[RUN_MOST_COLUMNS];
     sqlite3_str *sql = sqlite3_str_new(store->database);
     for (int i = database_columns(store->sweep, columns); i > 0; i--) {
-        sqlite3_str_appendall(sql,
-                              sqlite3_str_length(sql) == 0 ? "INSERT INTO run VALUES (?" : ", ?");
+        sqlite3_str_appendall(sql, sqlite3_str_length(sql) == 0
+                                       ? "INSERT INTO run VALUES (?"
+                                       : ", ?");
     }
     sqlite3_str_appendall(sql, ")");
     return database_use(store, sql, &store->insert, f);
@@ -52,28 +53,37 @@ static status read_line(definition *d, const char *path, sqlite3_stmt *row, faul
 {
     const char *key = (const char *)sqlite3_column_text(row, 0);
     const char *value = (const char *)sqlite3_column_text(row, 1);
-    FAIL_IF(sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM, fault_no_memory(f));
+    if (sqlite3_errcode(sqlite3_db_handle(row)) == SQLITE_NOMEM) {
+        return fault_no_memory(f);
+    }
     FAULT_IF(key == NULL || value == NULL || strlen(key) >= DEFINITION_KEY ||
                  strlen(key) != (size_t)sqlite3_column_bytes(row, 0) ||
                  strlen(value) != (size_t)sqlite3_column_bytes(row, 1),
-             f, STATUS_BAD_ARGUMENT, "'%s' has a line without text in what defines its sweep",
+             f, STATUS_BAD_ARGUMENT,
+             "'%s' has a line without text in what defines its sweep", path);
+    FAULT_IF(json_object_size(d->lines) == DEFINITION_LINES ||
+                 definition_value(d, key) != NULL,
+             f, STATUS_BAD_ARGUMENT,
+             "'%s' has more lines in what defines its sweep than this program writes",
              path);
-    FAULT_IF(json_object_size(d->lines) == DEFINITION_LINES || definition_value(d, key) != NULL, f,
-             STATUS_BAD_ARGUMENT,
-             "'%s' has more lines in what defines its sweep than this program writes", path);
     definition_add(d, key, "%s", value);
-    return d->code == STATUS_OK ? STATUS_OK : fault_no_memory(f);
+    if (d->code != STATUS_OK) {
+        return fault_no_memory(f);
+    }
+    return STATUS_OK;
 }
 
 // Reads the definition that the database holds, as definition_init would make it;
-// STATUS_BAD_ARGUMENT if this program never writes such a one. definition_finish in any case.
+// STATUS_BAD_ARGUMENT if this program never writes such a one. definition_finish in any
+// case.
 static status read_definition(sweep_database *store, definition *d, fault *f)
 {
     sqlite3_stmt *rows;
     *d = (definition){.lines = json_object()};
 
     // as it was written, line by line; a damaged file shows at the end
-    d->code = database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
+    d->code =
+        database_prepare(store, &rows, "SELECT key, value FROM sweep ORDER BY rowid", f);
     while (database_next(store, rows, &d->code, f)) {
         d->code = read_line(d, store->path, rows, f);
     }
@@ -85,8 +95,8 @@ static status write_definition(sweep_database *store, const definition *d, fault
     sqlite3_stmt *insert;
     const char *key;
     json_t *value;
-    status code =
-        database_prepare(store, &insert, "INSERT INTO sweep (key, value) VALUES (?1, ?2)", f);
+    status code = database_prepare(store, &insert,
+                                   "INSERT INTO sweep (key, value) VALUES (?1, ?2)", f);
     json_object_foreach(d->lines, key, value)
     {
         sqlite3_bind_text(insert, 1, key, -1, SQLITE_STATIC);
@@ -104,9 +114,15 @@ static status write_definition(sweep_database *store, const definition *d, fault
 static status create_tables(sweep_database *store, const definition *d, fault *f)
 {
     status code = database_execute(store, "BEGIN IMMEDIATE", f);
-    code = code == STATUS_OK ? make_tables(store, f) : code;
-    code = code == STATUS_OK ? write_definition(store, d, f) : code;
-    code = code == STATUS_OK ? database_execute(store, "COMMIT", f) : code;
+    if (code == STATUS_OK) {
+        code = make_tables(store, f);
+    }
+    if (code == STATUS_OK) {
+        code = write_definition(store, d, f);
+    }
+    if (code == STATUS_OK) {
+        code = database_execute(store, "COMMIT", f);
+    }
 
     if (code != STATUS_OK) {
         sqlite3_exec(store->database, "ROLLBACK", NULL, NULL, NULL);
@@ -157,16 +173,17 @@ static status check_outside(sweep_database *store, fault *f)
     return STATUS_OK;
 }
 
-// Keeps a second sweep from writing to the same file. The descriptor stays open as long as the
-// database: closing it earlier would drop the database's own locks on the file.
+// Keeps a second sweep from writing to the same file. The descriptor stays open as long
+// as the database: closing it earlier would drop the database's own locks on the file.
 static status lock_file(sweep_database *store, fault *f)
 {
     store->lock = open(store->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    FAULT_IF(store->lock < 0, f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", store->path,
-             strerror(errno));
+    FAULT_IF(store->lock < 0, f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s",
+             store->path, strerror(errno));
 
     FAULT_IF(flock(store->lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK, f,
-             STATUS_CANNOT_WRITE, "another sweep is writing to '%s' just now", store->path);
+             STATUS_CANNOT_WRITE, "another sweep is writing to '%s' just now",
+             store->path);
     return STATUS_OK;
 }
 
@@ -178,9 +195,14 @@ static status open_database(sweep_database *store, fault *f)
     }
     TRY(database_open(store, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, f));
 
-    // what is kept in memory nobody goes on with; somebody may be reading the results in a file
+    // what is kept in memory nobody goes on with; somebody may be reading the results in
+    // a file
     sqlite3_busy_timeout(store->database, 10000);
-    TRY(store->path == NULL ? make_tables(store, f) : adopt(store, f));
+    if (store->path == NULL) {
+        TRY(make_tables(store, f));
+    } else {
+        TRY(adopt(store, f));
+    }
     return prepare_insert(store, f);
 }
 
@@ -188,14 +210,20 @@ status sweep_store_open(sweep_store **opened, const char *path, const sweep *s, 
 {
     sweep_database *store = calloc(1, sizeof *store);
     *opened = NULL;
-    TRY_MEMORY(store != NULL, f);
+    if (store == NULL) {
+        return fault_no_memory(f);
+    }
 
-    store->store = (sweep_store){
-        .put = sweep_store_put, .commit = sweep_store_commit, .quantity = sweep_store_quantity};
+    store->store = (sweep_store){.put = sweep_store_put,
+                                 .commit = sweep_store_commit,
+                                 .quantity = sweep_store_quantity};
     store->sweep = s;
     store->lock = -1;
     store->store.present = calloc(s->run_count, 1);
-    status code = store->store.present != NULL ? STATUS_OK : fault_no_memory(f);
+    status code = STATUS_OK;
+    if (store->store.present == NULL) {
+        code = fault_no_memory(f);
+    }
 
     // a plain name that begins with a colon would mean something else to the database
     if (code == STATUS_OK && path != NULL &&
@@ -204,7 +232,9 @@ status sweep_store_open(sweep_store **opened, const char *path, const sweep *s, 
         code = fault_no_memory(f);
     }
 
-    code = code == STATUS_OK ? open_database(store, f) : code;
+    if (code == STATUS_OK) {
+        code = open_database(store, f);
+    }
     if (code != STATUS_OK) {
         sweep_store_close(&store->store);
         return code;
@@ -254,10 +284,13 @@ status sweep_store_commit(sweep_store *of, fault *f)
     // SQLite looks at the beginning of a transaction whether the file is still there
     int moved = 0;
     sqlite3_file_control(store->database, "main", SQLITE_FCNTL_HAS_MOVED, &moved);
-    return code != STATUS_OK || !moved ? code : database_moved_fault(store, f);
+    if (code != STATUS_OK || !moved) {
+        return code;
+    }
+    return database_moved_fault(store, f);
 }
 
-// --- parts of one sweep, computed apart, together in one database -------------------------------
+// --- parts of one sweep, computed apart, together in one database ----------------------
 
 // The merged sweep while it grows, in memory.
 typedef struct merging {
@@ -275,9 +308,11 @@ static status open_part(sweep_database *part, char *path, definition *d, fault *
     TRY(database_open(part, SQLITE_OPEN_READONLY, f));
     TRY(database_execute(part, "BEGIN", f)); // as it is now
     TRY(database_recognise(part, &empty, f));
-    return empty ? fault_set(f, STATUS_BAD_ARGUMENT, "'%s' is empty, expected a part of a sweep",
-                             path)
-                 : read_definition(part, d, f);
+    if (empty) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "'%s' is empty, expected a part of a sweep", path);
+    }
+    return read_definition(part, d, f);
 }
 
 // Begins the merged sweep with the definition of its first part, which it takes over.
@@ -301,16 +336,22 @@ static status add_row(merging *m, const char *path, sqlite3_stmt *row, fault *f)
     for (int i = 0; i < sqlite3_column_count(row) && done == SQLITE_OK; i++) {
         done = sqlite3_bind_value(m->store.insert, i + 1, sqlite3_column_value(row, i));
     }
-    done = done == SQLITE_OK ? sqlite3_step(m->store.insert) : done;
+    if (done == SQLITE_OK) {
+        done = sqlite3_step(m->store.insert);
+    }
     sqlite3_reset(m->store.insert);
     m->merged->runs += done == SQLITE_DONE;
 
     // the number of a run is its key
-    return done == SQLITE_DONE ? STATUS_OK
-           : done == SQLITE_CONSTRAINT
-               ? fault_set(f, STATUS_BAD_ARGUMENT, "run %lld of '%s' is in another part too",
-                           sqlite3_column_int64(row, 0), path)
-               : database_fault(&m->store, f);
+    if (done == SQLITE_DONE) {
+        return STATUS_OK;
+    }
+    if (done == SQLITE_CONSTRAINT) {
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "run %lld of '%s' is in another part too",
+                         sqlite3_column_int64(row, 0), path);
+    }
+    return database_fault(&m->store, f);
 }
 
 // Adds all rows of a part.
@@ -320,7 +361,9 @@ static status add_rows(merging *m, sweep_database *part, fault *f)
     size_t count;
     part->sweep = &m->plan;
     SCOPED(free_kept) unsigned char *seen = calloc(m->plan.run_count, 1);
-    TRY_MEMORY(seen != NULL, f);
+    if (seen == NULL) {
+        return fault_no_memory(f);
+    }
     TRY(database_check_runs(part, seen, &count, f));
 
     status code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
@@ -340,9 +383,15 @@ static status add_part(merging *m, char *path, bool first, fault *f)
     // its definition, then its rows
     status code = open_part(&part, path, d, f);
     if (code == STATUS_OK) {
-        code = first ? begin(m, path, f) : definition_compare(path, d, &m->definition, f);
+        if (first) {
+            code = begin(m, path, f);
+        } else {
+            code = definition_compare(path, d, &m->definition, f);
+        }
     }
-    code = code == STATUS_OK ? add_rows(m, &part, f) : code;
+    if (code == STATUS_OK) {
+        code = add_rows(m, &part, f);
+    }
     sqlite3_close(part.database);
     return code;
 }
@@ -355,7 +404,9 @@ static status write_database(merging *m, const char *output, fault *f)
     // its bytes, as a file would have them
     sqlite3_int64 size = 0;
     unsigned char *bytes = sqlite3_serialize(m->store.database, "main", &size, 0);
-    TRY_MEMORY(bytes != NULL, f);
+    if (bytes == NULL) {
+        return fault_no_memory(f);
+    }
 
     // into the file
     whole_file file;
@@ -368,8 +419,8 @@ static status write_database(merging *m, const char *output, fault *f)
     return code;
 }
 
-status sweep_merge(char *const *files, int count, const char *output, sweep_merged *merged,
-                   fault *f)
+status sweep_merge(char *const *files, int count, const char *output,
+                   sweep_merged *merged, fault *f)
 {
     assert(count > 0);
     merging m = {.merged = merged};
@@ -380,7 +431,9 @@ status sweep_merge(char *const *files, int count, const char *output, sweep_merg
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         code = add_part(&m, files[i], i == 0, f);
     }
-    code = code == STATUS_OK ? write_database(&m, output, f) : code;
+    if (code == STATUS_OK) {
+        code = write_database(&m, output, f);
+    }
 
     definition_finish(&m.definition);
     sweep_finish(&m.plan);

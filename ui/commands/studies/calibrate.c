@@ -12,31 +12,38 @@
 enum { DEFAULT_PRESSES = 8 };
 #define DRIFT_WORTH_A_WORD 0.01
 
-// The commands: those of --vary, or evenly spaced up to nine tenths of the largest there is.
-static int choose_commands(const arguments *a, const scenario *s, double *commands, int *count)
+// The commands: those of --vary, or evenly spaced up to nine tenths of the largest there
+// is.
+static int choose_commands(const arguments *a, const scenario *s, double *commands,
+                           int *count)
 {
     char standard[128], *given = standard;
     double most = 0.9 * s->parameters.motor.voltage_limit;
 
     // without --vary an even series up to nine tenths of the limit
-    decimal_print(standard, sizeof standard, VOLTAGE_PATH "=%.17g:%.17g:%d", most / DEFAULT_PRESSES,
-                  most, DEFAULT_PRESSES);
+    decimal_print(standard, sizeof standard, VOLTAGE_PATH "=%.17g:%.17g:%d",
+                  most / DEFAULT_PRESSES, most, DEFAULT_PRESSES);
     if (a->varies.count > 0) {
         given = a->varies.items[0];
     }
 
-    COMPLAIN_IF(a->varies.count > 1 ||
-                    strncmp(given, VOLTAGE_PATH "=", strlen(VOLTAGE_PATH "=")) != 0,
-                "calibrate varies " VOLTAGE_PATH " and nothing else, once");
+    if (a->varies.count > 1 ||
+        strncmp(given, VOLTAGE_PATH "=", strlen(VOLTAGE_PATH "=")) != 0) {
+        return complain("calibrate varies " VOLTAGE_PATH " and nothing else, once");
+    }
 
     SCOPED(sweep_finish) sweep series;
     const sweep_request request = {.vary = &given, .vary_count = 1};
-    TRY_FAULT(sweep_init(&series, s, &request, &f));
+    fault f = {0};
+    if (sweep_init(&series, s, &request, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
 
     // the values, as many as a table holds
-    COMPLAIN_IF(series.run_count > K2_TABLE_MOST,
-                "--vary %s: %zu commands are too many, expected at most %d", given,
-                series.run_count, K2_TABLE_MOST);
+    if (series.run_count > K2_TABLE_MOST) {
+        return complain("--vary %s: %zu commands are too many, expected at most %d",
+                        given, series.run_count, K2_TABLE_MOST);
+    }
     *count = (int)series.run_count;
     for (int i = 0; i < *count; i++) {
         commands[i] = sweep_value(&series, (size_t)i, 0);
@@ -63,15 +70,16 @@ static void print_points(const scenario *s, const void *found)
     for (int i = 0; i < c->count; i++) {
         const calibration_point *p = &c->points[i];
         bool moved = fabs(p->drift) > DRIFT_WORTH_A_WORD;
-        printf("  %9.4g  %9.4g  %11.5g  %11.4g  %9.4f  %9.2g  %9.2g%s\n", p->command, p->force,
-               p->angle, p->k2, p->k2_over_arm, p->force_spread, p->angle_spread,
-               moved ? " *" : "");
+        printf("  %9.4g  %9.4g  %11.5g  %11.4g  %9.4f  %9.2g  %9.2g%s\n", p->command,
+               p->force, p->angle, p->k2, p->k2_over_arm, p->force_spread,
+               p->angle_spread, moved ? " *" : "");
         drifts |= moved;
     }
 
     if (drifts) {
-        printf("\n* K2 still moves by more than %g %%: a longer run.duration settles it\n",
-               100 * DRIFT_WORTH_A_WORD);
+        printf(
+            "\n* K2 still moves by more than %g %%: a longer run.duration settles it\n",
+            100 * DRIFT_WORTH_A_WORD);
     }
 
     printf("\n  --set \"control.k2_table=%s\"\n", done->table);
@@ -88,11 +96,12 @@ static status make_table(calibrated *done, const scenario *s, fault *f)
     k2_table by_force;
     done->with_table = *s;
     TRY(calibration_table(&done->points, &by_force, f));
-    FAULT_IF(!k2_table_write(&by_force, done->table, sizeof done->table), f, STATUS_BAD_ARGUMENT,
+    FAULT_IF(!k2_table_write(&by_force, done->table, sizeof done->table), f,
+             STATUS_BAD_ARGUMENT,
              "%d commands make a table of more than %d characters, expected fewer",
              done->points.count, PARAMETER_TEXT_SIZE - 1);
-    return parameter_set_text(&done->with_table.parameters, PARAMETER_INDEX(control.k2_table),
-                              done->table, f);
+    return parameter_set_text(&done->with_table.parameters,
+                              PARAMETER_INDEX(control.k2_table), done->table, f);
 }
 
 static int press_and_report(const arguments *a, scenario *s)
@@ -105,33 +114,41 @@ static int press_and_report(const arguments *a, scenario *s)
     calibrated done;
     double commands[K2_TABLE_MOST];
     int count = 0;
-    TRY_EXIT(choose_commands(a, s, commands, &count));
+    int ended = choose_commands(a, s, commands, &count);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
 
     run_monitor *monitor = work_begin(a, "presses", count);
     status code = calibrate(s, commands, count, monitor, &done.points, &f);
     if (code == STATUS_OK || (code == STATUS_STOPPED && done.points.count > 0)) {
         const status made = make_table(&done, s, &f);
-        code = made == STATUS_OK ? code : made;
+        if (made != STATUS_OK) {
+            code = made;
+        }
     }
     return work_finish(a, code, &f, &r, s, &done);
 }
 
 static const option_row rows[] = {
     OPTION(RESULT, "csv", "FILE|-", "write a row for each command", PLACE(csv)),
-    OPTION(RESULT, "output", "FILE|-", "write the scenario with the table in it", PLACE(output),
-           .letter = 'o', .replaces = scenario_is),
+    OPTION(RESULT, "output", "FILE|-", "write the scenario with the table in it",
+           PLACE(output), .letter = 'o', .replaces = scenario_is),
 };
 
 const command calibrate_command = {
     CALLED("calibrate", CONTROL,
            "Measure the stiffness that a controller has to believe in, (5.26)"),
     ONE_SCENARIO,
-    .help =
-        "Presses the arm against the wall with constant commands, eight of them or those of\n"
-        "--vary " VOLTAGE_PATH "=a:b:n, and computes K2 = f l / (2 (theta - theta_imp)) from what "
-        "force\nsensor and encoder read at rest. -o FILE.yaml writes the scenario with the table "
-        "in\ncontrol.k2_table, which every law then goes by. ^C ends it with what was measured "
-        "until then (exit\nstatus 130); -o writes only the whole table.\n",
-    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options},
+    .help = "Presses the arm against the wall with constant commands, eight of them or "
+            "those of\n"
+            "--vary " VOLTAGE_PATH
+            "=a:b:n, and computes K2 = f l / (2 (theta - theta_imp)) from what "
+            "force\nsensor and encoder read at rest. -o FILE.yaml writes the "
+            "scenario with the table in\ncontrol.k2_table, which every law then "
+            "goes by. ^C ends it with what was measured until then (exit\nstatus "
+            "130); -o writes only the whole table.\n",
+    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
+                &quiet_options},
     .use = press_and_report,
 };

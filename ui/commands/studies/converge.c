@@ -67,11 +67,12 @@ static void print_panel(const scenario *s, const void *found)
         }
     }
 
-    printf("\n  order p: the error falls as (step)^p, from the differences of the three columns;\n"
+    printf("\n  order p: the error falls as (step)^p, from the differences of the three "
+           "columns;\n"
            "  agree: equal to nine digits; -: cannot be told\n");
 }
 
-// --- the force at the three steps -----------------------------------------------------------
+// --- the force at the three steps ------------------------------------------------------
 
 // `work` has room for the instants of two differences, and each one's values.
 static int draw(const arguments *a, const scenario *s, const three_steps *r, double *work,
@@ -86,9 +87,10 @@ static int draw(const arguments *a, const scenario *s, const three_steps *r, dou
     // each run's force, and what it lacks of the finest
     for (int i = 0; i < PANEL_STEPS; i++) {
         const trace *t = &r->runs[i].trace;
-        decimal_print(label[i], sizeof label[i], "<i>h</i> = %g\u2009ms", 1e3 * r->panel.step[i]);
-        force[i] = curve_of(names[i], label[i], &t->rows[0].time, &t->rows[0].force, t->row_count,
-                            colours[i]);
+        decimal_print(label[i], sizeof label[i], "<i>h</i> = %g\u2009ms",
+                      1e3 * r->panel.step[i]);
+        force[i] = curve_of(names[i], label[i], &t->rows[0].time, &t->rows[0].force,
+                            t->row_count, colours[i]);
         force[i].stride = sizeof(sample);
 
         if (i < PANEL_STEPS - 1) {
@@ -99,10 +101,16 @@ static int draw(const arguments *a, const scenario *s, const three_steps *r, dou
     }
 
     const figure_panel panels[] = {
-        {.y = {.name = "force", .label = "Contact force <i>f</i>", .unit = "N", .with_zero = true},
+        {.y = {.name = "force",
+               .label = "Contact force <i>f</i>",
+               .unit = "N",
+               .with_zero = true},
          .series = force,
          .series_count = PANEL_STEPS},
-        {.y = {.name = "difference", .label = "Less the finest", .unit = "N", .with_zero = true},
+        {.y = {.name = "difference",
+               .label = "Less the finest",
+               .unit = "N",
+               .with_zero = true},
          .series = less,
          .series_count = PANEL_STEPS - 1},
     };
@@ -118,7 +126,10 @@ static int plot(const arguments *a, const scenario *s, const void *found)
     const three_steps *r = found;
     const size_t room = r->runs[0].trace.row_count + r->runs[1].trace.row_count + 1;
     SCOPED(free_kept) double *work = malloc(4 * room * sizeof *work);
-    return work != NULL ? draw(a, s, r, work, room) : worse(EXIT_FAILED, complain("out of memory"));
+    if (work != NULL) {
+        return draw(a, s, r, work, room);
+    }
+    return worse(EXIT_FAILED, complain("out of memory"));
 }
 
 static int converge(const arguments *a, scenario *s)
@@ -129,7 +140,8 @@ static int converge(const arguments *a, scenario *s)
     fault f = {0};
     run_monitor *monitor = work_begin(a, "runs", PANEL_STEPS);
     const status code =
-        convergence_compute(s, monitor, a->plot != NULL ? found.runs : NULL, &found.panel, &f);
+        convergence_compute(s, monitor, a->plot != NULL ? found.runs : NULL, &found.panel,
+                            &f);
     const int result = work_finish(a, code, &f, &r, s, &found);
     for (int i = 0; i < PANEL_STEPS; i++) {
         run_finish(&found.runs[i]);
@@ -138,15 +150,17 @@ static int converge(const arguments *a, scenario *s)
 }
 
 static const option_row rows[] = {
-    OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}", "draw the contact force at the three steps",
-           PLACE(plot)),
+    OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}",
+           "draw the contact force at the three steps", PLACE(plot)),
 };
 
 const command converge_command = {
-    CALLED("converge", MANY_RUNS, "Run at the steps h, h/2, h/4 and tell the observed orders"),
+    CALLED("converge", MANY_RUNS,
+           "Run at the steps h, h/2, h/4 and tell the observed orders"),
     ONE_SCENARIO,
-    .help = "h is the scenario's method.step. --plot draws the contact force at the three steps. "
-            "^C ends it with the\nsteps that are done (exit status 130).\n",
-    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
+    .help = "h is the scenario's method.step. --plot draws the contact force at the "
+            "three steps. ^C ends it with the\nsteps that are done (exit status 130).\n",
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
+                &page_options},
     .use = converge,
 };

@@ -30,7 +30,8 @@ static status set_up(const arguments *a, const scenario *s, identification *id, 
         TRY(identify_add_path(id, a->fits.items[i], f));
     }
     for (int i = 0; i < a->data.count; i++) {
-        TRY(identify_add_trace(id, a->data.items[i], a->headings.items, a->headings.count, f));
+        TRY(identify_add_trace(id, a->data.items[i], a->headings.items, a->headings.count,
+                               f));
     }
     return STATUS_OK;
 }
@@ -38,9 +39,12 @@ static status set_up(const arguments *a, const scenario *s, identification *id, 
 // Another trace under the fitted values: only what is its own is fitted.
 static status validate(const arguments *a, outcome *o, fault *f)
 {
-    o->validation = (identification){
-        .base = &o->written, .jobs = o->fit.jobs, .starts = 1, .monitor = o->fit.monitor};
-    TRY(identify_add_trace(&o->validation, a->validate, a->headings.items, a->headings.count, f));
+    o->validation = (identification){.base = &o->written,
+                                     .jobs = o->fit.jobs,
+                                     .starts = 1,
+                                     .monitor = o->fit.monitor};
+    TRY(identify_add_trace(&o->validation, a->validate, a->headings.items,
+                           a->headings.count, f));
     const status code = identify_fit(&o->validation, f);
     if (code == STATUS_STOPPED) {
         identify_finish(&o->validation);
@@ -56,12 +60,17 @@ static status read_links(const char *text, outcome *o, fault *f)
         double value;
         const char *rest;
         FAULT_IF(o->link_count == MOST_LINKS || !decimal_read(text, &value, &rest) ||
-                     (*rest != ',' && *rest != '\0') || value != floor(value) || value < 1 ||
-                     value > 64,
+                     (*rest != ',' && *rest != '\0') || value != floor(value) ||
+                     value < 1 || value > 64,
                  f, STATUS_BAD_ARGUMENT,
-                 "--links takes up to %d numbers of links from 1 to 64, such as 2,4,8", MOST_LINKS);
+                 "--links takes up to %d numbers of links from 1 to 64, such as 2,4,8",
+                 MOST_LINKS);
         o->links[o->link_count++] = (int)value;
-        text = *rest == ',' ? rest + 1 : rest;
+        if (*rest == ',') {
+            text = rest + 1;
+        } else {
+            text = rest;
+        }
     }
     return STATUS_OK;
 }
@@ -87,14 +96,15 @@ static status compare_links(const arguments *a, outcome *o, fault *f)
     return STATUS_OK;
 }
 
-// --- results ----------------------------------------------------------------------------------
+// --- results ---------------------------------------------------------------------------
 
 static json_t *answer(const scenario *s, const void *found)
 {
     const outcome *o = found;
     json_t *object = identify_json(&o->fit), *links = json_array();
     for (int i = 0; i < o->link_count; i++) {
-        json_add(links, json_of("links:i aic:n white:b", o->links[i], o->aic[i], o->white[i]));
+        json_add(links,
+                 json_of("links:i aic:n white:b", o->links[i], o->aic[i], o->white[i]));
     }
     return json_members(object, "links:o validation:o", links,
                         identify_traces_json(&o->validation));
@@ -113,8 +123,9 @@ static void print_traces(const identification *id, const char *what)
         }
         say(" of their noise");
         if (t->contact_count > 0) {
-            say("; %d contact%s within %.3g ms, largest force off by %.3g %%", t->contact_count,
-                t->contact_count == 1 ? "" : "s", 1e3 * t->contact_error, 100 * t->peak_error);
+            say("; %d contact%s within %.3g ms, largest force off by %.3g %%",
+                t->contact_count, t->contact_count == 1 ? "" : "s",
+                1e3 * t->contact_error, 100 * t->peak_error);
         }
         say("\n");
     }
@@ -170,16 +181,17 @@ static bool is_reliable(const identification *id)
     for (int i = 0; i < id->count; i++) {
         const fitted_parameter *fit = &id->fit[i];
         if (identify_at_end(fit)) {
-            complain("%s = %g is an end of its range, no estimate: expected a wider --fit %s=a:b",
+            complain("%s = %g is an end of its range, no estimate: expected a wider "
+                     "--fit %s=a:b",
                      fit->axis.name, fit->value, fit->axis.name);
             reliable = false;
         }
     }
     const double misfit = identify_misfit(id, &most);
     if (misfit > most) {
-        complain("chi square is %.3g per reading, expected about 1 and at most %.3g: the best of "
-                 "%d starts led to no values that fit; the scenario may be of another arm or other "
-                 "runs, or more --starts find better values",
+        complain("chi square is %.3g per reading, expected about 1 and at most %.3g: "
+                 "the best of %d starts led to no values that fit; the scenario may "
+                 "be of another arm or other runs, or more --starts find better values",
                  misfit, most, id->starts);
     }
     return reliable && misfit <= most;
@@ -196,21 +208,32 @@ static int identify_and_report(const arguments *a, scenario *s)
                                       .cases = write_cases};
     fault f = {0};
     outcome o = {0};
-    COMPLAIN_IF(
-        a->data.count == 0 || a->fits.count == 0,
-        "identify needs a recorded trace, --data FILE.csv, and what is to be found, --fit PATH");
+    if (a->data.count == 0 || a->fits.count == 0) {
+        return complain("identify needs a recorded trace, --data FILE.csv, and what is "
+                        "to be found, --fit PATH");
+    }
     status code = read_links(a->links, &o, &f);
-    code = code == STATUS_OK ? set_up(a, s, &o.fit, &f) : code;
+    if (code == STATUS_OK) {
+        code = set_up(a, s, &o.fit, &f);
+    }
     if (code == STATUS_OK) {
         // the number of runs is not known before they are through
         o.fit.monitor = work_begin(a, "runs", 1000);
         code = identify_fit(&o.fit, &f);
         parameters p;
         o.written = *s;
-        code = code == STATUS_OK ? identify_parameters(&o.fit, true, &p, &f) : code;
-        code = code == STATUS_OK ? scenario_take_parameters(&o.written, &p, &f) : code;
-        code = code == STATUS_OK && a->validate != NULL ? validate(a, &o, &f) : code;
-        code = code == STATUS_OK ? compare_links(a, &o, &f) : code;
+        if (code == STATUS_OK) {
+            code = identify_parameters(&o.fit, true, &p, &f);
+        }
+        if (code == STATUS_OK) {
+            code = scenario_take_parameters(&o.written, &p, &f);
+        }
+        if (code == STATUS_OK && a->validate != NULL) {
+            code = validate(a, &o, &f);
+        }
+        if (code == STATUS_OK) {
+            code = compare_links(a, &o, &f);
+        }
         work_end();
     }
     const bool stopped = code == STATUS_STOPPED, any = stopped && o.fit.chi_square > 0;
@@ -222,8 +245,9 @@ static int identify_and_report(const arguments *a, scenario *s)
         written = complain_fault(&f);
     }
     if (stopped) {
-        const char *fit = isnan(o.fit.aic) ? "the values are the best so far, not judged"
-                                           : "the fit is whole, what compares it is missing";
+        const char *fit = isnan(o.fit.aic)
+                              ? "the values are the best so far, not judged"
+                              : "the fit is whole, what compares it is missing";
         complain("stopped: %s", any ? fit : "nothing was tried yet");
         written = EXIT_FAILED;
     }
@@ -238,16 +262,19 @@ static const option_row rows[] = {
     OPTION(PARAMETERS, "fit", "PATH[=a:b]", "a parameter to be found (may be repeated)",
            PLACE(fits)),
     OPTION(PARAMETERS, "column", "SIGNAL=HEADER[unit]",
-           "where a trace has a signal under another heading (may be repeated)", PLACE(headings)),
-    OPTION(FILE, "validate", "FILE.csv", "a trace that is not fitted, to judge the result by",
-           PLACE(validate)),
-    OPTION(TEXT, "links", "N,N,...", "fit these numbers of links too, and compare", PLACE(links)),
-    OUTPUT_OPTION(RESULT, "FILE|-", "write the scenario with the values that are determined",
+           "where a trace has a signal under another heading (may be repeated)",
+           PLACE(headings)),
+    OPTION(FILE, "validate", "FILE.csv",
+           "a trace that is not fitted, to judge the result by", PLACE(validate)),
+    OPTION(TEXT, "links", "N,N,...", "fit these numbers of links too, and compare",
+           PLACE(links)),
+    OUTPUT_OPTION(RESULT, "FILE|-",
+                  "write the scenario with the values that are determined",
                   .replaces = scenario_is),
-    OPTION(RESULT, "cases", "FILE.set", "write 200 arms drawn from the covariance, for robust",
-           PLACE(cases)),
-    OPTION(WHOLE, "starts", "N", "values that the search begins with (16)", PLACE(starts), .low = 1,
-           .high = 10000),
+    OPTION(RESULT, "cases", "FILE.set",
+           "write 200 arms drawn from the covariance, for robust", PLACE(cases)),
+    OPTION(WHOLE, "starts", "N", "values that the search begins with (16)", PLACE(starts),
+           .low = 1, .high = 10000),
     SEED_OPTION,
     JOBS_OPTION,
 };
@@ -256,17 +283,24 @@ const command identify_command = {
     CALLED("identify", CONTROL,
            "Find parameters of an arm, and their errors, from recorded traces"),
     ONE_SCENARIO,
-    .help =
-        "identify compare/open-loop --data a.csv --data b.csv --fit arm.k2 --fit motor.stiction\n"
-        "simulates each trace with the command that was recorded and fits the parameters until\n"
-        "the readings agree, each judged by its noise. Columns are headed as run --csv heads\n"
-        "them: time[s], command[V] and any of encoder, tachometer, force_reading, piezo_force,\n"
-        "film, accelerometer. Each trace has a time shift, an encoder offset and an initial\n"
-        "state of its own. A combination that the data do not determine is named and not\n"
-        "written. The exit status is 1 then, where a value ends at an end of its range, and\n"
-        "where chi square per reading is above 4, as of noise twice as large as it is said\n"
-        "to be.\n",
-    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &drawn_options, &quiet_options,
-                &page_options},
+    .help = "identify compare/open-loop --data a.csv --data b.csv --fit arm.k2 --fit "
+            "motor.stiction\n"
+            "simulates each trace with the command that was recorded and fits the "
+            "parameters until\n"
+            "the readings agree, each judged by its noise. Columns are headed as run "
+            "--csv heads\n"
+            "them: time[s], command[V] and any of encoder, tachometer, force_reading, "
+            "piezo_force,\n"
+            "film, accelerometer. Each trace has a time shift, an encoder offset and an "
+            "initial\n"
+            "state of its own. A combination that the data do not determine is named and "
+            "not\n"
+            "written. The exit status is 1 then, where a value ends at an end of its "
+            "range, and\n"
+            "where chi square per reading is above 4, as of noise twice as large as it "
+            "is said\n"
+            "to be.\n",
+    .options = {&set_options, &json_options, OWN_OPTIONS(rows), &drawn_options,
+                &quiet_options, &page_options},
     .use = identify_and_report,
 };

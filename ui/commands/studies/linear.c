@@ -1,4 +1,5 @@
-// impactlab linear: poles, zeros and margins of the arm near rest, and where its loop is stable.
+// impactlab linear: poles, zeros and margins of the arm near rest, and where its loop is
+// stable.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,17 +42,21 @@ typedef struct analysis {
     linear_survey survey; // with --vary
 } analysis;
 
-// --- one arm ----------------------------------------------------------------------------------
+// --- one arm ---------------------------------------------------------------------------
 
 // Poles of a system, or zeros to an output of it if that has a name.
-static status find_roots(root_set *set, const linear_system *s, const char *name, int output,
-                         fault *f)
+static status find_roots(root_set *set, const linear_system *s, const char *name,
+                         int output, fault *f)
 {
     *set = (root_set){name != NULL ? "zero" : "pole", name != NULL ? name : "", s->states,
                       calloc((size_t)s->states + 1, sizeof *set->values)};
-    return set->values == NULL ? fault_no_memory(f)
-           : name != NULL      ? linear_zeros(s, output, &set->count, set->values, f)
-                               : linear_poles(s, set->values, f);
+    if (set->values == NULL) {
+        return fault_no_memory(f);
+    }
+    if (name != NULL) {
+        return linear_zeros(s, output, &set->count, set->values, f);
+    }
+    return linear_poles(s, set->values, f);
 }
 
 // Zeros and closed poles of the sampled loop, and its margins.
@@ -59,11 +64,17 @@ static status analyse_loop(analysis *x, fault *f)
 {
     const parameters *p = &x->scenario->parameters;
     const bool contact = x->place == LINEAR_CONTACT;
-    FAULT_AT_IF(p->control.law == LAW_NONE, f, STATUS_BAD_ARGUMENT, "control.law",
-                "--law needs a control law, such as --set control.law=hybrid");
+    if (p->control.law == LAW_NONE) {
+        return fault_set_at(
+            f, STATUS_BAD_ARGUMENT, "control.law",
+            "--law needs a control law, such as --set control.law=hybrid");
+    }
     FAULT_IF(x->measured && !contact, f, STATUS_BAD_ARGUMENT,
              "--inject measures the arm in contact, not %s", x->word);
-    status code = x->measured ? STATUS_UNSTABLE : linear_loop(&x->loop, &x->arm, p, f);
+    status code = STATUS_UNSTABLE;
+    if (!x->measured) {
+        code = linear_loop(&x->loop, &x->arm, p, f);
+    }
     x->measured = x->stable = code == STATUS_UNSTABLE && contact;
     if (x->measured) {
         TRY(linear_inject(x->scenario, &x->response, f));
@@ -77,8 +88,10 @@ static status analyse_loop(analysis *x, fault *f)
         x->stable = cabs(x->sets[POLES].values[x->sets[POLES].count - 1]) < 1;
     }
     x->margins = linear_margins_of(&x->response);
-    return x->stable && !x->measured ? linear_delay_margin(&x->arm, p, &x->margins.delay_s, f)
-                                     : STATUS_OK;
+    if (x->stable && !x->measured) {
+        return linear_delay_margin(&x->arm, p, &x->margins.delay_s, f);
+    }
+    return STATUS_OK;
 }
 
 static status analyse(analysis *x, bool looped, fault *f)
@@ -99,7 +112,8 @@ static status analyse(analysis *x, bool looped, fault *f)
     }
 
     // a tip on the wall has no zeros, nor a force without one
-    const int hub = LINEAR_HUB_ANGLE, end = x->place == LINEAR_FREE ? LINEAR_TIP : LINEAR_FORCE;
+    const int hub = LINEAR_HUB_ANGLE,
+              end = x->place == LINEAR_FREE ? LINEAR_TIP : LINEAR_FORCE;
     TRY(find_roots(&x->sets[POLES], s, NULL, 0, f));
     TRY(find_roots(&x->sets[HUB_ZEROS], s, linear_output_names[hub], hub, f));
     TRY(find_roots(&x->sets[END_ZEROS], s, linear_output_names[end], end, f));
@@ -109,7 +123,10 @@ static status analyse(analysis *x, bool looped, fault *f)
 // A root as one of s; of a sampled system s = log(z)/period.
 static double complex in_time(const analysis *x, double complex root)
 {
-    return x->period > 0 ? complex_of(plain_log(cabs(root)), carg(root)) / x->period : root;
+    if (x->period > 0) {
+        return complex_of(plain_log(cabs(root)), carg(root)) / x->period;
+    }
+    return root;
 }
 
 // The matrices, and how files name them.
@@ -139,18 +156,18 @@ static json_t *as_json(const scenario *base, const void *found)
             if (set != POLES) {
                 json_put(root, "output", json_string(x->sets[set].output));
             }
-            json_members(root, "real_per_s:n imaginary_rad_per_s:n damping:n", creal(s), cimag(s),
-                         linear_damping(s));
+            json_members(root, "real_per_s:n imaginary_rad_per_s:n damping:n", creal(s),
+                         cimag(s), linear_damping(s));
             if (x->period > 0) {
                 json_members(root, "z_real:n z_imaginary:n", creal(z), cimag(z));
             }
             json_add(roots[set != POLES], root);
         }
     }
-    json_t *object = json_of(
-        "scenario:t at:t force_N:n command_V:n hub_angle_rad:n contact_margin_Ns:n poles:o zeros:o",
-        base->name, x->word, x->arm.force, x->arm.voltage, x->arm.hub_angle, x->least_push,
-        roots[0], roots[1]);
+    json_t *object = json_of("scenario:t at:t force_N:n command_V:n hub_angle_rad:n "
+                             "contact_margin_Ns:n poles:o zeros:o",
+                             base->name, x->word, x->arm.force, x->arm.voltage,
+                             x->arm.hub_angle, x->least_push, roots[0], roots[1]);
 
     // the loop
     const linear_response *r = &x->response;
@@ -158,16 +175,18 @@ static json_t *as_json(const scenario *base, const void *found)
         const linear_margins *m = &x->margins;
         json_t *loop = json_array();
         json_t *margins =
-            !x->stable ? json_null()
-                       : json_of("gain_db:n gain_down_db:n phase_deg:n delay_s:n disk:n",
-                                 m->gain_db, m->gain_down_db, m->phase_deg, m->delay_s, m->disk);
+            !x->stable
+                ? json_null()
+                : json_of("gain_db:n gain_down_db:n phase_deg:n delay_s:n disk:n",
+                          m->gain_db, m->gain_down_db, m->phase_deg, m->delay_s, m->disk);
         for (int i = 0; i < r->count; i++) {
-            json_add(loop, json_of("frequency_Hz:n gain_db:n phase_deg:n", r->frequency[i] / TWO_PI,
+            json_add(loop, json_of("frequency_Hz:n gain_db:n phase_deg:n",
+                                   r->frequency[i] / TWO_PI,
                                    20 * plain_log(cabs(r->gain[i])) / plain_log(10),
                                    carg(r->gain[i]) * 360 / TWO_PI));
         }
-        json_members(object, "stable:b measured:b margins:o loop:o", x->stable, x->measured,
-                     margins, loop);
+        json_members(object, "stable:b measured:b margins:o loop:o", x->stable,
+                     x->measured, margins, loop);
     }
 
     // the matrices, row by row
@@ -181,7 +200,8 @@ static json_t *as_json(const scenario *base, const void *found)
     for (int k = 0; k < MATRICES; k++) {
         json_t *rows = json_array();
         for (int i = 0; i < list[k].rows; i++) {
-            json_add(rows, json_numbers(list[k].values + i * list[k].columns, list[k].columns));
+            json_add(rows,
+                     json_numbers(list[k].values + i * list[k].columns, list[k].columns));
         }
         json_put(object, list[k].name, rows);
     }
@@ -218,7 +238,8 @@ static void write_mat(FILE *stream, const scenario *base, const void *found)
     list_matrices(&x->arm.system, list);
     mat_file_begin(stream);
     for (int i = 0; i < MATRICES; i++) {
-        mat_file_matrix(stream, list[i].name, list[i].rows, list[i].columns, list[i].values);
+        mat_file_matrix(stream, list[i].name, list[i].rows, list[i].columns,
+                        list[i].values);
     }
     for (const root_set *set = x->sets; set < x->sets + SETS; set++) {
         char name[64];
@@ -259,13 +280,15 @@ static void print_analysis(const scenario *s, const void *found)
         printf(", pressing with %.4g N under %.4g V", x->arm.force, x->arm.voltage);
     }
     printf("\n");
-    for (const root_set *set = x->sets; set < x->sets + SETS && set->values != NULL; set++) {
+    for (const root_set *set = x->sets; set < x->sets + SETS && set->values != NULL;
+         set++) {
         char title[64];
         snprintf(title, sizeof title, set > x->sets ? "zeros, motor to %s" : "poles%s",
                  set > x->sets   ? set->output
                  : x->period > 0 ? ", loop closed"
                                  : "");
-        printf("\n  %-24s %14s %14s %10s\n", title, "real [1/s]", "imag. [rad/s]", "damping");
+        printf("\n  %-24s %14s %14s %10s\n", title, "real [1/s]", "imag. [rad/s]",
+               "damping");
         for (int i = 0; i < set->count; i++) {
             const double complex root = in_time(x, set->values[i]);
             if (cimag(root) >= 0) { // the other one of a pair is with it
@@ -284,14 +307,16 @@ static void print_analysis(const scenario *s, const void *found)
         printf("\n  the loop is unstable\n");
     }
     if (!isnan(x->least_push)) {
-        printf("  least impulse at the tip that loses contact: %.4g mN s\n", 1e3 * x->least_push);
+        printf("  least impulse at the tip that loses contact: %.4g mN s\n",
+               1e3 * x->least_push);
     }
 }
 
 // The loop gain, or the arm from the command to the hub's velocity, and to force or tip.
 static int plot(const arguments *a, const analysis *x)
 {
-    const int outputs[] = {LINEAR_HUB_VELOCITY, x->arm.force > 0 ? LINEAR_FORCE : LINEAR_TIP};
+    const int outputs[] = {LINEAR_HUB_VELOCITY,
+                           x->arm.force > 0 ? LINEAR_FORCE : LINEAR_TIP};
     linear_curve curves[2] = {{"loop gain", x->response}};
     if (x->response.count > 0) {
         return publish_owned(a, bode_figure_create(x->scenario, curves, 1));
@@ -309,12 +334,17 @@ static int plot(const arguments *a, const analysis *x)
     return result;
 }
 
-// --- many -------------------------------------------------------------------------------------
+// --- many ------------------------------------------------------------------------------
 
 // What is told of each value, by poles and by runs.
-static const summary_info told[2] = {
-    {.key = "growth_per_s", .name = "growth", .label = "growth without friction", .unit = "1/s"},
-    {.key = "settling_time_s", .name = "settling_time", .label = "settling time", .unit = "s"}};
+static const summary_info told[2] = {{.key = "growth_per_s",
+                                      .name = "growth",
+                                      .label = "growth without friction",
+                                      .unit = "1/s"},
+                                     {.key = "settling_time_s",
+                                      .name = "settling_time",
+                                      .label = "settling time",
+                                      .unit = "s"}};
 
 static json_t *survey_json(const scenario *base, const void *found)
 {
@@ -327,15 +357,18 @@ static json_t *survey_json(const scenario *base, const void *found)
         for (int axis = 0; axis < s->axis_count; axis++) {
             json_put(values, s->axes[axis].name, json_number(sweep_value(s, i, axis)));
         }
-        json_add(points, json_of("values:o growth_per_s:n stable:b settling_time_s:n", values,
-                                 y->numbers[0][i], linear_is_stable(false, y->numbers[0][i]),
-                                 y->numbers[1][i]));
+        json_add(points,
+                 json_of("values:o growth_per_s:n stable:b settling_time_s:n", values,
+                         y->numbers[0][i], linear_is_stable(false, y->numbers[0][i]),
+                         y->numbers[1][i]));
     }
     for (int i = 0; i < y->limit_count; i++) {
-        json_add(limits, json_of("path:t value:n of:t", s->axes[0].name, y->limits[i].value,
-                                 y->limits[i].by_runs ? "runs" : "poles"));
+        json_add(limits,
+                 json_of("path:t value:n of:t", s->axes[0].name, y->limits[i].value,
+                         y->limits[i].by_runs ? "runs" : "poles"));
     }
-    return json_of("scenario:t at:t varied:o limits:o", base->name, x->word, points, limits);
+    return json_of("scenario:t at:t varied:o limits:o", base->name, x->word, points,
+                   limits);
 }
 
 static void write_survey(FILE *stream, const scenario *base, const void *found)
@@ -389,12 +422,13 @@ static void print_survey(const scenario *base, const void *found)
         settle += linear_is_stable(true, y->numbers[1][i]);
     }
     say_title(base);
-    printf("%zu of %zu loops are stable without friction, %zu of the runs settle\n", stable,
-           y->done, settle);
+    printf("%zu of %zu loops are stable without friction, %zu of the runs settle\n",
+           stable, y->done, settle);
     for (int i = 0; i < y->limit_count; i++) {
         say("  limit %s = %.6g %s, %s\n", s->axes[0].name, y->limits[i].value,
             sweep_axis_parameter(&s->axes[0])->unit,
-            y->limits[i].by_runs ? "of runs, with friction" : "of poles, without friction");
+            y->limits[i].by_runs ? "of runs, with friction"
+                                 : "of poles, without friction");
     }
 }
 
@@ -407,11 +441,16 @@ static int look_around(const arguments *a, analysis *x)
                                       .draws_part = true,
                                       .kept = "the results are those of these",
                                       .none = "there is nothing to show"};
-    const sweep_request request = {.vary = a->varies.items, .vary_count = a->varies.count};
-    COMPLAIN_IF(a->plot != NULL && a->varies.count > 2,
-                "--plot shows one or two varied parameters, but %d are varied", a->varies.count);
-    TRY_FAULT(linear_survey_begin(&x->survey, x->scenario, &request, &f));
+    const sweep_request request = {.vary = a->varies.items,
+                                   .vary_count = a->varies.count};
+    if (a->plot != NULL && a->varies.count > 2) {
+        return complain("--plot shows one or two varied parameters, but %d are varied",
+                        a->varies.count);
+    }
     fault f = {0};
+    if (linear_survey_begin(&x->survey, x->scenario, &request, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
     run_monitor *monitor = work_begin(a, "combinations", (int)x->survey.sweep.run_count);
     const status code = linear_survey_make(&x->survey, x->place, monitor, &f);
     const int result = work_finish(a, code, &f, &r, x->scenario, x);
@@ -419,7 +458,7 @@ static int look_around(const arguments *a, analysis *x)
     return result;
 }
 
-// --- the command ------------------------------------------------------------------------------
+// --- the command -----------------------------------------------------------------------
 
 // Whether the numbers of both pictures would stand in one file.
 static bool share_numbers(const arguments *a)
@@ -436,37 +475,59 @@ static int linear(const arguments *a, scenario *s)
                   .word = a->place != NULL ? a->place : "contact",
                   .measured = a->injects,
                   .least_push = (double)NAN};
-    x.place = strcmp(x.word, "free") == 0      ? LINEAR_FREE
-              : strcmp(x.word, "contact") == 0 ? LINEAR_CONTACT
-                                               : LINEAR_STUCK;
-    COMPLAIN_IF(x.place != LINEAR_FREE && s->parameters.wall.kind == WALL_NONE,
-                "there is no wall to press on, try --at free");
-    COMPLAIN_IF(a->varies.count > 0 && (a->mat != NULL || a->nyquist != NULL || a->injects),
-                "--mat, --nyquist and --inject are of one loop, not of --vary");
-    COMPLAIN_IF(a->varies.count > 0 && s->parameters.control.law == LAW_NONE,
-                "--vary needs a control law, such as --set control.law=hybrid");
-    COMPLAIN_IF((a->nyquist != NULL || a->injects) && !a->looped,
-                "--nyquist and --inject are of the loop of --law");
-    COMPLAIN_IF(a->plot != NULL && a->nyquist != NULL && (a->latex != NULL || share_numbers(a)),
-                "--plot and --nyquist are two pictures: expected names that differ in more than "
-                "their ending, and --latex for one of them");
+    if (strcmp(x.word, "free") == 0) {
+        x.place = LINEAR_FREE;
+    } else if (strcmp(x.word, "contact") == 0) {
+        x.place = LINEAR_CONTACT;
+    } else {
+        x.place = LINEAR_STUCK;
+    }
+    if (x.place != LINEAR_FREE && s->parameters.wall.kind == WALL_NONE) {
+        return complain("there is no wall to press on, try --at free");
+    }
+    if (a->varies.count > 0 && (a->mat != NULL || a->nyquist != NULL || a->injects)) {
+        return complain("--mat, --nyquist and --inject are of one loop, not of --vary");
+    }
+    if (a->varies.count > 0 && s->parameters.control.law == LAW_NONE) {
+        return complain("--vary needs a control law, such as --set control.law=hybrid");
+    }
+    if ((a->nyquist != NULL || a->injects) && !a->looped) {
+        return complain("--nyquist and --inject are of the loop of --law");
+    }
+    if (a->plot != NULL && a->nyquist != NULL && (a->latex != NULL || share_numbers(a))) {
+        return complain(
+            "--plot and --nyquist are two pictures: expected names that differ "
+            "in more than their ending, and --latex for one of them");
+    }
     if (a->varies.count > 0) {
         return look_around(a, &x);
     }
-    static const command_results r = {as_json, print_analysis, .csv = write_csv, .mat = write_mat};
+    static const command_results r = {as_json, print_analysis, .csv = write_csv,
+                                      .mat = write_mat};
     interrupts_catch();
     const status code = analyse(&x, a->looped, &f);
     const bool stopped = code == STATUS_STOPPED, known = code == STATUS_OK || stopped;
-    int result = !known ? complain_fault(&f) : a->plot != NULL ? plot(a, &x) : EXIT_DONE;
+    int result;
+    if (!known) {
+        result = complain_fault(&f);
+    } else if (a->plot != NULL) {
+        result = plot(a, &x);
+    } else {
+        result = EXIT_DONE;
+    }
     if (known && a->nyquist != NULL && x.response.count > 0) {
         arguments there = *a;
         there.plot = a->nyquist;
-        result = worse(result, publish_owned(&there, nyquist_figure_create(s, &x.response)));
+        result =
+            worse(result, publish_owned(&there, nyquist_figure_create(s, &x.response)));
     }
-    result = known ? worse(result, write_results(a, &r, s, &x, !stopped)) : result;
+    if (known) {
+        result = worse(result, write_results(a, &r, s, &x, !stopped));
+    }
     if (stopped) {
-        result = worse(EXIT_FAILED, complain("stopped: what runs were to measure is missing, the "
-                                             "results are those of the arm alone"));
+        result = worse(EXIT_FAILED,
+                       complain("stopped: what runs were to measure is missing, the "
+                                "results are those of the arm alone"));
     }
     linear_system_finish(&x.arm.system);
     linear_system_finish(&x.loop);
@@ -479,9 +540,11 @@ static int linear(const arguments *a, scenario *s)
 
 static const option_row rows[] = {
     OPTION(CHOICE, "at", "free|contact|stuck",
-           "the arm in the air, pressing, or pressing with its hub held by friction (contact)",
+           "the arm in the air, pressing, or pressing with its hub held by friction "
+           "(contact)",
            PLACE(place)),
-    OPTION(FLAG, "law", NULL, "in the loop of its law: closed poles and margins", PLACE(looped)),
+    OPTION(FLAG, "law", NULL, "in the loop of its law: closed poles and margins",
+           PLACE(looped)),
     OPTION(FLAG, "inject", NULL,
            "measure the loop by small sines, as is done for laws that are not linear",
            PLACE(injects)),
@@ -489,20 +552,24 @@ static const option_row rows[] = {
     PLOT_OPTION("draw gain and phase, with --vary where the loop is stable"),
     OPTION(PICTURE, "nyquist", "FILE.{png,pdf,svg}", "draw the loop gain in the plane",
            PLACE(nyquist)),
-    OPTION(RESULT, "mat", "FILE.mat", "write A, B, C, D, poles and zeros for MATLAB or Octave",
-           PLACE(mat)),
+    OPTION(RESULT, "mat", "FILE.mat",
+           "write A, B, C, D, poles and zeros for MATLAB or Octave", PLACE(mat)),
 };
 
 const command linear_command = {
     CALLED("linear", CONTROL, "Poles, zeros and margins of the arm near rest"),
     ONE_SCENARIO,
-    .help = "Linearises the arm at rest, x' = A x + B u from the command u, with back EMF, viscous "
-            "friction and damping.\nIt presses with control.force where a law is to hold it, else "
-            "under motor.voltage; Coulomb friction is left out.\n"
-            "--law closes the sampled loop of its law; one that does not answer linearly is "
-            "measured by small sines.\n--vary tells where the loop is stable, by its poles and, "
-            "with friction, by runs that settle.\n",
-    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
-                &page_options},
+    .help =
+        "Linearises the arm at rest, x' = A x + B u from the command u, with back EMF, "
+        "viscous "
+        "friction and damping.\nIt presses with control.force where a law is to hold it, "
+        "else "
+        "under motor.voltage; Coulomb friction is left out.\n"
+        "--law closes the sampled loop of its law; one that does not answer linearly is "
+        "measured by small sines.\n--vary tells where the loop is stable, by its poles "
+        "and, "
+        "with friction, by runs that settle.\n",
+    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
+                &quiet_options, &page_options},
     .use = linear,
 };

@@ -21,8 +21,8 @@ static json_t *answer(const scenario *s, const void *asked)
         const solve_limit *limit = &found->limits[i];
         json_t *line =
             json_of("path:t value:n quantity:t reached:n holds:t jumps:b", q->axis.name,
-                    limit->value, summary_table[q->condition.quantity].key, limit->reached,
-                    limit->holds_below ? "below" : "above", limit->jumps);
+                    limit->value, summary_table[q->condition.quantity].key,
+                    limit->reached, limit->holds_below ? "below" : "above", limit->jumps);
         if (found->stopped) {
             json_members(line, "beyond:n", limit->beyond);
         }
@@ -61,27 +61,29 @@ static void print_answer(const scenario *s, const void *asked)
 
     // the question, with the range that was looked at
     say_title(s);
-    say("%s %s%s %s%s%s for %s from %s to %s%s%s, %d runs\n", quantity->label, c->below ? "<" : ">",
-        c->equal ? "=" : "", bound, quantity->unit[0] ? " " : "", quantity->unit, q->axis.name, low,
-        high, parameter->unit[0] ? " " : "", parameter->unit, found->done);
+    say("%s %s%s %s%s%s for %s from %s to %s%s%s, %d runs\n", quantity->label,
+        c->below ? "<" : ">", c->equal ? "=" : "", bound, quantity->unit[0] ? " " : "",
+        quantity->unit, q->axis.name, low, high, parameter->unit[0] ? " " : "",
+        parameter->unit, found->done);
 
     for (int i = 0; i < found->count; i++) {
         const solve_limit *limit = &found->limits[i];
         char value[64], reached[64];
         decimal_print(value, sizeof value, "%.7g", limit->value);
         decimal_print(reached, sizeof reached, "%.7g", limit->reached);
-        say("\n  %s %s = %s%s%s, where the %s is %s%s%s%s", limit->holds_below ? "up to" : "from",
-            q->axis.name, value, parameter->unit[0] ? " " : "", parameter->unit, quantity->label,
-            reached, quantity->unit[0] ? " " : "", quantity->unit,
+        say("\n  %s %s = %s%s%s, where the %s is %s%s%s%s",
+            limit->holds_below ? "up to" : "from", q->axis.name, value,
+            parameter->unit[0] ? " " : "", parameter->unit, quantity->label, reached,
+            quantity->unit[0] ? " " : "", quantity->unit,
             limit->jumps ? " and jumps" : "");
         if (found->stopped) {
-            say("; it does not hold at %.7g%s%s", limit->beyond, parameter->unit[0] ? " " : "",
-                parameter->unit);
+            say("; it does not hold at %.7g%s%s", limit->beyond,
+                parameter->unit[0] ? " " : "", parameter->unit);
         }
     }
     if (found->count == 0) {
-        say("\n  no limit: it holds in %d of these runs and does not in %d", found->holding,
-            found->failing);
+        say("\n  no limit: it holds in %d of these runs and does not in %d",
+            found->holding, found->failing);
     }
     say("\n");
     say_what_is_unknown(q, found);
@@ -96,34 +98,45 @@ static int find_and_report(const arguments *a, scenario *s)
     fault f = {0};
     run_monitor *monitor = work_begin(a, "runs", q.points);
     status code = solve_condition_read(a->operands[2], &q.condition, &f);
-    code = code == STATUS_OK ? solve_axis_read(&q.axis, a->operands[1], s, &f) : code;
     if (code == STATUS_OK) {
-        code = solve(s, &q.axis, &q.condition, q.points, many_runs_jobs(a), monitor, &q.found, &f);
+        code = solve_axis_read(&q.axis, a->operands[1], s, &f);
+    }
+    if (code == STATUS_OK) {
+        code = solve(s, &q.axis, &q.condition, q.points, many_runs_jobs(a), monitor,
+                     &q.found, &f);
     }
     const int written = work_finish(a, code, &f, &r, s, &q);
     sweep_axis_finish(&q.axis);
     const bool none = code == STATUS_OK && q.found.count == 0;
     if (none && !summary_wanted(a)) {
-        complain("no limit: it holds in %d of these runs and does not in %d", q.found.holding,
-                 q.found.failing);
+        complain("no limit: it holds in %d of these runs and does not in %d",
+                 q.found.holding, q.found.failing);
     }
-    return none ? worse(written, EXIT_FAILED) : written;
+    if (none) {
+        return worse(written, EXIT_FAILED);
+    }
+    return written;
 }
 
 static const option_row rows[] = {
-    OPTION(WHOLE, "runs", "N", "values of the range that are run before limits are located (65)",
-           PLACE(runs), .low = 2, .high = SOLVE_MOST_POINTS),
+    OPTION(WHOLE, "runs", "N",
+           "values of the range that are run before limits are located (65)", PLACE(runs),
+           .low = 2, .high = SOLVE_MOST_POINTS),
     JOBS_OPTION,
 };
 
 const command solve_command = {
-    CALLED("solve", MANY_RUNS, "Find the limit of a parameter for a condition on a result"),
+    CALLED("solve", MANY_RUNS,
+           "Find the limit of a parameter for a condition on a result"),
     SCENARIOS("SCENARIO PATH[=a:b] 'KEY<VALUE'", 3, 3),
-    .help = "Up to which voltage does the peak stay below 2 N? solve corrected/first-impact\n"
-            "motor.voltage 'peak_force_N<2' runs the range, that of the parameter's slider unless "
-            "a:b is\ngiven, and locates each limit within it. KEY is one of run --json; the "
-            "condition may be\n<, <=, > or >=. A limit is the last value at which the condition "
-            "holds. Where there is\nnone the exit status is 1.\n",
+    .help =
+        "Up to which voltage does the peak stay below 2 N? solve corrected/first-impact\n"
+        "motor.voltage 'peak_force_N<2' runs the range, that of the parameter's slider "
+        "unless "
+        "a:b is\ngiven, and locates each limit within it. KEY is one of run --json; the "
+        "condition may be\n<, <=, > or >=. A limit is the last value at which the "
+        "condition "
+        "holds. Where there is\nnone the exit status is 1.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options},
     .use = find_and_report,
 };

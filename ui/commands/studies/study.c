@@ -1,5 +1,6 @@
-// impactlab study: error against cost of the methods of time integration, how far a number of links
-// is from a beam, and force error and phase of control laws over frequency.
+// impactlab study: error against cost of the methods of time integration, how far a
+// number of links is from a beam, and force error and phase of control laws over
+// frequency.
 #include "ui/commands/command.h"
 
 #include <float.h>
@@ -15,18 +16,18 @@
 #include "src/study/follow.h"
 
 // A study that is computed by a call, with what becomes of it.
-#define STUDY(name, type, compute, pieces, count, ...)                                             \
-    static int study_of_##name(const arguments *a, scenario *s)                                    \
-    {                                                                                              \
-        static const command_results r = {__VA_ARGS__};                                            \
-        type found;                                                                                \
-        fault f = {0};                                                                             \
-        run_monitor *monitor = work_begin(a, pieces, count);                                       \
-        const status code = compute(s, monitor, &found, &f);                                       \
-        return work_finish(a, code, &f, &r, s, &found);                                            \
+#define STUDY(name, type, compute, pieces, count, ...)                                   \
+    static int study_of_##name(const arguments *a, scenario *s)                          \
+    {                                                                                    \
+        static const command_results r = {__VA_ARGS__};                                  \
+        type found;                                                                      \
+        fault f = {0};                                                                   \
+        run_monitor *monitor = work_begin(a, pieces, count);                             \
+        const status code = compute(s, monitor, &found, &f);                             \
+        return work_finish(a, code, &f, &r, s, &found);                                  \
     }
 
-// --- methods ----------------------------------------------------------------------------------
+// --- methods ---------------------------------------------------------------------------
 
 static json_t *methods_object(const scenario *s, const void *found)
 {
@@ -57,15 +58,15 @@ static void print_methods(const scenario *s, const void *found)
 {
     const method_study *study = found;
     char changes[SCENARIO_CHANGES];
-    say("%s%s: error against cost\nreference: event method at %g s; first contact %.12g s, first "
-        "pulse peak %.12g N,\nsteady force %.12g N\n",
+    say("%s%s: error against cost\nreference: event method at %g s; first "
+        "contact %.12g s, first pulse peak %.12g N,\nsteady force %.12g N\n",
         s->name, scenario_changes(s, changes), study->reference_step, study->reference[0],
         study->reference[1], study->reference[2]);
 
     // a table for each method
     for (int m = 0; m < STUDY_METHODS; m++) {
-        printf("\n%-18s %10s %12s %12s %12s\n", study_methods[m], "cost", "contact", "peak",
-               "steady");
+        printf("\n%-18s %10s %12s %12s %12s\n", study_methods[m], "cost", "contact",
+               "peak", "steady");
         printf("%-18s %10s %12s %12s %12s\n", "step [s]", "[ms]", "[s]", "[N]", "[N]");
         for (int i = 0; i < STUDY_STEPS; i++) {
             const study_point *p = &study->points[m][i];
@@ -94,8 +95,8 @@ static void print_methods(const scenario *s, const void *found)
     }
 }
 
-// Makes the errors fit for a logarithmic axis, which has no zero: what agrees to the last digit
-// stands at half of one.
+// Makes the errors fit for a logarithmic axis, which has no zero: what agrees to the last
+// digit stands at half of one.
 static void raise_zeros(method_study *study)
 {
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
@@ -103,7 +104,9 @@ static void raise_zeros(method_study *study)
         for (int m = 0; m < STUDY_METHODS; m++) {
             for (int i = 0; i < STUDY_STEPS; i++) {
                 double *error = &study->points[m][i].error[k];
-                *error = isnan(*error) ? *error : fmax(*error, least);
+                if (!isnan(*error)) {
+                    *error = fmax(*error, least);
+                }
             }
         }
     }
@@ -120,7 +123,9 @@ static int plot_methods(const arguments *a, const scenario *s, const void *found
                                 {"event method", MARKER_CIRCLE, 0}};
     static const figure_axis axes[STUDY_QUANTITIES] = {
         {.name = "first_contact", .label = "Error of first contact", .unit = "s"},
-        {.name = "first_pulse_peak", .label = "Error of first pulse\u2019s peak", .unit = "N"},
+        {.name = "first_pulse_peak",
+         .label = "Error of first pulse\u2019s peak",
+         .unit = "N"},
         {.name = "steady_force", .label = "Error of steady force", .unit = "N"}};
     figure_series series[STUDY_QUANTITIES][STUDY_METHODS];
     figure_panel panels[STUDY_QUANTITIES];
@@ -136,16 +141,19 @@ static int plot_methods(const arguments *a, const scenario *s, const void *found
             series[k][m].marker = methods[m].marker;
         }
 
-        panels[k] = (figure_panel){
-            .y = axes[k], .series = series[k], .series_count = STUDY_METHODS, .weight = 1.8};
+        panels[k] = (figure_panel){.y = axes[k],
+                                   .series = series[k],
+                                   .series_count = STUDY_METHODS,
+                                   .weight = 1.8};
         panels[k].y.scale = SCALE_LOGARITHMIC;
     }
 
     const figure fig = {
-        .caption = "Steps 10\u2009ms, 5\u2009ms, 2\u2009ms ... 1\u2009µs from left to right; the "
-                   "event method needs none of them and costs about the same whichever is asked "
-                   "for. Left and low is better. Reference: the event method at 20\u2009µs. What "
-                   "agrees with it to the last digit stands at half of one.",
+        .caption = "Steps 10\u2009ms, 5\u2009ms, 2\u2009ms ... 1\u2009µs from left to "
+                   "right; the event method needs none of them and costs about the same "
+                   "whichever is asked for. Left and low is better. Reference: the "
+                   "event method at 20\u2009µs. What agrees with it to the last digit "
+                   "stands at half of one.",
         .x = {.name = "computing time", .label = "Computing time", .unit = "s"},
         .panels = panels,
         .panel_count = STUDY_QUANTITIES};
@@ -153,10 +161,11 @@ static int plot_methods(const arguments *a, const scenario *s, const void *found
 }
 
 STUDY(methods, method_study, method_study_compute, "runs", STUDY_RUNS, methods_object,
-      print_methods, plot_methods, .draws_part = true, .kept = "the results are those of these",
+      print_methods, plot_methods, .draws_part = true,
+      .kept = "the results are those of these",
       .none = "there is nothing to show") // without the reference
 
-// --- links ------------------------------------------------------------------------------------
+// --- links -----------------------------------------------------------------------------
 
 static json_t *links_object(const scenario *s, const void *found)
 {
@@ -173,10 +182,12 @@ static json_t *links_object(const scenario *s, const void *found)
     // what they tend to
     for (int k = 0; k < LINKS_QUANTITIES; k++) {
         const links_row *row = &study->rows[k];
-        json_add(quantities,
-                 json_of("quantity:t order:n limit:n error:n beam:n aim:n off:n enough_links:o",
-                         row->key, row->order, row->limit, row->error, row->beam, row->aim,
-                         row->off, row->enough > 0 ? json_integer(row->enough) : json_null()));
+        json_add(
+            quantities,
+            json_of(
+                "quantity:t order:n limit:n error:n beam:n aim:n off:n enough_links:o",
+                row->key, row->order, row->limit, row->error, row->beam, row->aim,
+                row->off, row->enough > 0 ? json_integer(row->enough) : json_null()));
     }
     return json_of("scenario:t links:o limits:o", s->name, rows, quantities);
 }
@@ -209,7 +220,8 @@ static void print_links(const scenario *s, const void *found)
         return;
     }
     char changes[SCENARIO_CHANGES];
-    say("%s%s: from links to a beam\n\n%-26s", s->name, scenario_changes(s, changes), "links");
+    say("%s%s: from links to a beam\n\n%-26s", s->name, scenario_changes(s, changes),
+        "links");
     for (int i = 0; i < study->count; i++) {
         printf(" %9d", links_numbers[i]);
     }
@@ -262,42 +274,50 @@ static int plot_links(const arguments *a, const scenario *s, const void *found)
         }
         for (int i = 0; i < LINKS_LENGTHS; i++) {
             const double share = 100 * fabs(row->value[i] / aim - 1);
-            off[k][i] = share > 0 ? share : (double)NAN;
+            if (share > 0) {
+                off[k][i] = share;
+            } else {
+                off[k][i] = (double)NAN;
+            }
         }
-        series[drawn] =
-            curve_of(row->key, row->label, study->links, off[k], LINKS_LENGTHS, colours[k]);
+        series[drawn] = curve_of(row->key, row->label, study->links, off[k],
+                                 LINKS_LENGTHS, colours[k]);
         series[drawn++].marker = markers[k];
     }
 
-    const figure_panel panel = {
-        .y = {.name = "off", .label = "Off the beam", .unit = "%", .scale = SCALE_LOGARITHMIC},
-        .series = series,
-        .series_count = drawn,
-        .weight = 1.8};
-    const figure fig = {.caption = "From the Euler-Bernoulli beam where it has a closed form, else "
-                                   "from Richardson\u2019s limit; what has neither is left out.",
-                        .x = {.name = "links",
-                              .label = "Number of links <i>N</i>",
-                              .ticks = ticks,
-                              .tick_count = LINKS_LENGTHS},
-                        .panels = &panel,
-                        .panel_count = 1};
+    const figure_panel panel = {.y = {.name = "off",
+                                      .label = "Off the beam",
+                                      .unit = "%",
+                                      .scale = SCALE_LOGARITHMIC},
+                                .series = series,
+                                .series_count = drawn,
+                                .weight = 1.8};
+    const figure fig = {
+        .caption = "From the Euler-Bernoulli beam where it has a closed form, else "
+                   "from Richardson\u2019s limit; what has neither is left out.",
+        .x = {.name = "links",
+              .label = "Number of links <i>N</i>",
+              .ticks = ticks,
+              .tick_count = LINKS_LENGTHS},
+        .panels = &panel,
+        .panel_count = 1};
     return publish_study(a, s, "from links to a beam", &fig);
 }
 
-STUDY(links, links_study, links_study_compute, "numbers of links", LINKS_LENGTHS, links_object,
-      print_links, plot_links, .kept = "the table is that of these",
+STUDY(links, links_study, links_study_compute, "numbers of links", LINKS_LENGTHS,
+      links_object, print_links, plot_links, .kept = "the table is that of these",
       .none = "there is nothing to show")
 
-// --- follow -----------------------------------------------------------------------------------
+// --- follow ----------------------------------------------------------------------------
 
 static json_t *points_array(const follow_point *points)
 {
     json_t *array = json_array();
     for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
         const follow_point *p = &points[i];
-        json_add(array, json_of("frequency_Hz:n gain:n phase_deg:n error:n wall_N_per_m:n",
-                                follow_frequencies[i], p->gain, p->phase, p->error, p->shaken));
+        json_add(array,
+                 json_of("frequency_Hz:n gain:n phase_deg:n error:n wall_N_per_m:n",
+                         follow_frequencies[i], p->gain, p->phase, p->error, p->shaken));
     }
     return array;
 }
@@ -313,7 +333,8 @@ static json_t *follow_object(const scenario *s, const void *found)
 }
 
 // A number of every point, over the frequencies.
-static void print_table(const char *what, const follow_study *study, size_t offset, double scale)
+static void print_table(const char *what, const follow_study *study, size_t offset,
+                        double scale)
 {
     printf("\n%-28s", what);
     for (int i = 0; i < FOLLOW_FREQUENCIES; i++) {
@@ -344,8 +365,9 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
 {
     const follow_study *study = found;
     static const int colours[FOLLOW_LAWS] = {0, 3, 2, 1, 6, 5};
-    static const marker_kind markers[FOLLOW_LAWS] = {MARKER_CIRCLE,   MARKER_SQUARE, MARKER_DIAMOND,
-                                                     MARKER_TRIANGLE, MARKER_CROSS,  MARKER_CIRCLE};
+    static const marker_kind markers[FOLLOW_LAWS] = {MARKER_CIRCLE,  MARKER_SQUARE,
+                                                     MARKER_DIAMOND, MARKER_TRIANGLE,
+                                                     MARKER_CROSS,   MARKER_CIRCLE};
     static const struct {
         figure_axis axis;
         size_t offset;
@@ -372,14 +394,16 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
             series[n][k].stride = sizeof *p;
             series[n][k].marker = markers[k];
         }
-        panels[n] = (figure_panel){
-            .y = drawn[n].axis, .series = series[n], .series_count = FOLLOW_LAWS, .weight = 1.8};
+        panels[n] = (figure_panel){.y = drawn[n].axis,
+                                   .series = series[n],
+                                   .series_count = FOLLOW_LAWS,
+                                   .weight = 1.8};
     }
 
     char caption[400];
     snprintf(caption, sizeof caption,
-             "Set-point: %g %% of the commanded force; wall: %g mm, against which friction holds "
-             "the hub up to %.2g N. Commands act %.3g ms late.",
+             "Set-point: %g %% of the commanded force; wall: %g mm, against which "
+             "friction holds the hub up to %.2g N. Commands act %.3g ms late.",
              100 * FOLLOW_WAVE, 1e3 * FOLLOW_WALL,
              s->parameters.motor.stiction / s->parameters.arm.length, 1e3 * study->later);
     const figure fig = {.caption = caption,
@@ -389,11 +413,11 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
     return publish_study(a, s, "a set-point and a wall that move", &fig);
 }
 
-STUDY(follow, follow_study, follow_study_compute, "runs", FOLLOW_RUNS, follow_object, print_follow,
-      plot_follow, .draws_part = true, .kept = "the results are those of these",
-      .none = "there is nothing to show")
+STUDY(follow, follow_study, follow_study_compute, "runs", FOLLOW_RUNS, follow_object,
+      print_follow, plot_follow, .draws_part = true,
+      .kept = "the results are those of these", .none = "there is nothing to show")
 
-// --- the command ------------------------------------------------------------------------------
+// --- the command -----------------------------------------------------------------------
 
 typedef struct topic {
     const char *name, *scenario; // the scenario if none is given
@@ -409,33 +433,41 @@ enum { TOPICS = sizeof topics / sizeof topics[0] };
 
 static const char *topic_word(int i)
 {
-    return i < TOPICS ? topics[i].name : NULL;
+    if (i < TOPICS) {
+        return topics[i].name;
+    }
+    return NULL;
 }
 
 static int study(const arguments *a)
 {
     for (const topic *t = topics; t < topics + TOPICS; t++) {
         if (strcmp(t->name, a->operands[0]) == 0) {
-            return with_scenario(a->operand_count > 1 ? a->operands[1] : t->scenario, a, t->study);
+            return with_scenario(a->operand_count > 1 ? a->operands[1] : t->scenario, a,
+                                 t->study);
         }
     }
-    return complain("there is no study '%s', expected methods, links or follow", a->operands[0]);
+    return complain("there is no study '%s', expected methods, links or follow",
+                    a->operands[0]);
 }
 
 const command study_command = {
-    CALLED("study", MANY_RUNS, "Error against cost; links against a beam; laws over frequency"),
+    CALLED("study", MANY_RUNS,
+           "Error against cost; links against a beam; laws over frequency"),
     SCENARIOS("methods|links|follow [SCENARIO]", 1, 2),
-    .help =
-        "methods: the scenario (corrected/first-impact) by every method of time integration at "
-        "steps from 1e-2\ndown to 1e-6 s, with the error of first contact, first pulse's peak and "
-        "steady force.\nlinks: the scenario (corrected/damped-beam) with 2 to 64 links: its blow "
-        "and what a first-order sensor\nof 0.5, 1 or 2 ms reads of it, frequencies, statics; "
-        "Richardson's limit and the Euler-Bernoulli\nbeam, and how many links are enough for which "
-        "question.\nfollow: the scenario (compare/observer) under six laws with a set-point and a "
-        "wall that swing, from\n0.2 to 25 Hz: error and phase of the force, beside what delay and "
-        "arm allow. See\ndocs/explanation/methods.md and docs/explanation/trust.md. ^C ends any of "
-        "them with what it has\nuntil then (exit status 130).\n",
+    .help = "methods: the scenario (corrected/first-impact) by every method of time "
+            "integration at steps from 1e-2\ndown to 1e-6 s, with the error of first "
+            "contact, first pulse's peak and steady force.\nlinks: the scenario "
+            "(corrected/damped-beam) with 2 to 64 links: its blow and what a "
+            "first-order sensor\nof 0.5, 1 or 2 ms reads of it, frequencies, statics; "
+            "Richardson's limit and the Euler-Bernoulli\nbeam, and how many links are "
+            "enough for which question.\nfollow: the scenario (compare/observer) under "
+            "six laws with a set-point and a wall that swing, from\n0.2 to 25 Hz: "
+            "error and phase of the force, beside what delay and arm allow. "
+            "See\ndocs/explanation/methods.md and docs/explanation/trust.md. ^C ends "
+            "any of them with what it has\nuntil then (exit status 130).\n",
     .operand_word = topic_word,
-    .options = {&set_options, &json_options, &drawn_options, &quiet_options, &page_options},
+    .options = {&set_options, &json_options, &drawn_options, &quiet_options,
+                &page_options},
     .run = study,
 };

@@ -1,5 +1,5 @@
-// impactlab sweep: a run for each of many parameter values; impactlab merge: its parts in one
-// database.
+// impactlab sweep: a run for each of many parameter values; impactlab merge: its parts in
+// one database.
 #include "ui/commands/command.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ typedef struct sweep_order {
     const sweep *sweep;
 } sweep_order;
 
-// --- results ----------------------------------------------------------------------------------
+// --- results ---------------------------------------------------------------------------
 
 enum { ROWS_SHOWN = 40 };
 
@@ -33,9 +33,14 @@ static int write_rows(sweep_store *store, const char *path, bool json)
     if (path == NULL) {
         return EXIT_DONE;
     }
-    FAIL_IF(whole_file_open(&file, path, &f) != STATUS_OK, complain_fault(&f));
+    if (whole_file_open(&file, path, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
     const status written = sweep_store_write(store, file.stream, json, &f);
-    return whole_file_close(&file, written, &f) == STATUS_OK ? EXIT_DONE : complain_fault(&f);
+    if (whole_file_close(&file, written, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    return EXIT_DONE;
 }
 
 // "motor.voltage = 2 V, method.name = event" of a run.
@@ -45,22 +50,24 @@ static void print_values(const sweep *s, size_t run)
         const parameter_info *info = sweep_axis_parameter(&s->axes[i]);
         char text[128];
         sweep_value_text(s, run, i, text, sizeof text);
-        say("%s%s = %s%s%s%s", i > 0 ? ", " : "", s->axes[i].name, text, info->unit[0] ? " " : "",
-            info->unit, sweep_idle(s, run, i) != NULL ? " (no effect)" : "");
+        say("%s%s = %s%s%s%s", i > 0 ? ", " : "", s->axes[i].name, text,
+            info->unit[0] ? " " : "", info->unit,
+            sweep_idle(s, run, i) != NULL ? " (no effect)" : "");
     }
 }
 
 // One line for the smallest or largest value.
-static void print_extreme(const sweep *s, const char *word, const double *values, size_t run,
-                          const char *unit)
+static void print_extreme(const sweep *s, const char *word, const double *values,
+                          size_t run, const char *unit)
 {
-    printf("  %-9s %.6g%s%s  in run %zu: ", word, values[run], unit[0] ? " " : "", unit, run + 1);
+    printf("  %-9s %.6g%s%s  in run %zu: ", word, values[run], unit[0] ? " " : "", unit,
+           run + 1);
     print_values(s, run);
     printf("\n");
 }
 
-static void print_summary(const sweep_order *o, const sweep_store *store, const double *values,
-                          size_t failed, const sweep_progress *p)
+static void print_summary(const sweep_order *o, const sweep_store *store,
+                          const double *values, size_t failed, const sweep_progress *p)
 {
     const sweep *s = o->sweep;
     const arguments *a = o->arguments;
@@ -75,11 +82,20 @@ static void print_summary(const sweep_order *o, const sweep_store *store, const 
     if (p->done_now < p->done) {
         printf(", %zu were there already", p->done - p->done_now);
     }
-    printf("\n%s%s%s%s\n", quantity->label, unit[0] ? " [" : "", unit, unit[0] ? "]" : "");
+    printf("\n%s%s%s%s\n", quantity->label, unit[0] ? " [" : "", unit,
+           unit[0] ? "]" : "");
 
     // each value, where no file has them
-    const bool listed = a->csv == NULL && a->json == NULL && a->db == NULL && a->plot == NULL;
-    const size_t shown = !listed ? 0 : s->run_count < ROWS_SHOWN ? s->run_count : ROWS_SHOWN;
+    const bool listed =
+        a->csv == NULL && a->json == NULL && a->db == NULL && a->plot == NULL;
+    size_t shown = 0;
+    if (listed) {
+        if (s->run_count < ROWS_SHOWN) {
+            shown = s->run_count;
+        } else {
+            shown = ROWS_SHOWN;
+        }
+    }
     for (size_t run = 0; run < shown; run++) {
         if (store->present[run]) {
             printf("  %10.5g  ", values[run]);
@@ -95,8 +111,12 @@ static void print_summary(const sweep_order *o, const sweep_store *store, const 
     size_t low = s->run_count, high = s->run_count;
     for (size_t run = 0; run < s->run_count; run++) {
         if (isfinite(values[run])) {
-            low = low == s->run_count || values[run] < values[low] ? run : low;
-            high = high == s->run_count || values[run] > values[high] ? run : high;
+            if (low == s->run_count || values[run] < values[low]) {
+                low = run;
+            }
+            if (high == s->run_count || values[run] > values[high]) {
+                high = run;
+            }
         }
     }
     if (low == s->run_count) {
@@ -107,21 +127,31 @@ static void print_summary(const sweep_order *o, const sweep_store *store, const 
     print_extreme(s, "largest", values, high, unit);
 }
 
-// Writes the files asked for and prints the summary, of the runs that are done. If one fails, the
-// others are still written.
+// Writes the files asked for and prints the summary, of the runs that are done. If one
+// fails, the others are still written.
 static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_progress *p)
 {
     const arguments *a = o->arguments;
     size_t failed = 0;
     SCOPED(free_kept) double *values = malloc(o->sweep->run_count * sizeof *values);
-    TRY_FAULT(values == NULL
-                  ? fault_no_memory(&f)
-                  : sweep_store_quantity(store, o->share, o->quantity, values, &failed, &f));
+    fault f = {0};
+    if (values == NULL) {
+        if (fault_no_memory(&f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+    } else {
+        if (sweep_store_quantity(store, o->share, o->quantity, values, &failed, &f) !=
+            STATUS_OK) {
+            return complain_fault(&f);
+        }
+    }
 
     // files first: what is printed may be cut off
     int code = worse(write_rows(store, a->csv, false), write_rows(store, a->json, true));
     if (a->plot != NULL) {
-        const sweep_picture shown = {.sweep = o->sweep, .key = o->quantity, .values = values};
+        const sweep_picture shown = {.sweep = o->sweep,
+                                     .key = o->quantity,
+                                     .values = values};
         code = worse(code, publish_owned(a, sweep_figure_create(&shown)));
     }
     if (summary_wanted(a)) {
@@ -132,12 +162,16 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
     } else if (failed == p->done) {
         complain("all %zu runs failed; the message of each is in its row", failed);
     }
-    return failed == p->done ? worse(code, EXIT_FAILED) : code;
+    if (failed == p->done) {
+        return worse(code, EXIT_FAILED);
+    }
+    return code;
 }
 
-// --- the request ------------------------------------------------------------------------------
+// --- the request -----------------------------------------------------------------------
 
-// Reads --part K/N, which needs a database: what a part computes is good for being merged.
+// Reads --part K/N, which needs a database: what a part computes is good for being
+// merged.
 static int read_share(const arguments *a, sweep_share *share)
 {
     char rest;
@@ -146,21 +180,26 @@ static int read_share(const arguments *a, sweep_share *share)
     }
 
     // which part of how many
-    COMPLAIN_IF(sscanf(a->part, "%6d/%6d%c", &share->part, &share->parts, &rest) != 2 ||
-                    share->part < 1 || share->parts < share->part,
-                "--part '%.40s' is no part, expected K/N with K from 1 to N", a->part);
+    if (sscanf(a->part, "%6d/%6d%c", &share->part, &share->parts, &rest) != 2 ||
+        share->part < 1 || share->parts < share->part) {
+        return complain("--part '%.40s' is no part, expected K/N with K from 1 to N",
+                        a->part);
+    }
 
     // a part alone can only be kept
-    COMPLAIN_IF(a->db == NULL, "--part %s keeps its runs in a database, expected --db FILE.sqlite",
-                a->part);
-    COMPLAIN_IF(
-        a->csv != NULL || a->json != NULL || a->plot != NULL,
-        "--part %s is not the whole sweep: --csv, --json and --plot come after impactlab merge",
-        a->part);
+    if (a->db == NULL) {
+        return complain(
+            "--part %s keeps its runs in a database, expected --db FILE.sqlite", a->part);
+    }
+    if (a->csv != NULL || a->json != NULL || a->plot != NULL) {
+        return complain("--part %s is not the whole sweep: --csv, --json and --plot come "
+                        "after impactlab merge",
+                        a->part);
+    }
     return EXIT_DONE;
 }
 
-// --- the runs -------------------------------------------------------------------------------
+// --- the runs --------------------------------------------------------------------------
 
 static int compute(const sweep_order *o, sweep_store *store)
 {
@@ -172,22 +211,29 @@ static int compute(const sweep_order *o, sweep_store *store)
     many_runs_end(&options);
 
     // what it came to: an error, a stop, the whole sweep or a part of it
-    FAIL_IF(code != STATUS_OK, complain_fault(&f));
+    if (code != STATUS_OK) {
+        return complain_fault(&f);
+    }
     const bool stopped = progress.done < progress.total,
                shown = o->share.parts == 0 && progress.done > 0;
     const int result = shown ? report_sweep(o, store, &progress) : EXIT_DONE;
     if (stopped) {
         return many_runs_stopped(o->arguments->db, progress.done, progress.total,
-                                 shown ? "the results are those of these" : "none is shown");
+                                 shown ? "the results are those of these"
+                                       : "none is shown");
     }
     if (o->share.parts == 0) {
         return result;
     }
     if (!o->arguments->quiet) {
-        say("%s: part %d of %d, %zu of %zu runs in '%s'\n", o->scenario->name, o->share.part,
-            o->share.parts, progress.done, o->sweep->run_count, o->arguments->db);
+        say("%s: part %d of %d, %zu of %zu runs in '%s'\n", o->scenario->name,
+            o->share.part, o->share.parts, progress.done, o->sweep->run_count,
+            o->arguments->db);
     }
-    return progress.failed > 0 && progress.failed == progress.total ? EXIT_FAILED : EXIT_DONE;
+    if (progress.failed > 0 && progress.failed == progress.total) {
+        return EXIT_FAILED;
+    }
+    return EXIT_DONE;
 }
 
 // A sweep that cannot be, or that could not be drawn, is refused before it computes.
@@ -196,24 +242,38 @@ static int sweep_and_report(const arguments *a, scenario *base)
     sweep_order o = {.arguments = a,
                      .scenario = base,
                      .quantity = a->quantity != NULL ? a->quantity : "peak_force_N"};
-    const sweep_request request = {
-        .vary = a->varies.items,
-        .vary_count = a->varies.count,
-        .sampling = (sweep_sampling)sweep_sampling_find(a->sampling ? a->sampling : "grid"),
-        .runs = (size_t)a->runs,
-        .seed = a->seed};
-    TRY_EXIT(read_share(a, &o.share));
+    const sweep_request request = {.vary = a->varies.items,
+                                   .vary_count = a->varies.count,
+                                   .sampling = (sweep_sampling)sweep_sampling_find(
+                                       a->sampling ? a->sampling : "grid"),
+                                   .runs = (size_t)a->runs,
+                                   .seed = a->seed};
+    int ended = read_share(a, &o.share);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
     SCOPED(sweep_finish) sweep s = {0};
     SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
     o.sweep = &s;
 
     // the rows, in the file or in memory
-    TRY_FAULT(sweep_init(&s, base, &request, &f));
-    for (int i = 0; i < s.axis_count; i++) {
-        TRY_FAULT(sweep_check_effect(&s, i, &f));
+    fault f = {0};
+    if (sweep_init(&s, base, &request, &f) != STATUS_OK) {
+        return complain_fault(&f);
     }
-    TRY_FAULT(a->plot != NULL ? sweep_plot_check(&s, a->plot, &f) : STATUS_OK);
-    TRY_FAULT(sweep_store_open(&store, a->db, &s, &f));
+    for (int i = 0; i < s.axis_count; i++) {
+        if (sweep_check_effect(&s, i, &f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+    }
+    if (a->plot != NULL) {
+        if (sweep_plot_check(&s, a->plot, &f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+    }
+    if (sweep_store_open(&store, a->db, &s, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
     return compute(&o, store);
 }
 
@@ -225,7 +285,8 @@ static const option_row rows[] = {
     JOBS_OPTION,
     DB_OPTION("keep every run in a database; go on where it ends"),
     OPTION(TEXT, "part", "K/N",
-           "compute every N-th run from the K-th on; impactlab merge joins the parts", PLACE(part)),
+           "compute every N-th run from the K-th on; impactlab merge joins the parts",
+           PLACE(part)),
     OPTION(RESULT, "csv", "FILE|-", "write a row for each run", PLACE(csv)),
     PLOT_OPTION("draw the quantity over one or two parameters"),
     OPTION(QUANTITY, "quantity", "KEY", "what to draw and to sum up (peak_force_N)",
@@ -235,52 +296,67 @@ static const option_row rows[] = {
 const command sweep_command = {
     CALLED("sweep", MANY_RUNS, "A run for each of many parameter values"),
     ONE_SCENARIO,
-    .help =
-        "--vary PATH=a:b:n takes n values from a to b, PATH=a:b:n:log spaces them evenly in the "
-        "logarithm,\nPATH=v1,v2,v3 takes those (words too: method.name=event,newmark). Several "
-        "--vary give every\ncombination, the last one changing fastest. With --sample random or "
-        "latin, --runs N values are drawn\nfrom each PATH=a:b or list. LIST[k]=... varies the k-th "
-        "number of a list, counted from 1.\n\n"
-        "With --db a sweep that was interrupted goes on where it stopped when the same command is "
-        "given again.\n^C finishes the runs in hand, within five seconds, and writes the rows "
-        "there "
-        "are (exit status 130). Runs that fail are rows too; the\nexit status is 1 if all of them "
-        "failed.\n",
-    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
-                &page_options},
+    .help = "--vary PATH=a:b:n takes n values from a to b, PATH=a:b:n:log spaces them "
+            "evenly in the "
+            "logarithm,\nPATH=v1,v2,v3 takes those (words too: "
+            "method.name=event,newmark). Several "
+            "--vary give every\ncombination, the last one changing fastest. With "
+            "--sample random or "
+            "latin, --runs N values are drawn\nfrom each PATH=a:b or list. LIST[k]=... "
+            "varies the k-th "
+            "number of a list, counted from 1.\n\n"
+            "With --db a sweep that was interrupted goes on where it stopped when the "
+            "same command is "
+            "given again.\n^C finishes the runs in hand, within five seconds, and writes "
+            "the rows "
+            "there "
+            "are (exit status 130). Runs that fail are rows too; the\nexit status is 1 "
+            "if all of them "
+            "failed.\n",
+    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
+                &quiet_options, &page_options},
     .use = sweep_and_report,
 };
 
-// --- merge ------------------------------------------------------------------------------------
+// --- merge -----------------------------------------------------------------------------
 
 static int merge(const arguments *a)
 {
     sweep_merged merged;
-    COMPLAIN_IF(a->output == NULL, "merge: expected -o FILE, the database to write");
-    TRY_FAULT(sweep_merge(a->operands, a->operand_count, a->output, &merged, &f));
+    if (a->output == NULL) {
+        return complain("merge: expected -o FILE, the database to write");
+    }
+    fault f = {0};
+    if (sweep_merge(a->operands, a->operand_count, a->output, &merged, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
 
     // a sweep with missing runs is a valid file: the same sweep continues in it
     if (summary_wanted(a)) {
         say("%s: %zu of %zu runs from %d part%s\n", a->output, merged.runs, merged.total,
             a->operand_count, a->operand_count == 1 ? "" : "s");
     }
-    return a->json != NULL ? write_json(a->json, json_of("file:t runs:o runs_of_sweep:o", a->output,
-                                                         json_integer((json_int_t)merged.runs),
-                                                         json_integer((json_int_t)merged.total)))
-                           : EXIT_DONE;
+    if (a->json != NULL) {
+        return write_json(a->json, json_of("file:t runs:o runs_of_sweep:o", a->output,
+                                           json_integer((json_int_t)merged.runs),
+                                           json_integer((json_int_t)merged.total)));
+    }
+    return EXIT_DONE;
 }
 
 static const option_row merge_rows[] = {
-    OUTPUT_OPTION(PLACE, "FILE.sqlite", "the database to write", .replaces = sweep_store_is),
+    OUTPUT_OPTION(PLACE, "FILE.sqlite", "the database to write",
+                  .replaces = sweep_store_is),
 };
 
 const command merge_command = {
     CALLED("merge", MANY_RUNS, "The parts of a sweep in one database"),
     OPERANDS("FILE...", 1, 1 << 20),
-    .help = "The files are databases of impactlab sweep --part K/N --db FILE, in any order. Parts "
-            "of another sweep,\nand parts that hold the same run, are refused. "
-            "impactlab sweep with the same scenario and --vary, and\n--db of the merged file, "
-            "computes what may be missing and writes CSV and pictures.\n",
+    .help = "The files are databases of impactlab sweep --part K/N --db FILE, in "
+            "any order. Parts of another sweep,\nand parts that hold the same "
+            "run, are refused. impactlab sweep with the same scenario and "
+            "--vary, and\n--db of the merged file, computes what may be missing "
+            "and writes CSV and pictures.\n",
     .options = {&json_options, OWN_OPTIONS(merge_rows), &quiet_options},
     .run = merge,
 };

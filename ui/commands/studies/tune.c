@@ -12,9 +12,9 @@
 #include "ui/commands/pictures.h"
 #include "ui/commands/progress.h"
 
-// What is judged on draws that the search did not see: the values as given, those found, and these
-// with one number a tenth lower and higher, a whole one by one at least. What a parameter does not
-// take has no result.
+// What is judged on draws that the search did not see: the values as given, those found,
+// and these with one number a tenth lower and higher, a whole one by one at least. What a
+// parameter does not take has no result.
 enum { GIVEN, TUNED, CHANGED, ROWS = CHANGED + 2 * SWEEP_MOST_AXES };
 
 typedef struct tuner {
@@ -69,21 +69,33 @@ static status judge_rows(tuner *t, const sweep_options *options, fault *f)
         const int i = t->count++;
         double values[SWEEP_MOST_AXES];
         for (int k = 0; k < varied; k++) {
-            values[k] = i == GIVEN ? given_value(t, k) : t->tuning.found[k];
+            if (i == GIVEN) {
+                values[k] = given_value(t, k);
+            } else {
+                values[k] = t->tuning.found[k];
+            }
         }
         if (i >= CHANGED) {
             const int k = (i - CHANGED) / 2;
             const bool lower = i % 2 == CHANGED % 2;
             const bool whole =
                 sweep_axis_parameter(&unseen.plan.axes[k])->type == PARAMETER_INTEGER;
-            values[k] *= lower ? 0.9 : 1.1;
+            if (lower) {
+                values[k] *= 0.9;
+            } else {
+                values[k] *= 1.1;
+            }
             if (whole) {
-                values[k] = lower ? floor(values[k]) : ceil(values[k]);
+                if (lower) {
+                    values[k] = floor(values[k]);
+                } else {
+                    values[k] = ceil(values[k]);
+                }
             }
         }
         const status code =
-            tune_evaluate(&unseen, (size_t)i, values, i == GIVEN ? "given" : "tuned", store,
-                          options, &t->rows[i], f);
+            tune_evaluate(&unseen, (size_t)i, values, i == GIVEN ? "given" : "tuned",
+                          store, options, &t->rows[i], f);
         if (code == STATUS_STOPPED || code == STATUS_NO_MEMORY) {
             return code;
         }
@@ -97,8 +109,9 @@ static robust_table compared(const tuner *t, robust_law *laws)
     laws[GIVEN] = t->rows[GIVEN].law;
     laws[TUNED] = t->rows[TUNED].law;
     const bool judged = t->rows[TUNED].law.runs > 0;
-    return (robust_table){
-        .scenario = t->scenario->name, .laws = laws, .count = judged ? CHANGED : 0};
+    return (robust_table){.scenario = t->scenario->name,
+                          .laws = laws,
+                          .count = judged ? CHANGED : 0};
 }
 
 static json_t *answer(const scenario *s, const void *found_by)
@@ -112,14 +125,15 @@ static json_t *answer(const scenario *s, const void *found_by)
     for (int i = 0; i < found->asked.vary_count; i++) {
         const tune_result *changed = &t->rows[CHANGED + 2 * i];
         json_add(numbers, json_of("path:t given:n value:n tenth_lower:n tenth_higher:n",
-                                  found->plan.axes[i].name, given_value(t, i), found->found[i],
-                                  changed[0].value, changed[1].value));
+                                  found->plan.axes[i].name, given_value(t, i),
+                                  found->found[i], changed[0].value, changed[1].value));
     }
     return json_members(object,
-                        "scenario:t minimise:t evaluations:i runs_each:i least:n unseen_given:n "
-                        "unseen_tuned:n tune:o",
-                        s->name, found->asked.minimise, (int)found->done, (int)found->each,
-                        found->best.value, t->rows[GIVEN].value, t->rows[TUNED].value, numbers);
+                        "scenario:t minimise:t evaluations:i runs_each:i least:n "
+                        "unseen_given:n unseen_tuned:n tune:o",
+                        s->name, found->asked.minimise, (int)found->done,
+                        (int)found->each, found->best.value, t->rows[GIVEN].value,
+                        t->rows[TUNED].value, numbers);
 }
 
 static void print_answer(const scenario *s, const void *found_by)
@@ -153,8 +167,8 @@ static void print_answer(const scenario *s, const void *found_by)
 static int plot(const arguments *a, const scenario *s, const void *found)
 {
     char changes[SCENARIO_CHANGES];
-    return publish_owned(
-        a, tune_figure_create(&((const tuner *)found)->tuning, scenario_changes(s, changes)));
+    return publish_owned(a, tune_figure_create(&((const tuner *)found)->tuning,
+                                               scenario_changes(s, changes)));
 }
 
 static int report(const tuner *t, bool whole)
@@ -167,8 +181,9 @@ static int report(const tuner *t, bool whole)
         return code;
     }
     complain("none of the %zu evaluations %s", found->done,
-             isfinite(found->best.value) ? "meets --subject"
-                                         : "can be judged: in each, runs fail or never settle");
+             isfinite(found->best.value)
+                 ? "meets --subject"
+                 : "can be judged: in each, runs fail or never settle");
     return worse(code, EXIT_FAILED);
 }
 
@@ -185,19 +200,30 @@ static int search(tuner *t)
     t->tuning.context = t;
 
     status code = sweep_store_open(&store, a->db, &t->tuning.plan, &f);
-    code = code == STATUS_OK ? tune_run(&t->tuning, store, &options, &f) : code;
-    const status judged = code == STATUS_OK ? judge_rows(t, &options, &f) : code;
+    if (code == STATUS_OK) {
+        code = tune_run(&t->tuning, store, &options, &f);
+    }
+    status judged;
+    if (code == STATUS_OK) {
+        judged = judge_rows(t, &options, &f);
+    } else {
+        judged = code;
+    }
     many_runs_end(&options);
 
     // what was found is told whatever the judging came to
     const bool any = t->tuning.done > 0 && (code == STATUS_OK || code == STATUS_STOPPED);
     const int result = any ? report(t, judged != STATUS_STOPPED) : EXIT_DONE;
     if (judged != STATUS_STOPPED) {
-        return judged == STATUS_OK ? result : worse(result, complain_fault(&f));
+        if (judged == STATUS_OK) {
+            return result;
+        }
+        return worse(result, complain_fault(&f));
     }
-    return many_runs_stopped(a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count,
-                             any ? "the values are the best of these, not judged on other draws"
-                                 : "none is shown");
+    return many_runs_stopped(
+        a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count,
+        any ? "the values are the best of these, not judged on other draws"
+            : "none is shown");
 }
 
 static void finish(tuner *t)
@@ -212,8 +238,9 @@ static int tune(const arguments *a, scenario *s)
 {
     SCOPED(robust_set_finish) robust_set set = {0};
     SCOPED(finish) tuner t = {.arguments = a, .scenario = s};
-    COMPLAIN_IF(a->varies.count == 0 || a->minimise == NULL,
-                "tune: expected --vary PATH=a:b and --minimise EXPR");
+    if (a->varies.count == 0 || a->minimise == NULL) {
+        return complain("tune: expected --vary PATH=a:b and --minimise EXPR");
+    }
     const size_t usual = a->over != NULL ? TUNE_RUNS : TUNE_RUNS_ALONE;
     const tune_request asked = {.base = s,
                                 .vary = a->varies.items,
@@ -224,18 +251,25 @@ static int tune(const arguments *a, scenario *s)
                                 .runs = a->runs > 0 ? (size_t)a->runs : usual,
                                 .seed = a->seed,
                                 .growth = linear_growth};
-    TRY_FAULT(a->over != NULL ? robust_set_read(&set, a->over, &f) : STATUS_OK);
-    TRY_FAULT(tune_init(&t.tuning, &asked, &f));
+    fault f = {0};
+    if (a->over != NULL) {
+        if (robust_set_read(&set, a->over, &f) != STATUS_OK) {
+            return complain_fault(&f);
+        }
+    }
+    if (tune_init(&t.tuning, &asked, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
     return search(&t);
 }
 
 static const option_row rows[] = {
     OPTION(TEXT, "minimise", "EXPR", "what is to be small", PLACE(minimise)),
     OPTION(TEXT, "subject", "EXPR<=X", "what has to hold; or >=", PLACE(subject)),
-    OPTION(FILE, "over", "SET", "file of what is drawn for each run, a line PATH=a:b each",
-           PLACE(over)),
-    OPTION(WHOLE, "runs", "N", "number of runs in all (4000 over a set, else 200)", PLACE(runs),
-           .low = 1, .high = TUNE_MOST_RUNS),
+    OPTION(FILE, "over", "SET",
+           "file of what is drawn for each run, a line PATH=a:b each", PLACE(over)),
+    OPTION(WHOLE, "runs", "N", "number of runs in all (4000 over a set, else 200)",
+           PLACE(runs), .low = 1, .high = TUNE_MOST_RUNS),
     SEED_OPTION,
     JOBS_OPTION,
     DB_OPTION("keep every run in a database; go on where it ends"),
@@ -245,19 +279,20 @@ static const option_row rows[] = {
 };
 
 const command tune_command = {
-    CALLED("tune", CONTROL, "Values of parameters that make an expression of results smallest"),
+    CALLED("tune", CONTROL,
+           "Values of parameters that make an expression of results smallest"),
     ONE_SCENARIO,
-    .help =
-        "EXPR is made of numbers, + - * / ( ), max(a, b) and keys: with --over those of robust "
-        "--json, else those of\nrun --json; growth_per_s is that of linear --vary. --vary PATH=a:b "
-        "(or a:b:log) says what may be changed within which range. Over a set an\nevaluation is a "
-        "batch of runs with the same draws each time, as many runs as there are evaluations.\nWhat "
-        "is not allowed or fails ranks last.\n\nThe result is judged on 200 draws that the search "
-        "did not see, also with each number a tenth lower and\nhigher (a whole one by one at "
-        "least). The file of -o is whole at "
-        "every instant; with --db the same command goes on where a search\nwas stopped. The exit "
-        "status is 1 if no values meet --subject.\n",
-    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
-                &page_options},
+    .help = "EXPR is made of numbers, + - * / ( ), max(a, b) and keys: with --over "
+            "those of robust --json, else those of\nrun --json; growth_per_s is that "
+            "of linear --vary. --vary PATH=a:b (or a:b:log) says what may be changed "
+            "within which range. Over a set an\nevaluation is a batch of runs with the "
+            "same draws each time, as many runs as there are evaluations.\nWhat is not "
+            "allowed or fails ranks last.\n\nThe result is judged on 200 draws that "
+            "the search did not see, also with each number a tenth lower and\nhigher "
+            "(a whole one by one at least). The file of -o is whole at every instant; "
+            "with --db the same command goes on where a search\nwas stopped. The exit "
+            "status is 1 if no values meet --subject.\n",
+    .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
+                &quiet_options, &page_options},
     .use = tune,
 };

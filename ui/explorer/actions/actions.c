@@ -29,19 +29,22 @@ bool act_worked(explorer_state *st, status code)
 {
     const fault f = st->fault;
     st->fault = (fault){0};
-    return code == STATUS_OK || act_refuse(st, "%s", f.text[0] ? f.text : status_text(code));
+    return code == STATUS_OK ||
+           act_refuse(st, "%s", f.text[0] ? f.text : status_text(code));
 }
 
 bool act_read_number(explorer_state *st, const char *text, double *value)
 {
     char *end;
     *value = strtod(text, &end);
-    FAIL_IF(end == text || *end != '\0' || !isfinite(*value),
-            act_refuse(st, "'%s' is no number", text));
+    if (end == text || *end != '\0' || !isfinite(*value)) {
+        return act_refuse(st, "'%s' is no number", text);
+    }
     return true;
 }
 
-bool act_read_number_or(explorer_state *st, const char *text, const char *word, double *value)
+bool act_read_number_or(explorer_state *st, const char *text, const char *word,
+                        double *value)
 {
     return strcmp(text, word) == 0 || act_read_number(st, text, value);
 }
@@ -55,7 +58,8 @@ int act_read_index(explorer_state *st, const char **text, int count, const char 
 
     // a number of the list, alone or before a blank
     if (end == *text || (*end != '\0' && *end != ' ') || number < 1 || number > count) {
-        act_refuse(st, "%s are numbered from 1 to %d (%s lists them)", what, count, lister);
+        act_refuse(st, "%s are numbered from 1 to %d (%s lists them)", what, count,
+                   lister);
         return -1;
     }
     *text = end + strspn(end, " ");
@@ -66,7 +70,8 @@ int act_split(const char *argument, char text[LINE_TEXT], char *words[4])
 {
     int count = 0;
     snprintf(text, LINE_TEXT, "%s", argument);
-    for (char *word, *rest = text; (word = strtok_r(rest, " \t", &rest)) != NULL; count++) {
+    for (char *word, *rest = text; (word = strtok_r(rest, " \t", &rest)) != NULL;
+         count++) {
         if (count < 4) {
             words[count] = word;
         }
@@ -86,17 +91,19 @@ bool act_read_pane(explorer_state *st, const char *word, int *index)
     }
 
     // numbered as the keys are, and on
-    FAIL_IF(*end != '\0' || end == word || number < 1 || number > PANES,
-            act_refuse(st, "'%s' is no pane: 1 to %d, or all", word, PANES));
+    if (*end != '\0' || end == word || number < 1 || number > PANES) {
+        return act_refuse(st, "'%s' is no pane: 1 to %d, or all", word, PANES);
+    }
     *index = (int)number - 1;
 
     // an empty pane has no axis
-    FAIL_IF(st->panes.pane[*index].count == 0,
-            act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", word));
+    if (st->panes.pane[*index].count == 0) {
+        return act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", word);
+    }
     return true;
 }
 
-// --- the run ----------------------------------------------------------------------------------
+// --- the run ---------------------------------------------------------------------------
 
 #define LONGEST_WAIT 9 // for runs that are computed while the lab waits [s]
 
@@ -107,8 +114,8 @@ bool act_tell_failed_run(explorer_state *st)
     if (m->status == STATUS_NOT_ALLOWED) {
         const bool program = c->law == LAW_PROCESS;
         return act_warn(st,
-                        "y lets it %s '%.200s', which can do whatever you can; all else works "
-                        "without (:allow later)",
+                        "y lets it %s '%.200s', which can do whatever you can; all else "
+                        "works without (:allow later)",
                         program ? "start" : "load", program ? c->command : c->plugin);
     }
     return (m->status != STATUS_OK && act_warn(st, "the run stops: %s", m->message)) ||
@@ -119,7 +126,8 @@ bool act_need_whole_run(explorer_state *st)
 {
     const session *s = &st->session;
     return s->computing == NULL ||
-           act_refuse(st, "the run is at %.3g of %g s: wait for its end, or stop it with Esc",
+           act_refuse(st,
+                      "the run is at %.3g of %g s: wait for its end, or stop it with Esc",
                       session_end(s), s->effective.parameters.run.duration);
 }
 
@@ -130,8 +138,8 @@ bool act_need_short_runs(explorer_state *st, const char *command, int runs)
     const bool waits = st->session.effective.parameters.control.law == LAW_PROCESS;
     const double takes = waits ? s->wall_time_s : s->cpu_time_s;
     return !(isfinite(st->session.patience) && takes * runs > LONGEST_WAIT) ||
-           act_refuse(st, "a run takes %.2g s here: 'impactlab %s' computes them beside", takes,
-                      command);
+           act_refuse(st, "a run takes %.2g s here: 'impactlab %s' computes them beside",
+                      takes, command);
 }
 
 bool act_tell_change(explorer_state *st)
@@ -152,13 +160,17 @@ bool act_tell_change(explorer_state *st)
     const parameters p = session_parameters_at(s, in->time);
     const char *inert = state_inert_reason(st, in->parameter);
     const char *blank = info->unit[0] ? " " : "";
-    FAIL_IF(inert != NULL, act_warn(st, "%s = %s%s%s %s, without effect: %s", info->path, value,
-                                    blank, info->unit, when, inert));
-    FAIL_IF(in->parameter == PARAMETER_INDEX(motor.voltage) &&
-                fabs(p.motor.voltage) > p.motor.voltage_limit,
-            act_warn(st,
-                     "%s = %s V %s, more than motor.voltage_limit: the command saturates at %g V",
-                     info->path, value, when, p.motor.voltage_limit));
+    if (inert != NULL) {
+        return act_warn(st, "%s = %s%s%s %s, without effect: %s", info->path, value,
+                        blank, info->unit, when, inert);
+    }
+    if (in->parameter == PARAMETER_INDEX(motor.voltage) &&
+        fabs(p.motor.voltage) > p.motor.voltage_limit) {
+        return act_warn(
+            st,
+            "%s = %s V %s, more than motor.voltage_limit: the command saturates at %g V",
+            info->path, value, when, p.motor.voltage_limit);
+    }
     return act_tell(st, "%s = %s%s%s %s", info->path, value, blank, info->unit, when);
 }
 

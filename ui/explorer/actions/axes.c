@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// --- time -------------------------------------------------------------------------------------
+// --- time ------------------------------------------------------------------------------
 
 void act_zoom_at(explorer_state *st, double factor, double time)
 {
@@ -49,8 +49,8 @@ bool act_zoom(explorer_state *st, const char *argument)
         st->window.adrift = true;
         state_show_part(st, from, to);
     } else {
-        return act_refuse(st,
-                          "zoom takes in, out, all or two instants in seconds, such as 0.2 0.4");
+        return act_refuse(
+            st, "zoom takes in, out, all or two instants in seconds, such as 0.2 0.4");
     }
     return true;
 }
@@ -66,8 +66,9 @@ bool act_pan(explorer_state *st, const char *argument)
     } else if (!act_read_number(st, argument, &seconds)) {
         return false;
     }
-    FAIL_IF(st->window.to <= st->window.from,
-            act_refuse(st, "the whole run is visible, z zooms in"));
+    if (st->window.to <= st->window.from) {
+        return act_refuse(st, "the whole run is visible, z zooms in");
+    }
     act_pan_by(st, seconds);
     state_window(st, &from, &to);
     return act_tell(st, "%.4g to %.4g s, f follows the cursor again", from, to);
@@ -79,14 +80,15 @@ bool act_follow(explorer_state *st, const char *argument)
     return act_tell(st, "the curves follow the cursor");
 }
 
-// --- values -----------------------------------------------------------------------------------
+// --- values ----------------------------------------------------------------------------
 
 void act_scale_axis(explorer_state *st, int index, double factor, double share)
 {
     value_range now;
     if (state_pane_axis(st, index, &now)) {
         double at = now.high + share * (now.low - now.high);
-        value_range scaled = {at + (now.low - at) * factor, at + (now.high - at) * factor};
+        value_range scaled = {at + (now.low - at) * factor,
+                              at + (now.high - at) * factor};
         pane_fix_axis(&st->panes.pane[index], scaled);
     }
 }
@@ -96,7 +98,8 @@ void act_shift_axis(explorer_state *st, int index, double share)
     value_range now;
     if (state_pane_axis(st, index, &now)) {
         double shift = share * (now.high - now.low);
-        pane_fix_axis(&st->panes.pane[index], (value_range){now.low + shift, now.high + shift});
+        pane_fix_axis(&st->panes.pane[index],
+                      (value_range){now.low + shift, now.high + shift});
     }
 }
 
@@ -119,9 +122,11 @@ static bool tell_axis(explorer_state *st, int index)
         [AXIS_GROW] = "the range of all that was seen, it only grows",
         [AXIS_CALM] = "the range of what is visible, but for spikes"};
     const pane *p = &st->panes.pane[index];
-    return p->scaling == AXIS_FIXED
-               ? act_tell(st, "pane %d: from %.4g to %.4g", index + 1, p->fixed.low, p->fixed.high)
-               : act_tell(st, "pane %d: %s", index + 1, says[p->scaling]);
+    if (p->scaling == AXIS_FIXED) {
+        return act_tell(st, "pane %d: from %.4g to %.4g", index + 1, p->fixed.low,
+                        p->fixed.high);
+    }
+    return act_tell(st, "pane %d: %s", index + 1, says[p->scaling]);
 }
 
 // Gives a pane's axis what the first `count` words say, one or two.
@@ -130,10 +135,15 @@ static bool apply(explorer_state *st, int index, char *const words[4], int count
     const char *word = words[0];
     value_range limits;
     if (count == 2) {
-        NEED(act_read_number(st, word, &limits.low) && act_read_number(st, words[1], &limits.high));
-        FAIL_IF(!(limits.low < limits.high),
-                act_refuse(st, "an axis goes from a lower to a higher value, not from %g to %g",
-                           limits.low, limits.high));
+        if (!(act_read_number(st, word, &limits.low) &&
+              act_read_number(st, words[1], &limits.high))) {
+            return false;
+        }
+        if (!(limits.low < limits.high)) {
+            return act_refuse(
+                st, "an axis goes from a lower to a higher value, not from %g to %g",
+                limits.low, limits.high);
+        }
         pane_fix_axis(&st->panes.pane[index], limits);
         return true;
     }
@@ -142,7 +152,9 @@ static bool apply(explorer_state *st, int index, char *const words[4], int count
     const int present = (int)st->panes.pane[index].scaling;
     int scaling = strcmp(word, "next") == 0 ? (present + 1) % AXIS_SCALINGS : -1;
     for (int i = 0; i < AXIS_SCALINGS; i++) {
-        scaling = strcmp(word, axis_scaling_words[i]) == 0 ? i : scaling;
+        if (strcmp(word, axis_scaling_words[i]) == 0) {
+            scaling = i;
+        }
     }
 
     // or the axis as it is now, changed
@@ -153,8 +165,9 @@ static bool apply(explorer_state *st, int index, char *const words[4], int count
     } else if (strcmp(word, "up") == 0 || strcmp(word, "down") == 0) {
         act_shift_axis(st, index, word[0] == 'u' ? 0.25 : -0.25);
     } else {
-        return act_refuse(st, "axis takes auto, grow, calm, fixed, in, out, up, down or two "
-                              "limits, then a pane (its number, or all)");
+        return act_refuse(st,
+                          "axis takes auto, grow, calm, fixed, in, out, up, down or two "
+                          "limits, then a pane (its number, or all)");
     }
     return true;
 }
@@ -163,20 +176,32 @@ bool act_axis(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT], *words[4], *end;
     int count = act_split(argument, text, words), index = panes_focused(&st->panes);
-    FAIL_IF(count == 0 || count > 3, apply(st, 0, (char *[4]){(char[]){""}}, 1));
+    if (count == 0 || count > 3) {
+        return apply(st, 0, (char *[4]){(char[]){""}}, 1);
+    }
 
     // limits are two words, everything else is one; a pane may follow
     bool limits = (strtod(words[0], &end), end != words[0]);
     int used = limits ? 2 : 1;
-    FAIL_IF(count < used, act_refuse(st, "an axis has two limits, such as 0 2, and then a pane"));
-    FAIL_IF(count > used + 1, act_refuse(st, "what is '%s' for?", words[2]));
-    FAIL_IF(count == used && index < 0, act_refuse(st, "no pane of curves is shown"));
-    NEED(count == used || act_read_pane(st, words[used], &index));
+    if (count < used) {
+        return act_refuse(st, "an axis has two limits, such as 0 2, and then a pane");
+    }
+    if (count > used + 1) {
+        return act_refuse(st, "what is '%s' for?", words[2]);
+    }
+    if (count == used && index < 0) {
+        return act_refuse(st, "no pane of curves is shown");
+    }
+    if (!(count == used || act_read_pane(st, words[used], &index))) {
+        return false;
+    }
 
     // that pane, or all of them
     for (int i = 0; i < PANES; i++) {
         const bool meant = (i == index || index < 0) && st->panes.pane[i].count > 0;
-        NEED(!meant || apply(st, i, words, used));
+        if (!(!meant || apply(st, i, words, used))) {
+            return false;
+        }
     }
     return tell_axis(st, index < 0 ? 0 : index);
 }

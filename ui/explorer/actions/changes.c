@@ -8,8 +8,8 @@
 
 #include "src/base/numbers.h"
 
-// act_give with a number, in small steps: several at one instant are one change, and none at all
-// once the value is what it was.
+// act_give with a number, in small steps: several at one instant are one change, and none
+// at all once the value is what it was.
 static bool act_adjust(explorer_state *st, int parameter, double value)
 {
     assert(parameter >= 0 && parameter < parameter_count);
@@ -18,7 +18,9 @@ static bool act_adjust(explorer_state *st, int parameter, double value)
     char text[LINE_TEXT];
 
     // checked and rounded as the table has it
-    NEED(act_worked(st, parameter_set_number(&p, parameter, value, &st->fault)));
+    if (!act_worked(st, parameter_set_number(&p, parameter, value, &st->fault))) {
+        return false;
+    }
     parameter_format(&p, parameter, text, sizeof text);
 
     // a value that is as it was leaves no change
@@ -34,10 +36,13 @@ static bool act_adjust(explorer_state *st, int parameter, double value)
 static bool find_parameter(explorer_state *st, const char *name, int *parameter)
 {
     *parameter = parameter_of_name(name);
-    FAIL_IF(*parameter == -2,
-            act_refuse(st, "several parameters begin with '%s' (Tab lists them)", name));
-    FAIL_IF(*parameter < 0 && parameter_look_up(name, &st->fault) < 0,
-            act_worked(st, STATUS_BAD_ARGUMENT));
+    if (*parameter == -2) {
+        return act_refuse(st, "several parameters begin with '%s' (Tab lists them)",
+                          name);
+    }
+    if (*parameter < 0 && parameter_look_up(name, &st->fault) < 0) {
+        return act_worked(st, STATUS_BAD_ARGUMENT);
+    }
     return true;
 }
 
@@ -47,9 +52,12 @@ bool act_set(explorer_state *st, const char *argument)
     char path[LINE_TEXT];
     int parameter;
     const char *value = text_cut(argument, " =", path, sizeof path);
-    FAIL_IF(path[0] == '\0',
-            act_refuse(st, "set takes a parameter and a value, such as arm.k2 10"));
-    NEED(find_parameter(st, path, &parameter));
+    if (path[0] == '\0') {
+        return act_refuse(st, "set takes a parameter and a value, such as arm.k2 10");
+    }
+    if (!find_parameter(st, path, &parameter)) {
+        return false;
+    }
 
     // without a value it is only selected
     parameter_list_select(&st->parameters, (parameter_line){parameter, false});
@@ -57,13 +65,14 @@ bool act_set(explorer_state *st, const char *argument)
         const parameter_info *info = &parameter_table[parameter];
         const char *inert = state_inert_reason(st, parameter);
         return act_tell(st, "%s: %s%s%s", info->path, info->description,
-                        inert != NULL ? "; without effect, " : "", inert != NULL ? inert : "");
+                        inert != NULL ? "; without effect, " : "",
+                        inert != NULL ? inert : "");
     }
     return act_give(st, parameter, value);
 }
 
-// How far a nudge of a real parameter goes up from a value: a fixed step, or on a logarithmic scale
-// a tenth of the value's decade.
+// How far a nudge of a real parameter goes up from a value: a fixed step, or on a
+// logarithmic scale a tenth of the value's decade.
 static double nudge_step(int parameter, double value)
 {
     enum { LEAST_STEPS = 50 };
@@ -78,8 +87,10 @@ static double nudge_step(int parameter, double value)
     }
 
     // what rounding leaves just below a power of ten counts as that power
-    return scale.logarithmic ? pow(10, floor(log10(fabs(value)) + 1e-9)) / 10
-                             : pow(10, floor(log10((scale.high - scale.low) / LEAST_STEPS) + 1e-9));
+    if (scale.logarithmic) {
+        return pow(10, floor(log10(fabs(value)) + 1e-9)) / 10;
+    }
+    return pow(10, floor(log10((scale.high - scale.low) / LEAST_STEPS) + 1e-9));
 }
 
 // A real parameter's value one nudge up or down; what goes down comes up to where it was.
@@ -91,28 +102,37 @@ static double nudged(int parameter, double value, int direction)
     return strtod(text, NULL);
 }
 
-// The next or the previous value of the selected parameter: a step more or less, another choice.
+// The next or the previous value of the selected parameter: a step more or less, another
+// choice.
 bool act_nudge(explorer_state *st, const char *argument)
 {
     int direction = argument[0] == '-' ? -1 : 1, index = st->parameters.parameter;
     if (st->side.panel == PANEL_SWEEP && lab_sweep_is_map(&st->sweep)) {
-        const int across = (int)st->sweep.axis.count, to = st->sweep.selected % across + direction;
+        const int across = (int)st->sweep.axis.count,
+                  to = st->sweep.selected % across + direction;
         act_select_swept(st, to >= 0 && to < across ? direction : 0);
         return true;
     }
     const parameter_info *info = &parameter_table[index];
-    FAIL_IF(st->parameters.on_heading,
-            act_refuse(st, "no parameter is selected (arrows up and down select one)"));
+    if (st->parameters.on_heading) {
+        return act_refuse(st, "no parameter is selected (arrows up and down select one)");
+    }
     parameters p = state_parameters(st);
     double value = parameter_get(&p, index);
     if (strcmp(info->path, "control.lock") == 0) {
         return act_lock(st, direction > 0 ? "next" : "previous");
     }
-    FAIL_IF(parameter_is_text(info), act_refuse(st, "%s is a %s: Enter edits it", info->path,
-                                                info->type == PARAMETER_LIST ? "list" : "text"));
+    if (parameter_is_text(info)) {
+        return act_refuse(st, "%s is a %s: Enter edits it", info->path,
+                          info->type == PARAMETER_LIST ? "list" : "text");
+    }
 
     // a number by a step, anything else to its neighbour
-    value = info->type == PARAMETER_REAL ? nudged(index, value, direction) : value + direction;
+    if (info->type == PARAMETER_REAL) {
+        value = nudged(index, value, direction);
+    } else {
+        value = value + direction;
+    }
     return act_adjust(st, index, fmax(info->minimum, fmin(info->maximum, value)));
 }
 
@@ -123,7 +143,9 @@ static bool take_swept(explorer_state *st)
     session *s = &st->session;
     char value[SWEEP_VALUE_TEXT];
     double values[2];
-    FAIL_IF(sweep->selected >= sweep->count, act_refuse(st, "the sweep has no run yet"));
+    if (sweep->selected >= sweep->count) {
+        return act_refuse(st, "the sweep has no run yet");
+    }
 
     // a change from the start, whatever is looked at
     const double now = s->now;
@@ -146,7 +168,9 @@ bool act_edit(explorer_state *st, const char *argument)
     // a parameter by name is selected first
     int index = st->parameters.parameter;
     if (argument[0] != '\0') {
-        NEED(find_parameter(st, argument, &index));
+        if (!find_parameter(st, argument, &index)) {
+            return false;
+        }
         parameter_list_select(&st->parameters, (parameter_line){index, false});
     } else if (st->side.panel == PANEL_SWEEP) {
         return take_swept(st);
@@ -166,12 +190,17 @@ bool act_edit(explorer_state *st, const char *argument)
 
     // what can be typed, or why it makes no difference
     const char *inert = state_inert_reason(st, index), *about = info->description;
-    FAIL_IF(inert != NULL, act_warn(st, "%s has no effect: %s", info->path, inert));
-    return info->choices != NULL && info->type == PARAMETER_CHOICE
-               ? act_tell(st, "%s: %s", about, info->choices)
-           : info->type != PARAMETER_TEXT && info->type != PARAMETER_BOOLEAN
-               ? act_tell(st, "%s: %g to %g %s", about, info->minimum, info->maximum, info->unit)
-               : act_tell(st, "%s", about);
+    if (inert != NULL) {
+        return act_warn(st, "%s has no effect: %s", info->path, inert);
+    }
+    if (info->choices != NULL && info->type == PARAMETER_CHOICE) {
+        return act_tell(st, "%s: %s", about, info->choices);
+    }
+    if (info->type != PARAMETER_TEXT && info->type != PARAMETER_BOOLEAN) {
+        return act_tell(st, "%s: %g to %g %s", about, info->minimum, info->maximum,
+                        info->unit);
+    }
+    return act_tell(st, "%s", about);
 }
 
 bool act_push(explorer_state *st, const char *argument)
@@ -184,18 +213,23 @@ bool act_push(explorer_state *st, const char *argument)
             act_tell(st, "pushed with %g N s at %.4f s", impulse, st->session.now));
 }
 
-// Takes the last change back (direction -1) or puts it in again (1), and so with the opening of a
-// scenario, which is before the first change and after the last.
+// Takes the last change back (direction -1) or puts it in again (1), and so with the
+// opening of a scenario, which is before the first change and after the last.
 static bool turn(explorer_state *st, int direction)
 {
     session *s = &st->session;
     session_forget_ghost(s);
-    if (s->input_count == (direction < 0 ? 0 : s->input_total) && state_can_turn(st, direction)) {
-        NEED(act_worked(st, state_turn(st, direction, &st->fault)));
+    if (s->input_count == (direction < 0 ? 0 : s->input_total) &&
+        state_can_turn(st, direction)) {
+        if (!act_worked(st, state_turn(st, direction, &st->fault))) {
+            return false;
+        }
         return act_tell(st, "in %s again, %s", s->base.name,
                         direction < 0 ? "U opens the one you left" : "u goes back");
     }
-    NEED(act_worked(st, (direction < 0 ? session_undo : session_redo)(s, &st->fault)));
+    if (!act_worked(st, (direction < 0 ? session_undo : session_redo)(s, &st->fault))) {
+        return false;
+    }
     return act_tell(st, direction < 0 ? "undone, U puts it in again" : "put in again");
 }
 
@@ -219,17 +253,21 @@ bool act_extend(explorer_state *st, const char *argument)
 {
     char text[NUMBER_TEXT];
     double duration = st->session.effective.parameters.run.duration, more = duration;
-    NEED(act_read_number_or(st, argument, "", &more));
+    if (!act_read_number_or(st, argument, "", &more)) {
+        return false;
+    }
 
     // what has been seen stays seen: only rows are added
     const double seen = st->session.seen;
     number_format(text, duration + more);
     const bool longer = act_give(st, PARAMETER_INDEX(run.duration), text);
-    st->session.seen = longer ? seen : st->session.seen;
+    if (longer) {
+        st->session.seen = seen;
+    }
     return longer;
 }
 
-// --- sliders ----------------------------------------------------------------------------------
+// --- sliders ---------------------------------------------------------------------------
 
 void act_hold_slider(explorer_state *st, int parameter, double share, int cells)
 {
@@ -239,7 +277,8 @@ void act_hold_slider(explorer_state *st, int parameter, double share, int cells)
 
     // the scale stays as it was when the mouse took hold
     const bool begins = !grip->held || grip->parameter != parameter;
-    if (begins && !slider_scale_of(parameter, parameter_get(&p, parameter), &grip->scale)) {
+    if (begins &&
+        !slider_scale_of(parameter, parameter_get(&p, parameter), &grip->scale)) {
         return;
     }
     grip->held = true;
@@ -263,20 +302,24 @@ bool act_drop_slider(explorer_state *st)
     return followed;
 }
 
-// --- the list of changes ----------------------------------------------------------------------
+// --- the list of changes ---------------------------------------------------------------
 
 // Reads the number of a change off *text; -1 if it is refused.
 static int read_change(explorer_state *st, const char **text)
 {
     const int count = st->session.input_count;
-    return count == 0 ? (act_refuse(st, "there are no changes"), -1)
-                      : act_read_index(st, text, count, "changes", ":changes");
+    if (count == 0) {
+        return (act_refuse(st, "there are no changes"), -1);
+    }
+    return act_read_index(st, text, count, "changes", ":changes");
 }
 
 bool act_change(explorer_state *st, const char *argument)
 {
     const int index = read_change(st, &argument);
-    NEED(index >= 0);
+    if (!(index >= 0)) {
+        return false;
+    }
     char text[LINE_TEXT];
     const session_input *in = &st->session.inputs[index];
 
@@ -285,7 +328,10 @@ bool act_change(explorer_state *st, const char *argument)
         prompt_open(&st->prompt, in->text, "change %d ", index + 1);
         return act_tell(st, "%s", parameter_table[in->parameter].description);
     }
-    NEED(act_worked(st, session_change_input(&st->session, index, argument, &st->fault)));
+    if (!act_worked(st,
+                    session_change_input(&st->session, index, argument, &st->fault))) {
+        return false;
+    }
     st->change = st->session.input_count - 1;
     state_change_text(st, st->change, text, sizeof text);
     return act_tell(st, "%s at the same instant, u takes it back", text);
@@ -295,14 +341,24 @@ bool act_drop(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT];
     const int index = read_change(st, &argument);
-    NEED(index >= 0);
+    if (!(index >= 0)) {
+        return false;
+    }
 
     // the text first: the change is gone afterwards
     state_change_text(st, index, text, sizeof text);
-    NEED(act_worked(st, session_drop_input(&st->session, index, &st->fault)));
+    if (!act_worked(st, session_drop_input(&st->session, index, &st->fault))) {
+        return false;
+    }
 
     // the selection stays within the list
     const int last = st->session.input_count - 1;
-    st->change = st->change > last ? (last < 0 ? 0 : last) : st->change;
+    if (st->change > last) {
+        if (last < 0) {
+            st->change = 0;
+        } else {
+            st->change = last;
+        }
+    }
     return act_tell(st, "without %s; U puts it in again", text);
 }

@@ -17,7 +17,8 @@ static bool lock_prevents(const session *s, const char *name)
     scenario wanted = s->effective;
     parameters *p = &wanted.parameters;
     return parameter_set_text(p, PARAMETER_INDEX(control.law), name, NULL) == STATUS_OK &&
-           scenario_check_locks(&wanted, controller_of(p->control.law), NULL) != STATUS_OK;
+           scenario_check_locks(&wanted, controller_of(p->control.law), NULL) !=
+               STATUS_OK;
 }
 
 // Says which law is near to a name that none has.
@@ -32,7 +33,8 @@ static bool refuse_law(explorer_state *st, const char *name)
                       near.best ? near.best : "", near.best ? "'?" : "");
 }
 
-// Changes the control law; if the lock on a mode prevents it, the message says what to do.
+// Changes the control law; if the lock on a mode prevents it, the message says what to
+// do.
 static bool change_law(explorer_state *st, const char *name)
 {
     return act_give(st, PARAMETER_INDEX(control.law), name) ||
@@ -52,23 +54,36 @@ bool act_law(explorer_state *st, const char *argument)
     }
 
     // a name of the table, however the parameter would refuse another one
-    FAIL_IF(named && !off && parameter_set_text(&scratch, law, argument, NULL) != STATUS_OK,
-            refuse_law(st, argument));
+    if (named && !off && parameter_set_text(&scratch, law, argument, NULL) != STATUS_OK) {
+        return refuse_law(st, argument);
+    }
 
     // without a name: off, or on again
     const char *again = st->last_law[0] ? st->last_law : "hybrid";
-    return change_law(st, off || (!named && state_has_law(st)) ? "none" : named ? argument : again);
+    return change_law(st, off || (!named && state_has_law(st)) ? "none"
+                          : named                              ? argument
+                                                               : again);
 }
 
-// The value of control.lock that an argument asks for: a mode, "none", or the next one of a round
-// through all modes and none.
+// The value of control.lock that an argument asks for: a mode, "none", or the next one of
+// a round through all modes and none.
 static const char *wanted_lock(explorer_state *st, const char *argument)
 {
     const law_modes *m = state_law_modes(st);
     const parameters p = state_parameters(st);
-    const int step = strcmp(argument, "next") == 0 ? 1 : strcmp(argument, "previous") == 0 ? -1 : 0;
+    int step = 1;
+    if (strcmp(argument, "next") != 0) {
+        if (strcmp(argument, "previous") == 0) {
+            step = -1;
+        } else {
+            step = 0;
+        }
+    }
     if (step == 0) {
-        return is_release(argument) ? "none" : argument;
+        if (is_release(argument)) {
+            return "none";
+        }
+        return argument;
     }
 
     // the mode it is held in at the cursor is one of those from 1 on
@@ -77,7 +92,10 @@ static const char *wanted_lock(explorer_state *st, const char *argument)
         held--;
     }
     const int next = (held + step + m->count + 1) % (m->count + 1);
-    return next == 0 ? "none" : m->names[next - 1];
+    if (next == 0) {
+        return "none";
+    }
+    return m->names[next - 1];
 }
 
 static bool lock(explorer_state *st, const char *wanted)
@@ -86,10 +104,13 @@ static bool lock(explorer_state *st, const char *wanted)
     const int parameter = PARAMETER_INDEX(control.lock);
 
     // going on through the modes at one instant replaces the lock there
-    const session_input *last = s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
+    const session_input *last =
+        s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
     const bool replaces = last != NULL && last->kind == SESSION_INPUT_TIMED &&
                           last->time == s->now && last->parameter == parameter;
-    NEED(!replaces || act_worked(st, session_undo(s, &st->fault)));
+    if (!(!replaces || act_worked(st, session_undo(s, &st->fault)))) {
+        return false;
+    }
 
     // a lock that is refused leaves the one before in effect
     const parameters p = state_parameters(st);
@@ -106,11 +127,14 @@ static bool lock(explorer_state *st, const char *wanted)
 
 bool act_lock(explorer_state *st, const char *argument)
 {
-    FAIL_IF(!state_has_law(st),
-            act_refuse(st, "no law is on that could be held in a mode (:law NAME)"));
+    if (!state_has_law(st)) {
+        return act_refuse(st, "no law is on that could be held in a mode (:law NAME)");
+    }
     const law_modes *m = state_law_modes(st);
     char wanted[LINE_TEXT] = "";
-    FAIL_IF(!m->lockable, act_refuse(st, "this law cannot be held in a mode"));
+    if (!m->lockable) {
+        return act_refuse(st, "this law cannot be held in a mode");
+    }
     if (argument[0] == '\0') {
         for (int i = 0; i < m->count; i++) {
             text_add(wanted, sizeof wanted, "%s%s", i > 0 ? ", " : "", m->names[i]);

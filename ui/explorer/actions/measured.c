@@ -7,9 +7,10 @@
 #include "src/run/trace.h"
 #include "src/study/identify.h"
 
-// --- under the run ----------------------------------------------------------------------------
+// --- under the run ---------------------------------------------------------------------
 
-// Measured columns under the run, shifted as the file's name says, else to the run's first touch.
+// Measured columns under the run, shifted as the file's name says, else to the run's
+// first touch.
 bool act_data(explorer_state *st, const char *argument)
 {
     trace fresh = {0};
@@ -17,20 +18,28 @@ bool act_data(explorer_state *st, const char *argument)
     char path[LINE_TEXT];
     const char *at = strrchr(argument, '@');
     double shift = (double)NAN;
-    FAIL_IF(argument[0] == '\0',
-            act_refuse(st, "data takes a table with a column time, such as bench.csv, or off"));
+    if (argument[0] == '\0') {
+        return act_refuse(
+            st, "data takes a table with a column time, such as bench.csv, or off");
+    }
     if (strcmp(argument, "off") == 0) {
         trace_finish(&st->measured);
         st->measured = (trace){0};
         return act_tell(st, "no measured data");
     }
-    NEED(act_need_whole_run(st));
-    NEED(at == NULL || act_read_number(st, at + 1, &shift));
-    snprintf(path, sizeof path, "%.*s", at != NULL ? (int)(at - argument) : (int)strlen(argument),
-             argument);
+    if (!act_need_whole_run(st)) {
+        return false;
+    }
+    if (!(at == NULL || act_read_number(st, at + 1, &shift))) {
+        return false;
+    }
+    snprintf(path, sizeof path, "%.*s",
+             at != NULL ? (int)(at - argument) : (int)strlen(argument), argument);
     trace_init(&fresh, 1);
     status code = csv_table_read(&table, path, 1, &st->fault);
-    code = code == STATUS_OK ? measured_rows(&fresh, &table, NULL, -1, &st->fault) : code;
+    if (code == STATUS_OK) {
+        code = measured_rows(&fresh, &table, NULL, -1, &st->fault);
+    }
     csv_table_finish(&table);
     if (code != STATUS_OK) {
         trace_finish(&fresh);
@@ -42,14 +51,15 @@ bool act_data(explorer_state *st, const char *argument)
     st->measured_shift = 0;
     st->measured_id++;
     snprintf(st->measured_file, sizeof st->measured_file, "%s", path);
-    return state_lay_data(st, shift)
-               ? act_tell(st, "%zu rows, shifted by %.6g s; :data off takes them away",
-                          fresh.row_count, st->measured_shift)
-               : act_warn(st, "%zu rows, as they are: no force in both that shows a touch",
-                          fresh.row_count);
+    if (state_lay_data(st, shift)) {
+        return act_tell(st, "%zu rows, shifted by %.6g s; :data off takes them away",
+                        fresh.row_count, st->measured_shift);
+    }
+    return act_warn(st, "%zu rows, as they are: no force in both that shows a touch",
+                    fresh.row_count);
 }
 
-// --- identification ---------------------------------------------------------------------------
+// --- identification --------------------------------------------------------------------
 
 enum { FIT_STARTS = 4, FIT_THREADS = 4, FIT_RUNS = 400 };
 
@@ -73,7 +83,7 @@ static bool tell_fit(explorer_state *st, const identification *id)
                     id->undetermined > 0 ? ": fit fewer, or record more"
                     : misfits            ? "; pinned, but far off the data"
                     : id->white          ? "; that run is pinned"
-                                         : "; pinned, but the data show more than the model has");
+                                : "; pinned, but the data show more than the model has");
 }
 
 // Pins the run that was compared with the data in the end, and lays these under it.
@@ -97,11 +107,17 @@ static status pin_fitted(explorer_state *st, const identification *id, fault *f)
 bool act_identify(explorer_state *st, const char *argument)
 {
     char words[LINE_TEXT], *rest = words;
-    identification id = {.base = &st->session.effective, .starts = FIT_STARTS, .jobs = FIT_THREADS};
-    FAIL_IF(argument[0] == '\0' || st->measured.row_count == 0,
-            act_refuse(st, argument[0] == '\0' ? "identify takes parameters, such as k2 stiction"
-                                               : "there are no measured data: :data FILE.csv"));
-    NEED(act_need_whole_run(st) && act_need_short_runs(st, "identify", FIT_RUNS));
+    identification id = {.base = &st->session.effective,
+                         .starts = FIT_STARTS,
+                         .jobs = FIT_THREADS};
+    if (argument[0] == '\0' || st->measured.row_count == 0) {
+        return act_refuse(st, argument[0] == '\0'
+                                  ? "identify takes parameters, such as k2 stiction"
+                                  : "there are no measured data: :data FILE.csv");
+    }
+    if (!(act_need_whole_run(st) && act_need_short_runs(st, "identify", FIT_RUNS))) {
+        return false;
+    }
 
     // a parameter may be given by the last part of its path
     fault *f = &st->fault;
@@ -111,8 +127,12 @@ bool act_identify(explorer_state *st, const char *argument)
         char path[2 * LINE_TEXT];
         code = identify_add_path(&id, act_whole_path(word, path, sizeof path), f);
     }
-    code = code == STATUS_OK ? identify_add_trace(&id, st->measured_file, NULL, 0, f) : code;
-    code = code == STATUS_OK ? identify_fit(&id, f) : code;
+    if (code == STATUS_OK) {
+        code = identify_add_trace(&id, st->measured_file, NULL, 0, f);
+    }
+    if (code == STATUS_OK) {
+        code = identify_fit(&id, f);
+    }
     bool determined = false;
     for (int i = 0; i < id.count; i++) {
         determined = determined || id.fit[i].determined;
@@ -120,7 +140,8 @@ bool act_identify(explorer_state *st, const char *argument)
     if (code == STATUS_OK && determined) {
         code = pin_fitted(st, &id, f);
     }
-    const bool done = act_worked(st, code) && tell_fit(st, &id), all = id.undetermined == 0;
+    const bool done = act_worked(st, code) && tell_fit(st, &id),
+               all = id.undetermined == 0;
     identify_finish(&id);
     return done && act_settle_baseline(st) && all;
 }

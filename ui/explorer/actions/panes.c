@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// --- panes of one's own -----------------------------------------------------------------------
+// --- panes of one's own ----------------------------------------------------------------
 
 // A place for a derived signal that no pane has; -1 if there is none.
 static int free_place(const explorer_state *st, const pane *own)
@@ -23,20 +23,28 @@ static int free_place(const explorer_state *st, const pane *own)
     while (place < DERIVED_SIGNALS && used[place]) {
         place++;
     }
-    return place < DERIVED_SIGNALS ? place : -1;
+    if (place < DERIVED_SIGNALS) {
+        return place;
+    }
+    return -1;
 }
 
 // Adds the signal of a name or an expression.
 static bool add_signal(explorer_state *st, const char *text, pane *own)
 {
     int signal = signal_find_any(text);
-    FAIL_IF(signal < 0 && text[strcspn(text, "+-*/(")] == '\0',
-            act_refuse(st, "there is no signal '%s' (Tab completes)", text));
+    if (signal < 0 && text[strcspn(text, "+-*/(")] == '\0') {
+        return act_refuse(st, "there is no signal '%s' (Tab completes)", text);
+    }
     if (signal < 0) {
         const int place = free_place(st, own);
-        FAIL_IF(place < 0, act_refuse(st, "%d expressions are shown already", DERIVED_SIGNALS));
+        if (place < 0) {
+            return act_refuse(st, "%d expressions are shown already", DERIVED_SIGNALS);
+        }
         signal = signal_derive(place, text, &st->fault);
-        FAIL_IF(signal < 0, act_worked(st, st->fault.code));
+        if (signal < 0) {
+            return act_worked(st, st->fault.code);
+        }
         for (int i = 0; i < SHOWN_RUNS; i++) {
             extremes_forget(&st->extremes[i]);
         }
@@ -45,8 +53,8 @@ static bool add_signal(explorer_state *st, const char *text, pane *own)
     return true;
 }
 
-// Fills a pane with the signals of an argument: commas outside brackets separate them, and blanks
-// where nothing is computed.
+// Fills a pane with the signals of an argument: commas outside brackets separate them,
+// and blanks where nothing is computed.
 static bool read_signals(explorer_state *st, const char *argument, pane *own)
 {
     const bool computes = argument[strcspn(argument, "+-*/(")] != '\0';
@@ -60,9 +68,12 @@ static bool read_signals(explorer_state *st, const char *argument, pane *own)
         } else if (length > 0 && (*c != ' ' || !computes)) {
             word[length] = '\0';
             length = 0;
-            FAIL_IF(own->count == PANE_SIGNALS,
-                    act_refuse(st, "a pane has at most %d signals", PANE_SIGNALS));
-            NEED(add_signal(st, word, own));
+            if (own->count == PANE_SIGNALS) {
+                return act_refuse(st, "a pane has at most %d signals", PANE_SIGNALS);
+            }
+            if (!add_signal(st, word, own)) {
+                return false;
+            }
         }
         if (*c == '\0') {
             return true;
@@ -70,14 +81,18 @@ static bool read_signals(explorer_state *st, const char *argument, pane *own)
     }
 }
 
-// Shows a pane of the user's beside those there are, of the signals of an argument; `refusal` says
-// how many it takes.
-static bool show_own(explorer_state *st, const char *argument, pane_view view, int least, int most,
-                     const char *refusal)
+// Shows a pane of the user's beside those there are, of the signals of an argument;
+// `refusal` says how many it takes.
+static bool show_own(explorer_state *st, const char *argument, pane_view view, int least,
+                     int most, const char *refusal)
 {
     pane own = {.view = view};
-    NEED(read_signals(st, argument, &own));
-    FAIL_IF(own.count < least || own.count > most, act_refuse(st, "%s", refusal));
+    if (!read_signals(st, argument, &own)) {
+        return false;
+    }
+    if (own.count < least || own.count > most) {
+        return act_refuse(st, "%s", refusal);
+    }
     const int index = panes_add(&st->panes, &own);
     return act_tell(st, "pane %d: :trace %d hides it", index + 1, index + 1);
 }
@@ -88,15 +103,20 @@ bool act_trace(explorer_state *st, const char *argument)
     // a pane of the table
     if (argument[0] != '\0' && argument[strspn(argument, "0123456789")] == '\0') {
         const long number = strtol(argument, NULL, 10);
-        FAIL_IF(number < 1 || number > PANES,
-                act_refuse(st, "panes are numbered from 1 to %d", PANES));
+        if (number < 1 || number > PANES) {
+            return act_refuse(st, "panes are numbered from 1 to %d", PANES);
+        }
         const int index = (int)number - 1;
         pane *p = &st->panes.pane[index];
-        FAIL_IF(p->count == 0,
-                act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it", argument));
+        if (p->count == 0) {
+            return act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it",
+                              argument);
+        }
         p->shown = !p->shown;
         st->panes.chosen = true;
-        st->panes.focus = p->shown ? index : st->panes.focus;
+        if (p->shown) {
+            st->panes.focus = index;
+        }
         return true;
     }
 
@@ -104,35 +124,46 @@ bool act_trace(explorer_state *st, const char *argument)
                     "trace takes a number from 1 to 9 or names of signals");
 }
 
-#define ACTION_OF_VIEW(command, view, least, most, refusal)                                        \
-    bool act_##command(explorer_state *st, const char *argument)                                   \
-    {                                                                                              \
-        return show_own(st, argument, view, least, most, refusal);                                 \
-    }
-ACTION_OF_VIEW(residual, VIEW_RESIDUAL, 1, PANE_SIGNALS,
-               "residual takes signals that were measured")
-ACTION_OF_VIEW(phase, VIEW_PHASE, 2, 2, "phase takes two signals: what goes up, and what across")
-ACTION_OF_VIEW(spectrum, VIEW_SPECTRUM, 1, 1, "spectrum takes one signal")
+bool act_residual(explorer_state *st, const char *argument)
+{
+    return show_own(st, argument, VIEW_RESIDUAL, 1, PANE_SIGNALS,
+                    "residual takes signals that were measured");
+}
+
+bool act_phase(explorer_state *st, const char *argument)
+{
+    return show_own(st, argument, VIEW_PHASE, 2, 2,
+                    "phase takes two signals: what goes up, and what across");
+}
+
+bool act_spectrum(explorer_state *st, const char *argument)
+{
+    return show_own(st, argument, VIEW_SPECTRUM, 1, 1, "spectrum takes one signal");
+}
 
 // Shows the panes of these numbers and no others.
 bool act_panes(explorer_state *st, const char *argument)
 {
-    FAIL_IF(argument[strspn(argument, "123456789")] != '\0',
-            act_refuse(st, "panes takes numbers from 1 to 9, such as 134"));
+    if (argument[strspn(argument, "123456789")] != '\0') {
+        return act_refuse(st, "panes takes numbers from 1 to 9, such as 134");
+    }
     for (int i = 0; i < PANES; i++) {
         pane *p = &st->panes.pane[i];
-        p->shown = i < PANES_OF_TABLE && p->count > 0 && strchr(argument, '1' + i) != NULL;
+        p->shown =
+            i < PANES_OF_TABLE && p->count > 0 && strchr(argument, '1' + i) != NULL;
     }
     st->panes.chosen = true;
     return true;
 }
 
-// --- what a pane shows ------------------------------------------------------------------------
+// --- what a pane shows -----------------------------------------------------------------
 
 bool act_focus(explorer_state *st, const char *argument)
 {
     int focused = panes_focused(&st->panes);
-    FAIL_IF(focused < 0, act_refuse(st, "no pane of curves is shown, 1 to 9 show them"));
+    if (focused < 0) {
+        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
+    }
     st->panes.focus = (focused + 1) % PANES;
     st->panes.focus = panes_focused(&st->panes);
     return true;
@@ -145,7 +176,8 @@ bool act_toggle_signal(explorer_state *st, int index, int k)
     p->hidden ^= 1u << k;
     p->grown = value_range_empty;
     return act_tell(st, "%s is %s", signal_table[p->signals[k]].name,
-                    p->hidden >> k & 1 ? "hidden (K or a click on its legend shows it)" : "shown");
+                    p->hidden >> k & 1 ? "hidden (K or a click on its legend shows it)"
+                                       : "shown");
 }
 
 // One signal after the other is hidden, from the last to the first, then all are shown.
@@ -153,9 +185,13 @@ bool act_signal(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT], *words[4] = {argument[0] == '\0' ? text : NULL};
     int index = panes_focused(&st->panes);
-    NEED(act_split(argument, text, words) != 2 || act_read_pane(st, words[1], &index));
+    if (!(act_split(argument, text, words) != 2 || act_read_pane(st, words[1], &index))) {
+        return false;
+    }
     const int signal = signal_find_any(words[0]);
-    FAIL_IF(index < 0, act_refuse(st, "no pane of curves is shown, 1 to 9 show them"));
+    if (index < 0) {
+        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
+    }
     pane *p = &st->panes.pane[index];
     if (strcmp(words[0], "all") == 0) {
         p->hidden = 0;
@@ -168,17 +204,23 @@ bool act_signal(explorer_state *st, const char *argument)
             return act_toggle_signal(st, index, k);
         }
     }
-    FAIL_IF(argument[0] != '\0',
-            act_refuse(st, "the pane in focus has no signal '%.60s' (w: next pane)", argument));
+    if (argument[0] != '\0') {
+        return act_refuse(st, "the pane in focus has no signal '%.60s' (w: next pane)",
+                          argument);
+    }
 
     // the one before that which is hidden; one that is alone stays
     int next = p->count - 1;
     for (int k = 0; k < p->count; k++) {
-        next = p->hidden >> k & 1 ? k - 1 : next;
+        if (p->hidden >> k & 1) {
+            next = k - 1;
+        }
     }
     p->hidden = 0;
-    return next >= 0 && p->count > 1 ? act_toggle_signal(st, index, next)
-                                     : act_tell(st, "all signals of the pane are shown");
+    if (next >= 0 && p->count > 1) {
+        return act_toggle_signal(st, index, next);
+    }
+    return act_tell(st, "all signals of the pane are shown");
 }
 
 // Reads a signal and a value, or off, into a bound unless they are refused.
@@ -188,11 +230,15 @@ static bool read_bound(explorer_state *st, const char *argument, const char *com
     char text[LINE_TEXT], *words[4];
     solved_limit read = {.signal = -1};
     const bool done =
-        act_split(argument, text, words) == 2 && (read.signal = signal_find_any(words[0])) >= 0
+        act_split(argument, text, words) == 2 &&
+                (read.signal = signal_find_any(words[0])) >= 0
             ? act_read_number(st, words[1], &read.bound)
             : strcmp(argument, "off") == 0 ||
-                  act_refuse(st, "%s takes a signal and a value, such as force 2, or off", command);
-    *bound = done ? read : *bound;
+                  act_refuse(st, "%s takes a signal and a value, such as force 2, or off",
+                             command);
+    if (done) {
+        *bound = read;
+    }
     return done;
 }
 
@@ -204,12 +250,16 @@ bool act_limit(explorer_state *st, const char *argument)
 bool act_band(explorer_state *st, const char *argument)
 {
     solved_limit band;
-    NEED(read_bound(st, argument, "band", &band));
-    FAIL_IF(band.signal >= 0 && !(band.bound > 0),
-            act_refuse(st, "a band has a tolerance above 0"));
+    if (!read_bound(st, argument, "band", &band)) {
+        return false;
+    }
+    if (band.signal >= 0 && !(band.bound > 0)) {
+        return act_refuse(st, "a band has a tolerance above 0");
+    }
     st->band = band;
     if (band.signal < 0 || !st->session.has_other) {
-        return act_tell(st, "%s", band.signal < 0 ? "no band" : "b pins the run that it is round");
+        return act_tell(st, "%s",
+                        band.signal < 0 ? "no band" : "b pins the run that it is round");
     }
 
     // where the present run leaves it

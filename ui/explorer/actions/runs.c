@@ -9,7 +9,7 @@
 
 #define LONGEST_MAP_PIECE 0.015 // of a map, between two pictures [s]
 
-// --- pinned runs ------------------------------------------------------------------------------
+// --- pinned runs -----------------------------------------------------------------------
 
 // Makes the baseline the run for comparison with the present one.
 bool act_settle_baseline(explorer_state *st)
@@ -19,8 +19,9 @@ bool act_settle_baseline(explorer_state *st)
         session_forget_other(&st->session);
         return true;
     }
-    return act_worked(
-        st, session_keep_beside(&st->session, &list->runs[list->baseline].run, &st->fault));
+    return act_worked(st,
+                      session_keep_beside(&st->session, &list->runs[list->baseline].run,
+                                          &st->fault));
 }
 
 // Pins the present run and makes it the baseline.
@@ -34,17 +35,19 @@ static bool pin(explorer_state *st, const char *name)
 
 bool act_branch(explorer_state *st, const char *argument)
 {
-    return pin(st, "") && act_tell(st,
-                                   "branched at %.4f s: change something, the old run stays beside "
-                                   "it (c compares, R lists all, B drops it)",
-                                   st->session.now);
+    return pin(st, "") &&
+           act_tell(st,
+                    "branched at %.4f s: change something, the old run stays beside "
+                    "it (c compares, R lists all, B drops it)",
+                    st->session.now);
 }
 
 bool act_pin(explorer_state *st, const char *argument)
 {
     const run_list *list = &st->pinned;
-    return pin(st, argument) && act_tell(st, "pinned as '%s': the present run is compared with it",
-                                         list->runs[list->baseline].name);
+    return pin(st, argument) &&
+           act_tell(st, "pinned as '%s': the present run is compared with it",
+                    list->runs[list->baseline].name);
 }
 
 bool act_forget(explorer_state *st, const char *argument)
@@ -56,37 +59,44 @@ bool act_forget(explorer_state *st, const char *argument)
     return act_settle_baseline(st);
 }
 
-// The action of a command with the run that its argument names; `rest` is what follows.
-#define ACTION_ON_RUN(command)                                                                     \
-    static bool command##_run(explorer_state *st, int index, const char *rest);                    \
-    bool act_##command(explorer_state *st, const char *argument)                                   \
-    {                                                                                              \
-        const int count = st->pinned.count;                                                        \
-        const int index =                                                                          \
-            count > 0 ? act_read_index(st, &argument, count, "pinned runs", "R") : -1;             \
-        return index >= 0 ? command##_run(st, index, argument)                                     \
-                          : count == 0 && act_refuse(st, "no run is pinned (b pins this one)");    \
-    }                                                                                              \
-    static bool command##_run(explorer_state *st, int index, const char *rest)
-
-ACTION_ON_RUN(take)
+// The index of the pinned run whose number begins an argument, which moves behind it; -1
+// after a refusal.
+static int read_run(explorer_state *st, const char **argument)
 {
+    const int count = st->pinned.count;
+    if (count == 0) {
+        act_refuse(st, "no run is pinned (b pins this one)");
+        return -1;
+    }
+    return act_read_index(st, argument, count, "pinned runs", "R");
+}
+
+bool act_take(explorer_state *st, const char *argument)
+{
+    const int index = read_run(st, &argument);
+    if (index < 0) {
+        return false;
+    }
     run_list *list = &st->pinned;
     if (run_origin_is_of(&list->runs[index].from, &st->session)) {
         return act_tell(st, "this is that run");
     }
 
     // the present one must not be lost; pinning it moves none of the others
-    NEED(pin(st, ""));
+    if (!pin(st, "")) {
+        return false;
+    }
     const pinned_run *taken = &list->runs[index];
     const run_origin *from = &taken->from;
     session other;
     status code = STATUS_OK;
     if (same_base(&from->base, &st->session.base)) {
-        code = session_take_inputs(&st->session, from->inputs, from->input_count, &st->fault);
+        code = session_take_inputs(&st->session, from->inputs, from->input_count,
+                                   &st->fault);
     } else {
         code = session_reopen(&other, from, st->session.patience, &st->fault);
-        if (code == STATUS_OK && (code = state_take_session(st, &other, &st->fault)) != STATUS_OK) {
+        if (code == STATUS_OK &&
+            (code = state_take_session(st, &other, &st->fault)) != STATUS_OK) {
             session_finish(&other);
         }
     }
@@ -94,34 +104,50 @@ ACTION_ON_RUN(take)
            act_tell(st, "'%s' goes on; the run before is compared with it", taken->name);
 }
 
-ACTION_ON_RUN(hide)
+bool act_hide(explorer_state *st, const char *argument)
 {
+    const int index = read_run(st, &argument);
+    if (index < 0) {
+        return false;
+    }
     st->pinned.runs[index].hidden = !st->pinned.runs[index].hidden;
     return true;
 }
 
-ACTION_ON_RUN(baseline)
+bool act_baseline(explorer_state *st, const char *argument)
 {
+    const int index = read_run(st, &argument);
+    if (index < 0) {
+        return false;
+    }
     st->pinned.baseline = index;
     return act_settle_baseline(st) &&
            act_tell(st, "compared with '%s' from now on", st->pinned.runs[index].name);
 }
 
-ACTION_ON_RUN(rename)
+bool act_rename(explorer_state *st, const char *argument)
 {
+    const int index = read_run(st, &argument);
+    if (index < 0) {
+        return false;
+    }
     pinned_run *p = &st->pinned.runs[index];
 
     // without a name it is asked for
-    if (rest[0] != '\0') {
-        snprintf(p->name, sizeof p->name, "%s", rest);
+    if (argument[0] != '\0') {
+        snprintf(p->name, sizeof p->name, "%s", argument);
     } else {
         prompt_open(&st->prompt, p->name, "rename %d ", index + 1);
     }
     return true;
 }
 
-ACTION_ON_RUN(unpin)
+bool act_unpin(explorer_state *st, const char *argument)
 {
+    const int index = read_run(st, &argument);
+    if (index < 0) {
+        return false;
+    }
     run_list_drop(&st->pinned, index);
     return act_settle_baseline(st);
 }
@@ -134,13 +160,19 @@ bool act_difference(explorer_state *st, const char *argument)
         d->on = false;
         return act_tell(st, "the runs themselves");
     }
-    NEED(act_read_number_or(st, argument, "", &tolerance));
-    FAIL_IF(!st->session.has_other,
-            act_refuse(st, "there is nothing to subtract: b pins this run first"));
-    FAIL_IF(tolerance < 0, act_refuse(st, "a tolerance is not negative"));
+    if (!act_read_number_or(st, argument, "", &tolerance)) {
+        return false;
+    }
+    if (!st->session.has_other) {
+        return act_refuse(st, "there is nothing to subtract: b pins this run first");
+    }
+    if (tolerance < 0) {
+        return act_refuse(st, "a tolerance is not negative");
+    }
     d->on = true;
     d->tolerance = tolerance;
-    difference_update(d, state_run_id(st), &st->session.run.trace, &st->session.other.trace);
+    difference_update(d, state_run_id(st), &st->session.run.trace,
+                      &st->session.other.trace);
 
     // where the first signal of the pane in focus leaves the tolerance
     const char *name = st->pinned.runs[st->pinned.baseline].name;
@@ -150,18 +182,20 @@ bool act_difference(explorer_state *st, const char *argument)
     }
     const int signal = st->panes.pane[focused].signals[0];
     const signal_info *info = &signal_table[signal];
-    const bool derived = signal_is_derived(signal), none = derived || signal_is_state(signal);
+    const bool derived = signal_is_derived(signal),
+               none = derived || signal_is_state(signal);
     const double first = none ? 0 : difference_first_beyond(d, signal, tolerance);
     return act_tell(
         st,
         derived     ? "minus '%s', but an expression has no difference; D shows the runs"
         : none      ? "minus '%s', but states such as %s are this run's; D shows the runs"
         : first < 0 ? "minus '%s': %s never differs by more than %g %s"
-                    : "minus '%s': %s differs by more than %g %s from %.5f s on; D shows the runs",
+                    : "minus '%s': %s differs by more than %g %s from %.5f s on; D shows "
+                      "the runs",
         name, info->name, tolerance, info->unit, first);
 }
 
-// --- limits -----------------------------------------------------------------------------------
+// --- limits ----------------------------------------------------------------------------
 
 enum { SOLVE_THREADS = 4 };
 
@@ -177,13 +211,15 @@ static int signal_of_quantity(int quantity)
                  {SUMMARY_INDEX(approach_speed_m_s), SIGNAL_INDEX(gap_velocity)}};
     int found = -1;
     for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
-        found = pairs[i].quantity == quantity ? pairs[i].signal : found;
+        if (pairs[i].quantity == quantity) {
+            found = pairs[i].signal;
+        }
     }
     return found;
 }
 
-status act_pin_value(explorer_state *st, const sweep_axis *axis, double value, const char *name,
-                     fault *f)
+status act_pin_value(explorer_state *st, const sweep_axis *axis, double value,
+                     const char *name, fault *f)
 {
     parameters p = st->session.effective.parameters;
     char text[PARAMETER_TEXT_SIZE];
@@ -199,7 +235,9 @@ status act_pin_value(explorer_state *st, const sweep_axis *axis, double value, c
     TRY(code);
     session_seek(&other, 0);
     code = session_change_from_start(&other, axis->parameter, text, f);
-    code = code == STATUS_OK ? run_list_pin(&st->pinned, &other, name, f) : code;
+    if (code == STATUS_OK) {
+        code = run_list_pin(&st->pinned, &other, name, f);
+    }
     session_finish(&other);
     return code;
 }
@@ -215,42 +253,53 @@ const char *act_whole_path(const char *word, char *text, size_t size)
 }
 
 // The limit that is nearest to the value the run has.
-static int nearest_limit(const explorer_state *st, const sweep_axis *axis, const solution *found)
+static int nearest_limit(const explorer_state *st, const sweep_axis *axis,
+                         const solution *found)
 {
-    const double value = parameter_get(&st->session.effective.parameters, axis->parameter);
+    const double value =
+        parameter_get(&st->session.effective.parameters, axis->parameter);
     int nearest = 0;
     for (int i = 1; i < found->count && axis->element == 0; i++) {
         const double here = fabs(found->limits[i].value - value);
-        nearest = here < fabs(found->limits[nearest].value - value) ? i : nearest;
+        if (here < fabs(found->limits[nearest].value - value)) {
+            nearest = i;
+        }
     }
     return nearest;
 }
 
-// Says what was found: the limit that is pinned, and where others are; true if there is one.
-static bool tell_limits(explorer_state *st, const sweep_axis *axis, const solve_condition *c,
-                        const solution *found)
+// Says what was found: the limit that is pinned, and where others are; true if there is
+// one.
+static bool tell_limits(explorer_state *st, const sweep_axis *axis,
+                        const solve_condition *c, const solution *found)
 {
     const char *unit = sweep_axis_parameter(axis)->unit;
     const summary_info *quantity = &summary_table[c->quantity];
     char others[160] = "";
     if (found->count == 0) {
-        const double low = fmin(axis->low, axis->high), high = fmax(axis->low, axis->high);
-        return act_refuse(
-            st, "no limit of %s from %g to %g %s: the %s is as asked in %d runs, and not in %d%s%s",
-            axis->name, low, high, unit, quantity->label, found->holding, found->failing,
-            found->unknown > 0 ? "; first of the others: " : "", found->reason);
+        const double low = fmin(axis->low, axis->high),
+                     high = fmax(axis->low, axis->high);
+        return act_refuse(st,
+                          "no limit of %s from %g to %g %s: the %s is as asked in %d "
+                          "runs, and not in %d%s%s",
+                          axis->name, low, high, unit, quantity->label, found->holding,
+                          found->failing,
+                          found->unknown > 0 ? "; first of the others: " : "",
+                          found->reason);
     }
     const int nearest = nearest_limit(st, axis, found);
     for (int i = 0; i < found->count; i++) {
         if (i != nearest) {
             text_add(others, sizeof others, "%s%.5g",
-                     others[0] == '\0' ? "; limits also at " : ", ", found->limits[i].value);
+                     others[0] == '\0' ? "; limits also at " : ", ",
+                     found->limits[i].value);
         }
     }
     const solve_limit *l = &found->limits[nearest];
     return act_tell(st, "%s %s = %#.5g%s%s: %#.5g %s%s%s; that run is pinned",
-                    l->holds_below ? "up to" : "from", axis->name, l->value, unit[0] ? " " : "",
-                    unit, l->reached, quantity->unit, l->jumps ? ", where it jumps" : "", others);
+                    l->holds_below ? "up to" : "from", axis->name, l->value,
+                    unit[0] ? " " : "", unit, l->reached, quantity->unit,
+                    l->jumps ? ", where it jumps" : "", others);
 }
 
 bool act_solve(explorer_state *st, const char *argument)
@@ -262,23 +311,28 @@ bool act_solve(explorer_state *st, const char *argument)
     const char *rest = argument + strcspn(argument, " ");
     fault *f = &st->fault;
     snprintf(path, sizeof path, "%.*s", (int)(rest - argument), argument);
-    FAIL_IF(
-        *rest == '\0',
-        act_refuse(
-            st, "solve takes a parameter and a condition, such as motor.voltage peak_force_N<2"));
-    NEED(act_need_whole_run(st) && act_need_short_runs(st, "solve", 2 * SOLVE_POINTS));
+    if (*rest == '\0') {
+        return act_refuse(st, "solve takes a parameter and a condition, such as "
+                              "motor.voltage peak_force_N<2");
+    }
+    if (!(act_need_whole_run(st) && act_need_short_runs(st, "solve", 2 * SOLVE_POINTS))) {
+        return false;
+    }
 
     // a parameter may be given by the last part of its path
     char whole[2 * LINE_TEXT], name[RUN_NAME];
     act_whole_path(path, whole, sizeof whole);
     status code = solve_condition_read(rest, &condition, f);
     const scenario *s = &st->session.effective;
-    code = code == STATUS_OK ? solve_axis_read(&axis, whole, s, f) : code;
+    if (code == STATUS_OK) {
+        code = solve_axis_read(&axis, whole, s, f);
+    }
     if (code == STATUS_OK) {
         code = solve(s, &axis, &condition, SOLVE_POINTS, SOLVE_THREADS, NULL, &found, f);
     }
     if (code == STATUS_OK && found.count > 0) {
-        st->limit = (solved_limit){signal_of_quantity(condition.quantity), condition.bound};
+        st->limit =
+            (solved_limit){signal_of_quantity(condition.quantity), condition.bound};
         const double value = found.limits[nearest_limit(st, &axis, &found)].value;
         snprintf(name, sizeof name, "%s %.5g", strchr(axis.name, '.') + 1, value);
         code = act_pin_value(st, &axis, value, name, f);
@@ -288,7 +342,7 @@ bool act_solve(explorer_state *st, const char *argument)
     return done && act_settle_baseline(st);
 }
 
-// --- sweeps -----------------------------------------------------------------------------------
+// --- sweeps ----------------------------------------------------------------------------
 
 bool act_continue_sweep(explorer_state *st)
 {
@@ -299,17 +353,22 @@ bool act_continue_sweep(explorer_state *st)
         return true;
     }
 
-    // one run a call, of a map as many as a picture may wait for, so that keys are read in between
+    // one run a call, of a map as many as a picture may wait for, so that keys are read
+    // in between
     const double begin = clock_seconds(CLOCK_MONOTONIC);
     do {
-        NEED(act_worked(st, lab_sweep_compute_next(sweep, &st->session.effective, &st->fault)));
+        if (!act_worked(st, lab_sweep_compute_next(sweep, &st->session.effective,
+                                                   &st->fault))) {
+            return false;
+        }
     } while (lab_sweep_is_map(sweep) && !lab_sweep_is_done(sweep) &&
              clock_seconds(CLOCK_MONOTONIC) - begin < LONGEST_MAP_PIECE);
 
     // only the last one is news
     return !lab_sweep_is_done(sweep) ||
            act_tell(st,
-                    "%d runs: arrows%s choose one, Enter opens it, M another metric, Esc ends it",
+                    "%d runs: arrows%s choose one, Enter opens it, M another metric, Esc "
+                    "ends it",
                     sweep->count, lab_sweep_is_map(sweep) ? " and < >" : "");
 }
 
@@ -318,28 +377,34 @@ bool act_sweep(explorer_state *st, const char *argument)
     lab_sweep *sweep = &st->sweep;
     if (strcmp(argument, "off") == 0) {
         lab_sweep_end(sweep);
-        st->side.panel = st->side.panel == PANEL_SWEEP ? PANEL_PARAMETERS : st->side.panel;
+        if (st->side.panel == PANEL_SWEEP) {
+            st->side.panel = PANEL_PARAMETERS;
+        }
         return true;
     }
 
-    // without an argument the selected parameter's is begun, about its value if that is positive
+    // without an argument the selected parameter's is begun, about its value if that is
+    // positive
     if (argument[0] == '\0') {
         slider_scale scale = {0};
         const int parameter = st->parameters.parameter;
         const parameters p = state_parameters(st);
         const double value = parameter_get(&p, parameter);
         const bool number = slider_scale_of(parameter, value, &scale), about = value > 0;
-        prompt_open(&st->prompt, NULL,
-                    number ? "sweep %s=%g:%g:8%s" : "sweep %s=", parameter_table[parameter].path,
+        prompt_open(&st->prompt, NULL, number ? "sweep %s=%g:%g:8%s" : "sweep %s=",
+                    parameter_table[parameter].path,
                     about ? fmax(scale.low, value / 4) : scale.low,
                     about ? fmin(scale.high, value * 4) : scale.high,
                     about && scale.logarithmic ? ":log" : "");
-        return act_tell(st, "first value, last value, number of runs; or values with commas");
+        return act_tell(st,
+                        "first value, last value, number of runs; or values with commas");
     }
 
     // each run is computed while the lab waits, so they must be short
-    NEED(act_need_whole_run(st) && act_need_short_runs(st, "sweep", SWEPT_RUNS) &&
-         act_worked(st, lab_sweep_begin(sweep, argument, &st->fault)));
+    if (!(act_need_whole_run(st) && act_need_short_runs(st, "sweep", SWEPT_RUNS) &&
+          act_worked(st, lab_sweep_begin(sweep, argument, &st->fault)))) {
+        return false;
+    }
     st->side.panel = PANEL_SWEEP;
     st->difference.on = false;
 
@@ -357,20 +422,28 @@ bool act_metric(explorer_state *st, const char *argument)
     int metric = summary_find(argument);
     if (argument[0] != '\0' && metric < 0) {
         const char *near = summary_suggest(argument);
-        return act_refuse(st, "there is no number '%.60s' of a run's summary%s%s%s", argument,
-                          near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
+        return act_refuse(st, "there is no number '%.60s' of a run's summary%s%s%s",
+                          argument, near ? ", did you mean '" : "", near ? near : "",
+                          near ? "'?" : "");
     }
 
     // the next one that any of the runs has
-    for (int step = 1; argument[0] == '\0' && metric < 0 && step <= summary_count; step++) {
+    for (int step = 1; argument[0] == '\0' && metric < 0 && step <= summary_count;
+         step++) {
         const int next = (sweep->metric + step) % summary_count;
         bool known = sweep->count == 0;
         for (int i = 0; i < sweep->count; i++) {
             known = known || isfinite(lab_sweep_metric(sweep, i, next));
         }
-        metric = known && !summary_table[next].timing ? next : -1;
+        if (known && !summary_table[next].timing) {
+            metric = next;
+        } else {
+            metric = -1;
+        }
     }
-    sweep->metric = metric < 0 ? sweep->metric : metric;
+    if (!(metric < 0)) {
+        sweep->metric = metric;
+    }
     return act_tell(st, "%s: %s", summary_table[sweep->metric].label,
                     summary_table[sweep->metric].description);
 }
@@ -380,10 +453,15 @@ void act_select_swept(explorer_state *st, int direction)
     lab_sweep *sweep = &st->sweep;
     const int last = sweep->count - 1, at = sweep->selected + direction;
 
-    // the first and the last of a sweep are its ends; in a map there is nothing beyond an edge
+    // the first and the last of a sweep are its ends; in a map there is nothing beyond an
+    // edge
     if (at >= 0 && at <= last) {
         sweep->selected = at;
     } else if (!lab_sweep_is_map(sweep)) {
-        sweep->selected = at < 0 || last < 0 ? 0 : last;
+        if (at < 0 || last < 0) {
+            sweep->selected = 0;
+        } else {
+            sweep->selected = last;
+        }
     }
 }

@@ -6,7 +6,7 @@
 #include "src/rig/external/process_lines.h"
 #include "ui/explorer/state/user_files.h"
 
-// --- scenarios --------------------------------------------------------------------------------
+// --- scenarios -------------------------------------------------------------------------
 
 bool act_open_scenario(explorer_state *st, const char *name)
 {
@@ -17,7 +17,9 @@ bool act_open_scenario(explorer_state *st, const char *name)
         s.parameters.code_allowed = consent_needed(&s) && consent_remembered(&s);
         code = session_open(&fresh, &s, st->session.patience, &st->fault);
     }
-    FAIL_IF(code != STATUS_OK, act_worked(st, code));
+    if (code != STATUS_OK) {
+        return act_worked(st, code);
+    }
 
     // the new session takes the old one's place, to which u returns
     const int changes = st->session.input_count;
@@ -29,8 +31,8 @@ bool act_open_scenario(explorer_state *st, const char *name)
     st->playback.playing = true;
     const char *title = st->session.base.title ? st->session.base.title : "";
     return act_tell_failed_run(st) ||
-           act_tell(st, changes > 0 ? "%s (u returns to %s and its changes)" : "%s", title,
-                    st->visits[st->present_visit - 1].from.base.name);
+           act_tell(st, changes > 0 ? "%s (u returns to %s and its changes)" : "%s",
+                    title, st->visits[st->present_visit - 1].from.base.name);
 }
 
 // The list of scenarios with the present one selected.
@@ -39,7 +41,11 @@ static void open_list(explorer_state *st)
     scenario_menu *menu = &st->scenarios;
     int at = scenario_menu_find(menu, st->session.base.name);
     st->page = PANEL_SCENARIOS;
-    menu->selected = at < 0 ? 0 : at;
+    if (at < 0) {
+        menu->selected = 0;
+    } else {
+        menu->selected = at;
+    }
     st->drawn.first_scenario = -1;
     menu->filter[0] = '\0';
     scenario_menu_read_titles(menu);
@@ -54,10 +60,12 @@ bool act_open(explorer_state *st, const char *argument)
     }
 
     // the neighbour in the list, or one by name
-    const bool next = strcmp(argument, "+1") == 0, near = next || strcmp(argument, "-1") == 0;
+    const bool next = strcmp(argument, "+1") == 0,
+               near = next || strcmp(argument, "-1") == 0;
     const int at = scenario_menu_find(menu, st->session.base.name) + (next ? 1 : -1);
-    return act_open_scenario(
-        st, near && menu->count > 0 ? menu->names[(at + 2 * menu->count) % menu->count] : argument);
+    return act_open_scenario(st, near && menu->count > 0
+                                     ? menu->names[(at + 2 * menu->count) % menu->count]
+                                     : argument);
 }
 
 bool act_find(explorer_state *st, const char *argument)
@@ -72,26 +80,35 @@ bool act_find(explorer_state *st, const char *argument)
 bool act_stop(explorer_state *st, const char *argument)
 {
     session *s = &st->session;
-    FAIL_IF(s->computing == NULL, act_refuse(st, "nothing is being computed"));
-    return !session_stop(s) ||
-           act_tell(st, "stopped at %.4g s: Space at its end goes on, u takes the last change back",
-                    session_end(s));
+    if (s->computing == NULL) {
+        return act_refuse(st, "nothing is being computed");
+    }
+    return !session_stop(s) || act_tell(st,
+                                        "stopped at %.4g s: Space at its end goes on, u "
+                                        "takes the last change back",
+                                        session_end(s));
 }
 
 bool act_allow(explorer_state *st, const char *argument)
 {
     session *s = &st->session;
     bool kept;
-    FAIL_IF(s->run.summary.status != STATUS_NOT_ALLOWED,
-            act_refuse(st, "the run asks for no permission"));
+    if (s->run.summary.status != STATUS_NOT_ALLOWED) {
+        return act_refuse(st, "the run asks for no permission");
+    }
 
-    // a visit's changes are the user's own: what is remembered is the scenario as it was opened
-    NEED(act_worked(st, session_allow_code(s, &st->fault)));
+    // a visit's changes are the user's own: what is remembered is the scenario as it was
+    // opened
+    if (!act_worked(st, session_allow_code(s, &st->fault))) {
+        return false;
+    }
     const bool done = act_worked(st, consent_remember(&s->base, &kept, &st->fault));
     st->playback.playing = true;
     return act_tell_failed_run(st) ||
-           (done && act_tell(st, kept ? "allowed, and remembered for just this scenario and program"
-                                      : "allowed for this visit"));
+           (done &&
+            act_tell(st,
+                     kept ? "allowed, and remembered for just this scenario and program"
+                          : "allowed for this visit"));
 }
 
 void act_tell_replay(explorer_state *st)
@@ -100,20 +117,23 @@ void act_tell_replay(explorer_state *st)
     const message_line before = st->message;
     if (again.restarted) {
         act_tell(st,
-                 "%.600s%sthe program was started anew and went through its %d samples up to "
-                 "%.4g s once more",
+                 "%.600s%sthe program was started anew and went through its %d "
+                 "samples up to %.4g s once more",
                  before.text, before.text[0] ? "; " : "", again.samples, again.time);
         st->message.warning = before.text[0] != '\0' && before.warning;
     }
 }
 
-// --- lessons ----------------------------------------------------------------------------------
+// --- lessons ---------------------------------------------------------------------------
 
 // The present step; NULL without a lesson.
 static const lesson_step *present_step(const explorer_state *st)
 {
     const lesson *l = &st->session.base.lesson;
-    return st->lesson.on && st->lesson.step < l->step_count ? &l->steps[st->lesson.step] : NULL;
+    if (st->lesson.on && st->lesson.step < l->step_count) {
+        return &l->steps[st->lesson.step];
+    }
+    return NULL;
 }
 
 // The scenario of a lesson's name: the full name, or an ending that only one lesson has.
@@ -124,8 +144,11 @@ static const char *lesson_named(explorer_state *st, const char *name)
     scenario_menu_read_titles(&st->scenarios);
     for (int i = 0; i < menu->count; i++) {
         const char *whole = menu->names[i];
-        const bool same = strcmp(whole, name) == 0 || strcmp(scenario_leaf(whole), name) == 0;
-        found = same && scenario_menu_text(menu, i).is_lesson ? whole : found;
+        const bool same =
+            strcmp(whole, name) == 0 || strcmp(scenario_leaf(whole), name) == 0;
+        if (same && scenario_menu_text(menu, i).is_lesson) {
+            found = whole;
+        }
     }
     return found;
 }
@@ -145,8 +168,10 @@ bool act_lesson(explorer_state *st, const char *argument)
 
     // its scenario brings the lesson along
     const char *name = lesson_named(st, argument);
-    FAIL_IF(name == NULL,
-            act_refuse(st, "there is no lesson '%.60s' (:lesson lists them)", argument));
+    if (name == NULL) {
+        return act_refuse(st, "there is no lesson '%.60s' (:lesson lists them)",
+                          argument);
+    }
     return act_open_scenario(st, name) && act_hush(st);
 }
 
@@ -154,39 +179,51 @@ void act_follow_lesson(explorer_state *st)
 {
     const lesson_step *step = present_step(st);
     st->lesson.passed =
-        st->lesson.passed || (step != NULL && step->check != LESSON_READ &&
-                              lesson_step_is_done(step, &st->lesson, &st->session, &st->pinned));
+        st->lesson.passed ||
+        (step != NULL && step->check != LESSON_READ &&
+         lesson_step_is_done(step, &st->lesson, &st->session, &st->pinned));
 }
 
 bool act_answer(explorer_state *st, const char *argument)
 {
     const lesson_step *step = present_step(st);
     double value;
-    FAIL_IF(step == NULL, act_refuse(st, "there is no lesson here (:lesson lists them)"));
+    if (step == NULL) {
+        return act_refuse(st, "there is no lesson here (:lesson lists them)");
+    }
     const bool choice = step->check == LESSON_CHOICE;
-    FAIL_IF(step->check != LESSON_NUMBER && !choice,
-            act_refuse(st, "this step wants no answer: do what it says"));
+    if (step->check != LESSON_NUMBER && !choice) {
+        return act_refuse(st, "this step wants no answer: do what it says");
+    }
     if (argument[0] == '\0') {
         prompt_open(&st->prompt, NULL, "answer ");
         return act_tell(st, choice ? "the number of an answer" : "a number");
     }
-    NEED(act_read_number(st, argument, &value));
+    if (!act_read_number(st, argument, &value)) {
+        return false;
+    }
 
     // a wrong one may be followed by another
     st->lesson.answered = true;
     st->lesson.answer = value;
     act_follow_lesson(st);
-    return st->lesson.passed ? act_hush(st) : act_warn(st, "not %g. %s", value, step->hint);
+    if (st->lesson.passed) {
+        return act_hush(st);
+    }
+    return act_warn(st, "not %g. %s", value, step->hint);
 }
 
 bool act_continue(explorer_state *st, const char *argument)
 {
     const lesson *l = &st->session.base.lesson;
     const lesson_step *step = present_step(st);
-    FAIL_IF(step == NULL, act_refuse(st, "there is no lesson here (:lesson lists them)"));
+    if (step == NULL) {
+        return act_refuse(st, "there is no lesson here (:lesson lists them)");
+    }
     act_follow_lesson(st);
-    FAIL_IF(step->check != LESSON_READ && !st->lesson.passed,
-            act_warn(st, "not yet. %s", step->hint));
+    if (step->check != LESSON_READ && !st->lesson.passed) {
+        return act_warn(st, "not yet. %s", step->hint);
+    }
 
     // after the last one the lab is as it always is
     if (st->lesson.step + 1 == l->step_count) {

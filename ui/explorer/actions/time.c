@@ -7,7 +7,7 @@
 
 #include "src/base/instant.h"
 
-// --- pulling the tip --------------------------------------------------------------------------
+// --- pulling the tip -------------------------------------------------------------------
 
 // Brings the spring's force up to date with the tip at the cursor.
 static void follow_tip(explorer_state *st)
@@ -22,9 +22,12 @@ bool act_hold_tip(explorer_state *st, plane_vector place)
 {
     const session *s = &st->session;
     tip_pull *p = &st->pull;
-    FAIL_IF(s->effective.parameters.arm.model == ARM_PRINTED,
-            act_refuse(st, "the printed model knows no pushes: nothing pulls its tip"));
-    FAIL_IF(s->computing != NULL, act_refuse(st, "the run is still being computed"));
+    if (s->effective.parameters.arm.model == ARM_PRINTED) {
+        return act_refuse(st, "the printed model knows no pushes: nothing pulls its tip");
+    }
+    if (s->computing != NULL) {
+        return act_refuse(st, "the run is still being computed");
+    }
 
     // the run plays as long as the tip is held
     session_forget_ghost(&st->session);
@@ -37,8 +40,8 @@ bool act_hold_tip(explorer_state *st, plane_vector place)
     st->playback.playing = true;
     follow_tip(st);
     return act_tell(st,
-                    "a spring of %g N/m from the tip to the pointer: the run plays while it is "
-                    "held",
+                    "a spring of %g N/m from the tip to the pointer: the run plays while "
+                    "it is held",
                     PULL_STIFFNESS);
 }
 
@@ -82,7 +85,7 @@ bool act_drop_pull(explorer_state *st)
     return act_tell(st, "pulled until %.4f s, u takes it back", st->session.now);
 }
 
-// --- time -------------------------------------------------------------------------------------
+// --- time ------------------------------------------------------------------------------
 
 enum { MOST_SLOW = 100 }; // how much slower impacts can be shown
 #define NEW_SHARE 0.1     // of the last measurement in the mean speed
@@ -108,13 +111,18 @@ bool act_advance(explorer_state *st, double seconds)
     const double before = s->now, duration = s->effective.parameters.run.duration;
     play->slowed = playback_slowness(play, &s->run.trace, duration, before);
     const double next = before + seconds * play->speed / play->slowed;
-    NEED(pull_until(st, next));
+    if (!pull_until(st, next)) {
+        return false;
+    }
 
     // the cursor waits at the end of what has been computed
     session_seek(s, next);
     const double factor = (s->now - before) / seconds;
-    play->measured =
-        play->measured > 0 ? (1 - NEW_SHARE) * play->measured + NEW_SHARE * factor : factor;
+    if (play->measured > 0) {
+        play->measured = (1 - NEW_SHARE) * play->measured + NEW_SHARE * factor;
+    } else {
+        play->measured = factor;
+    }
     if (s->now < session_end(s) || s->computing != NULL) {
         return true;
     }
@@ -142,7 +150,9 @@ bool act_play(explorer_state *st, const char *argument)
 bool act_step(explorer_state *st, const char *argument)
 {
     double rows = 1;
-    NEED(act_read_number_or(st, argument, "", &rows));
+    if (!act_read_number_or(st, argument, "", &rows)) {
+        return false;
+    }
     st->playback.playing = false;
     session_step(&st->session, (long)fmax(-1e9, fmin(1e9, rows)));
     return true;
@@ -156,8 +166,9 @@ bool act_tell_event(explorer_state *st)
     // an event with its numbers
     if (e != NULL) {
         return act_tell(st,
-                        e->kind == EVENT_IMPACT ? "%s at %.6f s: %.4g N s at %.4g m/s, %.4g J lost"
-                                                : "%s at %.6f s",
+                        e->kind == EVENT_IMPACT
+                            ? "%s at %.6f s: %.4g N s at %.4g m/s, %.4g J lost"
+                            : "%s at %.6f s",
                         event_name(e->kind), e->time, e->impulse, e->speed, e->loss);
     }
 
@@ -179,7 +190,9 @@ bool act_event(explorer_state *st, const char *argument)
     bool back = argument[0] == '-';
     double time = run_log_next(state_run_log(st), st->session.now, back ? -1 : 1);
     st->playback.playing = false;
-    FAIL_IF(time < 0, act_refuse(st, "no %s event", back ? "earlier" : "later"));
+    if (time < 0) {
+        return act_refuse(st, "no %s event", back ? "earlier" : "later");
+    }
     session_seek(&st->session, time);
     return act_tell_event(st);
 }
@@ -200,8 +213,9 @@ bool act_touch(explorer_state *st, const char *argument)
             continue;
         }
         size_t before = trace_row_at(t, e->time);
-        while (before > 0 && (same_instant(t->rows[before - 1].time, e->time) ||
-                              (t->rows[before].contact != 0 && t->rows[before].time >= e->time))) {
+        while (before > 0 &&
+               (same_instant(t->rows[before - 1].time, e->time) ||
+                (t->rows[before].contact != 0 && t->rows[before].time >= e->time))) {
             before--;
         }
         if (t->rows[before].contact == 0 && (back ? before < row : before > row)) {
@@ -211,15 +225,20 @@ bool act_touch(explorer_state *st, const char *argument)
             }
         }
     }
-    FAIL_IF(found == row, act_refuse(st, "no %s touch", back ? "earlier" : "later"));
+    if (found == row) {
+        return act_refuse(st, "no %s touch", back ? "earlier" : "later");
+    }
     session_step(&st->session, (long)found - (long)row);
-    return act_tell(st, "just before a touch: what would come of it is predicted beside what came");
+    return act_tell(
+        st, "just before a touch: what would come of it is predicted beside what came");
 }
 
 bool act_seek(explorer_state *st, const char *argument)
 {
     double time = session_end(&st->session);
-    NEED(act_read_number_or(st, argument, "end", &time));
+    if (!act_read_number_or(st, argument, "end", &time)) {
+        return false;
+    }
     act_scrub(st, time);
     return fabs(st->session.now - time) < 1e-9 ||
            act_warn(st, "the run goes from 0 to %g s: :extend makes it longer",
@@ -238,8 +257,10 @@ bool act_speed(explorer_state *st, const char *argument)
     }
 
     // written so that NAN is refused too
-    FAIL_IF(!(wanted >= 1e-3 && wanted <= 1e4),
-            act_refuse(st, "the speed is a number from 0.001 to 10000, 1 is real time"));
+    if (!(wanted >= 1e-3 && wanted <= 1e4)) {
+        return act_refuse(st,
+                          "the speed is a number from 0.001 to 10000, 1 is real time");
+    }
     st->playback.speed = wanted;
     return true;
 }
@@ -247,9 +268,12 @@ bool act_speed(explorer_state *st, const char *argument)
 bool act_slow(explorer_state *st, const char *argument)
 {
     double factor = 1;
-    NEED(act_read_number_or(st, argument, "off", &factor));
-    FAIL_IF(!(factor >= 1 && factor <= MOST_SLOW),
-            act_refuse(st, "impacts are shown 1 to %d times slower", MOST_SLOW));
+    if (!act_read_number_or(st, argument, "off", &factor)) {
+        return false;
+    }
+    if (!(factor >= 1 && factor <= MOST_SLOW)) {
+        return act_refuse(st, "impacts are shown 1 to %d times slower", MOST_SLOW);
+    }
     st->playback.slow = factor;
     return act_tell(st,
                     factor > 1 ? "impacts are shown %g times slower"
@@ -268,5 +292,6 @@ bool act_restart(explorer_state *st, const char *argument)
 bool act_wait(explorer_state *st, const char *argument)
 {
     double seconds;
-    return act_read_number(st, argument, &seconds) && act_advance(st, fmax(0, fmin(3600, seconds)));
+    return act_read_number(st, argument, &seconds) &&
+           act_advance(st, fmax(0, fmin(3600, seconds)));
 }

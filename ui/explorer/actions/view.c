@@ -16,8 +16,8 @@ bool act_select(explorer_state *st, const char *argument)
 
     // the sweep selects among its runs, panels in which nothing is selected scroll
     if (st->side.panel == PANEL_SWEEP) {
-        act_select_swept(st,
-                         lab_sweep_is_map(sweep) ? -direction * (int)sweep->axis.count : direction);
+        act_select_swept(st, lab_sweep_is_map(sweep) ? -direction * (int)sweep->axis.count
+                                                     : direction);
     } else if (st->side.panel != PANEL_PARAMETERS) {
         st->drawn.scroll[st->side.panel] += direction;
     } else {
@@ -49,9 +49,13 @@ bool act_fold(explorer_state *st, const char *argument)
     for (int i = 0; i < parameter_count && found < 0; i++) {
         char name[PARAMETER_NAME];
         parameter_group_name(i, name, sizeof name);
-        found = strcmp(name, argument) == 0 ? i : found;
+        if (strcmp(name, argument) == 0) {
+            found = i;
+        }
     }
-    FAIL_IF(found < 0, act_refuse(st, "there is no group '%s' of parameters", argument));
+    if (found < 0) {
+        return act_refuse(st, "there is no group '%s' of parameters", argument);
+    }
     parameter_list_fold(list, found);
     return true;
 }
@@ -62,7 +66,11 @@ bool act_filter(explorer_state *st, const char *argument)
     const panel_id panel = st->page != PANEL_NONE ? st->page : st->side.panel;
     char *text = st->filters.text[panel];
     snprintf(text, LINE_TEXT, "%s", argument);
-    st->filters.typing = argument[0] == '\0' ? panel : PANEL_NONE;
+    if (argument[0] == '\0') {
+        st->filters.typing = panel;
+    } else {
+        st->filters.typing = PANEL_NONE;
+    }
     act_settle_filter(st, panel);
     return true;
 }
@@ -75,18 +83,21 @@ void act_settle_filter(explorer_state *st, panel_id panel)
         return;
     }
 
-    // the selected parameter if it is still there, else the first that has an effect, else the
-    // first
+    // the selected parameter if it is still there, else the first that has an effect,
+    // else the first
     int selected;
     const int count = state_parameter_lines(st, lines, &selected);
     const parameter_list *list = &st->parameters;
-    const bool there =
-        count > 0 && !lines[selected].heading && lines[selected].parameter == list->parameter;
+    const bool there = count > 0 && !lines[selected].heading &&
+                       lines[selected].parameter == list->parameter;
     int best = -1;
     bool best_acts = false;
     for (int i = 0; i < count && !there && !best_acts; i++) {
-        best_acts = !lines[i].heading && state_inert_reason(st, lines[i].parameter) == NULL;
-        best = best_acts || (best < 0 && !lines[i].heading) ? i : best;
+        best_acts =
+            !lines[i].heading && state_inert_reason(st, lines[i].parameter) == NULL;
+        if (best_acts || (best < 0 && !lines[i].heading)) {
+            best = i;
+        }
     }
     if (best >= 0) {
         parameter_list_select(&st->parameters, lines[best]);
@@ -97,15 +108,19 @@ bool act_mark(explorer_state *st, const char *argument)
 {
     const session *s = &st->session;
     double time = s->now;
-    NEED(act_read_number_or(st, argument, "", &time));
+    if (!act_read_number_or(st, argument, "", &time)) {
+        return false;
+    }
     const double duration = s->effective.parameters.run.duration;
-    FAIL_IF(!(time >= 0 && time <= duration),
-            act_refuse(st, "the run goes from 0 to %g s", duration));
+    if (!(time >= 0 && time <= duration)) {
+        return act_refuse(st, "the run goes from 0 to %g s", duration);
+    }
     const size_t side = argument[0] != '\0' ? 0 : trace_side(&s->run.trace, s->row);
     st->mark = (time_mark){argument[0] != '\0' || !st->mark.set, time, side};
-    return act_tell(st, st->mark.set ? "mark set: values now show the difference to it, X "
-                                       "statistics from it to the cursor"
-                                     : "no mark");
+    return act_tell(st, st->mark.set
+                            ? "mark set: values now show the difference to it, X "
+                              "statistics from it to the cursor"
+                            : "no mark");
 }
 
 bool act_side(explorer_state *st, const char *argument)
@@ -115,24 +130,37 @@ bool act_side(explorer_state *st, const char *argument)
     // the panels of the side, then those that are folded for want of room
     panel_id next = st->side.panel;
     do {
-        next = next + 1 == PANEL_IDS ? PANEL_NONE : (panel_id)(next + 1);
-    } while (next != PANEL_NONE && (panel_place_of(next) == PLACE_SIDE
-                                        ? next == PANEL_SWEEP && !lab_sweep_is_on(&st->sweep)
-                                        : !st->drawn.folded[next]));
+        if (next + 1 == PANEL_IDS) {
+            next = PANEL_NONE;
+        } else {
+            next = (panel_id)(next + 1);
+        }
+    } while (next != PANEL_NONE &&
+             (panel_place_of(next) == PLACE_SIDE
+                  ? next == PANEL_SWEEP && !lab_sweep_is_on(&st->sweep)
+                  : !st->drawn.folded[next]));
 
     // a narrow screen: curves, each panel of the side, curves again
     if (narrow && (!st->side.in_front || next == PANEL_NONE)) {
         st->side.in_front = !st->side.in_front;
         next = PANEL_NONE;
     }
-    st->side.panel = next != PANEL_NONE ? next : PANEL_PARAMETERS;
+    if (next != PANEL_NONE) {
+        st->side.panel = next;
+    } else {
+        st->side.panel = PANEL_PARAMETERS;
+    }
     return true;
 }
 
 bool act_statistics(explorer_state *st, const char *argument)
 {
     const bool there = st->side.panel == PANEL_STATISTICS;
-    st->side.panel = there ? PANEL_PARAMETERS : PANEL_STATISTICS;
+    if (there) {
+        st->side.panel = PANEL_PARAMETERS;
+    } else {
+        st->side.panel = PANEL_STATISTICS;
+    }
     st->side.in_front = !there;
     return true;
 }
@@ -140,23 +168,51 @@ bool act_statistics(explorer_state *st, const char *argument)
 // Opens a page at its beginning, or closes it.
 static bool toggle_page(explorer_state *st, panel_id page)
 {
-    st->page = st->page == page ? PANEL_NONE : page;
+    if (st->page == page) {
+        st->page = PANEL_NONE;
+    } else {
+        st->page = page;
+    }
     st->drawn.scroll[page] = 0;
     st->filters.text[page][0] = '\0';
     return true;
 }
 
-#define ACTION_OF_PAGE(command, page)                                                              \
-    bool act_##command(explorer_state *st, const char *argument)                                   \
-    {                                                                                              \
-        return toggle_page(st, page);                                                              \
-    }
-ACTION_OF_PAGE(help, PANEL_HELP)
-ACTION_OF_PAGE(info, PANEL_INFO)
-ACTION_OF_PAGE(explain, PANEL_EXPLAIN)
-ACTION_OF_PAGE(poles, PANEL_POLES)
-ACTION_OF_PAGE(compare, PANEL_COMPARISON)
-ACTION_OF_PAGE(runs, PANEL_RUN_LIST)
+bool act_help(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    return toggle_page(st, PANEL_HELP);
+}
+
+bool act_info(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    return toggle_page(st, PANEL_INFO);
+}
+
+bool act_explain(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    return toggle_page(st, PANEL_EXPLAIN);
+}
+
+bool act_poles(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    return toggle_page(st, PANEL_POLES);
+}
+
+bool act_compare(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    return toggle_page(st, PANEL_COMPARISON);
+}
+
+bool act_runs(explorer_state *st, const char *argument)
+{
+    (void)argument;
+    return toggle_page(st, PANEL_RUN_LIST);
+}
 
 bool act_why(explorer_state *st, const char *argument)
 {
@@ -181,8 +237,9 @@ bool act_note(explorer_state *st, const char *argument)
     if (*text == '@') {
         char *end;
         time = strtod(text + 1, &end);
-        FAIL_IF(end == text + 1 || (*end != ' ' && *end != '\0') || !isfinite(time),
-                act_refuse(st, "'%.40s' is no instant, such as @0.35", text));
+        if (end == text + 1 || (*end != ' ' && *end != '\0') || !isfinite(time)) {
+            return act_refuse(st, "'%.40s' is no instant, such as @0.35", text);
+        }
         text = end + strspn(end, " ");
     }
 
@@ -194,12 +251,16 @@ bool act_note(explorer_state *st, const char *argument)
     }
     const bool there = at < st->note_count && same_instant(st->notes[at].time, time);
     if (*text == '\0') {
-        FAIL_IF(!there, act_refuse(st, "note takes a text; there is none at %.5f s", time));
+        if (!there) {
+            return act_refuse(st, "note takes a text; there is none at %.5f s", time);
+        }
         act_drop_note(st, at);
         return act_tell(st, "no note at %.5f s", time);
     }
-    FAIL_IF(!there && st->note_count == NOTES,
-            act_refuse(st, "%d notes are the most there can be (:notes drops some)", NOTES));
+    if (!there && st->note_count == NOTES) {
+        return act_refuse(st, "%d notes are the most there can be (:notes drops some)",
+                          NOTES);
+    }
     if (!there) {
         memmove(&st->notes[at + 1], &st->notes[at],
                 (size_t)(st->note_count++ - at) * sizeof st->notes[0]);
@@ -217,64 +278,110 @@ bool act_notes(explorer_state *st, const char *argument)
 
 bool act_changes(explorer_state *st, const char *argument)
 {
-    st->change = st->session.input_count > 0 ? st->session.input_count - 1 : 0;
+    if (st->session.input_count > 0) {
+        st->change = st->session.input_count - 1;
+    } else {
+        st->change = 0;
+    }
     return toggle_page(st, PANEL_CHANGES);
 }
 
-// Goes on to the next value of a choice, or to the one that is named: the screen is drawn anew.
+// Goes on to the next value of a choice, or to the one that is named: the screen is drawn
+// anew.
 static bool choose(explorer_state *st, const look_choice *c, const char *argument)
 {
     char all[128] = "";
     int *value = look_value(&st->looks, c), count = 0, found = -1;
     for (; c->words[count] != NULL; count++) {
         text_add(all, sizeof all, "%s%s", count > 0 ? ", " : "", c->words[count]);
-        found = strcmp(argument, c->words[count]) == 0 ? count : found;
+        if (strcmp(argument, c->words[count]) == 0) {
+            found = count;
+        }
     }
-    FAIL_IF(found < 0 && (argument[0] != '\0' || !c->goes_round),
-            act_refuse(st, "'%s' is none of %s", argument, all));
-    *value = found >= 0 ? found : (*value + 1) % count;
+    if (found < 0 && (argument[0] != '\0' || !c->goes_round)) {
+        return act_refuse(st, "'%s' is none of %s", argument, all);
+    }
+    if (found >= 0) {
+        *value = found;
+    } else {
+        *value = (*value + 1) % count;
+    }
     st->looks.redraw |= found >= 0;
     const char *says = c->says[c->says[1] != NULL ? *value : 0];
     return says == NULL || act_tell(st, says, c->words[*value]);
 }
 
-#define ACTION_OF_CHOICE(command)                                                                  \
-    bool act_##command(explorer_state *st, const char *argument)                                   \
-    {                                                                                              \
-        return choose(st, look_choice_of(#command), argument);                                     \
-    }
-ACTION_OF_CHOICE(theme)
-ACTION_OF_CHOICE(glyphs)
-ACTION_OF_CHOICE(colours)
-ACTION_OF_CHOICE(pixels)
-ACTION_OF_CHOICE(closeup)
-ACTION_OF_CHOICE(mouse)
-ACTION_OF_CHOICE(lanes)
-ACTION_OF_CHOICE(colourby)
+bool act_theme(explorer_state *st, const char *argument)
+{
+    return choose(st, look_choice_of("theme"), argument);
+}
+
+bool act_glyphs(explorer_state *st, const char *argument)
+{
+    return choose(st, look_choice_of("glyphs"), argument);
+}
+
+bool act_colours(explorer_state *st, const char *argument)
+{
+    return choose(st, look_choice_of("colours"), argument);
+}
+
+bool act_pixels(explorer_state *st, const char *argument)
+{
+    return choose(st, look_choice_of("pixels"), argument);
+}
+
+bool act_closeup(explorer_state *st, const char *argument)
+{
+    return choose(st, look_choice_of("closeup"), argument);
+}
+
+bool act_mouse(explorer_state *st, const char *argument)
+{
+    return choose(st, look_choice_of("mouse"), argument);
+}
+
+bool act_lanes(explorer_state *st, const char *argument)
+{
+    return choose(st, look_choice_of("lanes"), argument);
+}
+
+bool act_colourby(explorer_state *st, const char *argument)
+{
+    return choose(st, look_choice_of("colourby"), argument);
+}
 
 bool act_rate(explorer_state *st, const char *argument)
 {
     double rate = 0;
-    NEED(act_read_number_or(st, argument, "off", &rate));
-    FAIL_IF(rate < 0 || (rate > 0 && rate < 1),
-            act_refuse(st, "a rate is at least 1 kB/s, or off"));
+    if (!act_read_number_or(st, argument, "off", &rate)) {
+        return false;
+    }
+    if (rate < 0 || (rate > 0 && rate < 1)) {
+        return act_refuse(st, "a rate is at least 1 kB/s, or off");
+    }
     st->looks.rate = rate;
-    return act_tell(
-        st, rate > 0 ? "pictures take at most %g kB/s" : "pictures as fast as they are drawn",
-        rate);
+    return act_tell(st,
+                    rate > 0 ? "pictures take at most %g kB/s"
+                             : "pictures as fast as they are drawn",
+                    rate);
 }
 
 bool act_bending(explorer_state *st, const char *argument)
 {
     enum { MOST = 100 };
     double factor = 1;
-    NEED(act_read_number_or(st, argument, "", &factor));
-    FAIL_IF(!(factor >= 1 && factor <= MOST),
-            act_refuse(st, "bending is drawn 1 to %d times as large", MOST));
+    if (!act_read_number_or(st, argument, "", &factor)) {
+        return false;
+    }
+    if (!(factor >= 1 && factor <= MOST)) {
+        return act_refuse(st, "bending is drawn 1 to %d times as large", MOST);
+    }
     st->looks.bending = factor;
-    return act_tell(
-        st, factor == 1 ? "bending is drawn as it is" : "bending is drawn %g times as large",
-        factor);
+    return act_tell(st,
+                    factor == 1 ? "bending is drawn as it is"
+                                : "bending is drawn %g times as large",
+                    factor);
 }
 
 bool act_redraw(explorer_state *st, const char *argument)
@@ -308,16 +415,20 @@ bool act_quit(explorer_state *st, const char *argument)
         snprintf(pinned, sizeof pinned, "%d pinned run%s", pins, pins == 1 ? "" : "s");
     }
     st->asked_to_quit = true;
-    return act_warn(st, "%s%s%s would be lost: q leaves all the same, s keeps all, Esc stays", lost,
-                    changes > 0 && pins > 0 ? " and " : "", pinned);
+    return act_warn(st,
+                    "%s%s%s would be lost: q leaves all the same, s keeps all, Esc stays",
+                    lost, changes > 0 && pins > 0 ? " and " : "", pinned);
 }
 
 bool act_interrupt(explorer_state *st, const char *argument)
 {
-    return st->session.computing != NULL ? act_stop(st, "") : act_quit(st, argument);
+    if (st->session.computing != NULL) {
+        return act_stop(st, "");
+    }
+    return act_quit(st, argument);
 }
 
-// --- the palette ------------------------------------------------------------------------------
+// --- the palette -----------------------------------------------------------------------
 
 bool act_palette(explorer_state *st, const char *argument)
 {
@@ -335,6 +446,12 @@ void act_move_in_palette(explorer_state *st, int direction)
     const int count = palette_find(&st->scenarios, &st->keys, st->prompt.text, entries);
     const int least = st->prompt.searches ? 0 : -1;
     int at = st->palette.selected + direction;
-    at = at >= count ? count - 1 : at;
-    st->palette.selected = at < least ? least : at;
+    if (at >= count) {
+        at = count - 1;
+    }
+    if (at < least) {
+        st->palette.selected = least;
+    } else {
+        st->palette.selected = at;
+    }
 }

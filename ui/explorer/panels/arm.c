@@ -9,7 +9,8 @@
 
 enum {
     CLOSE_UP_FROM = 60, // width of the panel from which on there is a close-up [cells]
-    LEAST_FRAME = 3,    // width and height from which on something is drawn in a frame [cells]
+    LEAST_FRAME =
+        3, // width and height from which on something is drawn in a frame [cells]
 };
 
 // Where a plan of the arm is drawn: cells of the screen, as dots or as pixels.
@@ -36,7 +37,8 @@ static void find_extent(const explorer_state *st, arm_extent *known)
         return;
     }
 
-    // while a run grows, what was known is widened; when it is complete, all of it is looked at
+    // while a run grows, what was known is widened; when it is complete, all of it is
+    // looked at
     const bool anew = !grows || known->rows == 0;
     const bool goes_on = known->run == run && known->rows < t->row_count;
     const size_t first = grows && goes_on ? known->rows : 0, samples = grows ? 100 : 2000;
@@ -60,8 +62,8 @@ static void find_extent(const explorer_state *st, arm_extent *known)
 }
 
 // What shows all that the arm sweeps over on a stage of this size [dots or pixels].
-static plan_view whole_view(const explorer_state *st, const arm_extent *extent, double width,
-                            double height)
+static plan_view whole_view(const explorer_state *st, const arm_extent *extent,
+                            double width, double height)
 {
     const parameters *p = &st->session.effective.parameters;
     double length = p->arm.length;
@@ -86,7 +88,9 @@ static plan_view whole_view(const explorer_state *st, const arm_extent *extent, 
     double room = height * 0.62 / fmax(v.scale * (high - low), 1e-9);
     static const double factors[] = {1.5, 2, 3, 4, 5, 10, 20};
     for (size_t i = 0; i < sizeof factors / sizeof factors[0]; i++) {
-        v.magnified = factors[i] <= room ? factors[i] : v.magnified;
+        if (factors[i] <= room) {
+            v.magnified = factors[i];
+        }
     }
     // the force's arrow comes from above, so leave more room there
     double spare = height / (v.scale * v.magnified) - (high - low);
@@ -103,14 +107,19 @@ int arm_rows(const explorer_state *st, layout *lay, screen_size room)
     const plan_view v = whole_view(st, &lay->extent, 2.0 * room.width, 4.0 * room.height);
     const double spread = (lay->extent.highest - lay->extent.lowest) * v.scale / 4;
     const int wanted = lay->extent.most_angle > 0.8 ? room.height : 6 + (int)spread;
-    return wanted < LEAST ? LEAST : wanted;
+    if (wanted < LEAST) {
+        return LEAST;
+    }
+    return wanted;
 }
 
 // The run that the arm is drawn beside, NULL if there is none of as many bodies.
 static const trace *other_run(const session *e)
 {
-    return e->has_other && e->other.trace.angle_count == e->run.trace.angle_count ? &e->other.trace
-                                                                                  : NULL;
+    if (e->has_other && e->other.trace.angle_count == e->run.trace.angle_count) {
+        return &e->other.trace;
+    }
+    return NULL;
 }
 
 // Where the tip is at the cursor, as it was recorded [m].
@@ -122,11 +131,11 @@ static plane_vector tip_of(const explorer_state *st)
     return tip;
 }
 
-// --- as dots ----------------------------------------------------------------------------------
+// --- as dots ---------------------------------------------------------------------------
 
 // The links of a recorded row as a line of dots, or a line two dots thick.
-static void draw_links(const explorer_state *st, const stage *g, const trace *t, double time,
-                       ink in, bool dotted)
+static void draw_links(const explorer_state *st, const stage *g, const trace *t,
+                       double time, ink in, bool dotted)
 {
     const parameters *p = &st->session.effective.parameters;
     vector joints[PARAMETER_LINKS_MOST + 1];
@@ -135,12 +144,14 @@ static void draw_links(const explorer_state *st, const stage *g, const trace *t,
 
     // one link after the other
     for (int i = 0; i < p->arm.links; i++) {
-        const double x0 = plan_x(&g->view, joints[i].x), y0 = plan_y(&g->view, joints[i].y);
-        const double x1 = plan_x(&g->view, joints[i + 1].x), y1 = plan_y(&g->view, joints[i + 1].y);
+        const double x0 = plan_x(&g->view, joints[i].x),
+                     y0 = plan_y(&g->view, joints[i].y);
+        const double x1 = plan_x(&g->view, joints[i + 1].x),
+                     y1 = plan_y(&g->view, joints[i + 1].y);
         for (int k = 0; dotted && k < 40; k++) {
             const double share = k / 40.0;
-            canvas_dot(&g->canvas, lround(x0 + share * (x1 - x0)), lround(y0 + share * (y1 - y0)),
-                       in);
+            canvas_dot(&g->canvas, lround(x0 + share * (x1 - x0)),
+                       lround(y0 + share * (y1 - y0)), in);
         }
         for (int thick = 0; !dotted && thick < 2; thick++) {
             canvas_line(&g->canvas, x0, y0 + thick, x1, y1 + thick, in);
@@ -154,32 +165,36 @@ static void draw_hub(const stage *v, double angle)
     double x = plan_x(&v->view, 0), y = plan_y(&v->view, 0);
     for (int i = 0; i < 48; i++) {
         double turn = i * 6.283185307 / 48;
-        canvas_dot(&v->canvas, lround(x + radius * cos(turn)), lround(y + radius * sin(turn)),
-                   INK_HUB);
+        canvas_dot(&v->canvas, lround(x + radius * cos(turn)),
+                   lround(y + radius * sin(turn)), INK_HUB);
     }
-    canvas_line(&v->canvas, x, y, x + radius * cos(angle), y - radius * sin(angle), INK_HUB);
+    canvas_line(&v->canvas, x, y, x + radius * cos(angle), y - radius * sin(angle),
+                INK_HUB);
 }
 
 // A line from place to place [m].
 static void draw_line(const stage *g, double x0, double y0, double x1, double y1, ink in)
 {
     const plan_view *v = &g->view;
-    canvas_line(&g->canvas, plan_x(v, x0), plan_y(v, y0), plan_x(v, x1), plan_y(v, y1), in);
+    canvas_line(&g->canvas, plan_x(v, x0), plan_y(v, y0), plan_x(v, x1), plan_y(v, y1),
+                in);
 }
 
 static void draw_wall(const stage *g, const parameters *p, const sample *at)
 {
     const canvas *c = &g->canvas;
     const vector shift = scene_wall_shift(p, at);
-    const double x = p->arm.length * cos(p->wall.angle), y = p->arm.length * sin(p->wall.angle);
+    const double x = p->arm.length * cos(p->wall.angle),
+                 y = p->arm.length * sin(p->wall.angle);
 
     // a plane: a stretch of the line that the arm lies along
     if (p->wall.kind == WALL_PLANE) {
-        draw_line(g, 0.8 * x + shift.x, 0.8 * y + shift.y, 1.1 * x + shift.x, 1.1 * y + shift.y,
-                  INK_WALL);
+        draw_line(g, 0.8 * x + shift.x, 0.8 * y + shift.y, 1.1 * x + shift.x,
+                  1.1 * y + shift.y, INK_WALL);
     }
 
-    // where the tip meets a wall of any kind, and the cell beyond, which the arm cannot reach
+    // where the tip meets a wall of any kind, and the cell beyond, which the arm cannot
+    // reach
     const int column = c->x + (int)(plan_x(&g->view, x + shift.x) / 2);
     const int row = c->y + (int)(plan_y(&g->view, y + shift.y) / 4);
     if (p->wall.kind != WALL_NONE && row > c->y && row < c->y + c->height) {
@@ -190,7 +205,8 @@ static void draw_wall(const stage *g, const parameters *p, const sample *at)
     }
 }
 
-// An arrow that pushes on the arm at its tip, as long as the force is a share of the run's peak.
+// An arrow that pushes on the arm at its tip, as long as the force is a share of the
+// run's peak.
 static void draw_force(const stage *v, plane_vector tip, double force, double peak)
 {
     if (!(force > 0) || !(peak > 0)) {
@@ -202,7 +218,8 @@ static void draw_force(const stage *v, plane_vector tip, double force, double pe
     // shaft and head in one column of cells
     const int across = (int)lround(x - 2) / 2, head = (int)(y / 4) - 1;
     const int column = v->canvas.x + across, row = v->canvas.y + head;
-    canvas_line(&v->canvas, 2.0 * across, y - 8 - length, 2.0 * across, 4.0 * head - 1, INK_FORCE);
+    canvas_line(&v->canvas, 2.0 * across, y - 8 - length, 2.0 * across, 4.0 * head - 1,
+                INK_FORCE);
     if (row > v->canvas.y) {
         screen_put(v->canvas.screen, column, row, 0x25bc, INK_FORCE);
     }
@@ -226,7 +243,7 @@ static void draw_dots(const explorer_state *st, const stage *g)
     draw_force(g, tip, row->contact != 0 ? row->force : 0, e->run.summary.peak_force_N);
 }
 
-// --- as pixels --------------------------------------------------------------------------------
+// --- as pixels -------------------------------------------------------------------------
 
 static void draw_pixels(const explorer_state *st, const stage *g)
 {
@@ -234,27 +251,27 @@ static void draw_pixels(const explorer_state *st, const stage *g)
     const screen *s = g->canvas.screen;
     const rgb ground = s->pictures->ground;
     const colour_theme theme = st->looks.theme;
-    const plan p = {
-        .rows = &e->run.trace,
-        .parameters = &e->effective.parameters,
-        .time = e->now,
-        .other = other_run(e),
-        .exaggerate = st->looks.bending,
-        .peak = e->run.summary.peak_force_N,
-        .pulled = st->pull.held,
-        .pull_x = st->pull.x,
-        .pull_y = st->pull.y,
-        .colours = {.ground = {ground.red / 255.0, ground.green / 255.0, ground.blue / 255.0},
-                    .arm = picture_colour(s, theme, INK_ARM),
-                    .hub = picture_colour(s, theme, INK_HUB),
-                    .wall = picture_colour(s, theme, INK_WALL),
-                    .force = picture_colour(s, theme, INK_FORCE),
-                    .other = picture_colour(s, theme, INK_OTHER),
-                    .frame = picture_colour(s, theme, INK_FRAME)}};
+    const plan p = {.rows = &e->run.trace,
+                    .parameters = &e->effective.parameters,
+                    .time = e->now,
+                    .other = other_run(e),
+                    .exaggerate = st->looks.bending,
+                    .peak = e->run.summary.peak_force_N,
+                    .pulled = st->pull.held,
+                    .pull_x = st->pull.x,
+                    .pull_y = st->pull.y,
+                    .colours = {.ground = {ground.red / 255.0, ground.green / 255.0,
+                                           ground.blue / 255.0},
+                                .arm = picture_colour(s, theme, INK_ARM),
+                                .hub = picture_colour(s, theme, INK_HUB),
+                                .wall = picture_colour(s, theme, INK_WALL),
+                                .force = picture_colour(s, theme, INK_FORCE),
+                                .other = picture_colour(s, theme, INK_OTHER),
+                                .frame = picture_colour(s, theme, INK_FRAME)}};
     plan_paint(g->picture, &p, &g->view);
 }
 
-// --- the panel --------------------------------------------------------------------------------
+// --- the panel -------------------------------------------------------------------------
 
 // A stage inside a frame that is to come: its size is known, nothing is drawn yet.
 static stage plan_stage(screen *s, area a)
@@ -284,7 +301,8 @@ static void draw_close_up(const explorer_state *st, screen *s, area a)
 {
     char title[LINE_TEXT];
     stage g = plan_stage(s, a);
-    g.view = plan_close_up(&st->session.effective.parameters, g.view.width, g.view.height);
+    g.view =
+        plan_close_up(&st->session.effective.parameters, g.view.width, g.view.height);
     snprintf(title, sizeof title, "tip, %.3g mm", 1e3 * g.view.width / g.view.scale);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
     draw_stage(st, &g);
@@ -296,7 +314,8 @@ static void draw_words(const explorer_state *st, const stage *g, area a)
     const sample *row = session_sample(&st->session);
     const plane_vector tip = tip_of(st);
     screen *s = g->canvas.screen;
-    const double across = g->view.width / g->canvas.width, down = g->view.height / g->canvas.height;
+    const double across = g->view.width / g->canvas.width,
+                 down = g->view.height / g->canvas.height;
     const int x = g->canvas.x + (int)(plan_x(&g->view, tip.x) / across);
     const int y = g->canvas.y + (int)(plan_y(&g->view, tip.y) / down) - 2;
     if (row->contact != 0 && row->force > 0 && y > a.y) {
@@ -308,8 +327,8 @@ static void draw_words(const explorer_state *st, const stage *g, area a)
                     "\u25c6 contact point");
     }
     if (st->pull.held) {
-        screen_print(s, a.x + 14, a.y + a.height - 2, a.width - 34, INK_FORCE, "pulled with %.3g N",
-                     st->pull.force);
+        screen_print(s, a.x + 14, a.y + a.height - 2, a.width - 34, INK_FORCE,
+                     "pulled with %.3g N", st->pull.force);
     }
     if (row->sticking != 0) {
         screen_text(s, a.x + 2, a.y + a.height - 2, 12, INK_DIM, "hub sticks");
@@ -360,10 +379,11 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
                     .bottom = g.view.bottom,
                     .across = g.view.scale * c->width / g.view.width,
                     .up = g.view.scale * g.view.magnified * c->height / g.view.height};
-    layout_add_hit(lay, (hit_area){PANEL_ARM, PART_BODY, 0, {c->x, c->y, c->width, c->height}});
+    layout_add_hit(
+        lay, (hit_area){PANEL_ARM, PART_BODY, 0, {c->x, c->y, c->width, c->height}});
 }
 
-// --- the mouse --------------------------------------------------------------------------------
+// --- the mouse -------------------------------------------------------------------------
 
 // A press near the tip takes hold of it.
 static bool point(explorer_state *st, const panel_gesture *g)

@@ -4,7 +4,7 @@
 
 #include "ui/terminal/pictures.h"
 
-// --- the lines above and below the panels -----------------------------------------------------
+// --- the lines above and below the panels ----------------------------------------------
 
 static void draw_title(const explorer_state *st, screen *s)
 {
@@ -15,7 +15,8 @@ static void draw_title(const explorer_state *st, screen *s)
     if (e->input_count > 0) {
         int later = 0;
         for (int i = 0; i < e->input_count; i++) {
-            later += e->inputs[i].kind != SESSION_INPUT_START && e->inputs[i].time > e->now;
+            later +=
+                e->inputs[i].kind != SESSION_INPUT_START && e->inputs[i].time > e->now;
         }
         snprintf(changes, sizeof changes, "\u25cf %d change%s", e->input_count,
                  e->input_count == 1 ? "" : "s");
@@ -39,7 +40,7 @@ static void draw_title(const explorer_state *st, screen *s)
     screen_text(s, x + 2, 0, s->width - x - 3, INK_EVENT, changes);
 }
 
-// --- status -----------------------------------------------------------------------------------
+// --- status ----------------------------------------------------------------------------
 
 // A part of a bar.
 typedef struct bar_item {
@@ -56,16 +57,17 @@ static void blank_row(screen *s, int y)
     }
 }
 
-// Draws a bar: the items of the lowest ranks as far as they have room, those below `always` in any
-// case, in their order from left to right.
-static void draw_bar(screen *s, int y, int room, int always, ink colour, const bar_item *items,
-                     int count)
+// Draws a bar: the items of the lowest ranks as far as they have room, those below
+// `always` in any case, in their order from left to right.
+static void draw_bar(screen *s, int y, int room, int always, ink colour,
+                     const bar_item *items, int count)
 {
     bool shown[BAR_ITEMS] = {false};
     for (int rank = 0, used = 1; rank < BAR_ITEMS; rank++) {
         for (int i = 0; i < count; i++) {
             const int length = text_cells(items[i].text);
-            if (items[i].rank == rank && length > 0 && (rank < always || used + length <= room)) {
+            if (items[i].rank == rank && length > 0 &&
+                (rank < always || used + length <= room)) {
                 shown[i] = true;
                 used += length + 2;
             }
@@ -73,7 +75,9 @@ static void draw_bar(screen *s, int y, int room, int always, ink colour, const b
     }
     blank_row(s, y);
     for (int i = 0, x = 1; i < count; i++) {
-        x += shown[i] ? 2 + screen_text(s, x, y, s->width - x, colour, items[i].text) : 0;
+        if (shown[i]) {
+            x += 2 + screen_text(s, x, y, s->width - x, colour, items[i].text);
+        }
     }
 }
 
@@ -85,13 +89,28 @@ static int write_status(const explorer_state *st, bar_item items[BAR_ITEMS])
     const parameters *p = &e->effective.parameters;
     const status ended = e->run.summary.status;
     bool failed = ended != STATUS_OK, old = e->now < e->seen;
-    const char *how = ended == STATUS_STOPPED             ? "stopped"
-                      : ended == STATUS_NOT_ALLOWED       ? "not allowed"
-                      : ended == STATUS_CONTROLLER_FAILED ? "controller failed"
-                                                          : "diverged";
-    const char *state = st->playback.playing                 ? (old ? "replaying" : "playing")
-                        : failed && e->now >= session_end(e) ? how
-                                                             : "paused";
+    const char *how = "stopped";
+    if (ended != STATUS_STOPPED) {
+        if (ended == STATUS_NOT_ALLOWED) {
+            how = "not allowed";
+        } else if (ended == STATUS_CONTROLLER_FAILED) {
+            how = "controller failed";
+        } else {
+            how = "diverged";
+        }
+    }
+    const char *state;
+    if (st->playback.playing) {
+        if (old) {
+            state = "replaying";
+        } else {
+            state = "playing";
+        }
+    } else if (failed && e->now >= session_end(e)) {
+        state = how;
+    } else {
+        state = "paused";
+    }
     const bool has_law = p->control.law != LAW_NONE;
     char model[64], speed[32] = "";
     int n = 0;
@@ -103,11 +122,11 @@ static int write_status(const explorer_state *st, bar_item items[BAR_ITEMS])
     }
 
     // each part with what it is worth where not all fit
-#define ITEM(importance, ...)                                                                      \
-    do {                                                                                           \
-        items[n].rank = importance;                                                                \
-        snprintf(items[n].text, sizeof items[n].text, __VA_ARGS__);                                \
-        n++;                                                                                       \
+#define ITEM(importance, ...)                                                            \
+    do {                                                                                 \
+        items[n].rank = importance;                                                      \
+        snprintf(items[n].text, sizeof items[n].text, __VA_ARGS__);                      \
+        n++;                                                                             \
     } while (0)
     ITEM(0, "%s %-9s", st->playback.playing ? "\u25b6" : "\u2016", state);
     if (e->computing != NULL) {
@@ -139,10 +158,11 @@ static void draw_status(const explorer_state *st, screen *s, int y)
     // what went wrong colours the bar
     const summary *m = &st->session.run.summary;
     bool failed = m->status != STATUS_OK || m->inaccurate;
-    screen_tint(s, 0, y, s->width, 1, failed && !st->playback.playing ? INK_WARNING : INK_SELECTED);
+    screen_tint(s, 0, y, s->width, 1,
+                failed && !st->playback.playing ? INK_WARNING : INK_SELECTED);
 }
 
-// --- the bottom -------------------------------------------------------------------------------
+// --- the bottom ------------------------------------------------------------------------
 
 // The message in as many rows above `below` as it takes, a few at most; returns how many.
 static int draw_message(const explorer_state *st, screen *s, int below, ink shade)
@@ -155,7 +175,8 @@ static int draw_message(const explorer_state *st, screen *s, int below, ink shad
         if (i == MOST - 1 && !st->prompt.open) {
             screen_words(s, 1, y, s->width - 2, shade, lines[i].start);
         } else {
-            screen_print(s, 1, y, s->width - 2, shade, "%.*s", lines[i].bytes, lines[i].start);
+            screen_print(s, 1, y, s->width - 2, shade, "%.*s", lines[i].bytes,
+                         lines[i].start);
         }
     }
     return count;
@@ -171,7 +192,8 @@ static int draw_prompt(const explorer_state *st, screen *s)
         glyph_decode(&text);
     }
     blank_row(s, y);
-    int x = screen_print(s, 0, y, room, INK_TITLE, "%s%s", p->searches ? "find " : ":", text);
+    int x =
+        screen_print(s, 0, y, room, INK_TITLE, "%s%s", p->searches ? "find " : ":", text);
     screen_put(s, x, y, ' ', INK_SELECTED);
 
     // a value that typing replaces looks selected
@@ -192,10 +214,12 @@ static void draw_hints(const explorer_state *st, screen *s)
     static const struct {
         const char *command, *does;
         int rank;
-    } hints[] = {{"play", "run/pause", 0},  {"step", "step", 3},         {"event", "event", 4},
-                 {"speed", "speed", 7},     {"edit", "change value", 5}, {"branch", "branch", 6},
-                 {"compare", "compare", 8}, {"open", "open", 9},         {"save", "save", 10},
-                 {"help", "help", 1},       {"quit", "quit", 2}};
+    } hints[] = {{"play", "run/pause", 0},    {"step", "step", 3},
+                 {"event", "event", 4},       {"speed", "speed", 7},
+                 {"edit", "change value", 5}, {"branch", "branch", 6},
+                 {"compare", "compare", 8},   {"open", "open", 9},
+                 {"save", "save", 10},        {"help", "help", 1},
+                 {"quit", "quit", 2}};
     enum { HINTS = sizeof hints / sizeof hints[0] };
     bar_item items[HINTS];
 
@@ -204,15 +228,21 @@ static void draw_hints(const explorer_state *st, screen *s)
         char keys[64];
         key_names_of(&st->keys, hints[i].command, keys, sizeof keys);
         // as long as the key is the explorer's own there is a shorter way to say it
-        const char *brief = strncmp(keys, "Right l Left", 12) == 0 ? "\u25c0 \u25b6"
-                            : strcmp(keys, "n N") == 0             ? "n/N"
-                            : strncmp(keys, "+ = -", 5) == 0       ? "+/-"
-                                                                   : NULL;
+        const char *brief = "\u25c0 \u25b6";
+        if (strncmp(keys, "Right l Left", 12) != 0) {
+            if (strcmp(keys, "n N") == 0) {
+                brief = "n/N";
+            } else if (strncmp(keys, "+ = -", 5) == 0) {
+                brief = "+/-";
+            } else {
+                brief = NULL;
+            }
+        }
         keys[strcspn(keys, " ")] = '\0';
         items[i] = (bar_item){.rank = hints[i].rank};
         if (keys[0] != '\0') {
-            snprintf(items[i].text, sizeof items[i].text, "%.20s %s", brief ? brief : keys,
-                     hints[i].does);
+            snprintf(items[i].text, sizeof items[i].text, "%.20s %s",
+                     brief ? brief : keys, hints[i].does);
         }
     }
     draw_bar(s, s->height - 1, s->width - 1, 0, INK_DIM, items, HINTS);
@@ -236,17 +266,22 @@ static int draw_bottom(const explorer_state *st, screen *s)
         draw_hints(st, s);
     } else {
         // a long message covers some of the panels until the next key
-        rows = draw_message(st, s, s->height, st->message.warning ? INK_WARNING : INK_TEXT);
+        rows =
+            draw_message(st, s, s->height, st->message.warning ? INK_WARNING : INK_TEXT);
     }
-    return rows < 1 ? 1 : rows;
+    if (rows < 1) {
+        return 1;
+    }
+    return rows;
 }
 
-// --- too small --------------------------------------------------------------------------------
+// --- too small -------------------------------------------------------------------------
 
 // That the screen is too small, in the longest text that fits.
 static void draw_too_small(screen *s)
 {
-    // from a sentence down to a sign, of the width and height that are needed and that there are
+    // from a sentence down to a sign, of the width and height that are needed and that
+    // there are
     static const char *const forms[] = {
         "The lab needs %1$d x %2$d characters, here are %3$d x %4$d. q quits.",
         "%3$d x %4$d: the lab needs %1$d x %2$d (q quits)",
@@ -271,23 +306,37 @@ static void draw_too_small(screen *s)
     }
 }
 
-// --- the whole screen -------------------------------------------------------------------------
+// --- the whole screen ------------------------------------------------------------------
 
-// The width of the stack on the right; from 120 on there is room for sliders next to the values.
+// The width of the stack on the right; from 120 on there is room for sliders next to the
+// values.
 static int side_width(int screen_width)
 {
-    return screen_width >= 200          ? 60
-           : screen_width >= 120        ? 46
-           : screen_width >= 100        ? 40
-           : screen_width >= SIDE_WIDTH ? 34
-                                        : 0;
+    if (screen_width >= 200) {
+        return 60;
+    }
+    if (screen_width >= 120) {
+        return 46;
+    }
+    if (screen_width >= 100) {
+        return 40;
+    }
+    if (screen_width >= SIDE_WIDTH) {
+        return 34;
+    }
+    return 0;
 }
 
-// Folds panels of the stack until the chosen one has enough of the rows, of which it has `left`:
-// first those without anything to show. Returns the rows that it has then.
-static int fold_stack(const explorer_state *st, layout *lay, int rows[PANEL_IDS], int left)
+// Folds panels of the stack until the chosen one has enough of the rows, of which it has
+// `left`: first those without anything to show. Returns the rows that it has then.
+static int fold_stack(const explorer_state *st, layout *lay, int rows[PANEL_IDS],
+                      int left)
 {
-    enum { SHORT = 14, ENOUGH = 8, LITTLE = 3 }; // rows of all; six lines in a frame, or one
+    enum {
+        SHORT = 14,
+        ENOUGH = 8,
+        LITTLE = 3
+    }; // rows of all; six lines in a frame, or one
     int rows_of_all = left;
     for (int id = 0; id < PANEL_IDS; id++) {
         rows_of_all += rows[id];
@@ -327,16 +376,18 @@ static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
     const screen_size body = {s->width, a.height};
     int rows[PANEL_IDS] = {0}, left = a.height;
 
-    // the rows of those below; the chosen one gets what they leave, and of some all where it has
-    // more to show than they have
+    // the rows of those below; the chosen one gets what they leave, and of some all where
+    // it has more to show than they have
     const bool much = st->side.panel == PANEL_SWEEP || st->side.panel == PANEL_STATISTICS;
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         const panel *p = panel_of((panel_id)id);
         if (panel_place_of((panel_id)id) == PLACE_STACK && id != (int)st->side.panel) {
             rows[id] = p->rows(st, body);
-            lay->drawn.folded[id] =
-                rows[id] > 0 && much && (id == PANEL_CONTROLLER || id == PANEL_PREDICTORS);
-            rows[id] = lay->drawn.folded[id] ? 0 : rows[id];
+            lay->drawn.folded[id] = rows[id] > 0 && much &&
+                                    (id == PANEL_CONTROLLER || id == PANEL_PREDICTORS);
+            if (lay->drawn.folded[id]) {
+                rows[id] = 0;
+            }
             left -= rows[id];
         }
     }
@@ -365,7 +416,9 @@ static void draw_panels(const explorer_state *st, layout *lay, screen *s, area b
     int right = side_width(s->width), left = s->width - right;
     int top = body.height >= 20 ? body.height * 2 / 5 : body.height / 2;
     const int arm = arm_rows(st, lay, (screen_size){left, top});
-    top = top > arm ? arm : top;
+    if (top > arm) {
+        top = arm;
+    }
     panel_of(PANEL_ARM)->draw(st, lay, s, (area){body.x, body.y, left, top});
 
     // on a narrow screen the side takes the place of the curves

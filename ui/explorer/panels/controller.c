@@ -1,5 +1,5 @@
-// The panel of the control law: its modes and the lock on one, and what it read, wanted and sent at
-// its last sample.
+// The panel of the control law: its modes and the lock on one, and what it read, wanted
+// and sent at its last sample.
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
@@ -8,11 +8,13 @@
 enum { NUMBERS_AT = 16 };      // column of the numbers [cells]
 enum { TALL = 10, BRIEF = 7 }; // rows of the panel [cells]
 
-// The modes in a line, the present one in brackets; where not all fit, those up to the present one.
+// The modes in a line, the present one in brackets; where not all fit, those up to the
+// present one.
 static void draw_modes(const explorer_state *st, screen *s, area a, double present)
 {
     const law_modes *m = &st->modes;
-    int first = 0, width = -1, last = present >= 0 && present < m->count ? (int)present : 0;
+    int first = 0, width = -1,
+        last = present >= 0 && present < m->count ? (int)present : 0;
 
     // how wide all modes are; the first ones go where that is too much
     for (int i = 0; i < m->count; i++) {
@@ -53,11 +55,13 @@ static void draw_lock(const explorer_state *st, screen *s, area a)
                      next[0] ? "not locked (%s locks)" : "not locked", next);
     } else {
         screen_print(s, a.x, a.y, a.width, INK_WARNING,
-                     off[0] ? "locked: %s (%s frees)" : "locked: %s", p.control.lock, off);
+                     off[0] ? "locked: %s (%s frees)" : "locked: %s", p.control.lock,
+                     off);
     }
 }
 
-static void draw_quantity(screen *s, area a, const char *name, double value, const char *unit)
+static void draw_quantity(screen *s, area a, const char *name, double value,
+                          const char *unit)
 {
     screen_text(s, a.x, a.y, a.width, INK_TEXT, name);
     screen_print(s, a.x + NUMBERS_AT, a.y, a.width - NUMBERS_AT, INK_TITLE, "%8s",
@@ -72,8 +76,8 @@ static void draw_command(screen *s, area a, const parameters *p, double command)
     draw_quantity(s, a, "command", command, "V");
     if (fabs(command) >= p->motor.voltage_limit) {
         screen_text(s, a.x + 8, a.y, 9, INK_WARNING, "saturated");
-        screen_print(s, a.x + NUMBERS_AT + 11, a.y, a.width - NUMBERS_AT - 11, INK_WARNING, ">%g",
-                     p->motor.voltage_limit);
+        screen_print(s, a.x + NUMBERS_AT + 11, a.y, a.width - NUMBERS_AT - 11,
+                     INK_WARNING, ">%g", p->motor.voltage_limit);
     }
 }
 
@@ -82,7 +86,8 @@ static number_text brief(int decimals, double value)
 {
     number_text n = {"-"};
     if (isfinite(value)) {
-        snprintf(n.text, sizeof n.text, fabs(value) < 10 ? "%.*f" : "%.*g", decimals, value);
+        snprintf(n.text, sizeof n.text, fabs(value) < 10 ? "%.*f" : "%.*g", decimals,
+                 value);
     }
     return n;
 }
@@ -100,11 +105,21 @@ static void draw_brief(screen *s, area a, const sample *row, const parameters *p
                  p->control.force);
 }
 
-// Tall enough for its table, or brief, or not at all; before the predictors, which may fold.
+// Tall enough for its table, or brief, or not at all; before the predictors, which may
+// fold.
 static int rows(const explorer_state *st, screen_size body)
 {
     const int room = body.height - panel_of(PANEL_PREDICTORS)->rows(st, body);
-    return !state_has_law(st) ? 0 : room >= 30 ? TALL : body.height >= 13 ? BRIEF : 0;
+    if (!state_has_law(st)) {
+        return 0;
+    }
+    if (room >= 30) {
+        return TALL;
+    }
+    if (body.height >= 13) {
+        return BRIEF;
+    }
+    return 0;
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)

@@ -8,22 +8,26 @@
 #include "src/rig/controller.h"
 #include "ui/terminal/pictures.h"
 
-// --- titles -----------------------------------------------------------------------------------
+// --- titles ----------------------------------------------------------------------------
 
-// The lines and colours of a pane's signals: those of the signal table, but no two the same.
+// The lines and colours of a pane's signals: those of the signal table, but no two the
+// same.
 typedef struct pane_look {
     ink colour[PANE_SIGNALS];
     line_style style[PANE_SIGNALS];
 } pane_look;
 
-// Whether a slot's colour is that of one of the first curves of a pane, as the terminal shows them.
-static bool colour_is_taken(const explorer_state *st, const pane_look *look, int curves, int slot)
+// Whether a slot's colour is that of one of the first curves of a pane, as the terminal
+// shows them.
+static bool colour_is_taken(const explorer_state *st, const pane_look *look, int curves,
+                            int slot)
 {
     const ink wanted = (ink)(INK_SERIES_0 + slot);
     const looks *l = &st->looks;
     bool taken = false;
     for (int k = 0; k < curves; k++) {
-        taken = taken || inks_look_alike(l->theme, l->shown_depth, look->colour[k], wanted);
+        taken =
+            taken || inks_look_alike(l->theme, l->shown_depth, look->colour[k], wanted);
     }
     return taken;
 }
@@ -31,7 +35,8 @@ static bool colour_is_taken(const explorer_state *st, const pane_look *look, int
 static pane_look pane_look_of(const explorer_state *st, const pane *p)
 {
     enum { COLOURS = 8, STYLES = 4 };
-    static const line_style plain_first[] = {LINE_SOLID, LINE_DASHED, LINE_DOTTED, LINE_DASH_DOT};
+    static const line_style plain_first[] = {LINE_SOLID, LINE_DASHED, LINE_DOTTED,
+                                             LINE_DASH_DOT};
     bool style_taken[STYLES] = {false};
     pane_look look;
 
@@ -55,10 +60,10 @@ static pane_look pane_look_of(const explorer_state *st, const pane *p)
 // How a legend says what its curves are, most words first.
 typedef enum legend { LEGEND_NAMES, LEGEND_SYMBOLS, LEGEND_TIGHT, LEGEND_BARE } legend;
 
-// What a legend says of a signal's value: a mode by its name where the law is one of ours, else a
-// number; short ones have up to three digits.
-static void format_value(const explorer_state *st, const pane *p, int signal, bool briefly,
-                         char *text, size_t size)
+// What a legend says of a signal's value: a mode by its name where the law is one of
+// ours, else a number; short ones have up to three digits.
+static void format_value(const explorer_state *st, const pane *p, int signal,
+                         bool briefly, char *text, size_t size)
 {
     shown_run runs[SHOWN_RUNS];
     const trace *t = (state_runs(st, p, runs) > 0 ? runs[0] : state_run(st, 0)).trace;
@@ -75,7 +80,8 @@ static void format_value(const explorer_state *st, const pane *p, int signal, bo
     }
 
     // a mode by its name
-    for (int i = 0; is_mode && law != NULL && law->modes != NULL && law->modes[i] != NULL; i++) {
+    for (int i = 0; is_mode && law != NULL && law->modes != NULL && law->modes[i] != NULL;
+         i++) {
         if (value == i) {
             snprintf(text, size, "%s", law->modes[i]);
         }
@@ -87,16 +93,20 @@ static const char *unit_of(const pane *p)
 {
     const char *unit = signal_table[p->signals[0]].unit;
     for (int k = 1; k < p->count; k++) {
-        unit = strcmp(signal_table[p->signals[k]].unit, unit) == 0 ? unit : "";
+        if (strcmp(signal_table[p->signals[k]].unit, unit) != 0) {
+            unit = "";
+        }
     }
     return unit;
 }
 
-// Writes a legend and returns the cells it takes; values are padded so that it stands still.
-static int draw_legend(const explorer_state *st, layout *lay, screen *s, int index, legend how,
-                       int x, int y, int room)
+// Writes a legend and returns the cells it takes; values are padded so that it stands
+// still.
+static int draw_legend(const explorer_state *st, layout *lay, screen *s, int index,
+                       legend how, int x, int y, int room)
 {
-    static const uint32_t lines[] = {0x2500, 0x254c, 0x2508, 0x2574}; // by style, in one character
+    static const uint32_t lines[] = {0x2500, 0x254c, 0x2508,
+                                     0x2574}; // by style, in one character
     const pane *p = &st->panes.pane[index];
     int start = x, end = x + room;
     const pane_look look = pane_look_of(st, p);
@@ -113,10 +123,17 @@ static int draw_legend(const explorer_state *st, layout *lay, screen *s, int ind
         if (p->hidden >> k & 1 && how >= LEGEND_SYMBOLS) {
             continue;
         }
-        int width = how == LEGEND_TIGHT ? 6 : how == LEGEND_BARE ? 0 : 8;
-        int length =
-            snprintf(text, sizeof text, "%s %-*s", how == LEGEND_NAMES ? info->name : info->ascii,
-                     width, how == LEGEND_BARE ? "" : value);
+        int width = 6;
+        if (how != LEGEND_TIGHT) {
+            if (how == LEGEND_BARE) {
+                width = 0;
+            } else {
+                width = 8;
+            }
+        }
+        int length = snprintf(text, sizeof text, "%s %-*s",
+                              how == LEGEND_NAMES ? info->name : info->ascii, width,
+                              how == LEGEND_BARE ? "" : value);
         if (room > 0) {
             const ink shade = p->hidden >> k & 1 ? INK_FRAME : look.colour[k];
             screen_put(s, x, y, x < end ? lines[look.style[k]] : ' ', shade);
@@ -131,9 +148,10 @@ static int draw_legend(const explorer_state *st, layout *lay, screen *s, int ind
     return x - start - 1;
 }
 
-// The pane's number, its unit, its signals with their values at the cursor as far as there is room,
-// and the mode of its axis, in the first row of the pane's area.
-static void draw_pane_title(const explorer_state *st, layout *lay, screen *s, int index, area a)
+// The pane's number, its unit, its signals with their values at the cursor as far as
+// there is room, and the mode of its axis, in the first row of the pane's area.
+static void draw_pane_title(const explorer_state *st, layout *lay, screen *s, int index,
+                            area a)
 {
     const pane *p = &st->panes.pane[index];
     static const char *const axes[] = {"", "grows", "fixed", "calm"};
@@ -145,8 +163,8 @@ static void draw_pane_title(const explorer_state *st, layout *lay, screen *s, in
     // number, unit, and what the axis does
     screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "%3d%*s", index + 1, LABEL_WIDTH - 3,
                  unit_of(p));
-    screen_print(s, a.x, a.y, 3, focused ? INK_TITLE : INK_DIM, "%s%-2d", focused ? "\u25b8" : " ",
-                 index + 1);
+    screen_print(s, a.x, a.y, 3, focused ? INK_TITLE : INK_DIM, "%s%-2d",
+                 focused ? "\u25b8" : " ", index + 1);
     if (p->scaling != AXIS_AUTO && room > 30) {
         room -= 6;
         screen_text(s, x + room + 1, a.y, 5, INK_DIM, axes[p->scaling]);
@@ -170,15 +188,17 @@ static void draw_pane_title(const explorer_state *st, layout *lay, screen *s, in
     while (how < LEGEND_BARE && draw_legend(st, lay, s, index, how, x, a.y, 0) > room) {
         how++;
     }
-    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_VIEW, index, {a.x, a.y, a.width, 1}});
+    layout_add_hit(lay,
+                   (hit_area){PANEL_CURVES, PART_VIEW, index, {a.x, a.y, a.width, 1}});
     draw_legend(st, lay, s, index, how, x, a.y, room);
 }
 
-// --- the panes --------------------------------------------------------------------------------
-// How a run's curves differ from those of others: the present one has the signals' colours and
-// lines, a single pinned one their lines in one colour, several have their own lines.
-static void set_look(const explorer_state *st, plot_frame *f, const pane *p, const shown_run *run,
-                     const pane_look *look, int k)
+// --- the panes -------------------------------------------------------------------------
+// How a run's curves differ from those of others: the present one has the signals'
+// colours and lines, a single pinned one their lines in one colour, several have their
+// own lines.
+static void set_look(const explorer_state *st, plot_frame *f, const pane *p,
+                     const shown_run *run, const pane_look *look, int k)
 {
     f->pattern = style_pattern(look->style[k]);
     f->colour = look->colour[k];
@@ -189,7 +209,11 @@ static void set_look(const explorer_state *st, plot_frame *f, const pane *p, con
     } else if (run->kind == SHOWN_PINNED) {
         f->pattern = run_pattern(run->index);
     } else if (run->kind == SHOWN_SWEPT) {
-        f->colour = run->index == st->sweep.selected ? INK_OTHER : INK_FRAME;
+        if (run->index == st->sweep.selected) {
+            f->colour = INK_OTHER;
+        } else {
+            f->colour = INK_FRAME;
+        }
     } else if (run->kind == SHOWN_BEFORE) {
         f->colour = INK_FRAME;
     } else if (run->kind == SHOWN_MEASURED && p->view != VIEW_RESIDUAL) {
@@ -224,19 +248,22 @@ static void draw_run(const explorer_state *st, plot_frame f, const pane *p, show
         set_look(st, &f, p, &run, &look, k);
 
         // while a value is adjusted the whole future is shown, and after a change dimly
-        const bool hidden = number == 0 && run.kind != SHOWN_MEASURED && !st->session.has_ghost;
+        const bool hidden =
+            number == 0 && run.kind != SHOWN_MEASURED && !st->session.has_ghost;
         if (hidden && st->session.input_count > 0) {
             const ink seen = f.colour;
             f.colour = INK_FRAME;
             plot_frame_signal(&f, run.trace, p->signals[k], f.to, pairs);
             f.colour = seen;
         }
-        plot_frame_signal(&f, run.trace, p->signals[k], hidden ? st->session.seen : f.to, pairs);
+        plot_frame_signal(&f, run.trace, p->signals[k], hidden ? st->session.seen : f.to,
+                          pairs);
     }
 }
 
 // The setpoints and limits of what a pane shows, as they are at the cursor.
-static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s, const pane *p)
+static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s,
+                        const pane *p)
 {
     const struct {
         int signal, parameter;
@@ -245,7 +272,8 @@ static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s
                   {SIGNAL_INDEX(force), PARAMETER_INDEX(control.force_limit), false},
                   {SIGNAL_INDEX(command), PARAMETER_INDEX(motor.voltage_limit), true},
                   {SIGNAL_INDEX(hub_angle), PARAMETER_INDEX(wall.angle), false},
-                  {SIGNAL_INDEX(hub_velocity), PARAMETER_INDEX(control.speed_limit), true}};
+                  {SIGNAL_INDEX(hub_velocity), PARAMETER_INDEX(control.speed_limit),
+                   true}};
 
     // the bound that was asked for, of its signal
     for (int k = 0; k < p->count; k++) {
@@ -259,7 +287,8 @@ static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s
     for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
         const int parameter = levels[i].parameter;
         const char *name = strchr(parameter_table[parameter].path, '.') + 1;
-        if (p->signals[0] == levels[i].signal && state_inert_reason(st, parameter) == NULL) {
+        if (p->signals[0] == levels[i].signal &&
+            state_inert_reason(st, parameter) == NULL) {
             const double value = parameter_get(&now, parameter);
             plot_frame_level(f, s, value, name);
             plot_frame_level(f, s, levels[i].both_ways ? -value : (double)NAN, name);
@@ -282,7 +311,8 @@ static void draw_band(const explorer_state *st, const plot_frame *f, const pane 
             shifted.pixels.high -= by;
             shifted.pattern = style_pattern(LINE_DOTTED);
             shifted.colour = INK_FRAME;
-            plot_frame_signal(&shifted, &st->session.other.trace, p->signals[k], f->to, NULL);
+            plot_frame_signal(&shifted, &st->session.other.trace, p->signals[k], f->to,
+                              NULL);
         }
     }
 }
@@ -291,7 +321,8 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
 {
     const pane *shown = &st->panes.pane[index];
     const area labels = {a.x, a.y + 1, LABEL_WIDTH + 1, a.height - 1};
-    const area inside = {a.x + LABEL_WIDTH + 1, a.y + 1, a.width - LABEL_WIDTH - 1, a.height - 1};
+    const area inside = {a.x + LABEL_WIDTH + 1, a.y + 1, a.width - LABEL_WIDTH - 1,
+                         a.height - 1};
     plot_frame f = {.canvas = {s, inside.x, inside.y, inside.width, inside.height}};
     const bool over_time = pane_is_over_time(shown);
     draw_pane_title(st, lay, s, index, a);
@@ -364,7 +395,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         return;
     }
 
-    const area plot = {a.x + LABEL_WIDTH + 1, a.y, a.width - LABEL_WIDTH - 1, a.height - AXIS};
+    const area plot = {a.x + LABEL_WIDTH + 1, a.y, a.width - LABEL_WIDTH - 1,
+                       a.height - AXIS};
     lay->plot = (area){plot.x, plot.y, plot.width, a.height};
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_BODY, 0, plot});
 

@@ -12,11 +12,13 @@ static double time_at(const explorer_state *st, area plot, int x)
     return from + (to - from) * fmax(0, fmin(1, share));
 }
 
-// A turn of the wheel zooms the axis of values or of time that is under the mouse, or pans.
+// A turn of the wheel zooms the axis of values or of time that is under the mouse, or
+// pans.
 static bool turn_wheel(explorer_state *st, const panel_gesture *g)
 {
     const hit_area *h = &g->hit;
-    const int direction = pointer_wheel(g->event), rows = h->area.height > 0 ? h->area.height : 1;
+    const int direction = pointer_wheel(g->event),
+              rows = h->area.height > 0 ? h->area.height : 1;
     const double factor = direction < 0 ? 0.8 : 1.25;
     double from, to;
     state_window(st, &from, &to);
@@ -30,18 +32,31 @@ static bool turn_wheel(explorer_state *st, const panel_gesture *g)
     return true;
 }
 
-// With Control held a drag draws a box; letting go shows its instants, and its values where it has
-// more than a row.
+// With Control held a drag draws a box; letting go shows its instants, and its values
+// where it has more than a row.
 static bool draw_box(explorer_state *st, const panel_gesture *g)
 {
     zoom_box *b = &st->box;
     const area a = g->hit.area;
     if (g->event.kind == POINTER_PRESS) {
-        *b = (zoom_box){true, g->hit.index, g->event.x, g->event.y, g->event.x, g->event.y};
+        *b = (zoom_box){true,       g->hit.index, g->event.x,
+                        g->event.y, g->event.x,   g->event.y};
     }
     const int right = a.x + a.width - 1, low = a.y + a.height - 1;
-    b->x1 = g->event.x < a.x ? a.x : g->event.x < right ? g->event.x : right;
-    b->y1 = g->event.y < a.y ? a.y : g->event.y < low ? g->event.y : low;
+    if (g->event.x < a.x) {
+        b->x1 = a.x;
+    } else if (g->event.x < right) {
+        b->x1 = g->event.x;
+    } else {
+        b->x1 = right;
+    }
+    if (g->event.y < a.y) {
+        b->y1 = a.y;
+    } else if (g->event.y < low) {
+        b->y1 = g->event.y;
+    } else {
+        b->y1 = low;
+    }
     b->held = g->event.kind != POINTER_RELEASE;
     if (b->held || b->x1 == b->x0) {
         return true;
@@ -53,8 +68,8 @@ static bool draw_box(explorer_state *st, const panel_gesture *g)
     value_range axis;
     if (b->y0 != b->y1 && state_pane_axis(st, b->pane, &axis)) {
         const double height = axis.high - axis.low;
-        pane_fix_axis(&st->panes.pane[b->pane],
-                      (value_range){axis.high - bottom * height, axis.high - top * height});
+        pane_fix_axis(&st->panes.pane[b->pane], (value_range){axis.high - bottom * height,
+                                                              axis.high - top * height});
     }
     return act_zoom_between(st, fmin(t0, t1), fmax(t0, t1));
 }
@@ -75,7 +90,10 @@ static bool point_at_plot(explorer_state *st, const panel_gesture *g)
     if (g->event.kind == POINTER_PRESS) {
         st->box.held = in_pane && g->event.control;
     }
-    return st->box.held ? draw_box(st, g) : scrub(st, g);
+    if (st->box.held) {
+        return draw_box(st, g);
+    }
+    return scrub(st, g);
 }
 
 // The axis is dragged; a click without a drag moves the cursor.
@@ -99,7 +117,8 @@ static bool point_at_labels(explorer_state *st, const panel_gesture *g)
     if (g->event.kind == POINTER_PRESS) {
         st->panes.focus = h->index;
     } else if (g->event.kind == POINTER_DRAG && g->up != 0) {
-        act_shift_axis(st, h->index, -(double)g->up / (h->area.height > 0 ? h->area.height : 1));
+        act_shift_axis(st, h->index,
+                       -(double)g->up / (h->area.height > 0 ? h->area.height : 1));
     }
     return g->event.kind != POINTER_RELEASE;
 }
@@ -112,7 +131,8 @@ static bool point_at_map(explorer_state *st, const panel_gesture *g)
     double from, to;
     state_window(st, &from, &to);
     if (g->event.kind != POINTER_RELEASE) {
-        act_pan_by(st, share * st->session.effective.parameters.run.duration - (from + to) / 2);
+        act_pan_by(st, share * st->session.effective.parameters.run.duration -
+                           (from + to) / 2);
     }
     return g->event.kind != POINTER_RELEASE;
 }
@@ -138,7 +158,8 @@ bool curves_point(explorer_state *st, const panel_gesture *g)
         return true;
     case PART_LEGEND:
         return g->event.kind == POINTER_PRESS &&
-               act_toggle_signal(st, g->hit.index / PANE_SIGNALS, g->hit.index % PANE_SIGNALS);
+               act_toggle_signal(st, g->hit.index / PANE_SIGNALS,
+                                 g->hit.index % PANE_SIGNALS);
     case PART_MAP:
         return point_at_map(st, g);
     default:

@@ -35,7 +35,7 @@ typedef struct lane_band {
     char name[MODE_NAME_SIZE]; // "" for a band that its lane's label names
 } lane_band;
 
-// --- which lanes there are --------------------------------------------------------------------
+// --- which lanes there are -------------------------------------------------------------
 
 // Examines the rows that a run has gained.
 static void survey(const explorer_state *st, lane_survey *known)
@@ -67,7 +67,8 @@ static bool has_lock(const explorer_state *st)
 }
 
 // The lanes of the runs that are shown, the ones that tell most first; returns how many.
-static int find_lanes(const explorer_state *st, const lane_survey *known, lane lanes[MOST_LANES])
+static int find_lanes(const explorer_state *st, const lane_survey *known,
+                      lane lanes[MOST_LANES])
 {
     int count = 0;
     bool others = false;
@@ -81,7 +82,8 @@ static int find_lanes(const explorer_state *st, const lane_survey *known, lane l
         others,           state_has_law(st), st->session.effective.action_count > 0,
         known->saturates, has_lock(st),      known->sticks};
     for (int kind = 0; kind < LANE_KINDS; kind++) {
-        // contact of the other runs, to compare, before the least informative: its place is left
+        // contact of the other runs, to compare, before the least informative: its place
+        // is left
         for (int run = 1; kind == LANE_STICKING && run < runs; run++) {
             if (state_run_name(st, run)[0] != '\0' && count < MOST_LANES - 1) {
                 lanes[count++] = (lane){LANE_CONTACT, run};
@@ -105,17 +107,32 @@ int lanes_rows(const explorer_state *st, lane_survey *known, int height)
     lane lanes[MOST_LANES];
     survey(st, known);
     const int wanted = find_lanes(st, known, lanes) + has_map(st);
-    const int spare = st->looks.lanes == LANES_ALL ? height - LEAST_CURVES
-                      : height > FEWEST_CURVES     ? (height - FEWEST_CURVES) / 2
-                                                   : 0;
-    const int rows = st->looks.lanes == LANES_OFF ? 0 : spare < wanted ? spare : wanted;
-    return rows < 0 ? 0 : rows;
+    int spare;
+    if (st->looks.lanes == LANES_ALL) {
+        spare = height - LEAST_CURVES;
+    } else if (height > FEWEST_CURVES) {
+        spare = (height - FEWEST_CURVES) / 2;
+    } else {
+        spare = 0;
+    }
+    int rows = 0;
+    if (st->looks.lanes != LANES_OFF) {
+        if (spare < wanted) {
+            rows = spare;
+        } else {
+            rows = wanted;
+        }
+    }
+    if (rows < 0) {
+        return 0;
+    }
+    return rows;
 }
 
-// --- what is in them --------------------------------------------------------------------------
+// --- what is in them -------------------------------------------------------------------
 
-// Whether any of the rows from an instant to another one is in contact, sticks, and so on; a few of
-// many are sampled.
+// Whether any of the rows from an instant to another one is in contact, sticks, and so
+// on; a few of many are sampled.
 static bool any_row(const trace *t, double from, double to, int signal, double above)
 {
     const size_t first = trace_row_at(t, from), last = trace_row_at(t, to);
@@ -128,8 +145,8 @@ static bool any_row(const trace *t, double from, double to, int signal, double a
 }
 
 // What a lane of some rows holds between two instants [s].
-static lane_band band_between(const explorer_state *st, lane l, const trace *t, double from,
-                              double to)
+static lane_band band_between(const explorer_state *st, lane l, const trace *t,
+                              double from, double to)
 {
     enum { COLOURS = 6 }; // of modes
     static const ink colours[LANE_KINDS] = {[LANE_CONTACT] = INK_FORCE,
@@ -149,23 +166,36 @@ static lane_band band_between(const explorer_state *st, lane l, const trace *t, 
     } else if (l.kind == LANE_LOCK) {
         const parameters p = session_parameters_at(&st->session, to);
         for (int i = 0; i < st->modes.count; i++) {
-            band.value = strcmp(st->modes.names[i], p.control.lock) == 0 ? i : band.value;
+            if (strcmp(st->modes.names[i], p.control.lock) == 0) {
+                band.value = i;
+            }
         }
-        snprintf(band.name, sizeof band.name, "%.*s", (int)sizeof band.name - 1, p.control.lock);
+        snprintf(band.name, sizeof band.name, "%.*s", (int)sizeof band.name - 1,
+                 p.control.lock);
     } else {
         // on or off, if anything in between is on
-        const int signal = l.kind == LANE_CONTACT    ? SIGNAL_INDEX(contact)
-                           : l.kind == LANE_STICKING ? SIGNAL_INDEX(sticking)
-                                                     : SIGNAL_INDEX(command);
-        const double above = l.kind == LANE_SATURATION
-                                 ? session_parameters_at(&st->session, to).motor.voltage_limit
-                                 : 0;
-        band.value = any_row(t, from, to, signal, above) ? 1 : -1;
+        int signal;
+        if (l.kind == LANE_CONTACT) {
+            signal = SIGNAL_INDEX(contact);
+        } else if (l.kind == LANE_STICKING) {
+            signal = SIGNAL_INDEX(sticking);
+        } else {
+            signal = SIGNAL_INDEX(command);
+        }
+        const double above =
+            l.kind == LANE_SATURATION
+                ? session_parameters_at(&st->session, to).motor.voltage_limit
+                : 0;
+        if (any_row(t, from, to, signal, above)) {
+            band.value = 1;
+        } else {
+            band.value = -1;
+        }
     }
     return band;
 }
 
-// --- drawing ----------------------------------------------------------------------------------
+// --- drawing ---------------------------------------------------------------------------
 
 // A name in a band, as far as that is long enough to tell it.
 static void name_band(screen *s, int start, int end, int y, const lane_band *band)
@@ -190,9 +220,12 @@ static void draw_bands(const explorer_state *st, screen *s, area line, lane l)
         const double from = left + (right - left) * i / line.width;
         const double to = left + (right - left) * (i + 1) / line.width;
         const bool known = i < line.width && (future || from <= st->session.seen);
-        const lane_band band =
-            known ? band_between(st, l, t, from, future ? to : fmin(to, st->session.seen))
-                  : (lane_band){.value = -1};
+        lane_band band;
+        if (known) {
+            band = band_between(st, l, t, from, future ? to : fmin(to, st->session.seen));
+        } else {
+            band = (lane_band){.value = -1};
+        }
 
         // a band ends where the next one begins
         if (band.value != before.value) {
@@ -227,7 +260,8 @@ static void draw_changes(const explorer_state *st, screen *s, area line)
         } else {
             action_format_value(c, value, sizeof value);
             char path[ACTION_PATH];
-            snprintf(text, sizeof text, "%s %s", strchr(action_path(c, path), '.') + 1, value);
+            snprintf(text, sizeof text, "%s %s", strchr(action_path(c, path), '.') + 1,
+                     value);
         }
 
         // what is still to come is hollow and dim
@@ -245,7 +279,8 @@ static void draw_map(const explorer_state *st, layout *lay, screen *s, area a, a
     const double whole = e->effective.parameters.run.duration;
     double from, to;
     state_window(st, &from, &to);
-    const int left = (int)(from / whole * line.width), right = (int)(to / whole * line.width);
+    const int left = (int)(from / whole * line.width),
+              right = (int)(to / whole * line.width);
     screen_text(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "whole run");
     for (int i = 0; i < line.width; i++) {
         const bool visible = i >= left && i <= right;
@@ -264,7 +299,8 @@ static void draw_map(const explorer_state *st, layout *lay, screen *s, area a, a
         }
     }
     const int now = (int)(e->now / whole * line.width);
-    screen_put(s, line.x + (now < line.width ? now : line.width - 1), line.y, 0x2506, INK_TITLE);
+    screen_put(s, line.x + (now < line.width ? now : line.width - 1), line.y, 0x2506,
+               INK_TITLE);
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_MAP, 0, line});
 }
 

@@ -3,7 +3,8 @@
 
 enum { MOST_LINES = 7 };
 
-// The step as text: its sentence, the answers to choose from, what it says when it is done.
+// The step as text: its sentence, the answers to choose from, what it says when it is
+// done.
 static void write_step(const explorer_state *st, char *text, size_t size)
 {
     const lesson_step *step = &st->session.base.lesson.steps[st->lesson.step];
@@ -22,9 +23,13 @@ static const char *wanted_key(const explorer_state *st)
 {
     const lesson_step *step = &st->session.base.lesson.steps[st->lesson.step];
     const bool answers = step->check == LESSON_NUMBER || step->check == LESSON_CHOICE;
-    return st->lesson.passed || step->check == LESSON_READ ? "y goes on"
-           : answers                                       ? "A answers, y asks for a hint"
-                                                           : "do it, y asks for a hint";
+    if (st->lesson.passed || step->check == LESSON_READ) {
+        return "y goes on";
+    }
+    if (answers) {
+        return "A answers, y asks for a hint";
+    }
+    return "do it, y asks for a hint";
 }
 
 static int rows(const explorer_state *st, screen_size body)
@@ -47,15 +52,16 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 
     // the title shows the progress of the lesson and how to continue
     write_step(st, text, sizeof text);
-    snprintf(title, sizeof title, "lesson, step %d of %d (%s)", st->lesson.step + 1, l->step_count,
-             wanted_key(st));
+    snprintf(title, sizeof title, "lesson, step %d of %d (%s)", st->lesson.step + 1,
+             l->step_count, wanted_key(st));
     screen_frame(s, a.x, a.y, a.width, a.height, INK_EVENT, title);
 
     // as many lines as there is room for
     const int count = text_wrap(text, a.width - 4, lines, MOST_LINES, NULL);
     for (int i = 0; i < count && i < a.height - 2; i++) {
-        screen_print(s, a.x + 2, a.y + 1 + i, a.width - 4, st->lesson.passed ? INK_TITLE : INK_TEXT,
-                     "%.*s", lines[i].bytes, lines[i].start);
+        screen_print(s, a.x + 2, a.y + 1 + i, a.width - 4,
+                     st->lesson.passed ? INK_TITLE : INK_TEXT, "%.*s", lines[i].bytes,
+                     lines[i].start);
     }
 }
 

@@ -19,7 +19,8 @@ static void draw_change(const explorer_state *st, screen *s, area a, const event
     screen_text(s, a.x, a.y, a.width, INK_EVENT, text);
 }
 
-static void draw_entry(const explorer_state *st, screen *s, area a, const log_entry *entry)
+static void draw_entry(const explorer_state *st, screen *s, area a,
+                       const log_entry *entry)
 {
     const trace *t = &st->session.run.trace;
     char name[MODE_NAME_SIZE];
@@ -35,7 +36,8 @@ static void draw_entry(const explorer_state *st, screen *s, area a, const log_en
 
     // an event with its most informative number
     const event *v = &t->events[entry->event];
-    screen_print(s, a.x, a.y, a.width, INK_TEXT, "%9.5f s  %s", v->time, event_name(v->kind));
+    screen_print(s, a.x, a.y, a.width, INK_TEXT, "%9.5f s  %s", v->time,
+                 event_name(v->kind));
     if (v->kind == EVENT_IMPACT || v->kind == EVENT_PUSH) {
         screen_print(s, detail.x, a.y, detail.width, INK_EVENT, "%.3g N s", v->impulse);
     } else if (v->kind == EVENT_CHANGE && v->index >= 0) {
@@ -43,7 +45,8 @@ static void draw_entry(const explorer_state *st, screen *s, area a, const log_en
     }
 }
 
-// Changes and pushes that are still to come after the first `seen` entries; returns how many.
+// Changes and pushes that are still to come after the first `seen` entries; returns how
+// many.
 static int find_later_inputs(const explorer_state *st, size_t seen, int later[MOST_LATER])
 {
     const run_log *log = &st->log;
@@ -51,8 +54,8 @@ static int find_later_inputs(const explorer_state *st, size_t seen, int later[MO
     int count = 0;
     for (size_t i = seen; i < log->count && count < MOST_LATER; i++) {
         const int index = log->entries[i].event;
-        if (index >= 0 &&
-            (t->events[index].kind == EVENT_CHANGE || t->events[index].kind == EVENT_PUSH)) {
+        if (index >= 0 && (t->events[index].kind == EVENT_CHANGE ||
+                           t->events[index].kind == EVENT_PUSH)) {
             later[count++] = (int)i;
         }
     }
@@ -61,7 +64,10 @@ static int find_later_inputs(const explorer_state *st, size_t seen, int later[MO
 
 static int rows(const explorer_state *st, screen_size body)
 {
-    return body.width >= SIDE_WIDTH && body.height >= 26 ? body.height / 4 : 0;
+    if (body.width >= SIDE_WIDTH && body.height >= 26) {
+        return body.height / 4;
+    }
+    return 0;
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
@@ -74,14 +80,17 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     size_t seen = 0;
     int current = 0, height = a.height - 2, later[MOST_LATER];
     while (seen < log->count && log->entries[seen].time <= e->seen) {
-        current = log->entries[seen].time <= e->now ? (int)seen : current;
+        if (log->entries[seen].time <= e->now) {
+            current = (int)seen;
+        }
         seen++;
     }
     const int count = (int)seen + find_later_inputs(st, seen, later);
 
     // that one in the middle, or the last ones; scrolling counts from there
     const int still = draw_first_line(current, count, height), last = count - height;
-    const int wanted = still + st->drawn.scroll[PANEL_LOG], least = wanted > last ? last : wanted;
+    const int wanted = still + st->drawn.scroll[PANEL_LOG],
+              least = wanted > last ? last : wanted;
     const int first = least < 0 ? 0 : least;
     lay->drawn.scroll[PANEL_LOG] = first - still;
     const area lines = {a.x + 1, a.y + 1, a.width - 2, height};

@@ -26,16 +26,18 @@ static bool drop(explorer_state *st, const char *number)
     return true;
 }
 
-static const page_list list = {
-    .title = "notes (Enter goes there, d drops, Esc closes)",
-    .empty = "notes (Esc closes)",
-    .width = 84,
-    .least = 1,
-    .needs_lines = true,
-    .count = offsetof(explorer_state, note_count),
-    .selected = offsetof(explorer_state, note),
-    .draw_line = draw_line,
-    .draw_rest = draw_rest,
-    .keys = {{KEY_CODE_ENTER, go_there, true}, {'d', drop}, {'x', drop}, {KEY_CODE_DELETE, drop}}};
+static const page_list list = {.title = "notes (Enter goes there, d drops, Esc closes)",
+                               .empty = "notes (Esc closes)",
+                               .width = 84,
+                               .least = 1,
+                               .needs_lines = true,
+                               .count = offsetof(explorer_state, note_count),
+                               .selected = offsetof(explorer_state, note),
+                               .draw_line = draw_line,
+                               .draw_rest = draw_rest,
+                               .keys = {{KEY_CODE_ENTER, go_there, true},
+                                        {'d', drop},
+                                        {'x', drop},
+                                        {KEY_CODE_DELETE, drop}}};
 
 const panel notes_panel = {.name = "notes", .list = &list, LIST_PAGE};

@@ -13,19 +13,21 @@
 #include "src/session/session.h"
 #include "src/study/linear/linear.h"
 
-// --- the text of the help ---------------------------------------------------------------------
+// --- the text of the help --------------------------------------------------------------
 
 static const char first_visit[] =
-    "A first visit: o lists the scenarios. Watch the arm bounce, Space stops it. I goes back to "
-    "just before it touched, PgUp further. b keeps this run, Enter types another voltage from here "
-    "on, Space plays on beside the old run, c compares their peaks, s saves a figure of both.";
-static const char everywhere[] = "Esc goes back one level. : takes a command, Tab completes it, "
-                                 "the beginning of a name will do.";
+    "A first visit: o lists the scenarios. Watch the arm bounce, Space stops it. I "
+    "goes back to just before it touched, PgUp further. b keeps this run, Enter types "
+    "another voltage from here on, Space plays on beside the old run, c compares their "
+    "peaks, s saves a figure of both.";
+static const char everywhere[] =
+    "Esc goes back one level. : takes a command, Tab completes it, "
+    "the beginning of a name will do.";
 static const char mouse[] =
-    "Mouse: click or drag in the curves to move the cursor, the wheel zooms there, Shift-wheel "
-    "pans. Drag the time axis or an axis of values to move it, turn the wheel on it too. Click an "
-    "event, a parameter or a scenario (once more opens it); drag a slider and let go. Shift-drag "
-    "selects text in most terminals.";
+    "Mouse: click or drag in the curves to move the cursor, the wheel zooms there, "
+    "Shift-wheel pans. Drag the time axis or an axis of values to move it, turn the "
+    "wheel on it too. Click an event, a parameter or a scenario (once more opens it); "
+    "drag a slider and let go. Shift-drag selects text in most terminals.";
 
 enum { WRAPPED = 24, MOST_LINES = 600 }; // of one text, of a page
 enum { TEXT_WIDTH = 84 };                // of a page of sentences [cells]
@@ -45,7 +47,8 @@ static help_line *new_line(page *p)
     return line;
 }
 
-// A text in as many lines as it takes, from a column on; the first line may be begun already.
+// A text in as many lines as it takes, from a column on; the first line may be begun
+// already.
 static void add_column(page *p, int column, const char *text, help_line *begun)
 {
     text_line parts[WRAPPED];
@@ -65,7 +68,8 @@ static void add_column(page *p, int column, const char *text, help_line *begun)
     }
 }
 
-static void add_text(page *p, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void add_text(page *p, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 static void add_text(page *p, const char *format, ...)
 {
@@ -99,7 +103,8 @@ static void add_entry(page *p, const char *keys, const char *text)
 // What the commands do, in groups, with the keys that carry each out.
 static void add_commands(page *p, const key_bindings *b)
 {
-    // wide enough: keys, call and meaning are three columns; else the call goes before the meaning
+    // wide enough: keys, call and meaning are three columns; else the call goes before
+    // the meaning
     bool wide = p->width >= 96;
 
     // a group's heading before its first command
@@ -110,7 +115,8 @@ static void add_commands(page *p, const key_bindings *b)
             add_heading(p, c->group);
         }
         key_names_of(b, c->name, keys, sizeof keys);
-        snprintf(call, sizeof call, ":%s%s%s", c->name, c->argument[0] ? " " : "", c->argument);
+        snprintf(call, sizeof call, ":%s%s%s", c->name, c->argument[0] ? " " : "",
+                 c->argument);
         snprintf(text, sizeof text, wide ? "%-32s %s" : "%s  %s", call, c->help);
         add_entry(p, keys, text);
     }
@@ -140,7 +146,13 @@ int help_write(const key_bindings *b, int width, help_line *lines, int most)
 {
     assert(most > 0);
     page p = {.lines = lines, .most = most, .width = width};
-    p.column = width >= 96 ? 26 : width >= 60 ? 20 : 12;
+    if (width >= 96) {
+        p.column = 26;
+    } else if (width >= 60) {
+        p.column = 20;
+    } else {
+        p.column = 12;
+    }
     add_text(&p, "%s", first_visit);
     new_line(&p);
     add_text(&p, "%s", everywhere);
@@ -151,7 +163,7 @@ int help_write(const key_bindings *b, int width, help_line *lines, int most)
     return p.count;
 }
 
-// --- help -------------------------------------------------------------------------------------
+// --- help ------------------------------------------------------------------------------
 
 // Keeps the lines that pass a filter; returns how many.
 static int keep_matching(help_line *lines, int count, const char *filter)
@@ -168,8 +180,8 @@ void draw_page_frame(screen *s, area a, const char *title, int last, int count)
 {
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
     if (last < count || count > a.height - 2) {
-        screen_print(s, a.x + 2, a.y + a.height - 1, a.width - 4, INK_DIM, " %d of %d lines ", last,
-                     count);
+        screen_print(s, a.x + 2, a.y + a.height - 1, a.width - 4, INK_DIM,
+                     " %d of %d lines ", last, count);
     }
 }
 
@@ -181,10 +193,10 @@ static page begin_page(area body, int width)
     return (page){.lines = lines, .most = MOST_LINES, .width = a.width - 4};
 }
 
-// Draws one that is written, as high as its lines and `below` rows for what comes under them, or
-// scrolled; returns its area.
-static area draw_page(const explorer_state *st, layout *lay, screen *s, area body, const page *p,
-                      const char *title, int below)
+// Draws one that is written, as high as its lines and `below` rows for what comes under
+// them, or scrolled; returns its area.
+static area draw_page(const explorer_state *st, layout *lay, screen *s, area body,
+                      const page *p, const char *title, int below)
 {
     const area a = page_area(body, p->width + 4, p->count + 2 + below);
     const int scroll = page_scroll(lay, st->page, a, p->count, 2);
@@ -214,7 +226,7 @@ static void draw_help(const explorer_state *st, layout *lay, screen *s, area bod
 
 const panel help_panel = {PAGE("help"), .draw = draw_help};
 
-// --- the scenario -----------------------------------------------------------------------------
+// --- the scenario ----------------------------------------------------------------------
 
 // The title, the description and the script.
 static void draw_info(const explorer_state *st, layout *lay, screen *s, area body)
@@ -240,7 +252,8 @@ static void draw_info(const explorer_state *st, layout *lay, screen *s, area bod
             snprintf(line, LINE_TEXT, "%9.5f s  push %g N s", a->time, a->value);
         } else {
             action_format_value(a, value, sizeof value);
-            snprintf(line, LINE_TEXT, "%9.5f s  %s = %s", a->time, action_path(a, path), value);
+            snprintf(line, LINE_TEXT, "%9.5f s  %s = %s", a->time, action_path(a, path),
+                     value);
         }
     }
     p.count -= p.count > 0 && p.lines[p.count - 1].text[0] == '\0';
@@ -250,7 +263,7 @@ static void draw_info(const explorer_state *st, layout *lay, screen *s, area bod
 
 const panel info_panel = {PAGE("info"), .draw = draw_info};
 
-// --- what one stands on -----------------------------------------------------------------------
+// --- what one stands on ----------------------------------------------------------------
 
 // The selected parameter: what it is, in which range, why it has no effect.
 static void explain_parameter(const explorer_state *st, page *p)
@@ -262,8 +275,8 @@ static void explain_parameter(const explorer_state *st, page *p)
     if (info->choices != NULL) {
         add_text(p, "%s. One of %s.", info->description, info->choices);
     } else if (info->type == PARAMETER_REAL || info->type == PARAMETER_INTEGER) {
-        add_text(p, "%s. From %g to %g %s.", info->description, info->minimum, info->maximum,
-                 info->unit);
+        add_text(p, "%s. From %g to %g %s.", info->description, info->minimum,
+                 info->maximum, info->unit);
     } else {
         add_text(p, "%s.", info->description);
     }
@@ -283,7 +296,8 @@ static void explain_predictors(page *p)
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
         add_text(p, "%s", words[i]);
     }
-    add_text(p, "\"would not hold\": the touch would throw the tip off. What came: the run.");
+    add_text(
+        p, "\"would not hold\": the touch would throw the tip off. What came: the run.");
 }
 
 static void draw_explain(const explorer_state *st, layout *lay, screen *s, area body)
@@ -299,15 +313,16 @@ static void draw_explain(const explorer_state *st, layout *lay, screen *s, area 
         if (k == 0) {
             add_heading(&p, "signals of the pane in focus (w: next pane)");
         }
-        add_text(&p, "%s (%s%s%s): %s.", info->name, info->ascii, info->unit[0] ? ", in " : "",
-                 info->unit, info->description);
+        add_text(&p, "%s (%s%s%s): %s.", info->name, info->ascii,
+                 info->unit[0] ? ", in " : "", info->unit, info->description);
     }
     if (e != NULL) {
         add_heading(&p, "the event at the cursor");
         add_text(&p, "%s: %s.", event_name(e->kind), event_description((int)e->kind));
     }
     explain_predictors(&p);
-    draw_page(st, lay, s, body, &p, "what is here (? lists keys and commands, Esc closes)", 0);
+    draw_page(st, lay, s, body, &p,
+              "what is here (? lists keys and commands, Esc closes)", 0);
 }
 
 const panel explain_panel = {PAGE("explain"), .draw = draw_explain};
@@ -329,7 +344,7 @@ static void draw_welcome(const explorer_state *st, layout *lay, screen *s, area 
 
 const panel welcome_panel = {PAGE("welcome"), .draw = draw_welcome};
 
-// --- the account of the run -------------------------------------------------------------------
+// --- the account of the run ------------------------------------------------------------
 
 static void draw_why(const explorer_state *st, layout *lay, screen *s, area body)
 {
@@ -344,9 +359,10 @@ static void draw_why(const explorer_state *st, layout *lay, screen *s, area body
 
 const panel why_panel = {PAGE("why"), .draw = draw_why};
 
-// --- the poles --------------------------------------------------------------------------------
+// --- the poles -------------------------------------------------------------------------
 
-// The poles of the arm near rest in one place, of a pair the upper one, or why there are none.
+// The poles of the arm near rest in one place, of a pair the upper one, or why there are
+// none.
 static void add_poles(page *p, const parameters *values, linear_place place)
 {
     static const char *const names[] = {"free", "pressing on the wall",
@@ -359,11 +375,16 @@ static void add_poles(page *p, const parameters *values, linear_place place)
     const int count = code == STATUS_OK ? of.system.states : 0;
     if (code == STATUS_OK) {
         poles = calloc((size_t)count + 1, sizeof *poles);
-        code = poles != NULL ? linear_poles(&of.system, poles, &f) : fault_no_memory(&f);
+        if (poles != NULL) {
+            code = linear_poles(&of.system, poles, &f);
+        } else {
+            code = fault_no_memory(&f);
+        }
     }
     loss_unless(code != STATUS_NO_MEMORY);
     if (code != STATUS_OK || count == 0) {
-        add_text(p, "%s", code != STATUS_OK ? f.text : "none: nothing is left that could move");
+        add_text(p, "%s",
+                 code != STATUS_OK ? f.text : "none: nothing is left that could move");
     }
     for (int i = 0; code == STATUS_OK && i < count; i++) {
         const double complex s = poles[i];
@@ -408,8 +429,8 @@ static void draw_shapes(screen *s, area a, const parameters *values)
         double x = 0, middle = 2.0 * c.height - 0.5;
         for (int k = 0; k < links && most > 0; k++) {
             const double end = x + lengths[k] / values->arm.length * (2.0 * wide - 1);
-            canvas_line(&c, x, middle * (1 - at[k] / most), end, middle * (1 - at[k + 1] / most),
-                        INK_ARM);
+            canvas_line(&c, x, middle * (1 - at[k] / most), end,
+                        middle * (1 - at[k + 1] / most), INK_ARM);
             x = end;
         }
         screen_print(s, c.x, a.y, wide, INK_DIM, "free, %.3g Hz", w[i] / (2 * acos(-1)));
@@ -432,16 +453,19 @@ static void draw_poles(const explorer_state *st, layout *lay, screen *s, area bo
         memcpy(&shown, &now, sizeof now);
         p = (page){.lines = lines, .most = MOST_LINES, .width = width};
         add_text(&p, "The arm near rest with the values at the cursor, without its law.");
-        snprintf(new_line(&p)->text, LINE_TEXT, "%12s%12s%12s", "[Hz]", "damping", "decay [s]");
+        snprintf(new_line(&p)->text, LINE_TEXT, "%12s%12s%12s", "[Hz]", "damping",
+                 "decay [s]");
         for (linear_place place = LINEAR_FREE; place <= LINEAR_STUCK; place++) {
             add_poles(&p, &now, place);
         }
     }
-    const bool shows = p.count + 2 + SHAPE_ROWS <= body.height && now.arm.links <= MOST_SHAPED;
+    const bool shows =
+        p.count + 2 + SHAPE_ROWS <= body.height && now.arm.links <= MOST_SHAPED;
     const int below = shows ? SHAPE_ROWS : 0;
     const area a = draw_page(st, lay, s, body, &p, "poles (Esc closes)", below);
     if (shows) {
-        draw_shapes(s, (area){a.x + 2, a.y + a.height - 1 - below, a.width - 4, below}, &now);
+        draw_shapes(s, (area){a.x + 2, a.y + a.height - 1 - below, a.width - 4, below},
+                    &now);
     }
 }
 

@@ -42,11 +42,12 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     }
     const int height = (rows > 0 ? rows : 1) + 2;
     const area box = {0, a.y + a.height - height, width, height};
-    snprintf(title, sizeof title, "%d of all (\u2191 \u2193 choose, Enter takes, Esc closes)",
-             count);
+    snprintf(title, sizeof title,
+             "%d of all (\u2191 \u2193 choose, Enter takes, Esc closes)", count);
     screen_frame(s, box.x, box.y, box.width, box.height, INK_CURSOR, title);
     if (rows < 1) {
-        screen_text(s, box.x + 2, box.y + 1, width - 4, INK_DIM, "nothing has these words");
+        screen_text(s, box.x + 2, box.y + 1, width - 4, INK_DIM,
+                    "nothing has these words");
     }
 
     // the selected one is always among them
@@ -56,7 +57,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     layout_add_hit(lay, (hit_area){PANEL_PALETTE, PART_BODY, 0, box});
     layout_add_hit(lay, (hit_area){PANEL_PALETTE, PART_LINES, first, lines});
     for (int i = 0; i < rows; i++) {
-        draw_entry(st, s, (area){lines.x + 1, lines.y + i, lines.width - 2, 1}, entries[first + i]);
+        draw_entry(st, s, (area){lines.x + 1, lines.y + i, lines.width - 2, 1},
+                   entries[first + i]);
         if (first + i == selected) {
             screen_tint(s, lines.x, lines.y + i, lines.width, 1, INK_SELECTED);
         }

@@ -29,11 +29,12 @@ static void draw_ends(screen *s, area a, value_range x, const char *name)
     char text[96];
     const int y = a.y + a.height - 1;
     screen_text(s, a.x, y, a.width, INK_DIM, draw_number(x.low).text);
-    const int length = snprintf(text, sizeof text, "%.48s %s", name, draw_number(x.high).text);
+    const int length =
+        snprintf(text, sizeof text, "%.48s %s", name, draw_number(x.high).text);
     screen_text(s, a.x + a.width - length, y, length, INK_DIM, text);
 }
 
-// --- one signal over another ------------------------------------------------------------------
+// --- one signal over another -----------------------------------------------------------
 
 static void widen_by(value_range *r, const trace *t, int signal, double from, double to)
 {
@@ -43,8 +44,8 @@ static void widen_by(value_range *r, const trace *t, int signal, double from, do
     }
 }
 
-static void draw_path(const plane *p, const trace *t, const pane *of, double from, double to,
-                      ink colour)
+static void draw_path(const plane *p, const trace *t, const pane *of, double from,
+                      double to, ink colour)
 {
     double x0 = (double)NAN, y0 = (double)NAN;
     const size_t last = trace_row_at(t, to);
@@ -71,8 +72,9 @@ static bool draw_phase(const explorer_state *st, screen *s, const pane *of, area
     if (!(x.high >= x.low) || !(y.high >= y.low)) {
         return false;
     }
-    const plane p = {
-        {s, a.x, a.y, a.width, a.height}, value_range_opened(x), value_range_opened(y)};
+    const plane p = {{s, a.x, a.y, a.width, a.height},
+                     value_range_opened(x),
+                     value_range_opened(y)};
     *axis = p.y;
     if (e->has_other && !st->difference.on) {
         draw_path(&p, &e->other.trace, of, from, to, INK_OTHER);
@@ -90,10 +92,11 @@ static bool draw_phase(const explorer_state *st, screen *s, const pane *of, area
     return true;
 }
 
-// --- a spectrum -------------------------------------------------------------------------------
+// --- a spectrum ------------------------------------------------------------------------
 
 // A signal at even instants, straight between rows; what has no value counts as 0.
-static void sample_evenly(const trace *t, int signal, double from, double to, double *series)
+static void sample_evenly(const trace *t, int signal, double from, double to,
+                          double *series)
 {
     // both go forward, so the row is found in one walk
     size_t r = trace_row_at(t, from);
@@ -106,15 +109,20 @@ static void sample_evenly(const trace *t, int signal, double from, double to, do
         // a share of the way to the next row, if there is one
         double value = signal_value(&t->rows[r], signal);
         if (r + 1 < t->row_count && t->rows[r + 1].time > t->rows[r].time) {
-            const double share = (time - t->rows[r].time) / (t->rows[r + 1].time - t->rows[r].time);
+            const double share =
+                (time - t->rows[r].time) / (t->rows[r + 1].time - t->rows[r].time);
             value += share * (signal_value(&t->rows[r + 1], signal) - value);
         }
-        series[i] = isfinite(value) ? value : 0;
+        if (isfinite(value)) {
+            series[i] = value;
+        } else {
+            series[i] = 0;
+        }
     }
 }
 
-// The number of lines that hold nearly all of what there is. Line 0 is what the window makes of a
-// mean that was taken off, and not of the signal.
+// The number of lines that hold nearly all of what there is. Line 0 is what the window
+// makes of a mean that was taken off, and not of the signal.
 static int lines_that_matter(const double *amplitude)
 {
     double all = 0, sum = 0;
@@ -126,13 +134,18 @@ static int lines_that_matter(const double *amplitude)
         sum += amplitude[lines] * amplitude[lines];
     }
     lines += lines / 4 + 8;
-    return lines < SERIES / 2 ? lines : SERIES / 2;
+    if (lines < SERIES / 2) {
+        return lines;
+    }
+    return SERIES / 2;
 }
 
-// Below this share of a signal's largest value, the amplitudes of its spectrum are rounding.
+// Below this share of a signal's largest value, the amplitudes of its spectrum are
+// rounding.
 #define ROUNDING 1e-12
 
-// The amplitudes of the visible part, as far as it has been seen, up to where there is anything.
+// The amplitudes of the visible part, as far as it has been seen, up to where there is
+// anything.
 static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, area a,
                           value_range *axis)
 {
@@ -153,7 +166,9 @@ static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, a
     fourier_amplitudes(series, SERIES, scratch, amplitude);
     const int lines = lines_that_matter(amplitude);
     for (int k = 1; k < lines; k++) {
-        peak = amplitude[k] > highest ? k : peak;
+        if (amplitude[k] > highest) {
+            peak = k;
+        }
         highest = fmax(highest, amplitude[k]);
     }
 
@@ -168,15 +183,20 @@ static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, a
         snprintf(name, sizeof name, "highest at %.3g Hz, to [Hz]", peak / (to - from));
     }
     for (int k = 2; k < lines && !constant; k++) {
-        canvas_line(&p.canvas, dot_x(&p, (k - 1) / (to - from)), dot_y(&p, amplitude[k - 1]),
-                    dot_x(&p, k / (to - from)), dot_y(&p, amplitude[k]), INK_SERIES_0);
+        canvas_line(&p.canvas, dot_x(&p, (k - 1) / (to - from)),
+                    dot_y(&p, amplitude[k - 1]), dot_x(&p, k / (to - from)),
+                    dot_y(&p, amplitude[k]), INK_SERIES_0);
     }
     draw_ends(s, a, p.x, name);
     return true;
 }
 
-bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a, value_range *axis)
+bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a,
+                    value_range *axis)
 {
     assert(p->view != VIEW_TIME);
-    return p->view == VIEW_PHASE ? draw_phase(st, s, p, a, axis) : draw_spectrum(st, s, p, a, axis);
+    if (p->view == VIEW_PHASE) {
+        return draw_phase(st, s, p, a, axis);
+    }
+    return draw_spectrum(st, s, p, a, axis);
 }

@@ -18,10 +18,16 @@ const panel *panel_of(panel_id id)
 
 int pointer_wheel(pointer_event e)
 {
-    return e.kind == POINTER_WHEEL_UP ? -1 : e.kind == POINTER_WHEEL_DOWN ? 1 : 0;
+    if (e.kind == POINTER_WHEEL_UP) {
+        return -1;
+    }
+    if (e.kind == POINTER_WHEEL_DOWN) {
+        return 1;
+    }
+    return 0;
 }
 
-// --- lines ------------------------------------------------------------------------------------
+// --- lines -----------------------------------------------------------------------------
 
 enum { PERIOD = 16 }; // dots of a pattern
 
@@ -36,7 +42,8 @@ unsigned style_pattern(line_style style)
 
 unsigned run_pattern(int index)
 {
-    static const unsigned patterns[] = {0x1f1f, 0x3333, 0x0fff, 0x1111, 0x33ff, 0x0333, 0x0101};
+    static const unsigned patterns[] = {0x1f1f, 0x3333, 0x0fff, 0x1111,
+                                        0x33ff, 0x0333, 0x0101};
     enum { PATTERNS = sizeof patterns / sizeof patterns[0] };
     assert(index >= 0);
     return patterns[index % PATTERNS];
@@ -62,7 +69,7 @@ void draw_line_sample(screen *s, int x, int y, int cells, unsigned pattern, ink 
     }
 }
 
-// --- the layout -------------------------------------------------------------------------------
+// --- the layout ------------------------------------------------------------------------
 
 #define NOTHING 1e-12 // a smaller value is rounding, and shown as 0
 
@@ -70,7 +77,14 @@ number_text draw_number(double value)
 {
     number_text n = {"-"};
     const double size = fabs(value);
-    const char *form = size < NOTHING ? "0" : size < 1e-3 || size >= 1e5 ? "%.2e" : "%.4g";
+    const char *form = "0";
+    if (!(size < NOTHING)) {
+        if (size < 1e-3 || size >= 1e5) {
+            form = "%.2e";
+        } else {
+            form = "%.4g";
+        }
+    }
     if (isfinite(value)) {
         snprintf(n.text, sizeof n.text, form, value);
     }
@@ -80,8 +94,13 @@ number_text draw_number(double value)
 int draw_first_line(int selected, int count, int height)
 {
     int first = selected - height / 2;
-    first = first > count - height ? count - height : first;
-    return first < 0 ? 0 : first;
+    if (first > count - height) {
+        first = count - height;
+    }
+    if (first < 0) {
+        return 0;
+    }
+    return first;
 }
 
 int time_column(const explorer_state *st, area line, double time)
@@ -89,15 +108,22 @@ int time_column(const explorer_state *st, area line, double time)
     double from, to;
     state_window(st, &from, &to);
     const double at = (time - from) / (to - from) * line.width;
-    return at >= 0 && at < line.width ? line.x + (int)at : -1;
+    if (at >= 0 && at < line.width) {
+        return line.x + (int)at;
+    }
+    return -1;
 }
 
 area page_area(area body, int width, int height)
 {
-    width = width > body.width - 2 ? body.width - 2 : width;
-    height = height > body.height ? body.height : height;
-    return (area){body.x + (body.width - width) / 2, body.y + (body.height - height) / 2, width,
-                  height};
+    if (width > body.width - 2) {
+        width = body.width - 2;
+    }
+    if (height > body.height) {
+        height = body.height;
+    }
+    return (area){body.x + (body.width - width) / 2, body.y + (body.height - height) / 2,
+                  width, height};
 }
 
 void layout_add_hit(layout *lay, hit_area hit)
@@ -126,12 +152,16 @@ int layout_keep_scroll(layout *lay, panel_id id, int last)
 {
     assert(id > PANEL_NONE && id < PANEL_IDS);
     int *scroll = &lay->drawn.scroll[id];
-    *scroll = *scroll > last ? last : *scroll;
-    *scroll = *scroll < 0 ? 0 : *scroll;
+    if (*scroll > last) {
+        *scroll = last;
+    }
+    if (*scroll < 0) {
+        *scroll = 0;
+    }
     return *scroll;
 }
 
-// --- pages ------------------------------------------------------------------------------------
+// --- pages -----------------------------------------------------------------------------
 
 bool page_key(explorer_state *st, int key)
 {
@@ -141,10 +171,18 @@ bool page_key(explorer_state *st, int key)
 
     // drawing keeps it within the page
     if (key == KEY_CODE_DOWN || key == 'j' || key == KEY_CODE_PAGE_DOWN || key == ' ') {
-        *scroll += key == KEY_CODE_DOWN || key == 'j' ? 1 : lines;
+        if (key == KEY_CODE_DOWN || key == 'j') {
+            *scroll += 1;
+        } else {
+            *scroll += lines;
+        }
     } else if (key == KEY_CODE_UP || key == 'k' || key == KEY_CODE_PAGE_UP) {
         const int by = key == KEY_CODE_PAGE_UP ? lines : 1;
-        *scroll = *scroll > by ? *scroll - by : 0;
+        if (*scroll > by) {
+            *scroll = *scroll - by;
+        } else {
+            *scroll = 0;
+        }
     } else if (key == KEY_CODE_END || key == 'G') {
         *scroll = INT_MAX / 2;
     } else if (key == KEY_CODE_HOME || key == 'g') {
@@ -162,7 +200,11 @@ bool page_key(explorer_state *st, int key)
 int page_scroll(layout *lay, panel_id id, area a, int lines, int head)
 {
     const int shown = a.height - head, beyond = lines - shown;
-    lay->drawn.page_lines = shown > 1 ? shown - 1 : 1;
+    if (shown > 1) {
+        lay->drawn.page_lines = shown - 1;
+    } else {
+        lay->drawn.page_lines = 1;
+    }
     layout_add_hit(lay, (hit_area){.panel = id, .area = a});
     return layout_keep_scroll(lay, id, beyond > 0 ? beyond : 0);
 }
@@ -176,7 +218,7 @@ bool page_point(explorer_state *st, const panel_gesture *g)
     return wheel != 0;
 }
 
-// --- lists ------------------------------------------------------------------------------------
+// --- lists -----------------------------------------------------------------------------
 
 static const page_list *open_list(const explorer_state *st)
 {
@@ -194,7 +236,8 @@ void list_draw(const explorer_state *st, layout *lay, screen *s, area body)
     const int count = *(const int *)((const char *)st + list->count);
     const int selected = *(const int *)((const char *)st + list->selected);
     const int edges = 2 + list->head + list->foot;
-    const area a = page_area(body, list->width, edges + (count > 0 ? count : list->least));
+    const area a =
+        page_area(body, list->width, edges + (count > 0 ? count : list->least));
     const area lines = {a.x + 1, a.y + 1 + list->head, a.width - 2, a.height - edges};
     const int first = draw_first_line(selected, count, lines.height);
     const char *title = a.width < 60 && list->narrow != NULL ? list->narrow : list->title;
@@ -233,9 +276,12 @@ bool list_key_pressed(explorer_state *st, int key)
     char number[16];
 
     // up and down
-    const int by = key == KEY_CODE_UP || key == 'k' ? -1 : key == KEY_CODE_DOWN || key == 'j';
+    const int by =
+        key == KEY_CODE_UP || key == 'k' ? -1 : key == KEY_CODE_DOWN || key == 'j';
     if (by != 0) {
-        *selected += *selected + by >= 0 && *selected + by < *count ? by : 0;
+        if (*selected + by >= 0 && *selected + by < *count) {
+            *selected += by;
+        }
         return true;
     }
 

@@ -1,5 +1,5 @@
-// A panel: a part of the screen that draws a part of the state and handles the mouse, and keys if
-// it is a page. view.h lists them all.
+// A panel: a part of the screen that draws a part of the state and handles the mouse, and
+// keys if it is a page. view.h lists them all.
 #pragma once
 
 #include "src/predict/predictors.h"
@@ -9,7 +9,7 @@
 #include "ui/terminal/keys.h"
 #include "ui/terminal/screen.h"
 
-// --- lines ------------------------------------------------------------------------------------
+// --- lines -----------------------------------------------------------------------------
 // Dash patterns of curves, so that signals and runs can be distinguished without colours.
 
 // Sixteen dots, repeated: bit i is dot i.
@@ -17,7 +17,8 @@ unsigned style_pattern(line_style style);
 // The line of a pinned run, different for each.
 unsigned run_pattern(int index);
 
-// The colour of a pinned run by its index, or of the present one (-1), where runs have colours.
+// The colour of a pinned run by its index, or of the present one (-1), where runs have
+// colours.
 ink run_ink(int index);
 
 // Whether a line has a dot at a column of dots.
@@ -26,12 +27,16 @@ bool line_has_dot(unsigned pattern, long across);
 // A short piece of a line for a legend, `cells` wide.
 void draw_line_sample(screen *s, int x, int y, int cells, unsigned pattern, ink colour);
 
-// --- the layout -------------------------------------------------------------------------------
-// What drawing stores besides the screen: the positions of parts, for the mouse; how far panels can
-// be scrolled; and what is kept from one picture to the next. Drawing does not change the state.
+// --- the layout ------------------------------------------------------------------------
+// What drawing stores besides the screen: the positions of parts, for the mouse; how far
+// panels can be scrolled; and what is kept from one picture to the next. Drawing does not
+// change the state.
 
-enum { LABEL_WIDTH = 9 };                     // of an axis of values [cells]
-enum { LEAST_WIDTH = 40, LEAST_HEIGHT = 12 }; // of a screen that shows the explorer [cells]
+enum { LABEL_WIDTH = 9 }; // of an axis of values [cells]
+enum {
+    LEAST_WIDTH = 40,
+    LEAST_HEIGHT = 12
+}; // of a screen that shows the explorer [cells]
 enum { HIT_AREAS = 256 };
 
 typedef struct area {
@@ -47,7 +52,8 @@ typedef enum hit_part {
     PART_LABELS,    // an axis of values; index: the pane
     PART_PANE,      // the curves of a pane; index: the pane
     PART_CELLS,     // those of a map; index: their height
-    PART_LEGEND,    // a signal in a legend; index: the pane * PANE_SIGNALS + which of its signals
+    PART_LEGEND,    // a signal in a legend; index: the pane * PANE_SIGNALS + which of its
+                    // signals
     PART_TIME_AXIS, // below curves
     PART_VIEW,      // a pane that is not over time; index: the pane
     PART_LANES,     // bands below that
@@ -107,7 +113,8 @@ bool area_holds(area a, int x, int y);
 // Keeps a panel's scrolling from 0 to `last` lines; returns it.
 int layout_keep_scroll(layout *lay, panel_id id, int last);
 
-// A number in at most nine cells; values that are only rounding are shown as 0, NaN as "-".
+// A number in at most nine cells; values that are only rounding are shown as 0, NaN as
+// "-".
 typedef struct number_text {
     char text[24];
 } number_text;
@@ -138,8 +145,8 @@ int pointer_wheel(pointer_event e);
 typedef struct panel {
     const char *name;
 
-    // The number of rows in a stack in `body`, 0 if it has nothing to show or there is no room.
-    // Stacked panels only.
+    // The number of rows in a stack in `body`, 0 if it has nothing to show or there is no
+    // room. Stacked panels only.
     int (*rows)(const explorer_state *st, screen_size body);
 
     // Draws it into an area of the screen; pages are centred in the area of all panels.
@@ -163,14 +170,14 @@ PANEL_LIST(PANEL_DECLARATION)
 // The description of a panel; not for PANEL_NONE.
 const panel *panel_of(panel_id id);
 
-// --- pages ------------------------------------------------------------------------------------
+// --- pages -----------------------------------------------------------------------------
 // Keys and mouse in pages that are scrolled line by line.
 
 // Scrolls the page that is open; any other key closes it.
 bool page_key(explorer_state *st, int key);
 
-// What a page of `lines` lines in an area stores for keys and the mouse, `head` rows of which are
-// not lines; returns how far it is scrolled.
+// What a page of `lines` lines in an area stores for keys and the mouse, `head` rows of
+// which are not lines; returns how far it is scrolled.
 int page_scroll(layout *lay, panel_id id, area a, int lines, int head);
 
 // The frame of a page, which says how many of its lines are shown down to its end.
@@ -179,21 +186,22 @@ void draw_page_frame(screen *s, area a, const char *title, int last, int count);
 // What the description of such a page has in common.
 #define PAGE(title) .name = title, .point = page_point, .key = page_key
 
-// A key of a page that is a list: what it does with the number of the selected line, from 1, as its
-// argument.
+// A key of a page that is a list: what it does with the number of the selected line, from
+// 1, as its argument.
 typedef struct list_key {
     int key;
     action_function *does;
     bool closes; // the page before that
 } list_key;
 
-// A page of lines of which one is selected. Keys for up and down and a press of the mouse select
-// another one, keys that the list does not name close it.
+// A page of lines of which one is selected. Keys for up and down and a press of the mouse
+// select another one, keys that the list does not name close it.
 typedef struct page_list {
-    const char *title, *narrow, *empty; // of a narrow page and without lines, NULL: as ever
-    int width, head, foot, least;       // most cells across; rows over, below, and of no lines
-    bool needs_lines;                   // without any every key closes it
-    size_t count, selected;             // where the state has them, an int each
+    const char *title, *narrow,
+        *empty;                   // of a narrow page and without lines, NULL: as ever
+    int width, head, foot, least; // most cells across; rows over, below, and of no lines
+    bool needs_lines;             // without any every key closes it
+    size_t count, selected;       // where the state has them, an int each
     void (*draw_line)(const explorer_state *st, screen *s, area a, int index);
     void (*draw_rest)(const explorer_state *st, screen *s,
                       area a); // head and foot of the page's area
@@ -209,12 +217,12 @@ bool list_key_pressed(explorer_state *st, int key);
 // The wheel presses a page's keys for up and down.
 bool page_point(explorer_state *st, const panel_gesture *g);
 
-// --- the arm ----------------------------------------------------------------------------------
+// --- the arm ---------------------------------------------------------------------------
 
 // The rows that the arm's panel makes use of where there is plenty of room.
 int arm_rows(const explorer_state *st, layout *lay, screen_size room);
 
-// --- the help ---------------------------------------------------------------------------------
+// --- the help --------------------------------------------------------------------------
 // The text of the help page, made from the tables of keys and commands.
 
 typedef struct help_line {
@@ -223,27 +231,30 @@ typedef struct help_line {
     bool heading;
 } help_line;
 
-// Writes the help page, wrapped to a width; returns how many lines it has, not more than `most`.
+// Writes the help page, wrapped to a width; returns how many lines it has, not more than
+// `most`.
 int help_write(const key_bindings *b, int width, help_line *lines, int most);
 
-// --- views ------------------------------------------------------------------------------------
+// --- views -----------------------------------------------------------------------------
 // Panes whose axis is not time: one signal over another, and the spectrum of a signal.
 
-// Draws a pane's inside; its signals are those of a view that is not over time. *axis is the range
-// of its axis of values. False, with nothing drawn, if there are no values.
-bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a, value_range *axis);
+// Draws a pane's inside; its signals are those of a view that is not over time. *axis is
+// the range of its axis of values. False, with nothing drawn, if there are no values.
+bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a,
+                    value_range *axis);
 
-// --- lanes ------------------------------------------------------------------------------------
-// The lanes below the curves, on the same time axis: contact of each run, the controller's mode,
-// intervals in which the hub sticks or the command exceeds its limit, locks and changes. Above
-// them, if the curves show only a part of the run, a map of the whole run.
+// --- lanes -----------------------------------------------------------------------------
+// The lanes below the curves, on the same time axis: contact of each run, the
+// controller's mode, intervals in which the hub sticks or the command exceeds its limit,
+// locks and changes. Above them, if the curves show only a part of the run, a map of the
+// whole run.
 
-// The number of rows of the lanes below curves of a given height. Examines the rows that the run
-// has gained since the last picture, so that empty lanes are omitted.
+// The number of rows of the lanes below curves of a given height. Examines the rows that
+// the run has gained since the last picture, so that empty lanes are omitted.
 int lanes_rows(const explorer_state *st, lane_survey *known, int height);
 
-// Draws the lanes in the number of rows given by lanes_rows; the area has the same columns as the
-// curves and their labels.
+// Draws the lanes in the number of rows given by lanes_rows; the area has the same
+// columns as the curves and their labels.
 void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a);
 
 // The whole screen of the explorer: title, panels, page, status and prompt.

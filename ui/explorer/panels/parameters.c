@@ -1,4 +1,5 @@
-// The panel of parameters: their values at the cursor, and sliders of those that are numbers.
+// The panel of parameters: their values at the cursor, and sliders of those that are
+// numbers.
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
@@ -24,9 +25,15 @@ static bool find_track(const explorer_state *st, const parameters *p, track *k)
 {
     const slider_grip *grip = &st->slider;
     const bool held = grip->held && grip->parameter == k->parameter;
-    k->value = held ? grip->value : parameter_get(p, k->parameter);
+    if (held) {
+        k->value = grip->value;
+    } else {
+        k->value = parameter_get(p, k->parameter);
+    }
     const bool found = slider_scale_of(k->parameter, k->value, &k->scale);
-    k->scale = held ? grip->scale : k->scale;
+    if (held) {
+        k->scale = grip->scale;
+    }
     return found;
 }
 
@@ -34,18 +41,21 @@ static void draw_track(layout *lay, screen *s, area a, const track *k)
 {
     int at = (int)lround(slider_share(&k->scale, k->value) * (a.width - 1));
     for (int i = 0; i < a.width; i++) {
-        screen_put(s, a.x + i, a.y, i == at ? 0x25cf : 0x2500, i == at ? k->knob : INK_FRAME);
+        screen_put(s, a.x + i, a.y, i == at ? 0x25cf : 0x2500,
+                   i == at ? k->knob : INK_FRAME);
     }
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_SLIDER, k->parameter, a});
 }
 
-// Value and unit as far as `most` cells have room for them: where they have not, the unit goes,
-// then the value's end, which two points stand for. Returns the cells it takes.
+// Value and unit as far as `most` cells have room for them: where they have not, the unit
+// goes, then the value's end, which two points stand for. Returns the cells it takes.
 static int fit_value(char *shown, size_t size, int most, const char *value,
                      const parameter_info *info)
 {
     snprintf(shown, size, "%s%s%s", value, info->unit[0] ? " " : "", info->unit);
-    most = most > LEAST_VALUE ? most : LEAST_VALUE;
+    if (!(most > LEAST_VALUE)) {
+        most = LEAST_VALUE;
+    }
     if (text_cells(shown) > most) {
         snprintf(shown, size, "%s", value);
     }
@@ -62,15 +72,23 @@ static int fit_value(char *shown, size_t size, int most, const char *value,
 }
 
 // Name, value and unit in a line, with a slider behind them where there is room.
-static void draw_line(const explorer_state *st, layout *lay, screen *s, area a, const parameters *p,
-                      int parameter)
+static void draw_line(const explorer_state *st, layout *lay, screen *s, area a,
+                      const parameters *p, int parameter)
 {
     const parameter_info *info = &parameter_table[parameter];
     char value[PARAMETER_TEXT_SIZE], shown[PARAMETER_TEXT_SIZE + 32];
     const bool inert = state_inert_reason(st, parameter) != NULL;
     const bool held = st->slider.held && st->slider.parameter == parameter;
     track k = {.parameter = parameter};
-    k.knob = inert ? INK_FRAME : held ? INK_EVENT : info->timed ? INK_ARM : INK_DIM;
+    if (inert) {
+        k.knob = INK_FRAME;
+    } else if (held) {
+        k.knob = INK_EVENT;
+    } else if (info->timed) {
+        k.knob = INK_ARM;
+    } else {
+        k.knob = INK_DIM;
+    }
     const bool has_slider = find_track(st, p, &k);
     parameter_format(p, parameter, value, sizeof value);
     if (info->type == PARAMETER_REAL || held) {
@@ -78,7 +96,9 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a, 
     }
     int slider = a.width - PATH_ROOM, room = a.width;
     if (slider >= LEAST_SLIDER) {
-        slider = slider > MOST_SLIDER ? MOST_SLIDER : slider;
+        if (slider > MOST_SLIDER) {
+            slider = MOST_SLIDER;
+        }
         room -= slider + 1;
     }
     bool given = st->session.effective.parameters.set[parameter] != 0;
@@ -86,9 +106,14 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a, 
 
     // the heading has the group
     const char *name = strchr(info->path, '.') + 1;
-    const int length = fit_value(shown, sizeof shown, room - (int)strlen(name) - 3, value, info);
+    const int length =
+        fit_value(shown, sizeof shown, room - (int)strlen(name) - 3, value, info);
     const int start = room - length;
-    screen_text(s, a.x + 1, a.y, start - 2, inert ? INK_FRAME : given ? INK_TITLE : INK_TEXT, name);
+    screen_text(s, a.x + 1, a.y, start - 2,
+                inert   ? INK_FRAME
+                : given ? INK_TITLE
+                        : INK_TEXT,
+                name);
     screen_text(s, a.x + start, a.y, room - start, k.knob, shown);
     if (has_slider && slider >= LEAST_SLIDER && !inert) {
         draw_track(lay, s, (area){a.x + room + 1, a.y, slider, 1}, &k);
@@ -96,7 +121,8 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a, 
 }
 
 // The heading of a group: its name, and how many parameters it hides.
-static void draw_heading(const explorer_state *st, layout *lay, screen *s, area a, int parameter)
+static void draw_heading(const explorer_state *st, layout *lay, screen *s, area a,
+                         int parameter)
 {
     char name[PARAMETER_NAME];
     const bool filtered = st->filters.text[PANEL_PARAMETERS][0] != '\0';
@@ -111,14 +137,16 @@ static void draw_heading(const explorer_state *st, layout *lay, screen *s, area 
         while (end < parameter_count && parameter_group(end) == parameter) {
             end++;
         }
-        screen_print(s, x + 1, a.y, a.x + a.width - x - 1, INK_FRAME, "%d", end - parameter);
+        screen_print(s, x + 1, a.y, a.x + a.width - x - 1, INK_FRAME, "%d",
+                     end - parameter);
     }
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_HEADING, parameter, a});
 }
 
-// The line below the selected parameter: its slider between the ends of its range, or the reason
-// why it has no effect.
-static void draw_below(const explorer_state *st, layout *lay, screen *s, area a, const track *k)
+// The line below the selected parameter: its slider between the ends of its range, or the
+// reason why it has no effect.
+static void draw_below(const explorer_state *st, layout *lay, screen *s, area a,
+                       const track *k)
 {
     const char *inert = state_inert_reason(st, k->parameter);
     if (inert != NULL) {
@@ -140,7 +168,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     const char *filter = st->filters.text[PANEL_PARAMETERS];
     char title[LINE_TEXT + 32] = "parameters (Tab: values, / filters)";
     int line = 0, height = a.height - 2;
-    track wide = {.parameter = list->parameter, .knob = st->slider.held ? INK_EVENT : INK_CURSOR};
+    track wide = {.parameter = list->parameter,
+                  .knob = st->slider.held ? INK_EVENT : INK_CURSOR};
     const bool number = find_track(st, &p, &wide);
     if (filter[0] != '\0') {
         snprintf(title, sizeof title, "parameters /%s", filter);
@@ -152,8 +181,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     // a number that is selected takes a second line, and so does what has no effect
     int selected;
     const int count = state_parameter_lines(st, lines, &selected);
-    const bool shows_parameter =
-        count > 0 && !lines[selected].heading && lines[selected].parameter == list->parameter;
+    const bool shows_parameter = count > 0 && !lines[selected].heading &&
+                                 lines[selected].parameter == list->parameter;
     const bool expands = shows_parameter && height >= 2 &&
                          (number || state_inert_reason(st, list->parameter) != NULL);
     if (count == 0) {

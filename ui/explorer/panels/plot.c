@@ -7,7 +7,7 @@
 #include "render/plot/ticks.h"
 #include "ui/terminal/pictures.h"
 
-// --- the frame --------------------------------------------------------------------------------
+// --- the frame -------------------------------------------------------------------------
 
 enum { LARGE_CELL = 24 }; // height of a cell from which on lines are thicker [pixels]
 
@@ -36,7 +36,8 @@ static double plot_x(const plot_frame *f, double time)
 
 static double plot_y(const plot_frame *f, double value)
 {
-    return (f->axis.high - value) / (f->axis.high - f->axis.low) * (4.0 * f->canvas.height - 1);
+    return (f->axis.high - value) / (f->axis.high - f->axis.low) *
+           (4.0 * f->canvas.height - 1);
 }
 
 // Every row joined to the next one by a line.
@@ -48,7 +49,8 @@ static void draw_rows(const plot_frame *f, const trace *t, int signal, double un
     // joined as long as they are visible and seen
     for (size_t r = trace_row_at(t, f->from);
          visible && r < t->row_count && t->rows[r].time <= until; r++) {
-        double x = plot_x(f, t->rows[r].time), y = plot_y(f, signal_value(&t->rows[r], signal));
+        double x = plot_x(f, t->rows[r].time),
+               y = plot_y(f, signal_value(&t->rows[r], signal));
         if (line_has_dot(f->pattern, lround(x))) {
             canvas_line(&f->canvas, x0, y0, x, y, f->colour);
         }
@@ -66,8 +68,8 @@ static void draw_column(const plot_frame *f, long column, value_range y)
     }
 }
 
-// The smallest and the largest value of each column of dots, so that no spike is lost. Blocks that
-// lie within one column are taken from `pairs`.
+// The smallest and the largest value of each column of dots, so that no spike is lost.
+// Blocks that lie within one column are taken from `pairs`.
 static void draw_columns(const plot_frame *f, const trace *t, int signal, double until,
                          const double *pairs)
 {
@@ -76,7 +78,8 @@ static void draw_columns(const plot_frame *f, const trace *t, int signal, double
     long column = -1;
 
     // row by row, or block by block where one lies within a column
-    for (size_t r = trace_row_at(t, f->from); r < t->row_count && t->rows[r].time <= until;) {
+    for (size_t r = trace_row_at(t, f->from);
+         r < t->row_count && t->rows[r].time <= until;) {
         size_t end = r + EXTREMES_BLOCK, take = 1;
         long here = lround(plot_x(f, t->rows[r].time));
         if (here != column) {
@@ -87,7 +90,8 @@ static void draw_columns(const plot_frame *f, const trace *t, int signal, double
             value_range_add(&y, last);
         }
         bool whole = pairs != NULL && r % EXTREMES_BLOCK == 0 && end < t->row_count &&
-                     t->rows[end].time <= until && lround(plot_x(f, t->rows[end].time)) == column;
+                     t->rows[end].time <= until &&
+                     lround(plot_x(f, t->rows[end].time)) == column;
         if (whole) {
             const double *pair = pairs + 2 * (r / EXTREMES_BLOCK);
             take = EXTREMES_BLOCK;
@@ -176,12 +180,13 @@ void plot_frame_level(const plot_frame *f, screen *s, double value, const char *
         cell *at = &s->cells[(long)y * s->width + x];
         if (at->glyph == ' ') {
             const int in_name = x - (end - length);
-            screen_put(s, x, y, in_name >= 0 ? (uint32_t)name[in_name] : 0x2508, INK_FRAME);
+            screen_put(s, x, y, in_name >= 0 ? (uint32_t)name[in_name] : 0x2508,
+                       INK_FRAME);
         }
     }
 }
 
-// --- axes -------------------------------------------------------------------------------------
+// --- axes ------------------------------------------------------------------------------
 
 // A tick's value with no more digits than the axis needs, its power of ten behind.
 static void axis_label(const ticks *t, int index, char *text, size_t size)
@@ -192,7 +197,8 @@ static void axis_label(const ticks *t, int index, char *text, size_t size)
     }
 }
 
-// Whether a tick is rather labelled than another one in the same row: zero, else the outer one.
+// Whether a tick is rather labelled than another one in the same row: zero, else the
+// outer one.
 static bool outranks(double value, double other, bool upper_half)
 {
     return other != 0 && (value == 0 || (upper_half ? value > other : value < other));
@@ -222,8 +228,11 @@ void draw_value_axis(screen *s, area a, value_range axis)
     for (int y = 0; y < a.height; y++) {
         int best = -1;
         for (int i = 0; i < t.count; i++) {
-            bool better = best < 0 || outranks(t.value[i], t.value[best], 2 * y < a.height);
-            best = row_of(axis, a.height, t.value[i]) == y && better ? i : best;
+            bool better =
+                best < 0 || outranks(t.value[i], t.value[best], 2 * y < a.height);
+            if (row_of(axis, a.height, t.value[i]) == y && better) {
+                best = i;
+            }
         }
         screen_put(s, a.x + a.width - 1, a.y + y, best < 0 ? 0x2502 : 0x2524, INK_FRAME);
         if (best >= 0) {
@@ -253,13 +262,19 @@ static void draw_instants(screen *s, area a, double from, double to)
 
         // kept within the axis
         int length = (int)strlen(text), start = x - length / 2;
-        start = start + length > a.x + a.width ? a.x + a.width - length : start;
-        start = start < a.x ? a.x : start;
+        if (start + length > a.x + a.width) {
+            start = a.x + a.width - length;
+        }
+        if (start < a.x) {
+            start = a.x;
+        }
 
         // a tick on the line, where no bar is
         if (s->width > x && x < a.x + a.width) {
             cell *at = &s->cells[(long)a.y * s->width + x];
-            at->glyph = at->glyph == 0x2500 ? 0x252c : at->glyph;
+            if (at->glyph == 0x2500) {
+                at->glyph = 0x252c;
+            }
         }
         if (start >= free) {
             screen_text(s, start, a.y + 1, a.x + a.width - start, INK_DIM, text);
@@ -280,26 +295,36 @@ area draw_time_axis(const explorer_state *st, screen *s, area a)
     for (int i = 0; i < line.width; i++) {
         double time = from + (to - from) * (i + 0.5) / line.width;
         bool touches = time <= e->seen && t->rows[trace_row_at(t, time)].contact != 0;
-        screen_put(s, line.x + i, a.y, touches ? 0x2592 : 0x2500, touches ? INK_FORCE : INK_FRAME);
+        screen_put(s, line.x + i, a.y, touches ? 0x2592 : 0x2500,
+                   touches ? INK_FORCE : INK_FRAME);
     }
 
     // a touch that is shorter than a column
     for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
         if (t->events[i].kind == EVENT_CONTACT) {
-            screen_put(s, time_column(st, line, t->events[i].time), a.y, 0x2592, INK_FORCE);
+            screen_put(s, time_column(st, line, t->events[i].time), a.y, 0x2592,
+                       INK_FORCE);
         }
     }
     draw_instants(s, line, from, to);
 
-    // impacts that have been seen and inputs: the coming motion is not known yet, coming changes
-    // are
+    // impacts that have been seen and inputs: the coming motion is not known yet, coming
+    // changes are
     for (size_t i = 0; i < t->event_count; i++) {
         const event *v = &t->events[i];
         const bool input = v->kind == EVENT_CHANGE || v->kind == EVENT_PUSH;
         const bool seen = v->time <= e->seen, impact = v->kind == EVENT_IMPACT && seen;
-        const uint32_t mark = impact ? 0x25b2 : seen ? 0x25cf : 0x25cb;
+        uint32_t mark = 0x25b2;
+        if (!impact) {
+            if (seen) {
+                mark = 0x25cf;
+            } else {
+                mark = 0x25cb;
+            }
+        }
         if (impact || input) {
-            screen_put(s, time_column(st, line, v->time), a.y, mark, seen ? INK_EVENT : INK_DIM);
+            screen_put(s, time_column(st, line, v->time), a.y, mark,
+                       seen ? INK_EVENT : INK_DIM);
         }
     }
 

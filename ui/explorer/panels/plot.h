@@ -1,5 +1,5 @@
-// Drawing in the panes of curves: lines and their patterns, the frame of a pane, axes; panes that
-// are not over time; the lanes below.
+// Drawing in the panes of curves: lines and their patterns, the frame of a pane, axes;
+// panes that are not over time; the lanes below.
 #pragma once
 
 #include "render/plot/pane_curve.h"
@@ -7,7 +7,7 @@
 #include "ui/explorer/panels/panel.h"
 #include "ui/terminal/screen.h"
 
-// --- the frame --------------------------------------------------------------------------------
+// --- the frame -------------------------------------------------------------------------
 // The area of a pane over time, with its window and range, in cells or in pixels.
 
 // The colour of an ink in pictures, for what draws them.
@@ -28,9 +28,10 @@ typedef struct plot_frame {
 // Begins a picture of the pane if the screen has pixels; it is to be ended.
 void plot_frame_open(const explorer_state *st, plot_frame *f);
 
-// Draws one signal of a run up to the instant `until` [s] with the frame's pattern and colour:
-// every row if there are few, otherwise the smallest and largest value of each column. `pairs`: the
-// smallest and largest values of blocks of EXTREMES_BLOCK rows; NULL: not known.
+// Draws one signal of a run up to the instant `until` [s] with the frame's pattern and
+// colour: every row if there are few, otherwise the smallest and largest value of each
+// column. `pairs`: the smallest and largest values of blocks of EXTREMES_BLOCK rows;
+// NULL: not known.
 void plot_frame_signal(const plot_frame *f, const trace *t, int signal, double until,
                        const double *pairs);
 
@@ -40,17 +41,17 @@ void plot_frame_cursor(const plot_frame *f, screen *s, double time);
 // A setpoint or limit across the pane, with its name, behind everything already drawn.
 void plot_frame_level(const plot_frame *f, screen *s, double value, const char *name);
 
-// --- axes -------------------------------------------------------------------------------------
+// --- axes ------------------------------------------------------------------------------
 // The axes of the curves: values on the left of each pane, time below all of them.
 
 // An axis of values in its column, its line at the right; the area's rows are the axis.
 void draw_value_axis(screen *s, area a, value_range axis);
 
-// The time axis below the curves: contact as a bar, impacts and changes as marks, seconds. Returns
-// the area of its line and numbers.
+// The time axis below the curves: contact as a bar, impacts and changes as marks,
+// seconds. Returns the area of its line and numbers.
 area draw_time_axis(const explorer_state *st, screen *s, area a);
 
-// --- the mouse --------------------------------------------------------------------------------
+// --- the mouse -------------------------------------------------------------------------
 
 // Handles the mouse on a part of the panel of curves.
 bool curves_point(explorer_state *st, const panel_gesture *g);

@@ -10,14 +10,17 @@
 enum { MOST_PREDICTED = 32 }; // links: more would take seconds
 enum { ROWS = 6 };            // of the panel [cells]
 
-// What a predictor says of the state in a row. The linearised arm is asked once for each row: with
-// more links than two it takes milliseconds, too long for every frame of a run that plays.
-static prediction_answer ask(const explorer_state *st, layout *lay, predictor which, size_t r)
+// What a predictor says of the state in a row. The linearised arm is asked once for each
+// row: with more links than two it takes milliseconds, too long for every frame of a run
+// that plays.
+static prediction_answer ask(const explorer_state *st, layout *lay, predictor which,
+                             size_t r)
 {
     const trace *t = &st->session.run.trace;
     const sample *row = &t->rows[r];
     const size_t state = r * (size_t)t->angle_count;
-    // under a control law the voltage is the law's, and the amplifier gets no more than its limit
+    // under a control law the voltage is the law's, and the amplifier gets no more than
+    // its limit
     parameters p = session_parameters_at(&st->session, row->time);
     p.motor.voltage = row->voltage;
     const prediction_question question = {
@@ -44,7 +47,8 @@ static prediction_answer ask(const explorer_state *st, layout *lay, predictor wh
     return known->answer;
 }
 
-// The row of the predicted touch: the present one in free flight, otherwise the last free one.
+// The row of the predicted touch: the present one in free flight, otherwise the last free
+// one.
 static size_t free_row(const session *s)
 {
     const trace *t = &s->run.trace;
@@ -53,8 +57,11 @@ static size_t free_row(const session *s)
     // in contact: back to the last touch, and on to where the arm was free
     if (t->rows[r].contact != 0) {
         for (size_t i = 0; i < t->event_count && t->events[i].time <= s->now; i++) {
-            bool touches = t->events[i].kind == EVENT_IMPACT || t->events[i].kind == EVENT_CONTACT;
-            r = touches ? trace_row_at(t, t->events[i].time) : r;
+            bool touches =
+                t->events[i].kind == EVENT_IMPACT || t->events[i].kind == EVENT_CONTACT;
+            if (touches) {
+                r = trace_row_at(t, t->events[i].time);
+            }
         }
         while (r > 0 && t->rows[r].contact != 0) {
             r--;
@@ -69,7 +76,8 @@ static prediction what_came(const session *s, size_t r)
     const trace *t = &s->run.trace;
     prediction came = {.holds = true, .force = 0, .delay = 0};
     double start = t->rows[r].time;
-    for (r++; r < t->row_count && t->rows[r].contact != 0 && t->rows[r].time <= s->seen; r++) {
+    for (r++; r < t->row_count && t->rows[r].contact != 0 && t->rows[r].time <= s->seen;
+         r++) {
         if (t->rows[r].force > came.force) {
             came.force = t->rows[r].force;
             came.delay = t->rows[r].time - start;
@@ -78,22 +86,31 @@ static prediction what_came(const session *s, size_t r)
     return came;
 }
 
-// The reason why a predictor has no answer, in as many words as fit. Links whose state is not known
-// are those of a run that plays: it will say something when that pauses.
+// The reason why a predictor has no answer, in as many words as fit. Links whose state is
+// not known are those of a run that plays: it will say something when that pauses.
 static const char *reason_of(const prediction_answer *answer, area a)
 {
     const char *reason = prediction_reason(answer);
     loss_unless(answer->fault.code != STATUS_NO_MEMORY);
-    return answer->outcome == PREDICTION_LINKS_UNKNOWN ? "-"
-           : a.width - 20 >= (int)strlen(reason)       ? reason
-           : answer->outcome == PREDICTION_DOUBTFUL    ? "cannot be told"
-           : answer->outcome == PREDICTION_FAILED      ? "failed"
-                                                       : "does not apply";
+    if (answer->outcome == PREDICTION_LINKS_UNKNOWN) {
+        return "-";
+    }
+    if (a.width - 20 >= (int)strlen(reason)) {
+        return reason;
+    }
+    if (answer->outcome == PREDICTION_DOUBTFUL) {
+        return "cannot be told";
+    }
+    if (answer->outcome == PREDICTION_FAILED) {
+        return "failed";
+    }
+    return "does not apply";
 }
 
-// A line of the panel; `unknown` is shown instead of a force that is not known, otherwise NULL.
-static void predictor_line(screen *s, area a, int line, const char *label, const prediction *p,
-                           const char *unknown)
+// A line of the panel; `unknown` is shown instead of a force that is not known, otherwise
+// NULL.
+static void predictor_line(screen *s, area a, int line, const char *label,
+                           const prediction *p, const char *unknown)
 {
     const int y = a.y + 1 + line, room = line < a.height - 2 ? a.width : 0;
     screen_text(s, a.x + 2, y, room - 4, INK_TEXT, label);
@@ -113,7 +130,10 @@ static void predictor_line(screen *s, area a, int line, const char *label, const
 
 static int rows(const explorer_state *st, screen_size body)
 {
-    return body.width >= SIDE_WIDTH && body.height >= 15 ? ROWS : 0;
+    if (body.width >= SIDE_WIDTH && body.height >= 15) {
+        return ROWS;
+    }
+    return 0;
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
@@ -146,8 +166,9 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         predictor_line(s, a, 3, "what came", &out, NULL);
     } else {
         const summary *m = &e->run.summary;
-        out = (prediction){
-            .holds = true, .force = m->first_pulse_peak_N, .delay = m->first_pulse_time_to_peak_s};
+        out = (prediction){.holds = true,
+                           .force = m->first_pulse_peak_N,
+                           .delay = m->first_pulse_time_to_peak_s};
         bool seen = e->seen >= m->first_contact_s + m->first_pulse_time_to_peak_s;
         predictor_line(s, a, 3, "first pulse", &out, seen ? NULL : "-");
     }

@@ -1,10 +1,10 @@
-// The runs: their legend beside the curves, the page of those that are pinned, the comparison of
-// two.
+// The runs: their legend beside the curves, the page of those that are pinned, the
+// comparison of two.
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>
 
-// --- the legend -------------------------------------------------------------------------------
+// --- the legend ------------------------------------------------------------------------
 // The legend of runs: the present one and those pinned, with their lines and peaks.
 
 enum { SAMPLE = 4, PEAK = 10 };
@@ -12,15 +12,20 @@ enum { SAMPLE = 4, PEAK = 10 };
 static int rows(const explorer_state *st, screen_size body)
 {
     const bool fits = body.width >= SIDE_WIDTH && body.height >= 12;
-    return fits && st->pinned.count > 0 ? st->pinned.count + 3 : 0;
+    if (fits && st->pinned.count > 0) {
+        return st->pinned.count + 3;
+    }
+    return 0;
 }
 
 // A run in a line: how it is drawn, its name, its peak force.
-static void draw_run(screen *s, area a, const char *name, double peak, unsigned pattern, ink colour)
+static void draw_run(screen *s, area a, const char *name, double peak, unsigned pattern,
+                     ink colour)
 {
     draw_line_sample(s, a.x, a.y, SAMPLE, pattern, colour);
     screen_words(s, a.x + SAMPLE + 1, a.y, a.width - SAMPLE - 1 - PEAK, INK_TEXT, name);
-    screen_print(s, a.x + a.width - PEAK, a.y, PEAK, INK_FORCE, "%8s N", draw_number(peak).text);
+    screen_print(s, a.x + a.width - PEAK, a.y, PEAK, INK_FORCE, "%8s N",
+                 draw_number(peak).text);
 }
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
@@ -29,18 +34,30 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     area line = {a.x + 2, a.y + 1, a.width - 4, 1};
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "runs, peaks (R: list)");
     const bool by_run = st->looks.by_run != 0;
-    draw_run(s, line, "now", st->session.run.summary.peak_force_N, style_pattern(LINE_SOLID),
-             by_run ? run_ink(-1) : INK_TEXT);
+    draw_run(s, line, "now", st->session.run.summary.peak_force_N,
+             style_pattern(LINE_SOLID), by_run ? run_ink(-1) : INK_TEXT);
     line.y++;
 
     // the baseline with a mark, hidden ones without a line
     const bool single = state_visible_pins(st) == 1;
     for (int i = 0; i < list->count && line.y < a.y + a.height - 1; i++, line.y++) {
         const pinned_run *p = &list->runs[i];
-        const unsigned pattern = p->hidden          ? 0
-                                 : single || by_run ? style_pattern(LINE_SOLID)
-                                                    : run_pattern(i);
-        const ink colour = by_run ? run_ink(i) : single ? INK_OTHER : INK_TEXT;
+        unsigned pattern = 0;
+        if (!p->hidden) {
+            if (single || by_run) {
+                pattern = style_pattern(LINE_SOLID);
+            } else {
+                pattern = run_pattern(i);
+            }
+        }
+        ink colour;
+        if (by_run) {
+            colour = run_ink(i);
+        } else if (single) {
+            colour = INK_OTHER;
+        } else {
+            colour = INK_TEXT;
+        }
         draw_run(s, line, p->name, p->run.summary.peak_force_N, pattern, colour);
         if (i == list->baseline) {
             screen_put(s, a.x + 1, line.y, 0x25b8, INK_EVENT);
@@ -59,7 +76,7 @@ static bool point(explorer_state *st, const panel_gesture *g)
 
 const panel runs_panel = {.name = "runs", .rows = rows, .draw = draw, .point = point};
 
-// --- the page ---------------------------------------------------------------------------------
+// --- the page --------------------------------------------------------------------------
 // The page of pinned runs: what differs, and what can be done with them.
 
 enum { NAME_WIDTH = 30, NUMBER = 10 };
@@ -73,24 +90,27 @@ static void draw_pinned(const explorer_state *st, screen *s, area a, int index)
     run_list_differences(p, &st->session, differs, sizeof differs);
 
     // number, line, name, peak, difference
-    screen_print(s, a.x, a.y, 3, INK_DIM, "%s%d", index == st->pinned.baseline ? "\u25b8" : " ",
-                 index + 1);
-    draw_line_sample(s, a.x + 3, a.y, SAMPLE, p->hidden ? 0 : run_pattern(index), INK_TEXT);
+    screen_print(s, a.x, a.y, 3, INK_DIM, "%s%d",
+                 index == st->pinned.baseline ? "\u25b8" : " ", index + 1);
+    draw_line_sample(s, a.x + 3, a.y, SAMPLE, p->hidden ? 0 : run_pattern(index),
+                     INK_TEXT);
     screen_words(s, a.x + 8, a.y, name - 1, p->hidden ? INK_DIM : INK_TITLE, p->name);
     screen_print(s, a.x + 8 + name, a.y, NUMBER, INK_FORCE, "%7s N",
                  draw_number(p->run.summary.peak_force_N).text);
-    screen_words(s, a.x + 8 + name + NUMBER, a.y, a.width - 8 - name - NUMBER, INK_TEXT, differs);
+    screen_words(s, a.x + 8 + name + NUMBER, a.y, a.width - 8 - name - NUMBER, INK_TEXT,
+                 differs);
 }
 
 // What they stand beside, and the keys.
 static void draw_rest(const explorer_state *st, screen *s, area a)
 {
-    screen_print(s, a.x, a.y, a.width, INK_DIM,
-                 "this run peaks at %.4g N; beside it:", st->session.run.summary.peak_force_N);
-    screen_text(s, a.x, a.y + a.height - 1, a.width, INK_DIM,
-                st->pinned.count > 0
-                    ? "Enter takes it, Space hides, = compares, r renames, d drops, D subtracts"
-                    : "none yet: b pins the run there is, then change something");
+    screen_print(s, a.x, a.y, a.width, INK_DIM, "this run peaks at %.4g N; beside it:",
+                 st->session.run.summary.peak_force_N);
+    screen_text(
+        s, a.x, a.y + a.height - 1, a.width, INK_DIM,
+        st->pinned.count > 0
+            ? "Enter takes it, Space hides, = compares, r renames, d drops, D subtracts"
+            : "none yet: b pins the run there is, then change something");
 }
 
 static bool subtract(explorer_state *st, const char *number)
@@ -118,26 +138,32 @@ static const page_list list = {.title = "pinned runs (Esc closes)",
 
 const panel run_list_panel = {.name = "run list", .list = &list, LIST_PAGE};
 
-// --- the comparison ---------------------------------------------------------------------------
+// --- the comparison --------------------------------------------------------------------
 
-// A quantity of the comparison as a name and as columns; returns whether it means anything in
-// either run.
-static bool compare_quantity(const session *e, int index, int width, char *columns, size_t size,
-                             bool *differs)
+// A quantity of the comparison as a name and as columns; returns whether it means
+// anything in either run.
+static bool compare_quantity(const session *e, int index, int width, char *columns,
+                             size_t size, bool *differs)
 {
     // smaller differences are rounding, of numbers near zero too
     const double relative = 1e-6, absolute = 1e-9;
     const double value = summary_value(&e->run.summary, index);
-    const double other = e->has_other ? summary_value(&e->other.summary, index) : (double)NAN;
-    *differs = e->has_other && !(isnan(value) && isnan(other)) &&
-               !(fabs(value - other) <= absolute + relative * fmax(fabs(value), fabs(other)));
+    const double other =
+        e->has_other ? summary_value(&e->other.summary, index) : (double)NAN;
+    *differs =
+        e->has_other && !(isnan(value) && isnan(other)) &&
+        !(fabs(value - other) <= absolute + relative * fmax(fabs(value), fabs(other)));
 
     // a single run has no change
     const number_text none = {""}, two = e->has_other ? draw_number(other) : none;
-    const number_text change =
-        e->has_other ? draw_number(*differs ? value - other : (double)NAN) : none;
-    snprintf(columns, size, "%*s%*s%*s", width, draw_number(value).text, width, two.text, width,
-             change.text);
+    number_text change;
+    if (e->has_other) {
+        change = draw_number(*differs ? value - other : (double)NAN);
+    } else {
+        change = none;
+    }
+    snprintf(columns, size, "%*s%*s%*s", width, draw_number(value).text, width, two.text,
+             width, change.text);
     return !summary_table[index].timing && !(isnan(value) && isnan(other));
 }
 
@@ -162,13 +188,15 @@ static void draw_comparison(const explorer_state *st, layout *lay, screen *s, ar
     int scroll = page_scroll(lay, PANEL_COMPARISON, a, rows * count, 3);
     const int all = rows * count, last = scroll + shown;
     draw_page_frame(s, a,
-                    e->has_other ? "two runs (Esc closes)" : "this run (b branches, Esc closes)",
+                    e->has_other ? "two runs (Esc closes)"
+                                 : "this run (b branches, Esc closes)",
                     (last < all ? last : all) / rows, count);
     screen_print(s, a.x + 2 + names, a.y + 1, room - names, INK_DIM, "%*s", width, "now");
     if (e->has_other) {
         // under the name that the legend has
         const int at = a.x + 3 + names + width;
-        screen_words(s, at, a.y + 1, width - 1, INK_DIM, st->pinned.runs[st->pinned.baseline].name);
+        screen_words(s, at, a.y + 1, width - 1, INK_DIM,
+                     st->pinned.runs[st->pinned.baseline].name);
         screen_print(s, at + width - 1, a.y + 1, width, INK_DIM, "%*s", width, "change");
     }
 
@@ -185,7 +213,8 @@ static void draw_comparison(const explorer_state *st, layout *lay, screen *s, ar
                          info->unit[0] ? " [" : "", info->unit, info->unit[0] ? "]" : "");
         }
         if (below >= 0 && below < shown) {
-            screen_text(s, a.x + 2 + names, a.y + 2 + below, room - names, colour, columns);
+            screen_text(s, a.x + 2 + names, a.y + 2 + below, room - names, colour,
+                        columns);
         }
     }
 }

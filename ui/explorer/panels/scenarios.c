@@ -1,20 +1,30 @@
 // The page that lists the scenarios, with a filter.
 #include "ui/explorer/panels/panel.h"
 
-enum { PREVIEW = 6, TALL_SCREEN = 22 }; // rows of the preview, and of a screen that has room for it
+enum {
+    PREVIEW = 6,
+    TALL_SCREEN = 22
+}; // rows of the preview, and of a screen that has room for it
 
-// The first line to show. It moves only as far as it must, so that a second click meets what the
-// first one selected.
+// The first line to show. It moves only as far as it must, so that a second click meets
+// what the first one selected.
 static int first_line(int selected, int count, int first, int height)
 {
     if (first < 0) {
         return draw_first_line(selected, count, height);
     }
-    first = selected < first             ? selected
-            : selected >= first + height ? selected - height + 1
-                                         : first;
-    first = first > count - height ? count - height : first;
-    return first < 0 ? 0 : first;
+    if (selected < first) {
+        first = selected;
+    } else if (selected >= first + height) {
+        first = selected - height + 1;
+    }
+    if (first > count - height) {
+        first = count - height;
+    }
+    if (first < 0) {
+        return 0;
+    }
+    return first;
 }
 
 // A scenario's name, and as many whole words of its title as there is room for.
@@ -23,8 +33,10 @@ static void draw_scenario(const scenario_menu *menu, int index, screen *s, area 
     int used = screen_text(s, a.x, a.y, a.width, INK_TEXT, menu->names[index]);
     int column = used + 2 > 30 ? used + 2 : 30, room = a.width - column;
     text_line title;
-    if (room > 0 && text_wrap(scenario_menu_text(menu, index).title, room, &title, 1, NULL) > 0) {
-        screen_print(s, a.x + column, a.y, room, INK_DIM, "%.*s", title.bytes, title.start);
+    if (room > 0 &&
+        text_wrap(scenario_menu_text(menu, index).title, room, &title, 1, NULL) > 0) {
+        screen_print(s, a.x + column, a.y, room, INK_DIM, "%.*s", title.bytes,
+                     title.start);
     }
     if (index == menu->selected) {
         screen_tint(s, a.x - 1, a.y, a.width + 2, 1, INK_SELECTED);
@@ -63,13 +75,17 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     const int first = first_line(selected, count, st->drawn.first_scenario, height);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
                  "scenarios (Enter opens, / filters, Esc closes)");
-    screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "/ filter: %s%s", menu->filter,
-                 menu->filtering ? "_" : "");
+    screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "/ filter: %s%s",
+                 menu->filter, menu->filtering ? "_" : "");
 
     // the lines lie over the page, so a click meets them first
     const area lines = {a.x + 1, a.y + 3, a.width - 2, height};
     lay->drawn.first_scenario = first;
-    lay->drawn.page_lines = height > 1 ? height - 1 : 1;
+    if (height > 1) {
+        lay->drawn.page_lines = height - 1;
+    } else {
+        lay->drawn.page_lines = 1;
+    }
     layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_BODY, 0, a});
     layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_LINES, first, lines});
 
@@ -153,4 +169,7 @@ static bool point(explorer_state *st, const panel_gesture *g)
     return true;
 }
 
-const panel scenarios_panel = {.name = "scenarios", .draw = draw, .point = point, .key = menu_key};
+const panel scenarios_panel = {.name = "scenarios",
+                               .draw = draw,
+                               .point = point,
+                               .key = menu_key};

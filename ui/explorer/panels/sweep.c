@@ -23,13 +23,21 @@ static double share_of(const lab_sweep *sweep, int index)
 {
     const sweep_axis *axis = &sweep->axis;
     const double last = (double)axis->count - 1, value = axis->values[index];
-    return !axis->is_range || axis->high == axis->low ? (last > 0 ? index / last : 0.5)
-           : axis->logarithmic ? log(value / axis->low) / log(axis->high / axis->low)
-                               : (value - axis->low) / (axis->high - axis->low);
+    if (!axis->is_range || axis->high == axis->low) {
+        if (last > 0) {
+            return index / last;
+        }
+        return 0.5;
+    }
+    if (axis->logarithmic) {
+        return log(value / axis->low) / log(axis->high / axis->low);
+    }
+    return (value - axis->low) / (axis->high - axis->low);
 }
 
 // A value of the axis in few cells: a real one as the metric is written.
-static void format_value(const sweep_axis *axis, double value, char text[SWEEP_VALUE_TEXT])
+static void format_value(const sweep_axis *axis, double value,
+                         char text[SWEEP_VALUE_TEXT])
 {
     sweep_axis_format(axis, value, text, SWEEP_VALUE_TEXT);
     if (sweep_axis_parameter(axis)->type == PARAMETER_REAL) {
@@ -63,7 +71,8 @@ static void draw_chart(const explorer_state *st, screen *s, area a)
 
     // from point to point, but words are no numbers; the selected one over all others
     const parameter_info *varied = sweep_axis_parameter(&sweep->axis);
-    const bool joined = varied->type == PARAMETER_REAL || varied->type == PARAMETER_INTEGER;
+    const bool joined =
+        varied->type == PARAMETER_REAL || varied->type == PARAMETER_INTEGER;
     const canvas c = {s, a.x + LABEL_WIDTH, a.y, a.width - LABEL_WIDTH, a.height - 1};
     draw_ends(s, (area){c.x, a.y + c.height, c.width, 1}, sweep);
     double x0 = (double)NAN, y0 = (double)NAN;
@@ -72,7 +81,8 @@ static void draw_chart(const explorer_state *st, screen *s, area a)
         const int run = last ? sweep->selected : i;
         const double value = lab_sweep_metric(sweep, run, sweep->metric);
         const double x = share_of(sweep, run) * (2.0 * c.width - 1);
-        const double y = (range.high - value) / (range.high - range.low) * (4.0 * c.height - 1);
+        const double y =
+            (range.high - value) / (range.high - range.low) * (4.0 * c.height - 1);
         if (joined && !last) {
             canvas_line(&c, x0, y0, x, y, INK_SERIES_0);
         } else if (isfinite(y)) {
@@ -102,15 +112,16 @@ static void draw_runs(const explorer_state *st, layout *lay, screen *s, area a)
         screen_words(s, a.x, y, VALUE - 1, INK_TITLE, value);
         screen_print(s, a.x + VALUE, y, a.width - VALUE, INK_TEXT, "%10s %s",
                      draw_number(lab_sweep_metric(sweep, i, sweep->metric)).text,
-                     r->run.summary.status == STATUS_OK ? summary_table[sweep->metric].unit
-                                                        : "stopped");
+                     r->run.summary.status == STATUS_OK
+                         ? summary_table[sweep->metric].unit
+                         : "stopped");
         if (i == sweep->selected) {
             screen_tint(s, a.x - 1, y, a.width + 2, 1, INK_SELECTED);
         }
     }
 }
 
-// --- a map ------------------------------------------------------------------------------------
+// --- a map -----------------------------------------------------------------------------
 
 // A cell of a map: the darker, the larger its metric.
 static void draw_cell(screen *s, area a, double share, bool selected)
@@ -128,7 +139,8 @@ static void draw_cell(screen *s, area a, double share, bool selected)
     }
 }
 
-// A line of both parameters: the selected values or, of an axis, from where to where it goes.
+// A line of both parameters: the selected values or, of an axis, from where to where it
+// goes.
 static void draw_values(screen *s, area a, const lab_sweep *sweep, bool ends)
 {
     const sweep_axis *axes[] = {&sweep->axis, &sweep->second};
@@ -140,10 +152,19 @@ static void draw_values(screen *s, area a, const lab_sweep *sweep, bool ends)
         if (ends) {
             format_value(axes[i], axes[i]->values[axes[i]->count - 1], to);
         }
-        const char *name = ends ? "" : strrchr(sweep_axis_parameter(axes[i])->path, '.') + 1;
-        const char *between = i == 0 ? "" : ends ? ", up " : ", ";
-        x += screen_print(s, x, a.y, a.x + a.width - x, ends ? INK_DIM : INK_TITLE, "%s%s%s%s%s%s",
-                          between, name, ends ? "" : " ", from, ends ? " to " : "", to);
+        const char *name =
+            ends ? "" : strrchr(sweep_axis_parameter(axes[i])->path, '.') + 1;
+        const char *between = "";
+        if (i != 0) {
+            if (ends) {
+                between = ", up ";
+            } else {
+                between = ", ";
+            }
+        }
+        x += screen_print(s, x, a.y, a.x + a.width - x, ends ? INK_DIM : INK_TITLE,
+                          "%s%s%s%s%s%s", between, name, ends ? "" : " ", from,
+                          ends ? " to " : "", to);
     }
 }
 
@@ -157,15 +178,17 @@ static void draw_map(const explorer_state *st, layout *lay, screen *s, area a)
               tall = most < TALL ? most : TALL;
     value_range range;
     if (wide < 1 || tall < 1) {
-        screen_print(s, a.x, a.y, a.width, INK_DIM, "a map of %d x %d has no room here", across,
-                     up);
+        screen_print(s, a.x, a.y, a.width, INK_DIM, "a map of %d x %d has no room here",
+                     across, up);
     } else if (range_of_metric(sweep, &range)) {
-        layout_add_hit(
-            lay, (hit_area){PANEL_SWEEP, PART_CELLS, tall, {a.x, a.y, across * wide, up * tall}});
+        layout_add_hit(lay, (hit_area){PANEL_SWEEP,
+                                       PART_CELLS,
+                                       tall,
+                                       {a.x, a.y, across * wide, up * tall}});
         for (int i = 0; i < sweep->count; i++) {
             const double value = lab_sweep_metric(sweep, i, sweep->metric);
-            const area place = {a.x + i % across * wide, a.y + (up - 1 - i / across) * tall, wide,
-                                tall};
+            const area place = {a.x + i % across * wide,
+                                a.y + (up - 1 - i / across) * tall, wide, tall};
             draw_cell(s, place, (value - range.low) / (range.high - range.low),
                       i == sweep->selected);
         }
@@ -177,21 +200,22 @@ static void draw_map(const explorer_state *st, layout *lay, screen *s, area a)
     draw_values(s, (area){a.x, a.y + a.height - 4, a.width, 1}, sweep, true);
     draw_values(s, (area){a.x, a.y + a.height - 2, a.width, 1}, sweep, false);
     if (sweep->selected < sweep->count) {
-        screen_print(s, a.x, a.y + a.height - 1, a.width, INK_TEXT, "%s %s",
-                     draw_number(lab_sweep_metric(sweep, sweep->selected, sweep->metric)).text,
-                     summary_table[sweep->metric].unit);
+        screen_print(
+            s, a.x, a.y + a.height - 1, a.width, INK_TEXT, "%s %s",
+            draw_number(lab_sweep_metric(sweep, sweep->selected, sweep->metric)).text,
+            summary_table[sweep->metric].unit);
     }
 }
 
-// What is varied and how many runs there are: the last part of the path where the whole has no
-// room, and of that what `most` cells have room for.
+// What is varied and how many runs there are: the last part of the path where the whole
+// has no room, and of that what `most` cells have room for.
 static void write_title(char *title, size_t size, const lab_sweep *sweep, int most)
 {
     char count[64];
     const char *path = parameter_table[sweep->axis.parameter].path;
     const char *last = strrchr(path, '.') + 1;
-    const int room =
-        most - snprintf(count, sizeof count, ", %d of %d", sweep->count, lab_sweep_total(sweep));
+    const int room = most - snprintf(count, sizeof count, ", %d of %d", sweep->count,
+                                     lab_sweep_total(sweep));
 
     if ((int)(strlen("sweep ") + strlen(path)) <= room) {
         snprintf(title, size, "sweep %s%s", path, count);
@@ -207,7 +231,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     const lab_sweep *sweep = &st->sweep;
     char title[LINE_TEXT];
     if (!lab_sweep_is_on(sweep)) {
-        screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "no sweep (:sweep begins one)");
+        screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
+                     "no sweep (:sweep begins one)");
         return;
     }
     write_title(title, sizeof title, sweep, a.width - FRAME_OF_TITLE);
@@ -226,7 +251,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         draw_chart(st, s, (area){a.x + 2, a.y + 2, a.width - 4, chart});
     }
     if (inner - chart > 0) {
-        draw_runs(st, lay, s, (area){a.x + 2, a.y + 2 + chart, a.width - 4, inner - chart});
+        draw_runs(st, lay, s,
+                  (area){a.x + 2, a.y + 2 + chart, a.width - 4, inner - chart});
     }
 }
 

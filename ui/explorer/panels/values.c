@@ -6,13 +6,13 @@
 
 #include "src/run/trace.h"
 
-// --- values -----------------------------------------------------------------------------------
+// --- values ----------------------------------------------------------------------------
 // The panel of all recorded values at the cursor.
 
 enum { NAME = 19, NUMBER = 10, UNIT = 6 }; // columns [cells]
 
-// Whether a signal is in the list: the filter lets it through, and it is not of a sensor that is
-// not fitted, which has no value.
+// Whether a signal is in the list: the filter lets it through, and it is not of a sensor
+// that is not fitted, which has no value.
 static bool is_listed(const explorer_state *st, const sample *row, int signal)
 {
     return !(signal_table[signal].optional && isnan(signal_value(row, signal))) &&
@@ -32,7 +32,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         beside = &t->rows[trace_row_on_side(t, st->mark.time, st->mark.side)];
         against = ", minus mark";
     } else if (e->has_other) {
-        between = trace_sample_at(&e->other.trace, row->time, trace_side(&e->run.trace, e->row));
+        between = trace_sample_at(&e->other.trace, row->time,
+                                  trace_side(&e->run.trace, e->row));
         beside = &between;
         against = ", minus old run";
     }
@@ -42,13 +43,15 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     for (int i = 0; i < signal_count; i++) {
         shown += is_listed(st, row, i);
     }
-    int first = layout_keep_scroll(lay, PANEL_VALUES, shown > height ? shown - height : 0);
+    int first =
+        layout_keep_scroll(lay, PANEL_VALUES, shown > height ? shown - height : 0);
     layout_add_hit(lay, (hit_area){.panel = PANEL_VALUES, .area = a});
     char title[LINE_TEXT + 64], part[32] = "";
     if (shown > height) {
         snprintf(part, sizeof part, ", %d-%d of %d", first + 1, first + height, shown);
     }
-    snprintf(title, sizeof title, "values%s%s%s%s", against, filter[0] ? " /" : "", filter, part);
+    snprintf(title, sizeof title, "values%s%s%s%s", against, filter[0] ? " /" : "",
+             filter, part);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
 
     // full names if there is room for them and two numbers
@@ -84,14 +87,14 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 
 const panel values_panel = {.name = "values", .draw = draw, .wheel = WHEEL_LINES};
 
-// --- statistics -------------------------------------------------------------------------------
-// The panel of statistics: what the signals of the panes come to between the mark and the cursor,
-// or in the visible part of the run.
+// --- statistics ------------------------------------------------------------------------
+// The panel of statistics: what the signals of the panes come to between the mark and the
+// cursor, or in the visible part of the run.
 
 enum { LINES = 3 }; // of a signal
 
-// The signals of the panes that are shown, those of the pane in focus first, each once; an
-// expression has no difference.
+// The signals of the panes that are shown, those of the pane in focus first, each once;
+// an expression has no difference.
 static int find_signals(const explorer_state *st, int signals[PANES * PANE_SIGNALS])
 {
     int count = 0;
@@ -145,14 +148,15 @@ static void draw_signal(screen *s, area a, int signal, const signal_statistics *
 
     // a state has no mean and no integral, one that is on or off the time it is on
     if (signal_is_state(signal) && x->maximum <= 1) {
-        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " for %s s in all", integral.text);
+        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " for %s s in all",
+                     integral.text);
     } else if (!signal_is_state(signal) && a.width >= 40) {
         screen_print(s, a.x + 28, a.y + 1, a.width - 28, INK_TEXT, "mean %s", mean.text);
         screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " rms %-9s integral %s %s",
                      draw_number(x->rms).text, integral.text, unit);
     } else if (!signal_is_state(signal)) {
-        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " mean %-8s \u222b %s %s", mean.text,
-                     integral.text, unit);
+        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " mean %-8s \u222b %s %s",
+                     mean.text, integral.text, unit);
     }
 }
 
@@ -161,7 +165,8 @@ static void draw_statistics(const explorer_state *st, layout *lay, screen *s, ar
     int signals[PANES * PANE_SIGNALS];
     const trace *t = state_run(st, 0).trace;
     const int count = find_signals(st, signals), fit = (a.height - 3) / LINES;
-    const int first = layout_keep_scroll(lay, PANEL_STATISTICS, count > fit ? count - fit : 0);
+    const int first =
+        layout_keep_scroll(lay, PANEL_STATISTICS, count > fit ? count - fit : 0);
     double from, to;
 
     // between both cursors, else what is visible
@@ -170,7 +175,8 @@ static void draw_statistics(const explorer_state *st, layout *lay, screen *s, ar
         from = fmin(st->mark.time, st->session.now);
         to = fmax(st->mark.time, st->session.now);
     }
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "statistics (m sets the mark)");
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
+                 "statistics (m sets the mark)");
     layout_add_hit(lay, (hit_area){.panel = PANEL_STATISTICS, .area = a});
     screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s%s %.5g to %.5g s",
                  state_subtracts(st) ? "minus baseline, " : "",
@@ -182,4 +188,6 @@ static void draw_statistics(const explorer_state *st, layout *lay, screen *s, ar
     }
 }
 
-const panel statistics_panel = {.name = "statistics", .draw = draw_statistics, .wheel = 1};
+const panel statistics_panel = {.name = "statistics",
+                                .draw = draw_statistics,
+                                .wheel = 1};

@@ -7,7 +7,7 @@
 
 #include "src/base/numbers.h"
 
-// --- the visible part -------------------------------------------------------------------------
+// --- the visible part ------------------------------------------------------------------
 
 #define SHORTEST 1e-6 // visible part of a run [s]
 
@@ -19,8 +19,16 @@ static bool shows_all(const time_window *w)
 void state_window(const explorer_state *st, double *from, double *to)
 {
     const time_window *w = &st->window;
-    *from = shows_all(w) ? 0 : w->from;
-    *to = shows_all(w) ? st->session.effective.parameters.run.duration : w->to;
+    if (shows_all(w)) {
+        *from = 0;
+    } else {
+        *from = w->from;
+    }
+    if (shows_all(w)) {
+        *to = st->session.effective.parameters.run.duration;
+    } else {
+        *to = w->to;
+    }
 }
 
 void state_show_part(explorer_state *st, double from, double to)
@@ -54,13 +62,15 @@ static void follow_cursor(explorer_state *st)
     }
 
     // some of what comes is visible while it plays
-    from = now > from + 0.8 * width   ? now - 0.8 * width
-           : now < from + 0.1 * width ? now - 0.1 * width
-                                      : from;
+    if (now > from + 0.8 * width) {
+        from = now - 0.8 * width;
+    } else if (now < from + 0.1 * width) {
+        from = now - 0.1 * width;
+    }
     state_show_part(st, from, from + width);
 }
 
-// --- extremes ---------------------------------------------------------------------------------
+// --- extremes --------------------------------------------------------------------------
 
 void extremes_forget(extremes *e)
 {
@@ -74,12 +84,16 @@ const double *extremes_pairs(const extremes *e, const shown_run *run, int signal
 {
     assert(signal >= 0 && signal < EXTREMES_SIGNALS);
     const bool covers = e->run == run->id && e->rows[signal] == run->trace->row_count;
-    return covers ? e->pairs[signal] : NULL;
+    if (covers) {
+        return e->pairs[signal];
+    }
+    return NULL;
 }
 
-// What a signal does in the rows from `first` to `last`, whole blocks at once where they are known.
-static value_range range_of_rows(const trace *t, int signal, const double *pairs, size_t first,
-                                 size_t last)
+// What a signal does in the rows from `first` to `last`, whole blocks at once where they
+// are known.
+static value_range range_of_rows(const trace *t, int signal, const double *pairs,
+                                 size_t first, size_t last)
 {
     value_range found = value_range_empty;
 
@@ -96,8 +110,8 @@ static value_range range_of_rows(const trace *t, int signal, const double *pairs
     return found;
 }
 
-// Extends the blocks of a signal to all rows of a run, including those that it has gained. Without
-// memory the signal has no blocks.
+// Extends the blocks of a signal to all rows of a run, including those that it has
+// gained. Without memory the signal has no blocks.
 static void update_extremes(extremes *e, const shown_run *run, int signal)
 {
     const trace *t = run->trace;
@@ -120,18 +134,23 @@ static void update_extremes(extremes *e, const shown_run *run, int signal)
     }
     for (size_t b = e->rows[signal] / EXTREMES_BLOCK; pairs != NULL && b < blocks; b++) {
         const size_t begin = b * EXTREMES_BLOCK;
-        const value_range found = range_of_rows(t, signal, NULL, begin, begin + EXTREMES_BLOCK - 1);
+        const value_range found =
+            range_of_rows(t, signal, NULL, begin, begin + EXTREMES_BLOCK - 1);
         pairs[2 * b] = found.low;
         pairs[2 * b + 1] = found.high;
     }
     e->pairs[signal] = pairs;
-    e->rows[signal] = pairs != NULL ? t->row_count : 0;
+    if (pairs != NULL) {
+        e->rows[signal] = t->row_count;
+    } else {
+        e->rows[signal] = 0;
+    }
 }
 
-// --- axes of values ---------------------------------------------------------------------------
+// --- axes of values --------------------------------------------------------------------
 
-// The range of some rows without the share that sticks out at either end, so that a spike does not
-// flatten all else; of many rows some, evenly spread.
+// The range of some rows without the share that sticks out at either end, so that a spike
+// does not flatten all else; of many rows some, evenly spread.
 static value_range calm_range(const trace *t, int signal, size_t first, size_t last)
 {
     enum { ROWS = 4096, STICKS_OUT = 50 }; // one in so many
@@ -147,14 +166,16 @@ static value_range calm_range(const trace *t, int signal, size_t first, size_t l
         return value_range_empty;
     }
     qsort(values, count, sizeof *values, compare_numbers);
-    const double low = values[count / STICKS_OUT], high = values[count - 1 - count / STICKS_OUT];
+    const double low = values[count / STICKS_OUT],
+                 high = values[count - 1 - count / STICKS_OUT];
     const double margin = 0.05 * (high - low);
     return (value_range){low - margin, high + margin};
 }
 
-// What a pane's signals do between two instants, in the first of the runs shown or in all.
-static value_range range_between(const explorer_state *st, const pane *p, double from, double to,
-                                 bool first_only)
+// What a pane's signals do between two instants, in the first of the runs shown or in
+// all.
+static value_range range_between(const explorer_state *st, const pane *p, double from,
+                                 double to, bool first_only)
 {
     shown_run runs[SHOWN_RUNS];
     const int count = state_runs(st, p, runs);
@@ -164,11 +185,16 @@ static value_range range_between(const explorer_state *st, const pane *p, double
         // one more row at the end, to which the line continues
         const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
         for (int k = 0; k < p->count; k++) {
-            const double *pairs = extremes_pairs(&st->extremes[run], &runs[run], p->signals[k]);
-            const value_range seen = p->hidden >> k & 1 ? value_range_empty
-                                     : p->scaling == AXIS_CALM
-                                         ? calm_range(t, p->signals[k], first, last)
-                                         : range_of_rows(t, p->signals[k], pairs, first, last);
+            const double *pairs =
+                extremes_pairs(&st->extremes[run], &runs[run], p->signals[k]);
+            value_range seen;
+            if (p->hidden >> k & 1) {
+                seen = value_range_empty;
+            } else if (p->scaling == AXIS_CALM) {
+                seen = calm_range(t, p->signals[k], first, last);
+            } else {
+                seen = range_of_rows(t, p->signals[k], pairs, first, last);
+            }
             value_range_widen(&found, seen);
         }
     }
@@ -192,7 +218,11 @@ bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
 
     // what was found counts unless the axis grows or is fixed
     const bool grown = p->scaling == AXIS_GROW && p->grown.high >= p->grown.low;
-    *axis = p->scaling == AXIS_FIXED ? p->fixed : value_range_opened(grown ? p->grown : seen);
+    if (p->scaling == AXIS_FIXED) {
+        *axis = p->fixed;
+    } else {
+        *axis = value_range_opened(grown ? p->grown : seen);
+    }
     return true;
 }
 
@@ -214,8 +244,8 @@ void state_update_axes(explorer_state *st)
     for (int i = 0; i < PANES; i++) {
         pane *p = &st->panes.pane[i];
         if (p->scaling == AXIS_GROW && p->shown && pane_is_over_time(p)) {
-            value_range_widen(&p->grown,
-                              range_between(st, p, 0, st->session.seen, p->view == VIEW_TIME));
+            value_range_widen(&p->grown, range_between(st, p, 0, st->session.seen,
+                                                       p->view == VIEW_TIME));
         }
     }
     follow_cursor(st);

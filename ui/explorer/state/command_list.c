@@ -28,13 +28,16 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
 }
 
 const explorer_command explorer_command_table[] = {
-#define COMMAND_INFO(group, name, keys, argument, help) {group, #name, keys, argument, help},
-#define COMMAND_NOW(group, name, keys, argument, help)  {group, #name "!", keys, argument, help},
+#define COMMAND_INFO(group, name, keys, argument, help)                                  \
+    {group, #name, keys, argument, help},
+#define COMMAND_NOW(group, name, keys, argument, help)                                   \
+    {group, #name "!", keys, argument, help},
     COMMAND_LIST(COMMAND_INFO, COMMAND_NOW)
 #undef COMMAND_INFO
 #undef COMMAND_NOW
 };
-const int explorer_command_count = sizeof explorer_command_table / sizeof explorer_command_table[0];
+const int explorer_command_count =
+    sizeof explorer_command_table / sizeof explorer_command_table[0];
 
 int explorer_command_find(const char *name)
 {
@@ -53,10 +56,13 @@ int explorer_command_find(const char *name)
             matches++;
         }
     }
-    return matches == 1 ? found : -1;
+    if (matches == 1) {
+        return found;
+    }
+    return -1;
 }
 
-// --- keys -------------------------------------------------------------------------------------
+// --- keys ------------------------------------------------------------------------------
 
 static const struct {
     const char *name;
@@ -88,16 +94,21 @@ int key_of_name(const char *name, size_t length)
     const bool control = length == 3 && text[0] == 'C' && text[1] == '-';
     const char *rest = text;
     const uint32_t glyph = glyph_decode(&rest);
-    return control                                             ? text[2] & 0x1f
-           : *rest == '\0' && (glyph != '?' || name[0] == '?') ? (int)glyph
-                                                               : 0;
+    if (control) {
+        return text[2] & 0x1f;
+    }
+    if (*rest == '\0' && (glyph != '?' || name[0] == '?')) {
+        return (int)glyph;
+    }
+    return 0;
 }
 
 void key_name(int key, char *text, size_t size)
 {
     char name[8] = {'C', '-', (char)(key | 0x60)};
 
-    // by name, as Ctrl with a letter, or as itself; what a binding can hold needs no other name
+    // by name, as Ctrl with a letter, or as itself; what a binding can hold needs no
+    // other name
     if (key >= ' ') {
         glyph_encode((uint32_t)key, name);
     }
@@ -118,7 +129,8 @@ typedef struct binding {
 
 enum { BINDINGS = 128 };
 
-// All of them in the order of the commands, read from their table once; key 0 behind the last.
+// All of them in the order of the commands, read from their table once; key 0 behind the
+// last.
 static const binding *built_in_keys(void)
 {
     static binding all[BINDINGS + 1];
@@ -173,7 +185,10 @@ const char *key_line(const key_bindings *b, int key)
 {
     const int index = key_own(b, key);
     const char *line = index >= 0 ? b->own[index].line : key_built_in_line(key);
-    return line != NULL && line[0] != '\0' ? line : NULL;
+    if (line != NULL && line[0] != '\0') {
+        return line;
+    }
+    return NULL;
 }
 
 // Whether a line is a command with any arguments.

@@ -28,8 +28,10 @@ static const char *const controlled_panes[PANES_OF_TABLE][PANE_SIGNALS] = {
     {"motor_torque", "friction_torque"},
 };
 
-const char *const axis_scaling_words[AXIS_SCALINGS] = {
-    [AXIS_AUTO] = "auto", [AXIS_GROW] = "grow", [AXIS_FIXED] = "fixed", [AXIS_CALM] = "calm"};
+const char *const axis_scaling_words[AXIS_SCALINGS] = {[AXIS_AUTO] = "auto",
+                                                       [AXIS_GROW] = "grow",
+                                                       [AXIS_FIXED] = "fixed",
+                                                       [AXIS_CALM] = "calm"};
 
 const value_range value_range_empty = {(double)INFINITY, (double)-INFINITY};
 
@@ -38,7 +40,10 @@ value_range value_range_opened(value_range r)
     // a smaller range than rounding is shown as a flat line
     const double size = fmax(fabs(r.low), fabs(r.high)), half = fmax(0.5, 1e-12 * size);
     const bool flat = r.high - r.low < fmax(1e-12, 1e-15 * size);
-    return flat ? (value_range){r.low - half, r.high + half} : r;
+    if (flat) {
+        return (value_range){r.low - half, r.high + half};
+    }
+    return r;
 }
 
 // Shows the first pane that has a signal, or the user's own with it if none has.
@@ -75,7 +80,11 @@ static void hide_others(pane_set *set, const pane_wishes *wishes)
                 wanted |= (unsigned)(p->signals[k] == wishes->signals[j]) << k;
             }
         }
-        p->hidden = wanted != 0 ? ~wanted & ((1u << p->count) - 1) : 0;
+        if (wanted != 0) {
+            p->hidden = ~wanted & ((1u << p->count) - 1);
+        } else {
+            p->hidden = 0;
+        }
     }
 }
 
@@ -92,7 +101,9 @@ static void show_panes(pane_set *set, const pane_wishes *wishes)
     set->pane[PANES_OF_TABLE] = (pane){.view = VIEW_TIME};
     for (int i = 0; i < wishes->signal_count; i++) {
         show_signal(set, wishes->signals[i]);
-        set->focus = i == 0 ? 0 : set->focus;
+        if (i == 0) {
+            set->focus = 0;
+        }
     }
 
     if (wishes->only) {
@@ -123,9 +134,12 @@ void panes_define(pane_set *set, const pane_wishes *wishes)
         if (i >= PANES_OF_TABLE) {
             continue;
         }
-        const char *const *names = set->controlled ? controlled_panes[i] : scripted_panes[i];
+        const char *const *names =
+            set->controlled ? controlled_panes[i] : scripted_panes[i];
         p->count = 0;
-        p->hidden = same ? p->hidden : 0;
+        if (!same) {
+            p->hidden = 0;
+        }
         for (int j = 0; j < PANE_SIGNALS && names[j] != NULL; j++) {
             int signal = signal_find(names[j]);
             assert(signal >= 0);
@@ -143,7 +157,10 @@ int panes_focused(const pane_set *set)
     while (i < PANES && !set->pane[(set->focus + i) % PANES].shown) {
         i++;
     }
-    return i < PANES ? (set->focus + i) % PANES : -1;
+    if (i < PANES) {
+        return (set->focus + i) % PANES;
+    }
+    return -1;
 }
 
 bool pane_has_amounts(const pane *p)
@@ -175,7 +192,9 @@ int panes_add(pane_set *set, const pane *own)
     int index = PANES - 1;
     for (int i = PANES - 1; i >= PANES_OF_TABLE; i--) {
         const bool hidden = !set->pane[i].shown && set->pane[index].count > 0;
-        index = set->pane[i].count == 0 || hidden ? i : index;
+        if (set->pane[i].count == 0 || hidden) {
+            index = i;
+        }
     }
     set->pane[index] = *own;
     set->pane[index].shown = true;

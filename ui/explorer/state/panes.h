@@ -1,5 +1,5 @@
-// The panes of curves: their signals, which ones are shown, how their axes are scaled, and which
-// part of the run is visible.
+// The panes of curves: their signals, which ones are shown, how their axes are scaled,
+// and which part of the run is visible.
 #pragma once
 
 #include <math.h>
@@ -84,8 +84,8 @@ typedef struct pane_wishes {
     int room;  // number of panes that have room on the screen
 } pane_wishes;
 
-// Fills the panes with the signals of a run and shows the requested ones, then the usual ones as
-// far as there is room, unless the user has chosen panes.
+// Fills the panes with the signals of a run and shows the requested ones, then the usual
+// ones as far as there is room, unless the user has chosen panes.
 void panes_define(pane_set *set, const pane_wishes *wishes);
 
 // The pane to which the keys for axes apply: one that is shown, or -1.
@@ -97,17 +97,19 @@ bool pane_has_amounts(const pane *p);
 // Whether a pane's axis is time.
 bool pane_is_over_time(const pane *p);
 
-// Whether a pane has a signal that is computed from others: of differences it means nothing.
+// Whether a pane has a signal that is computed from others: of differences it means
+// nothing.
 bool pane_is_derived(const pane *p);
 
-// Adds a pane of the user's and returns its index: one that is not used, else the first that is
-// hidden, else the last.
+// Adds a pane of the user's and returns its index: one that is not used, else the first
+// that is hidden, else the last.
 int panes_add(pane_set *set, const pane *own);
 
-// Fixes a pane's axis to limits, unless they are not finite, nearly equal or far too wide.
+// Fixes a pane's axis to limits, unless they are not finite, nearly equal or far too
+// wide.
 void pane_fix_axis(pane *p, value_range limits);
 
-// --- the visible part -------------------------------------------------------------------------
+// --- the visible part ------------------------------------------------------------------
 
 typedef struct time_window {
     double from, to; // [s]; to <= from: the whole run
@@ -121,15 +123,16 @@ typedef struct zoom_box {
     int x0, y0, x1, y1; // cells
 } zoom_box;
 
-// --- extremes ---------------------------------------------------------------------------------
-// Smallest and largest values of blocks of rows, so that long runs can be drawn and their ranges
-// found without reading every row.
+// --- extremes --------------------------------------------------------------------------
+// Smallest and largest values of blocks of rows, so that long runs can be drawn and their
+// ranges found without reading every row.
 
 enum { EXTREMES_BLOCK = 64, EXTREMES_SIGNALS = 64 };
 
 typedef struct extremes {
     unsigned long run;               // the run of the rows; 0: none
-    double *pairs[EXTREMES_SIGNALS]; // by signal: low, high of each block; NULL if not computed yet
+    double *pairs[EXTREMES_SIGNALS]; // by signal: low, high of each block; NULL if not
+                                     // computed yet
     size_t rows[EXTREMES_SIGNALS];   // by signal: number of rows included
 } extremes;
 

@@ -13,8 +13,8 @@
 static bool begins_group(int parameter)
 {
     const char *path = parameter_table[parameter].path;
-    return parameter == 0 ||
-           strncmp(path, parameter_table[parameter - 1].path, strcspn(path, ".") + 1) != 0;
+    return parameter == 0 || strncmp(path, parameter_table[parameter - 1].path,
+                                     strcspn(path, ".") + 1) != 0;
 }
 
 int parameter_group(int parameter)
@@ -48,7 +48,8 @@ void parameter_list_arrange(parameter_list *list, const scenario *s, int selecte
 {
     assert(selected >= 0 && selected < parameter_count);
 
-    // groups without effect are folded, and those of sensors and nominal models without a value set
+    // groups without effect are folded, and those of sensors and nominal models without a
+    // value set
     bool shown[PARAMETER_LINES] = {false}, given[PARAMETER_LINES] = {false};
     for (int i = 0; i < parameter_count; i++) {
         const int group = parameter_group(i);
@@ -81,11 +82,15 @@ int parameter_list_lines(const parameter_list *list, const char *filter,
         // a group's heading before its first line that passes the filter
         if (parameter_group(i) != group) {
             group = parameter_group(i);
-            *selected = group == own ? count : *selected;
+            if (group == own) {
+                *selected = count;
+            }
             lines[count++] = (parameter_line){group, true};
         }
         if (filter[0] != '\0' || !list->folded[group]) {
-            *selected = i == list->parameter && !list->on_heading ? count : *selected;
+            if (i == list->parameter && !list->on_heading) {
+                *selected = count;
+            }
             lines[count++] = (parameter_line){i, false};
         }
     }
@@ -125,26 +130,40 @@ int parameter_of_name(const char *name)
         const bool fits[3] = {strcmp(leaf, name) == 0, strncmp(leaf, name, length) == 0,
                               strncmp(path, name, length) == 0};
         for (int k = 0; k < 3; k++) {
-            found[k] = fits[k] ? i : found[k];
+            if (fits[k]) {
+                found[k] = i;
+            }
             count[k] += fits[k];
         }
     }
-    const int k = count[0] > 0 ? 0 : count[1] > 0 ? 1 : 2;
-    return count[k] > 1 ? -2 : found[k];
+    int k = 0;
+    if (!(count[0] > 0)) {
+        if (count[1] > 0) {
+            k = 1;
+        } else {
+            k = 2;
+        }
+    }
+    if (count[k] > 1) {
+        return -2;
+    }
+    return found[k];
 }
 
-// --- sliders ----------------------------------------------------------------------------------
+// --- sliders ---------------------------------------------------------------------------
 
 bool slider_scale_of(int parameter, double value, slider_scale *scale)
 {
-    return parameter_usual_range(parameter, value, &scale->low, &scale->high, &scale->logarithmic);
+    return parameter_usual_range(parameter, value, &scale->low, &scale->high,
+                                 &scale->logarithmic);
 }
 
 double slider_share(const slider_scale *scale, double value)
 {
     assert(scale->high > scale->low);
-    double share = scale->logarithmic ? log(value / scale->low) / log(scale->high / scale->low)
-                                      : (value - scale->low) / (scale->high - scale->low);
+    double share = scale->logarithmic
+                       ? log(value / scale->low) / log(scale->high / scale->low)
+                       : (value - scale->low) / (scale->high - scale->low);
     return fmax(0, fmin(1, share));
 }
 
@@ -166,7 +185,9 @@ double slider_value(const slider_scale *scale, int parameter, double share, int 
     }
 
     // whole steps, within what the table allows
-    step = info->type == PARAMETER_INTEGER ? 1 : step;
+    if (info->type == PARAMETER_INTEGER) {
+        step = 1;
+    }
     value = step * round(value / step);
     return fmax(info->minimum, fmin(info->maximum, value));
 }

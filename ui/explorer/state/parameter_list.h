@@ -1,5 +1,5 @@
-// The displayed list of parameters, in groups that can be folded, and filtered; their sliders;
-// which of them have no effect.
+// The displayed list of parameters, in groups that can be folded, and filtered; their
+// sliders; which of them have no effect.
 #pragma once
 
 #include <stdbool.h>
@@ -20,17 +20,18 @@ typedef struct parameter_line {
     bool heading;
 } parameter_line;
 
-// The group of a parameter, which is the index of the first one in it, and its name ("motor").
+// The group of a parameter, which is the index of the first one in it, and its name
+// ("motor").
 int parameter_group(int parameter);
 void parameter_group_name(int parameter, char *name, size_t size);
 
-// Folds the groups that have no effect on a run of these parameters, and those of sensors and
-// nominal models if none of their values was set; selects a parameter.
+// Folds the groups that have no effect on a run of these parameters, and those of sensors
+// and nominal models if none of their values was set; selects a parameter.
 void parameter_list_arrange(parameter_list *list, const scenario *s, int selected);
 
-// Fills the lines that are shown and returns how many. With a filter, matching parameters are shown
-// even in folded groups. *selected is the index of the selected line, else of its group's heading,
-// else 0.
+// Fills the lines that are shown and returns how many. With a filter, matching parameters
+// are shown even in folded groups. *selected is the index of the selected line, else of
+// its group's heading, else 0.
 int parameter_list_lines(const parameter_list *list, const char *filter,
                          parameter_line lines[PARAMETER_LINES], int *selected);
 
@@ -39,11 +40,11 @@ void parameter_list_select(parameter_list *list, parameter_line line);
 // Folds or unfolds the group of a parameter and selects its heading.
 void parameter_list_fold(parameter_list *list, int parameter);
 
-// The parameter of a path, of its last part or of a beginning of either, if only one has it; -1 if
-// none has, -2 if several have.
+// The parameter of a path, of its last part or of a beginning of either, if only one has
+// it; -1 if none has, -2 if several have.
 int parameter_of_name(const char *name);
 
-// --- sliders ----------------------------------------------------------------------------------
+// --- sliders ---------------------------------------------------------------------------
 // Their ranges, and the one that is being dragged. A dragged value takes
 // effect with the next picture.
 
@@ -61,12 +62,13 @@ typedef struct slider_grip {
     slider_scale scale;
 } slider_grip;
 
-// The range of a parameter's slider about a value; false if the parameter is not a number.
+// The range of a parameter's slider about a value; false if the parameter is not a
+// number.
 bool slider_scale_of(int parameter, double value, slider_scale *scale);
 
 // The position of a value on a scale, 0 to 1.
 double slider_share(const slider_scale *scale, double value);
 
-// The value at a share of a scale, rounded to the resolution of a scale of `cells` cells and
-// limited to the parameter's range.
+// The value at a share of a scale, rounded to the resolution of a scale of `cells` cells
+// and limited to the parameter's range.
 double slider_value(const slider_scale *scale, int parameter, double share, int cells);

@@ -8,7 +8,7 @@
 #include "render/scene/film.h"
 #include "src/base/text_stream.h"
 
-// --- playing ----------------------------------------------------------------------------------
+// --- playing ---------------------------------------------------------------------------
 
 #define APART 0.05 // of the run, between impacts that are slowed down each for itself
 
@@ -22,8 +22,11 @@ double playback_slowness(const playback *p, const trace *t, double duration, dou
             continue;
         }
         const film_clock c = film_clock_round(0, duration, e->time, p->slow);
-        const double here = e->time - last > APART * duration ? film_clock_slowness(&c, time) : 1;
-        most = here > most ? here : most;
+        const double here =
+            e->time - last > APART * duration ? film_clock_slowness(&c, time) : 1;
+        if (here > most) {
+            most = here;
+        }
         last = e->time;
     }
     return most;
@@ -39,13 +42,16 @@ double playback_next_speed(const playback *p, int direction)
     // from the far end, so that the nearest one beyond the present speed stays
     for (int i = 0; i < count; i++) {
         const double next = speeds[direction > 0 ? count - 1 - i : i];
-        const bool beyond = direction > 0 ? next > p->speed * 1.001 : next < p->speed * 0.999;
-        wanted = beyond ? next : wanted;
+        const bool beyond =
+            direction > 0 ? next > p->speed * 1.001 : next < p->speed * 0.999;
+        if (beyond) {
+            wanted = next;
+        }
     }
     return wanted;
 }
 
-// --- the tip that is pulled -------------------------------------------------------------------
+// --- the tip that is pulled ------------------------------------------------------------
 
 plane_vector stage_place(const arm_stage *g, int x, int y)
 {
@@ -61,8 +67,8 @@ void stage_cell(const arm_stage *g, plane_vector place, int *x, int *y)
     *y = g->y + g->height - 1 - (int)floor((place.y - g->bottom) * g->up);
 }
 
-void recorded_tip(const trace *t, const arm_parameters *beam, size_t row, plane_vector *tip,
-                  plane_vector *across)
+void recorded_tip(const trace *t, const arm_parameters *beam, size_t row,
+                  plane_vector *tip, plane_vector *across)
 {
     double lengths[PARAMETER_LINKS_MOST];
     parameters_link_lengths(beam, lengths);
@@ -82,7 +88,7 @@ double pull_force(const tip_pull *p, plane_vector tip, plane_vector across)
     return PULL_STIFFNESS * ((p->x - tip.x) * across.x + (p->y - tip.y) * across.y);
 }
 
-// --- the log ----------------------------------------------------------------------------------
+// --- the log ---------------------------------------------------------------------------
 
 static void add_entry(run_log *log, log_entry entry)
 {
@@ -90,8 +96,12 @@ static void add_entry(run_log *log, log_entry entry)
         const size_t more = log->capacity ? 2 * log->capacity : 64;
         log_entry *grown = realloc(log->entries, more * sizeof *grown);
         loss_unless(grown != NULL);
-        log->entries = grown != NULL ? grown : log->entries;
-        log->capacity = grown != NULL ? more : log->capacity;
+        if (grown != NULL) {
+            log->entries = grown;
+        }
+        if (grown != NULL) {
+            log->capacity = more;
+        }
     }
     if (log->count < log->capacity) {
         log->entries[log->count++] = entry;
@@ -101,7 +111,8 @@ static void add_entry(run_log *log, log_entry entry)
 // The events up to a time.
 static void add_events(run_log *log, const trace *t, double until)
 {
-    for (; log->events < t->event_count && t->events[log->events].time <= until; log->events++) {
+    for (; log->events < t->event_count && t->events[log->events].time <= until;
+         log->events++) {
         add_entry(log, (log_entry){t->events[log->events].time, (int)log->events, 0});
     }
 }
@@ -120,7 +131,8 @@ void run_log_update(run_log *log, unsigned long run, const trace *t, bool comple
         const sample *row = &t->rows[log->rows];
 
         // an event at an instant comes before the resulting mode
-        const double mode = isfinite(row->controller_mode) ? row->controller_mode : log->mode;
+        const double mode =
+            isfinite(row->controller_mode) ? row->controller_mode : log->mode;
         add_events(log, t, row->time);
         if (isfinite(log->mode) && mode != log->mode) {
             add_entry(log, (log_entry){row->time, -1, mode});
@@ -138,7 +150,13 @@ double run_log_next(const run_log *log, double time, int direction)
     double found = -1;
     for (size_t i = 0; i < log->count; i++) {
         const double at = log->entries[direction > 0 ? log->count - 1 - i : i].time;
-        found = direction > 0 ? (at > time ? at : found) : at < time ? at : found;
+        if (direction > 0) {
+            if (at > time) {
+                found = at;
+            }
+        } else if (at < time) {
+            found = at;
+        }
     }
     return found;
 }
@@ -149,7 +167,7 @@ void run_log_forget(run_log *log)
     *log = (run_log){0};
 }
 
-// --- modes of the control law -----------------------------------------------------------------
+// --- modes of the control law ----------------------------------------------------------
 
 void law_mode_name(const law_modes *m, double mode, char *text, size_t size)
 {

@@ -1,5 +1,5 @@
-// A run in time: its log, how fast the cursor moves over it while it plays, and the tip that is
-// pulled meanwhile.
+// A run in time: its log, how fast the cursor moves over it while it plays, and the tip
+// that is pulled meanwhile.
 #pragma once
 
 #include <stdbool.h>
@@ -9,7 +9,7 @@
 #include "src/run/trace.h"
 #include "src/tables/parameters.h"
 
-// --- playing ----------------------------------------------------------------------------------
+// --- playing ---------------------------------------------------------------------------
 
 #define USUAL_SLOW 8.0 // the same as in films
 
@@ -21,17 +21,20 @@ typedef struct playback {
     double slowed;   // the present factor
 } playback;
 
-// How many times slower the run is to be shown at an instant [s], 1 to p->slow: near impacts that
-// follow an interval without any, as in films. `duration` [s] is that of the whole run.
+// How many times slower the run is to be shown at an instant [s], 1 to p->slow: near
+// impacts that follow an interval without any, as in films. `duration` [s] is that of the
+// whole run.
 double playback_slowness(const playback *p, const trace *t, double duration, double time);
 
-// The next faster (direction 1) or slower (-1) of the usual speeds; the present one at an end.
+// The next faster (direction 1) or slower (-1) of the usual speeds; the present one at an
+// end.
 double playback_next_speed(const playback *p, int direction);
 
-// --- the tip that is pulled -------------------------------------------------------------------
-// By the mouse, through a spring from the tip to the pointer. While it is held the
-// run plays, and every few milliseconds the spring's force is added to the run as a push. The pull
-// is thus recorded as a list of timed inputs and is repeated when the run is computed again.
+// --- the tip that is pulled ------------------------------------------------------------
+// By the mouse, through a spring from the tip to the pointer. While it is held the run
+// plays, and every few milliseconds the spring's force is added to the run as a push. The
+// pull is thus recorded as a list of timed inputs and is repeated when the run is
+// computed again.
 
 #define PULL_STIFFNESS 10.0  // of the spring [N/m]
 #define PULL_STEP      0.005 // of the run between two pushes [s]
@@ -63,14 +66,15 @@ plane_vector stage_place(const arm_stage *g, int x, int y);
 // The cell in which a place [m] is shown, which may be outside.
 void stage_cell(const arm_stage *g, plane_vector place, int *x, int *y);
 
-// The tip and the direction across the last link, towards growing angle, in a recorded row.
-void recorded_tip(const trace *t, const arm_parameters *beam, size_t row, plane_vector *tip,
-                  plane_vector *across);
+// The tip and the direction across the last link, towards growing angle, in a recorded
+// row.
+void recorded_tip(const trace *t, const arm_parameters *beam, size_t row,
+                  plane_vector *tip, plane_vector *across);
 
 // The spring's force across the last link [N].
 double pull_force(const tip_pull *p, plane_vector tip, plane_vector across);
 
-// --- the log ----------------------------------------------------------------------------------
+// --- the log ---------------------------------------------------------------------------
 // Events together with the controller's changes of mode, in the order of time.
 
 typedef struct log_entry {
@@ -87,16 +91,17 @@ typedef struct run_log {
     double mode;         // at the last row, NaN before the first
 } run_log;
 
-// Adds the entries of new rows and events since the last call. `complete`: the run has ended.
+// Adds the entries of new rows and events since the last call. `complete`: the run has
+// ended.
 void run_log_update(run_log *log, unsigned long run, const trace *t, bool complete);
 
-// The instant of the next entry after a time (direction 1) or the last one before it (-1) [s];
-// negative if there is none.
+// The instant of the next entry after a time (direction 1) or the last one before it (-1)
+// [s]; negative if there is none.
 double run_log_next(const run_log *log, double time, int direction);
 
 void run_log_forget(run_log *log);
 
-// --- modes of the control law -----------------------------------------------------------------
+// --- modes of the control law ----------------------------------------------------------
 
 enum { LAW_MODES = 12 };
 

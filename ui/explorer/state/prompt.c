@@ -20,7 +20,11 @@ void prompt_open(prompt *p, const char *value, const char *format, ...)
     vsnprintf(p->text, sizeof p->text, format, list);
     va_end(list);
     p->open = true;
-    p->fixed = value != NULL ? (int)strlen(p->text) : 0;
+    if (value != NULL) {
+        p->fixed = (int)strlen(p->text);
+    } else {
+        p->fixed = 0;
+    }
     p->replaces = value != NULL && value[0] != '\0';
     p->cycling = p->searches = false;
     text_add(p->text, sizeof p->text, "%s", value != NULL ? value : "");
@@ -45,8 +49,8 @@ void text_type(char *text, int key)
 {
     size_t length = strlen(text);
 
-    // backspace takes a whole UTF-8 character, C-u everything; there must be room for the longest
-    // character and the zero behind it
+    // backspace takes a whole UTF-8 character, C-u everything; there must be room for the
+    // longest character and the zero behind it
     if (key == KEY_CODE_BACKSPACE) {
         while (length > 0 && (text[length - 1] & 0xc0) == 0x80) {
             length--;
@@ -59,7 +63,7 @@ void text_type(char *text, int key)
     }
 }
 
-// --- the palette ------------------------------------------------------------------------------
+// --- the palette -----------------------------------------------------------------------
 
 // What each kind is called, and the command that deals with what is chosen.
 static const struct {
@@ -124,8 +128,8 @@ static const char *synonyms_of(const char *name)
     return "";
 }
 
-// How well a thing fits: its name is that, its name or a part of it begins so, its name has it,
-// what is said of it has it; -1 if it does not fit.
+// How well a thing fits: its name is that, its name or a part of it begins so, its name
+// has it, what is said of it has it; -1 if it does not fit.
 static int rank_of(const palette_text *text, const char *words)
 {
     enum { IS_NAME, BEGINS, IN_NAME, SAID };
@@ -141,27 +145,39 @@ static int rank_of(const palette_text *text, const char *words)
              synonyms_of(text->name));
     const bool begins = strncasecmp(text->name, words, length) == 0 ||
                         (part != NULL && strncasecmp(part + 1, words, length) == 0);
-    return strcasecmp(text->name, words) == 0 ? IS_NAME
-           : begins                           ? BEGINS
-           : filter_passes(words, text->name) ? IN_NAME
-           : filter_passes(words, all)        ? SAID
-                                              : -1;
+    if (strcasecmp(text->name, words) == 0) {
+        return IS_NAME;
+    }
+    if (begins) {
+        return BEGINS;
+    }
+    if (filter_passes(words, text->name)) {
+        return IN_NAME;
+    }
+    if (filter_passes(words, all)) {
+        return SAID;
+    }
+    return -1;
 }
 
 static int compare_entries(const void *a, const void *b)
 {
     const palette_entry *one = a, *other = b;
     const int apart = (int)one->kind - (int)other->kind;
-    return one->rank != other->rank ? one->rank - other->rank
-           : apart != 0             ? apart
-                                    : one->index - other->index;
+    if (one->rank != other->rank) {
+        return one->rank - other->rank;
+    }
+    if (apart != 0) {
+        return apart;
+    }
+    return one->index - other->index;
 }
 
 int palette_find(const scenario_menu *menu, const key_bindings *keys, const char *words,
                  palette_entry entries[PALETTE_ENTRIES])
 {
-    const int counts[PALETTE_KINDS] = {explorer_command_count, parameter_count, signal_count,
-                                       menu->count, menu->count};
+    const int counts[PALETTE_KINDS] = {explorer_command_count, parameter_count,
+                                       signal_count, menu->count, menu->count};
     int count = 0;
     for (int kind = 0; kind < PALETTE_KINDS; kind++) {
         for (int i = 0; i < counts[kind] && count < PALETTE_ENTRIES; i++) {
@@ -183,8 +199,8 @@ int palette_find(const scenario_menu *menu, const key_bindings *keys, const char
     return count;
 }
 
-void palette_line(const scenario_menu *menu, const key_bindings *keys, palette_entry entry,
-                  char line[LINE_TEXT], bool *goes_on)
+void palette_line(const scenario_menu *menu, const key_bindings *keys,
+                  palette_entry entry, char line[LINE_TEXT], bool *goes_on)
 {
     // what is in brackets need not be there
     const char *argument =
@@ -196,6 +212,6 @@ void palette_line(const scenario_menu *menu, const key_bindings *keys, palette_e
 
 bool palette_shows(const prompt *p)
 {
-    return p->open &&
-           (p->searches || (p->fixed == 0 && p->text[0] != '\0' && strchr(p->text, ' ') == NULL));
+    return p->open && (p->searches || (p->fixed == 0 && p->text[0] != '\0' &&
+                                       strchr(p->text, ' ') == NULL));
 }

@@ -19,7 +19,8 @@ typedef struct prompt {
     char history[LINE_TEXT]; // the last line that was entered
 } prompt;
 
-// Opens the prompt with an initial text, and after it a value, which typing replaces; NULL: none.
+// Opens the prompt with an initial text, and after it a value, which typing replaces;
+// NULL: none.
 void prompt_open(prompt *p, const char *value, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 // Enters a key into an open prompt: C-u clears the value first, then everything.
@@ -28,9 +29,9 @@ void prompt_type(prompt *p, int key);
 // Appends a key's character to a text of LINE_TEXT bytes, or deletes the last one.
 void text_type(char *text, int key);
 
-// --- the palette ------------------------------------------------------------------------------
-// The palette: one searchable list of commands with their keys, parameters, signals, scenarios and
-// lessons.
+// --- the palette -----------------------------------------------------------------------
+// The palette: one searchable list of commands with their keys, parameters, signals,
+// scenarios and lessons.
 
 enum { PALETTE_ENTRIES = 768 };
 
@@ -61,8 +62,8 @@ typedef struct palette_text {
     char keys[32]; // keys of a command, "" for none
 } palette_text;
 
-// The entries whose names or descriptions contain all the words, best matches first; returns how
-// many. Without words all entries.
+// The entries whose names or descriptions contain all the words, best matches first;
+// returns how many. Without words all entries.
 int palette_find(const scenario_menu *menu, const key_bindings *keys, const char *words,
                  palette_entry entries[PALETTE_ENTRIES]);
 
@@ -70,8 +71,9 @@ palette_text palette_describe(const scenario_menu *menu, const key_bindings *key
                               palette_entry entry);
 
 // The command line of an entry; *goes_on: it still needs an argument.
-void palette_line(const scenario_menu *menu, const key_bindings *keys, palette_entry entry,
-                  char line[LINE_TEXT], bool *goes_on);
+void palette_line(const scenario_menu *menu, const key_bindings *keys,
+                  palette_entry entry, char line[LINE_TEXT], bool *goes_on);
 
-// Whether an open prompt shows the palette: it searches, or its first word is being typed.
+// Whether an open prompt shows the palette: it searches, or its first word is being
+// typed.
 bool palette_shows(const prompt *p);

@@ -10,7 +10,7 @@
 #include "src/run/resume.h"
 #include "ui/explorer/state/parameter_list.h"
 
-// --- pinned runs ------------------------------------------------------------------------------
+// --- pinned runs -----------------------------------------------------------------------
 
 static bool has_input(const session_input *inputs, int count, const session_input *wanted)
 {
@@ -50,8 +50,8 @@ static void run_list_input_text(const session_input *in, char *text, size_t size
     const char *name = strchr(parameter_table[in->parameter].path, '.') + 1;
     char value[SESSION_INPUT_TEXT];
     input_value_text(in, value);
-    snprintf(text, size, in->kind == SESSION_INPUT_TIMED ? "%s %s from %.4g s" : "%s %s", name,
-             value, in->time);
+    snprintf(text, size, in->kind == SESSION_INPUT_TIMED ? "%s %s from %.4g s" : "%s %s",
+             name, value, in->time);
 }
 
 // Appends the changes of one list that another one does not have.
@@ -81,7 +81,8 @@ void run_list_differences(const pinned_run *p, const session *s, char *text, siz
         return;
     }
     append_others(o->inputs, o->input_count, s->inputs, s->input_count, text, size);
-    append_others(s->inputs, s->input_count, o->inputs, o->input_count, here, sizeof here);
+    append_others(s->inputs, s->input_count, o->inputs, o->input_count, here,
+                  sizeof here);
     if (here[0] != '\0') {
         text_add(text, size, "%s(now: %s)", text[0] ? " " : "", here);
     } else if (text[0] == '\0') {
@@ -94,7 +95,10 @@ void run_list_differences(const pinned_run *p, const session *s, char *text, siz
 const char *scenario_leaf(const char *name)
 {
     const char *slash = strrchr(name, '/');
-    return slash != NULL ? slash + 1 : name;
+    if (slash != NULL) {
+        return slash + 1;
+    }
+    return name;
 }
 
 // A name for the present run that no other of the list has.
@@ -102,7 +106,8 @@ static void propose_name(const run_list *list, const session *s, char name[RUN_N
 {
     char text[SESSION_INPUT_TEXT + 80];
     snprintf(text, sizeof text, "%s",
-             run_list_of_scenario(list, s) < list->count ? scenario_leaf(s->base.name) : AS_OPENED);
+             run_list_of_scenario(list, s) < list->count ? scenario_leaf(s->base.name)
+                                                         : AS_OPENED);
 
     // the last change describes best what is new
     if (s->input_count > 0) {
@@ -171,12 +176,15 @@ void run_list_drop(run_list *list, int index)
     list->count--;
 
     // without the baseline the last one takes its place
-    list->baseline =
-        list->baseline == index ? list->count - 1 : list->baseline - (list->baseline > index);
+    if (list->baseline == index) {
+        list->baseline = list->count - 1;
+    } else {
+        list->baseline = list->baseline - (list->baseline > index);
+    }
     list->selected -= list->selected > 0 && list->selected >= list->count;
 }
 
-// --- a sweep ----------------------------------------------------------------------------------
+// --- a sweep ---------------------------------------------------------------------------
 
 bool lab_sweep_is_on(const lab_sweep *sweep)
 {
@@ -190,7 +198,8 @@ bool lab_sweep_is_map(const lab_sweep *sweep)
 
 int lab_sweep_total(const lab_sweep *sweep)
 {
-    return (int)sweep->axis.count * (lab_sweep_is_map(sweep) ? (int)sweep->second.count : 1);
+    return (int)sweep->axis.count *
+           (lab_sweep_is_map(sweep) ? (int)sweep->second.count : 1);
 }
 
 bool lab_sweep_is_done(const lab_sweep *sweep)
@@ -200,7 +209,10 @@ bool lab_sweep_is_done(const lab_sweep *sweep)
 
 int lab_sweep_curves(const lab_sweep *sweep)
 {
-    return lab_sweep_is_map(sweep) ? 0 : sweep->count;
+    if (lab_sweep_is_map(sweep)) {
+        return 0;
+    }
+    return sweep->count;
 }
 
 double lab_sweep_metric(const lab_sweep *sweep, int index, int metric)
@@ -214,7 +226,11 @@ void lab_sweep_values(const lab_sweep *sweep, int index, double values[2])
     const int across = (int)sweep->axis.count;
     assert(index >= 0 && index < lab_sweep_total(sweep));
     values[0] = sweep->axis.values[index % across];
-    values[1] = lab_sweep_is_map(sweep) ? sweep->second.values[index / across] : (double)NAN;
+    if (lab_sweep_is_map(sweep)) {
+        values[1] = sweep->second.values[index / across];
+    } else {
+        values[1] = (double)NAN;
+    }
 }
 
 void lab_sweep_end(lab_sweep *sweep)
@@ -237,12 +253,12 @@ static status read_axis(sweep_axis *axis, const char *definition, fault *f)
     snprintf(text, sizeof text, "%s", definition);
     char *values = strchr(text, '=');
     FAULT_IF(values == NULL, f, STATUS_BAD_ARGUMENT,
-             "sweep takes PATH=FROM:TO:N or PATH=V1,V2,..., such as control.rate=50:400:8, and for "
-             "a map two of them");
+             "sweep takes PATH=FROM:TO:N or PATH=V1,V2,..., such as "
+             "control.rate=50:400:8, and for a map two of them");
     *values++ = '\0';
     axis->parameter = parameter_of_name(text);
-    FAULT_IF(axis->parameter == -2, f, STATUS_BAD_ARGUMENT, "several parameters begin with '%s'",
-             text);
+    FAULT_IF(axis->parameter == -2, f, STATUS_BAD_ARGUMENT,
+             "several parameters begin with '%s'", text);
     if (axis->parameter < 0) {
         parameter_look_up(text, f);
         return STATUS_BAD_ARGUMENT;
@@ -257,16 +273,21 @@ static status read_sweep(lab_sweep *fresh, const char *definition, fault *f)
     const char *rest = text_cut(definition, " ", first, sizeof first);
     const bool map = *rest != '\0';
     TRY(read_axis(&fresh->axis, first, f));
-    TRY(map ? read_axis(&fresh->second, rest, f) : STATUS_OK);
+    if (map) {
+        TRY(read_axis(&fresh->second, rest, f));
+    }
     const size_t runs = fresh->axis.count * (map ? fresh->second.count : 1);
     const size_t most = map ? MAP_CELLS : SWEPT_RUNS;
-    FAULT_IF(runs > most, f, STATUS_BAD_ARGUMENT,
-             "%zu runs are too many here, at most %zu: 'impactlab sweep' takes any number", runs,
-             most);
-    FAULT_IF(map && fresh->axis.parameter == fresh->second.parameter, f, STATUS_BAD_ARGUMENT,
-             "a map takes two different parameters");
+    FAULT_IF(
+        runs > most, f, STATUS_BAD_ARGUMENT,
+        "%zu runs are too many here, at most %zu: 'impactlab sweep' takes any number",
+        runs, most);
+    FAULT_IF(map && fresh->axis.parameter == fresh->second.parameter, f,
+             STATUS_BAD_ARGUMENT, "a map takes two different parameters");
     fresh->summaries = calloc(runs, sizeof *fresh->summaries);
-    TRY_MEMORY(fresh->summaries != NULL, f);
+    if (fresh->summaries == NULL) {
+        return fault_no_memory(f);
+    }
     return STATUS_OK;
 }
 
@@ -275,7 +296,9 @@ status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f)
     lab_sweep fresh = {.metric = sweep->metric, .computed = sweep->computed};
     const status code = read_sweep(&fresh, definition, f);
     lab_sweep_end(code == STATUS_OK ? sweep : &fresh);
-    *sweep = code == STATUS_OK ? fresh : *sweep;
+    if (code == STATUS_OK) {
+        *sweep = fresh;
+    }
     return code;
 }
 
@@ -294,11 +317,17 @@ status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f)
     for (int i = 0; i <= map && code == STATUS_OK; i++) {
         code = parameter_set_number(&s.parameters, axes[i]->parameter, values[i], f);
     }
-    code = code == STATUS_OK ? parameters_resolve(&s.parameters, f) : code;
+    if (code == STATUS_OK) {
+        code = parameters_resolve(&s.parameters, f);
+    }
     if (code == STATUS_OK) {
         run_scenario(&s, !map, &run);
         loss_unless(run.summary.status != STATUS_NO_MEMORY);
-        code = map || run.trace.row_count > 0 ? STATUS_OK : summary_fault(&run.summary, f);
+        if (map || run.trace.row_count > 0) {
+            code = STATUS_OK;
+        } else {
+            code = summary_fault(&run.summary, f);
+        }
     }
 
     // of a map the summary alone is kept
@@ -317,7 +346,7 @@ status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f)
     return code;
 }
 
-// --- the difference ---------------------------------------------------------------------------
+// --- the difference --------------------------------------------------------------------
 
 void difference_finish(run_difference *d)
 {
@@ -346,21 +375,24 @@ static status add_row(run_difference *d, const trace *run, const trace *other, s
     return trace_add_row(&d->trace, &difference, none, none);
 }
 
-void difference_update(run_difference *d, unsigned long run, const trace *t, const trace *other)
+void difference_update(run_difference *d, unsigned long run, const trace *t,
+                       const trace *other)
 {
     if (!d->on || other->row_count == 0) {
         return;
     }
 
     // of another run everything is computed anew, of one that grew the rest
-    if (d->run != run || d->rows > t->row_count || d->trace.arrays[TRACE_ROWS].size == 0) {
+    if (d->run != run || d->rows > t->row_count ||
+        d->trace.arrays[TRACE_ROWS].size == 0) {
         trace_finish(&d->trace);
         trace_init(&d->trace, 1);
         d->built++;
         d->run = run;
         d->rows = 0;
     }
-    const double begin = other->rows[0].time, end = other->rows[other->row_count - 1].time;
+    const double begin = other->rows[0].time,
+                 end = other->rows[other->row_count - 1].time;
     for (; d->rows < t->row_count; d->rows++) {
         // outside of the other one there is nothing to compare
         const double time = t->rows[d->rows].time;
@@ -378,5 +410,8 @@ double difference_first_beyond(const run_difference *d, int signal, double toler
     while (r < t->row_count && !(fabs(signal_value(&t->rows[r], signal)) > tolerance)) {
         r++;
     }
-    return r < t->row_count ? t->rows[r].time : -1;
+    if (r < t->row_count) {
+        return t->rows[r].time;
+    }
+    return -1;
 }

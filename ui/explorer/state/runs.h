@@ -1,4 +1,5 @@
-// The runs beside the present one: pinned ones, those of a sweep, the difference to the baseline.
+// The runs beside the present one: pinned ones, those of a sweep, the difference to the
+// baseline.
 #pragma once
 
 #include "src/run/run.h"
@@ -6,7 +7,7 @@
 #include "src/study/sweep_axis.h"
 #include "ui/explorer/state/command_list.h"
 
-// --- pinned runs ------------------------------------------------------------------------------
+// --- pinned runs -----------------------------------------------------------------------
 // Stored with names and changes, and shown together with the present run.
 
 enum { PINNED_RUNS = LESSON_PINNED_RUNS, RUN_NAME = LINE_TEXT };
@@ -27,12 +28,13 @@ typedef struct run_list {
     unsigned long pinned; // number of runs ever pinned
 } run_list;
 
-// Pins the present run of a session under the given name, or one that describes the last change,
-// and makes it the baseline. A run of the same changes is not pinned twice. STATUS_BAD_ARGUMENT if
-// the list is full, STATUS_NO_MEMORY.
+// Pins the present run of a session under the given name, or one that describes the last
+// change, and makes it the baseline. A run of the same changes is not pinned twice.
+// STATUS_BAD_ARGUMENT if the list is full, STATUS_NO_MEMORY.
 status run_list_pin(run_list *list, const session *s, const char *name, fault *f);
 
-// Names the runs that are not of the session's scenario, and were "as opened", after their own.
+// Names the runs that are not of the session's scenario, and were "as opened", after
+// their own.
 void run_list_name_strangers(run_list *list, const session *s);
 
 // The value of an input as it is shown: a number without the digits of its rounding.
@@ -47,13 +49,15 @@ void run_list_drop(run_list *list, int index);
 // The number of runs of the list that are of the session's scenario.
 int run_list_of_scenario(const run_list *list, const session *s);
 
-// The difference between a run of the list and the present one as a line of text: changes that only
-// the former has, then, in brackets, those that only the latter has. Of another scenario its name.
+// The difference between a run of the list and the present one as a line of text: changes
+// that only the former has, then, in brackets, those that only the latter has. Of another
+// scenario its name.
 void run_list_differences(const pinned_run *p, const session *s, char *text, size_t size);
 
-// --- a sweep ----------------------------------------------------------------------------------
-// The present run with several values of one parameter from the start, each as a run of its own; or
-// a map: all pairs of values of two parameters, of which the summaries are kept.
+// --- a sweep ---------------------------------------------------------------------------
+// The present run with several values of one parameter from the start, each as a run of
+// its own; or a map: all pairs of values of two parameters, of which the summaries are
+// kept.
 
 enum { SWEPT_RUNS = 32, MAP_CELLS = 1024 };
 
@@ -67,11 +71,11 @@ typedef struct lab_sweep {
     sweep_axis axis;            // axis.text NULL: no sweep
     sweep_axis second;          // of a map; second.text NULL: none
     swept_run runs[SWEPT_RUNS]; // of a sweep
-    summary *summaries;         // of all, the first parameter's values one after the other
-    int count;                  // computed so far
-    int selected;               // index of the selected one
-    int metric;                 // index in summary_table
-    unsigned long computed;     // number of runs ever computed
+    summary *summaries;     // of all, the first parameter's values one after the other
+    int count;              // computed so far
+    int selected;           // index of the selected one
+    int metric;             // index in summary_table
+    unsigned long computed; // number of runs ever computed
 } lab_sweep;
 
 // Whether there is a sweep, of two parameters, and whether it is complete.
@@ -89,18 +93,18 @@ double lab_sweep_metric(const lab_sweep *sweep, int index, int metric);
 // A run's values of both parameters; the second is NaN without a map.
 void lab_sweep_values(const lab_sweep *sweep, int index, double values[2]);
 
-// Begins a sweep given as "PATH=a:b:n", "PATH=a:b:n:log" or "PATH=v1,v2,...", of one parameter or
-// of two with a blank between them; nothing is computed yet. On STATUS_BAD_ARGUMENT, with the
-// reason in f, the previous sweep is kept.
+// Begins a sweep given as "PATH=a:b:n", "PATH=a:b:n:log" or "PATH=v1,v2,...", of one
+// parameter or of two with a blank between them; nothing is computed yet. On
+// STATUS_BAD_ARGUMENT, with the reason in f, the previous sweep is kept.
 status lab_sweep_begin(lab_sweep *sweep, const char *definition, fault *f);
 
-// Computes the next run of a sweep from the scenario of the present run. A value that cannot be run
-// ends the sweep, with the reason in f.
+// Computes the next run of a sweep from the scenario of the present run. A value that
+// cannot be run ends the sweep, with the reason in f.
 status lab_sweep_compute_next(lab_sweep *sweep, const scenario *base, fault *f);
 
 void lab_sweep_end(lab_sweep *sweep);
 
-// --- a limit ----------------------------------------------------------------------------------
+// --- a limit ---------------------------------------------------------------------------
 
 // The condition that was asked for last, drawn in the panes of its signal.
 typedef struct solved_limit {
@@ -108,7 +112,7 @@ typedef struct solved_limit {
     double bound;
 } solved_limit;
 
-// --- notes ------------------------------------------------------------------------------------
+// --- notes -----------------------------------------------------------------------------
 
 enum { NOTES = 32 };
 
@@ -118,9 +122,10 @@ typedef struct note {
     char text[LINE_TEXT];
 } note;
 
-// --- the difference ---------------------------------------------------------------------------
-// Of one trace from another, row by row of the first: of the present run from the baseline, of
-// measured data from the present run. Contact, sticking and the controller's mode stay the first's.
+// --- the difference --------------------------------------------------------------------
+// Of one trace from another, row by row of the first: of the present run from the
+// baseline, of measured data from the present run. Contact, sticking and the controller's
+// mode stay the first's.
 
 typedef struct run_difference {
     bool on;             // panes show it in the place of the runs
@@ -131,12 +136,13 @@ typedef struct run_difference {
     size_t rows;         // of that
 } run_difference;
 
-// Brings the differences of a trace from another one up to the rows there are, if they are wanted.
-// `run` identifies both.
-void difference_update(run_difference *d, unsigned long run, const trace *of, const trace *from);
+// Brings the differences of a trace from another one up to the rows there are, if they
+// are wanted. `run` identifies both.
+void difference_update(run_difference *d, unsigned long run, const trace *of,
+                       const trace *from);
 
-// The first instant at which a signal differs by more than a tolerance [s]; negative if it never
-// does.
+// The first instant at which a signal differs by more than a tolerance [s]; negative if
+// it never does.
 double difference_first_beyond(const run_difference *d, int signal, double tolerance);
 
 void difference_finish(run_difference *d);

@@ -12,7 +12,9 @@
 void scenario_menu_read(scenario_menu *menu)
 {
     const status code = scenario_list(&menu->names, &menu->count, NULL);
-    menu->count = code == STATUS_OK ? menu->count : 0;
+    if (code != STATUS_OK) {
+        menu->count = 0;
+    }
     menu->shown = calloc((size_t)menu->count + 1, sizeof *menu->shown);
     loss_unless(code != STATUS_NO_MEMORY && menu->shown != NULL);
 }
@@ -21,8 +23,9 @@ void scenario_menu_read(scenario_menu *menu)
 static void sort_lessons(scenario_menu *menu)
 {
     for (int i = 1; i < menu->count; i++) {
-        for (int k = i; k > 0 && menu->texts[k].is_lesson && menu->texts[k - 1].is_lesson &&
-                        strcmp(menu->texts[k].title, menu->texts[k - 1].title) < 0;
+        for (int k = i;
+             k > 0 && menu->texts[k].is_lesson && menu->texts[k - 1].is_lesson &&
+             strcmp(menu->texts[k].title, menu->texts[k - 1].title) < 0;
              k--) {
             const menu_text text = menu->texts[k];
             char *const name = menu->names[k];
@@ -78,7 +81,9 @@ int scenario_menu_find(const scenario_menu *menu, const char *name)
 {
     int at = -1;
     for (int i = 0; i < menu->count; i++) {
-        at = strcmp(menu->names[i], name) == 0 ? i : at;
+        if (strcmp(menu->names[i], name) == 0) {
+            at = i;
+        }
     }
     return at;
 }
@@ -87,8 +92,12 @@ menu_text scenario_menu_text(const scenario_menu *menu, int index)
 {
     assert(index >= 0 && index < menu->count);
     menu_text text = menu->texts != NULL ? menu->texts[index] : (menu_text){0};
-    text.title = text.title != NULL ? text.title : "";
-    text.description = text.description != NULL ? text.description : "";
+    if (text.title == NULL) {
+        text.title = "";
+    }
+    if (text.description == NULL) {
+        text.description = "";
+    }
     return text;
 }
 
@@ -98,9 +107,12 @@ int scenario_menu_lines(const scenario_menu *menu, int *selected)
     *selected = -1;
     for (int i = 0; i < menu->count && menu->shown != NULL; i++) {
         char text[1024];
-        snprintf(text, sizeof text, "%s %s", menu->names[i], scenario_menu_text(menu, i).title);
+        snprintf(text, sizeof text, "%s %s", menu->names[i],
+                 scenario_menu_text(menu, i).title);
         if (filter_passes(menu->filter, text)) {
-            *selected = i == menu->selected ? count : *selected;
+            if (i == menu->selected) {
+                *selected = count;
+            }
             menu->shown[count++] = i;
         }
     }
@@ -112,19 +124,27 @@ void scenario_menu_move(scenario_menu *menu, int lines)
     int at;
     const int count = scenario_menu_lines(menu, &at), to = at < 0 ? 0 : at + lines;
     const int last = count - 1, kept = to > last ? last : to < 0 ? 0 : to;
-    menu->selected = count > 0 ? menu->shown[kept] : 0;
+    if (count > 0) {
+        menu->selected = menu->shown[kept];
+    } else {
+        menu->selected = 0;
+    }
 }
 
-// --- lessons ----------------------------------------------------------------------------------
+// --- lessons ---------------------------------------------------------------------------
 
-// A quantity of the present run, which must have come to its end; NaN if it did not occur.
+// A quantity of the present run, which must have come to its end; NaN if it did not
+// occur.
 static double quantity_of(const session *s, int quantity)
 {
-    return s->computing == NULL ? summary_value(&s->run.summary, quantity) : (double)NAN;
+    if (s->computing == NULL) {
+        return summary_value(&s->run.summary, quantity);
+    }
+    return (double)NAN;
 }
 
-bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p, const session *s,
-                         const run_list *pinned)
+bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p,
+                         const session *s, const run_list *pinned)
 {
     // to be read or answered
     switch (step->check) {

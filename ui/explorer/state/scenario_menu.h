@@ -1,4 +1,5 @@
-// The list of scenarios: names, titles, filter and selection. And the progress in a lesson.
+// The list of scenarios: names, titles, filter and selection. And the progress in a
+// lesson.
 #pragma once
 
 #include <stdbool.h>
@@ -32,15 +33,16 @@ void scenario_menu_finish(scenario_menu *menu);
 int scenario_menu_find(const scenario_menu *menu, const char *name);
 // What a scenario says of itself, "" where it has nothing or nothing was read.
 menu_text scenario_menu_text(const scenario_menu *menu, int index);
-// Finds the scenarios that pass the filter by their names or titles: menu->shown. Returns how many;
+// Finds the scenarios that pass the filter by their names or titles: menu->shown. Returns
+// how many;
 // *selected is the line of the selected one, -1 if it is hidden.
 int scenario_menu_lines(const scenario_menu *menu, int *selected);
 
-// Moves the selection by some of the lines shown, as far as there are any; a hidden one first to
-// the first line.
+// Moves the selection by some of the lines shown, as far as there are any; a hidden one
+// first to the first line.
 void scenario_menu_move(scenario_menu *menu, int lines);
 
-// --- lessons ----------------------------------------------------------------------------------
+// --- lessons ---------------------------------------------------------------------------
 
 typedef struct lesson_progress {
     bool on;
@@ -51,5 +53,5 @@ typedef struct lesson_progress {
 } lesson_progress;
 
 // Whether answers and actions meet the step's conditions.
-bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p, const session *s,
-                         const run_list *pinned);
+bool lesson_step_is_done(const lesson_step *step, const lesson_progress *p,
+                         const session *s, const run_list *pinned);

@@ -9,7 +9,7 @@
 #include "src/rig/rig.h"
 #include "src/scenario/effect.h"
 
-// --- opening and closing ----------------------------------------------------------------------
+// --- opening and closing ---------------------------------------------------------------
 
 // Fills the panes for the present run on the present screen.
 static void define_panes(explorer_state *st)
@@ -20,8 +20,8 @@ static void define_panes(explorer_state *st)
 
     // a lesson leaves little room next to its own panes
     const int least = st->lesson.on ? 2 : FEWEST;
-    const pane_wishes wishes = {state_has_law(st), base->panes, base->pane_count, st->lesson.on,
-                                room < least ? least : room};
+    const pane_wishes wishes = {state_has_law(st), base->panes, base->pane_count,
+                                st->lesson.on, room < least ? least : room};
     panes_define(&st->panes, &wishes);
 }
 
@@ -37,11 +37,17 @@ static int main_parameter(const explorer_state *st)
         char path[PARAMETER_NAME];
         snprintf(path, sizeof path, "control.%s", law->parameters[i].name);
         const int own = parameter_find(path);
-        found = i == 0 || own == force ? own : found;
+        if (i == 0 || own == force) {
+            found = own;
+        }
     }
-    return found >= 0          ? found
-           : state_has_law(st) ? PARAMETER_INDEX(control.rate)
-                               : PARAMETER_INDEX(motor.voltage);
+    if (found >= 0) {
+        return found;
+    }
+    if (state_has_law(st)) {
+        return PARAMETER_INDEX(control.rate);
+    }
+    return PARAMETER_INDEX(motor.voltage);
 }
 
 // Begins the scenario's lesson, if it has one, with the parameters that matter to it.
@@ -125,8 +131,8 @@ static void replace_session(explorer_state *st, session *fresh)
     session_finish(&st->session);
     st->session = *fresh;
     if (list->baseline >= 0) {
-        loss_unless(session_keep_beside(&st->session, &list->runs[list->baseline].run, NULL) ==
-                    STATUS_OK);
+        loss_unless(session_keep_beside(&st->session, &list->runs[list->baseline].run,
+                                        NULL) == STATUS_OK);
     }
     run_list_name_strangers(&st->pinned, &st->session);
     show_anew(st);
@@ -180,7 +186,7 @@ status state_turn(explorer_state *st, int direction, fault *f)
     return STATUS_OK;
 }
 
-// --- the runs ---------------------------------------------------------------------------------
+// --- the runs --------------------------------------------------------------------------
 
 unsigned long state_run_id(const explorer_state *st)
 {
@@ -210,8 +216,8 @@ int state_runs(const explorer_state *st, const pane *p, shown_run runs[SHOWN_RUN
 
     // data minus the run, or the run minus the baseline, alone
     if (p != NULL && p->view == VIEW_RESIDUAL) {
-        runs[0] =
-            (shown_run){SHOWN_MEASURED, 0, &st->residual.trace, 3ul << 61 | st->residual.built};
+        runs[0] = (shown_run){SHOWN_MEASURED, 0, &st->residual.trace,
+                              3ul << 61 | st->residual.built};
         return st->residual.trace.row_count > 0;
     }
     if (state_subtracts(st)) {
@@ -235,8 +241,8 @@ int state_runs(const explorer_state *st, const pane *p, shown_run runs[SHOWN_RUN
         runs[count++] = (shown_run){SHOWN_BEFORE, 0, &s->ghost.trace, state_run_id(st)};
     }
     if (st->measured.row_count > 0) {
-        runs[count++] =
-            (shown_run){SHOWN_MEASURED, 0, &st->measured, pinned_id >> 1 | st->measured_id};
+        runs[count++] = (shown_run){SHOWN_MEASURED, 0, &st->measured,
+                                    pinned_id >> 1 | st->measured_id};
     }
     return count;
 }
@@ -264,7 +270,10 @@ size_t state_row(const explorer_state *st, const trace *t)
 const char *state_run_name(const explorer_state *st, int index)
 {
     const shown_run r = state_run(st, index);
-    return r.kind == SHOWN_PINNED ? st->pinned.runs[r.index].name : "";
+    if (r.kind == SHOWN_PINNED) {
+        return st->pinned.runs[r.index].name;
+    }
+    return "";
 }
 
 parameters state_parameters(const explorer_state *st)
@@ -306,14 +315,15 @@ void state_change_text(const explorer_state *st, int index, char *text, size_t s
     const parameter_info *info = &parameter_table[in->parameter];
     char value[SESSION_INPUT_TEXT];
     input_value_text(in, value);
-    snprintf(text, size, "%s = %s%s%s", info->path, value, info->unit[0] ? " " : "", info->unit);
+    snprintf(text, size, "%s = %s%s%s", info->path, value, info->unit[0] ? " " : "",
+             info->unit);
 }
 
 int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES],
                           int *selected)
 {
-    return parameter_list_lines(&st->parameters, st->filters.text[PANEL_PARAMETERS], lines,
-                                selected);
+    return parameter_list_lines(&st->parameters, st->filters.text[PANEL_PARAMETERS],
+                                lines, selected);
 }
 
 const char *state_inert_reason(const explorer_state *st, int parameter)
@@ -321,7 +331,7 @@ const char *state_inert_reason(const explorer_state *st, int parameter)
     return effect_none(&st->session.effective, parameter);
 }
 
-// --- up to date -------------------------------------------------------------------------------
+// --- up to date ------------------------------------------------------------------------
 
 // The force by which two traces are aligned, -1 if none is in both.
 static int common_force(const trace *a, const trace *b)
@@ -330,7 +340,9 @@ static int common_force(const trace *a, const trace *b)
                                  SIGNAL_INDEX(force)};
     int found = -1;
     for (size_t i = 0; i < sizeof forces / sizeof forces[0]; i++) {
-        found = trace_has(a, forces[i]) && trace_has(b, forces[i]) ? forces[i] : found;
+        if (trace_has(a, forces[i]) && trace_has(b, forces[i])) {
+            found = forces[i];
+        }
     }
     return found;
 }
@@ -342,7 +354,10 @@ static double first_above(const trace *t, int signal, double level)
     while (r < t->row_count && !(signal_value(&t->rows[r], signal) > level)) {
         r++;
     }
-    return r < t->row_count ? t->rows[r].time : (double)NAN;
+    if (r < t->row_count) {
+        return t->rows[r].time;
+    }
+    return (double)NAN;
 }
 
 bool state_lay_data(explorer_state *st, double shift)
@@ -354,12 +369,15 @@ bool state_lay_data(explorer_state *st, double shift)
 
     // a tenth of the measured largest force marks the touch in both
     if (isnan(shift) && force >= 0) {
-        const double first = data->rows[0].time, last = data->rows[data->row_count - 1].time;
+        const double first = data->rows[0].time,
+                     last = data->rows[data->row_count - 1].time;
         const double level = trace_statistics(data, force, first, last).maximum / 10;
-        shift =
-            st->measured_shift + first_above(run, force, level) - first_above(data, force, level);
+        shift = st->measured_shift + first_above(run, force, level) -
+                first_above(data, force, level);
     }
-    FAIL_IF(!isfinite(shift), false);
+    if (!isfinite(shift)) {
+        return false;
+    }
     for (size_t r = 0; r < data->row_count; r++) {
         data->rows[r].time += shift - st->measured_shift;
     }
@@ -384,7 +402,8 @@ static void update_residual(explorer_state *st)
 
     // a run that grows has more to compare with: all of it anew
     const trace *t = &st->session.run.trace;
-    const unsigned long both = state_run_id(st) * 1000003 + st->measured_id * 997 + t->row_count;
+    const unsigned long both =
+        state_run_id(st) * 1000003 + st->measured_id * 997 + t->row_count;
     difference_update(d, both, &st->measured, t);
 }
 
@@ -404,7 +423,8 @@ void state_update(explorer_state *st)
         state_lay_data(st, (double)NAN);
     }
     if (s->has_other) {
-        difference_update(&st->difference, state_run_id(st), &s->run.trace, &s->other.trace);
+        difference_update(&st->difference, state_run_id(st), &s->run.trace,
+                          &s->other.trace);
     }
     update_residual(st);
     state_update_axes(st);

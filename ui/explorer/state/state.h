@@ -1,5 +1,6 @@
-// The state of the explorer: the session shown, and how it is shown. Actions change it; panels draw
-// it without changing it. It does not depend on a terminal or on positions on the screen.
+// The state of the explorer: the session shown, and how it is shown. Actions change it;
+// panels draw it without changing it. It does not depend on a terminal or on positions on
+// the screen.
 #pragma once
 
 #include "ui/explorer/state/command_list.h"
@@ -11,9 +12,11 @@
 #include "ui/explorer/state/scenario_menu.h"
 #include "ui/explorer/state/view.h"
 
-enum { SIDE_WIDTH = 72 }; // least width of a screen with the side panels next to the curves [cells]
-// The present run, pinned runs, runs of a sweep, the run before the adjustment of a value, and
-// measured data.
+enum {
+    SIDE_WIDTH = 72
+}; // least width of a screen with the side panels next to the curves [cells]
+// The present run, pinned runs, runs of a sweep, the run before the adjustment of a
+// value, and measured data.
 enum { SHOWN_RUNS = 1 + PINNED_RUNS + SWEPT_RUNS + 2 };
 
 // A run with visible curves.
@@ -46,14 +49,17 @@ typedef struct side_view {
 
 // What the last picture decided, and the next one begins with.
 typedef struct drawn_view {
-    int scroll[PANEL_IDS];  // by panel: number of lines scrolled from its automatic position
+    int scroll[PANEL_IDS];  // by panel: number of lines scrolled from its automatic
+                            // position
     bool folded[PANEL_IDS]; // panels of the stack that had no room: Tab selects them
     int page_lines;         // of the page, shown at once
-    int first_scenario; // line of their list shown first; negative: the selected one in the middle
+    int first_scenario; // line of their list shown first; negative: the selected one in
+                        // the middle
     arm_stage stage;    // where the arm was drawn
 } drawn_view;
 
-// A scenario that was opened before the present one, or that undoing has left: as it was then.
+// A scenario that was opened before the present one, or that undoing has left: as it was
+// then.
 typedef struct visit {
     run_origin from;
     lesson_progress lesson;
@@ -120,8 +126,8 @@ typedef struct explorer_state {
     unsigned long saved_version;  // the run last saved as a scenario, 0 for none
     char *copied;                 // for the terminal's clipboard, NULL: nothing
     char session_path[LINE_TEXT]; // the session file of this visit, "" for none
-    unsigned long kept_pins;      // runs ever pinned when they were last saved in a session
-    bool asked_to_quit;           // the last key asked to quit, and changes would be lost
+    unsigned long kept_pins; // runs ever pinned when they were last saved in a session
+    bool asked_to_quit;      // the last key asked to quit, and changes would be lost
     bool quit;
 
     // results derived from the runs, kept until they change
@@ -130,36 +136,41 @@ typedef struct explorer_state {
     extremes extremes[SHOWN_RUNS];
 } explorer_state;
 
-// Opens the state with a scenario, which it owns from then on, also on failure. Waits for runs at
-// most `patience` [s].
+// Opens the state with a scenario, which it owns from then on, also on failure. Waits for
+// runs at most `patience` [s].
 status state_init(explorer_state *st, scenario *s, double patience, fault *f);
 void state_finish(explorer_state *st);
 
-// Shows another session, which it owns from then on, as if newly opened; pinned runs stay. What was
-// there can be returned to. On failure nothing changes and the caller keeps the session.
+// Shows another session, which it owns from then on, as if newly opened; pinned runs
+// stay. What was there can be returned to. On failure nothing changes and the caller
+// keeps the session.
 status state_take_session(explorer_state *st, session *fresh, fault *f);
 // Returns to the scenario before (-1), or goes on to the one that this left (1).
 bool state_can_turn(const explorer_state *st, int direction);
 status state_turn(explorer_state *st, int direction, fault *f);
 
-// Updates everything that drawing reads: panes, window, growing axes and results derived from the
-// runs.
+// Updates everything that drawing reads: panes, window, growing axes and results derived
+// from the runs.
 void state_update(explorer_state *st);
 
-// Lays the measured data under the run, so much later than in their file [s]; NaN: they touch when
-// the run does, and go with it. False where no force in both shows that: they stay as they are.
+// Lays the measured data under the run, so much later than in their file [s]; NaN: they
+// touch when the run does, and go with it. False where no force in both shows that: they
+// stay as they are.
 bool state_lay_data(explorer_state *st, double shift);
 
-// A number that identifies the present run among the runs of all sessions opened; never 0.
+// A number that identifies the present run among the runs of all sessions opened; never
+// 0.
 unsigned long state_run_id(const explorer_state *st);
 // Whether panes show the difference from the baseline in the place of the runs.
 bool state_subtracts(const explorer_state *st);
-// The runs whose curves a pane shows, or any that is not of residuals (NULL); returns how many. 0
-// is the present one (or, alone, its difference from the baseline), the others are for comparison.
+// The runs whose curves a pane shows, or any that is not of residuals (NULL); returns how
+// many. 0 is the present one (or, alone, its difference from the baseline), the others
+// are for comparison.
 int state_runs(const explorer_state *st, const pane *p, shown_run runs[SHOWN_RUNS]);
 int state_run_count(const explorer_state *st);
 shown_run state_run(const explorer_state *st, int index);
-// The row of a run or a difference at the cursor, on the side of an event where that stands.
+// The row of a run or a difference at the cursor, on the side of an event where that
+// stands.
 size_t state_row(const explorer_state *st, const trace *t);
 // The name of a run, "" for the present one and for runs without a name.
 const char *state_run_name(const explorer_state *st, int index);
@@ -173,15 +184,16 @@ void state_window(const explorer_state *st, double *from, double *to);
 // Makes a part visible, limited to the run [s].
 void state_show_part(explorer_state *st, double from, double to);
 
-// Low and high of each block of a signal of a run, low above high in a block without a finite
-// value; NULL if they do not cover all rows of its trace.
+// Low and high of each block of a signal of a run, low above high in a block without a
+// finite value; NULL if they do not cover all rows of its trace.
 const double *extremes_pairs(const extremes *e, const shown_run *run, int signal);
 
-// The axis of a pane in the visible part of the run; false if no signal of it has a value there.
+// The axis of a pane in the visible part of the run; false if no signal of it has a value
+// there.
 bool state_pane_axis(const explorer_state *st, int index, value_range *axis);
 
-// Brings extremes and growing axes up to date, and the visible part to the cursor, unless that is
-// adrift.
+// Brings extremes and growing axes up to date, and the visible part to the cursor, unless
+// that is adrift.
 void state_update_axes(explorer_state *st);
 
 // Whether there is a control law, and its modes.

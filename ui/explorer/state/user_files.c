@@ -24,10 +24,11 @@ bool user_file(user_folder folder, const char *name, char *path, size_t size, bo
     const char *base = getenv(folders[folder].variable), *home = getenv("HOME");
 
     // where such files belong, or the usual place below the home folder
-    const bool given = base != NULL && base[0] == '/', usual = home != NULL && home[0] == '/';
+    const bool given = base != NULL && base[0] == '/',
+               usual = home != NULL && home[0] == '/';
     snprintf(path, size, "%s", given ? base : usual ? home : "~");
-    text_add(path, size, "%s%s/impactlab/%s", given ? "" : "/", given ? "" : folders[folder].usual,
-             name);
+    text_add(path, size, "%s%s/impactlab/%s", given ? "" : "/",
+             given ? "" : folders[folder].usual, name);
     if ((!given && !usual) || strlen(path) + 1 >= size) {
         return false;
     }
@@ -41,15 +42,16 @@ bool user_file(user_folder folder, const char *name, char *path, size_t size, bo
     return there;
 }
 
-// --- consent ----------------------------------------------------------------------------------
+// --- consent ---------------------------------------------------------------------------
 
 bool consent_needed(const scenario *s)
 {
     const parameters *p = &s->parameters;
-    return (p->control.law == LAW_PROCESS || p->control.law == LAW_PLUGIN) && !p->code_allowed;
+    return (p->control.law == LAW_PROCESS || p->control.law == LAW_PLUGIN) &&
+           !p->code_allowed;
 }
 
-// --- the digest -------------------------------------------------------------------------------
+// --- the digest ------------------------------------------------------------------------
 
 // The scenario as text.
 static bool add_scenario(sha256 *h, const scenario *s)
@@ -70,8 +72,8 @@ static bool add_scenario(sha256 *h, const scenario *s)
     return text != NULL;
 }
 
-// The digest of a scenario, of what it reads from outside, and of the folder in which a command
-// starts. False where their content does not tell.
+// The digest of a scenario, of what it reads from outside, and of the folder in which a
+// command starts. False where their content does not tell.
 static bool digest_of(const scenario *s, char digest[SHA256_TEXT])
 {
     char folder[4096], content[SHA256_TEXT];
@@ -96,9 +98,10 @@ static bool digest_of(const scenario *s, char digest[SHA256_TEXT])
     return told && named > 0;
 }
 
-// --- the file ---------------------------------------------------------------------------------
+// --- the file --------------------------------------------------------------------------
 
-// Whether a line of the file begins with the digest; copies the lines to `copy` (may be NULL).
+// Whether a line of the file begins with the digest; copies the lines to `copy` (may be
+// NULL).
 static bool look_through(const char *path, const char *digest, FILE *copy)
 {
     char *line = NULL;
@@ -125,14 +128,16 @@ bool consent_remembered(const scenario *s)
 
     // the program is read only if the user has allowed any
     return user_file(USER_SETTINGS, "allowed", path, sizeof path, false) &&
-           access(path, R_OK) == 0 && digest_of(s, digest) && look_through(path, digest, NULL);
+           access(path, R_OK) == 0 && digest_of(s, digest) &&
+           look_through(path, digest, NULL);
 }
 
 status consent_remember(const scenario *s, bool *kept, fault *f)
 {
     char path[1024], digest[SHA256_TEXT], what[2 * PARAMETER_TEXT_SIZE];
     *kept = false;
-    if (!digest_of(s, digest) || !user_file(USER_SETTINGS, "allowed", path, sizeof path, true)) {
+    if (!digest_of(s, digest) ||
+        !user_file(USER_SETTINGS, "allowed", path, sizeof path, true)) {
         return STATUS_OK;
     }
 

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
-// --- panels -----------------------------------------------------------------------------------
+// --- panels ----------------------------------------------------------------------------
 
 static const panel_place places[PANEL_IDS] = {
 #define PANEL_PLACE(id, place, description) [id] = place,
@@ -18,7 +18,7 @@ panel_place panel_place_of(panel_id id)
     return places[id];
 }
 
-// --- filters ----------------------------------------------------------------------------------
+// --- filters ---------------------------------------------------------------------------
 
 bool filter_passes(const char *filter, const char *text)
 {
@@ -31,7 +31,7 @@ bool filter_passes(const char *filter, const char *text)
     return passes;
 }
 
-// --- looks ------------------------------------------------------------------------------------
+// --- looks -----------------------------------------------------------------------------
 
 #define LOOK(command, field) command, offsetof(looks, field)
 const look_choice look_choices[] = {
@@ -42,7 +42,10 @@ const look_choice look_choices[] = {
      false,
      {"off", "auto"},
      {"characters only", "pictures where the terminal says that it draws them"}},
-    {LOOK("closeup", close_up), true, {"auto", "on", "off"}, {"the contact from near by: %s"}},
+    {LOOK("closeup", close_up),
+     true,
+     {"auto", "on", "off"},
+     {"the contact from near by: %s"}},
     {LOOK("mouse", mouse),
      false,
      {"off", "on"},

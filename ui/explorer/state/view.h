@@ -6,9 +6,9 @@
 #include "ui/explorer/state/command_list.h"
 #include "ui/terminal/screen.h"
 
-// --- panels -----------------------------------------------------------------------------------
-// One list gives each an identity, a place on the screen and the description in the panel's own
-// file. A new panel needs one file, one line here and one in meson.build.
+// --- panels ----------------------------------------------------------------------------
+// One list gives each an identity, a place on the screen and the description in the
+// panel's own file. A new panel needs one file, one line here and one in meson.build.
 
 // The places of panels.
 typedef enum panel_place {
@@ -21,31 +21,31 @@ typedef enum panel_place {
     PLACE_PROMPT // above the prompt while that is open
 } panel_place;
 
-// identity, place, description; side panels in the order in which Tab selects them, stacked ones
-// from top to bottom
-#define PANEL_LIST(X)                                                                              \
-    X(PANEL_LESSON, PLACE_STRIP, lesson_panel)                                                     \
-    X(PANEL_ARM, PLACE_TOP, arm_panel)                                                             \
-    X(PANEL_CURVES, PLACE_MAIN, curves_panel)                                                      \
-    X(PANEL_PARAMETERS, PLACE_SIDE, parameters_panel)                                              \
-    X(PANEL_VALUES, PLACE_SIDE, values_panel)                                                      \
-    X(PANEL_STATISTICS, PLACE_SIDE, statistics_panel)                                              \
-    X(PANEL_SWEEP, PLACE_SIDE, sweep_panel)                                                        \
-    X(PANEL_RUNS, PLACE_STACK, runs_panel)                                                         \
-    X(PANEL_CONTROLLER, PLACE_STACK, controller_panel)                                             \
-    X(PANEL_PREDICTORS, PLACE_STACK, predictors_panel)                                             \
-    X(PANEL_LOG, PLACE_STACK, log_panel)                                                           \
-    X(PANEL_HELP, PLACE_PAGE, help_panel)                                                          \
-    X(PANEL_SCENARIOS, PLACE_PAGE, scenarios_panel)                                                \
-    X(PANEL_COMPARISON, PLACE_PAGE, comparison_panel)                                              \
-    X(PANEL_CHANGES, PLACE_PAGE, changes_panel)                                                    \
-    X(PANEL_RUN_LIST, PLACE_PAGE, run_list_panel)                                                  \
-    X(PANEL_INFO, PLACE_PAGE, info_panel)                                                          \
-    X(PANEL_EXPLAIN, PLACE_PAGE, explain_panel)                                                    \
-    X(PANEL_WHY, PLACE_PAGE, why_panel)                                                            \
-    X(PANEL_POLES, PLACE_PAGE, poles_panel)                                                        \
-    X(PANEL_NOTES, PLACE_PAGE, notes_panel)                                                        \
-    X(PANEL_WELCOME, PLACE_PAGE, welcome_panel)                                                    \
+// identity, place, description; side panels in the order in which Tab selects them,
+// stacked ones from top to bottom
+#define PANEL_LIST(X)                                                                    \
+    X(PANEL_LESSON, PLACE_STRIP, lesson_panel)                                           \
+    X(PANEL_ARM, PLACE_TOP, arm_panel)                                                   \
+    X(PANEL_CURVES, PLACE_MAIN, curves_panel)                                            \
+    X(PANEL_PARAMETERS, PLACE_SIDE, parameters_panel)                                    \
+    X(PANEL_VALUES, PLACE_SIDE, values_panel)                                            \
+    X(PANEL_STATISTICS, PLACE_SIDE, statistics_panel)                                    \
+    X(PANEL_SWEEP, PLACE_SIDE, sweep_panel)                                              \
+    X(PANEL_RUNS, PLACE_STACK, runs_panel)                                               \
+    X(PANEL_CONTROLLER, PLACE_STACK, controller_panel)                                   \
+    X(PANEL_PREDICTORS, PLACE_STACK, predictors_panel)                                   \
+    X(PANEL_LOG, PLACE_STACK, log_panel)                                                 \
+    X(PANEL_HELP, PLACE_PAGE, help_panel)                                                \
+    X(PANEL_SCENARIOS, PLACE_PAGE, scenarios_panel)                                      \
+    X(PANEL_COMPARISON, PLACE_PAGE, comparison_panel)                                    \
+    X(PANEL_CHANGES, PLACE_PAGE, changes_panel)                                          \
+    X(PANEL_RUN_LIST, PLACE_PAGE, run_list_panel)                                        \
+    X(PANEL_INFO, PLACE_PAGE, info_panel)                                                \
+    X(PANEL_EXPLAIN, PLACE_PAGE, explain_panel)                                          \
+    X(PANEL_WHY, PLACE_PAGE, why_panel)                                                  \
+    X(PANEL_POLES, PLACE_PAGE, poles_panel)                                              \
+    X(PANEL_NOTES, PLACE_PAGE, notes_panel)                                              \
+    X(PANEL_WELCOME, PLACE_PAGE, welcome_panel)                                          \
     X(PANEL_PALETTE, PLACE_PROMPT, palette_panel)
 
 typedef enum panel_id {
@@ -59,7 +59,7 @@ typedef enum panel_id {
 // The place of a panel; not for PANEL_NONE.
 panel_place panel_place_of(panel_id id);
 
-// --- filters ----------------------------------------------------------------------------------
+// --- filters ---------------------------------------------------------------------------
 // A line of words for each panel that is a list.
 
 typedef struct filters {
@@ -67,11 +67,11 @@ typedef struct filters {
     char text[PANEL_IDS][LINE_TEXT];
 } filters;
 
-// Whether a text passes a filter: every word of the filter is part of the text, whatever the case
-// of letters. Every text passes an empty filter.
+// Whether a text passes a filter: every word of the filter is part of the text, whatever
+// the case of letters. Every text passes an empty filter.
 bool filter_passes(const char *filter, const char *text);
 
-// --- looks ------------------------------------------------------------------------------------
+// --- looks -----------------------------------------------------------------------------
 // And the words for them in commands and settings.
 
 // Which lanes are shown below the curves.
@@ -110,9 +110,10 @@ typedef struct look_choice {
     const char *command;
     size_t place;    // of the choice in struct looks
     bool goes_round; // without a word it goes on to the next one
-    const char
-        *words[LOOK_WORDS + 1];   // of the values of its enumeration, in their order; then NULL
-    const char *says[LOOK_WORDS]; // when one is chosen, or the first for any word (%s), if anything
+    const char *words[LOOK_WORDS +
+                      1]; // of the values of its enumeration, in their order; then NULL
+    const char *says[LOOK_WORDS]; // when one is chosen, or the first for any word (%s),
+                                  // if anything
 } look_choice;
 
 // All of them; the last one has no command.
@@ -124,7 +125,7 @@ int *look_value(looks *l, const look_choice *c);
 // The word for its present value.
 const char *look_word(const looks *l, const look_choice *c);
 
-// --- messages ---------------------------------------------------------------------------------
+// --- messages --------------------------------------------------------------------------
 
 enum { MESSAGE_TEXT = 1024 };
 
