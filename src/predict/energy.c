@@ -1,3 +1,5 @@
+// The peak force by the principle of energy: all that the arm has at the touch becomes
+// strain of its springs, section 4.3 of the thesis.
 #include "src/predict/predict.h"
 
 #include <assert.h>

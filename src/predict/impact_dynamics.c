@@ -1,3 +1,5 @@
+// The peak force by the dynamics of the impact: velocities jump at the touch, then the
+// springs swing about the point of contact, section 4.2 of the thesis.
 #include "src/predict/predict.h"
 
 #include <math.h>

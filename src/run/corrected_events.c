@@ -1,3 +1,5 @@
+// What happens at an event of a run of the corrected model: the record of it, the pulses
+// that it opens or closes, and the changes of the script.
 #include "src/run/corrected.h"
 
 #include <math.h>

@@ -1,3 +1,5 @@
+// The steps of the corrected model in pieces that are short enough for its force to be a
+// parabola: for the means of the force, and for sensors that follow it.
 #include <math.h>
 
 #include "src/base/extremes.h"

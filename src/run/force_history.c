@@ -1,3 +1,5 @@
+// The contact force of a whole run, kept as a parabola over each step: when it has
+// settled, and the largest mean over a window.
 #include "src/run/run_result.h"
 
 #include <assert.h>

@@ -1,3 +1,5 @@
+// Many runs side by side: steps of several two-link arms are computed in the lanes of the
+// processor's vectors.
 #include <assert.h>
 #include <math.h>
 #include <stddef.h>

@@ -1,3 +1,5 @@
+// A recorded command in the place of a control law: read from a CSV file, and given at
+// each sample by its time.
 #include "src/rig/external/process.h"
 
 #include <stdlib.h>

@@ -1,3 +1,5 @@
+// Controllers in shared objects: one is loaded, checked, and asked as those of the lab
+// are.
 #include "src/rig/external/process.h"
 
 #include <dlfcn.h>
