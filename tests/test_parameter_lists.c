@@ -193,6 +193,40 @@ TEST(a_beam_cut_into_unequal_links_converges)
     check_close(log2(off[0] / off[1]), 2, 0.1);
 }
 
+// What the thesis's two links do not know is refused by its own sentence, one of them at
+// a time.
+TEST(the_thesiss_predictors_say_what_they_do_not_know)
+{
+    const struct {
+        const char *given;
+        prediction_outcome thesis;
+        bool linearised; // takes it
+    } cases[] = {
+        {"arm.tilt=0.1", PREDICTION_LEVEL_ONLY, true},
+        {"arm.tip_mass=0.1", PREDICTION_BARE_TIP_ONLY, true},
+        {"arm.air_drag=0.1", PREDICTION_EQUAL_LINKS_ONLY, true},
+        {"arm.stiffening=2", PREDICTION_EQUAL_LINKS_ONLY, true},
+        {"motor.current_limit=2", PREDICTION_UNLIMITED_ONLY, true},
+        {"wall.contact=hunt-crossley", PREDICTION_RIGID_WALL_ONLY, true},
+        {"wall.motion=sine wall.kind=plane", PREDICTION_STILL_WALL_ONLY, false},
+    };
+    for (EACH(c, cases)) {
+        parameters p = fixture_parameters(given(c->given));
+        const double q[2] = {0.1, 0.1}, w[2] = {0.6, 0.6};
+        const prediction_question question = {.parameters = &p,
+                                              .bodies = {{0.1, 0.1, 0.1},
+                                                         {0.6, 0.6, 0.6}},
+                                              .angles = q,
+                                              .velocities = w};
+        for (predictor which = 0; which < PREDICTOR_COUNT; which++) {
+            const prediction_answer answer = predict_with(which, &question);
+            const bool known = which == PREDICTOR_LINEARISED && c->linearised;
+            fail_if(known ? !prediction_known(&answer) : answer.outcome != c->thesis,
+                    "%s, %s: %s", c->given, answer.name, prediction_reason(&answer));
+        }
+    }
+}
+
 // The linearised arm takes any links and joints, the thesis's two links say that they do
 // not.
 TEST(predictors_take_lists_or_say_so)

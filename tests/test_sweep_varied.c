@@ -140,6 +140,8 @@ TEST(what_no_run_takes_is_refused_by_its_axis)
         {"wall.exponent=1.5,2", "wall.contact=rigid,kelvin-voigt", false},
         {"arm.k1=10,20", NULL, false},
         {"arm.k1=10,20", "arm.hub_joint=rigid,spring", true},
+        {"wall.stiffness=1000:2000:3000", "arm.k2=1:2:3000", false},
+        {"wall.stiffness=1000:2000:100000", "wall.contact=rigid,kelvin-voigt", true},
         {"control.kp=10,20", "control.law=none,open-loop", false},
         {"control.kp=10,20", "control.law=open-loop,hybrid", true},
     };

@@ -26,8 +26,7 @@ static const engine *event_engine(const arm *a)
 
 bool motion_suits_pair(const arm *a)
 {
-    return (a->features & HAS(TWO_LINKS)) != 0 && (a->features & NOT_OF_PAIR) == 0 &&
-           a->fastest_decay <= FASTEST_OF_PAIR;
+    return features_suit_pair(a->features) && a->fastest_decay <= FASTEST_OF_PAIR;
 }
 
 static void choose_engine(const arm *a, motion *m, const method_parameters *method,

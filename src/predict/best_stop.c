@@ -39,6 +39,7 @@
 #include "src/arm/arm.h"
 #include "src/base/extremes.h"
 #include "src/predict/two_link.h"
+#include "src/tables/features.h"
 
 #define STEP        1e-4 // of the way to the band; fourth order [s]
 #define COARSE_STEP 5e-4 // of the other ways [s]
@@ -66,13 +67,12 @@ bool pressed_arm_model_of(const parameters *p, pressed_arm_model *m)
 
     // the model has two bare links on a rigid hub and a wall that rests, and knows no
     // damping of the beam
-    const arm_parameters *a = &p->arm;
-    const bool bare = a->tip_mass == 0 && a->stiffening == 0 && a->air_drag == 0 &&
-                      a->modal_ratios[0] == '\0' && parameters_even_links(a);
-    const bool rests = p->wall.contact == WALL_RIGID && p->wall.motion == MOTION_NONE;
-    return bare && rests && a->tilt == 0 && p->arm.model == ARM_CORRECTED &&
-           p->arm.links == 2 && p->arm.hub_joint == HUB_RIGID &&
-           p->arm.damping_ratio == 0 && p->wall.kind != WALL_NONE && m->mass_force > 0;
+    const feature_set features = features_of(p);
+    const feature_set needed = HAS(CORRECTED) | HAS(TWO_LINKS) | HAS(WALL);
+    return (features & needed) == needed &&
+           (features & NOT_OF_THESIS & ~HAS(LIMITED)) == 0 &&
+           p->arm.hub_joint == HUB_RIGID && p->arm.damping_ratio == 0 &&
+           m->mass_force > 0;
 }
 
 bool pressed_after_impact(const parameters *p, const three_body_state *before,

@@ -21,6 +21,7 @@
 #include <math.h>
 
 #include "src/arm/chain.h"
+#include "src/arm/chain_pair.h"
 #include "src/arm/impact.h"
 #include "src/base/plain_math.h"
 #include "src/base/sincos.h"
@@ -498,9 +499,7 @@ status predict_linearised(const arm *a, const method_parameters *method, const d
                           const double *w, prediction *out)
 {
     assert(a->motor.inductance == 0);
-    const bool plain = a->dof == 2 && a->links == 2 && arm_is_plain(a) &&
-                       !wall_gives(&a->wall) && wall_stands(&a->wall);
-    if (plain) {
+    if (pair_suits(a)) {
         // two links on a rigid hub that turns on towards the wall: the closed form
         const arm touched = arm_touching_now(a, q);
         double after[2];

@@ -6,15 +6,13 @@
 #include "src/arm/motor.h"
 #include "src/base/numbers.h"
 #include "src/predict/linearised.h"
+#include "src/tables/features.h"
 
 // The linearised arm asks for the state of all links.
 static prediction_outcome ask_linearised(const prediction_question *question,
                                          prediction *out, fault *f)
 {
     const parameters *p = question->parameters;
-    if (p->arm.model == ARM_PRINTED) {
-        return PREDICTION_CORRECTED_ONLY;
-    }
     assert((question->angles == NULL) == (question->velocities == NULL));
     if (question->angles == NULL) {
         return PREDICTION_LINKS_UNKNOWN;
@@ -111,12 +109,20 @@ static status ask_impact_dynamics(predictor which, const prediction_question *qu
                      "no delay goes with the mean of the prescribed voltage over it");
 }
 
-// Whether the thesis's two links stand for the beam: they know one stiffness, and of
-// damping what is proportional to it.
-static bool is_plain_beam(const arm_parameters *a)
+// The first of the features that a predictor does not take says so.
+static prediction_outcome outcome_without(feature_set refused)
 {
-    return parameters_even_links(a) && a->stiffening == 0 && a->modal_ratios[0] == '\0' &&
-           a->air_drag == 0;
+    static const feature_set features[] = {
+#define PREDICTION_OUTCOME_FEATURES(id, features, text) [id] = features,
+        PREDICTION_OUTCOME_LIST(PREDICTION_OUTCOME_FEATURES)
+#undef PREDICTION_OUTCOME_FEATURES
+    };
+    prediction_outcome outcome = PREDICTION_HOLDS;
+    while (refused != 0 && (features[outcome] & refused) == 0) {
+        outcome++;
+        assert(outcome < PREDICTION_FAILED);
+    }
+    return outcome;
 }
 
 static prediction_outcome ask(predictor which, const prediction_question *question,
@@ -126,31 +132,14 @@ static prediction_outcome ask(predictor which, const prediction_question *questi
 
     // the thesis's begin with an impact of two bare links
     const bool thesis = which != PREDICTOR_LINEARISED;
-    const bool limited = p->motor.drive == DRIVE_VOLTAGE && p->motor.current_limit > 0;
-    const bool moves = p->wall.motion != MOTION_NONE && p->wall.kind != WALL_NONE;
-    const bool timed = which == PREDICTOR_ENERGY && question->command.count > 0;
-    prediction_outcome refused = PREDICTION_UNLIMITED_ONLY;
-    if (!(thesis && limited)) {
-        if (thesis && p->wall.contact != WALL_RIGID) {
-            refused = PREDICTION_RIGID_WALL_ONLY;
-        } else if (moves) {
-            refused = PREDICTION_STILL_WALL_ONLY;
-        } else if (thesis && p->arm.tilt != 0) {
-            refused = PREDICTION_LEVEL_ONLY;
-        } else if (thesis && p->arm.tip_mass > 0) {
-            refused = PREDICTION_BARE_TIP_ONLY;
-        } else if (thesis && !is_plain_beam(&p->arm)) {
-            refused = PREDICTION_EQUAL_LINKS_ONLY;
-        } else if (timed) {
-            refused = PREDICTION_KNOWS_NO_TIME;
-        } else {
-            refused = PREDICTION_HOLDS;
-        }
+    const feature_set refused =
+        features_of(p) & (thesis ? NOT_OF_THESIS : HAS(MOVES) | HAS(PRINTED));
+    if (refused != 0) {
+        return outcome_without(refused);
     }
-    if (refused != PREDICTION_HOLDS) {
-        return refused;
+    if (which == PREDICTOR_ENERGY && question->command.count > 0) {
+        return PREDICTION_KNOWS_NO_TIME;
     }
-
     if (!thesis) {
         return ask_linearised(question, out, f);
     }
@@ -245,7 +234,7 @@ bool prediction_known(const prediction_answer *answer)
 const char *prediction_reason(const prediction_answer *answer)
 {
     static const char *const texts[] = {
-#define PREDICTION_OUTCOME_TEXT(id, text) [id] = text,
+#define PREDICTION_OUTCOME_TEXT(id, features, text) [id] = text,
         PREDICTION_OUTCOME_LIST(PREDICTION_OUTCOME_TEXT)
 #undef PREDICTION_OUTCOME_TEXT
     };

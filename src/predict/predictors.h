@@ -29,24 +29,27 @@ typedef enum predictor {
         PREDICTOR_COUNT
 } predictor;
 
-// The outcome of asking a predictor about a state.
+// The outcome of asking a predictor about a state, and which of its features are then not
+// taken.
 #define PREDICTION_OUTCOME_LIST(X)                                                       \
-    X(PREDICTION_HOLDS, "the touch would hold")                                          \
-    X(PREDICTION_LOST, "the touch would not hold")                                       \
-    X(PREDICTION_DOUBTFUL, "the pulse lasts longer than it can be followed")             \
-    X(PREDICTION_CORRECTED_ONLY, "for the corrected model only")                         \
-    X(PREDICTION_RIGID_WALL_ONLY, "for a rigid wall only")                               \
-    X(PREDICTION_STILL_WALL_ONLY, "for a wall at rest only")                             \
-    X(PREDICTION_LEVEL_ONLY, "for an arm in a level plane only")                         \
-    X(PREDICTION_BARE_TIP_ONLY, "for a tip that carries nothing only")                   \
-    X(PREDICTION_EQUAL_LINKS_ONLY, "for equal links with equal linear joints only")      \
-    X(PREDICTION_UNLIMITED_ONLY, "for a motor whose current has no limit only")          \
-    X(PREDICTION_KNOWS_NO_TIME, "knows no time over which a voltage could act")          \
-    X(PREDICTION_LINKS_UNKNOWN, "the state of all links is not known")                   \
-    X(PREDICTION_FAILED, "there is no prediction")
+    X(PREDICTION_HOLDS, 0, "the touch would hold")                                       \
+    X(PREDICTION_LOST, 0, "the touch would not hold")                                    \
+    X(PREDICTION_DOUBTFUL, 0, "the pulse lasts longer than it can be followed")          \
+    X(PREDICTION_CORRECTED_ONLY, HAS(PRINTED), "for the corrected model only")           \
+    X(PREDICTION_UNLIMITED_ONLY, HAS(LIMITED),                                           \
+      "for a motor whose current has no limit only")                                     \
+    X(PREDICTION_RIGID_WALL_ONLY, HAS(GIVES), "for a rigid wall only")                   \
+    X(PREDICTION_STILL_WALL_ONLY, HAS(MOVES), "for a wall at rest only")                 \
+    X(PREDICTION_LEVEL_ONLY, HAS(TILTED), "for an arm in a level plane only")            \
+    X(PREDICTION_BARE_TIP_ONLY, HAS(TIP_MASS), "for a tip that carries nothing only")    \
+    X(PREDICTION_EQUAL_LINKS_ONLY, HAS(UNLIKE),                                          \
+      "for equal links with equal linear joints only")                                   \
+    X(PREDICTION_KNOWS_NO_TIME, 0, "knows no time over which a voltage could act")       \
+    X(PREDICTION_LINKS_UNKNOWN, 0, "the state of all links is not known")                \
+    X(PREDICTION_FAILED, 0, "there is no prediction")
 
 typedef enum prediction_outcome {
-#define PREDICTION_OUTCOME_ENUM(id, text) id,
+#define PREDICTION_OUTCOME_ENUM(id, features, text) id,
     PREDICTION_OUTCOME_LIST(PREDICTION_OUTCOME_ENUM)
 #undef PREDICTION_OUTCOME_ENUM
 } prediction_outcome;

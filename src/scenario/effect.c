@@ -23,7 +23,7 @@ static bool sets(const scenario *s, const action *a, int parameter)
 // Which of its engines the event method integrates with, as far as it may choose.
 static feature_set engine_features(const parameters *p, feature_set features)
 {
-    const bool able = (features & HAS(TWO_LINKS)) != 0 && (features & NOT_OF_PAIR) == 0;
+    const bool able = features_suit_pair(features);
     if ((features & HAS(EVENT)) == 0) {
         return 0;
     }

@@ -1,6 +1,7 @@
 // What a set of parameters asks for, as bits; features.h says what follows from them.
 #pragma once
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum {
@@ -74,6 +75,12 @@ typedef uint64_t feature_set;
 #define NOT_OF_PAIR (NOT_OF_THESIS | HAS(ELECTRIC))
 #define NOT_OF_THESIS                                                                    \
     (HAS(LIMITED) | HAS(GIVES) | HAS(MOVES) | HAS(TILTED) | HAS(TIP_MASS) | HAS(UNLIKE))
+
+// Whether it takes an arm.
+static inline bool features_suit_pair(feature_set features)
+{
+    return (features & HAS(TWO_LINKS)) != 0 && (features & NOT_OF_PAIR) == 0;
+}
 
 // What a law may read of the nominal model: friction and torque; with the arm's masses
 // and k2; with the wall; with all that an estimate follows.

@@ -71,9 +71,7 @@ static status resolve_wall(parameters *p, fault *f)
 // The engine asked for by name, which must be able to take the arm.
 static status check_engine(const parameters *p, fault *f)
 {
-    const feature_set features = features_of(p);
-    const bool takes = (features & HAS(TWO_LINKS)) != 0 && (features & NOT_OF_PAIR) == 0;
-    if (p->method.engine == ENGINE_PAIR && !takes) {
+    if (p->method.engine == ENGINE_PAIR && !features_suit_pair(features_of(p))) {
         return fault_set_at(
             f, STATUS_BAD_SCENARIO, BLAME1(p, method.engine),
             "method.engine = pair takes two equal bare links in a level plane on "
