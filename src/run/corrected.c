@@ -344,18 +344,6 @@ status corrected_act_now(corrected_run *c, const action *todo, fault *f)
 
 // --- at present ------------------------------------------------------------------------
 
-double *corrected_present(const corrected_run *c)
-{
-    motion *m = c->motion;
-    double *within = c->stretch.open.goes_on
-                         ? motion_between(&c->arm, m, c->stretch.open.now, STATE_WHOLE)
-                         : m->state;
-    if (within != NULL) {
-        return within;
-    }
-    return m->state;
-}
-
 sensed_motion corrected_sensed_now(const corrected_run *c)
 {
     const open_step *on = &c->stretch.open;

@@ -104,6 +104,16 @@ static sample row_of(const corrected_run *c, double *state, state_energy has,
     return row;
 }
 
+double *corrected_present(const corrected_run *c)
+{
+    motion *m = c->motion;
+    double *within = NULL;
+    if (c->stretch.open.goes_on) {
+        within = motion_between(&c->arm, m, c->stretch.open.now, STATE_WHOLE);
+    }
+    return within != NULL ? within : m->state;
+}
+
 sample corrected_row(const corrected_run *c, double *state)
 {
     return row_of(c, state, motion_energy(&c->arm, c->motion, state), 0);

@@ -7,20 +7,6 @@
 #include "src/run/driver.h"
 #include "src/run/run_result.h"
 
-void run_finish(run_result *result)
-{
-    trace_finish(&result->trace);
-    shared_array_finish(&result->history.forces);
-    shared_array_finish(&result->history.checkpoints);
-}
-
-void run_monitor_count(run_monitor *monitor)
-{
-    if (monitor != NULL) {
-        atomic_fetch_add_explicit(&monitor->pieces, 1, memory_order_relaxed);
-    }
-}
-
 status run_scenario(const scenario *s, bool keep_trace, run_result *result)
 {
     const run_options options = {.keep_trace = keep_trace};
