@@ -29,7 +29,7 @@
 #define INSTANT 1e-9 // two instants nearer than this are one [s]
 // of a number or of a row within a step, as a share of the largest
 #define ROUNDING      1e-9
-#define FOLLOWED      2e-3 // how near the rig follows a lag, as a share of the largest
+#define FOLLOWED      1e-6 // how near the rig follows a lag, as a share of the largest
 #define FOLLOWED_PEAK 1e-4 // the same of the slow lag of sensor_1ms_peak_N
 // 90 % over 10 %, whose logarithm is a lag's rise time over its constant
 #define NINE 9.0
@@ -381,11 +381,9 @@ static const struct known {
     double most;
     const char *why;
 } known[] = {
-    {"row on a sampling instant", INFINITY, "a row there holds the sample before"},
-    {"order of rows", 1e-15, "a row may go back by a last digit"},
-    {"force_reading, ideal", INFINITY, "an ideal FSR saturates"},
     {"separations", INFINITY, "counted from the face of a wall that gives"},
     {"return_speed_m_s", INFINITY, "towards the face of a wall that gives"},
+    {"force_reading with hysteresis alone", INFINITY, "extremes of parabolas, to 1e-3"},
     {"max_penetration_m", 1e-4, "a depth beyond the end of a step"},
     {"smoothed_over_command_N", 1e-5, "the largest window is found nearly"},
 };
@@ -1226,10 +1224,13 @@ static void bounds_at(const motion *m, int k, follower *f, double *low, double *
     }
 }
 
-static const char *force_kind(bool ideal, double hysteresis)
+static const char *force_kind(bool ideal, double hysteresis, double delay)
 {
     if (ideal) {
         return "force_reading, ideal";
+    }
+    if (hysteresis > 0 && delay == 0) {
+        return "force_reading with hysteresis alone";
     }
     return hysteresis > 0 ? "force_reading with hysteresis" : "force_reading";
 }
@@ -1269,7 +1270,7 @@ static void check_fsr(rig *r, const motion *m, const pieces *force,
             low = fmin(down, up);
             high = fmax(down, up);
         }
-        expect_reading(r, force_kind(ideal, share), &m->samples[k], 2,
+        expect_reading(r, force_kind(ideal, share, f.state.T), &m->samples[k], 2,
                        fsr_shown(r, low, m->samples[k].time),
                        fsr_shown(r, high, m->samples[k].time));
     }

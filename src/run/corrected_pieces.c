@@ -15,15 +15,15 @@
 #define INTEGRAL_DIGITS 1e-14
 
 // Largest (fastest rate) x (time) of a piece: over it a parabola is exact to 1e-4 of the
-// fastest mode's force, and to 1e-5 of what sensors with a lag see of it.
+// fastest mode's force, and to 1e-6 for sensors with a lag.
 #define FORCE_REACH  0.25
-#define SENSOR_REACH 0.5
+#define SENSOR_REACH 0.05
 
 // A slope at the start that predicts this many times the change found over a piece
 // belongs to a decay.
 #define FALLS_AT_ONCE 4
 
-enum { MOST_PIECES = 64 };
+enum { MOST_PIECES = 320 }; // that sensors follow a step in
 
 sensed_motion corrected_sensed_motion(const corrected_run *c, double *state)
 {
@@ -72,6 +72,12 @@ static bool mean_is_possible(const motion *m, const force_step *force)
            (force->mean >= -slack && force->mean <= most + slack);
 }
 
+// How many pieces of that reach a step has at most.
+static int most_pieces(double reach)
+{
+    return (int)(MOST_PIECES * SENSOR_REACH / reach);
+}
+
 // Number of pieces for a step of large (fastest rate) x (length), so that a parabola is
 // accurate in each. Only dense engines make such steps.
 static int pieces_of_step(const corrected_run *c, double length, double reach)
@@ -89,11 +95,7 @@ static int pieces_of_step(const corrected_run *c, double length, double reach)
     if (!(pieces > 1) || motion_held_still(m)) {
         return 1;
     }
-    const int least = pieces < MOST_PIECES ? (int)pieces : MOST_PIECES;
-    if (least < MOST_PIECES) {
-        return least + (least < pieces);
-    }
-    return MOST_PIECES;
+    return (int)ceil(smaller(pieces, most_pieces(reach)));
 }
 
 // Whether the decays that an event excites are faster than the arm's vibrations.
@@ -116,7 +118,8 @@ static bool next_decay_piece(const corrected_run *c, double time, double end,
     const double since = time - c->recording->state.last_jump;
     const double length =
         larger(motion_decay_length(a, reach, since), instant_tolerance(time));
-    const double equal = larger(reach / a->highest_frequency, (end - time) / MOST_PIECES);
+    const double vibration = motion_vibration(a, c->motion, c->motion->trial);
+    const double equal = larger(reach / vibration, (end - time) / most_pieces(reach));
     *next = time + length;
     return length < equal && *next < end;
 }
@@ -184,19 +187,15 @@ static bool falls_at_once(value_and_slope first, value_and_slope last, double wi
     return fabs(first.slope) * width > FALLS_AT_ONCE * shown;
 }
 
-// Keeps the force over equal pieces of the rest of the step just made, `before` being its
-// integral up to there: each has the mean of the cubic through both ends' values and
+// Cuts the force over the rest of the step just made into equal pieces, `before` being
+// its integral up to there: each has the mean of the cubic through both ends' values and
 // slopes. A step may begin with a decay that is over at once, which only the motion's own
 // integral knows.
-static status record_equal_pieces(corrected_run *c, const force_step *rest, double before,
-                                  int count)
+static status cut_equally(const corrected_run *c, const force_step *rest, double before,
+                          int count, force_step *kept)
 {
     motion *m = c->motion;
     value_and_slope at[MOST_PIECES + 1];
-    force_step *kept = force_history_extend(forces_of(c), (size_t)count);
-    if (kept == NULL) {
-        return STATUS_NO_MEMORY;
-    }
 
     // the force at the start and at the ends of all pieces
     const double since = rest->start - m->trial[SLOT_TIME],
@@ -225,6 +224,17 @@ static status record_equal_pieces(corrected_run *c, const force_step *rest, doub
         kept[0].mean = (w.integral - before) / width;
     }
     return STATUS_OK;
+}
+
+// Keeps the force over equal pieces of the rest of the step just made.
+static status record_equal_pieces(corrected_run *c, const force_step *rest, double before,
+                                  int count)
+{
+    force_step *kept = force_history_extend(forces_of(c), (size_t)count);
+    if (kept == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+    return cut_equally(c, rest, before, count, kept);
 }
 
 // Keeps the force over a piece of the step.
@@ -276,17 +286,43 @@ static status sense(corrected_run *c, const sample_point *from, const sample_poi
     return STATUS_OK;
 }
 
+// Lets sensors of nothing but the force follow it over equal pieces of the rest of the
+// step.
+static status follow_force(corrected_run *c, const sample_point *w,
+                           const sample_point *last, int count)
+{
+    const force_step rest = {w->time, last->time, w->at.force, last->at.force, 0};
+    force_step cut[MOST_PIECES];
+    TRY(cut_equally(c, &rest, w->integral, count, cut));
+    for (int i = 0; i < count; i++) {
+        const sensed_motion first = {.force = cut[i].first}, end = {.force = cut[i].last};
+        sensors_follow(&c->recording->rig->sensors, cut[i].end - cut[i].start, &first,
+                       &end, cut[i].mean);
+    }
+    return STATUS_OK;
+}
+
 // Lets the sensors follow the arm from where w is to `last`, the force having that mean
 // [N].
 static status follow_to(corrected_run *c, sample_point w, const sample_point *last,
                         double mean)
 {
+    const sensor_parameters *fitted = &c->recording->rig->sensors.p;
+    const bool force_only = !fitted->film && !fitted->accelerometer;
+    if (force_only && c->motion->trial[SLOT_CONTACT] == 0) {
+        return sense(c, &w, last, mean);
+    }
+
+    // what an event set going
     const double begin = w.time;
     TRY(follow_decay(c, &w, last->time, SENSOR_REACH, sense));
 
     // the rest from piece to piece
     const double start = w.time, length = last->time - start;
     const int pieces = pieces_of_step(c, length, SENSOR_REACH);
+    if (force_only && pieces > 1) {
+        return follow_force(c, &w, last, pieces);
+    }
     for (int i = 1; i < pieces; i++) {
         TRY(take_piece(c, &w, start + length * i / pieces, length / pieces, sense));
     }
@@ -310,9 +346,7 @@ status corrected_follow_flight(corrected_run *c, const sample_point *to)
 }
 
 // Lets the sensors follow the arm over the step just made, or over what is left of it.
-// One piece: a parabola represents the force over all of it.
-static status follow_with_sensors(corrected_run *c, const force_step *whole,
-                                  bool one_piece)
+static status follow_with_sensors(corrected_run *c, const force_step *whole)
 {
     const motion *m = c->motion;
     sensors *felt = &c->recording->rig->sensors;
@@ -322,13 +356,6 @@ static status follow_with_sensors(corrected_run *c, const force_step *whole,
     if (!pressed && sensors_at_rest(felt)) {
         return STATUS_OK;
     }
-    if (one_piece && !rest) {
-        const sensed_motion first = corrected_sensed_motion(c, m->trial);
-        const sensed_motion last = corrected_sensed_motion(c, m->state);
-        sensors_follow(felt, whole->end - whole->start, &first, &last, whole->mean);
-        return STATUS_OK;
-    }
-
     const sample_point first = rest ? on->sensed : corrected_sample_point_at(c, m->trial);
     const sample_point last = corrected_sample_point_at(c, m->state);
     return follow_to(c, first, &last, rest ? 0 : whole->mean);
@@ -377,13 +404,11 @@ status corrected_record_forces(corrected_run *c)
         return STATUS_IMPOSSIBLE_MEAN;
     }
 
-    // most under a rig need not be cut in pieces, which are shorter for the force than
-    // for the sensors
     const bool touches = c->motion->trial[SLOT_CONTACT] != 0;
     const int pieces = touches ? pieces_of_step(c, c->motion->step.last, FORCE_REACH) : 0;
     const bool one_piece = pieces == 1 && !decays_outrun(&c->arm);
     if (c->recording->rig != NULL) {
-        TRY(follow_with_sensors(c, &force, one_piece));
+        TRY(follow_with_sensors(c, &force));
     }
     if (!(force.end > force.start)) {
         return STATUS_OK;
