@@ -104,6 +104,7 @@ TEST(varied_values_have_columns)
         references[i / 2] = rows[i];
     }
     rows[3].values[0] = 9;
+    rows[3].idle[1] = "it is idle";
     compare_table t = {.rows = rows,
                        .count = 4,
                        .varied = varied,
@@ -117,6 +118,11 @@ TEST(varied_values_have_columns)
                            "| scenario | law | force [N] | gains | peak [N] | impacts |\n"
                            "|---|---|---|---|---|---|\n"
                            "| a | hybrid | 0.5 | volts | 1.5 | 0 |\n"));
+    const char *idle = strstr(of.text, "volts (no effect)");
+    assert_true(idle != NULL && strstr(idle + strlen("volts ("), "(no effect)") == NULL);
+    idle = strstr(of.json, "\"without_effect\":[{\"path\":\"control.gains\","
+                           "\"why\":\"it is idle\"}]");
+    assert_true(idle != NULL && strstr(idle + 2, "without_effect") == NULL);
     assert_null(strstr(of.text, "error"));
     assert_non_null(strstr(of.text, "9*"));
     assert_null(strstr(of.text, "1.5*"));

@@ -38,6 +38,33 @@ TEST(the_number_of_jobs_does_not_change_a_byte)
     assert_null(strstr(one, "wall_time"));
 }
 
+// A row says which of its values changes nothing; a sweep of which all act has no such
+// column.
+TEST(idle_rows_say_so)
+{
+    SWEPT(s, SWEEP_GRID, 0, "wall.stiffness=1000,2000",
+          "wall.contact=rigid,kelvin-voigt");
+    KEPT_STORE(store) = must_open(NULL, &s);
+    must_run(&s, store, 1);
+    KEPT_TEXT(csv) = csv_of(store);
+    assert_non_null(strstr(csv, ",without_effect[]\n1,"));
+    const char *first = strstr(csv, "wall.stiffness\n2,");
+    const char *third = strstr(csv, "wall.stiffness\n4,");
+    assert_true(first != NULL && third != NULL);
+    assert_non_null(strstr(first, ",\n3,"));
+
+    WRITTEN(json, DONE(sweep_store_write(store, stream, true, &f)));
+    KEPT_TEXT(kept) = json;
+    const char *told = strstr(json, "\"without_effect\"");
+    assert_non_null(told);
+    assert_non_null(told = strstr(told + 1, "\"without_effect\""));
+    assert_null(strstr(told + 1, "\"without_effect\""));
+
+    SWEPT(acting, SWEEP_GRID, 0, "motor.voltage=1,2", "arm.k2=5,6");
+    KEPT_TEXT(all) = uninterrupted(&acting, 1);
+    assert_null(strstr(all, "without_effect"));
+}
+
 // Runs of two links go side by side in the processor's vectors: with one lane, with all
 // of them, on one thread and on several, and where some of the runs are there already.
 TEST(the_number_of_lanes_does_not_change_a_byte)

@@ -220,7 +220,10 @@ static const char *cell_of(const compare_table *t, int row, int column, bool pag
         snprintf(text, PARAMETER_TEXT_SIZE, "%s%s%s%s", name, open, unit,
                  unit[0] != '\0' && page ? "]" : "");
     } else if (k < 0) {
-        format_varied(t, row, v, text, PARAMETER_TEXT_SIZE);
+        char value[PARAMETER_TEXT_SIZE];
+        format_varied(t, row, v, value, sizeof value);
+        snprintf(text, PARAMETER_TEXT_SIZE, "%.100s%s", value,
+                 of->idle[v] != NULL ? " (no effect)" : "");
     } else {
         const double value = of->values[k];
         decimal_print(text, PARAMETER_TEXT_SIZE,
@@ -317,6 +320,18 @@ static json_t *row_object(const compare_table *t, int i)
             json_add(differs, json_string(key));
         }
     }
+
+    // which of the values changed nothing
+    json_t *idle = json_array();
+    for (int v = 0; v < t->varied_count; v++) {
+        if (row->idle[v] != NULL) {
+            json_add(idle, json_of("path:t why:t", t->varied[v].name, row->idle[v]));
+        }
+    }
+    if (json_array_size(idle) > 0) {
+        json_put(object, "without_effect", json_incref(idle));
+    }
+    json_decref(idle);
 
     if (t->against != NULL) {
         json_put(object, "differs", json_incref(differs));

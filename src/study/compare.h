@@ -21,9 +21,11 @@ typedef struct compare_row {
     const char *scenario;               // its name, borrowed
     const char *law;                    // control law, borrowed
     double varied[COMPARE_MOST_VARIED]; // values of the table's varied parameters
-    bool ok;                            // the run reached its end
-    double values[COMPARE_QUANTITIES];  // in the order of compare_quantities; NaN where
-                                        // there is none
+    // why one of them has no effect here, borrowed; NULL: it has one
+    const char *idle[COMPARE_MOST_VARIED];
+    bool ok;                           // the run reached its end
+    double values[COMPARE_QUANTITIES]; // in the order of compare_quantities; NaN where
+                                       // there is none
 } compare_row;
 
 // Rows to be shown together.
@@ -65,8 +67,8 @@ status compare_choose(compare_table *t, const char *keys, fault *f);
 void compare_text(FILE *stream, const compare_table *t, bool page);
 
 // {"runs": [{"scenario": ..., "law": ..., "varied": {PATH: value ...} (if there are any),
-// "status": "ok", KEY: number or null ..., "differs": [KEY ...] (with a reference
-// only)}]}. NULL without memory.
+// "status": "ok", KEY: number or null ..., "without_effect": [{"path", "why"} ...] (if
+// any), "differs": [KEY ...] (with a reference only)}]}. NULL without memory.
 json_t *compare_json(const compare_table *t);
 
 // One header row, one row a run; varied parameters as PATH; a quantity that there is not

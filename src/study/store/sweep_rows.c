@@ -116,6 +116,42 @@ status sweep_store_quantity(sweep_store *of, sweep_share share, const char *key,
 
 // --- as files --------------------------------------------------------------------------
 
+// Whether some run has an axis that idles, so that CSV needs a column for it.
+static bool some_idle(const sweep *s)
+{
+    for (size_t i = 0; i < s->run_count * (size_t)s->axis_count; i++) {
+        if (sweep_idle(s, i / (size_t)s->axis_count, (int)(i % (size_t)s->axis_count)) !=
+            NULL) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Tells which values of a run have no effect: an object of JSON why, a row of CSV their
+// paths.
+static void write_idle(const sweep *s, size_t run, json_t *object, csv_writer *csv)
+{
+    char paths[SWEEP_MOST_AXES * SWEEP_NAME] = "";
+    size_t length = 0;
+    json_t *array = json_array();
+    for (int i = 0; i < s->axis_count; i++) {
+        const char *name = s->axes[i].name, *why = sweep_idle(s, run, i);
+        if (why != NULL) {
+            json_add(array, json_of("path:t why:t", name, why));
+            length += (size_t)snprintf(paths + length, sizeof paths - length, "%s%s",
+                                       length > 0 ? " " : "", name);
+        }
+    }
+
+    if (csv != NULL) {
+        csv_text(csv, paths);
+    } else if (length > 0) {
+        json_put(object, "without_effect", json_incref(array));
+    }
+    json_decref(array);
+}
+
 // One by one, as there may be millions.
 status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
 {
@@ -127,6 +163,8 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
     int at[RUN_MOST_COLUMNS], count = 0;
     const char *separator = "\n    ";
     TRY(database_prepare(store, &rows, "SELECT * FROM run ORDER BY run", f));
+
+    const bool told_idle = !json && some_idle(store->sweep);
 
     // all columns but those that depend on the machine
     for (int i = 0, most = database_columns(store->sweep, all); i < most; i++) {
@@ -143,7 +181,8 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
                 sweep_sampling_name(store->sweep->sampling));
         json_decref(name);
     } else {
-        result_headings(&csv, columns, count);
+        columns[count] = (result_column){"without_effect", "without_effect", ""};
+        result_headings(&csv, columns, count + (told_idle ? 1 : 0));
     }
     while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
         json_t *object =
@@ -163,6 +202,10 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
             } else {
                 result_field(&csv, cell);
             }
+        }
+        if (json || told_idle) {
+            const size_t run = (size_t)sqlite3_column_int64(rows, 0) - 1;
+            write_idle(store->sweep, run, object, json ? NULL : &csv);
         }
         if (json) {
             fputs(separator, stream);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "src/scenario/effect.h"
 #include "src/study/compare.h"
 #include "src/study/sweep.h"
 #include "ui/commands/progress.h"
@@ -153,6 +154,9 @@ static bool run_one(comparison *c, int i, int combination, run_monitor *monitor,
 
     *row = compare_row_of(&s, &result);
     memcpy(row->varied, values, (size_t)varied * sizeof *values);
+    for (int k = 0; k < varied; k++) {
+        row->idle[k] = effect_none_from(&s, c->varied.axes[k].parameter, -1);
+    }
     if (c->drawn) {
         c->kept[i] = result;
     } else {
