@@ -164,7 +164,7 @@ TEST(what_is_refused_for_want_of_memory_is_finished)
     try_all(parsed, "title: A\nmotor: {voltage: 2 V}\n");
     try_all(grid, "motor.voltage=1,2;arm.k2=4:5:2");
     try_all(drawn, "arm.k2=1,2,3;with arm.mass=0.1,0.2,0.3");
-    try_all(tuned, "control.kp=1:2");
+    try_all(tuned, "control.force_gain=1:2");
     try_all(fitted, "arm.k2=4:6");
     try_with_scenario(looped, "control.law=hybrid");
     try_with_scenario(linearised, "control.law=force-pd control.force=1");
@@ -187,7 +187,9 @@ TEST(what_is_refused_by_its_arguments_is_finished)
           "with arm.k2=1,2"}},
         {drawn,
          {"arm.k2=1,2;with arm.mass=0.1", "x=1:2", "arm.k2=1:2;with arm.mass=1:2"}},
-        {tuned, {"control.kp=1", "control.kp=1,2", "x=1:2", "control.law=none,hybrid"}},
+        {tuned,
+         {"control.force_gain=1", "control.force_gain=1,2", "x=1:2",
+          "control.law=none,hybrid"}},
         {fitted, {"arm.k2=", "arm.links", "x", "arm.k2=5:5", "control.law"}},
     };
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
