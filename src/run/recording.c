@@ -117,11 +117,13 @@ status recording_open_trace(recording *r, int angle_count, fault *f)
     const double bytes = rows * (double)trace_row_bytes(angle_count), gigabyte = 1e9;
     const double memory = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     if ((expected > 0 || r->options->keep_trace) && bytes > memory) {
+        const char *two =
+            r->rig != NULL ? " and two at every sample of control.rate" : "";
         return fault_set_at(
             f, STATUS_BAD_SCENARIO, "method.step",
-            "rows every method.step = %g s over run.duration = %g s take %.3g GB "
+            "rows every method.step = %g s%s over run.duration = %g s take %.3g GB "
             "of memory, and this machine has %.3g GB",
-            p->method.step, p->run.duration, bytes / gigabyte, memory / gigabyte);
+            p->method.step, two, p->run.duration, bytes / gigabyte, memory / gigabyte);
     }
     if (expected == 0) {
         // where there is no memory, rows will say so

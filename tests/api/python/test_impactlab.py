@@ -114,7 +114,7 @@ def endless():
     """A scenario that would take hours."""
     scenario = Scenario(FIRST)
     scenario.set({"arm.links": 24, "arm.damping_ratio": 0, "run.duration": 90000,
-                  "method.step": 0.1})
+                  "method.step": 0.1, "control.rate": 10})
     return scenario
 
 
