@@ -69,7 +69,7 @@ KERNEL void reach_wall(sweep *c)
 
 // The answer of a wall that gives to place and velocity; of one with a mass that of its
 // spring.
-KERNEL void press(sweep *c)
+KERNEL void wall_answer(sweep *c)
 {
     const wall_model *model = &c->a->wall;
     const int last = c->a->links - 1;
@@ -103,7 +103,7 @@ typedef struct beyond {
 } beyond;
 
 // Moment of the air on link k, its force into *x and *y.
-KERNEL double drag(sweep *c, int k, double l, beyond *b, double *x, double *y)
+KERNEL double drag_moment(sweep *c, int k, double l, beyond *b, double *x, double *y)
 {
     const double air = c->a->air_drag * l, omega = c->omega[k];
     const double cosine = c->link[k].c, sine = c->link[k].s, half = 0.5 * l,
@@ -159,7 +159,7 @@ KERNEL void eliminate(sweep *c, int k, beyond *b)
     b->outer = inner;
     moment -= (tip ? c->pressed * c->wall.lever : 0) + half * m * a->gravity * cosine;
     if (a->air_drag > 0) {
-        moment -= drag(c, k, l, b, &drag_x, &drag_y);
+        moment -= drag_moment(c, k, l, b, &drag_x, &drag_y);
     }
     if (c->constrained) {
         moment2 = -l * (cosine * b->uy2 - sine * b->ux2) - (tip ? c->wall.lever : 0);
@@ -283,7 +283,7 @@ void chain_accelerations(const arm *a, chain_link *work, const double *q, const 
     c.stuck = mode.friction == HUB_STICK && !held;
     reach_wall(&c);
     if (c.gives && mode.contact) {
-        press(&c);
+        wall_answer(&c);
     }
 
     // motor, damping and sliding friction at the hub, and the joint there

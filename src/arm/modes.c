@@ -172,8 +172,8 @@ static int allowed_basis(const arm *a, hub_end hub, tip_end tip, const double *c
 }
 
 // reduced = basis^T matrix basis
-static void reduce(const double *matrix, const double *basis, int n, int columns,
-                   double *product, double *reduced)
+static void project_onto_basis(const double *matrix, const double *basis, int n,
+                               int columns, double *product, double *reduced)
 {
     for (int c = 0; c < columns; c++) {
         for (int i = 0; i < n; i++) {
@@ -219,8 +219,8 @@ status modes_compute(const arm *a, hub_end hub, tip_end tip, int *count,
         return sags;
     }
     const int columns = allowed_basis(a, hub, tip, constraint, basis);
-    reduce(stiffness, basis, n, columns, product, k);
-    reduce(mass, basis, n, columns, product, m);
+    project_onto_basis(stiffness, basis, n, columns, product, k);
+    project_onto_basis(mass, basis, n, columns, product, m);
     *count = columns;
     const bool found =
         columns == 0 || symmetric_eigen_pair(columns, k, m, values, scratch);

@@ -12,14 +12,14 @@ double motor_command_limit(const motor_parameters *p)
     return fmin(p->voltage_limit, p->current_limit / p->transconductance);
 }
 
-static double limited(double volts, double limit)
+static double clamp_voltage(double volts, double limit)
 {
     return larger(smaller(volts, limit), -limit);
 }
 
 double motor_limited_voltage(const motor_parameters *p, double volts)
 {
-    return limited(volts, motor_command_limit(p));
+    return clamp_voltage(volts, motor_command_limit(p));
 }
 
 double motor_torque_per_volt(const motor_parameters *p)
@@ -85,6 +85,6 @@ void motor_init(motor_model *m, const motor_parameters *p)
 
 void motor_set_voltage(motor_model *m, double volts)
 {
-    m->voltage = limited(volts, m->voltage_limit);
+    m->voltage = clamp_voltage(volts, m->voltage_limit);
     m->torque = m->torque_per_volt * m->voltage;
 }

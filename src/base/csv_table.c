@@ -225,7 +225,7 @@ static const struct {
 };
 
 // Copies the unit of a heading; false if it has none.
-static bool unit_of(const char *heading, char unit[32])
+static bool copy_unit(const char *heading, char unit[32])
 {
     const char *bracket = heading + name_length(heading);
     while (is_blank(*bracket)) {
@@ -265,7 +265,7 @@ status csv_table_numbers(const csv_table *t, const char *heading, const char *un
 
     // its unit
     char own[32];
-    const bool said = unit_of(heading, own) || unit_of(t->headings[column], own);
+    const bool said = copy_unit(heading, own) || copy_unit(t->headings[column], own);
     const double factor = said ? factor_to(own, unit) : 1;
     if (factor == 0) {
         return fault_set_place(

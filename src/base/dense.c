@@ -16,7 +16,7 @@ static void swap_rows(int length, double *matrix, int i, int j)
     }
 }
 
-static inline bool solve(int n, int columns, double *matrix, double *right)
+static inline bool solve_columns(int n, int columns, double *matrix, double *right)
 {
     // elimination
     for (int column = 0; column < n; column++) {
@@ -64,13 +64,13 @@ static inline bool solve(int n, int columns, double *matrix, double *right)
 bool dense_solve(int n, double *matrix, double *vector)
 {
     assert(n > 0);
-    return solve(n, 1, matrix, vector);
+    return solve_columns(n, 1, matrix, vector);
 }
 
 bool dense_solve_columns(int n, int columns, double *matrix, double *right)
 {
     assert(n > 0 && columns > 0);
-    return solve(n, columns, matrix, right);
+    return solve_columns(n, columns, matrix, right);
 }
 
 void matrix_exponential(const double *matrix, int size, double h, double *result,

@@ -22,8 +22,8 @@ typedef struct reader {
 } reader;
 
 // What is wrong, at a place of the text.
-__attribute__((format(printf, 3, 4))) static void refuse(reader *r, const char *at,
-                                                         const char *format, ...)
+__attribute__((format(printf, 3, 4))) static void
+expression_refuse(reader *r, const char *at, const char *format, ...)
 {
     char why[400];
     va_list list;
@@ -40,7 +40,8 @@ __attribute__((format(printf, 3, 4))) static void refuse(reader *r, const char *
 static void add_step(reader *r, expression_step step)
 {
     if (r->to->count == EXPRESSION_STEPS) {
-        refuse(r, r->at, "more than %d names, numbers and operations", EXPRESSION_STEPS);
+        expression_refuse(r, r->at, "more than %d names, numbers and operations",
+                          EXPRESSION_STEPS);
         return;
     }
     r->to->step[r->to->count++] = step;
@@ -60,9 +61,9 @@ static void expect(reader *r, char c)
     if (is_next(r, (char[]){c, '\0'})) {
         r->at++;
     } else if (*r->at == '\0') {
-        refuse(r, r->at, "expected '%c' at the end", c);
+        expression_refuse(r, r->at, "expected '%c' at the end", c);
     } else {
-        refuse(r, r->at, "expected '%c', not '%.20s'", c, r->at);
+        expression_refuse(r, r->at, "expected '%c', not '%.20s'", c, r->at);
     }
 }
 
@@ -91,14 +92,15 @@ static void read_word(reader *r)
         return;
     }
     if (length == 0) {
-        refuse(r, start, "expected a name, a number, max or '('%s%.20s%s",
-               *start != '\0' ? ", not '" : " at the end", start,
-               *start != '\0' ? "'" : "");
+        expression_refuse(r, start, "expected a name, a number, max or '('%s%.20s%s",
+                          *start != '\0' ? ", not '" : " at the end", start,
+                          *start != '\0' ? "'" : "");
         return;
     }
     const int found = r->find(r->context, name, &near);
     if (found < 0) {
-        refuse(r, start, "there is no quantity '%s'%s%s%s", name, DID_YOU_MEAN(near, ""));
+        expression_refuse(r, start, "there is no quantity '%s'%s%s%s", name,
+                          DID_YOU_MEAN(near, ""));
         return;
     }
     add_step(r, (expression_step){.what = EXPRESSION_NAME, .name = found});
@@ -109,7 +111,8 @@ static void read_factor(reader *r)
 {
     double number;
     if (r->code != STATUS_OK || ++r->depth > MOST_DEPTH) {
-        refuse(r, r->at, "more than %d brackets and signs within each other", MOST_DEPTH);
+        expression_refuse(r, r->at, "more than %d brackets and signs within each other",
+                          MOST_DEPTH);
         return;
     }
     if (is_next(r, "+-")) {
@@ -161,7 +164,7 @@ status expression_read(expression *e, const char *text, expression_find *find,
     read_sum(&r);
     is_next(&r, "");
     if (r.code == STATUS_OK && *r.at != '\0') {
-        refuse(&r, r.at, "expected an operator or the end, not '%.20s'", r.at);
+        expression_refuse(&r, r.at, "expected an operator or the end, not '%.20s'", r.at);
     }
     return r.code;
 }

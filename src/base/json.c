@@ -83,14 +83,14 @@ json_t *json_members(json_t *object, const char *members, ...)
 }
 
 // A value without parts of its own, as jansson writes it.
-static void write_plain(FILE *stream, const json_t *value)
+static void write_leaf(FILE *stream, const json_t *value)
 {
     loss_unless(value != NULL && json_dumpf(value, stream, JSON_ENCODE_ANY) == 0);
 }
 
 static void write_indented(FILE *stream, const json_t *value, int depth);
 
-static void new_line(FILE *stream, int depth)
+static void write_indent(FILE *stream, int depth)
 {
     fprintf(stream, "\n%*s", 2 * depth, "");
 }
@@ -105,9 +105,9 @@ static void write_object(FILE *stream, const json_t *object, int depth)
     json_object_foreach((json_t *)object, key, member)
     {
         fputs(separator, stream);
-        new_line(stream, depth + 1);
+        write_indent(stream, depth + 1);
         json_t *name = json_text(key);
-        write_plain(stream, name);
+        write_leaf(stream, name);
         json_decref(name);
         fputs(": ", stream);
         write_indented(stream, member, depth + 1);
@@ -115,7 +115,7 @@ static void write_object(FILE *stream, const json_t *object, int depth)
     }
 
     if (separator[0] != '\0') {
-        new_line(stream, depth);
+        write_indent(stream, depth);
     }
     fputc('}', stream);
 }
@@ -137,12 +137,12 @@ static void write_array(FILE *stream, const json_t *array, int depth)
             fputs(nested ? "," : ", ", stream);
         }
         if (nested) {
-            new_line(stream, depth + 1);
+            write_indent(stream, depth + 1);
         }
         write_indented(stream, element, depth + 1);
     }
     if (nested) {
-        new_line(stream, depth);
+        write_indent(stream, depth);
     }
     fputc(']', stream);
 }
@@ -158,7 +158,7 @@ static void write_indented(FILE *stream, const json_t *value, int depth)
         number_format(text, json_number_value(value)); // whole ones like all others
         fputs(text, stream);
     } else {
-        write_plain(stream, value);
+        write_leaf(stream, value);
     }
 }
 

@@ -119,7 +119,7 @@ static wide make_power_of_ten(int k)
 
 // The same as high and low half g, made once: threads that make one at a time make the
 // same.
-static void power_of_ten(int k, uint64_t g[2])
+static void wide_power_of_ten(int k, uint64_t g[2])
 {
     static _Atomic uint64_t made[POWERS_TO - POWERS_FROM + 1][2];
     _Atomic uint64_t *known = made[k - POWERS_FROM];
@@ -224,7 +224,7 @@ static decimal shortest_decimal(double value)
     const int k = floor_log10_power(q, closer_below);
     const int shift = q + floor_log2_power(-k) + 1;
     uint64_t power[2];
-    power_of_ten(-k, power);
+    wide_power_of_ten(-k, power);
     const uint64_t lower = round_to_odd(power, (4 * c - 2 + closer_below) << shift);
     const uint64_t middle = round_to_odd(power, (4 * c) << shift);
     const uint64_t upper = round_to_odd(power, (4 * c + 2) << shift);
@@ -257,7 +257,7 @@ static int write_whole(char *text, uint64_t number)
 
 // Digits d1 d2 ... dn as 0.000d1d2, as d1d2.d3 or as d1d2000; `place` is how many of them
 // stand between d1 and the point, negative for zeros behind it. Returns the end.
-static char *write_plain(char *text, const char *digits, int count, int place)
+static char *write_positional(char *text, const char *digits, int count, int place)
 {
     if (place < 0) {
         memcpy(text, "0.0000", 6);
@@ -280,7 +280,7 @@ static char *write_plain(char *text, const char *digits, int count, int place)
 static char *write_with_exponent(char *text, const char *digits, int count, int place)
 {
     const unsigned size = (unsigned)abs(place);
-    text = write_plain(text, digits, count, 0);
+    text = write_positional(text, digits, count, 0);
     *text++ = 'e';
     *text++ = place < 0 ? '-' : '+';
     if (size < 10) {
@@ -312,7 +312,7 @@ static void write_digits(char *text, double value, int most_plain)
     const decimal d = shortest_decimal(fabs(value));
     const int count = write_whole(digits, d.digits), place = count - 1 + d.exponent;
     const bool plain = place >= -4 && place < (count > most_plain ? count : most_plain);
-    *(plain ? write_plain : write_with_exponent)(text, digits, count, place) = '\0';
+    *(plain ? write_positional : write_with_exponent)(text, digits, count, place) = '\0';
 }
 
 void number_format(char *text, double value)

@@ -25,7 +25,7 @@ void sha256_init(sha256 *h)
                             0x9b05688c, 0x1f83d9ab, 0x5be0cd19}};
 }
 
-static uint32_t turned(uint32_t x, int bits)
+static uint32_t rotate_right(uint32_t x, int bits)
 {
     return x >> bits | x << (32 - bits);
 }
@@ -41,8 +41,8 @@ static void take_block(uint32_t state[8], const unsigned char *block)
     }
     for (int i = 16; i < 64; i++) {
         const uint32_t a = w[i - 15], b = w[i - 2];
-        w[i] = w[i - 16] + (turned(a, 7) ^ turned(a, 18) ^ a >> 3) + w[i - 7] +
-               (turned(b, 17) ^ turned(b, 19) ^ b >> 10);
+        w[i] = w[i - 16] + (rotate_right(a, 7) ^ rotate_right(a, 18) ^ a >> 3) +
+               w[i - 7] + (rotate_right(b, 17) ^ rotate_right(b, 19) ^ b >> 10);
     }
 
     // 64 rounds, a to h of the standard being v[0] to v[7]
@@ -50,10 +50,12 @@ static void take_block(uint32_t state[8], const unsigned char *block)
     memcpy(v, state, sizeof v);
     for (int i = 0; i < 64; i++) {
         const uint32_t e = v[4], a = v[0];
-        const uint32_t first = v[7] + (turned(e, 6) ^ turned(e, 11) ^ turned(e, 25)) +
-                               ((e & v[5]) ^ (~e & v[6])) + constants[i] + w[i];
-        const uint32_t second = (turned(a, 2) ^ turned(a, 13) ^ turned(a, 22)) +
-                                ((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
+        const uint32_t first =
+            v[7] + (rotate_right(e, 6) ^ rotate_right(e, 11) ^ rotate_right(e, 25)) +
+            ((e & v[5]) ^ (~e & v[6])) + constants[i] + w[i];
+        const uint32_t second =
+            (rotate_right(a, 2) ^ rotate_right(a, 13) ^ rotate_right(a, 22)) +
+            ((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
         memmove(v + 1, v, 7 * sizeof v[0]);
         v[4] += first;
         v[0] = first + second;

@@ -7,7 +7,7 @@
 #include "src/base/fault.h"
 
 // Makes room for some bytes more and the 0 behind them.
-static bool make_room(text_stream *t, size_t count)
+static bool reserve_bytes(text_stream *t, size_t count)
 {
     enum { LEAST = 512 };
     if (t->length + count < t->capacity) {
@@ -26,7 +26,7 @@ static bool make_room(text_stream *t, size_t count)
 static ssize_t take(void *cookie, const char *bytes, size_t count)
 {
     text_stream *t = cookie;
-    if (!make_room(t, count)) {
+    if (!reserve_bytes(t, count)) {
         return 0;
     }
     memcpy(t->text + t->length, bytes, count);
@@ -45,7 +45,7 @@ char *text_stream_close(text_stream *t, size_t *length)
 {
     bool whole = ferror(t->stream) == 0;
     whole = fclose(t->stream) == 0 && whole;
-    whole = !loss_noted() && whole && make_room(t, 0);
+    whole = !loss_noted() && whole && reserve_bytes(t, 0);
     if (!whole) {
         free(t->text);
         return NULL;

@@ -326,7 +326,7 @@ static void clean_folder_of(const char *path)
 // --- opening ---------------------------------------------------------------------------
 
 // Where the bytes of a stream go. The stream itself does not keep why a write failed.
-static ssize_t write_bytes(void *context, const char *bytes, size_t size)
+static ssize_t write_to_file(void *context, const char *bytes, size_t size)
 {
     whole_file *w = context;
     size_t done = 0;
@@ -401,7 +401,7 @@ static int create_temporary(whole_file *w, mode_t mode)
 }
 
 // Opens the target, or its temporary, and the stream; 0 or the reason why not.
-static int open_target(whole_file *w, mode_t mode)
+static int open_destination(whole_file *w, mode_t mode)
 {
     int reason = 0;
     if (mode == 0 || S_ISREG(mode)) {
@@ -420,7 +420,7 @@ static int open_target(whole_file *w, mode_t mode)
         return reason;
     }
 
-    w->stream = fopencookie(w, "w", (cookie_io_functions_t){.write = write_bytes});
+    w->stream = fopencookie(w, "w", (cookie_io_functions_t){.write = write_to_file});
     if (w->stream == NULL) {
         close(w->descriptor);
         if (w->temporary != NULL) {
@@ -446,7 +446,7 @@ status whole_file_open(whole_file *w, const char *path, fault *f)
     if (reason == 0) {
         w->path = strdup(target);
         if (w->path != NULL) {
-            reason = open_target(w, mode);
+            reason = open_destination(w, mode);
         } else {
             reason = ENOMEM;
         }

@@ -8,7 +8,7 @@
 #include "src/base/text_stream.h"
 #include "src/base/numbers.h"
 
-static int smaller(int a, int b)
+static int smaller_count(int a, int b)
 {
     if (a < b) {
         return a;
@@ -40,14 +40,14 @@ int edit_distance(const char *a, const char *b, int limit)
         row = oldest;
         row[0] = (int)i;
         for (size_t j = 1; j <= lb; j++) {
-            row[j] = smaller(last[j - 1] + (a[i - 1] != b[j - 1]),
-                             smaller(last[j], row[j - 1]) + 1);
+            row[j] = smaller_count(last[j - 1] + (a[i - 1] != b[j - 1]),
+                                   smaller_count(last[j], row[j - 1]) + 1);
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-                row[j] = smaller(row[j], before[j - 2] + 1);
+                row[j] = smaller_count(row[j], before[j - 2] + 1);
             }
         }
     }
-    return smaller(row[lb], limit);
+    return smaller_count(row[lb], limit);
 }
 
 nearest_word nearest_begin(const char *word)

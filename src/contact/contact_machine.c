@@ -168,7 +168,7 @@ static void impact(const arm *a, motion *m, motion_report *report)
 }
 
 // The wall would have to pull: the arm leaves it.
-static void release(const arm *a, motion *m)
+static void release_contact(const arm *a, motion *m)
 {
     if (motion_unresolved(a, m)) {
         m->state[SLOT_CONTACT] = m->state[SLOT_FORCE] = 0;
@@ -233,7 +233,7 @@ void motion_apply(const arm *a, motion *m, motion_report *report)
                         MOTION_TOUCH); // at no speed, or on a wall that gives at any
         break;
     case MOTION_RELEASE:
-        release(a, m);
+        release_contact(a, m);
         break;
     case MOTION_STICK:
         stick(a, m);

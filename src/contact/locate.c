@@ -162,7 +162,8 @@ typedef struct bracket {
 // Narrows a bracket until it is as narrow as LOCATION_TIME; m->trial ends as the state at
 // its far side. Starts at `s` and continues by Chandrupatla's method: inverse quadratic
 // interpolation where the last three values allow it, else bisection.
-static status narrow(const arm *a, motion *m, event_function w, double s, bracket *b)
+static status narrow_bracket(const arm *a, motion *m, event_function w, double s,
+                             bracket *b)
 {
     // the velocities of an implicit step are differences of angles over it: it must not
     // be tiny
@@ -208,7 +209,7 @@ static status narrow(const arm *a, motion *m, event_function w, double s, bracke
 
 // Looks for the first instant in (0, end->length] at which `w` leaves its admissible
 // side; if there is one, *end and m->trial move there.
-static status search(const arm *a, motion *m, event_function w, step_end *end)
+static status search_interval(const arm *a, motion *m, event_function w, step_end *end)
 {
     const double h = end->length;
     double v0 = event_value(a, m, m->state, w), v1 = event_value(a, m, m->trial, w);
@@ -270,7 +271,7 @@ static status search(const arm *a, motion *m, event_function w, step_end *end)
     end->any = true;
     end->first = w;
     bracket between = {lo, v0 - edge, hi, v1 - edge, edge};
-    status s = narrow(a, m, w, guess, &between);
+    status s = narrow_bracket(a, m, w, guess, &between);
     hi = between.hi;
 
     // an unresolved impact happens within its step: nothing is located inside its first
@@ -292,7 +293,7 @@ status locate_first_event(const arm *a, motion *m, step_end *end)
     for (event_function w = EVENT_OF_GAP; w <= EVENT_OF_STICTION && !motion_held_still(m);
          w++) {
         if (event_function_active(a, m, w)) {
-            TRY(search(a, m, w, end));
+            TRY(search_interval(a, m, w, end));
         }
     }
     return STATUS_OK;

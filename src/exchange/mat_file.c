@@ -15,7 +15,7 @@ enum {
     COMPLEX = 1 << 11
 };
 
-static void put_word(FILE *stream, size_t word)
+static void write_word(FILE *stream, size_t word)
 {
     const uint32_t four = (uint32_t)word;
     fwrite(&four, sizeof four, 1, stream);
@@ -24,8 +24,8 @@ static void put_word(FILE *stream, size_t word)
 // An element's type and size.
 static void put_tag(FILE *stream, int type, size_t size)
 {
-    put_word(stream, (size_t)type);
-    put_word(stream, size);
+    write_word(stream, (size_t)type);
+    write_word(stream, size);
 }
 
 static size_t rounded(size_t size)
@@ -51,11 +51,11 @@ static void begin_matrix(FILE *stream, const char *name, int rows, int columns,
     assert(length > 0 && rows >= 0 && columns >= 0);
     put_tag(stream, MATRIX, 16 + 16 + 8 + rounded(length) + parts * (8 + 8 * count));
     put_tag(stream, UINT32, 8);
-    put_word(stream, CLASS_DOUBLE | (parts > 1 ? COMPLEX : 0));
-    put_word(stream, 0);
+    write_word(stream, CLASS_DOUBLE | (parts > 1 ? COMPLEX : 0));
+    write_word(stream, 0);
     put_tag(stream, INT32, 8);
-    put_word(stream, (size_t)rows);
-    put_word(stream, (size_t)columns);
+    write_word(stream, (size_t)rows);
+    write_word(stream, (size_t)columns);
     put_tag(stream, INT8, length);
     fwrite(name, 1, length, stream);
     fwrite(zeros, 1, rounded(length) - length, stream);

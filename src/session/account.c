@@ -12,7 +12,8 @@ typedef struct account {
     int count;
 } account;
 
-__attribute__((format(printf, 2, 3))) static void say(account *a, const char *format, ...)
+__attribute__((format(printf, 2, 3))) static void add_sentence(account *a,
+                                                               const char *format, ...)
 {
     assert(a->count < ACCOUNT_SENTENCES);
     va_list list;
@@ -61,29 +62,31 @@ static bool say_approach(account *a)
         }
         const double end = t->rows[t->row_count - 1].time;
         if (isfinite(nearest)) {
-            say(a,
+            add_sentence(
+                a,
                 "Driven by %s the arm does not touch the wall in %.4g s: %.3g mm are "
                 "left at its nearest.",
                 drive, end, 1e3 * nearest);
         } else {
-            say(a, "Driven by %s the arm moves for %.4g s, and nothing is in its way.",
+            add_sentence(
+                a, "Driven by %s the arm moves for %.4g s, and nothing is in its way.",
                 drive, end);
         }
         return false;
     }
     const sample *before = row_entering(t, touch);
     if (before->contact != 0) {
-        say(a, "Driven by %s the arm starts on the wall.", drive);
+        add_sentence(a, "Driven by %s the arm starts on the wall.", drive);
         return true;
     }
     if (isnan(before->kinetic_energy) || isnan(before->gap_velocity)) {
-        say(a, "Driven by %s the arm touches the wall at %.4g s.", drive, touch);
+        add_sentence(a, "Driven by %s the arm touches the wall at %.4g s.", drive, touch);
         return true;
     }
-    say(a,
-        "Driven by %s the arm touches the wall at %.4g s, its tip at %.3g "
-        "m/s, with %.3g J of motion.",
-        drive, touch, fabs(before->gap_velocity), before->kinetic_energy);
+    add_sentence(a,
+                 "Driven by %s the arm touches the wall at %.4g s, its tip at %.3g "
+                 "m/s, with %.3g J of motion.",
+                 drive, touch, fabs(before->gap_velocity), before->kinetic_energy);
     return true;
 }
 
@@ -99,11 +102,12 @@ static void say_blow(account *a)
         return;
     }
     const event *impact = &t->events[i];
-    say(a,
-        "At %.4g s an impulse of %.3g N s stops what has to stop at once: of "
-        "%.3g J of motion %.3g J are left, whatever comes.",
-        impact->time, impact->impulse, row_entering(t, impact->time)->kinetic_energy,
-        t->rows[trace_row_at(t, impact->time)].kinetic_energy);
+    add_sentence(a,
+                 "At %.4g s an impulse of %.3g N s stops what has to stop at once: of "
+                 "%.3g J of motion %.3g J are left, whatever comes.",
+                 impact->time, impact->impulse,
+                 row_entering(t, impact->time)->kinetic_energy,
+                 t->rows[trace_row_at(t, impact->time)].kinetic_energy);
 }
 
 // The pulse: where its force comes from, and the hub's reversal in it.
@@ -125,10 +129,10 @@ static void say_pulse(account *a, double touch, double end)
                      e->kind == EVENT_REVERSAL ? "reverses" : "comes to rest", e->time);
         }
     }
-    say(a,
-        "The rest bends the arm against the wall: the force is largest at "
-        "%.4g s, %.4g N, when the springs hold %.3g J; %s.",
-        peak, m->first_pulse_peak_N, at_peak->strain_energy, turn);
+    add_sentence(a,
+                 "The rest bends the arm against the wall: the force is largest at "
+                 "%.4g s, %.4g N, when the springs hold %.3g J; %s.",
+                 peak, m->first_pulse_peak_N, at_peak->strain_energy, turn);
 }
 
 // What gives energy as it falls, and what as it rises.
@@ -179,8 +183,9 @@ static void say_release(account *a, double touch)
     const trace *t = &a->run->trace;
     const summary *m = &a->run->summary;
     if (isnan(m->first_pulse_s)) {
-        say(a, "What the springs give back is too little to lift the arm off: it "
-               "stays on the wall.");
+        add_sentence(a,
+                     "What the springs give back is too little to lift the arm off: it "
+                     "stays on the wall.");
         return;
     }
     const double end = touch + m->first_pulse_s;
@@ -190,14 +195,15 @@ static void say_release(account *a, double touch)
     const sample *at_peak = &t->rows[trace_row_at(t, touch + delay)];
     const sample *after = &t->rows[trace_row_at(t, end)];
     if (!(delay > 0) || after == at_peak) {
-        say(a, "The arm lets go at %.4g s%s.", end, then);
+        add_sentence(a, "The arm lets go at %.4g s%s.", end, then);
         return;
     }
 
     char given[160], taken[160];
     list_shares(at_peak, after, 1, given, sizeof given);
     list_shares(at_peak, after, -1, taken, sizeof taken);
-    say(a,
+    add_sentence(
+        a,
         "From there until it lets go at %.4g s%s, energy is given by %s and taken by %s.",
         end, then, given, taken);
 }
@@ -214,19 +220,21 @@ static void say_end(account *a)
             snprintf(peak, sizeof peak, "; its peak is %.3g N above that",
                      m->force_over_command_N);
         }
-        say(a, "The law wants %.3g N and gets %.4g at the end%s%s.", m->force_command_N,
-            m->steady_force_N, last->sticking != 0 ? ", where the hub sticks" : "", peak);
+        add_sentence(a, "The law wants %.3g N and gets %.4g at the end%s%s.",
+                     m->force_command_N, m->steady_force_N,
+                     last->sticking != 0 ? ", where the hub sticks" : "", peak);
     } else if (last->contact != 0) {
-        say(a,
+        add_sentence(
+            a,
             "At the end the arm presses with %.3g N under %.3g N m of the motor%s; a "
             "controller would choose that force and damp the pulse (:law).",
             last->force, last->motor_torque,
             last->sticking != 0 ? ", the hub held by friction" : "");
     } else {
-        say(a,
-            "At the end the arm is off the wall by %.3g mm; a controller would "
-            "hold it there or bring it back (:law).",
-            1e3 * last->gap);
+        add_sentence(a,
+                     "At the end the arm is off the wall by %.3g mm; a controller would "
+                     "hold it there or bring it back (:law).",
+                     1e3 * last->gap);
     }
 }
 
@@ -236,10 +244,10 @@ int run_account(const scenario *s, const run_result *run,
     assert(run->trace.row_count > 0);
     account a = {.scenario = s, .run = run, .sentences = sentences};
     if (run->summary.status != STATUS_OK) {
-        say(&a, "The run stops at %.4g s: %.200s.",
-            run->trace.rows[run->trace.row_count - 1].time,
-            run->summary.message[0] ? run->summary.message
-                                    : status_text(run->summary.status));
+        add_sentence(&a, "The run stops at %.4g s: %.200s.",
+                     run->trace.rows[run->trace.row_count - 1].time,
+                     run->summary.message[0] ? run->summary.message
+                                             : status_text(run->summary.status));
         return a.count;
     }
     if (!say_approach(&a)) {

@@ -1,3 +1,4 @@
+// A session: its cursor and the run that is computed from a scenario and its inputs.
 #include "src/session/session.h"
 
 #include <assert.h>
@@ -419,84 +420,4 @@ void session_finish(session *s)
     free(s->inputs);
     scenario_finish(&s->base);
     memset(s, 0, sizeof *s);
-}
-
-// --- where a run comes from ---
-
-status run_origin_take(run_origin *o, const session *s, fault *f)
-{
-    *o = (run_origin){.input_count = s->input_count, .now = s->now, .seen = s->seen};
-    o->inputs = calloc((size_t)s->input_count + 1, sizeof *o->inputs);
-    if (o->inputs == NULL || scenario_copy(&o->base, &s->base) != STATUS_OK) {
-        free(o->inputs);
-        return fault_no_memory(f);
-    }
-    memcpy(o->outside, s->digest, sizeof o->outside);
-    if (s->input_count > 0) {
-        memcpy(o->inputs, s->inputs, (size_t)s->input_count * sizeof *o->inputs);
-    }
-    return STATUS_OK;
-}
-
-void run_origin_finish(run_origin *o)
-{
-    free(o->inputs);
-    scenario_finish(&o->base);
-    *o = (run_origin){0};
-}
-
-bool same_base(const scenario *a, const scenario *b)
-{
-    bool same = strcmp(a->name, b->name) == 0 && a->action_count == b->action_count;
-    for (int i = 0; same && i < parameter_count; i++) {
-        char one[PARAMETER_TEXT_SIZE], other[PARAMETER_TEXT_SIZE];
-        parameter_format(&a->parameters, i, one, sizeof one);
-        parameter_format(&b->parameters, i, other, sizeof other);
-        same = strcmp(one, other) == 0;
-    }
-    for (int i = 0; same && i < a->action_count; i++) {
-        const action *one = &a->actions[i], *other = &b->actions[i];
-        same = one->time == other->time && one->kind == other->kind &&
-               one->parameter == other->parameter && one->value == other->value &&
-               strcmp(one->text, other->text) == 0;
-    }
-    return same;
-}
-
-bool session_same_input(const session_input *a, const session_input *b)
-{
-    return a->kind == b->kind && a->parameter == b->parameter && a->value == b->value &&
-           (a->kind == SESSION_INPUT_START || a->time == b->time) &&
-           strcmp(a->text, b->text) == 0;
-}
-
-bool run_origin_is_of(const run_origin *o, const session *s)
-{
-    bool same = o->input_count == s->input_count;
-    for (int i = 0; same && i < o->input_count; i++) {
-        same = session_same_input(&o->inputs[i], &s->inputs[i]);
-    }
-    return same && same_base(&o->base, &s->base);
-}
-
-status session_reopen(session *s, const run_origin *o, double patience, fault *f)
-{
-    scenario base;
-    if (scenario_copy(&base, &o->base) != STATUS_OK) {
-        return fault_no_memory(f);
-    }
-
-    // the scenario's own run, then that of the changes
-    status code = session_open(s, &base, patience, f);
-    if (code == STATUS_OK && o->input_count > 0) {
-        code = session_take_inputs(s, o->inputs, o->input_count, f);
-        if (code != STATUS_OK) {
-            session_finish(s);
-        }
-    }
-    if (code == STATUS_OK) {
-        session_seek(s, o->now);
-        s->seen = fmax(s->seen, fmin(o->seen, s->effective.parameters.run.duration));
-    }
-    return code;
 }

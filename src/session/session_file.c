@@ -110,7 +110,7 @@ typedef struct session_reader {
     fault *fault;
 } session_reader;
 
-static status refuse(const session_reader *r, const char *what)
+static status refuse_line(const session_reader *r, const char *what)
 {
     return fault_set(r->fault, STATUS_BAD_ARGUMENT, "%s:%d:1: %s", r->path, r->line,
                      what);
@@ -123,7 +123,7 @@ static status end_base(session_reader *r)
         if (r->base.name != NULL) {
             return STATUS_OK;
         }
-        return refuse(r, "a run, expected a scenario before it");
+        return refuse_line(r, "a run, expected a scenario before it");
     }
     fault first = {0};
     scenario fresh;
@@ -132,19 +132,19 @@ static status end_base(session_reader *r)
     free(r->text);
     r->text = NULL;
     if (code != STATUS_OK) {
-        return refuse(r, first.text[0] ? first.text : status_text(code));
+        return refuse_line(r, first.text[0] ? first.text : status_text(code));
     }
     scenario_finish(&r->base);
     r->base = fresh;
     return STATUS_OK;
 }
 
-static status begin_run(session_reader *r, const char *name)
+static status begin_section(session_reader *r, const char *name)
 {
     session_file *file = r->file;
     TRY(end_base(r));
     if (file->run_count == SESSION_FILE_RUNS) {
-        return refuse(r, "one run more than a session holds");
+        return refuse_line(r, "one run more than a session holds");
     }
     kept_run *k = &file->runs[file->run_count];
     *k = (kept_run){0};
@@ -157,15 +157,16 @@ static status begin_run(session_reader *r, const char *name)
 }
 
 // Two numbers from 0 on, the second one behind a blank.
-static bool read_pair(const char *text, double *first, double *second, const char **rest)
+static bool read_two_numbers(const char *text, double *first, double *second,
+                             const char **rest)
 {
     return decimal_read(text, first, rest) && isfinite(*first) && *first >= 0 &&
            decimal_read(*rest, second, rest) && isfinite(*second);
 }
 
 // The parameter and the value of a change, as session_change would take them.
-static status read_change(const session_reader *r, const run_origin *from,
-                          session_input *in, const char *text)
+static status read_parameter_change(const session_reader *r, const run_origin *from,
+                                    session_input *in, const char *text)
 {
     char path[128];
     parameters scratch = started_with(from);
@@ -173,7 +174,7 @@ static status read_change(const session_reader *r, const run_origin *from,
     snprintf(path, sizeof path, "%.*s", (int)length, text);
     in->parameter = parameter_find(path);
     if (in->parameter < 0 || strlen(text + length) >= sizeof in->text) {
-        return refuse(r, "no change, expected an instant, a parameter and a value");
+        return refuse_line(r, "no change, expected an instant, a parameter and a value");
     }
     snprintf(in->text, sizeof in->text, "%s", text + length + (text[length] == ' '));
     const bool timed = in->kind == SESSION_INPUT_TIMED;
@@ -183,14 +184,15 @@ static status read_change(const session_reader *r, const run_origin *from,
     fault f = {0};
     if ((timed && !rig_can_change(&scratch, in->parameter)) ||
         parameter_set_text(&scratch, in->parameter, in->text, &f) != STATUS_OK) {
-        return refuse(r, f.text[0] ? f.text
-                                   : "a parameter that does not change during a run");
+        return refuse_line(r, f.text[0]
+                                  ? f.text
+                                  : "a parameter that does not change during a run");
     }
     in->value = parameter_get(&scratch, in->parameter);
     return STATUS_OK;
 }
 
-static status add_input(session_reader *r, session_input_kind kind, const char *text)
+static status append_input(session_reader *r, session_input_kind kind, const char *text)
 {
     session_file *file = r->file;
     session_input in = {.kind = kind, .parameter = -1, .before = (double)NAN};
@@ -198,24 +200,25 @@ static status add_input(session_reader *r, session_input_kind kind, const char *
     run_origin *from = file->run_count > 0 ? &file->runs[file->run_count - 1].from : NULL;
     status code = STATUS_OK;
     if (from == NULL || from->input_count == MOST_INPUTS) {
-        return refuse(r, from == NULL ? "a change, expected a run before it"
-                                      : "too many changes");
+        return refuse_line(r, from == NULL ? "a change, expected a run before it"
+                                           : "too many changes");
     }
     if (kind == SESSION_INPUT_PUSH) {
-        const bool good = read_pair(text, &in.time, &in.value, &rest) && *rest == '\0' &&
-                          from->base.parameters.arm.model != ARM_PRINTED;
+        const bool good = read_two_numbers(text, &in.time, &in.value, &rest) &&
+                          *rest == '\0' && from->base.parameters.arm.model != ARM_PRINTED;
         if (good) {
             code = STATUS_OK;
         } else {
-            code = refuse(r, "no push, expected an instant and an impulse");
+            code = refuse_line(r, "no push, expected an instant and an impulse");
         }
     } else {
         const bool good =
             decimal_read(text, &in.time, &rest) && in.time >= 0 && isfinite(in.time);
         if (good) {
-            code = read_change(r, from, &in, rest);
+            code = read_parameter_change(r, from, &in, rest);
         } else {
-            code = refuse(r, "no change, expected an instant, a parameter and a value");
+            code =
+                refuse_line(r, "no change, expected an instant, a parameter and a value");
         }
     }
     TRY(code);
@@ -231,12 +234,12 @@ static status add_input(session_reader *r, session_input_kind kind, const char *
 }
 
 // Appends a line to the scenario's text.
-static status add_text(session_reader *r, const char *line)
+static status append_line(session_reader *r, const char *line)
 {
     const size_t more = strlen(line);
     char *longer = r->text != NULL ? realloc(r->text, r->length + more + 2) : NULL;
     if (longer == NULL) {
-        return r->text == NULL ? refuse(r, "text without a scenario")
+        return r->text == NULL ? refuse_line(r, "text without a scenario")
                                : fault_no_memory(r->fault);
     }
     r->text = longer;
@@ -251,10 +254,10 @@ static status take_line(session_reader *r, char *line)
     char *rest = strchr(line, ':');
     const char *end;
     if (strncmp(line, "| ", 2) == 0) {
-        return add_text(r, line + 2);
+        return append_line(r, line + 2);
     }
     if (rest == NULL) {
-        return refuse(r, "no line of a session, expected 'word: rest'");
+        return refuse_line(r, "no line of a session, expected 'word: rest'");
     }
     *rest++ = '\0';
     rest += *rest == ' ';
@@ -272,23 +275,23 @@ static status take_line(session_reader *r, char *line)
     }
     if (strcmp(line, "present") == 0 || strcmp(line, "pinned") == 0) {
         if ((line[1] == 'r') == (file->run_count == 0)) {
-            return begin_run(r, rest);
+            return begin_section(r, rest);
         }
-        return refuse(r, "expected one present run, then pinned ones");
+        return refuse_line(r, "expected one present run, then pinned ones");
     }
     if (strcmp(line, "start") == 0 || strcmp(line, "from") == 0 ||
         strcmp(line, "push") == 0) {
-        return add_input(r,
-                         line[0] == 's'   ? SESSION_INPUT_START
-                         : line[0] == 'f' ? SESSION_INPUT_TIMED
-                                          : SESSION_INPUT_PUSH,
-                         rest);
+        return append_input(r,
+                            line[0] == 's'   ? SESSION_INPUT_START
+                            : line[0] == 'f' ? SESSION_INPUT_TIMED
+                                             : SESSION_INPUT_PUSH,
+                            rest);
     }
     if (strcmp(line, "cursor") == 0 && last != NULL) {
-        if (read_pair(rest, &last->from.now, &last->from.seen, &end)) {
+        if (read_two_numbers(rest, &last->from.now, &last->from.seen, &end)) {
             return STATUS_OK;
         }
-        return refuse(r, "no cursor, expected two instants");
+        return refuse_line(r, "no cursor, expected two instants");
     }
     if (strcmp(line, "hidden") == 0 && last != NULL) {
         last->hidden = true;
@@ -303,7 +306,7 @@ static status take_line(session_reader *r, char *line)
         if (file->baseline >= -1 && file->baseline < file->run_count - 1) {
             return STATUS_OK;
         }
-        return refuse(r, "no baseline, expected the number of a pinned run, or 0");
+        return refuse_line(r, "no baseline, expected the number of a pinned run, or 0");
     }
     if (strcmp(line, "view") == 0 && file->line_count < SESSION_FILE_LINES) {
         file->lines[file->line_count] = strdup(rest);
@@ -312,10 +315,10 @@ static status take_line(session_reader *r, char *line)
         }
         return STATUS_OK;
     }
-    return refuse(r, "a line that does not belong here");
+    return refuse_line(r, "a line that does not belong here");
 }
 
-static status read_lines(session_reader *r, FILE *stream)
+static status read_session_lines(session_reader *r, FILE *stream)
 {
     char *line = NULL;
     size_t room = 0, bytes = 0;
@@ -326,15 +329,16 @@ static status read_lines(session_reader *r, FILE *stream)
         bytes += (size_t)length;
         line[strcspn(line, "\r\n")] = '\0';
         if (bytes > MOST_BYTES || (r->line == 1 && strcmp(line, head) != 0)) {
-            code = refuse(r, bytes > MOST_BYTES ? "the file is too long"
-                                                : "this is no session");
+            code = refuse_line(r, bytes > MOST_BYTES ? "the file is too long"
+                                                     : "this is no session");
         } else if (r->line > 1 && line[0] != '\0') {
             code = take_line(r, line);
         }
     }
     free(line);
     if (code == STATUS_OK && (r->file->run_count == 0 || r->text != NULL)) {
-        code = refuse(r, r->line == 0 ? "this is no session" : "the file ends early");
+        code =
+            refuse_line(r, r->line == 0 ? "this is no session" : "the file ends early");
     }
     return code;
 }
@@ -349,7 +353,7 @@ status session_file_read(session_file *file, const char *path, fault *f)
     }
     fault own = {0};
     session_reader r = {.file = file, .path = path, .fault = &own};
-    const status code = read_lines(&r, stream);
+    const status code = read_session_lines(&r, stream);
     fclose(stream);
     free(r.text);
     scenario_finish(&r.base);

@@ -22,7 +22,7 @@ static size_t piece_length(const batch *b, size_t piece)
 }
 
 // Computes the runs of a piece side by side.
-static void compute(void *context, size_t piece, void *scratch, void *result)
+static void compute_runs(void *context, size_t piece, void *scratch, void *result)
 {
     const batch *b = context;
     const size_t length = piece_length(b, piece);
@@ -62,13 +62,13 @@ static void compute(void *context, size_t piece, void *scratch, void *result)
     }
 }
 
-static void release(void *scratch)
+static void release_scratch(void *scratch)
 {
     batch_scratch *own = scratch;
     side_by_side_destroy(own->storage);
 }
 
-static status collect(void *context, size_t piece, const void *result, fault *f)
+static status collect_runs(void *context, size_t piece, const void *result, fault *f)
 {
     const batch *b = context;
     const summary *summaries = result;
@@ -83,7 +83,7 @@ static status collect(void *context, size_t piece, const void *result, fault *f)
     return STATUS_OK;
 }
 
-static status tick(void *context, bool over, fault *f)
+static status count_tick(void *context, bool over, fault *f)
 {
     const batch *b = context;
     return b->tick(b->context, over, f);
@@ -111,11 +111,11 @@ status batch_run(const batch *asked, int jobs, fault *f)
                             .count = pieces,
                             .scratch_size = sizeof(batch_scratch),
                             .result_size = b.together * sizeof(summary),
-                            .compute = compute,
-                            .collect = collect,
-                            .tick = b.tick != NULL ? tick : NULL,
+                            .compute = compute_runs,
+                            .collect = collect_runs,
+                            .tick = b.tick != NULL ? count_tick : NULL,
                             .tick_interval = b.tick_interval,
-                            .release = release,
+                            .release = release_scratch,
                             .stop = b.stop};
     return pool_run(&work,
                     pieces < 1         ? 1

@@ -192,7 +192,7 @@ static status measure_work(const benchmark *b, status (*work)(void *context),
     return fault_set(f, code, "%s: %s", b->name, status_text(code));
 }
 
-static status run_once(void *context)
+static status run_bench_once(void *context)
 {
     const timed_work *t = context;
     run_result result;
@@ -206,7 +206,7 @@ static status run_once(void *context)
 static status measure_run(const benchmark *b, double *value, fault *f)
 {
     timed_work t = {.rows = b->number == 1};
-    const status code = measure_work(b, run_once, &t, bench_window, f);
+    const status code = measure_work(b, run_bench_once, &t, bench_window, f);
     *value = 1e3 * t.seconds / t.duration;
     return code;
 }
@@ -257,7 +257,7 @@ static status measure_batch(const benchmark *b, double *value, fault *f)
 
 // Runs the program with the words in the current folder, without what it prints, and
 // waits for it.
-static bool run_program(const char *program, const char *folder, const char *words)
+static bool run_example(const char *program, const char *folder, const char *words)
 {
     const pid_t child = fork();
     if (child == 0) {
@@ -307,7 +307,7 @@ static status measure_program(const benchmark *b, double *value, fault *f)
         }
     }
     const double start = computing_time();
-    const bool done = run_program(program, folder, b->of);
+    const bool done = run_example(program, folder, b->of);
     *value = (computing_time() - start) / (unit * b->number);
     nftw(folder, remove_entry, 8, FTW_DEPTH | FTW_PHYS);
     free(program);

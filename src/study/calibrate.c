@@ -66,8 +66,8 @@ static double stiffness(const parameters *p, double force, double angle)
     return force * (p->arm.length / 2) / (2 * angle);
 }
 
-static void measure(const parameters *p, const trace *t, double command,
-                    calibration_point *point)
+static void average_point(const parameters *p, const trace *t, double command,
+                          calibration_point *point)
 {
     average force[2] = {{0}}, angle[2] = {{0}}, whole_force = {0}, whole_angle = {0};
     const double wall = p->wall.angle + p->belief.wall_error, end = p->run.duration,
@@ -104,8 +104,8 @@ static void measure(const parameters *p, const trace *t, double command,
 }
 
 // One press: a run, its averages, and whether the arm pressed at all.
-static status press(const scenario *s, double command, int number, run_monitor *monitor,
-                    calibration_point *point, fault *f)
+static status press_once(const scenario *s, double command, int number,
+                         run_monitor *monitor, calibration_point *point, fault *f)
 {
     const run_options options = {.keep_trace = true, .monitor = monitor};
     scenario under;
@@ -119,7 +119,7 @@ static status press(const scenario *s, double command, int number, run_monitor *
                             "pressing with %g V failed: %.700s", command,
                             result.summary.message);
     }
-    measure(&under.parameters, &result.trace, command, point);
+    average_point(&under.parameters, &result.trace, command, point);
     FAULT_IF(!(point->force > 0) || !(point->angle > 0), f, STATUS_BAD_ARGUMENT,
              "under %g V the arm does not press: the force sensor reads %.4g N, "
              "the encoder %.4g rad beyond the wall; friction alone holds %.3g V",
@@ -154,7 +154,7 @@ status calibrate(const scenario *s, const double *commands, int count,
 
     // up to the first fault; what was measured before is kept
     for (int i = 0; i < count; i++) {
-        TRY(press(s, commands[i], i, monitor, &c->points[i], f));
+        TRY(press_once(s, commands[i], i, monitor, &c->points[i], f));
         c->count++;
         run_monitor_count(monitor);
     }
@@ -196,7 +196,7 @@ status calibration_table(const calibration *c, k2_table *t, fault *f)
         key, name, unit, offsetof(calibration_point, field), times                       \
     }
 
-static result_table told(const calibration *c)
+static result_table calibration_columns(const calibration *c)
 {
     static const result_column columns[] = {
         COLUMN("command_V", "command", "V", command, 1),
@@ -214,12 +214,12 @@ static result_table told(const calibration *c)
 
 json_t *calibration_json(const calibration *c, const char *name, const char *table)
 {
-    const result_table points = told(c);
+    const result_table points = calibration_columns(c);
     return json_of("scenario:t k2_table:t points:o", name, table, result_json(&points));
 }
 
 void calibration_csv(FILE *stream, const calibration *c)
 {
-    const result_table points = told(c);
+    const result_table points = calibration_columns(c);
     result_csv(stream, &points);
 }

@@ -174,8 +174,8 @@ enum {
 // The cell of a row, of row -1 the heading, which a text may have room for; NULL in a
 // column that is not shown. A varied parameter is headed by its path without the group,
 // for which there is no room.
-static const char *cell_of(const compare_table *t, int row, int column, bool page,
-                           char text[PARAMETER_TEXT_SIZE])
+static const char *comparison_cell(const compare_table *t, int row, int column, bool page,
+                                   char text[PARAMETER_TEXT_SIZE])
 {
     const compare_row *of = row < 0 ? NULL : &t->rows[row];
     const int v = column - NAMES, k = v - t->varied_count;
@@ -253,7 +253,7 @@ void compare_text(FILE *stream, const compare_table *t, bool page)
             widths[c] = 12;
         }
         for (int i = -1; i < t->count && c < NAMES + t->varied_count; i++) {
-            const int length = (int)strlen(cell_of(t, i, c, false, text));
+            const int length = (int)strlen(comparison_cell(t, i, c, false, text));
             if (length > widths[c]) {
                 widths[c] = length;
             }
@@ -269,7 +269,7 @@ void compare_text(FILE *stream, const compare_table *t, bool page)
     for (int i = -1; i < t->count; i++) {
         int shown = 0;
         for (int c = 0; c < columns; c++) {
-            const char *cell = cell_of(t, i, c, page, text);
+            const char *cell = comparison_cell(t, i, c, page, text);
             if (cell != NULL) {
                 result_print(stream, page, shown++, widths[c], cell);
             }

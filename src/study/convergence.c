@@ -42,7 +42,7 @@ typedef struct one_run {
     fault *fault;
 } one_run;
 
-static status run_once(void *context)
+static status run_with_step(void *context)
 {
     one_run *r = context;
     run_result run;
@@ -78,7 +78,7 @@ status convergence_compute(const scenario *s, run_monitor *monitor, run_result *
             r.kept = NULL;
         }
         if (code == STATUS_OK) {
-            code = run_once(&r);
+            code = run_with_step(&r);
         }
         if (code == STATUS_OK) {
             results[panel->done++] = r.summary;
@@ -150,7 +150,7 @@ static status study_one(const scenario *s, method_kind method, const double *ref
 
     r.scenario.parameters.method.name = (int)method;
     r.scenario.parameters.method.step = point->step;
-    point->cost = bench_seconds_per_call(run_once, &r, LEAST_TIME, &code);
+    point->cost = bench_seconds_per_call(run_with_step, &r, LEAST_TIME, &code);
 
     values_of(&r.summary, values);
     for (int k = 0; k < STUDY_QUANTITIES; k++) {
@@ -193,7 +193,7 @@ status method_study_compute(const scenario *s, run_monitor *monitor, method_stud
     // what the errors are measured against
     r.scenario.parameters.method.name = METHOD_EVENT;
     r.scenario.parameters.method.step = study->reference_step = REFERENCE_STEP;
-    status code = run_once(&r);
+    status code = run_with_step(&r);
     values_of(&r.summary, study->reference);
     TRY(code);
     run_monitor_count(monitor);

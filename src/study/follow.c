@@ -15,7 +15,7 @@ const char *const follow_laws[FOLLOW_LAWS] = {"hybrid",     "force-pd", "impedan
 #define WATCHED 2.0 // from then on at least, in whole periods [s]
 
 // exp(i angle).
-static double complex turned(double angle)
+static double complex unit_phasor(double angle)
 {
     return inline_cos(angle) + (double complex)I * inline_sin(angle);
 }
@@ -29,12 +29,12 @@ static double complex part_of(const trace *t, double frequency, double until)
     for (size_t i = 1; i < t->row_count; i++) {
         const sample *a = &t->rows[i - 1], *b = &t->rows[i];
         if (a->time >= SETTLED && b->time <= until) {
-            const double complex both =
-                a->force * turned(-w * a->time) + b->force * turned(-w * b->time);
+            const double complex both = a->force * unit_phasor(-w * a->time) +
+                                        b->force * unit_phasor(-w * b->time);
             sum += (b->time - a->time) / 2 * both;
         }
     }
-    const double complex sine = 2 * turned(M_PI / 2);
+    const double complex sine = 2 * unit_phasor(M_PI / 2);
     return sine * sum / (until - SETTLED);
 }
 

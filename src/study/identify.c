@@ -36,65 +36,6 @@ status identify_available(fault *f)
 #endif
 }
 
-// --- what is fitted --------------------------------------------------------------------
-
-static double within_range(const fitted_parameter *fit, double value)
-{
-    return fmin(fmax(value, fit->low_most), fit->high_most);
-}
-
-status identify_add_path(identification *id, const char *text, fault *f)
-{
-    FAULT_IF(id->count == IDENTIFY_PATHS, f, STATUS_BAD_ARGUMENT,
-             "more than %d parameters to fit", IDENTIFY_PATHS);
-    fitted_parameter *p = &id->fit[id->count++];
-    *p = (fitted_parameter){.value = (double)NAN};
-    sweep_axis *axis = &p->axis;
-    const char *range = strchr(text, '=');
-    TRY(sweep_axis_find(axis, text, f));
-    const parameter_info *info = sweep_axis_parameter(axis);
-    if (info->type != PARAMETER_REAL && axis->element == 0) {
-        return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path,
-                            "%s has no real value that could be fitted", axis->name);
-    }
-    for (const fitted_parameter *other = id->fit; other < p; other++) {
-        if (strcmp(other->axis.name, axis->name) == 0) {
-            return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path, "%s is fitted twice",
-                                axis->name);
-        }
-    }
-
-    // the scenario's value and the range to search
-    p->start = sweep_axis_get(axis, &id->base->parameters);
-    if (isnan(p->start) && axis->element > 0) {
-        return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path,
-                            "%s: the scenario's list is shorter", axis->name);
-    }
-    p->low_most = info->minimum;
-    p->high_most = info->maximum;
-    if (range != NULL) {
-        TRY(sweep_axis_parse_range(axis, range + 1, f));
-        p->low_most = fmin(axis->low, axis->high);
-        p->high_most = fmax(axis->low, axis->high);
-    } else if (!(fabs(p->start) > 0)) {
-        return fault_set_at(f, STATUS_BAD_ARGUMENT, info->path,
-                            "%s is 0 in the scenario, expected a range to search: %s=a:b",
-                            axis->name, axis->name);
-    }
-    p->value = within_range(p, p->start);
-    if (fabs(p->value) > 0) {
-        p->scale = fabs(p->value);
-    } else {
-        p->scale = fabs(p->high_most - p->low_most);
-    }
-    return STATUS_OK;
-}
-
-bool identify_at_end(const fitted_parameter *fit)
-{
-    return fit->value == fit->low_most || fit->value == fit->high_most;
-}
-
 void identify_finish(identification *id)
 {
     for (int i = 0; i < id->count; i++) {
@@ -113,19 +54,6 @@ void identify_finish(identification *id)
     }
     free(id->residual);
     *id = (identification){0};
-}
-
-status identify_parameters(const identification *id, bool determined, parameters *p,
-                           fault *f)
-{
-    *p = id->base->parameters;
-    for (int i = 0; i < id->count; i++) {
-        const fitted_parameter *fit = &id->fit[i];
-        if (!determined || fit->determined) {
-            TRY(sweep_axis_apply(&fit->axis, fit->value, p, f));
-        }
-    }
-    return STATUS_OK;
 }
 
 // --- unknowns --------------------------------------------------------------------------
@@ -152,11 +80,11 @@ static void list_unknowns(identification *id)
 
 // The value that a number gives an unknown in its scale; a parameter stays within its
 // range.
-static double value_of(const identification *id, int n, double x)
+static double unknown_value(const identification *id, int n, double x)
 {
     const unknown *u = &id->unknown[n];
     if (u->trace < 0) {
-        return within_range(&id->fit[u->index], x * u->scale);
+        return identify_within_range(&id->fit[u->index], x * u->scale);
     }
     return x * u->scale;
 }
@@ -191,7 +119,7 @@ static void compute_piece(void *context, size_t i, void *scratch, void *result)
     memcpy(own, t->own, sizeof own);
     for (int n = 0; n < id->unknowns; n++) {
         const unknown *u = &id->unknown[n];
-        const double value = value_of(id, n, here->x[n]);
+        const double value = unknown_value(id, n, here->x[n]);
         if (u->trace < 0) {
             (void)sweep_axis_apply(&id->fit[u->index].axis, value, &p, &ignored);
         } else if (u->trace == here->trace) {
@@ -325,8 +253,8 @@ static double sum_of_squares(const double *residual, size_t count)
 }
 
 // Keeps the unknowns of a set that leaves less than those before, if there were any.
-static void keep_best(best_yet *best, const identification *id, const double *x,
-                      double left)
+static void keep_least(best_yet *best, const identification *id, const double *x,
+                       double left)
 {
     if (!(left >= best->least)) {
         best->least = left;
@@ -335,8 +263,8 @@ static void keep_best(best_yet *best, const identification *id, const double *x,
 }
 
 #ifdef IMPACTLAB_MINPACK
-static int evaluate(void *context, int m, int n, const double *x, double *residual,
-                    double *jacobian, int rows, int asked)
+static int evaluate_for_minpack(void *context, int m, int n, const double *x,
+                                double *residual, double *jacobian, int rows, int asked)
 {
     least_squares *l = context;
     (void)m, (void)n, (void)rows;
@@ -346,7 +274,7 @@ static int evaluate(void *context, int m, int n, const double *x, double *residu
         l->code = jacobian_of(l->id, x, jacobian, l->f);
     }
     if (l->code == STATUS_OK && asked == 1) {
-        keep_best(l->best, l->id, x, sum_of_squares(residual, l->id->residuals));
+        keep_least(l->best, l->id, x, sum_of_squares(residual, l->id->residuals));
     }
     if (l->code == STATUS_OK) {
         return 0;
@@ -366,8 +294,8 @@ static status minimise(identification *id, double *x, double *residual, double *
     if (more == NULL) {
         return fault_no_memory(f);
     }
-    lmder(evaluate, &l, m, n, x, residual, jacobian, m, TOLERANCE, TOLERANCE, 0,
-          MOST_STEPS, diagonal, 1, 1, 0, &evaluations, &jacobians, pivots, work[0],
+    lmder(evaluate_for_minpack, &l, m, n, x, residual, jacobian, m, TOLERANCE, TOLERANCE,
+          0, MOST_STEPS, diagonal, 1, 1, 0, &evaluations, &jacobians, pivots, work[0],
           work[1], work[2], work[3], more);
     return l.code;
 }
@@ -429,14 +357,14 @@ static status draw_beginnings(identification *id, double *x, double *rest, best_
     TRY(residuals_of(id, x, id->starts, NULL, false, out, NULL, f));
     for (int s = 0; s < id->starts; s++) {
         rest[s] = sum_of_squares(out + (size_t)s * m, m);
-        keep_best(best, id, x + s * id->unknowns, rest[s]);
+        keep_least(best, id, x + s * id->unknowns, rest[s]);
     }
     return STATUS_OK;
 }
 
 // Searches with room for the beginnings and what they leave, a set of residuals and the
 // Jacobian.
-static status search(identification *id, double *x, best_yet *best, fault *f)
+static status search_from_starts(identification *id, double *x, best_yet *best, fault *f)
 {
     double *rest = x + id->starts * id->unknowns, *residual = rest + id->starts,
            *jacobian = residual + id->residuals;
@@ -480,7 +408,7 @@ static status fit_with(identification *id, double *x, fault *f)
     double *jacobian = x + id->starts * (id->unknowns + 1) + id->residuals;
     best_yet best = {.least = (double)NAN};
     fault why = {.code = STATUS_OK};
-    status code = search(id, x, &best, f);
+    status code = search_from_starts(id, x, &best, f);
     if (code == STATUS_OK) {
         code = residuals_of(id, best.x, 1, NULL, true, id->residual, &why, f);
     }
@@ -497,7 +425,7 @@ static status fit_with(identification *id, double *x, fault *f)
         return code;
     }
     for (int n = 0; n < id->unknowns; n++) {
-        *id->unknown[n].value = value_of(id, n, best.x[n]);
+        *id->unknown[n].value = unknown_value(id, n, best.x[n]);
     }
     if (code == STATUS_STOPPED) {
         leave_unjudged(id, best.least);

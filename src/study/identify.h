@@ -167,6 +167,9 @@ void identify_write_set(FILE *stream, const identification *id);
 
 // --- for the parts of identify
 
+// The value of the range to search that is nearest to another.
+double identify_within_range(const fitted_parameter *fit, double value);
+
 // Residuals of a trace (its own number of them) under parameters p and what it has of its
 // own. Returns what stopped the run, with a sentence in f, and residuals of 1e3 each.
 status identify_residuals(const identification *id, recorded_trace *t,

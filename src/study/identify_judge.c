@@ -97,7 +97,7 @@ static double dot(const double *a, const double *b, size_t count)
     return sum;
 }
 
-static void add(double *to, double factor, const double *a, size_t count)
+static void add_scaled(double *to, double factor, const double *a, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         to[i] += factor * a[i];
@@ -109,7 +109,7 @@ static void add(double *to, double factor, const double *a, size_t count)
 // What the parameters' columns of the Jacobian say that the traces' own cannot: what is
 // left of them when their projections on the latter, as far as these say anything, are
 // taken off. alone[p * residuals].
-static bool project(const identification *id, const double *jacobian, double *alone)
+static bool orthogonalise(const identification *id, const double *jacobian, double *alone)
 {
     const size_t m = id->residuals;
     const int p = id->count, q = id->unknowns - p;
@@ -140,11 +140,12 @@ static bool project(const identification *id, const double *jacobian, double *al
         }
         memset(along, 0, m * sizeof *along);
         for (int j = 0; j < q; j++) {
-            add(along, own[k * q + j] / size[j], jacobian + (size_t)(p + j) * m, m);
+            add_scaled(along, own[k * q + j] / size[j], jacobian + (size_t)(p + j) * m,
+                       m);
         }
         for (int i = 0; i < p; i++) {
-            add(alone + (size_t)i * m, -dot(alone + (size_t)i * m, along, m) / values[k],
-                along, m);
+            add_scaled(alone + (size_t)i * m,
+                       -dot(alone + (size_t)i * m, along, m) / values[k], along, m);
         }
     }
     return true;
@@ -285,7 +286,7 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     if (alone == NULL) {
         return fault_no_memory(f);
     }
-    bool done = project(id, jacobian, alone);
+    bool done = orthogonalise(id, jacobian, alone);
     memset(id->direction, 0, sizeof id->direction);
     for (int c = 0; c < CHANNELS && done; c++) {
         add_channel(id, c, alone, id->direction, scatter);

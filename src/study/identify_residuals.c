@@ -278,9 +278,9 @@ static const controller playback = {.interface = CONTROLLER_INTERFACE,
 
 // The scenario as it is run: the sensors' lags, curves and ripple stay, noise and steps
 // are what residuals are measured by.
-static status make_run(const identification *id, const recorded_trace *t,
-                       const parameters *p, const double own[OWNS], scenario *made,
-                       fault *f)
+static status playback_scenario(const identification *id, const recorded_trace *t,
+                                const parameters *p, const double own[OWNS],
+                                scenario *made, fault *f)
 {
     const sensor_parameters *sensor = &p->sensor;
     const parameter_change changes[] = {
@@ -318,7 +318,7 @@ status identify_scenario(const identification *id, int index, scenario *made, fa
     parameters p;
     scenario fitted;
     TRY(identify_parameters(id, true, &p, f));
-    TRY(make_run(id, t, &p, t->own, &fitted, f));
+    TRY(playback_scenario(id, t, &p, t->own, &fitted, f));
 
     // its noise and steps come back; a sample takes the last row of its period, as
     // keep_samples has it
@@ -337,8 +337,8 @@ status identify_scenario(const identification *id, int index, scenario *made, fa
 }
 
 // Between two rows a quantity is the cubic through its values and rates.
-static double between(const sample *a, const sample *b, double time, double from,
-                      double to, double from_rate, double to_rate)
+static double interpolate_cubic(const sample *a, const sample *b, double time,
+                                double from, double to, double from_rate, double to_rate)
 {
     const double h = b->time - a->time, u = h > 0 ? (time - a->time) / h : 1, v = 1 - u;
     return v * v * (1 + 2 * u) * from + u * u * (3 - 2 * u) * to +
@@ -355,10 +355,10 @@ static double reading_at(const trace *run, sensors *eyes, int channel, double ti
         const sample *a = &run->rows[at], *b = &run->rows[at < last ? at + 1 : last];
         const double when = fmax(time, a->time);
         const sensed_motion now = {
-            .angle = between(a, b, when, a->hub_angle, b->hub_angle, a->hub_velocity,
-                             b->hub_velocity),
-            .velocity = between(a, b, when, a->hub_velocity, b->hub_velocity,
-                                a->hub_acceleration, b->hub_acceleration)};
+            .angle = interpolate_cubic(a, b, when, a->hub_angle, b->hub_angle,
+                                       a->hub_velocity, b->hub_velocity),
+            .velocity = interpolate_cubic(a, b, when, a->hub_velocity, b->hub_velocity,
+                                          a->hub_acceleration, b->hub_acceleration)};
         const sensor_reading r = sensors_read(eyes, &now);
         if (channel == CHANNEL_ENCODER) {
             return r.encoder;
@@ -436,8 +436,8 @@ static void judge_run(recorded_trace *t, const trace *run, double period,
     }
 }
 
-static void compare(const recorded_trace *t, const trace *run, const parameters *p,
-                    const double own[OWNS], double *residual)
+static void compare_run(const recorded_trace *t, const trace *run, const parameters *p,
+                        const double own[OWNS], double *residual)
 {
     sensors eyes;
     const double period = 1 / p->control.rate;
@@ -469,7 +469,7 @@ status identify_residuals(const identification *id, recorded_trace *t,
     SCOPED(run_finish) run_result result = {0};
     const given_law law = {&playback, (void *)t};
     const run_options options = {.keep_trace = true, .law = &law, .monitor = NULL};
-    status code = make_run(id, t, p, own, &made, f);
+    status code = playback_scenario(id, t, p, own, &made, f);
     if (code == STATUS_OK) {
         code = run_scenario_with(&made, &options, &result);
         if (code != STATUS_OK) {
@@ -480,7 +480,7 @@ status identify_residuals(const identification *id, recorded_trace *t,
 
     // one that cannot be made is as far off as can be
     if (code == STATUS_OK) {
-        compare(t, &result.trace, &made.parameters, own, residual);
+        compare_run(t, &result.trace, &made.parameters, own, residual);
     }
     for (size_t i = 0; i < t->residuals; i++) {
         if (!(code == STATUS_OK && isfinite(residual[i]))) {

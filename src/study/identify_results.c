@@ -112,8 +112,8 @@ json_t *identify_json(const identification *id)
 
 // An arm of the covariance, whose eigenvectors and -values these are: along each a normal
 // number.
-static void draw_arm(const identification *id, const double *directions,
-                     const double *values, random_generator *random, double *drawn)
+static void draw_parameters(const identification *id, const double *directions,
+                            const double *values, random_generator *random, double *drawn)
 {
     const int p = id->count;
     for (int i = 0; i < p; i++) {
@@ -171,7 +171,7 @@ void identify_write_set(FILE *stream, const identification *id)
     }
     random_seed(&random, id->seed);
     for (int n = 0; n < IDENTIFY_CASES; n++) {
-        draw_arm(id, directions, values, &random, drawn[n]);
+        draw_parameters(id, directions, values, &random, drawn[n]);
     }
 
     fprintf(

@@ -75,7 +75,7 @@ static void take_impulse(blow *b, const event *e)
 }
 
 // The force over a step, from the touch and up to the window's end, piece by piece.
-static void take_force(blow *b, const force_step *step)
+static void add_force(blow *b, const force_step *step)
 {
     const step_parabola p = step_parabola_of(step);
     const double length = step->end - step->start, early = b->touch + MOMENTUM_WINDOW;
@@ -119,7 +119,7 @@ static blow blow_of(const run_result *result)
                 take_impulse(&b, &t->events[next]);
             }
         }
-        take_force(&b, step);
+        add_force(&b, step);
     }
     return b;
 }

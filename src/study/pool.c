@@ -201,7 +201,7 @@ static bool allocate(pool *p, pool_thread *threads, int count)
 }
 
 // Frees what `allocate` gave.
-static void release(pool *p, pool_thread *threads, int count)
+static void free_threads(pool *p, pool_thread *threads, int count)
 {
     for (int i = 0; i < count; i++) {
         if (p->work->release != NULL && threads[i].scratch != NULL) {
@@ -246,7 +246,7 @@ status pool_run(const pool_work *work, int threads, fault *f)
         code = fault_no_memory(f);
     }
 
-    release(&p, each, threads);
+    free_threads(&p, each, threads);
     pthread_cond_destroy(&p.changed);
     pthread_mutex_destroy(&p.mutex);
     return code;

@@ -87,7 +87,7 @@ static bool read_case(robust_case *c, char *text, char **settings)
 }
 
 // Sorts the lines of the text into what is drawn and what is a case.
-static status read_lines(robust_set *set, fault *f)
+static status sort_lines(robust_set *set, fault *f)
 {
     static const char word[] = "case ";
     char *rest = set->text, **settings = set->settings;
@@ -122,7 +122,7 @@ static status read_lines(robust_set *set, fault *f)
 
 // Room for all cases that the text of the set may have, and their settings: they have at
 // least one character each. False without memory.
-static bool make_room(robust_set *set)
+static bool allocate_cases(robust_set *set)
 {
     const size_t most = strlen(set->text) + 1;
     size_t lines = 1;
@@ -144,8 +144,8 @@ status robust_set_read(robust_set *set, const char *path, fault *f)
         code = fault_no_memory(f);
     }
     if (code == STATUS_OK) {
-        if (make_room(set)) {
-            code = read_lines(set, f);
+        if (allocate_cases(set)) {
+            code = sort_lines(set, f);
         } else {
             code = fault_no_memory(f);
         }
@@ -275,8 +275,8 @@ static const char *const keys[QUANTITIES] = {JUDGED(KEY)};
 
 // Judges the runs, whose quantities stand `most` behind one another; what is sorted is
 // overwritten.
-static void judge(robust_law *out, const sweep *s, const size_t *runs, size_t most,
-                  double *values)
+static void judge_runs(robust_law *out, const sweep *s, const size_t *runs, size_t most,
+                       double *values)
 {
     const size_t n = out->runs;
     double *of[QUANTITIES];
@@ -376,7 +376,7 @@ status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_sha
             }
         }
     }
-    judge(out, s, runs, n, values);
+    judge_runs(out, s, runs, n, values);
     return STATUS_OK;
 }
 

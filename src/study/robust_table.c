@@ -107,7 +107,7 @@ static bool has_cases(const robust_table *t)
 }
 
 // The columns of a table, which has cases or not.
-static result_table told(const robust_table *t)
+static result_table result_columns(const robust_table *t)
 {
     const int first = has_cases(t) ? CASE : LAW;
     return (result_table){columns + first, COLUMNS - first, t->laws, sizeof *t->laws,
@@ -115,7 +115,7 @@ static result_table told(const robust_table *t)
 }
 
 // Two counts, then the numbers but the one that another law is needed for.
-static int column_of(int i)
+static int summary_column(int i)
 {
     const int column = i < 2 ? RUNS + i : SETTLED + i - 2;
     return column + (column >= AGAINST);
@@ -124,21 +124,22 @@ static int column_of(int i)
 const char *robust_key(int i)
 {
     assert(i >= 0);
-    if (column_of(i) < COLUMNS) {
-        return columns[column_of(i)].key;
+    if (summary_column(i) < COLUMNS) {
+        return columns[summary_column(i)].key;
     }
     return NULL;
 }
 
 double robust_value(const robust_law *law, int i)
 {
-    assert(i >= 0 && column_of(i) < COLUMNS);
-    return result_cell_of(&(result_table){.rows = law}, 0, &columns[column_of(i)]).number;
+    assert(i >= 0 && summary_column(i) < COLUMNS);
+    return result_cell_of(&(result_table){.rows = law}, 0, &columns[summary_column(i)])
+        .number;
 }
 
 // What stands in a column of a row, of row -1 the heading; `text` has room for it.
-static const char *cell_of(const robust_table *t, int row, const shown_column *shown,
-                           char text[ROBUST_CELL])
+static const char *robust_cell(const robust_table *t, int row, const shown_column *shown,
+                               char text[ROBUST_CELL])
 {
     if (row < 0 && shown->column == AGAINST) {
         snprintf(text, ROBUST_CELL, "/%s", t->against);
@@ -149,7 +150,7 @@ static const char *cell_of(const robust_table *t, int row, const shown_column *s
         }
         return shown->heading;
     }
-    const result_table all = told(t);
+    const result_table all = result_columns(t);
     const result_cell cell = result_cell_of(&all, row, &columns[shown->column]);
     decimal_print(text, ROBUST_CELL,
                   isnan(cell.number)          ? "-"
@@ -193,7 +194,7 @@ void robust_text(FILE *stream, const robust_table *t, bool page)
             } else {
                 width = 12;
             }
-            result_print(stream, page, k, width, cell_of(t, i, &shown[k], text));
+            result_print(stream, page, k, width, robust_cell(t, i, &shown[k], text));
         }
         if (i >= 0 && t->laws[i].failed > 0 && !page) {
             fprintf(stream, "  %zu failed", t->laws[i].failed);
@@ -207,13 +208,13 @@ void robust_text(FILE *stream, const robust_table *t, bool page)
 
 void robust_csv(FILE *stream, const robust_table *t)
 {
-    const result_table all = told(t);
+    const result_table all = result_columns(t);
     result_csv(stream, &all);
 }
 
 json_t *robust_json(const robust_table *t)
 {
-    const result_table all = told(t);
+    const result_table all = result_columns(t);
     json_t *whole = json_of("scenario:t", t->scenario);
     if (t->against != NULL) {
         json_members(whole, "against:t", t->against);

@@ -44,7 +44,7 @@ static status check_together(const sweep *s, const sweep_axis *axis, fault *f)
 }
 
 // Reads one --vary into the next axis.
-static status read_axis(sweep *s, const char *given, fault *f)
+static status add_axis(sweep *s, const char *given, fault *f)
 {
     static const char with[] = "with ";
     FAULT_IF(s->axis_count == SWEEP_MOST_AXES, f, STATUS_BAD_ARGUMENT,
@@ -134,7 +134,7 @@ static status count_runs(sweep *s, size_t runs, fault *f)
 
 // The values of random sampling, all at once, so that they do not depend on the order of
 // the runs.
-static status draw_values(sweep *s, fault *f)
+static status draw_samples(sweep *s, fault *f)
 {
     random_generator g;
     if (s->sampling == SWEEP_GRID) {
@@ -235,7 +235,7 @@ status sweep_plan(sweep *s, const sweep_request *request, fault *f)
     // the axes
     for (int i = 0; i < request->vary_count && code == STATUS_OK; i++) {
         fault why = {.path = ""};
-        code = read_axis(s, request->vary[i], &why);
+        code = add_axis(s, request->vary[i], &why);
         if (code != STATUS_OK) {
             if (code != STATUS_NO_MEMORY) {
                 code = STATUS_BAD_ARGUMENT;
@@ -255,7 +255,7 @@ status sweep_plan(sweep *s, const sweep_request *request, fault *f)
         code = count_runs(s, request->runs, f);
     }
     if (code == STATUS_OK) {
-        code = draw_values(s, f);
+        code = draw_samples(s, f);
     }
     if (code != STATUS_OK) {
         sweep_finish(s);

@@ -133,8 +133,8 @@ double sweep_axis_get(const sweep_axis *axis, const parameters *p)
 }
 
 // Checks and reads one value of the axis.
-static status read_value(const sweep_axis *axis, const char *text, double *value,
-                         fault *f)
+static status read_axis_value(const sweep_axis *axis, const char *text, double *value,
+                              fault *f)
 {
     parameters scratch = {0};
     const char *own = settings_name(axis->name);
@@ -210,7 +210,7 @@ static status fill_range(sweep_axis *axis, size_t n, fault *f)
             axis->values[i] = value;
         }
         number_format(text, axis->values[i]);
-        TRY(read_value(axis, text, &same, f));
+        TRY(read_axis_value(axis, text, &same, f));
 
         // whole numbers too close together
         if (i > 0 && axis->values[i] == axis->values[i - 1]) {
@@ -222,7 +222,7 @@ static status fill_range(sweep_axis *axis, size_t n, fault *f)
 }
 
 // Reads the number of values in a range.
-static status read_count(const char *text, size_t *count, fault *f)
+static status read_value_count(const char *text, size_t *count, fault *f)
 {
     const char *rest;
     double value;
@@ -270,10 +270,10 @@ static status read_range(sweep_axis *axis, char *text, bool drawn, fault *f)
              drawn ? "a:b or a:b:n" : "a:b:n");
 
     // the ends, and the number of values
-    TRY(read_value(axis, pieces[0], &axis->low, f));
-    TRY(read_value(axis, pieces[1], &axis->high, f));
+    TRY(read_axis_value(axis, pieces[0], &axis->low, f));
+    TRY(read_axis_value(axis, pieces[1], &axis->high, f));
     if (count == 3) {
-        TRY(read_count(pieces[2], &n, f));
+        TRY(read_value_count(pieces[2], &n, f));
     }
 
     FAULT_IF(axis->low == axis->high, f, STATUS_BAD_ARGUMENT,
@@ -319,7 +319,7 @@ static status read_list(sweep_axis *axis, char *text, bool drawn, fault *f)
     for (char *piece; (piece = strsep(&text, ",")) != NULL; axis->count++) {
         char value[SWEEP_VALUE_TEXT - 1];
         double *here = &axis->values[axis->count];
-        TRY(read_value(axis, piece, here, f));
+        TRY(read_axis_value(axis, piece, here, f));
 
         // in a grid each value once
         for (const double *other = axis->values; !drawn && other < here; other++) {

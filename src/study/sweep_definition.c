@@ -190,7 +190,8 @@ const char *definition_value(const definition *d, const char *key)
 }
 
 // The whole number that a line holds. False if it is none, or too large.
-static bool read_number(const definition *d, const char *key, unsigned long long *number)
+static bool definition_number(const definition *d, const char *key,
+                              unsigned long long *number)
 {
     const char *text = definition_value(d, key);
     const size_t length = text != NULL ? strspn(text, "0123456789") : 0;
@@ -216,8 +217,8 @@ status definition_plan(const definition *d, const char *path, sweep *plan, fault
     // how the values are combined, and of how many runs
     const bool drawn = sampling != SWEEP_GRID;
     bool good = sampling >= 0;
-    if (good &&
-        (!read_number(d, "runs", &runs) || (drawn && !read_number(d, "seed", &seed)))) {
+    if (good && (!definition_number(d, "runs", &runs) ||
+                 (drawn && !definition_number(d, "seed", &seed)))) {
         snprintf(why.text, sizeof why.text,
                  "it does not say how many runs its sweep has");
         good = false;
@@ -261,8 +262,8 @@ status definition_plan(const definition *d, const char *path, sweep *plan, fault
 }
 
 // Adds one difference to the sentence; beyond the first few they are only counted.
-static void add_difference(char *text, size_t size, int *count, const char *key,
-                           const char *was, const char *now)
+static void append_difference(char *text, size_t size, int *count, const char *key,
+                              const char *was, const char *now)
 {
     enum { SHOWN = 4 };
     size_t length = strlen(text);
@@ -306,7 +307,7 @@ status definition_compare(const char *path, const definition *was, const definit
             strcmp(key, "scenario") == 0 || (count > 0 && strcmp(key, "given") == 0);
         const bool same = before != NULL && strcmp(before, value) == 0;
         if (!aside && (!same || strcmp(before, untold) == 0)) {
-            add_difference(text, sizeof text, &count, key, before, value);
+            append_difference(text, sizeof text, &count, key, before, value);
         }
     }
 
@@ -314,7 +315,8 @@ status definition_compare(const char *path, const definition *was, const definit
     json_object_foreach(was->lines, key, line)
     {
         if (definition_value(now, key) == NULL) {
-            add_difference(text, sizeof text, &count, key, json_string_value(line), NULL);
+            append_difference(text, sizeof text, &count, key, json_string_value(line),
+                              NULL);
         }
     }
     if (count == 0) {

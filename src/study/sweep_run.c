@@ -21,7 +21,7 @@ typedef struct sweep_execution {
     double start, committed; // instants by the clock [s]
 } sweep_execution;
 
-static status make_run(void *context, size_t i, scenario *made, fault *f)
+static status make_sweep_run(void *context, size_t i, scenario *made, fault *f)
 {
     const sweep_execution *e = context;
     return sweep_scenario(e->sweep, e->wanted[i], made, f);
@@ -57,7 +57,7 @@ static status store_run(void *context, size_t i, const summary *s, fault *f)
     return STATUS_OK;
 }
 
-static void report(const sweep_execution *e)
+static void report_progress(const sweep_execution *e)
 {
     e->progress->elapsed_s = clock_seconds(CLOCK_MONOTONIC) - e->start;
     if (e->options->report != NULL) {
@@ -75,7 +75,7 @@ static status commit_and_report(void *context, bool over, fault *f)
         e->committed = clock_seconds(CLOCK_MONOTONIC);
     }
     if (!over) {
-        report(e); // the end is reported in any case, see sweep_run
+        report_progress(e); // the end is reported in any case, see sweep_run
     }
     return code;
 }
@@ -125,7 +125,7 @@ static status run_missing(sweep_execution *e, fault *f)
     // hold up the end of a sweep that is stopped
     const batch missing = {.context = e,
                            .count = count,
-                           .make = make_run,
+                           .make = make_sweep_run,
                            .take = store_run,
                            .together =
                                runs_are_light(e->sweep)
@@ -153,6 +153,6 @@ status sweep_run(const sweep *s, sweep_store *store, const sweep_options *option
     *progress = (sweep_progress){.total = s->run_count};
 
     const status code = run_missing(&e, f);
-    report(&e);
+    report_progress(&e);
     return code;
 }

@@ -59,7 +59,7 @@ static double value_of_key(const void *context, int key)
     return of->run[key];
 }
 
-static status evaluate(const char *text, judged *of, double *value, fault *f)
+static status evaluate_expression(const char *text, judged *of, double *value, fault *f)
 {
     expression e;
     const status code = expression_read(&e, text, find_key, of, f);
@@ -81,19 +81,20 @@ static status read_subject(const char *text, judged *of, double *excess, fault *
              STATUS_BAD_ARGUMENT, "'%.100s' is no condition, expected EXPR<=X or EXPR>=X",
              text);
     snprintf(left, sizeof left, "%.*s", (int)(sign - text), text);
-    TRY(evaluate(left, of, &a, f));
-    TRY(evaluate(sign + 2, of, &b, f));
+    TRY(evaluate_expression(left, of, &a, f));
+    TRY(evaluate_expression(sign + 2, of, &b, f));
     *excess = (*sign == '<' ? a - b : b - a) / fmax(fabs(b), 1e-300);
     return STATUS_OK;
 }
 
 // What cannot be judged ranks by how many of its runs never settle.
-static status judge(const tune_request *asked, judged *of, tune_result *out, fault *f)
+static status judge_result(const tune_request *asked, judged *of, tune_result *out,
+                           fault *f)
 {
     fault why = {.path = ""};
     double excess = 0;
     const char *option = "minimise";
-    status code = evaluate(asked->minimise, of, &out->value, &why);
+    status code = evaluate_expression(asked->minimise, of, &out->value, &why);
     if (code == STATUS_OK && asked->subject != NULL) {
         option = "subject";
         code = read_subject(asked->subject, of, &excess, &why);
@@ -181,13 +182,13 @@ status tune_evaluate(tuning *t, size_t evaluation, const double *values, const c
         TRY(store->quantity(store, only.share, summary_table[q].key, column, NULL, f));
         run[q] = column[0];
     }
-    return judge(asked, &of, out, f);
+    return judge_result(asked, &of, out, f);
 }
 
 // --- what is asked for -----------------------------------------------------------------
 
 // Whether everything but what is varied can be right.
-static status check(const tune_request *asked, fault *f)
+static status check_request(const tune_request *asked, fault *f)
 {
     const double run[SUMMARY_NUMBERS] = {0};
     const robust_law law = {.runs = 1};
@@ -205,7 +206,7 @@ static status check(const tune_request *asked, fault *f)
              STATUS_BAD_ARGUMENT,
              "%s has no control law, and runs over a set are judged by one",
              asked->base->name);
-    TRY(judge(asked, &of, &unused, f));
+    TRY(judge_result(asked, &of, &unused, f));
     return find_growth(asked, asked->base, &of.growth, f);
 }
 
@@ -266,7 +267,7 @@ status tune_init(tuning *t, const tune_request *asked, fault *f)
     assert(asked->runs >= 1 && asked->runs <= TUNE_MOST_RUNS);
     int version[3] = {0};
     *t = (tuning){.asked = *asked, .best.rank = (double)INFINITY};
-    TRY(check(asked, f));
+    TRY(check_request(asked, f));
 #ifdef WITH_NLOPT
     nlopt_version(&version[0], &version[1], &version[2]);
 #endif
@@ -338,7 +339,8 @@ typedef struct search {
 
 // Rank of the values at these shares of the ranges, for NLopt; what was evaluated before
 // is looked up.
-static double rank_of(unsigned n, const double *shares, double *gradient, void *context)
+static double rank_of_shares(unsigned n, const double *shares, double *gradient,
+                             void *context)
 {
     search *s = context;
     tuning *t = s->t;
@@ -385,12 +387,13 @@ static double rank_of(unsigned n, const double *shares, double *gradient, void *
 
 // Lets a method of NLopt begin at the best so far, with steps of that share of the
 // ranges, for so many evaluations.
-static void minimise(search *s, nlopt_algorithm method, double step, size_t most)
+static void search_with(search *s, nlopt_algorithm method, double step, size_t most)
 {
     double start[SWEEP_MOST_AXES], least;
     memcpy(start, s->best, sizeof start);
     s->minimiser = nlopt_create(method, (unsigned)s->t->asked.vary_count);
-    if (s->minimiser == NULL || nlopt_set_min_objective(s->minimiser, rank_of, s) < 0 ||
+    if (s->minimiser == NULL ||
+        nlopt_set_min_objective(s->minimiser, rank_of_shares, s) < 0 ||
         nlopt_set_lower_bounds1(s->minimiser, 0) < 0 ||
         nlopt_set_upper_bounds1(s->minimiser, 1) < 0 ||
         nlopt_set_initial_step1(s->minimiser, step) < 0 ||
@@ -418,15 +421,15 @@ status tune_run(tuning *t, sweep_store *store, const sweep_options *options, fau
         s.best[i] = high;
     }
 
-    rank_of((unsigned)t->asked.vary_count, s.best, NULL, &s);
+    rank_of_shares((unsigned)t->asked.vary_count, s.best, NULL, &s);
 
     // over the whole ranges, then down from the best, in smaller and smaller steps
     if (s.code == STATUS_OK) {
-        minimise(&s, NLOPT_GN_DIRECT_L, 0.25, t->most / 2);
+        search_with(&s, NLOPT_GN_DIRECT_L, 0.25, t->most / 2);
     }
     double step = 0.1;
     for (int i = 0; i < 50 && s.code == STATUS_OK && t->done < t->most; i++) {
-        minimise(&s, NLOPT_LN_NELDERMEAD, step, t->most - t->done);
+        search_with(&s, NLOPT_LN_NELDERMEAD, step, t->most - t->done);
         step /= 2;
     }
     return s.code;

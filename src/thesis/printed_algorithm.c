@@ -31,7 +31,7 @@ static void newmark_rates(const printed_motion *m, const double q[3], double w[3
 // angles, implies velocities of about (1 - gamma/beta) times the old ones, of the wrong
 // sign: with a single Newton step the friction of (2.15) would push the hub on, so that
 // at least two are needed.
-static status solve_step(printed_motion *m, printed_row *r)
+static status solve_printed_step(printed_motion *m, printed_row *r)
 {
     const double tolerance = 1e-6, h = m->method.step;
     const printed_arm *a = &m->arm;
@@ -135,7 +135,7 @@ static status try_step(printed_motion *m, printed_row *r)
 {
     for (;;) {
         choose_system(m, r);
-        TRY(solve_step(m, r)); // with Newmark's rule
+        TRY(solve_printed_step(m, r)); // with Newmark's rule
         TRY(reevaluate(m, r));
 
         // the strategy of Table 3.2: contact is found by its violation

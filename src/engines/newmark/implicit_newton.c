@@ -100,8 +100,8 @@ typedef struct beyond {
 // Eliminates the angle of link k, with what it lacks of its balance of torques about its
 // node.
 static inline __attribute__((always_inline)) void
-eliminate(const arm *a, implicit_sweep *link, int k, implicit_iterate *it,
-          implicit_tangent t, double lever, beyond *b)
+eliminate_tangent(const arm *a, implicit_sweep *link, int k, implicit_iterate *it,
+                  implicit_tangent t, double lever, beyond *b)
 {
     const double l = a->link_length, m = a->link_mass, half = 0.5 * l;
     const double *q = it->q, *w = it->w;
@@ -181,8 +181,8 @@ eliminate(const arm *a, implicit_sweep *link, int k, implicit_iterate *it,
 }
 
 // From hub to tip: dq for the residual, `unit` for a unit contact force.
-static void substitute(const arm *a, const implicit_sweep *link, bool stuck, double *dq,
-                       double *unit)
+static void substitute_tangent(const arm *a, const implicit_sweep *link, bool stuck,
+                               double *dq, double *unit)
 {
     double ax = 0, ay = 0, bx = 0, by = 0;
     for (int k = 0; k < a->links; k++) {
@@ -225,7 +225,7 @@ double implicit_correction(const arm *a, implicit_sweep *link, implicit_iterate 
     b.hx = -it->force * point.angle_force * link[last].c;
     b.hy = -it->force * point.angle_force * link[last].s;
     for (int k = last; k >= 0; k--) {
-        eliminate(a, link, k, it, t, k == last ? point.lever : 0, &b);
+        eliminate_tangent(a, link, k, it, t, k == last ? point.lever : 0, &b);
     }
 
     // the hub on its spring
@@ -240,7 +240,7 @@ double implicit_correction(const arm *a, implicit_sweep *link, implicit_iterate 
         dq[0] = (b.torque0 - residual) / pivot;
         unit[0] = b.torque1 / pivot;
     }
-    substitute(a, link, it->stuck, dq, unit);
+    substitute_tangent(a, link, it->stuck, dq, unit);
     if (!it->contact) {
         return 0;
     }

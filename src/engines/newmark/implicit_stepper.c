@@ -243,7 +243,8 @@ static status step(const arm *a, motion *m, double h, state_extent extent)
 }
 
 // A time step, or what remains.
-static double advance(const arm *a, motion *m, double remaining, double step_length)
+static double implicit_advance(const arm *a, motion *m, double remaining,
+                               double step_length)
 {
     (void)a, (void)m;
     if (remaining < step_length * (1 + 1e-9)) {
@@ -252,7 +253,7 @@ static double advance(const arm *a, motion *m, double remaining, double step_len
     return step_length;
 }
 
-static size_t init(const arm *a, void *memory)
+static size_t implicit_init(const arm *a, void *memory)
 {
     (void)memory; // scratch
     return (size_t)a->links * sizeof(implicit_sweep);
@@ -261,8 +262,8 @@ static size_t init(const arm *a, void *memory)
 // The same step with other coefficients.
 #define STEPPER(title)                                                                   \
     {                                                                                    \
-        .name = (title), .init = init, .advance = advance, .state_at = step,             \
-        .implicit = true                                                                 \
+        .name = (title), .init = implicit_init, .advance = implicit_advance,             \
+        .state_at = step, .implicit = true                                               \
     }
 const engine newmark_engine = STEPPER("Newmark");
 const engine generalized_alpha_engine = STEPPER("generalised-alpha");

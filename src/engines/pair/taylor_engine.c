@@ -99,7 +99,7 @@ static void keep(motion *m, double most)
 }
 
 // Fills in the inputs of the series of the step that the state keeps.
-static void prepare(const arm *a, motion *m)
+static void prepare_series(const arm *a, motion *m)
 {
     taylor_integrator *s = m->memory;
     const double *kept = state_kept(m, m->state);
@@ -114,7 +114,7 @@ static void prepare(const arm *a, motion *m)
 
 // Whether the state's step continues: to the end of what remains, or, where it was not
 // made for less than that, to its own.
-static bool goes_on(motion *m, double remaining)
+static bool continues_step(motion *m, double remaining)
 {
     const double *kept = state_kept(m, m->state);
     const double length = kept[KEPT_LENGTH], left = length - kept[KEPT_USED];
@@ -139,14 +139,14 @@ static double longest_step(motion *m, double remaining)
 }
 
 // Continues in the state's step, whose series may be to be computed again.
-static void take_up(const arm *a, motion *m)
+static void resume_taylor_step(const arm *a, motion *m)
 {
     taylor_integrator *s = m->memory;
     double *kept = state_kept(m, m->state);
     const size_t start = KEPT_WANTED * sizeof *kept, size = sizeof s->kept - start;
     if (m->step.history_invalid || !s->own ||
         memcmp(s->kept + KEPT_WANTED, kept + KEPT_WANTED, size) != 0) {
-        prepare(a, m);
+        prepare_series(a, m);
         taylor_compute_one(&s->lane);
         s->known = 0;
     }
@@ -183,17 +183,17 @@ static double length_of_step(const arm *a, const taylor_lane *lane)
     return turn > LONGEST_TURN * left ? allowed * (LONGEST_TURN * left / turn) : allowed;
 }
 
-static double advance(const arm *a, motion *m, double remaining, double step)
+static double taylor_advance(const arm *a, motion *m, double remaining, double step)
 {
     taylor_integrator *s = m->memory;
     double *kept = state_kept(m, m->state);
     (void)step;
-    if (!s->ready && goes_on(m, remaining)) {
-        take_up(a, m);
+    if (!s->ready && continues_step(m, remaining)) {
+        resume_taylor_step(a, m);
     } else {
         if (!s->ready) {
             keep(m, longest_step(m, remaining));
-            prepare(a, m);
+            prepare_series(a, m);
             taylor_compute_one(&s->lane);
         }
         kept[KEPT_LENGTH] = length_of_step(a, &s->lane);
@@ -216,7 +216,7 @@ static double advance(const arm *a, motion *m, double remaining, double step)
 }
 
 // No step is known yet.
-static size_t init(const arm *a, void *memory)
+static size_t taylor_init(const arm *a, void *memory)
 {
     taylor_integrator *s = memory;
     (void)a;
@@ -230,18 +230,18 @@ taylor_lane *taylor_prepare(const arm *a, motion *m, double remaining)
 {
     taylor_integrator *s = m->memory;
     if (m->engine != &taylor_engine || m->out_of_memory || motion_held_still(m) ||
-        goes_on(m, remaining)) {
+        continues_step(m, remaining)) {
         return NULL;
     }
     keep(m, longest_step(m, remaining));
-    prepare(a, m);
+    prepare_series(a, m);
     s->ready = true;
     return &s->lane;
 }
 
 const engine taylor_engine = {.name = "pair",
-                              .init = init,
-                              .advance = advance,
+                              .init = taylor_init,
+                              .advance = taylor_advance,
                               .state_at = taylor_state_at,
                               .states_at = taylor_states_at,
                               .dense_output = taylor_dense_output,

@@ -13,21 +13,21 @@ typedef struct coefficients {
     bool shared;
 } coefficients;
 
-KERNEL real lanes_at(const double *place)
+KERNEL real load_lanes(const double *place)
 {
     real x;
     memcpy(&x, place, sizeof x);
     return x;
 }
 
-KERNEL void put(double *place, real x)
+KERNEL void store_lanes(double *place, real x)
 {
     memcpy(place, &x, sizeof x);
 }
 
 KERNEL real term(coefficients x, int n)
 {
-    return x.shared ? x.first[n] - (real){0} : lanes_at(x.first + n * LANES);
+    return x.shared ? x.first[n] - (real){0} : load_lanes(x.first + n * LANES);
 }
 
 KERNEL coefficients from(coefficients x, int place)
@@ -35,7 +35,7 @@ KERNEL coefficients from(coefficients x, int place)
     return (coefficients){x.first + (x.shared ? place : place * LANES), x.shared};
 }
 
-KERNEL real value_of(coefficients x, int count, real t, real u)
+KERNEL real polynomial_value(coefficients x, int count, real t, real u)
 {
     real even = term(x, count - 2), odd = term(x, count - 1);
     for (int n = count - 4; n >= 0; n -= 2) {
@@ -103,8 +103,8 @@ KERNEL void value_slope_of(coefficients x, int count, real t, double *value,
         at[i] = even[i] + u * odd[i];
         by_u[i] = odd[i] + 2 * (u * even1[i] + v * odd1[i]);
     }
-    put(value, at[0] + t * at[1]);
-    put(slope, at[1] + 2 * t * (by_u[0] + t * by_u[1]));
+    store_lanes(value, at[0] + t * at[1]);
+    store_lanes(slope, at[1] + 2 * t * (by_u[0] + t * by_u[1]));
 }
 
 // Gap, its rate and second derivative from directions, velocities and accelerations of
@@ -134,9 +134,9 @@ KERNEL void gap_of(coefficients x, const bool point, const real s[2], const real
 
     const real ax = -l * (s[0] * al[0] + c[0] * w[0] * w[0]);
     const real ay = l * (c[0] * al[0] - s[0] * w[0] * w[0]);
-    put(at->gap, -penetration);
-    put(at->gap_velocity, -(ex * vx + ey * vy + lever * omega));
-    put(at->gap_acceleration, -(ex * ax + ey * ay + lever * al[1] + convective));
+    store_lanes(at->gap, -penetration);
+    store_lanes(at->gap_velocity, -(ex * vx + ey * vy + lever * omega));
+    store_lanes(at->gap_acceleration, -(ex * ax + ey * ay + lever * al[1] + convective));
 }
 
 // Energies of motion and of bending.
@@ -163,8 +163,8 @@ KERNEL void energies_of(coefficients x, const bool hub_spring, const real s[2],
     }
     const real bend = q[2] - q[1];
     strain += term(x, AT_STIFFNESS) * bend * bend;
-    put(at->kinetic, kinetic / 2);
-    put(at->strain, strain / 2);
+    store_lanes(at->kinetic, kinetic / 2);
+    store_lanes(at->strain, strain / 2);
 }
 
 // Angles, velocities and accelerations; a stuck hub has no motion.
@@ -177,8 +177,8 @@ KERNEL void motion_of(coefficients x, taylor_form form, real t, real u, mask stu
         real d[3];
         derivatives_of(from(x, AT_ANGLE_0 + i * (TAYLOR_MOST + 2)), count, t, u, d);
         q[i] = d[0];
-        w[i] = i == hub ? choose(stuck, zero, d[1]) : d[1];
-        al[i] = i == hub ? choose(stuck, zero, d[2]) : d[2];
+        w[i] = i == hub ? select_lanes(stuck, zero, d[1]) : d[1];
+        al[i] = i == hub ? select_lanes(stuck, zero, d[2]) : d[2];
     }
 }
 
@@ -187,32 +187,33 @@ KERNEL void losses_of(coefficients x, taylor_form form, real t, real u, mask stu
                       taylor_instants *at)
 {
     const int order = form.order;
-    put(at->hub_square, integral_of(from(x, AT_HUB_SQUARE), order, t, u));
+    store_lanes(at->hub_square, integral_of(from(x, AT_HUB_SQUARE), order, t, u));
     if (form.contact) {
-        put(at->force, value_of(from(x, AT_FORCE), order, t, u));
-        put(at->pressed, integral_of(from(x, AT_FORCE), order, t, u));
+        store_lanes(at->force, polynomial_value(from(x, AT_FORCE), order, t, u));
+        store_lanes(at->pressed, integral_of(from(x, AT_FORCE), order, t, u));
     }
     if (form.damped) {
-        put(at->dissipated, integral_of(from(x, AT_DISSIPATION), order, t, u));
-        put(at->dissipation, value_of(from(x, AT_DISSIPATION), order, t, u));
+        store_lanes(at->dissipated, integral_of(from(x, AT_DISSIPATION), order, t, u));
+        store_lanes(at->dissipation,
+                    polynomial_value(from(x, AT_DISSIPATION), order, t, u));
     }
     if (any(stuck)) {
-        put(at->hold, value_of(from(x, AT_HOLD), order, t, u));
+        store_lanes(at->hold, polynomial_value(from(x, AT_HOLD), order, t, u));
     }
 }
 
-KERNEL void evaluate(coefficients x, taylor_form form, taylor_instants *at)
+KERNEL void evaluate_instants(coefficients x, taylor_form form, taylor_instants *at)
 {
-    const real t = lanes_at(at->time), u = t * t, zero = (real){0};
+    const real t = load_lanes(at->time), u = t * t, zero = (real){0};
     const mask stuck = MASK(term(x, AT_FRICTION) == 0);
     real q[3] = {zero, zero, zero}, w[3] = {zero, zero, zero}, al[3] = {zero, zero, zero};
 
     // the motion, and what it has lost and pressed
     motion_of(x, form, t, u, stuck, q, w, al);
     for (int i = form.hub_spring ? 0 : 1; i < 3; i++) {
-        put(at->angle[i], q[i]);
-        put(at->velocity[i], w[i]);
-        put(at->acceleration[i], al[i]);
+        store_lanes(at->angle[i], q[i]);
+        store_lanes(at->velocity[i], w[i]);
+        store_lanes(at->acceleration[i], al[i]);
     }
     losses_of(x, form, t, u, stuck, at);
 
@@ -225,18 +226,18 @@ KERNEL void evaluate(coefficients x, taylor_form form, taylor_instants *at)
 
 static void instants(const double *block, taylor_form form, taylor_instants *at)
 {
-    evaluate((coefficients){block, true}, form, at);
+    evaluate_instants((coefficients){block, true}, form, at);
 }
 
 #if LANES > 1
 static void ends(const double *block, taylor_form form, taylor_instants *at)
 {
-    evaluate((coefficients){block, false}, form, at);
+    evaluate_instants((coefficients){block, false}, form, at);
 }
 
 static void pieces(const double *block, int order, int count, taylor_pieces *of)
 {
-    const real width = lanes_at(of->width);
+    const real width = load_lanes(of->width);
     const coefficients force = from((coefficients){block, false}, AT_FORCE);
     for (int i = 0; i < count; i++) {
         value_slope_of(force, order, (i + 1) * width, of->force[i], of->slope[i]);

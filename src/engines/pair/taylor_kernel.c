@@ -51,8 +51,8 @@ KERNEL real allowed_step(real h, last_terms x, real limit)
         if (!any(bad)) {
             break;
         }
-        h = choose(bad, SHORTENING * h, h);
-        x.power = choose(bad, shrinking * x.power, x.power);
+        h = select_lanes(bad, SHORTENING * h, h);
+        x.power = select_lanes(bad, shrinking * x.power, x.power);
     }
     return h;
 }
@@ -112,7 +112,7 @@ KERNEL void bound_hub(real *block, const real *rates, const real *hold, int orde
                       mask stuck, mask jumped)
 {
     const real zero = (real){0}, one = zero + 1.0, h = block[AT_ALLOWED];
-    const real sense = choose(MASK(block[AT_FRICTION] < 0), -one, one);
+    const real sense = select_lanes(MASK(block[AT_FRICTION] < 0), -one, one);
     const enclosure turning = enclosure_of(rates, order + 1, h);
     const edge_limits edge = {zero, block[AT_EDGE_RATE], zero + EDGE_MORE};
     const real first = least_at_first(&turning, rates, sense, h, jumped, &edge);
@@ -121,15 +121,15 @@ KERNEL void bound_hub(real *block, const real *rates, const real *hold, int orde
         const enclosure torque = enclosure_of(hold, order, h);
         const real low = lowest(&torque, torque.start - torque.off);
         const real most = greater(highest(&torque), -low);
-        const real spared = choose(jumped, zero + EDGE_VALUE, zero);
-        left = choose(stuck, block[AT_STICTION] - most - spared, left);
+        const real spared = select_lanes(jumped, zero + EDGE_VALUE, zero);
+        left = select_lanes(stuck, block[AT_STICTION] - most - spared, left);
     }
     block[AT_HUB_LEAST] = left;
     block[AT_HUB_ROOT] = zero - 1.0;
     if (any(~stuck & ~MASK(left > 0))) {
         const enclosed_function gone = {rates, order + 1, &turning, sense,
                                         first, h,         jumped};
-        block[AT_HUB_ROOT] = choose(stuck, zero - 1.0, first_root(&gone));
+        block[AT_HUB_ROOT] = select_lanes(stuck, zero - 1.0, first_root(&gone));
     }
 }
 
@@ -163,9 +163,9 @@ KERNEL last_terms loss_terms(const real *block, const equations *e, ptrdiff_t n,
 
 // The lanes whose terms are too large at the wanted length to end with the order n + 1;
 // limit: on those of the velocities, of a share `scale` of them.
-KERNEL mask goes_on(const real *block, const equations *e, const factors *x, ptrdiff_t n,
-                    real power, real limit, real scale, const int contact,
-                    const int point, const int hub_spring)
+KERNEL mask needs_more_terms(const real *block, const equations *e, const factors *x,
+                             ptrdiff_t n, real power, real limit, real scale,
+                             const int contact, const int point, const int hub_spring)
 {
     const real wanted = block[AT_WANTED], l = e->l, *hold = block + AT_HOLD;
     mask large = too_large(rate_terms(block, n, power, hub_spring), wanted, limit);
@@ -214,7 +214,7 @@ KERNEL last_terms all_last_terms(const real *block, const equations *e, ptrdiff_
     }
     if (!hub_spring && e->sticks) { // what a stuck hub is held from
         const real *hold = block + AT_HOLD;
-        const real per_inertia = choose(e->stuck, 1 / e->m11, (real){0});
+        const real per_inertia = select_lanes(e->stuck, 1 / e->m11, (real){0});
         tail.last += magnitude(hold[order - 1]) * inverse[order] * per_inertia;
         tail.before += magnitude(hold[order - 2]) * inverse[order - 1] * per_inertia;
     }
@@ -243,7 +243,8 @@ KERNEL equations equations_of(const real *block, const int hub_spring, bool damp
                    .sticks = any(stuck),
                    .damped = damped};
     e.m11 = e.m22 + mass * l * l + (hub_spring ? zero : block[AT_HUB_INERTIA]);
-    e.inverse_hub = hub_spring ? choose(stuck, zero, 1 / block[AT_HUB_INERTIA]) : zero;
+    e.inverse_hub =
+        hub_spring ? select_lanes(stuck, zero, 1 / block[AT_HUB_INERTIA]) : zero;
     return e;
 }
 
@@ -278,8 +279,8 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
         add_order(block, &e, &x, hub_rate, n, &last, contact, point, hub_spring);
         power = n > 0 ? power * wanted : power;
         if (n % 2 == 1 && n + 1 >= LEAST_ORDER && n + 1 < TAYLOR_MOST) {
-            const mask large = goes_on(block, &e, &x, n, power, limit, scale, contact,
-                                       point, hub_spring);
+            const mask large = needs_more_terms(block, &e, &x, n, power, limit, scale,
+                                                contact, point, hub_spring);
             const mask before = n + 1 > LEAST_ORDER ? open[(n - 1) / 2] : ~(mask){0};
             open[(n + 1) / 2] = before & large;
             order = any(open[(n + 1) / 2]) ? order : n + 1;
@@ -298,8 +299,8 @@ KERNEL int series(real *block, const int contact, const int point, const int hub
     // where no order was enough the step is shortened
     last_terms tail = all_last_terms(block, &e, order, power, scale, contact, hub_spring);
     const mask ended = order < TAYLOR_MOST ? ~(mask){0} : ~open[TAYLOR_MOST / 2 - 1];
-    tail.last = choose(ended, zero, tail.last);
-    tail.before = choose(ended, zero, tail.before);
+    tail.last = select_lanes(ended, zero, tail.last);
+    tail.before = select_lanes(ended, zero, tail.before);
     const real h = allowed_step(wanted, tail, limit);
     if (LANES > 1 && order > LEAST_ORDER && any(~open[order / 2 - 1])) {
         cut_off(block, open, (int)order);
@@ -325,7 +326,7 @@ KERNEL int of_wall(real *block, taylor_form f, const int contact, const int hub_
                    : series(block, contact, 0, hub_spring, f.damped);
 }
 
-static int compute(double *block, taylor_form f)
+static int compute_series(double *block, taylor_form f)
 {
     real *lanes = (real *)block;
     return f.hub_spring ? f.contact ? of_wall(lanes, f, 1, 1) : of_wall(lanes, f, 0, 1)
@@ -346,7 +347,7 @@ static void gather(double *block, const double *const *own)
     }
 }
 
-const taylor_loops LOOPS = {compute, instants, gather, ends, pieces};
+const taylor_loops LOOPS = {compute_series, instants, gather, ends, pieces};
 #else
-const taylor_loops LOOPS = {compute, instants, NULL, NULL, NULL};
+const taylor_loops LOOPS = {compute_series, instants, NULL, NULL, NULL};
 #endif

@@ -40,7 +40,7 @@ KERNEL real real_of(mask m)
     return x;
 }
 
-KERNEL real choose(mask where, real yes, real no)
+KERNEL real select_lanes(mask where, real yes, real no)
 {
     return real_of((where & bits_of(yes)) | (~where & bits_of(no)));
 }
@@ -52,7 +52,7 @@ KERNEL real magnitude(real x)
 
 KERNEL real greater(real x, real y)
 {
-    return choose(MASK(x > y), x, y);
+    return select_lanes(MASK(x > y), x, y);
 }
 
 // Whether some lane of a mask is set: by the signs of all its lanes at once, where there
@@ -85,10 +85,10 @@ KERNEL void sine_cosine(real x, real *sine, real *cosine)
     const bool reduced = any(large);
     if (reduced) {
         const real shifted = SINCOS_QUARTERS(x) + SINCOS_ROUND;
-        const real n = choose(large, shifted - SINCOS_ROUND, (real){0});
+        const real n = select_lanes(large, shifted - SINCOS_ROUND, (real){0});
         quadrant = large & bits_of(shifted) & 3;
         SINCOS_REDUCE(real, x, n, r);
-        r = choose(large, r, x);
+        r = select_lanes(large, r, x);
     }
 
     real s, c;
@@ -98,9 +98,9 @@ KERNEL void sine_cosine(real x, real *sine, real *cosine)
     if (reduced) {
         const mask odd = -(quadrant & 1), lower = -((quadrant >> 1) & 1);
         const mask left = -(((quadrant + 1) >> 1) & 1);
-        const real a = choose(odd, c, s), b = choose(odd, s, c);
-        *sine = choose(lower, -a, a);
-        *cosine = choose(left, -b, b);
+        const real a = select_lanes(odd, c, s), b = select_lanes(odd, s, c);
+        *sine = select_lanes(lower, -a, a);
+        *cosine = select_lanes(left, -b, b);
     }
 }
 

@@ -86,9 +86,9 @@ KERNEL void invert_start(equations *e, const factors *x, const int contact,
     e->i12 = -(e->coupling * inverse_det);
     e->i22 = e->m11 * inverse_det;
     if (!hub_spring) {
-        e->i11 = choose(e->stuck, zero, e->i11);
-        e->i12 = choose(e->stuck, zero, e->i12);
-        e->i22 = choose(e->stuck, 1 / e->m22, e->i22);
+        e->i11 = select_lanes(e->stuck, zero, e->i11);
+        e->i12 = select_lanes(e->stuck, zero, e->i12);
+        e->i22 = select_lanes(e->stuck, 1 / e->m22, e->i22);
     }
     e->y1 = e->y2 = e->per_force = zero;
     const real C20 = PART(DIRECTIONS(x, 0), 2);
@@ -117,8 +117,8 @@ KERNEL void add_directions(factors *x, ptrdiff_t n, real w1, real w2, sums *sum,
                            const int point)
 {
     keep_rates(x, n, w2 - w1, w1, w2);
-    add_products(sum, x, n, n - 1, TURNING | (point ? 0 : TURNING1), point);
-    turn(&sum->turning, inverse[n + 1], &DIRECTIONS(x, n + 1));
+    accumulate_products(sum, x, n, n - 1, TURNING | (point ? 0 : TURNING1), point);
+    set_directions(&sum->turning, inverse[n + 1], &DIRECTIONS(x, n + 1));
     if (!point) {
         turn_one(&sum->turning1, inverse[n + 1], &DIRECTION1(x, n + 1));
     }
@@ -188,10 +188,10 @@ KERNEL void add_order(real *block, const equations *e, factors *x, real *hub_rat
     }
     inner_sums(x, n, PRODUCTS | directions | (contact ? LEVERED : 0), point, sum);
     if (n > 0) {
-        add_products(sum, x, 0, n, PRODUCTS, point);
-        add_products(sum, x, n, n, directions, point);
+        accumulate_products(sum, x, 0, n, PRODUCTS, point);
+        accumulate_products(sum, x, n, n, directions, point);
     }
-    add_products(sum, x, 0, n, directions, point);
+    accumulate_products(sum, x, 0, n, directions, point);
     last->product = PART(sum->products, 1) + rate1 * first2;
     block[AT_HUB_SQUARE + n] = PART(sum->products, 3) + hub * first_hub;
     const real swung = PART(sum->products, 0) + PART(DIRECTIONS(x, n + 1), 0) * first2;
@@ -202,7 +202,7 @@ KERNEL void add_order(real *block, const equations *e, factors *x, real *hub_rat
     real push[2];
     push_links(block, e, last, hub_rate, n, hub_spring, push);
     if (contact && n > 0) {
-        add_products(sum, x, 0, n, LEVERED, point);
+        accumulate_products(sum, x, 0, n, LEVERED, point);
         const real first = point ? l * PART(sum->levered, 0) : PART(sum->levered, 0);
         push[0] -= first;
         push[1] -= point ? PART(sum->levered, 1) - first : PART(sum->levered, 1);
@@ -221,7 +221,7 @@ KERNEL void add_order(real *block, const equations *e, factors *x, real *hub_rat
                                    : PART(sum->turning1, 0) + PART(sum->turning, 2);
         force = ((e->y1 * b1 + e->y2 * b2) + e->per_force * closing) * (double)(n + 1);
         block[AT_FORCE + n] = force;
-        keep_force(x, n, force);
+        store_force(x, n, force);
         x1 -= e->y1 * closing;
         x2 -= e->y2 * closing;
     }

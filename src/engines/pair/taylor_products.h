@@ -77,8 +77,8 @@ enum product_sum { TURNING = 1, PRODUCTS = 2, LEVERED = 4, TURNING1 = 8 };
 
 // Adds the j-th products for the n-th coefficient to these sums.
 #if LANES == 1
-KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n,
-                         const int to, const int point)
+KERNEL void accumulate_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n,
+                                const int to, const int point)
 {
     const order_factors *at = &x->of[j];
     (void)point;
@@ -96,8 +96,8 @@ KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n,
     }
 }
 #else
-KERNEL void add_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n,
-                         const int to, const int point)
+KERNEL void accumulate_products(sums *s, const factors *x, ptrdiff_t j, ptrdiff_t n,
+                                const int to, const int point)
 {
     if (to & TURNING) {
         const four *next = &x->directions[n + 1 - j];
@@ -131,14 +131,14 @@ KERNEL void add_in_turns(sums *even, sums *odd, const factors *x, ptrdiff_t n,
                          const int to, const int point)
 {
     ptrdiff_t j = 3;
-    add_products(even, x, 1, n, to, point);
-    add_products(odd, x, 2, n, to, point);
+    accumulate_products(even, x, 1, n, to, point);
+    accumulate_products(odd, x, 2, n, to, point);
     for (; j + 1 < n; j += 2) {
-        add_products(even, x, j, n, to, point);
-        add_products(odd, x, j + 1, n, to, point);
+        accumulate_products(even, x, j, n, to, point);
+        accumulate_products(odd, x, j + 1, n, to, point);
     }
     if (j < n) {
-        add_products(even, x, j, n, to, point);
+        accumulate_products(even, x, j, n, to, point);
     }
 }
 
@@ -154,7 +154,7 @@ KERNEL void inner_sums(const factors *x, ptrdiff_t n, const int to, const int po
         *result = no_sums;
         if (n == 2) { // one of them
             *result = nothing;
-            add_products(result, x, 1, n, to, point);
+            accumulate_products(result, x, 1, n, to, point);
         }
         return;
     }
@@ -223,14 +223,14 @@ KERNEL void keep_levers(factors *x, ptrdiff_t n, const int point)
     KEEP(x, n, levers, TWO(first, PART(DIRECTIONS(x, n), 2)));
 }
 
-KERNEL void keep_force(factors *x, ptrdiff_t n, real f)
+KERNEL void store_force(factors *x, ptrdiff_t n, real f)
 {
     KEEP(x, n, forces, TWO(f, f));
 }
 
 // Cosines and sines of two angles, and of one, from the sums of the order before, v c and
 // v s.
-KERNEL void turn(const four *sum, double share, four *direction)
+KERNEL void set_directions(const four *sum, double share, four *direction)
 {
     *direction = FOUR(PART(*sum, 1) * -share, PART(*sum, 0) * share,
                       PART(*sum, 3) * -share, PART(*sum, 2) * share);

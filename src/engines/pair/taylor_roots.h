@@ -57,7 +57,7 @@ KERNEL enclosure enclosure_of(const real *terms, int count, real t)
 
 KERNEL real smaller_of(real x, real y)
 {
-    return choose(MASK(x < y), x, y);
+    return select_lanes(MASK(x < y), x, y);
 }
 
 // Its lower and upper bound.
@@ -95,9 +95,9 @@ KERNEL real least_at_first(const enclosure *c, const real *terms, real sign, rea
     const real twice = more - rest * (1. / 24) - limits->more;
     const mask off_edge = MASK(magnitude(c->start) > limits->value);
     const mask leaves = MASK(magnitude(rate) > limits->rate);
-    const real divided = choose(leaves, once, twice);
-    const real edge = choose(off_edge, first - limits->value, divided);
-    return choose(jumped, edge, first);
+    const real divided = select_lanes(leaves, once, twice);
+    const real edge = select_lanes(off_edge, first - limits->value, divided);
+    return select_lanes(jumped, edge, first);
 }
 
 // Its lower bound over the whole step, `first` being that of the first piece.
@@ -131,7 +131,7 @@ typedef struct fall {
     mask there;        // whether there is one
 } fall;
 
-KERNEL fall first_zero_crossing(const enclosed_function *f)
+KERNEL fall first_enclosed_zero(const enclosed_function *f)
 {
     const real zero = (real){0}, off = f->enclosure->off;
     fall found = {.from = zero,
@@ -146,9 +146,9 @@ KERNEL fall first_zero_crossing(const enclosed_function *f)
         const mask ends = i == 0 ? f->jumped | MASK(end > off) : MASK(end > off);
         const mask clear = starts & ends, edge = i == 0 ? f->jumped : (mask){0};
         const mask falls = all_clear & ~clear & ~edge & MASK(start > 0) & MASK(end < 0);
-        found.from = choose(falls, i * found.length, found.from);
-        found.above = choose(falls, start, found.above);
-        found.below = choose(falls, end, found.below);
+        found.from = select_lanes(falls, i * found.length, found.from);
+        found.above = select_lanes(falls, start, found.above);
+        found.below = select_lanes(falls, end, found.below);
         found.there |= falls;
         all_clear &= clear;
         start = end;
@@ -180,7 +180,7 @@ KERNEL void value_slope_at(const enclosed_function *f, real t, real *value, real
 static __attribute__((noinline)) real first_root(const enclosed_function *f)
 {
     const real zero = (real){0};
-    const fall in = first_zero_crossing(f);
+    const fall in = first_enclosed_zero(f);
     real root = zero - 1.0;
     if (!any(in.there)) {
         return root;
@@ -198,9 +198,9 @@ static __attribute__((noinline)) real first_root(const enclosed_function *f)
         const mask settled =
             MASK(curvature * step * step <= resolution * magnitude(slope));
         const mask first = MASK(curvature * way * way * (0.5 + 1e-9) < in.above);
-        root = choose(open & settled & within & first, next, root);
+        root = select_lanes(open & settled & within & first, next, root);
         open &= ~settled & within;
-        t = choose(open, next, t);
+        t = select_lanes(open, next, t);
     }
     return root;
 }

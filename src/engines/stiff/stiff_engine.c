@@ -340,7 +340,7 @@ static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
 
 // Takes a step from m->state, as long as its error allows or up to its first event. False
 // if none can be made.
-static bool make_step(stiff_integrator *s, const arm *a, motion *m)
+static bool make_stiff_step(stiff_integrator *s, const arm *a, motion *m)
 {
     stiff_set_arm(s, a, m);
     stiff_set_start(s, m);
@@ -366,7 +366,7 @@ static bool make_step(stiff_integrator *s, const arm *a, motion *m)
 
 // --- the engine ------------------------------------------------------------------------
 
-static size_t init(const arm *a, void *memory)
+static size_t stiff_init(const arm *a, void *memory)
 {
     const size_t n = (size_t)a->dof, links = (size_t)a->links,
                  modes = (size_t)a->damped_modes;
@@ -403,7 +403,7 @@ static size_t init(const arm *a, void *memory)
 }
 
 // Continues in the step that the state keeps.
-static void take_up(stiff_integrator *s, const arm *a, motion *m)
+static void resume_stiff_step(stiff_integrator *s, const arm *a, motion *m)
 {
     const double *kept = state_kept(m, m->state);
     const size_t from = STIFF_LENGTH,
@@ -424,7 +424,7 @@ static void take_up(stiff_integrator *s, const arm *a, motion *m)
     s->used = kept[KEPT_USED];
 }
 
-static double advance(const arm *a, motion *m, double remaining, double step)
+static double stiff_advance(const arm *a, motion *m, double remaining, double step)
 {
     stiff_integrator *s = m->memory;
     const double *kept = state_kept(m, m->state);
@@ -434,8 +434,8 @@ static double advance(const arm *a, motion *m, double remaining, double step)
         m->state[SLOT_JUMPED] == 0 && kept[KEPT_LENGTH] > 0 &&
         left > (kept[STIFF_EVENT] != 0 ? 0 : LEAST_LEFT * kept[KEPT_LENGTH]);
     if (goes_on) {
-        take_up(s, a, m);
-    } else if (!make_step(s, a, m)) {
+        resume_stiff_step(s, a, m);
+    } else if (!make_stiff_step(s, a, m)) {
         s->known = false;
         return 0;
     }
@@ -448,8 +448,8 @@ static double advance(const arm *a, motion *m, double remaining, double step)
 }
 
 const engine stiff_engine = {.name = "stiff",
-                             .init = init,
-                             .advance = advance,
+                             .init = stiff_init,
+                             .advance = stiff_advance,
                              .state_at = stiff_state_at,
                              .dense_output = stiff_dense_output,
                              .event_function = stiff_event_function,

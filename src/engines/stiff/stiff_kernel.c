@@ -7,7 +7,7 @@
 // --- the tangent -----------------------------------------------------------------------
 
 // y of a right side without borders, in place.
-KERNEL void solve_bare(const stiff_step *s, complex_lanes *y)
+KERNEL void solve_unbordered(const stiff_step *s, complex_lanes *y)
 {
     complex_lanes fx = number(0), fy = fx, t = fx;
     for (int k = s->links - 1; k >= 0; k--) {
@@ -39,7 +39,8 @@ KERNEL void solve_bare(const stiff_step *s, complex_lanes *y)
 }
 
 // Sum of a row's numbers times y.
-KERNEL complex_lanes along(const stiff_step *s, const double *row, const complex_lanes *y)
+KERNEL complex_lanes row_product(const stiff_step *s, const double *row,
+                                 const complex_lanes *y)
 {
     complex_lanes sum = number(0);
     for (int k = 0; k < s->dof; k++) {
@@ -164,7 +165,7 @@ KERNEL void factor_borders(stiff_step *s, complex_lanes g, complex_lanes g2)
         for (int k = 0; k < s->dof; k++) {
             s->border[b][k] = number(-row[k]);
         }
-        solve_bare(s, s->border[b]);
+        solve_unbordered(s, s->border[b]);
     }
 
     if (s->contact == STIFF_GIVES) {
@@ -184,7 +185,8 @@ KERNEL void factor_borders(stiff_step *s, complex_lanes g, complex_lanes g2)
     for (int i = 0; i < count; i++) {
         const bool wall = i == s->modes;
         for (int j = 0; j < count; j++) {
-            const complex_lanes sum = along(s, stiff_border_row(s, i), s->border[j]);
+            const complex_lanes sum =
+                row_product(s, stiff_border_row(s, i), s->border[j]);
             const complex_lanes by = !wall                       ? g
                                      : s->contact == STIFF_GIVES ? s->press
                                                                  : number(-1);
@@ -212,13 +214,13 @@ static void factor(stiff_step *s)
 }
 
 // y of the right side that stands there, with its borders.
-static void solve(stiff_step *s, const complex_lanes *target)
+static void solve_bordered(stiff_step *s, const complex_lanes *target)
 {
     const int count = stiff_borders(s);
     complex_lanes *x = s->unknown;
-    solve_bare(s, s->y);
+    solve_unbordered(s, s->y);
     for (int i = 0; i < count; i++) {
-        const complex_lanes sum = along(s, stiff_border_row(s, i), s->y);
+        const complex_lanes sum = row_product(s, stiff_border_row(s, i), s->y);
         x[i] = i < s->modes                ? times(s->g, sum)
                : s->contact == STIFF_GIVES ? plus(*target, times(s->press, sum))
                                            : minus(*target, sum);
@@ -265,7 +267,7 @@ static double correct(stiff_step *s)
     if (s->contact == STIFF_RIGID) {
         target = times(to_systems(s->rate.half), inverse(s->g));
     }
-    solve(s, &target);
+    solve_bordered(s, &target);
     if (s->contact == STIFF_RIGID) {
         for (int half = 0; half < STIFF_HALVES; half++) {
             s->force.half[half] += to_stages(s->unknown[s->modes], half);
@@ -302,4 +304,4 @@ static double correct(stiff_step *s)
     return sqrt(most);
 }
 
-const stiff_loops LOOPS = {predict, residual, factor, differences, correct};
+const stiff_loops LOOPS = {predict_stages, residual, factor, differences, correct};

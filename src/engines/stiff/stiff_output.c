@@ -273,7 +273,8 @@ void stiff_first_event(const arm *a, motion *m, step_end *end)
 // --- event functions -------------------------------------------------------------------
 
 // The function less what is only rounding at its start (edge_limits.h).
-static void deflate_root(stiff_integrator *s, event_function w, const double limits[3])
+static void deflate_event_root(stiff_integrator *s, event_function w,
+                               const double limits[3])
 {
     double terms[4];
     function_start(&s->function[w], terms);
@@ -396,12 +397,12 @@ static void set_wall_functions(stiff_integrator *s, const arm *a, const motion *
     const double stiffness = m->wall_gives ? a->wall.stiffness * EDGE_GAP : 0;
     const double reaction[] = {EDGE_VALUE + stiffness, EDGE_RATE + stiffness, EDGE_MORE};
     if (now.contact) {
-        deflate_root(s, EVENT_OF_FORCE, reaction);
+        deflate_event_root(s, EVENT_OF_FORCE, reaction);
     }
     if (!now.contact || m->wall_gives) {
         double gap[3];
         motion_gap_edges(a, m, gap);
-        deflate_root(s, EVENT_OF_GAP, gap);
+        deflate_event_root(s, EVENT_OF_GAP, gap);
     }
 }
 
@@ -419,7 +420,7 @@ static void set_hub_functions(stiff_integrator *s, const arm *a, const motion *m
             const double limits[] = {0, EDGE_RATE * motion_rounding(a, m), EDGE_MORE};
             function_through_rising(&s->function[EVENT_OF_HUB], rate,
                                     now.friction * s->step.length * s->step.a0[0]);
-            deflate_root(s, EVENT_OF_HUB, limits);
+            deflate_event_root(s, EVENT_OF_HUB, limits);
         }
         return;
     }
@@ -468,7 +469,7 @@ static void set_current_function(stiff_integrator *s, const arm *a)
     const double rounding = EDGE_CURRENT * most;
     const double rate = motor->inductance > 0 ? motor->resistance / motor->inductance : 0;
     const double edge[] = {rounding, rounding * rate, 0};
-    deflate_root(s, EVENT_OF_CURRENT, edge);
+    deflate_event_root(s, EVENT_OF_CURRENT, edge);
     if (s->turned) { // a current that leaves its limit does so without a slope
         near->b[0] = fabs(near->b[0]);
     }

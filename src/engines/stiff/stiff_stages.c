@@ -230,7 +230,8 @@ double stiff_momentum(const stiff_integrator *integrator, const double *w)
 }
 
 // Sum of a row's numbers times y.
-static inline double along(const stiff_step *s, const double *row, const double *y)
+static inline double real_row_product(const stiff_step *s, const double *row,
+                                      const double *y)
 {
     double sum = 0;
     for (int k = 0; k < s->dof; k++) {
@@ -277,7 +278,7 @@ static void inertia_and_damping(stiff_step *s, double gamma, const double *v,
     }
     out[0] += s->hub_inertia * v[0] + gamma * damping * x[0];
     for (int i = 0; i < s->modes; i++) {
-        const double *g = stiff_border_row(s, i), sum = along(s, g, x);
+        const double *g = stiff_border_row(s, i), sum = real_row_product(s, g, x);
         for (int k = 0; k < s->dof; k++) {
             out[k] += gamma * sum * g[k];
         }
@@ -287,9 +288,9 @@ static void inertia_and_damping(stiff_step *s, double gamma, const double *v,
     }
 }
 
-// y of a right side, in place, by the real system without its borders: solve_bare of
-// stiff_kernel.c for its first lane.
-static void solve_bare(const stiff_step *s, double *y)
+// y of a right side, in place, by the real system without its borders:
+// solve_unbordered of stiff_kernel.c for its first lane.
+static void real_solve_unbordered(const stiff_step *s, double *y)
 {
     double fx = 0, fy = 0, t = 0;
     for (int k = s->links - 1; k >= 0; k--) {
@@ -319,13 +320,13 @@ static void solve_bare(const stiff_step *s, double *y)
 
 // The same with the borders, the contact's equation having `target` added to its right
 // side.
-static void solve(const stiff_step *s, double target, double *y)
+static void real_solve_bordered(const stiff_step *s, double target, double *y)
 {
-    solve_bare(s, y);
+    real_solve_unbordered(s, y);
     const int count = stiff_borders(s);
     double z[STIFF_BORDERS];
     for (int i = 0; i < count; i++) {
-        const double sum = along(s, stiff_border_row(s, i), y);
+        const double sum = real_row_product(s, stiff_border_row(s, i), y);
         if (i < s->modes) {
             z[i] = s->g.r[0] * sum;
         } else if (s->contact == STIFF_GIVES) {
@@ -414,15 +415,15 @@ static void filter(stiff_integrator *integrator, double gamma, double *x, double
     // with the wall
     double target = 0;
     if (s->contact != STIFF_FREE) {
-        const double along_x = along(s, s->jacobian, x),
-                     along_w = along(s, s->jacobian, w);
+        const double along_x = real_row_product(s, s->jacobian, x),
+                     along_w = real_row_product(s, s->jacobian, w);
         if (s->contact == STIFF_RIGID) {
             target = gamma * gamma * along_x;
         } else {
             target = -gamma * s->wall_damping * along_x - s->wall->face_mass * along_w;
         }
     }
-    solve(s, target, y);
+    real_solve_bordered(s, target, y);
     for (int k = 0; k < s->dof; k++) {
         w[k] = y[k] / gamma - gamma * x[k];
         x[k] = y[k] / (gamma * gamma);

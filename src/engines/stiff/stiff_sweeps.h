@@ -77,8 +77,8 @@ KERNEL lanes to_stages(complex_lanes y, int half)
 
 // --- the stages ------------------------------------------------------------------------
 
-static void predict(stiff_step *s, const double *before, const double *force,
-                    const double *weight)
+static void predict_stages(stiff_step *s, const double *before, const double *force,
+                           const double *weight)
 {
     // weights of the accelerations for velocities and angles: h a, (h a)^2
     _Alignas(32) double once[RADAU_STAGES][RADAU_LANES], twice[RADAU_STAGES][RADAU_LANES];
@@ -240,7 +240,8 @@ typedef struct stiff_contact {
 } stiff_contact;
 
 // The wall: gap, rate and force (wall_contact_at of wall.h, for lanes).
-KERNEL stiff_contact press(stiff_step *s, int half, bool account, const stiff_tip *tip)
+KERNEL stiff_contact press_wall(stiff_step *s, int half, bool account,
+                                const stiff_tip *tip)
 {
     const wall_model *wall = s->wall;
     const int last = s->links - 1;
@@ -355,7 +356,7 @@ KERNEL bool sweep(stiff_step *s, int half, bool account)
     }
     stiff_contact at = {zero, zero, zero, zero};
     if (wall_stands(s->wall)) {
-        at = press(s, half, account, &tip);
+        at = press_wall(s, half, account, &tip);
     }
 
     // damped modes: sums of the bends' rates

@@ -57,7 +57,7 @@ static void sample_with_sine(void *memory, const controller_input *in,
     i->mean[2] += in->force * in->force;
 }
 
-static const char *tune(void *memory, const controller_setup *setup)
+static const char *tune_inner_law(void *memory, const controller_setup *setup)
 {
     injector *i;
     memcpy(&i, memory, sizeof i);
@@ -65,8 +65,8 @@ static const char *tune(void *memory, const controller_setup *setup)
 }
 
 // A run that has come to the scenario's end and goes on from there.
-static status begin(run_loop **loop, const scenario *s, const loop_options *options,
-                    fault *f)
+static status run_to_end(run_loop **loop, const scenario *s, const loop_options *options,
+                         fault *f)
 {
     scenario longer = *s; // borrows its script
     longer.parameters.run.duration = 1e4;
@@ -113,8 +113,8 @@ static status size_sine(run_loop *l, injector *i, fault *f)
 
 // The loop gain at about *hertz, which becomes the frequency with whole cycles in whole
 // samples.
-static status measure(run_loop *l, injector *i, double *hertz, double complex *gain,
-                      fault *f)
+static status measure_gain(run_loop *l, injector *i, double *hertz, double complex *gain,
+                           fault *f)
 {
     const double period = i->inner->period, most = MOST_SINE * i->inner->voltage_limit;
     const double cycles = fmax(CYCLES, ceil(WINDOW * *hertz));
@@ -176,10 +176,11 @@ static status measure(run_loop *l, injector *i, double *hertz, double complex *g
 }
 
 // Measures at about a frequency, and puts the point in its place.
-static status add(run_loop *l, injector *i, double hertz, linear_response *r, fault *f)
+static status insert_frequency(run_loop *l, injector *i, double hertz, linear_response *r,
+                               fault *f)
 {
     double complex gain;
-    const status code = measure(l, i, &hertz, &gain, f);
+    const status code = measure_gain(l, i, &hertz, &gain, f);
     int at = r->count++;
     for (; at > 0 && r->frequency[at - 1] > 2 * M_PI * hertz; at--) {
         r->frequency[at] = r->frequency[at - 1];
@@ -196,7 +197,9 @@ static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f
                  lowest = fmin(LOWEST, highest / 10);
     TRY(size_sine(l, i, f));
     for (int k = 0; k < FIRST; k++) {
-        TRY(add(l, i, lowest * plain_pow(highest / lowest, k / (FIRST - 1.0)), r, f));
+        TRY(insert_frequency(l, i,
+                             lowest * plain_pow(highest / lowest, k / (FIRST - 1.0)), r,
+                             f));
     }
 
     // where size one or a negative real gain lies between two, between
@@ -212,7 +215,7 @@ static status measure_all(run_loop *l, injector *i, linear_response *r, fault *f
             }
         }
         for (int k = 0; k < wanted; k++) {
-            TRY(add(l, i, middles[k], r, f));
+            TRY(insert_frequency(l, i, middles[k], r, f));
         }
     }
     return STATUS_OK;
@@ -242,13 +245,13 @@ status linear_inject(const scenario *s, linear_response *r, fault *f)
         law.start = controller_takes_anything; // the inner one was started with its rig
         law.sample = sample_with_sine;
         if (law.tune != NULL) {
-            law.tune = tune;
+            law.tune = tune_inner_law;
         } else {
             law.tune = NULL;
         }
         const loop_options options = {.law = {&law, &i}};
         *r = (linear_response){0, block, (double complex *)(block + MOST_POINTS)};
-        code = begin(&l, s, &options, f);
+        code = run_to_end(&l, s, &options, f);
         if (code == STATUS_OK) {
             code = measure_all(l, &i, r, f);
         }
@@ -297,7 +300,7 @@ status linear_contact_margin(const scenario *s, double *impulse, fault *f)
 {
     run_loop *l = NULL;
     *impulse = (double)NAN;
-    status code = begin(&l, s, &(loop_options){.keep_trace = false}, f);
+    status code = run_to_end(&l, s, &(loop_options){.keep_trace = false}, f);
     if (code == STATUS_OK && loop_row(l).force > 0) {
         void *kept = malloc(loop_saved_size(l));
         double away = (double)NAN, against = (double)NAN;

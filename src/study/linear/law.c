@@ -55,8 +55,8 @@ static controller_input rest_input(const linear_arm *arm, const parameters *p,
 }
 
 // The law's commands after a pulse at the end of a time at rest.
-static status answer(const linear_arm *arm, const parameters *p, int reading,
-                     double pulse, double *commands, fault *f)
+static status pulse_response(const linear_arm *arm, const parameters *p, int reading,
+                             double pulse, double *commands, fault *f)
 {
     SCOPED(rig_destroy_kept) rig *r = NULL;
     TRY(rig_create(&r, p, NULL, f));
@@ -91,9 +91,9 @@ static status learn_reading(linear_law *law, const linear_arm *arm, const parame
                             int reading, const double *rest, fault *f)
 {
     double up[ANSWERS], down[ANSWERS], *h = law->h[reading], even = 0;
-    status code = answer(arm, p, reading, PULSE, up, f);
+    status code = pulse_response(arm, p, reading, PULSE, up, f);
     if (code == STATUS_OK) {
-        code = answer(arm, p, reading, -PULSE, down, f);
+        code = pulse_response(arm, p, reading, -PULSE, down, f);
     }
     for (int k = 0; k < ANSWERS && code == STATUS_OK; k++) {
         h[k] = (up[k] - down[k]) / (2 * PULSE);
@@ -146,7 +146,7 @@ static bool fit_recurrence(linear_law *law, int order)
 static status learn(linear_law *law, const linear_arm *arm, const parameters *p, fault *f)
 {
     double rest[ANSWERS], moves = 0;
-    status code = answer(arm, p, -1, 0, rest, f);
+    status code = pulse_response(arm, p, -1, 0, rest, f);
     for (int k = 1; k < ANSWERS && code == STATUS_OK; k++) {
         moves = fmax(moves, fabs(rest[k] - rest[0]));
     }

@@ -66,7 +66,7 @@ typedef struct workshop {
     double rest[EDGE];
 } workshop;
 
-static void evaluate(workshop *w, const double *z, double *out)
+static void evaluate_balance(workshop *w, const double *z, double *out)
 {
     double x, y;
     chain_reaction r;
@@ -98,7 +98,7 @@ static void missing(workshop *w, double *residual)
     const double volts = w->rest[2 * n + 1];
     double out[MOST_BODIES + 2], j[MOST_BODIES], square = 0;
     w->rest[2 * n] = w->arm.motor.gain * volts / fmax(w->arm.motor.resistance, 1e-300);
-    evaluate(w, w->rest, out);
+    evaluate_balance(w, w->rest, out);
     memcpy(residual, out, (size_t)n * sizeof *residual);
     if (isnan(w->wanted)) {
         residual[n] = volts - w->command;
@@ -173,7 +173,7 @@ static void differentiate(workshop *w, const double *direction, double step,
             for (int i = 0; i < 2 * w->n + 2; i++) {
                 z[i] = w->rest[i] + (side == 0 ? k + 1 : -k - 1) * step * direction[i];
             }
-            evaluate(w, z, ends[side]);
+            evaluate_balance(w, z, ends[side]);
         }
         for (int i = 0; i < w->n + 2; i++) {
             slopes[i] += weight[k] / step * (ends[0][i] - ends[1][i]);
@@ -303,15 +303,15 @@ static void press_in(workshop *w, const parameters *p, double force)
 }
 
 // The force at rest [N], or why that has no linear form.
-static status press(workshop *w, const parameters *p, linear_place place, double *force,
-                    fault *f)
+static status force_at_rest(workshop *w, const parameters *p, linear_place place,
+                            double *force, fault *f)
 {
     double there[MOST_BODIES + 2];
     status code = STATUS_OK;
     if (place != LINEAR_FREE) {
         code = find_rest(w, f);
     }
-    evaluate(w, w->rest, there);
+    evaluate_balance(w, w->rest, there);
     if (place != LINEAR_FREE) {
         *force = there[w->n];
     } else {
@@ -329,7 +329,7 @@ static status linearise_at(workshop *w, linear_arm *out, const parameters *p,
                            linear_place place, fault *f)
 {
     double x, y;
-    TRY(press(w, p, place, &out->force, f));
+    TRY(force_at_rest(w, p, place, &out->force, f));
     chain_node(&w->arm, w->rest, w->arm.links, &x, &y);
     const double distance = sqrt(x * x + y * y);
     w->across[0] = -y / distance;
@@ -380,7 +380,7 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
         w->rest[k] = p->wall.angle;
     }
     if (stiffens) {
-        TRY(press(w, p, place, &out->force, f));
+        TRY(force_at_rest(w, p, place, &out->force, f));
         press_in(w, p, out->force);
     }
     return linearise_at(w, out, p, place, f);
@@ -465,8 +465,8 @@ static void see_all(lagged_arm *l, const parameters *p)
 // Fills in the sampled system of n states and `held` commands on their way, u_k-held
 // first. From exp((A, B; 0, 0) h) = (exp(A h), integral of exp(A t) B; 0, 1): over `late`
 // the older command, then the newer one.
-static status fill(linear_system *out, const linear_system *s, int n, int held,
-                   double period, double late, fault *f)
+static status fill_sampled(linear_system *out, const linear_system *s, int n, int held,
+                           double period, double late, fault *f)
 {
     const int size = n + 1, states = out->states;
     const size_t square = (size_t)size * (size_t)size;
@@ -520,7 +520,7 @@ status linear_sample(linear_system *sampled, const linear_arm *rest, const param
     const int held = (int)whole + 1;
     status code = linear_system_init(sampled, l.states + held, LINEAR_READINGS, f);
     if (code == STATUS_OK) {
-        code = fill(sampled, &l.system, l.states, held, period, part * period, f);
+        code = fill_sampled(sampled, &l.system, l.states, held, period, part * period, f);
     }
     linear_system_finish(&l.system);
     if (code != STATUS_OK) {

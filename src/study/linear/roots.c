@@ -1,5 +1,5 @@
 // Poles, zeros and answers of linear systems, by LAPACK; how far a loop gain stays from
-// -1, and where a loop is stable.
+// -1.
 #include <assert.h>
 #include <dlfcn.h>
 #include <math.h>
@@ -10,7 +10,6 @@
 #include "src/base/numbers.h"
 #include "src/base/plain_math.h"
 #include "src/base/sincos.h"
-#include "src/run/run.h"
 #include "src/study/linear/linear.h"
 
 // What is below this share of the terms it is the sum of is rounding.
@@ -35,7 +34,7 @@ bool linear_is_loading(void)
 }
 
 // Loads both, once; false without LAPACK.
-static bool load(void)
+static bool load_lapack(void)
 {
     if (solve_complex == NULL) {
         loading = true;
@@ -50,7 +49,7 @@ static bool load(void)
 }
 
 // Slow before fast, the upper one of a pair first.
-static int compare(const void *one, const void *other)
+static int compare_poles(const void *one, const void *other)
 {
     double complex a, b;
     memcpy(&a, one, sizeof a);
@@ -71,7 +70,7 @@ static int compare(const void *one, const void *other)
 // Of matrix[n * n], in the order of poles.
 static status eigenvalues(int n, const double *matrix, double complex *values, fault *f)
 {
-    FAULT_IF(!load(), f, STATUS_SINGULAR,
+    FAULT_IF(!load_lapack(), f, STATUS_SINGULAR,
              "poles and zeros need LAPACK, liblapack.so.3, which is not on this "
              "machine (Debian: apt install liblapack3)");
     const size_t square = (size_t)n * (size_t)n;
@@ -94,7 +93,7 @@ static status eigenvalues(int n, const double *matrix, double complex *values, f
     for (int i = 0; i < n; i++) {
         values[i] = complex_of(real[i], imaginary[i]);
     }
-    qsort(values, (size_t)n, sizeof *values, compare);
+    qsort(values, (size_t)n, sizeof *values, compare_poles);
     if (info != 0) {
         return fault_set(f, STATUS_SINGULAR,
                          "LAPACK found no eigenvalues of the linear arm");
@@ -175,7 +174,7 @@ double complex linear_answer(const linear_system *s, int output, double complex 
     for (int i = 0; i < n; i++) {
         x[i] = s->c[output * n + i];
     }
-    if (n > 0 && load()) {
+    if (n > 0 && load_lapack()) {
         solve_complex(&n, &one, scratch, &n, (int *)(x + n), x, &n, &info);
     }
     for (int i = 0; i < n; i++) {
@@ -191,13 +190,7 @@ double complex linear_answer(const linear_system *s, int output, double complex 
 
 // Frequencies: so many in equal ratios, of a loop over so many decades below half its
 // rate, and so many about each vibration, out to where it no longer shows.
-enum {
-    EVEN = 1500,
-    ABOUT = 40,
-    MOST_FREQUENCIES = 20000,
-    BISECTIONS = 40,
-    RUN_BISECTIONS = 12
-};
+enum { EVEN = 1500, ABOUT = 40, MOST_FREQUENCIES = 20000 };
 #define DECADES 1e4
 
 // Puts frequencies for a system with the given poles in order; returns how many.
@@ -319,117 +312,4 @@ linear_margins linear_margins_of(const linear_response *r)
         }
     }
     return m;
-}
-
-// --- where a loop is stable ------------------------------------------------------------
-
-static status growth_of(const scenario *s, linear_place place, double *growth, fault *f)
-{
-    SCOPED(linear_arm_finish) linear_arm arm = {{0}};
-    SCOPED(linear_system_finish) linear_system loop = {0};
-    TRY(linear_arm_init(&arm, &s->parameters, place, f));
-    TRY(linear_loop(&loop, &arm, &s->parameters, f));
-    linear_close(&loop);
-    SCOPED(free_kept)
-    double complex *poles = calloc((size_t)loop.states + 1, sizeof *poles);
-    if (poles == NULL) {
-        return fault_no_memory(f);
-    }
-    TRY(linear_poles(&loop, poles, f));
-    *growth = plain_log(cabs(poles[loop.states - 1])) * s->parameters.control.rate;
-    return STATUS_OK;
-}
-
-status linear_stability(const scenario *s, linear_place place, bool by_runs,
-                        double *number, fault *f)
-{
-    *number = (double)NAN;
-    if (!by_runs) {
-        return growth_of(s, place, number, f);
-    }
-    SCOPED(run_finish) run_result result;
-    const status code = run_scenario(s, false, &result);
-    *number = result.summary.settling_time_s;
-    if (code == STATUS_NO_MEMORY || code == STATUS_NOT_ALLOWED ||
-        code == STATUS_STOPPED) {
-        return summary_fault(&result.summary, f);
-    }
-    return STATUS_OK;
-}
-
-status linear_growth(const scenario *s, double *growth, fault *f)
-{
-    return linear_stability(s, LINEAR_CONTACT, false, growth, f);
-}
-
-// Where stability changes between the i-th value of a single axis and the one before.
-static status find_limit(const linear_survey *y, size_t i, linear_place place,
-                         bool by_runs, double *limit, fault *f)
-{
-    double from = y->sweep.axes[0].values[i - 1], to = y->sweep.axes[0].values[i];
-    const bool at_start = linear_is_stable(by_runs, y->numbers[by_runs][i - 1]);
-    for (int n = 0; n < (by_runs ? RUN_BISECTIONS : BISECTIONS); n++) {
-        const double value = (from + to) / 2;
-        scenario derived;
-        double number;
-        TRY(sweep_axes_scenario(y->sweep.axes, 1, &value, y->sweep.base, &derived, f));
-        TRY(linear_stability(&derived, place, by_runs, &number, f));
-        *(linear_is_stable(by_runs, number) == at_start ? &from : &to) = value;
-    }
-    *limit = (from + to) / 2;
-    return STATUS_OK;
-}
-
-// The numbers of combination i, and the limit that lies before it.
-static status survey_one(linear_survey *y, size_t i, linear_place place, fault *f)
-{
-    scenario derived;
-    TRY(sweep_scenario(&y->sweep, i, &derived, f));
-    for (int k = 0; k < 2; k++) {
-        double *number = &y->numbers[k][i];
-        TRY(linear_stability(&derived, place, k, number, f));
-        if (y->sweep.axis_count == 1 && i > 0 && y->limit_count < LINEAR_MOST_LIMITS &&
-            linear_is_stable(k, number[-1]) != linear_is_stable(k, number[0])) {
-            y->limits[y->limit_count].by_runs = k;
-            TRY(find_limit(y, i, place, k, &y->limits[y->limit_count].value, f));
-            y->limit_count++;
-        }
-    }
-    return STATUS_OK;
-}
-
-status linear_survey_begin(linear_survey *y, const scenario *s,
-                           const sweep_request *request, fault *f)
-{
-    *y = (linear_survey){.limit_count = 0};
-    TRY(sweep_init(&y->sweep, s, request, f));
-    const size_t count = y->sweep.run_count;
-    y->numbers[0] = calloc(2 * count, sizeof *y->numbers[0]);
-    if (y->numbers[0] == NULL) {
-        sweep_finish(&y->sweep);
-        return fault_no_memory(f);
-    }
-    y->numbers[1] = y->numbers[0] + count;
-    for (size_t i = 0; i < 2 * count; i++) {
-        y->numbers[0][i] = (double)NAN;
-    }
-    return STATUS_OK;
-}
-
-status linear_survey_make(linear_survey *y, linear_place place, run_monitor *monitor,
-                          fault *f)
-{
-    for (; y->done < y->sweep.run_count; y->done++) {
-        TRY(survey_one(y, y->done, place, f));
-        run_monitor_count(monitor);
-        FAULT_IF(run_monitor_stops(monitor), f, STATUS_STOPPED, "%s",
-                 status_text(STATUS_STOPPED));
-    }
-    return STATUS_OK;
-}
-
-void linear_survey_finish(linear_survey *y)
-{
-    free(y->numbers[0]);
-    sweep_finish(&y->sweep);
 }

@@ -316,7 +316,7 @@ static status open_part(sweep_database *part, char *path, definition *d, fault *
 }
 
 // Begins the merged sweep with the definition of its first part, which it takes over.
-static status begin(merging *m, const char *path, fault *f)
+static status begin_merged(merging *m, const char *path, fault *f)
 {
     status code = definition_plan(&m->definition, path, &m->plan, f);
     m->merged->total = m->plan.run_count;
@@ -330,7 +330,7 @@ static status begin(merging *m, const char *path, fault *f)
 }
 
 // Adds the row that a statement stands on.
-static status add_row(merging *m, const char *path, sqlite3_stmt *row, fault *f)
+static status copy_row(merging *m, const char *path, sqlite3_stmt *row, fault *f)
 {
     int done = SQLITE_OK;
     for (int i = 0; i < sqlite3_column_count(row) && done == SQLITE_OK; i++) {
@@ -355,7 +355,7 @@ static status add_row(merging *m, const char *path, sqlite3_stmt *row, fault *f)
 }
 
 // Adds all rows of a part.
-static status add_rows(merging *m, sweep_database *part, fault *f)
+static status copy_rows(merging *m, sweep_database *part, fault *f)
 {
     sqlite3_stmt *rows;
     size_t count;
@@ -368,7 +368,7 @@ static status add_rows(merging *m, sweep_database *part, fault *f)
 
     status code = database_prepare(part, &rows, "SELECT * FROM run ORDER BY run", f);
     while (database_next(part, rows, &code, f)) {
-        code = add_row(m, part->path, rows, f);
+        code = copy_row(m, part->path, rows, f);
     }
     return code;
 }
@@ -384,13 +384,13 @@ static status add_part(merging *m, char *path, bool first, fault *f)
     status code = open_part(&part, path, d, f);
     if (code == STATUS_OK) {
         if (first) {
-            code = begin(m, path, f);
+            code = begin_merged(m, path, f);
         } else {
             code = definition_compare(path, d, &m->definition, f);
         }
     }
     if (code == STATUS_OK) {
-        code = add_rows(m, &part, f);
+        code = copy_rows(m, &part, f);
     }
     sqlite3_close(part.database);
     return code;
