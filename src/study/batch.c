@@ -92,10 +92,15 @@ static status count_tick(void *context, bool over, fault *f)
 status batch_run(const batch *asked, int jobs, fault *f)
 {
     batch b = *asked;
-    const size_t most = b.together > 0 ? b.together : RUN_TOGETHER,
-                 threads = jobs < 1                   ? 1
-                           : jobs > POOL_MOST_THREADS ? POOL_MOST_THREADS
-                                                      : (size_t)jobs;
+    size_t most = b.together, threads = 1;
+    if (most == 0) {
+        most = RUN_TOGETHER;
+    }
+    if (jobs > POOL_MOST_THREADS) {
+        threads = POOL_MOST_THREADS;
+    } else if (jobs > 1) {
+        threads = (size_t)jobs;
+    }
 
     // enough pieces for everybody, and no more threads than pieces
     const size_t share = (b.count + threads - 1) / threads;
@@ -107,6 +112,12 @@ status batch_run(const batch *asked, int jobs, fault *f)
         b.together = most;
     }
     const size_t pieces = (b.count + b.together - 1) / b.together;
+    size_t wanted = threads;
+    if (pieces < 1) {
+        wanted = 1;
+    } else if (pieces < threads) {
+        wanted = pieces;
+    }
     const pool_work work = {.context = &b,
                             .count = pieces,
                             .scratch_size = sizeof(batch_scratch),
@@ -117,9 +128,5 @@ status batch_run(const batch *asked, int jobs, fault *f)
                             .tick_interval = b.tick_interval,
                             .release = release_scratch,
                             .stop = b.stop};
-    return pool_run(&work,
-                    pieces < 1         ? 1
-                    : pieces < threads ? (int)pieces
-                                       : (int)threads,
-                    f);
+    return pool_run(&work, (int)wanted, f);
 }

@@ -149,7 +149,9 @@ status bench_read(const char *path, double medians[BENCHMARKS], fault *f)
                 i + 1);
         }
         for (int k = 0; k < BENCHMARKS; k++) {
-            medians[k] = strcmp(bench_table[k].name, name) == 0 ? median : medians[k];
+            if (strcmp(bench_table[k].name, name) == 0) {
+                medians[k] = median;
+            }
         }
     }
     json_decref(root);
@@ -241,9 +243,14 @@ static status run_batch(void *context)
 static status measure_batch(const benchmark *b, double *value, fault *f)
 {
     const bool all = b->number == 0;
-    timed_work t = {.threads = all ? (int)sysconf(_SC_NPROCESSORS_ONLN) : 1};
+    timed_work t = {.threads = 1};
+    double window = bench_window;
+    if (all) {
+        t.threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
+        window = 1e-9; // once is enough
+    }
     taylor_limit_width(b->number);
-    const status code = measure_work(b, run_batch, &t, all ? 1e-9 : bench_window, f);
+    const status code = measure_work(b, run_batch, &t, window, f);
     taylor_limit_width(0);
     if (all) {
         *value = t.steps / t.wall;
@@ -291,8 +298,10 @@ static status measure_program(const benchmark *b, double *value, fault *f)
 {
     const char *place = getenv("TMPDIR");
     char folder[4000], *program = shipped_path(SHIPPED_PROGRAM);
-    snprintf(folder, sizeof folder, "%s/impactlab-bench-XXXXXX",
-             place && *place ? place : "/tmp");
+    if (place == NULL || place[0] == '\0') {
+        place = "/tmp";
+    }
+    snprintf(folder, sizeof folder, "%s/impactlab-bench-XXXXXX", place);
     if (program == NULL || mkdtemp(folder) == NULL) {
         free(program);
         return fault_set(f, STATUS_CANNOT_WRITE, "no folder '%s' can be made", folder);

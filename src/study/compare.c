@@ -85,6 +85,10 @@ compare_row compare_row_of(const scenario *s, const run_result *result)
     find_best(s, result, &peak, &settling);
 
     // on the rig what is over is over the command, else over the steady force
+    double overshoot = m->force_overshoot_percent;
+    if (commanded) {
+        overshoot = 100 * m->force_over_command_N / command;
+    }
     return (compare_row){
         .scenario = s->name,
         .law = control_law_table[s->parameters.control.law].word,
@@ -92,8 +96,7 @@ compare_row compare_row_of(const scenario *s, const run_result *result)
         .values = {[PEAK] = m->peak_force_N,
                    [SENSED] = m->sensor_1ms_peak_N,
                    [BEST_PEAK] = peak,
-                   [OVERSHOOT] = commanded ? 100 * m->force_over_command_N / command
-                                           : m->force_overshoot_percent,
+                   [OVERSHOOT] = overshoot,
                    [SETTLING] = m->settling_time_s,
                    [BEST_SETTLING] = settling,
                    [FROM_START] = m->first_contact_s + m->settling_time_s,
@@ -142,9 +145,10 @@ status compare_choose(compare_table *t, const char *keys, fault *f)
                 found = k;
             }
         }
-        FAULT_IF(found < 0, f, STATUS_BAD_ARGUMENT, "there is no column '%s'%s%s%s", word,
-                 near.best ? ", did you mean '" : ", expected keys of --json",
-                 near.best ? near.best : "", near.best ? "'?" : "");
+        FAULT_IF(found < 0 && near.best != NULL, f, STATUS_BAD_ARGUMENT,
+                 "there is no column '%s', did you mean '%s'?", word, near.best);
+        FAULT_IF(found < 0, f, STATUS_BAD_ARGUMENT,
+                 "there is no column '%s', expected keys of --json", word);
 
         t->hidden[found] = false;
         key += length;
@@ -170,6 +174,44 @@ enum {
     NAMES,
     MOST_COLUMNS = NAMES + COMPARE_MOST_VARIED + COMPARE_QUANTITIES
 };
+
+// How a number is printed: a page has three digits, a terminal four.
+static const char *value_format(double value, bool page)
+{
+    if (isnan(value)) {
+        return page ? "–" : "-";
+    }
+    if (!page) {
+        return "%.4g";
+    }
+    return fabs(value) >= 999.5 ? "%.0f" : "%.3g";
+}
+
+// The heading of a varied parameter or a quantity with its unit: "peak/N", for a page
+// "peak [N]".
+static void write_heading(const compare_table *t, int column, bool page,
+                          char text[PARAMETER_TEXT_SIZE])
+{
+    const int v = column - NAMES, k = v - t->varied_count;
+    const char *name, *unit;
+    if (k >= 0) {
+        name = compare_quantities[k].heading;
+        unit = compare_quantities[k].unit;
+    } else {
+        const char *path = t->varied[v].name;
+        name = settings_name(path);
+        if (name == NULL) {
+            name = strchr(path, '.') + 1;
+        }
+        unit = sweep_axis_parameter(&t->varied[v])->unit;
+    }
+
+    const char *format = "%s";
+    if (unit[0] != '\0') {
+        format = page ? "%s [%s]" : "%s/%s";
+    }
+    snprintf(text, PARAMETER_TEXT_SIZE, format, name, unit);
+}
 
 // The cell of a row, of row -1 the heading, which a text may have room for; NULL in a
 // column that is not shown. A varied parameter is headed by its path without the group,
@@ -197,46 +239,25 @@ static const char *comparison_cell(const compare_table *t, int row, int column, 
 
     // a value, or "peak/N", for a page "peak [N]"
     if (of == NULL) {
-        const sweep_axis *axis = k < 0 ? &t->varied[v] : NULL;
-        const char *own = k < 0 ? settings_name(axis->name) : NULL;
-        const char *name;
-        if (k >= 0) {
-            name = compare_quantities[k].heading;
-        } else if (own != NULL) {
-            name = own;
-        } else {
-            name = strchr(axis->name, '.') + 1;
-        }
-        const char *unit =
-            k >= 0 ? compare_quantities[k].unit : sweep_axis_parameter(axis)->unit;
-        const char *open = "";
-        if (unit[0] != '\0') {
-            if (page) {
-                open = " [";
-            } else {
-                open = "/";
-            }
-        }
-        snprintf(text, PARAMETER_TEXT_SIZE, "%s%s%s%s", name, open, unit,
-                 unit[0] != '\0' && page ? "]" : "");
+        write_heading(t, column, page, text);
     } else if (k < 0) {
         char value[PARAMETER_TEXT_SIZE];
         format_varied(t, row, v, value, sizeof value);
         snprintf(text, PARAMETER_TEXT_SIZE, "%.100s%s", value,
                  of->idle[v] != NULL ? " (no effect)" : "");
     } else {
-        const double value = of->values[k];
-        decimal_print(text, PARAMETER_TEXT_SIZE,
-                      isnan(value)           ? (page ? "–" : "-")
-                      : !page                ? "%.4g"
-                      : fabs(value) >= 999.5 ? "%.0f"
-                                             : "%.3g",
-                      value);
+        decimal_print(text, PARAMETER_TEXT_SIZE, value_format(of->values[k], page),
+                      of->values[k]);
     }
     if (k < 0 || page) {
         return text;
     }
-    return strcat(text, of != NULL && marked(t, row, k) ? "*" : " ");
+
+    // a star, or the room for one
+    if (of != NULL && marked(t, row, k)) {
+        return strcat(text, "*");
+    }
+    return strcat(text, " ");
 }
 
 void compare_text(FILE *stream, const compare_table *t, bool page)
@@ -274,7 +295,10 @@ void compare_text(FILE *stream, const compare_table *t, bool page)
                 result_print(stream, page, shown++, widths[c], cell);
             }
         }
-        fprintf(stream, "%s\n", page || i < 0 || t->rows[i].ok ? "" : " failed");
+        if (!page && i >= 0 && !t->rows[i].ok) {
+            fputs(" failed", stream);
+        }
+        fputc('\n', stream);
         if (page && i < 0) {
             result_page_rule(stream, shown);
         }
@@ -292,10 +316,16 @@ static json_t *varied_object(const compare_table *t, int row)
         const parameter_info *info = sweep_axis_parameter(&t->varied[v]);
         char text[PARAMETER_TEXT_SIZE];
         format_varied(t, row, v, text, sizeof text);
-        json_put(object, t->varied[v].name,
-                 info->type == PARAMETER_CHOICE    ? json_text(text)
-                 : info->type == PARAMETER_BOOLEAN ? json_boolean(t->rows[row].varied[v])
-                                                   : json_number(t->rows[row].varied[v]));
+        const double value = t->rows[row].varied[v];
+        json_t *member;
+        if (info->type == PARAMETER_CHOICE) {
+            member = json_text(text);
+        } else if (info->type == PARAMETER_BOOLEAN) {
+            member = json_boolean(value);
+        } else {
+            member = json_number(value);
+        }
+        json_put(object, t->varied[v].name, member);
     }
     return object;
 }

@@ -47,12 +47,16 @@ static status part_in_run(const scenario *s, const char *law, double frequency, 
     const double force = s->parameters.control.force;
     scenario changed;
     *part = (double)NAN;
+
+    // either the wall moves or the set-point does
+    const double wave = wall ? 0 : FOLLOW_WAVE * force;
+    const double shaking = wall ? MOTION_SINE : MOTION_NONE;
     const parameter_change changes[] = {
         {PARAMETER_INDEX(control.law), .text = law},
         {PARAMETER_INDEX(run.duration), until},
-        {PARAMETER_INDEX(control.force_amplitude), wall ? 0 : FOLLOW_WAVE * force},
+        {PARAMETER_INDEX(control.force_amplitude), wave},
         {PARAMETER_INDEX(control.force_frequency), frequency},
-        {PARAMETER_INDEX(wall.motion), wall ? MOTION_SINE : MOTION_NONE},
+        {PARAMETER_INDEX(wall.motion), shaking},
         {PARAMETER_INDEX(wall.motion_amplitude), FOLLOW_WALL},
         {PARAMETER_INDEX(wall.motion_frequency), frequency},
     };
@@ -74,12 +78,13 @@ static status part_in_run(const scenario *s, const char *law, double frequency, 
 // The answer to a wave of the set-point as gain, phase and error.
 static follow_point point_of(double frequency, double complex answer)
 {
+    double phase = (double)NAN;
+    if (!isnan(creal(answer))) {
+        phase = plain_atan2(cimag(answer), creal(answer));
+    }
     return (follow_point){.frequency = frequency,
                           .gain = cabs(answer),
-                          .phase = (isnan(creal(answer))
-                                        ? (double)NAN
-                                        : plain_atan2(cimag(answer), creal(answer))) *
-                                   180 / M_PI,
+                          .phase = phase * 180 / M_PI,
                           .error = cabs(1 - answer),
                           .shaken = (double)NAN};
 }
@@ -89,15 +94,18 @@ status follow_study_compute(const scenario *s, run_monitor *monitor, follow_stud
 {
     *study = (follow_study){0};
     const parameters *p = &s->parameters;
+    const char *lacks = NULL;
+    if (p->control.law == LAW_NONE) {
+        lacks = "control law";
+    } else if (p->wall.kind == WALL_NONE) {
+        lacks = "wall";
+    } else if (!(p->control.force > 0)) {
+        lacks = "commanded force";
+    }
     FAULT_IF(
-        p->control.law == LAW_NONE || p->wall.kind == WALL_NONE ||
-            !(p->control.force > 0),
-        f, STATUS_BAD_SCENARIO,
+        lacks != NULL, f, STATUS_BAD_SCENARIO,
         "%s has no %s: expected a control law that presses on a wall with control.force",
-        s->name,
-        p->control.law == LAW_NONE  ? "control law"
-        : p->wall.kind == WALL_NONE ? "wall"
-                                    : "commanded force");
+        s->name, lacks);
     study->later = p->control.delay + (0.5 + p->control.delay_periods) / p->control.rate;
     for (int i = 0; i < FOLLOW_LAWS * FOLLOW_FREQUENCIES; i++) {
         const int k = i % FOLLOW_FREQUENCIES;

@@ -350,7 +350,8 @@ static status draw_beginnings(identification *id, double *x, double *rest, best_
             if (fit->axis.is_range) {
                 here[i] = sweep_axis_value_at(&fit->axis, u) / fit->scale;
             } else {
-                here[i] = here[i] * (u < 0.5 ? 0.5 + u : 2 * u);
+                const double factor = u < 0.5 ? 0.5 + u : 2 * u;
+                here[i] = here[i] * factor;
             }
         }
     }

@@ -1,4 +1,5 @@
-// The parameters that are fitted: which, from where, and the scenario's with their values.
+// The parameters that are fitted: which, from where, and the scenario's with their
+// values.
 #include <math.h>
 #include <string.h>
 

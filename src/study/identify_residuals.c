@@ -76,6 +76,12 @@ static void keep_samples(recorded_trace *t, double rate)
     t->rows = kept;
 }
 
+// The sensor that says when the arm touches: the FSR, else the piezoelectric one.
+static int force_channel(const recorded_trace *t)
+{
+    return t->reading[CHANNEL_FSR] != NULL ? CHANNEL_FSR : CHANNEL_PIEZO;
+}
+
 // What a residual is made of: volts of the FSR, whose noise is even there, else the
 // reading.
 static double residual_of(const sensor_parameters *s, int channel, double reading)
@@ -128,8 +134,7 @@ static double deviation_of(const sensor_parameters *s, int channel, double *rang
 // stays within a step of its converter for some samples is one reading.
 static status weigh(recorded_trace *t, const parameters *p, fault *f)
 {
-    const double *force = t->reading[CHANNEL_FSR] != NULL ? t->reading[CHANNEL_FSR]
-                                                          : t->reading[CHANNEL_PIEZO];
+    const double *force = t->reading[force_channel(t)];
     SCOPED(free_kept) unsigned char *near = calloc(t->rows, 1);
     t->contacts = calloc(t->rows, sizeof *t->contacts);
     if (!(near != NULL && t->contacts != NULL)) {
@@ -340,7 +345,9 @@ status identify_scenario(const identification *id, int index, scenario *made, fa
 static double interpolate_cubic(const sample *a, const sample *b, double time,
                                 double from, double to, double from_rate, double to_rate)
 {
-    const double h = b->time - a->time, u = h > 0 ? (time - a->time) / h : 1, v = 1 - u;
+    const double h = b->time - a->time;
+    const double u = h > 0 ? (time - a->time) / h : 1;
+    const double v = 1 - u;
     return v * v * (1 + 2 * u) * from + u * u * (3 - 2 * u) * to +
            h * u * v * (v * from_rate - u * to_rate);
 }
@@ -352,7 +359,8 @@ static double reading_at(const trace *run, sensors *eyes, int channel, double ti
 {
     const size_t last = run->row_count - 1, at = trace_row_at(run, time);
     if (channel == CHANNEL_ENCODER || channel == CHANNEL_TACHOMETER) {
-        const sample *a = &run->rows[at], *b = &run->rows[at < last ? at + 1 : last];
+        const size_t next = at < last ? at + 1 : last;
+        const sample *a = &run->rows[at], *b = &run->rows[next];
         const double when = fmax(time, a->time);
         const sensed_motion now = {
             .angle = interpolate_cubic(a, b, when, a->hub_angle, b->hub_angle,
@@ -413,7 +421,7 @@ static double nearest_touch(const trace *run, double time)
 static void judge_run(recorded_trace *t, const trace *run, double period,
                       const double *own)
 {
-    const int channel = t->reading[CHANNEL_FSR] != NULL ? CHANNEL_FSR : CHANNEL_PIEZO;
+    const int channel = force_channel(t);
     double recorded = 0, computed = 0;
     for (size_t i = 0; t->reading[channel] != NULL && i < t->rows; i++) {
         const double time = fmax(t->time[i] - own[OWN_SHIFT], 0);

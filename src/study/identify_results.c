@@ -21,20 +21,18 @@ const char *identify_words(const identification *id, int k, char *text, size_t s
     size_t used = 0;
     text[0] = '\0';
     for (int sign = 1; sign >= -1; sign -= 2) {
-        bool first = true;
+        const char *verb = sign > 0 ? "raising " : "lowering ";
         for (int i = 0; i < id->count && used + 1 < size; i++) {
             const double share = part[i] / part[largest] * sign;
             if (share * share < IDENTIFY_PART) {
                 continue;
             }
             if (share > 0) {
-                used += (size_t)decimal_print(text + used, size - used,
-                                              "%s%s%s by %.3g %%", joint,
-                                              first ? sign > 0 ? "raising " : "lowering "
-                                                    : "",
-                                              id->fit[i].axis.name, 10 * share);
+                used +=
+                    (size_t)decimal_print(text + used, size - used, "%s%s%s by %.3g %%",
+                                          joint, verb, id->fit[i].axis.name, 10 * share);
                 joint = " and ";
-                first = false;
+                verb = "";
             }
         }
         if (used > 0) {
@@ -139,13 +137,20 @@ static void draw_parameters(const identification *id, const double *directions,
 static void write_line(FILE *stream, const char *path, const fitted_parameter *fit,
                        double (*drawn)[IDENTIFY_PATHS], int i, const double *belief)
 {
+    fprintf(stream, "%s=", path);
     for (int n = 0; n < IDENTIFY_CASES; n++) {
         char text[NUMBER_TEXT];
-        const double true_value = drawn[n][i],
-                     factor = true_value != 0 ? fit->value / true_value : 1;
-        number_format(text, belief == NULL ? true_value
-                                           : fmin(fmax(*belief * factor, 0.01), 100));
-        fprintf(stream, "%s%s%s", n > 0 ? "," : path, n > 0 ? "" : "=", text);
+        const double true_value = drawn[n][i];
+        double value = true_value;
+        if (belief != NULL) {
+            const double factor = true_value != 0 ? fit->value / true_value : 1;
+            value = fmin(fmax(*belief * factor, 0.01), 100);
+        }
+        number_format(text, value);
+        if (n > 0) {
+            fputc(',', stream);
+        }
+        fputs(text, stream);
     }
     fputc('\n', stream);
 }

@@ -233,7 +233,10 @@ status pool_run(const pool_work *work, int threads, fault *f)
     if (allocate(&p, each, threads)) {
         // a single thread that nobody waits for while it computes is this one
         const bool alone = threads == 1 && work->tick == NULL;
-        int started = alone ? 0 : start_threads(&p, each, threads);
+        int started = 0;
+        if (!alone) {
+            started = start_threads(&p, each, threads);
+        }
         if (started > 0) {
             code = collect_results(&p, f);
         } else {

@@ -8,12 +8,13 @@
 result_cell result_cell_of(const result_table *t, int row, const result_column *column)
 {
     const void *at = (const char *)t->rows + (size_t)row * t->row_size + column->place;
-    const bool text = column->kind == RESULT_TEXT;
-    return (result_cell){text ? *(const char *const *)at : NULL,
-                         text ? 0
-                         : column->kind == RESULT_COUNT
-                             ? (double)*(const size_t *)at
-                             : column->times * *(const double *)at};
+    if (column->kind == RESULT_TEXT) {
+        return (result_cell){*(const char *const *)at, 0};
+    }
+    if (column->kind == RESULT_COUNT) {
+        return (result_cell){NULL, (double)*(const size_t *)at};
+    }
+    return (result_cell){NULL, column->times * *(const double *)at};
 }
 
 json_t *result_json(const result_table *t)
@@ -60,8 +61,11 @@ void result_field(csv_writer *w, result_cell cell)
 
 void result_put(json_t *object, const char *key, result_cell cell)
 {
-    json_put(object, key,
-             cell.text != NULL ? json_text(cell.text) : json_number(cell.number));
+    if (cell.text != NULL) {
+        json_put(object, key, json_text(cell.text));
+    } else {
+        json_put(object, key, json_number(cell.number));
+    }
 }
 
 void result_print(FILE *stream, bool page, int column, int width, const char *text)
@@ -76,8 +80,9 @@ void result_print(FILE *stream, bool page, int column, int width, const char *te
 void result_page_rule(FILE *stream, int columns)
 {
     assert(columns > 0);
+    fputc('|', stream);
     for (int k = 0; k < columns; k++) {
-        fputs(k == 0 ? "|---|" : "---|", stream);
+        fputs("---|", stream);
     }
     fputc('\n', stream);
 }

@@ -298,14 +298,20 @@ static void judge_runs(robust_law *out, const sweep *s, const size_t *runs, size
         bool known = sweep_scenario(s, runs[i], &derived, NULL) == STATUS_OK;
         bool many = known && derived.parameters.arm.links > 2;
         double command = of[COMMAND][i];
-        double allowed = known && derived.parameters.control.force_limit > 0
-                             ? derived.parameters.control.force_limit
-                             : ROBUST_EXCESS * command;
+
+        // the largest force, of an arm of many links without its ringing
+        double largest = of[PEAK][i], allowed = ROBUST_EXCESS * command;
+        if (many) {
+            largest = of[SMOOTHED][i] + command;
+        }
+        if (known && derived.parameters.control.force_limit > 0) {
+            allowed = derived.parameters.control.force_limit;
+        }
 
         out->failed += isnan(of[STEPS][i]);
         settled += !isnan(of[SETTLING][i]);
         separated += of[SEPARATIONS][i] > 0;
-        exceeded += (many ? of[SMOOTHED][i] + command : of[PEAK][i]) > allowed;
+        exceeded += largest > allowed;
         of[OVER][i] *= 100 / command;
         of[SMOOTHED][i] *= 100 / command;
         out->overshoots[i] = of[many ? SMOOTHED : OVER][i];

@@ -152,14 +152,14 @@ static const char *robust_cell(const robust_table *t, int row, const shown_colum
     }
     const result_table all = result_columns(t);
     const result_cell cell = result_cell_of(&all, row, &columns[shown->column]);
-    decimal_print(text, ROBUST_CELL,
-                  isnan(cell.number)          ? "-"
-                  : fabs(cell.number) >= 1000 ? "%.0f"
-                                              : "%.3g",
-                  cell.number);
     if (cell.text != NULL) {
         return cell.text;
     }
+    if (isnan(cell.number)) {
+        return "-";
+    }
+    decimal_print(text, ROBUST_CELL, fabs(cell.number) >= 1000 ? "%.0f" : "%.3g",
+                  cell.number);
     return text;
 }
 
@@ -167,10 +167,15 @@ static const char *robust_cell(const robust_table *t, int row, const shown_colum
 void robust_text(FILE *stream, const robust_table *t, bool page)
 {
     const bool cases = has_cases(t);
-    const shown_column *shown = cases ? of_cases : of_laws;
-    const int count =
-        cases ? (int)(sizeof of_cases / sizeof of_cases[0]) - (t->against == NULL)
-              : (int)(sizeof of_laws / sizeof of_laws[0]);
+    const shown_column *shown = of_laws;
+    int count = (int)(sizeof of_laws / sizeof of_laws[0]);
+    if (cases) {
+        shown = of_cases;
+        count = (int)(sizeof of_cases / sizeof of_cases[0]);
+    }
+    if (cases && t->against == NULL) {
+        count--; // the last is the share of another law
+    }
     int widest = 0; // title of a case
     char text[ROBUST_CELL];
     for (int i = 0; i < t->count && cases; i++) {

@@ -38,9 +38,10 @@ status solve_condition_read(const char *text, solve_condition *c, fault *f)
     *c = (solve_condition){.quantity = summary_find(key), .below = *sign == '<'};
     if (c->quantity < 0) {
         const char *near = summary_suggest(key);
-        return fault_set(f, STATUS_BAD_ARGUMENT, "there is no quantity '%s'%s%s%s", key,
-                         near ? ", did you mean '" : "; expected a key of run --json",
-                         near ? near : "", near ? "'?" : "");
+        FAULT_IF(near != NULL, f, STATUS_BAD_ARGUMENT,
+                 "there is no quantity '%s', did you mean '%s'?", key, near);
+        return fault_set(f, STATUS_BAD_ARGUMENT,
+                         "there is no quantity '%s'; expected a key of run --json", key);
     }
     FAULT_IF(
         summary_table[c->quantity].timing, f, STATUS_BAD_ARGUMENT,
@@ -51,10 +52,10 @@ status solve_condition_read(const char *text, solve_condition *c, fault *f)
     c->equal = sign[1] == '=';
     char bound[128];
     copy_trimmed(sign + 1 + c->equal, text + strlen(text), bound, sizeof bound);
+    const char *unit = summary_table[c->quantity].unit;
     FAULT_IF(!decimal_read(bound, &c->bound, &rest) || *rest != '\0', f,
              STATUS_BAD_ARGUMENT, "'%.100s' is no bound of %s, expected a number%s%s",
-             sign + 1 + c->equal, key, summary_table[c->quantity].unit[0] ? " in " : "",
-             summary_table[c->quantity].unit);
+             sign + 1 + c->equal, key, unit[0] != '\0' ? " in " : "", unit);
     return STATUS_OK;
 }
 
@@ -212,7 +213,8 @@ static status take_point(void *context, size_t i, const summary *m, fault *f)
 static bool neighbours(const search *s, double a, double b)
 {
     const double width = fabs(s->axis->high - s->axis->low);
-    return fabs(a - b) <= (is_whole(s) ? 1 : 1e-13 * width) || nextafter(a, b) == b;
+    const double least = is_whole(s) ? 1 : 1e-13 * width;
+    return fabs(a - b) <= least || nextafter(a, b) == b;
 }
 
 // The next value to try between `in`, where the condition holds, and `out`: by the
@@ -248,7 +250,11 @@ static status locate(const search *s, trial *in, trial *out, fault *f)
         trial t;
         const double width = fabs(in->value - out->value);
         TRY(run_trial(s, next_value(s, in, out, secant), &t, f));
-        *(holds(s, &t) ? in : out) = t;
+        if (holds(s, &t)) {
+            *in = t;
+        } else {
+            *out = t;
+        }
         secant = fabs(in->value - out->value) <= width / 2 || !secant;
     }
     return STATUS_OK;
@@ -266,7 +272,11 @@ static status locate_limits(search *s, fault *f)
 
         // where the quantity ceases to be there between them, that is no limit of its
         // value
-        trial *in = first ? &a : &b, *out = first ? &b : &a;
+        trial *in = &b, *out = &a;
+        if (first) {
+            in = &a;
+            out = &b;
+        }
         if (!found->stopped) {
             const status code = locate(s, in, out, f);
             if (code == STATUS_NO_MEMORY) {

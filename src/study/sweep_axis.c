@@ -48,20 +48,21 @@ status sweep_axis_find(sweep_axis *axis, const char *text, fault *f)
     // a list by one of its numbers, nothing else by any
     const parameter_type type = sweep_axis_parameter(axis)->type;
     const bool list = type == PARAMETER_LIST;
-    FAULT_IF(type == PARAMETER_TEXT || (list && name[length] == '\0'), f,
-             STATUS_BAD_ARGUMENT, "%s is a %s, only numbers and words are varied%s%s%s",
-             path, list ? "list" : "text", list ? "; its first number is " : "",
-             list ? path : "", list ? "[1]" : "");
+    FAULT_IF(type == PARAMETER_TEXT, f, STATUS_BAD_ARGUMENT,
+             "%s is a text, only numbers and words are varied", path);
+    FAULT_IF(list && name[length] == '\0', f, STATUS_BAD_ARGUMENT,
+             "%s is a list, only numbers and words are varied; its first number is %s[1]",
+             path, path);
     if (name[length] != '\0') {
         const char *rest;
         double k = 0;
         const bool read =
             decimal_read(name + length + 1, &k, &rest) && strcmp(rest, "]") == 0;
-        FAULT_IF(!list || !read || k != floor(k) || k < 1 || k > PARAMETER_LIST_MOST, f,
+        FAULT_IF(!list, f, STATUS_BAD_ARGUMENT, "'%.60s': %s is no list", name, path);
+        FAULT_IF(!read || k != floor(k) || k < 1 || k > PARAMETER_LIST_MOST, f,
                  STATUS_BAD_ARGUMENT,
-                 list ? "'%.60s' is no number of a list, expected %s[1] to %s[%d]"
-                      : "'%.60s': %s is no list",
-                 name, path, path, PARAMETER_LIST_MOST);
+                 "'%.60s' is no number of a list, expected %s[1] to %s[%d]", name, path,
+                 path, PARAMETER_LIST_MOST);
         axis->element = (int)k;
         snprintf(axis->name, sizeof axis->name, "%.40s[%d]", path, axis->element);
     } else {
@@ -92,8 +93,10 @@ status sweep_axis_apply(const sweep_axis *axis, double value, parameters *p, fau
     numbers[axis->element - 1] = value;
     for (int i = 0; i < count; i++) {
         char *end = changed + strlen(changed);
-        *end = ',';
-        number_format(i > 0 ? end + 1 : end, numbers[i]);
+        if (i > 0) {
+            *end++ = ',';
+        }
+        number_format(end, numbers[i]);
     }
     return parameter_set_text(p, axis->parameter, changed, f);
 }
@@ -341,8 +344,10 @@ status sweep_axis_parse(sweep_axis *axis, const char *values, bool drawn, fault 
 
     // a list cannot hold ranges: with a comma it is read as a list, and a value with a
     // colon is refused
-    const bool range = strchr(text, ':') != NULL && strchr(text, ',') == NULL;
-    return (range ? read_range : read_list)(axis, text, drawn, f);
+    if (strchr(text, ':') != NULL && strchr(text, ',') == NULL) {
+        return read_range(axis, text, drawn, f);
+    }
+    return read_list(axis, text, drawn, f);
 }
 
 status sweep_axis_parse_range(sweep_axis *axis, const char *text, fault *f)
@@ -369,10 +374,20 @@ double sweep_axis_value_at(const sweep_axis *axis, double share)
         return axis->values[(size_t)(share * (double)axis->count)];
     }
 
-    bool whole = sweep_axis_parameter(axis)->type == PARAMETER_INTEGER;
     // each whole number owns the unit interval round it
-    double from = whole ? low - 0.5 : low, to = whole ? high + 0.5 : high;
-    double value = axis->logarithmic ? from * plain_exp(share * plain_log(to / from))
-                                     : from + share * (to - from);
-    return fmin(fmax(whole ? floor(value + 0.5) : value, low), high);
+    const bool whole = sweep_axis_parameter(axis)->type == PARAMETER_INTEGER;
+    double from = low, to = high, value;
+    if (whole) {
+        from = low - 0.5;
+        to = high + 0.5;
+    }
+    if (axis->logarithmic) {
+        value = from * plain_exp(share * plain_log(to / from));
+    } else {
+        value = from + share * (to - from);
+    }
+    if (whole) {
+        value = floor(value + 0.5);
+    }
+    return fmin(fmax(value, low), high);
 }

@@ -81,10 +81,15 @@ static void define_script(definition *d, const scenario *s)
         char time[NUMBER_TEXT], value[NUMBER_TEXT];
         number_format(time, a->time);
         number_format(value, a->value);
-        const bool text_valued = !push && action_is_text(a);
         char path[ACTION_PATH];
-        fprintf(line.stream, "%sat %s %s = %s", i > 0 ? "; " : "", time,
-                push ? "push" : action_path(a, path), text_valued ? a->text : value);
+        const char *what = "push", *to = value;
+        if (!push) {
+            what = action_path(a, path);
+        }
+        if (!push && action_is_text(a)) {
+            to = a->text;
+        }
+        fprintf(line.stream, "%sat %s %s = %s", i > 0 ? "; " : "", time, what, to);
     }
 
     // closing it shows whether there was memory
@@ -261,6 +266,18 @@ status definition_plan(const definition *d, const char *path, sweep *plan, fault
                      why.text);
 }
 
+// A line's value as a sentence has it.
+static const char *value_in_words(const char *value)
+{
+    if (value == NULL) {
+        return "not there";
+    }
+    if (value[0] == '\0') {
+        return "empty";
+    }
+    return value;
+}
+
 // Adds one difference to the sentence; beyond the first few they are only counted.
 static void append_difference(char *text, size_t size, int *count, const char *key,
                               const char *was, const char *now)
@@ -268,25 +285,25 @@ static void append_difference(char *text, size_t size, int *count, const char *k
     enum { SHOWN = 4 };
     size_t length = strlen(text);
 
+    if (++*count > SHOWN) {
+        return;
+    }
+    const char *separator = *count > 1 ? "; " : "";
+
     // a digest says nothing to people
-    if ((*count)++ < SHOWN && strncmp(key, content_of, strlen(content_of)) == 0) {
-        const bool told = now == NULL || strcmp(now, untold) != 0;
-        snprintf(text + length, size - length, "%sthe %s %s", *count > 1 ? "; " : "", key,
-                 told ? "is another one" : "may be another one, it cannot be told");
+    if (strncmp(key, content_of, strlen(content_of)) == 0) {
+        const char *differs = "is another one";
+        if (now != NULL && strcmp(now, untold) == 0) {
+            differs = "may be another one, it cannot be told";
+        }
+        snprintf(text + length, size - length, "%sthe %s %s", separator, key, differs);
         return;
     }
 
     // named as the user gives it: an axis is an option
-    if (*count <= SHOWN) {
-        snprintf(text + length, size - length, "%s%s%s was %.80s, now it is %.80s",
-                 *count > 1 ? "; " : "", strncmp(key, "vary", 4) == 0 ? "--" : "", key,
-                 was == NULL   ? "not there"
-                 : was[0] == 0 ? "empty"
-                               : was,
-                 now == NULL   ? "not there"
-                 : now[0] == 0 ? "empty"
-                               : now);
-    }
+    const char *dashes = strncmp(key, "vary", 4) == 0 ? "--" : "";
+    snprintf(text + length, size - length, "%s%s%s was %.80s, now it is %.80s", separator,
+             dashes, key, value_in_words(was), value_in_words(now));
 }
 
 status definition_compare(const char *path, const definition *was, const definition *now,

@@ -123,14 +123,15 @@ static status run_missing(sweep_execution *e, fault *f)
 
     // heavy runs go one by one: none of them is to wait for another to be stored, or to
     // hold up the end of a sweep that is stopped
+    size_t together = 1;
+    if (runs_are_light(e->sweep)) {
+        together = (size_t)fmax(1, RUN_TOGETHER / fmax(duration, 1));
+    }
     const batch missing = {.context = e,
                            .count = count,
                            .make = make_sweep_run,
                            .take = store_run,
-                           .together =
-                               runs_are_light(e->sweep)
-                                   ? (size_t)fmax(1, RUN_TOGETHER / fmax(duration, 1))
-                                   : 1,
+                           .together = together,
                            .tick = commit_and_report,
                            .stop = e->options->stop,
                            .abandon = e->options->abandon};

@@ -18,13 +18,17 @@ typedef struct sweep_share {
 // Number of the i-th run of a share, and how many of `total` runs it has.
 static inline size_t sweep_share_run(sweep_share share, size_t i)
 {
-    return share.parts > 0 ? i * (size_t)share.parts + (size_t)share.part - 1 : i;
+    if (share.parts == 0) {
+        return i;
+    }
+    return i * (size_t)share.parts + (size_t)share.part - 1;
 }
 static inline size_t sweep_share_count(sweep_share share, size_t total)
 {
-    return share.parts > 0
-               ? (total + (size_t)(share.parts - share.part)) / (size_t)share.parts
-               : total;
+    if (share.parts == 0) {
+        return total;
+    }
+    return (total + (size_t)(share.parts - share.part)) / (size_t)share.parts;
 }
 
 // Where the rows of a sweep are kept, one for each run that was computed: what a store

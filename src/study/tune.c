@@ -36,8 +36,16 @@ static int find_key(void *context, const char *name, const char **near)
     if (strcmp(name, growth_key) == 0) {
         return GROWTH;
     }
-    for (int i = 0; of->law != NULL ? robust_key(i) != NULL : i < summary_count; i++) {
-        const char *key = of->law != NULL ? robust_key(i) : summary_table[i].key;
+    for (int i = 0;; i++) {
+        const char *key = NULL;
+        if (of->law != NULL) {
+            key = robust_key(i);
+        } else if (i < summary_count) {
+            key = summary_table[i].key;
+        }
+        if (key == NULL) {
+            break;
+        }
         if (strcmp(key, name) == 0 && (of->law != NULL || !summary_table[i].timing)) {
             return i;
         }
@@ -83,7 +91,8 @@ static status read_subject(const char *text, judged *of, double *excess, fault *
     snprintf(left, sizeof left, "%.*s", (int)(sign - text), text);
     TRY(evaluate_expression(left, of, &a, f));
     TRY(evaluate_expression(sign + 2, of, &b, f));
-    *excess = (*sign == '<' ? a - b : b - a) / fmax(fabs(b), 1e-300);
+    const double beyond = *sign == '<' ? a - b : b - a;
+    *excess = beyond / fmax(fabs(b), 1e-300);
     return STATUS_OK;
 }
 
@@ -101,7 +110,8 @@ static status judge_result(const tune_request *asked, judged *of, tune_result *o
     }
     FAULT_IF(code != STATUS_OK, f, code, "--%s %.900s", option, why.text);
     if (!isfinite(out->value) || isnan(excess)) {
-        out->rank = TUNE_REFUSED * 1e100 * (2 - (of->law != NULL ? of->law->settled : 0));
+        const double settled = of->law != NULL ? of->law->settled : 0;
+        out->rank = TUNE_REFUSED * 1e100 * (2 - settled);
     } else if (excess > 0) {
         out->rank = TUNE_REFUSED * (1 + fmin(excess, 1e90));
     } else {
@@ -416,7 +426,11 @@ status tune_run(tuning *t, sweep_store *store, const sweep_options *options, fau
         double low = 0, high = 1;
         for (int k = 0; k < 50; k++) {
             const double middle = (low + high) / 2;
-            *(sweep_axis_value_at(axis, middle) < given ? &low : &high) = middle;
+            if (sweep_axis_value_at(axis, middle) < given) {
+                low = middle;
+            } else {
+                high = middle;
+            }
         }
         s.best[i] = high;
     }

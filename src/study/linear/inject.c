@@ -133,14 +133,8 @@ static status measure_gain(run_loop *l, injector *i, double *hertz, double compl
     int agreed = 0;
     for (int w = 0; w < MOST_WINDOWS && agreed < 2 && code == STATUS_OK; w++) {
         code = pass_window(l, i, samples, f);
-        if (w < MOST_WINDOWS / 2) {
-            law += 0;
-        } else {
+        if (w >= MOST_WINDOWS / 2) {
             law += i->law;
-        }
-        if (w < MOST_WINDOWS / 2) {
-            command += 0;
-        } else {
             command += i->command;
         }
         before = *gain;
@@ -153,7 +147,7 @@ static status measure_gain(run_loop *l, injector *i, double *hertz, double compl
         const bool steady = fabs(amplitude - i->amplitude[0]) < 0.2 * i->amplitude[0];
         const bool answers = cabs(*gain) > NOTHING;
         if (steady && cabs(*gain - before) <= AGREE * cabs(*gain)) {
-            agreed = agreed + 1;
+            agreed++;
         } else {
             agreed = 0;
         }
@@ -246,8 +240,6 @@ status linear_inject(const scenario *s, linear_response *r, fault *f)
         law.sample = sample_with_sine;
         if (law.tune != NULL) {
             law.tune = tune_inner_law;
-        } else {
-            law.tune = NULL;
         }
         const loop_options options = {.law = {&law, &i}};
         *r = (linear_response){0, block, (double complex *)(block + MOST_POINTS)};
@@ -290,7 +282,11 @@ static status least_push(run_loop *l, const void *kept, double direction, double
     for (int i = 0; i < PUSHES && lost; i++) {
         const double middle = (low + high) / 2;
         TRY(loses(l, kept, direction * plain_exp(middle), &there, f));
-        *(there ? &high : &low) = middle;
+        if (there) {
+            high = middle;
+        } else {
+            low = middle;
+        }
         *least = plain_exp(high);
     }
     return STATUS_OK;
@@ -304,23 +300,17 @@ status linear_contact_margin(const scenario *s, double *impulse, fault *f)
     if (code == STATUS_OK && loop_row(l).force > 0) {
         void *kept = malloc(loop_saved_size(l));
         double away = (double)NAN, against = (double)NAN;
-        if (kept != NULL) {
-            code = STATUS_OK;
-        } else {
+        if (kept == NULL) {
             code = fault_no_memory(f);
-        }
-        if (code == STATUS_OK) {
+        } else {
             loop_save(l, kept);
             code = least_push(l, kept, -1, &away, f);
-            if (code == STATUS_OK) {
-                code = least_push(l, kept, 1, &against, f);
-            }
-            // the other one if one is NaN
-            if (code == STATUS_OK) {
-                *impulse = fmin(away, against);
-            } else {
-                *impulse = (double)NAN;
-            }
+        }
+        if (code == STATUS_OK) {
+            code = least_push(l, kept, 1, &against, f);
+        }
+        if (code == STATUS_OK) {
+            *impulse = fmin(away, against); // the other one if one is NaN
         }
         free(kept);
     }

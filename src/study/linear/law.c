@@ -36,14 +36,17 @@ static controller_input rest_input(const linear_arm *arm, const parameters *p,
                                    int reading, double pulse)
 {
     const sensor_parameters *fitted = &p->sensor;
-    double at[LINEAR_READINGS + 1] = {arm->hub_angle,
-                                      0,
-                                      arm->force,
-                                      arm->voltage,
-                                      fitted->piezo ? arm->force : (double)NAN,
-                                      fitted->film ? arm->bending : (double)NAN,
-                                      fitted->accelerometer ? 0 : (double)NAN};
-    at[reading < 0 ? LINEAR_READINGS : reading] += pulse;
+    const double absent = (double)NAN;
+    double at[LINEAR_READINGS] = {[READ_ENCODER] = arm->hub_angle,
+                                  [READ_FORCE] = arm->force,
+                                  [READ_VOLTAGE] = arm->voltage,
+                                  [READ_PIEZO] = fitted->piezo ? arm->force : absent,
+                                  [READ_FILM] = fitted->film ? arm->bending : absent,
+                                  [READ_ACCELEROMETER] =
+                                      fitted->accelerometer ? 0 : absent};
+    if (reading >= 0) {
+        at[reading] += pulse;
+    }
     return (controller_input){.encoder = at[READ_ENCODER],
                               .tachometer = at[READ_TACHOMETER],
                               .force = at[READ_FORCE],
@@ -65,7 +68,8 @@ static status pulse_response(const linear_arm *arm, const parameters *p, int rea
     const double settling = (p->control.transition_time + SETTLING) * p->control.rate;
     const int before = (int)fmin(settling, MOST_SETTLING);
     for (int k = 0; k < before + ANSWERS; k++) {
-        controller_input in = rest_input(arm, p, k == before ? reading : -1, pulse);
+        const int pulsed = k == before ? reading : -1;
+        controller_input in = rest_input(arm, p, pulsed, pulse);
         controller_output out = {.command = (double)NAN};
         in.time = k * r->period;
         in.wanted_mode = r->lock;
@@ -129,7 +133,9 @@ static bool fit_recurrence(linear_law *law, int order)
                         matrix[i * order + m] += h[k + i] * h[k + m] / unit;
                     }
                 }
-                most = fmax(most, pass == 1 ? fabs(left) / size : 0);
+                if (pass == 1) {
+                    most = fmax(most, fabs(left) / size);
+                }
             }
         }
         if (pass == 0 && order > 0 && !dense_solve(order, matrix, right)) {
@@ -186,7 +192,10 @@ static status assemble(linear_system *loop, const linear_law *law, const linear_
         memcpy(loop->a + i * states, plant.a + i * n, (size_t)n * sizeof *loop->a);
         loop->b[i] = plant.b[i];
         for (int k = 0; k <= law->order; k++) {
-            double *to = k == 0 ? loop->c : loop->a + (n + k - 1) * states;
+            double *to = loop->c;
+            if (k > 0) {
+                to = loop->a + (n + k - 1) * states;
+            }
             for (int j = 0; j < LINEAR_READINGS; j++) {
                 to[i] += law->h[j][k] * plant.c[j * n + i];
             }
@@ -265,7 +274,11 @@ status linear_delay_margin(const linear_arm *arm, const parameters *p, double *d
     for (int i = 0; i < BISECTIONS; i++) {
         const double middle = (from + to) / 2;
         TRY(radius_with(&law, arm, p, middle, &radius, f));
-        *(radius < 1 ? &from : &to) = middle;
+        if (radius < 1) {
+            from = middle;
+        } else {
+            to = middle;
+        }
     }
     *delay = to;
     return STATUS_OK;

@@ -126,16 +126,21 @@ static status find_rest(workshop *w, fault *f)
     double residual[MOST_BODIES + 1], shifted[2][MOST_BODIES + 1], change = 1;
     double matrix[(MOST_BODIES + 1) * (MOST_BODIES + 1)];
     w->rest[2 * w->n + 1] = w->command;
+
+    // the unknowns: the angles, then the command
+    double *unknown[MOST_BODIES + 1];
+    for (int j = 0; j < size; j++) {
+        unknown[j] = j < w->n ? &w->rest[j] : &w->rest[2 * w->n + 1];
+    }
     for (int step = 0; step < NEWTON_STEPS && change > 1e-14; step++) {
         missing(w, residual);
         for (int j = 0; j < size; j++) {
-            double *at = &w->rest[j < w->n ? j : 2 * w->n + 1];
-            const double kept = *at;
-            for (int side = 0; side < 2; side++) {
-                *at = kept + (side == 0 ? e : -e);
-                missing(w, shifted[side]);
-            }
-            *at = kept;
+            const double kept = *unknown[j];
+            *unknown[j] = kept + e;
+            missing(w, shifted[0]);
+            *unknown[j] = kept - e;
+            missing(w, shifted[1]);
+            *unknown[j] = kept;
             for (int i = 0; i < size; i++) {
                 matrix[i * size + j] = (shifted[0][i] - shifted[1][i]) / (2 * e);
             }
@@ -145,7 +150,7 @@ static status find_rest(workshop *w, fault *f)
         }
         change = 0;
         for (int j = 0; j < size; j++) {
-            w->rest[j < w->n ? j : 2 * w->n + 1] -= residual[j];
+            *unknown[j] -= residual[j];
             change = fmax(change, fabs(residual[j]));
         }
     }
@@ -170,8 +175,9 @@ static void differentiate(workshop *w, const double *direction, double step,
     memset(slopes, 0, (size_t)(w->n + 2) * sizeof *slopes);
     for (int k = 0; k < 3; k++) {
         for (int side = 0; side < 2; side++) {
+            const int steps = side == 0 ? k + 1 : -k - 1;
             for (int i = 0; i < 2 * w->n + 2; i++) {
-                z[i] = w->rest[i] + (side == 0 ? k + 1 : -k - 1) * step * direction[i];
+                z[i] = w->rest[i] + steps * step * direction[i];
             }
             evaluate_balance(w, z, ends[side]);
         }
@@ -185,10 +191,12 @@ static status linearise(workshop *w, linear_system *s, fault *f)
 {
     // the angles left: from `first` to the one before `end`, which follows them on a
     // rigid wall
-    const int n = w->n, first = w->mode.friction == HUB_STICK ? 1 : 0, end = n - w->rigid;
+    const int n = w->n, end = n - w->rigid;
+    const int first = w->mode.friction == HUB_STICK ? 1 : 0;
     const motor_model *m = &w->arm.motor;
     const bool flows = m->electric && m->inductance > 0;
-    const int angles = end > first ? end - first : 0, states = 2 * angles + flows;
+    const int angles = end > first ? end - first : 0;
+    const int states = 2 * angles + flows;
     TRY(linear_system_init(s, states, LINEAR_OUTPUTS, f));
 
     // one column of (A, B; C, D) after the other, the command's last: a vector of its own
@@ -196,21 +204,29 @@ static status linearise(workshop *w, linear_system *s, fault *f)
     jacobian(w, j);
     for (int column = 0; column <= states; column++) {
         double z[EDGE] = {0};
+        const bool is_command = column == states;
         const int group = column < 2 * angles ? column / angles : 2;
         double *moved = z + group * n;
-        if (group == 2) {
-            moved[column < states ? 0 : 1] = 1;
+        if (is_command) {
+            moved[1] = 1;
+        } else if (group == 2) {
+            moved[0] = 1;
         } else {
             moved[first + column % angles] = 1;
             if (end < n) {
                 moved[end] = -j[first + column % angles] / j[end];
             }
         }
-        differentiate(w, z, group == 0 ? w->step : OTHER_STEP, slopes);
+        const double step = group == 0 ? w->step : OTHER_STEP;
+        differentiate(w, z, step, slopes);
 
-        double *a = column < states ? s->a + column : s->b,
-               *c = column < states ? s->c + column : s->d;
-        const int row = column < states ? states : 1;
+        double *a = s->a + column, *c = s->c + column;
+        int row = states;
+        if (is_command) {
+            a = s->b;
+            c = s->d;
+            row = 1;
+        }
         for (int i = 0; i < angles; i++) {
             a[(angles + i) * row] = slopes[first + i];
         }
@@ -317,7 +333,8 @@ static status force_at_rest(workshop *w, const parameters *p, linear_place place
     } else {
         *force = 0;
     }
-    const char *why = refusal(p, place, fabs(*force) > NO_FORCE ? *force : 0);
+    const double pressing = fabs(*force) > NO_FORCE ? *force : 0;
+    const char *why = refusal(p, place, pressing);
     if (code == STATUS_OK && why != NULL) {
         return fault_set(f, STATUS_BAD_ARGUMENT, "%s", why);
     }
@@ -351,11 +368,14 @@ status linear_arm_init(linear_arm *out, const parameters *p, linear_place place,
     const bool touches = place != LINEAR_FREE,
                held = touches && p->control.law != LAW_NONE;
     const bool weighs =
-        !held && p->arm.tilt != 0; // which may press or lift, and is seen at rest
-    const char *why = refusal(p, place,
-                              held     ? p->control.force
-                              : weighs ? 1
-                                       : p->motor.voltage);
+        !held && p->arm.tilt != 0;     // which may press or lift, and is seen at rest
+    double presses = p->motor.voltage; // above zero: the arm may press
+    if (held) {
+        presses = p->control.force;
+    } else if (weighs) {
+        presses = 1;
+    }
+    const char *why = refusal(p, place, presses);
     FAULT_IF(why != NULL, f, STATUS_BAD_ARGUMENT, "%s", why);
     SCOPED(free_kept) workshop *w = calloc(1, sizeof *w);
     if (w == NULL) {
@@ -488,7 +508,11 @@ static status fill_sampled(linear_system *out, const linear_system *s, int n, in
                 out->a[i * states + j] += after[i * size + k] * before[k * size + j];
             }
         }
-        *(held > 1 ? &out->a[i * states + n + 1] : &out->b[i]) = after[i * size + n];
+        if (held > 1) {
+            out->a[i * states + n + 1] = after[i * size + n];
+        } else {
+            out->b[i] = after[i * size + n];
+        }
     }
 
     // commands move up; what is read sees the oldest

@@ -39,8 +39,13 @@ static bool load_lapack(void)
     if (solve_complex == NULL) {
         loading = true;
         void *library = dlopen("liblapack.so.3", RTLD_NOW | RTLD_LOCAL);
-        void *one = library != NULL ? dlsym(library, "dgeev_") : NULL;
-        void *other = one != NULL ? dlsym(library, "zgesv_") : NULL;
+        void *one = NULL, *other = NULL;
+        if (library != NULL) {
+            one = dlsym(library, "dgeev_");
+        }
+        if (one != NULL) {
+            other = dlsym(library, "zgesv_");
+        }
         memcpy(&eigenvalues_of, &one, sizeof one);
         memcpy(&solve_complex, &other, sizeof other);
         loading = false;
@@ -142,12 +147,13 @@ status linear_zeros(const linear_system *s, int output, int *count,
     for (int i = 0; i < n * n && direct != 0; i++) {
         matrix[i] = s->a[i] - s->b[i / n] * row[i % n] / direct;
     }
+    *count = 0;
+    int size = 0;
     if (direct != 0) {
         *count = n - order;
-    } else {
-        *count = 0;
+        size = n;
     }
-    const status code = eigenvalues(direct != 0 ? n : 0, matrix, values, f);
+    const status code = eigenvalues(size, matrix, values, f);
     memmove(values, values + order, (size_t)*count * sizeof *values);
     return code;
 }
@@ -169,7 +175,8 @@ double complex linear_answer(const linear_system *s, int output, double complex 
 
     // Fortran sees the transpose of point - A, whose x gives C (point - A)^-1 B as x'B
     for (int i = 0; i < n * n; i++) {
-        scratch[i] = (i % (n + 1) == 0 ? point : 0) - s->a[i];
+        const bool diagonal = i % (n + 1) == 0;
+        scratch[i] = (diagonal ? point : 0) - s->a[i];
     }
     for (int i = 0; i < n; i++) {
         x[i] = s->c[output * n + i];
@@ -206,15 +213,22 @@ static int choose_frequencies(const double complex *poles, int states, double pe
                 low = cabs(poles[i]);
             }
         }
-        high = 10 * fmax(high, states > 0 ? cabs(poles[states - 1]) : 0);
+        if (states > 0) {
+            high = fmax(high, cabs(poles[states - 1]));
+        }
+        high *= 10;
         low *= 0.01;
     }
     for (int i = 0; i < EVEN; i++) {
         w[count++] = high * plain_pow(low / high, (EVEN - 1 - i) / (EVEN - 1.0));
     }
     for (int i = 0; i < states && period > 0; i++) {
-        const double size = cabs(poles[i]), at = size > 0 ? carg(poles[i]) / period : 0;
-        const double width = size > 0 ? fabs(plain_log(size)) / period : 0;
+        const double size = cabs(poles[i]);
+        double at = 0, width = 0; // of the vibration [rad/s]
+        if (size > 0) {
+            at = carg(poles[i]) / period;
+            width = fabs(plain_log(size)) / period;
+        }
         for (int k = -ABOUT / 2; k <= ABOUT / 2 && at > 0 && count < MOST_FREQUENCIES;
              k++) {
             const double off = fmax(width, 1e-9 * at) * (plain_exp(0.3 * abs(k)) - 1);
@@ -301,7 +315,8 @@ linear_margins linear_margins_of(const linear_response *r)
             const double left =
                 plain_atan2(-cimag(one), -creal(one)); // beyond -180 degrees
             m.phase_deg = fmin(m.phase_deg, fabs(left) * 180 / M_PI);
-            m.delay_s = fmin(m.delay_s, (left >= 0 ? left : left + 2 * M_PI) / w);
+            const double turn = left >= 0 ? left : left + 2 * M_PI;
+            m.delay_s = fmin(m.delay_s, turn / w);
         }
         if (cimag(here) * cimag(next) <= 0 && cimag(here) != cimag(next)) {
             const double share = cimag(here) / (cimag(here) - cimag(next));

@@ -55,13 +55,18 @@ static status find_limit(const linear_survey *y, size_t i, linear_place place,
 {
     double from = y->sweep.axes[0].values[i - 1], to = y->sweep.axes[0].values[i];
     const bool at_start = linear_is_stable(by_runs, y->numbers[by_runs][i - 1]);
-    for (int n = 0; n < (by_runs ? RUN_BISECTIONS : BISECTIONS); n++) {
+    const int halvings = by_runs ? RUN_BISECTIONS : BISECTIONS;
+    for (int n = 0; n < halvings; n++) {
         const double value = (from + to) / 2;
         scenario derived;
         double number;
         TRY(sweep_axes_scenario(y->sweep.axes, 1, &value, y->sweep.base, &derived, f));
         TRY(linear_stability(&derived, place, by_runs, &number, f));
-        *(linear_is_stable(by_runs, number) == at_start ? &from : &to) = value;
+        if (linear_is_stable(by_runs, number) == at_start) {
+            from = value;
+        } else {
+            to = value;
+        }
     }
     *limit = (from + to) / 2;
     return STATUS_OK;

@@ -108,12 +108,14 @@ int database_columns(const sweep *s, run_column columns[RUN_MOST_COLUMNS])
     columns[count++] = (run_column){{"run", "run", ""}, "INTEGER PRIMARY KEY"};
     for (const sweep_axis *a = s->axes; a < s->axes + s->axis_count; a++) {
         const parameter_info *info = sweep_axis_parameter(a);
+        const char *type = "REAL NOT NULL";
+        if (sweep_axis_has_words(a)) {
+            type = "TEXT NOT NULL";
+        } else if (info->type == PARAMETER_INTEGER) {
+            type = "INTEGER NOT NULL";
+        }
         columns[count++] =
-            (run_column){{a->name, a->name, info->unit},
-                         sweep_axis_has_words(a)           ? "TEXT NOT NULL"
-                         : info->type == PARAMETER_INTEGER ? "INTEGER NOT NULL"
-                                                           : "REAL NOT NULL",
-                         .quote = "\""};
+            (run_column){{a->name, a->name, info->unit}, type, .quote = "\""};
     }
     columns[count++] = (run_column){{"status", "status", ""}, "TEXT NOT NULL"};
     columns[count++] = (run_column){{"message", "message", ""}, "TEXT NOT NULL"};
@@ -144,9 +146,10 @@ status database_use(sweep_database *store, sqlite3_str *sql, sqlite3_stmt **stat
 // one that does not end where it ends, or no memory for it.
 static const char *text_at(sqlite3_stmt *row, int column)
 {
-    const char *text = sqlite3_column_type(row, column) == SQLITE_TEXT
-                           ? (const char *)sqlite3_column_text(row, column)
-                           : NULL;
+    const char *text = NULL;
+    if (sqlite3_column_type(row, column) == SQLITE_TEXT) {
+        text = (const char *)sqlite3_column_text(row, column);
+    }
     const bool whole =
         text != NULL && strlen(text) == (size_t)sqlite3_column_bytes(row, column);
     if (whole) {
@@ -244,11 +247,17 @@ status database_check_runs(sweep_database *store, unsigned char *seen, size_t *c
     sqlite3_stmt *rows;
     *count = 0;
     status code = database_prepare(store, &rows, "SELECT * FROM run", f);
-    const int found = code == STATUS_OK ? sqlite3_column_count(rows) : 0;
+    int found = 0;
+    if (code == STATUS_OK) {
+        found = sqlite3_column_count(rows);
+    }
 
     // name by name, in their order, and none beyond
     for (int i = 0; i < columns && code == STATUS_OK; i++) {
-        const char *name = i < found ? sqlite3_column_name(rows, i) : NULL;
+        const char *name = NULL;
+        if (i < found) {
+            name = sqlite3_column_name(rows, i);
+        }
         if (name == NULL || strcmp(name, expected[i].told.key) != 0) {
             code = fault_set(f, STATUS_BAD_ARGUMENT,
                              "'%s' has %.60s in column %d of its runs, expected %s",
@@ -284,7 +293,10 @@ static status check_journal(const sweep_database *store, fault *f)
     unsigned char end[sizeof mark];
     const char *name =
         sqlite3_filename_journal(sqlite3_db_filename(store->database, "main"));
-    FILE *journal = name != NULL ? fopen(name, "rb") : NULL;
+    FILE *journal = NULL;
+    if (name != NULL) {
+        journal = fopen(name, "rb");
+    }
     if (journal == NULL) {
         return STATUS_OK;
     }
@@ -315,8 +327,8 @@ status database_open(sweep_database *store, int flags, fault *f)
         }
         fclose(file);
     }
-    if (sqlite3_open_v2(store->path ? store->path : ":memory:", &store->database, flags,
-                        NULL) != SQLITE_OK) {
+    const char *name = store->path != NULL ? store->path : ":memory:";
+    if (sqlite3_open_v2(name, &store->database, flags, NULL) != SQLITE_OK) {
         if (store->database == NULL) {
             return fault_no_memory(f);
         }

@@ -33,8 +33,11 @@ static void bind_row(sweep_database *store, size_t run, const summary *result)
                       SQLITE_STATIC); // until the step
     for (int i = 0; i < summary_count; i++) {
         const double value = summary_value(result, i);
-        (isfinite(value) ? sqlite3_bind_double(row, column++, value)
-                         : sqlite3_bind_null(row, column++));
+        if (isfinite(value)) {
+            sqlite3_bind_double(row, column++, value);
+        } else {
+            sqlite3_bind_null(row, column++);
+        }
     }
 }
 
@@ -65,8 +68,11 @@ status sweep_store_quantity(sweep_store *of, sweep_share share, const char *key,
 {
     sweep_database *store = database_of(of);
     const long long total = (long long)store->sweep->run_count;
-    const long long first = share.parts > 0 ? share.part : 1,
-                    step = share.parts > 0 ? share.parts : 1;
+    long long first = 1, step = 1;
+    if (share.parts > 0) {
+        first = share.part;
+        step = share.parts;
+    }
     size_t failures = 0;
     sqlite3_stmt *rows = NULL;
 
@@ -75,14 +81,16 @@ status sweep_store_quantity(sweep_store *of, sweep_share share, const char *key,
     }
 
     // the rows of a share are looked up one by one
-    char *sql =
-        share.parts == 0
-            ? sqlite3_mprintf("SELECT run, status, \"%w\" FROM run", key)
-            : sqlite3_mprintf(
-                  "WITH RECURSIVE part(n) AS (SELECT %lld UNION ALL SELECT n + %lld "
-                  "FROM part WHERE n + %lld <= %lld) "
-                  "SELECT run, status, \"%w\" FROM run WHERE run IN part",
-                  first, step, step, total, key);
+    char *sql;
+    if (share.parts == 0) {
+        sql = sqlite3_mprintf("SELECT run, status, \"%w\" FROM run", key);
+    } else {
+        sql = sqlite3_mprintf(
+            "WITH RECURSIVE part(n) AS (SELECT %lld UNION ALL SELECT n + %lld "
+            "FROM part WHERE n + %lld <= %lld) "
+            "SELECT run, status, \"%w\" FROM run WHERE run IN part",
+            first, step, step, total, key);
+    }
 
     // a run that failed, or has no such quantity, stays missing
     status code;
@@ -185,17 +193,17 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
         result_headings(&csv, columns, count + (told_idle ? 1 : 0));
     }
     while (sqlite3_step(rows) == SQLITE_ROW && !ferror(stream)) {
-        json_t *object =
-            json ? json_object() : NULL; // NULL loses whatever is put into it
+        json_t *object = NULL; // which loses whatever is put into it
+        if (json) {
+            object = json_object();
+        }
         for (int k = 0; k < count; k++) {
             const int type = sqlite3_column_type(rows, at[k]);
-            result_cell cell;
+            result_cell cell = {NULL, (double)NAN};
             if (type == SQLITE_TEXT) {
                 cell = (result_cell){(const char *)sqlite3_column_text(rows, at[k]), 0};
-            } else {
-                cell = (result_cell){NULL, type == SQLITE_NULL
-                                               ? (double)NAN
-                                               : sqlite3_column_double(rows, at[k])};
+            } else if (type != SQLITE_NULL) {
+                cell.number = sqlite3_column_double(rows, at[k]);
             }
             if (json) {
                 result_put(object, columns[k].key, cell);
@@ -216,7 +224,9 @@ status sweep_store_write(sweep_store *of, FILE *stream, bool json, fault *f)
         }
         json_decref(object);
     }
-    fputs(json ? "\n  ]\n}\n" : "", stream);
+    if (json) {
+        fputs("\n  ]\n}\n", stream);
+    }
     if (sqlite3_finalize(rows) == SQLITE_OK) {
         return STATUS_OK;
     }
@@ -232,7 +242,8 @@ static status take_row(const sweep_database *store, sqlite3_stmt *row, int key_c
     for (int k = 0; k < key_count; k++) {
         // room for 64 of them, then for twice as many whenever it is full
         if (at == 0 || (at >= 64 && (at & (at - 1)) == 0)) {
-            double *more = realloc(columns[k], (at > 0 ? 2 * at : 64) * sizeof *more);
+            const size_t room = at > 0 ? 2 * at : 64;
+            double *more = realloc(columns[k], room * sizeof *more);
             if (more == NULL) {
                 return fault_no_memory(f);
             }
@@ -274,17 +285,24 @@ static status query(sweep_database *store, const char *const *keys, int key_coun
 
     // what is wanted
     status code = STATUS_OK;
+    const char *separator = "SELECT ";
     for (int k = 0; k < key_count && code == STATUS_OK; k++) {
         code = find_column(store, keys[k], f);
-        sqlite3_str_appendf(sql, "%s\"%w\"", k == 0 ? "SELECT " : ", ", keys[k]);
+        sqlite3_str_appendf(sql, "%s\"%w\"", separator, keys[k]);
+        separator = ", ";
     }
 
     // of which runs, in which order
+    separator = " FROM run WHERE";
     for (int k = 0; k < key_count; k++) {
-        sqlite3_str_appendf(sql, "%s typeof(\"%w\") IN ('real', 'integer')",
-                            k == 0 ? " FROM run WHERE" : " AND", keys[k]);
+        sqlite3_str_appendf(sql, "%s typeof(\"%w\") IN ('real', 'integer')", separator,
+                            keys[k]);
+        separator = " AND";
     }
-    sqlite3_str_appendf(sql, " ORDER BY 1%s", key_count > 1 ? ", 2" : "");
+    sqlite3_str_appendall(sql, " ORDER BY 1");
+    if (key_count > 1) {
+        sqlite3_str_appendall(sql, ", 2");
+    }
 
     if (code != STATUS_OK) {
         sqlite3_free(sqlite3_str_finish(sql));

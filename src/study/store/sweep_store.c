@@ -25,10 +25,12 @@ static status make_tables(sweep_database *store, fault *f)
     run_column columns[RUN_MOST_COLUMNS];
     const int count = database_columns(store->sweep, columns);
     sqlite3_str *sql = sqlite3_str_new(store->database);
+    const char *separator = "CREATE TABLE run (";
     for (int i = 0; i < count; i++) {
         const char *quote = columns[i].quote != NULL ? columns[i].quote : "";
-        sqlite3_str_appendf(sql, "%s%s%w%s %s", i == 0 ? "CREATE TABLE run (" : ", ",
-                            quote, columns[i].told.key, quote, columns[i].type);
+        sqlite3_str_appendf(sql, "%s%s%w%s %s", separator, quote, columns[i].told.key,
+                            quote, columns[i].type);
+        separator = ", ";
     }
     sqlite3_str_appendall(sql, ")");
     return database_use(store, sql, NULL, f);
@@ -39,10 +41,9 @@ static status prepare_insert(sweep_database *store, fault *f)
 {
     run_column columns[RUN_MOST_COLUMNS];
     sqlite3_str *sql = sqlite3_str_new(store->database);
-    for (int i = database_columns(store->sweep, columns); i > 0; i--) {
-        sqlite3_str_appendall(sql, sqlite3_str_length(sql) == 0
-                                       ? "INSERT INTO run VALUES (?"
-                                       : ", ?");
+    sqlite3_str_appendall(sql, "INSERT INTO run VALUES (?");
+    for (int i = database_columns(store->sweep, columns); i > 1; i--) {
+        sqlite3_str_appendall(sql, ", ?");
     }
     sqlite3_str_appendall(sql, ")");
     return database_use(store, sql, &store->insert, f);
