@@ -1,3 +1,4 @@
+// Words of figures: markup, units, numbers, and plain text.
 #include "render/page/text.h"
 
 #include <assert.h>
@@ -79,8 +80,9 @@ static gboolean translate(const GMatchInfo *match, GString *out, gpointer contex
         // in 1/1024 of a point, which every version of Pango understands
         const line_letters *l = context;
         double small = text_index_letters(l->size * l->scale) / l->scale;
+        const double rise = group == 2 ? 0.35 : -0.2; // superscript or subscript
         text_append(out, "<span size=\"%d\" rise=\"%d\">", (int)(small * 1024),
-                    (int)((group == 2 ? 0.35 : -0.2) * l->size * 1024));
+                    (int)(rise * l->size * 1024));
     }
     return FALSE;
 }
@@ -116,6 +118,22 @@ char *text_unit(const char *unit)
     return g_string_free(shown, FALSE);
 }
 
+const char *text_or(const char *text, const char *otherwise)
+{
+    if (text != NULL) {
+        return text;
+    }
+    return otherwise;
+}
+
+const char *text_sign(double value)
+{
+    if (value < 0) {
+        return "\u2212";
+    }
+    return "";
+}
+
 char *text_quantity(double value, int digits, const char *unit)
 {
     assert(digits > 0);
@@ -126,26 +144,28 @@ char *text_quantity(double value, int digits, const char *unit)
         number[length - 1] = '\0';
     }
     g_autofree char *shown = text_unit(unit);
-    return text_printf("%s%s\u2009%s", value < 0 ? "\u2212" : "", number, shown);
+    return text_printf("%s%s\u2009%s", text_sign(value), number, shown);
 }
 
 char *text_number(double value, int digits)
 {
     assert(digits > 0);
     char number[48];
-    const char *sign = value < 0 ? "\u2212" : "";
+    const char *sign = text_sign(value);
     decimal_print(number, sizeof number, "%.*g", digits, fabs(value));
     char *exponent = strchr(number, 'e');
     if (exponent == NULL) {
         return text_printf("%s%s", sign, number);
     }
 
-    // mantissa and power of ten; a mantissa of 1 goes without saying
+    // a power of ten; a mantissa of 1 is left out
     int power = atoi(exponent + 1);
     *exponent = '\0';
-    bool one = strcmp(number, "1") == 0;
-    return text_printf("%s%s%s10<sup>%s%d</sup>", sign, one ? "" : number,
-                       one ? "" : "\u00b7", power < 0 ? "\u2212" : "", abs(power));
+    g_autofree char *ten = text_printf("10<sup>%s%d</sup>", text_sign(power), abs(power));
+    if (strcmp(number, "1") == 0) {
+        return text_printf("%s%s", sign, ten);
+    }
+    return text_printf("%s%s\u00b7%s", sign, number, ten);
 }
 
 char *text_label(const char *description)
@@ -156,7 +176,10 @@ char *text_label(const char *description)
     gunichar first = g_utf8_get_char(label);
     char letter[8] = "";
     letter[g_unichar_to_utf8(g_unichar_toupper(first), letter)] = '\0';
-    return text_printf("%s%s", letter, label[0] != '\0' ? g_utf8_next_char(label) : "");
+    if (label[0] == '\0') {
+        return g_strdup(letter);
+    }
+    return text_printf("%s%s", letter, g_utf8_next_char(label));
 }
 
 char *text_printable(const char *bytes)

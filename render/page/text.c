@@ -1,22 +1,12 @@
+// Setting of texts with Pango: fonts, layouts, drawing.
 #include "render/page/text.h"
 
 #include <assert.h>
 #include <errno.h>
 #include <math.h>
-#include <stdatomic.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "render/page/page.h"
-
-// And whether Pango has begun to look for fonts, which it does on threads of its own.
-_Thread_local volatile sig_atomic_t page_libraries;
-static atomic_bool has_context;
-
-bool page_in_libraries(void)
-{
-    return page_libraries > 0 || (atomic_load(&has_context) && gettid() != getpid());
-}
 
 // Whether a font of the family is installed.
 static bool family_is_there(const char *family)
@@ -24,7 +14,7 @@ static bool family_is_there(const char *family)
     PangoFontFamily **families = NULL;
     int count = 0;
     bool there = false;
-    atomic_store(&has_context, true);
+    page_begin_fonts();
     pango_font_map_list_families(pango_cairo_font_map_get_default(), &families, &count);
     for (int i = 0; i < count && !there; i++) {
         there = g_ascii_strcasecmp(pango_font_family_get_name(families[i]), family) == 0;
@@ -65,7 +55,7 @@ status text_check_family(const char *family, fault *f)
 PangoContext *text_context_create(void)
 {
     page_libraries++;
-    atomic_store(&has_context, true);
+    page_begin_fonts();
     PangoContext *context =
         pango_font_map_create_context(pango_cairo_font_map_get_default());
     cairo_font_options_t *options = cairo_font_options_create();

@@ -58,6 +58,12 @@ char *text_vprintf(const char *format, va_list list)
 void text_append(GString *text, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+// The text, or another one where there is none (NULL).
+const char *text_or(const char *text, const char *otherwise);
+
+// A true minus sign (U+2212) for a negative number, otherwise an empty text.
+const char *text_sign(double value);
+
 // Any bytes as valid UTF-8 of printable characters and line feeds. Free the result with
 // g_free.
 char *text_printable(const char *bytes);

@@ -102,16 +102,22 @@ void scale_widen(axis_scale *s, double share)
 static void format_decade(const axis_scale *s, int mantissa, int power,
                           char text[AXIS_LABEL])
 {
+    // short numbers are written out
     if (s->low > -2.5 && s->high < 4.5) {
-        decimal_print(text, AXIS_LABEL, "%.*f", power < 0 ? -power : 0,
-                      mantissa * pow(10, power));
+        int decimals = 0;
+        if (power < 0) {
+            decimals = -power;
+        }
+        decimal_print(text, AXIS_LABEL, "%.*f", decimals, mantissa * pow(10, power));
         return;
     }
+
+    // others are powers of ten; a mantissa of 1 is left out
     char factor[16] = "";
     if (mantissa > 1) {
         snprintf(factor, sizeof factor, "%d\u00b7", mantissa);
     }
-    snprintf(text, AXIS_LABEL, "%s10<sup>%s%d</sup>", factor, power < 0 ? "\u2212" : "",
+    snprintf(text, AXIS_LABEL, "%s10<sup>%s%d</sup>", factor, text_sign(power),
              abs(power));
 }
 
@@ -122,7 +128,10 @@ static void choose_decades(axis *a, int wanted)
     static const int mantissas[] = {1, 2, 5};
     const axis_scale *s = &a->scale;
     double decades = s->high - s->low;
-    int spacing = 1, per_decade = 3 * decades <= wanted || decades < FEW_DECADES ? 3 : 1;
+    int spacing = 1, per_decade = 1;
+    if (3 * decades <= wanted || decades < FEW_DECADES) {
+        per_decade = 3;
+    }
     while (decades / spacing > wanted) {
         spacing++;
     }
@@ -133,8 +142,10 @@ static void choose_decades(axis *a, int wanted)
 
     // all that lie on the axis
     for (int power = (int)floor(s->low); power <= (int)ceil(s->high); power++) {
-        for (int i = 0; i < per_decade && power % spacing == 0 && a->count < TICKS_MOST;
-             i++) {
+        if (power % spacing != 0) {
+            continue;
+        }
+        for (int i = 0; i < per_decade && a->count < TICKS_MOST; i++) {
             double at = power + log10(mantissas[i]);
             if (at >= s->low - 1e-9 && at <= s->high + 1e-9) {
                 format_decade(s, mantissas[i], power, a->own[a->count]);
@@ -226,32 +237,43 @@ int axis_minor_ticks(const axis *a, double length, double at[AXIS_MINOR])
 
 // ---- labels
 
+static bool has_text(const char *text)
+{
+    return text != NULL && text[0] != '\0';
+}
+
 // A unit with its factor, as markup that is never broken into lines.
 static char *unit_markup(const char *unit, int exponent)
 {
     char factor[64] = "";
-    bool has_unit = unit != NULL && unit[0] != '\0';
     const ticks scaled = {.exponent = exponent};
-    g_autofree char *shown = text_unit(has_unit ? unit : "");
     tick_factor(&scaled, factor, sizeof factor);
+    if (!has_text(unit)) {
+        return text_printf("(%s)", factor);
+    }
 
-    // before a unit the factor goes without its multiplication sign
-    const char *power = has_unit && factor[0] ? factor + strlen("\u00d7") : factor;
     // Pango would break the line after a slash
+    g_autofree char *shown = text_unit(unit);
     g_auto(GStrv) parts = g_strsplit(shown, "/", -1);
     g_autofree char *unbroken = g_strjoinv("\u2060/\u2060", parts);
-    return text_printf("(%s%s%s)", power, has_unit && factor[0] ? "\u2009" : "",
-                       unbroken);
+
+    // before a unit the factor goes without its multiplication sign
+    if (factor[0] == '\0') {
+        return text_printf("(%s)", unbroken);
+    }
+    return text_printf("(%s\u2009%s)", factor + strlen("\u00d7"), unbroken);
 }
 
 char *axis_label(const char *label, const char *unit, int exponent)
 {
-    if ((unit == NULL || unit[0] == '\0') && exponent == 0) {
-        return g_strdup(label ? label : "");
+    if (!has_text(unit) && exponent == 0) {
+        return g_strdup(text_or(label, ""));
     }
     g_autofree char *whole = unit_markup(unit, exponent);
-    bool named = label != NULL && label[0] != '\0';
-    return text_printf("%s%s%s", named ? label : "", named ? " " : "", whole);
+    if (!has_text(label)) {
+        return g_steal_pointer(&whole);
+    }
+    return text_printf("%s %s", label, whole);
 }
 
 char *axis_title(const axis *a)

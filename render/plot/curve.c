@@ -21,7 +21,10 @@ double plane_y(const plane *p, double y)
 static double value_at(const figure_series *s, const double *values, size_t index)
 {
     double value;
-    size_t stride = s->stride ? s->stride : sizeof value;
+    size_t stride = s->stride;
+    if (stride == 0) {
+        stride = sizeof value;
+    }
     memcpy(&value, (const char *)values + index * stride, sizeof value);
     return value;
 }
@@ -38,6 +41,9 @@ double series_y(const figure_series *s, size_t index)
 
 double series_shade(const figure_series *s, size_t index)
 {
+    if (s->shade == NULL) {
+        return (double)NAN;
+    }
     return value_at(s, s->shade, index);
 }
 
@@ -80,10 +86,11 @@ static bool narrow(double start, double delta, double low, double high, double *
     if (delta == 0) {
         return start >= low && start <= high;
     }
-    double enter = ((delta > 0 ? low : high) - start) / delta;
-    double leave = ((delta > 0 ? high : low) - start) / delta;
-    *from = fmax(*from, enter);
-    *to = fmin(*to, leave);
+
+    // it meets both borders
+    const double at_low = (low - start) / delta, at_high = (high - start) / delta;
+    *from = fmax(*from, fmin(at_low, at_high));
+    *to = fmin(*to, fmax(at_low, at_high));
     return *from <= *to;
 }
 
@@ -110,9 +117,12 @@ static void pen_to(pen *p, point q)
                 p->sink(p->context, STROKE_MOVE, a.x + from * (q.x - a.x),
                         a.y + from * (q.y - a.y));
             }
+
             // exactly q where nothing is cut off
-            point end =
-                to == 1 ? q : (point){a.x + to * (q.x - a.x), a.y + to * (q.y - a.y)};
+            point end = q;
+            if (to != 1) {
+                end = (point){a.x + to * (q.x - a.x), a.y + to * (q.y - a.y)};
+            }
             p->sink(p->context, STROKE_LINE, end.x, end.y);
             p->moved = to == 1;
         } else {
@@ -158,9 +168,11 @@ static void column_flush(column *c, pen *p)
     }
 
     // first, lowest and highest in their order, last: each once
-    const bool low_first = c->low.number < c->high.number;
-    const numbered all[] = {c->first, low_first ? c->low : c->high,
-                            low_first ? c->high : c->low, c->last};
+    numbered all[] = {c->first, c->low, c->high, c->last};
+    if (c->low.number >= c->high.number) {
+        all[1] = c->high;
+        all[2] = c->low;
+    }
     for (int i = 0; i < 4; i++) {
         if (i == 0 || all[i].number > all[i - 1].number) {
             pen_to(p, all[i].at);

@@ -109,14 +109,23 @@ double axis_title_height(const drawing *d, const axis *a, double length)
     return height_of(d, t);
 }
 
-// Lines at values of an axis, across it, from one place on the page to another.
-static void draw_lines(const drawing *d, const plane *p, bool of_x, const double *values,
-                       int count, double from, double to)
+// Vertical lines at values of x, from one height on the page to another.
+static void draw_verticals(const drawing *d, const plane *p, const double *values,
+                           int count, double from, double to)
 {
     for (int i = 0; i < count; i++) {
-        const double at = of_x ? plane_x(p, values[i]) : plane_y(p, values[i]);
-        picture_line(d->cr, of_x ? at : from, of_x ? from : at, of_x ? at : to,
-                     of_x ? to : at);
+        const double x = plane_x(p, values[i]);
+        picture_line(d->cr, x, from, x, to);
+    }
+}
+
+// Horizontal lines at values of y.
+static void draw_horizontals(const drawing *d, const plane *p, const double *values,
+                             int count, double from, double to)
+{
+    for (int i = 0; i < count; i++) {
+        const double y = plane_y(p, values[i]);
+        picture_line(d->cr, from, y, to, y);
     }
 }
 
@@ -124,10 +133,12 @@ void draw_grid(const drawing *d, const plane *p, const axis *x, const axis *y)
 {
     const figure_rect *box = &p->box;
     set_plain_line(d->cr, d->style.colours->grid, GRID_WIDTH);
-    draw_lines(d, p, false, y->at, y->count, box->x, box->x + box->width);
+    draw_horizontals(d, p, y->at, y->count, box->x, box->x + box->width);
+
     // where steps are not even the eye needs help across, too
-    draw_lines(d, p, true, x->at, x->even.count == 0 ? x->count : 0, box->y,
-               box->y + box->height);
+    if (x->even.count == 0) {
+        draw_verticals(d, p, x->at, x->count, box->y, box->y + box->height);
+    }
 }
 
 // A label that would touch the one before it is left out, unless ticks are even.
@@ -165,10 +176,14 @@ void draw_axes(drawing *d, const plane *p, const axis *x, const axis *y, axes_lo
     int x_count = axis_minor_ticks(x, p->box.width, minor_x);
     int y_count = axis_minor_ticks(y, p->box.height, minor_y);
     double bottom = p->box.y + p->box.height, right = p->box.x + p->box.width;
-    draw_lines(d, p, true, minor_x, x_count, bottom, bottom + MINOR_LENGTH);
-    draw_lines(d, p, false, minor_y, y_count, p->box.x, p->box.x - MINOR_LENGTH);
-    draw_lines(d, p, true, x->at, x->count, bottom, bottom + TICK_LENGTH);
-    draw_lines(d, p, false, y->at, y->count, p->box.x, p->box.x - TICK_LENGTH);
+
+    // ticks point outwards
+    draw_verticals(d, p, minor_x, x_count, bottom, bottom + MINOR_LENGTH);
+    draw_horizontals(d, p, minor_y, y_count, p->box.x, p->box.x - MINOR_LENGTH);
+    draw_verticals(d, p, x->at, x->count, bottom, bottom + TICK_LENGTH);
+    draw_horizontals(d, p, y->at, y->count, p->box.x, p->box.x - TICK_LENGTH);
+
+    // the axes themselves, or a frame
     cairo_set_line_cap(d->cr, CAIRO_LINE_CAP_SQUARE);
     picture_line(d->cr, p->box.x, p->box.y, p->box.x, bottom);
     picture_line(d->cr, p->box.x, bottom, right, bottom);

@@ -120,12 +120,18 @@ typedef struct drawing {
 text_block frame_title(const drawing *d, double *left);
 text_block frame_caption(const drawing *d, double *left);
 
+// The width of the page [mm].
+double figure_width(const figure *fig);
+
 // The number of columns of panels that fit the page.
 int figure_columns(const figure *fig);
 
 // Computes the layout. STATUS_BAD_ARGUMENT if the page is too small or an axis has no
 // values.
 status layout_figure(drawing *d, fault *f);
+
+// A panel's share of the height, where it gives none 1.
+double panel_weight(const figure_panel *panel);
 
 // Whether the panel's vertical axis has labels of its own, not only those of the first
 // column.

@@ -110,30 +110,34 @@ void figure_take_look(figure *fig, const page_look *look)
 static double wrapped_height(const figure *fig, const char *markup, double size,
                              bool bold)
 {
-    const double page = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM;
+    const double page = figure_width(fig) * POINTS_PER_MM;
+    double width = page - SIDES;
+    if (page < NARROW_PAGE) {
+        width = page - 2 * PAGE_MARGIN;
+    }
+
     g_autoptr(PangoContext) context = text_context_create();
     text_block t = {.markup = markup,
                     .size = page_letters(fig->letters, size),
                     .family = fig->font,
                     .bold = bold,
                     .balanced = bold,
-                    .width = page - (page < NARROW_PAGE ? 2 * PAGE_MARGIN : SIDES)};
-
+                    .width = width};
     return text_measure(context, &t).height + 4;
 }
 
 void figure_size(const figure *fig, double *width, double *height)
 {
-    int columns = figure_columns(fig);
-
     // a page that is half as wide has panels that are a fifth lower
-    double points = 0, share = fig->width > 0 ? fmin(1, fig->width / DEFAULT_WIDTH) : 1;
-    double panel = PANEL_HEIGHT * pow(share, 0.32) * POINTS_PER_MM;
+    const double share = fmin(1, figure_width(fig) / DEFAULT_WIDTH);
+    const double panel = PANEL_HEIGHT * pow(share, 0.32) * POINTS_PER_MM;
+    const int columns = figure_columns(fig);
+    double points = 0;
 
     // rows of panels
     for (int i = 0; i < fig->panel_count; i += columns) {
         const figure_panel *p = &fig->panels[i];
-        points += (p->weight > 0 ? p->weight : 1) * panel + PANEL_SPACE;
+        points += panel_weight(p) * panel + PANEL_SPACE;
         if (p->impulse_count > 0) {
             points += STRIP_HEIGHT + STRIP_SPACE;
         }
@@ -152,7 +156,7 @@ void figure_size(const figure *fig, double *width, double *height)
         points += wrapped_height(fig, fig->caption, SMALL_LETTERS, false);
     }
 
-    *width = (fig->width > 0 ? fig->width : DEFAULT_WIDTH) * POINTS_PER_MM;
+    *width = figure_width(fig) * POINTS_PER_MM;
     if (fig->height > 0) {
         *height = fig->height * POINTS_PER_MM;
     } else {
@@ -284,7 +288,7 @@ status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault
     d->fig = fig;
     d->style = (plot_style){.theme = fig->theme,
                             .colours = palette_of(fig->theme),
-                            .font = fig->font != NULL ? fig->font : TEXT_FAMILY,
+                            .font = text_or(fig->font, TEXT_FAMILY),
                             .title = page_letters(fig->letters, TITLE_LETTERS),
                             .label = page_letters(fig->letters, LETTERS_NORMAL),
                             .tick = page_letters(fig->letters, TICK_LETTERS),
@@ -340,8 +344,16 @@ typedef struct long_form {
 static void write_name(long_form *t, const char *name, const char *label,
                        const char *unit)
 {
-    g_autofree char *plain = name ? g_strdup(name) : text_plain(label ? label : "");
-    csv_heading(t->csv, plain, unit != NULL && unit[0] != '\0' ? unit : NULL);
+    g_autofree char *plain = NULL;
+    if (name != NULL) {
+        plain = g_strdup(name);
+    } else {
+        plain = text_plain(text_or(label, ""));
+    }
+    if (unit != NULL && unit[0] == '\0') {
+        unit = NULL;
+    }
+    csv_heading(t->csv, plain, unit);
 }
 
 static void write_panel_name(long_form *t, const figure_panel *panel)
@@ -353,13 +365,22 @@ static void write_panel_name(long_form *t, const figure_panel *panel)
     }
 }
 
+// A number; what is not finite leaves the field empty.
+static void write_value(long_form *t, double value)
+{
+    if (isinf(value)) {
+        value = (double)NAN;
+    }
+    csv_number(t->csv, value);
+}
+
 // The end of a row; `shade` is the value on the colour scale, where the figure has one.
 static void write_point(long_form *t, double x, double y, double shade)
 {
     csv_number(t->csv, x);
-    csv_number(t->csv, isfinite(y) ? y : (double)NAN);
+    write_value(t, y);
     if (t->shaded) {
-        csv_number(t->csv, isfinite(shade) ? shade : (double)NAN);
+        write_value(t, shade);
     }
     csv_end_row(t->csv);
 }
@@ -367,7 +388,7 @@ static void write_point(long_form *t, double x, double y, double shade)
 // All that a panel shows of its own.
 static void write_panel(long_form *t, const figure_panel *panel)
 {
-    const figure_map *map = panel->map;
+    // curves; a point without an x has no place
     for (int k = 0; k < panel->series_count; k++) {
         const figure_series *s = &panel->series[k];
         for (size_t i = 0; i < s->count && !ferror(t->csv->stream); i++) {
@@ -376,10 +397,12 @@ static void write_panel(long_form *t, const figure_panel *panel)
             }
             write_panel_name(t, panel);
             write_name(t, s->name, s->label, NULL);
-            double shade = s->shade != NULL ? series_shade(s, i) : (double)NAN;
-            write_point(t, series_x(s, i), series_y(s, i), shade);
+            write_point(t, series_x(s, i), series_y(s, i), series_shade(s, i));
         }
     }
+
+    // cells of a map, and impulses
+    const figure_map *map = panel->map;
     for (size_t i = 0; map != NULL && i < map->columns && !ferror(t->csv->stream); i++) {
         for (size_t j = 0; j < map->rows; j++) {
             write_panel_name(t, panel);
@@ -395,9 +418,8 @@ static void write_panel(long_form *t, const figure_panel *panel)
 
     // levels go by their label alone, and have no x of their own
     for (int i = 0; i < panel->level_count; i++) {
-        const char *label = panel->levels[i].label;
         write_panel_name(t, panel);
-        write_name(t, NULL, label ? label : "level", NULL);
+        write_name(t, NULL, text_or(panel->levels[i].label, "level"), NULL);
         write_point(t, (double)NAN, panel->levels[i].y, (double)NAN);
     }
 }
@@ -413,8 +435,7 @@ static void write_instant(long_form *t, const char *panel, const char *series, d
 static void write_marks(long_form *t, const figure *fig)
 {
     for (int i = 0; i < fig->mark_count; i++) {
-        g_autofree char *label =
-            text_plain(fig->marks[i].label ? fig->marks[i].label : "");
+        g_autofree char *label = text_plain(text_or(fig->marks[i].label, ""));
         write_instant(t, "mark", label, fig->marks[i].x);
     }
     for (int i = 0; i < fig->interval_count; i++) {
@@ -438,8 +459,11 @@ static bool panels_are_alike(const figure *fig)
 
 static void write_axis_heading(long_form *t, const figure_axis *a, const char *otherwise)
 {
-    bool nameless = a->name == NULL && a->label == NULL;
-    write_name(t, nameless ? otherwise : a->name, a->label, a->unit);
+    const char *name = a->name;
+    if (name == NULL && a->label == NULL) {
+        name = otherwise;
+    }
+    write_name(t, name, a->label, a->unit);
 }
 
 void figure_write_csv(const figure *fig, csv_writer *csv)

@@ -13,6 +13,10 @@
 // of a panel whose vertical axis is labelled in the first column
 #define SHARED_SPACE 6.0
 #define BAR_TICK     16.0 // of a colour bar to a tick
+#define LEGEND_ROW   11.0 // height of a legend above its panel
+#define X_TICK       42.0 // of a horizontal axis to a tick
+#define Y_TICK       20.0 // of a vertical axis
+#define DECADE_TICK  14.0 // of a logarithmic vertical axis
 #define COLUMN_WIDTH 42.0 // least width of a column of panels [mm]
 #define FIRST_LEFT   40.0 // where the panels begin before anything is known
 
@@ -23,7 +27,7 @@ static status widen_range(axis_scale *s, double share, const figure_axis *from, 
 {
     FAULT_IF(s->kind == SCALE_LOGARITHMIC && scale_is_empty(s), f, STATUS_BAD_ARGUMENT,
              "the logarithmic axis '%s' has no point above zero to show",
-             from->name != NULL ? from->name : "");
+             text_or(from->name, ""));
     scale_widen(s, share);
     return STATUS_OK;
 }
@@ -53,6 +57,16 @@ static status choose_x_range(drawing *d, fault *f)
     return widen_range(x, fig->x.room, &fig->x, f);
 }
 
+// The labels of peaks stand above their points.
+static void include_peak_labels(const figure *fig, axis_scale *y)
+{
+    for (int i = 0; i < fig->mark_count; i++) {
+        if (fig->marks[i].pointed) {
+            scale_include(y, fig->marks[i].y + POINT_ROOM * (y->high - y->low));
+        }
+    }
+}
+
 static status choose_y_range(const drawing *d, panel_layout *l, fault *f)
 {
     const figure_panel *panel = l->panel;
@@ -76,16 +90,18 @@ static status choose_y_range(const drawing *d, panel_layout *l, fault *f)
     if (panel->y.with_zero && !scale_is_empty(y)) {
         scale_include(y, 0);
     }
-    for (int i = 0; i < d->fig->mark_count && l == d->panels && y->kind == SCALE_LINEAR;
-         i++) {
-        // the label of a peak stands above it
-        const figure_mark *m = &d->fig->marks[i];
-        if (m->pointed && !scale_is_empty(y)) {
-            scale_include(y, m->y + POINT_ROOM * (y->high - y->low));
-        }
+    if (l == d->panels && y->kind == SCALE_LINEAR && !scale_is_empty(y)) {
+        include_peak_labels(d->fig, y);
     }
-    const double room = panel->map != NULL ? 0 : RANGE_SPACE;
-    return widen_range(y, panel->y.room > 0 ? panel->y.room : room, &panel->y, f);
+
+    // a map reaches to the edges
+    double room = RANGE_SPACE;
+    if (panel->y.room > 0) {
+        room = panel->y.room;
+    } else if (panel->map != NULL) {
+        room = 0;
+    }
+    return widen_range(y, room, &panel->y, f);
 }
 
 // One vertical axis for all panels: from the lowest to the highest end.
@@ -103,13 +119,26 @@ static void share_y_ranges(drawing *d)
 
 // ---- columns
 
+double figure_width(const figure *fig)
+{
+    if (fig->width > 0) {
+        return fig->width;
+    }
+    return DEFAULT_WIDTH;
+}
+
 int figure_columns(const figure *fig)
 {
-    double width = fig->width > 0 ? fig->width : DEFAULT_WIDTH;
-    int columns = fig->columns > 0 ? fig->columns : 1, most = (int)(width / COLUMN_WIDTH);
+    const int most = (int)(figure_width(fig) / COLUMN_WIDTH);
+    int columns = 1;
+    if (fig->columns > 0) {
+        columns = fig->columns;
+    }
     if (columns <= most || most < 1) {
         return columns;
     }
+
+    // two and one would leave a gap
     if (most == 2 && columns == 3) {
         return 1;
     }
@@ -157,17 +186,21 @@ static void place_columns(drawing *d)
         between += right[c] + left[c + 1];
     }
 
-    // the ends of all, then of each
+    // the ends of all, then of each; the outer ones are exact
     d->left = PAGE_MARGIN + left[0];
     d->right = d->page.width - PAGE_MARGIN - right[d->columns - 1];
     double width = (d->right - d->left - between) / d->columns, x = d->left;
     for (int c = 0; c < d->columns; c++) {
-        bool last = c + 1 == d->columns;
-        d->column[c] = (column_layout){c == 0 ? PAGE_MARGIN : x - left[c], x,
-                                       last ? d->right : x + width};
-        x += width + right[c] + (last ? 0 : left[c + 1]);
+        d->column[c] = (column_layout){x - left[c], x, x + width};
+        x += width + right[c];
+        if (c + 1 < d->columns) {
+            x += left[c + 1];
+        }
     }
+    d->column[0].edge = PAGE_MARGIN;
+    d->column[d->columns - 1].right = d->right;
 
+    // panels take those of their column
     for (int i = 0; i < d->fig->panel_count; i++) {
         panel_layout *l = &d->panels[i];
         const column_layout *c = &d->column[l->column];
@@ -179,51 +212,63 @@ static void place_columns(drawing *d)
 
 // ---- rows
 
+double panel_weight(const figure_panel *panel)
+{
+    if (panel->weight > 0) {
+        return panel->weight;
+    }
+    return 1;
+}
+
+// Space above a panel for what stands there [pt].
+static double space_above(const panel_layout *l)
+{
+    double space = 0;
+    if (l->legend_column) {
+        space += l->legend.height + 2;
+    } else if (l->legend_row) {
+        space += LEGEND_ROW;
+    }
+    if (l->panel->heading != NULL) {
+        space += HEADING_ROW;
+    }
+    if (l->panel->impulse_count > 0) {
+        space += STRIP_HEIGHT + STRIP_SPACE;
+    }
+    return space;
+}
+
 // Space above a row of panels and its share of the height: the largest of its panels.
 static void row_needs(const drawing *d, int row, double *above, double *weight)
 {
     *above = *weight = 0;
     for (int i = row * d->columns; i < d->fig->panel_count && i < (row + 1) * d->columns;
          i++) {
-        const panel_layout *l = &d->panels[i];
-        double space;
-        if (l->legend_column) {
-            space = l->legend.height + 2;
-        } else if (l->legend_row) {
-            space = 11;
-        } else {
-            space = 0;
-        }
-        if (l->panel->heading != NULL) {
-            space += HEADING_ROW;
-        }
-        if (l->panel->impulse_count > 0) {
-            space += STRIP_HEIGHT + STRIP_SPACE;
-        }
-        *above = fmax(*above, space);
-        double own = d->fig->panels[i].weight;
-        *weight = fmax(*weight, own > 0 ? own : 1);
+        *above = fmax(*above, space_above(&d->panels[i]));
+        *weight = fmax(*weight, panel_weight(&d->fig->panels[i]));
     }
 }
 
 static text_block frame_text(const drawing *d, const char *markup, double size,
                              double *left)
 {
-    const bool narrow = d->page.width < NARROW_PAGE;
-    text_block t = figure_text_of(d, markup, size);
-    if (narrow) {
+    double right = d->right;
+    *left = d->left;
+    if (d->page.width < NARROW_PAGE) {
         *left = PAGE_MARGIN;
-    } else {
-        *left = d->left;
+        right = d->page.width - PAGE_MARGIN;
     }
-    t.width = (narrow ? d->page.width - PAGE_MARGIN : d->right) - *left;
+    text_block t = figure_text_of(d, markup, size);
+    t.width = right - *left;
     return t;
 }
 
 text_block frame_title(const drawing *d, double *left)
 {
-    const figure *fig = d->fig;
-    char *title = fig->title != NULL && !fig->bare ? text_escape(fig->title) : NULL;
+    char *title = NULL;
+    if (d->fig->title != NULL && !d->fig->bare) {
+        title = text_escape(d->fig->title);
+    }
     text_block t = frame_text(d, title, d->style.title, left);
     t.bold = t.balanced = true;
     return t;
@@ -231,7 +276,11 @@ text_block frame_title(const drawing *d, double *left)
 
 text_block frame_caption(const drawing *d, double *left)
 {
-    return frame_text(d, d->fig->bare ? NULL : d->fig->caption, d->style.small, left);
+    const char *caption = d->fig->caption;
+    if (d->fig->bare) {
+        caption = NULL;
+    }
+    return frame_text(d, caption, d->style.small, left);
 }
 
 // Places what stands above and below the panels; gives the ends of what is left.
@@ -365,12 +414,12 @@ static void place_all(drawing *d, int *mark_rows)
         // ticks of all axes
         for (int i = 0; i < d->fig->panel_count; i++) {
             panel_layout *l = &d->panels[i];
-            double height = l->plane.box.height;
+            double height = l->plane.box.height, spacing = Y_TICK;
+            if (l->plane.y.kind == SCALE_LOGARITHMIC) {
+                spacing = DECADE_TICK;
+            }
             l->y.scale = l->plane.y;
-            axis_choose_ticks(&l->y, &l->panel->y,
-                              axis_wish(height,
-                                        l->plane.y.kind == SCALE_LOGARITHMIC ? 14 : 20, 2,
-                                        8));
+            axis_choose_ticks(&l->y, &l->panel->y, axis_wish(height, spacing, 2, 8));
             if (l->panel->colours != NULL) {
                 axis_choose_ticks(&l->colours, &l->panel->colours->axis,
                                   axis_wish(height, BAR_TICK, 2, 8));
@@ -378,7 +427,7 @@ static void place_all(drawing *d, int *mark_rows)
         }
         place_columns(d);
         double width = d->column[0].right - d->column[0].left;
-        axis_choose_ticks(&d->x, &d->fig->x, axis_wish(width, 42, 2, 12));
+        axis_choose_ticks(&d->x, &d->fig->x, axis_wish(width, X_TICK, 2, 12));
 
         // labels of marks above the panels
         if (d->marks_inside) {
@@ -391,17 +440,17 @@ static void place_all(drawing *d, int *mark_rows)
 
 static status check_room(const drawing *d, fault *f)
 {
-    int panels = d->fig->panel_count;
+    const int panels = d->fig->panel_count;
+    const char *plural = panels == 1 ? "" : "s";
 
-    // one panel without room spoils the figure; its size is told as it was given
+    // one panel without room spoils the figure; the page's size is given in millimetres
     for (int i = 0; i < panels; i++) {
         const figure_rect *box = &d->panels[i].plane.box;
         FAULT_IF(!(box->width >= LEAST_WIDTH && box->height >= LEAST_HEIGHT), f,
                  STATUS_BAD_ARGUMENT,
                  "a figure of %.0f x %.0f mm has no room for its %d panel%s, expected a "
                  "larger page",
-                 d->page.width / 72 * 25.4, d->page.height / 72 * 25.4, panels,
-                 panels == 1 ? "" : "s");
+                 d->page.width / 72 * 25.4, d->page.height / 72 * 25.4, panels, plural);
     }
     return STATUS_OK;
 }
@@ -410,17 +459,17 @@ status layout_figure(drawing *d, fault *f)
 {
     const figure *fig = d->fig;
     int mark_rows = 0;
-
     g_autofree placement *grid = g_new(placement, 1);
 
-    // rows and columns, and what the axes show
+    // rows and columns
     d->columns = figure_columns(fig);
     d->rows = (fig->panel_count + d->columns - 1) / d->columns;
-    d->x.from = &fig->x;
     d->left = FIRST_LEFT;
-
-    d->marks_inside = d->columns == 1 && fig->mark_count > 0 && !fig->marks_above;
     d->right = d->page.width - PAGE_MARGIN;
+    d->marks_inside = d->columns == 1 && fig->mark_count > 0 && !fig->marks_above;
+
+    // what the axes show
+    d->x.from = &fig->x;
     TRY(choose_x_range(d, f));
     for (int i = 0; i < fig->panel_count; i++) {
         panel_layout *l = &d->panels[i];
@@ -432,7 +481,6 @@ status layout_figure(drawing *d, fault *f)
             map_choose_scale(l);
         }
     }
-
     if (fig->shared_y) {
         share_y_ranges(d);
     }

@@ -50,9 +50,14 @@ static double placement_find(const placement *g, double width, double height,
             // against the nearer edge what rounding to cells left over is not wasted
             bool right = 2 * c > PLACEMENT_COLUMNS - columns,
                  low = 2 * r > PLACEMENT_ROWS - rows;
-            figure_rect place = {
-                g->box.x + c * cell_width + margin + (right ? slack_x : 0),
-                g->box.y + r * cell_height + margin + (low ? slack_y : 0), width, height};
+            figure_rect place = {g->box.x + c * cell_width + margin,
+                                 g->box.y + r * cell_height + margin, width, height};
+            if (right) {
+                place.x += slack_x;
+            }
+            if (low) {
+                place.y += slack_y;
+            }
             double cost = ink + corner_cost(g, &place, margin);
             if (cost < best) {
                 best = cost;
@@ -96,7 +101,10 @@ static void divide_inset(const drawing *d, panel_layout *l)
 
     // the digits of a short stretch of time are many: labels that would meet are left out
     double space = l->inset_x.even.step / (p->x.high - p->x.low) * width;
-    int every = space > 0 ? (int)ceil((wide + LABEL_GAP) / space) : 1;
+    int every = 1;
+    if (space > 0) {
+        every = (int)ceil((wide + LABEL_GAP) / space);
+    }
     for (int i = 0; i < l->inset_x.count; i++) {
         if (i % every != 0) {
             l->inset_x.text[i] = "";
@@ -183,11 +191,14 @@ static figure_rect lay_entries(drawing *d, const panel_layout *l, legend_run run
     double x = run.x, y = run.y, line = 0, widest = 0;
     for (int i = 0; i < l->panel->series_count; i++) {
         const figure_series *s = &l->panel->series[i];
-        const bool narrow = d->page.width < NARROW_PAGE && s->symbol != NULL;
         if (s->label == NULL) {
             continue;
         }
-        text_block text = figure_text_of(d, narrow ? s->symbol : s->label, d->style.tick);
+        const char *label = s->label;
+        if (d->page.width < NARROW_PAGE && s->symbol != NULL) {
+            label = s->symbol;
+        }
+        text_block text = figure_text_of(d, label, d->style.tick);
         text.width = run.wrapped;
         const text_size size = text_measure(d->context, &text);
 
@@ -286,8 +297,11 @@ double common_legend(drawing *d, bool draw)
     const legend_run run = {d->left, d->legend_y,
                             d->right - d->left - SWATCH - SWATCH_SPACE, .right = d->right,
                             .draw = draw};
-    if (d->fig->common_legend) {
-        return lay_entries(d, key.panel != NULL ? &key : &d->panels[0], run).height;
+    if (!d->fig->common_legend) {
+        return 0;
     }
-    return 0;
+    if (key.panel == NULL) {
+        return lay_entries(d, &d->panels[0], run).height;
+    }
+    return lay_entries(d, &key, run).height;
 }

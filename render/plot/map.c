@@ -35,7 +35,10 @@ int contour_square(const double z[4], double level, contour_piece pieces[2])
 
     // four crossings: the pieces cut off the corners that differ from the middle
     bool middle = (z[0] + z[1] + z[2] + z[3]) / 4 >= level;
-    int first = count == 4 && (z[0] >= level) != middle ? 3 : 0;
+    int first = 0;
+    if (count == 4 && (z[0] >= level) != middle) {
+        first = 3;
+    }
     for (int i = 0; i < count / 2; i++) {
         int from = side[(first + 2 * i) % count], to = side[(first + 2 * i + 1) % count];
         pieces[i] =
@@ -56,8 +59,12 @@ int contour_square(const double z[4], double level, contour_piece pieces[2])
 // ends.
 static double cell_edge(scale_kind kind, const double *points, size_t count, size_t i)
 {
+    // a single point has a cell of width 1
+    if (count == 1 && i == 0) {
+        return scale_coordinate(kind, points[0]) - 0.5;
+    }
     if (count == 1) {
-        return scale_coordinate(kind, points[0]) + (i == 0 ? -0.5 : 0.5);
+        return scale_coordinate(kind, points[0]) + 0.5;
     }
 
     // the middle between neighbours; the outer ends are as far from the last points as
@@ -74,15 +81,17 @@ static double cell_edge(scale_kind kind, const double *points, size_t count, siz
     return 0.5 * (before + after);
 }
 
+// Includes the outer borders of cells along one axis.
+static void include_edges(axis_scale *s, const double *points, size_t count)
+{
+    scale_include(s, scale_value(s->kind, cell_edge(s->kind, points, count, 0)));
+    scale_include(s, scale_value(s->kind, cell_edge(s->kind, points, count, count)));
+}
+
 void map_include(const figure_map *map, axis_scale *x, axis_scale *y)
 {
-    for (int end = 0; end < 2; end++) {
-        size_t column = end == 0 ? 0 : map->columns, row = end == 0 ? 0 : map->rows;
-        scale_include(x, scale_value(x->kind,
-                                     cell_edge(x->kind, map->x, map->columns, column)));
-        scale_include(y,
-                      scale_value(y->kind, cell_edge(y->kind, map->y, map->rows, row)));
-    }
+    include_edges(x, map->x, map->columns);
+    include_edges(y, map->y, map->rows);
 }
 
 void map_choose_scale(panel_layout *l)
@@ -263,9 +272,11 @@ static void fill_bar(const drawing *d, const panel_layout *l, const figure_rect 
     for (int i = 0; i < STRIPES; i++) {
         double share = (i + 0.5) / STRIPES,
                height = bar->height * (1 - (double)i / STRIPES);
+        if (l->panel->colours->reversed) {
+            share = 1 - share;
+        }
         fill_box(d->cr, &(figure_rect){bar->x, bar->y, bar->width, height},
-                 palette_shade(d->style.theme,
-                               l->panel->colours->reversed ? 1 - share : share));
+                 palette_shade(d->style.theme, share));
     }
     cairo_set_antialias(d->cr, CAIRO_ANTIALIAS_DEFAULT);
 }

@@ -39,8 +39,8 @@ static bool has_point(const drawing *d, const figure_mark *m)
 // the number of rows.
 int place_marks(drawing *d)
 {
-    int rows = 0,
-        count = d->fig->mark_count < MARKS_LABELLED ? d->fig->mark_count : MARKS_LABELLED;
+    const int count = MIN(d->fig->mark_count, MARKS_LABELLED);
+    int rows = 0;
     double begins[MARKS_LABELLED], ends[MARKS_LABELLED];
     bool done[MARKS_LABELLED] = {false};
     for (int n = 0; n < count; n++) {
@@ -62,13 +62,11 @@ int place_marks(drawing *d)
         }
         double x = plane_x(&d->panels[0].plane, m->x),
                width = width_of(d, m->label, d->style.small);
-        bool fits = x + 2 + width <= d->page.width - PAGE_MARGIN;
-        if (!fits && m->onwards) {
-            width += width_of(d, ARROW, d->style.small);
-        }
-        if (fits) {
-            begins[next] = x + 2;
-        } else {
+        begins[next] = x + 2;
+        if (begins[next] + width > d->page.width - PAGE_MARGIN) {
+            if (m->onwards) {
+                width += width_of(d, ARROW, d->style.small);
+            }
             begins[next] = x - 2 - width;
         }
         ends[next] = begins[next] + width;
@@ -81,14 +79,10 @@ int place_marks(drawing *d)
                 row = d->mark_row[i] + 1;
             }
         }
+        d->mark_text_x[next] = begins[next];
         if (row < MARK_ROWS) {
             d->mark_row[next] = row;
-        } else {
-            d->mark_row[next] = -1;
-        }
-        d->mark_text_x[next] = begins[next];
-        if (row < MARK_ROWS && row + 1 > rows) {
-            rows = row + 1;
+            rows = MAX(rows, row + 1);
         }
     }
     return rows;
@@ -124,15 +118,18 @@ static bool is_free(const drawing *d, const placement *grid, const figure_rect *
 static bool find_inside(const drawing *d, const placement *grid, int index,
                         const figure_rect *taken, int taken_count, figure_rect *found)
 {
+    const figure_mark *m = &d->fig->marks[index];
     const figure_rect *box = &d->panels[0].plane.box;
-    double x = plane_x(&d->panels[0].plane, d->fig->marks[index].x);
-    double width = width_of(d, d->fig->marks[index].label, d->style.small);
+    const double x = plane_x(&d->panels[0].plane, m->x);
+    const double width = width_of(d, m->label, d->style.small);
 
     // from above, at the right of its line, then at the left
+    const double lefts[] = {x + 2, x - 2 - width};
+    const int sides = m->onwards ? 1 : 2;
     for (double y = box->y + 1; y + MARK_ROW < box->y + INSIDE_SHARE * box->height;
          y += MARK_ROW) {
-        for (int side = 0; side < (d->fig->marks[index].onwards ? 1 : 2); side++) {
-            figure_rect r = {side == 0 ? x + 2 : x - 2 - width, y, width, MARK_ROW};
+        for (int side = 0; side < sides; side++) {
+            figure_rect r = {lefts[side], y, width, MARK_ROW};
             bool fits = is_free(d, grid, &r, index, false);
             for (int i = 0; i < taken_count && fits; i++) {
                 fits = !rects_meet(&r, &taken[i], 3);
@@ -157,15 +154,18 @@ static bool find_at_point(const drawing *d, const placement *grid, int index,
     double x = plane_x(p, m->x), y = plane_y(p, m->y);
     double width = width_of(d, m->label, d->style.small);
 
-    for (int k = 0; k < 12 * POINT_ROWS; k++) {
-        bool left = k % 2, over_lines = k / 6 % 2;
-        double away = POINT_SPACE + k / 12 * MARK_ROW;
-        double tops[] = {y - away - MARK_ROW, y - MARK_ROW / 2, y + away};
-        figure_rect r = {left ? x - POINT_SPACE - width : x + POINT_SPACE,
-                         tops[k / 2 % 3], width, MARK_ROW};
-        if (is_free(d, grid, &r, index, over_lines)) {
-            *found = r;
-            return true;
+    // rows ever farther away, each first off other marks' lines, then over them
+    const double lefts[] = {x + POINT_SPACE, x - POINT_SPACE - width};
+    for (int k = 0; k < 2 * POINT_ROWS; k++) {
+        const bool over_lines = k % 2 == 1;
+        const double away = POINT_SPACE + k / 2 * MARK_ROW;
+        const double tops[] = {y - away - MARK_ROW, y - MARK_ROW / 2, y + away};
+        for (int place = 0; place < 6; place++) {
+            figure_rect r = {lefts[place % 2], tops[place / 2], width, MARK_ROW};
+            if (is_free(d, grid, &r, index, over_lines)) {
+                *found = r;
+                return true;
+            }
         }
     }
     return false;
@@ -235,11 +235,11 @@ static figure_rect level_label(const drawing *d, const panel_layout *l, int inde
     double width = width_of(d, l->panel->levels[index].label, d->style.small);
 
     // the four places, the one with least ink under it
+    const double lefts[] = {box->x + box->width - 2 - width, box->x + 3};
+    const double tops[] = {y - LEVEL_ROOM, y};
     figure_rect best = {0};
     for (int k = 0; k < 4; k++) {
-        bool left = k / 2, below = k % 2;
-        figure_rect r = {left ? box->x + 3 : box->x + box->width - 2 - width,
-                         below ? y : y - LEVEL_ROOM, width, LEVEL_ROOM};
+        figure_rect r = {lefts[k / 2], tops[k % 2], width, LEVEL_ROOM};
         bool fits = r.y >= box->y && r.y + r.height <= box->y + box->height;
         if (fits &&
             (best.width == 0 || placement_ink(grid, r) < placement_ink(grid, best))) {
@@ -358,21 +358,30 @@ void clip_out_labels(const drawing *d)
     cairo_clip(d->cr);
 }
 
-// The hairline of a mark from `top` down to `bottom`, interrupted by legends.
-static void draw_hairline(const drawing *d, double x, double top, double bottom)
+// Whether a vertical line meets a legend or the label of a point.
+static bool meets_label(const drawing *d, double x)
 {
-    bool crosses = false;
     for (int i = 0; i < d->fig->panel_count; i++) {
         const panel_layout *l = &d->panels[i];
-        crosses = crosses || (l->legend_inside && x > l->legend.x - 1 &&
-                              x < l->legend.x + l->legend.width + 1);
+        if (l->legend_inside && x > l->legend.x - 1 &&
+            x < l->legend.x + l->legend.width + 1) {
+            return true;
+        }
     }
     for (int i = 0; i < d->fig->mark_count && i < MARKS_LABELLED; i++) {
         const figure_rect *r = &d->point_label[i];
-        crosses = crosses || (x > r->x && x < r->x + r->width);
+        if (x > r->x && x < r->x + r->width) {
+            return true;
+        }
     }
+    return false;
+}
+
+// The hairline of a mark from `top` down to `bottom`, interrupted by legends.
+static void draw_hairline(const drawing *d, double x, double top, double bottom)
+{
     cairo_save(d->cr);
-    if (crosses) {
+    if (meets_label(d, x)) {
         clip_out_labels(d);
     }
     set_mark_line(d);
@@ -419,6 +428,19 @@ void draw_measure(drawing *d)
     }
 }
 
+// The label of a mark above the panels, whose line is at x in the first column; returns
+// where that line begins. A label before its line points to what begins there.
+static double draw_flag(drawing *d, int index, double x, double shift)
+{
+    const figure_mark *m = &d->fig->marks[index];
+    const double row = d->marks_bottom - MARK_ROW * (d->mark_row[index] + 1);
+    const bool before = m->onwards && d->mark_text_x[index] < x;
+    g_autofree char *label = g_strconcat(m->label, before ? ARROW : "", NULL);
+    draw_label(d, label, d->style.small, d->mark_text_x[index] + shift, row,
+               (anchor){0, 0});
+    return row + 1;
+}
+
 // The marks of a column of panels, `shift` to the right of the first column.
 static void draw_column_marks(drawing *d, const plane *first, const plane *last,
                               double shift)
@@ -429,20 +451,14 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
             continue;
         }
 
-        // its label, above the panels or inside the first
+        // its label inside the first panel or above it, where its line begins
         double x = plane_x(first, m->x), top = first->box.y + 1;
-        if (i < MARKS_LABELLED && d->mark_row[i] >= 0) {
-            const double row = d->marks_bottom - MARK_ROW * (d->mark_row[i] + 1);
-            const bool before = !d->marks_inside && m->onwards && d->mark_text_x[i] < x;
-            g_autofree char *towards = before ? g_strconcat(m->label, ARROW, NULL) : NULL;
-            draw_label(d, before ? towards : m->label, d->style.small,
-                       d->mark_text_x[i] + shift,
-                       d->marks_inside ? d->mark_text_y[i] : row, (anchor){0, 0});
-            if (d->marks_inside) {
-                top = first->box.y;
-            } else {
-                top = row + 1;
-            }
+        if (i < MARKS_LABELLED && d->mark_row[i] >= 0 && d->marks_inside) {
+            draw_label(d, m->label, d->style.small, d->mark_text_x[i] + shift,
+                       d->mark_text_y[i], (anchor){0, 0});
+            top = first->box.y;
+        } else if (i < MARKS_LABELLED && d->mark_row[i] >= 0) {
+            top = draw_flag(d, i, x, shift);
         }
         draw_hairline(d, x, top, last->box.y + last->box.height);
     }
@@ -477,8 +493,12 @@ void draw_levels(drawing *d, const panel_layout *l)
         // its label, where the layout found room
         if (level->label != NULL && i < LEVELS_LABELLED && l->level_place[i].width > 0) {
             const figure_rect *r = &l->level_place[i];
-            draw_label(d, level->label, d->style.small, r->x, r->y < y - 1 ? y : y + 0.5,
-                       (anchor){0, r->y < y - 1 ? 1 : 0});
+            const bool above = r->y < y - 1;
+            if (above) {
+                draw_label(d, level->label, d->style.small, r->x, y, (anchor){0, 1});
+            } else {
+                draw_label(d, level->label, d->style.small, r->x, y + 0.5, (anchor){0});
+            }
         }
     }
 }

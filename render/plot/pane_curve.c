@@ -1,3 +1,4 @@
+// Curves over time on a screen with pixels.
 #include "render/plot/pane_curve.h"
 
 #include <assert.h>
@@ -32,7 +33,12 @@ static void set_pen(cairo_t *cr, const pane_frame *f, const pane_curve *c)
         }
         lengths[count - 1] += c->piece;
     }
-    cairo_set_dash(cr, lengths, c->pattern == whole_line ? 0 : count, 0);
+
+    // no dashes make a whole line
+    if (c->pattern == whole_line) {
+        count = 0;
+    }
+    cairo_set_dash(cr, lengths, count, 0);
     cairo_set_line_width(cr, f->line);
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_BEVEL);
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
@@ -40,34 +46,27 @@ static void set_pen(cairo_t *cr, const pane_frame *f, const pane_curve *c)
 }
 
 // What lies in one column of pixels.
-typedef struct column {
+typedef struct pixel_column {
     long at;
-    double first, low, high,
-        last; // y [pixels], in the order of the rows but for low and high
+    // y [pixels]: of the first and the last row, and the ends of what lies between
+    double first, low, high, last;
     bool any;
-} column;
+} pixel_column;
 
-static void add_to_column(column *c, double y)
+static void add_to_column(pixel_column *c, double y)
 {
-    if (!c->any) {
-        c->first = y;
-    }
     if (c->any) {
         c->low = fmin(c->low, y);
-    } else {
-        c->low = y;
-    }
-    if (c->any) {
         c->high = fmax(c->high, y);
     } else {
-        c->high = y;
+        c->first = c->low = c->high = y;
     }
     c->last = y;
     c->any = true;
 }
 
 // Joins a column to the line before it, through both its ends.
-static void end_column(cairo_t *cr, const column *c)
+static void end_column(cairo_t *cr, const pixel_column *c)
 {
     const double x = (double)c->at + 0.5;
     if (!c->any) {
@@ -86,27 +85,30 @@ static void trace_columns(cairo_t *cr, const pane_frame *f, const pane_curve *c,
                           double until)
 {
     const trace *t = c->rows;
-    column here = {.at = -1};
+    pixel_column here = {.at = -1};
     for (size_t r = trace_row_at(t, f->from);
          r < t->row_count && t->rows[r].time <= until;) {
         const long at = lround(floor(pixel_x(f, t->rows[r].time)));
         const size_t end = r + c->block;
         if (at != here.at) {
             end_column(cr, &here);
-            here = (column){.at = at};
+            here = (pixel_column){.at = at};
         }
 
         // a block that ends in the column in which it begins
         const bool whole = c->pairs != NULL && r % c->block == 0 && end < t->row_count &&
                            t->rows[end].time <= until &&
                            lround(floor(pixel_x(f, t->rows[end].time))) == at;
-        if (whole && c->pairs[2 * (r / c->block)] <= c->pairs[2 * (r / c->block) + 1]) {
-            add_to_column(&here, pixel_y(f, c->pairs[2 * (r / c->block) + 1]));
-            add_to_column(&here, pixel_y(f, c->pairs[2 * (r / c->block)]));
-        }
         if (whole) {
+            const double *pair = &c->pairs[2 * (r / c->block)];
+            if (pair[0] <= pair[1]) {
+                add_to_column(&here, pixel_y(f, pair[1]));
+                add_to_column(&here, pixel_y(f, pair[0]));
+            }
             r = end - 1;
         }
+
+        // the row itself, or the last of its block
         const double value = signal_value(&t->rows[r], c->signal);
         if (isfinite(value)) {
             add_to_column(&here, pixel_y(f, value));
@@ -164,8 +166,9 @@ static void hairline(cairo_t *cr, double x0, double y0, double x1, double y1, bo
                      colour in)
 {
     static const double dots[] = {1, 3};
+    const int lengths = dotted ? 2 : 0;
     cairo_new_path(cr);
-    cairo_set_dash(cr, dots, dotted ? 2 : 0, 0);
+    cairo_set_dash(cr, dots, lengths, 0);
     cairo_set_line_width(cr, 1);
     set_colour(cr, in);
     picture_line(cr, x0, y0, x1, y1);

@@ -6,6 +6,7 @@
 
 #define MARKER_RADIUS 1.6
 #define RUN_WIDER     0.7 // of the runs that have a grey for the second or third time
+#define BUSY_WIDER    1.7
 #define RIM           0.8 // of the page's colour, at either side of what needs one
 
 // A line that turns up and down more often than this is busy: no pattern of dashes would
@@ -58,24 +59,20 @@ double set_series(const drawing *d, const panel_layout *l, int index)
         const int rank = s->run - 1;
         if (d->style.theme == THEME_MONO) {
             width *= 1 + RUN_WIDER * (rank / 3);
-        } else {
-            width *= 1;
         }
         ink = palette_series(d->style.theme, s->colour, 2 * rank);
     } else if (l->busy[index]) {
-        // no pattern shows in it; without colours a lighter and wider line does
-        bool wide = d->style.theme == THEME_MONO && !s->secondary;
+        // no pattern shows in it; without colours the first such line is lighter and
+        // wider
         bool second = false;
         for (int i = 0; i < index; i++) {
             second = second || l->busy[i];
         }
-        if (wide && !second) {
-            width *= 1.7;
-        } else {
-            width *= 1;
-        }
-        if (wide) {
-            ink = palette_series(THEME_MONO, 0, second ? 0 : 4);
+        if (d->style.theme == THEME_MONO && !s->secondary && second) {
+            ink = palette_series(THEME_MONO, 0, 0);
+        } else if (d->style.theme == THEME_MONO && !s->secondary) {
+            ink = palette_series(THEME_MONO, 0, 4);
+            width *= BUSY_WIDER;
         }
         style = LINE_SOLID;
     } else if (!s->rim) {
@@ -104,7 +101,9 @@ static void follow_pen(void *context, stroke_kind kind, double x, double y)
         p->length += hypot(x - p->x, y - p->y);
         bool up = y < p->corner_y;
         if (fabs(y - p->corner_y) > LEAST_TURN) {
-            p->turns += up != p->up;
+            if (up != p->up) {
+                p->turns++;
+            }
             p->up = up;
             p->corner_y = y;
         }
@@ -168,7 +167,11 @@ static void draw_marker(const drawing *d, const panel_layout *l, const figure_se
                         double x, double y, double shade)
 {
     bool open = s->shade != NULL || s->marker == MARKER_CROSS;
-    add_marker(d->cr, s->marker, x, y, s->radius > 0 ? s->radius : MARKER_RADIUS);
+    double radius = MARKER_RADIUS;
+    if (s->radius > 0) {
+        radius = s->radius;
+    }
+    add_marker(d->cr, s->marker, x, y, radius);
     if (!open) {
         cairo_fill(d->cr);
         return;
@@ -186,10 +189,12 @@ static void draw_marker(const drawing *d, const panel_layout *l, const figure_se
         set_colour(d->cr, palette_of(THEME_COLOUR)->page);
         cairo_set_line_width(d->cr, CURVE_WIDTH + 2 * RIM);
         cairo_stroke_preserve(d->cr);
+        set_colour(d->cr, palette_of(THEME_COLOUR)->text);
+        cairo_set_line_width(d->cr, CURVE_WIDTH);
+    } else {
+        set_colour(d->cr, d->style.colours->axis);
+        cairo_set_line_width(d->cr, GRID_WIDTH);
     }
-
-    set_colour(d->cr, s->rim ? palette_of(THEME_COLOUR)->text : d->style.colours->axis);
-    cairo_set_line_width(d->cr, s->rim ? CURVE_WIDTH : GRID_WIDTH);
     picture_stroke(d->cr);
     cairo_restore(d->cr);
 }
@@ -249,8 +254,7 @@ void draw_series(const drawing *d, const panel_layout *l, const plane *p)
             double x = plane_x(p, series_x(s, k)), y = plane_y(p, series_y(s, k));
             if (x >= box->x && x <= box->x + box->width && y >= box->y &&
                 y <= box->y + box->height) {
-                draw_marker(d, l, s, x, y,
-                            s->shade != NULL ? series_shade(s, k) : (double)NAN);
+                draw_marker(d, l, s, x, y, series_shade(s, k));
             }
         }
     }
@@ -316,36 +320,51 @@ char *impulse_strip_label(const figure_panel *panel)
 
 enum { IMPULSES_LABELLED = 24 };
 
+// Whether a place for the label of an impulse is on the page, off the arrows of other
+// impulses and off the lines of marks.
+static bool strip_is_free(const drawing *d, const panel_layout *l,
+                          const figure_rect *place, int index)
+{
+    const double left = place->x - 1, right = place->x + place->width + 1;
+    if (place->x < d->left || place->x + place->width > d->page.width - PAGE_MARGIN) {
+        return false;
+    }
+    for (int i = 0; i < l->panel->impulse_count; i++) {
+        const double arrow = plane_x(&l->plane, l->panel->impulses[i].x);
+        if (i != index && arrow >= left && arrow <= right) {
+            return false;
+        }
+    }
+    for (int i = 0; i < d->fig->mark_count; i++) {
+        const double line = plane_x(&l->plane, d->fig->marks[i].x);
+        if (line >= left && line <= right) {
+            return false;
+        }
+    }
+    return true;
+}
+
 // Writes the size of an impulse next to its arrow unless it would cover another label or
 // arrow.
 static void label_impulse(drawing *d, const panel_layout *l, int index, double base,
                           figure_rect *taken, int *count)
 {
-    const figure_impulse *all = l->panel->impulses, *p = &all[index];
+    const figure_impulse *p = &l->panel->impulses[index];
     g_autofree char *markup =
         text_number(p->size / pow(10, impulse_exponent(l->panel)), 3);
     text_block t = figure_text_of(d, markup, d->style.small);
     const double width = text_measure(d->context, &t).width, height = height_of(d, t);
     double x = plane_x(&l->plane, p->x);
 
-    // at its right or at its left, on the page, off other labels, arrows and marks
+    // at its right or at its left
+    const double lefts[] = {x + 4, x - 4 - width};
     for (int side = 0; side < 2 && *count < IMPULSES_LABELLED; side++) {
-        figure_rect place = {side == 0 ? x + 4 : x - 4 - width, base - STRIP_HEIGHT + 3,
-                             width, height};
-        bool free_place =
-            place.x >= d->left && place.x + width <= d->page.width - PAGE_MARGIN;
-        for (int i = 0; i < *count && free_place; i++) {
-            free_place = !rects_meet(&place, &taken[i], 0);
+        figure_rect place = {lefts[side], base - STRIP_HEIGHT + 3, width, height};
+        bool meets = false;
+        for (int i = 0; i < *count; i++) {
+            meets = meets || rects_meet(&place, &taken[i], 0);
         }
-        for (int i = 0; i < l->panel->impulse_count && free_place; i++) {
-            double other = plane_x(&l->plane, all[i].x);
-            free_place = i == index || other < place.x - 1 || other > place.x + width + 1;
-        }
-        for (int i = 0; i < d->fig->mark_count && free_place; i++) {
-            double line = plane_x(&l->plane, d->fig->marks[i].x);
-            free_place = line < place.x - 1 || line > place.x + width + 1;
-        }
-        if (free_place) {
+        if (!meets && strip_is_free(d, l, &place, index)) {
             taken[(*count)++] = place;
             draw_text(d, t, place.x, place.y, (anchor){0, 0}, d->style.colours->text);
             break;
@@ -363,8 +382,11 @@ static bool impulse_shows(const drawing *d, const figure_impulse *p)
 static int next_impulse(const drawing *d, const figure_panel *panel, int last)
 {
     const figure_impulse *all = panel->impulses;
-    const double most = last >= 0 ? fabs(all[last].size) : (double)INFINITY;
+    double most = (double)INFINITY;
     int next = -1;
+    if (last >= 0) {
+        most = fabs(all[last].size);
+    }
     for (int i = 0; i < panel->impulse_count; i++) {
         const double size = fabs(all[i].size);
         const bool left = size < most || (size == most && i > last);
@@ -416,8 +438,6 @@ void draw_impulses(drawing *d, const panel_layout *l)
         t.align = TEXT_RIGHT;
         if (impulse_exponent(panel) != 0) {
             t.leading = STRIP_LEADING;
-        } else {
-            t.leading = 0;
         }
         draw_text(d, t, left - TICK_LENGTH - TICK_SPACE, base + 1.5, (anchor){1, 1},
                   d->style.colours->text);

@@ -37,11 +37,11 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
                                    .unit = "%", .low = 0, .high = 100};
 
     // the page
+    const char *mean = t->laws[0].by_smoothed > 0 ? " (mean over 5 ms)" : "";
     o->figure.caption =
         owned_figure_printf(o,
                             "%zu runs a law. Overshoot of the force: %s%s. impactlab %s.",
-                            t->laws[0].runs, t->laws[0].overshoot_of,
-                            t->laws[0].by_smoothed > 0 ? " (mean over 5 ms)" : "",
+                            t->laws[0].runs, t->laws[0].overshoot_of, mean,
                             lab_version());
     o->figure.x = (figure_axis){"overshoot", "Overshoot over the commanded force",
                                 .unit = "%", .room = 0.02};

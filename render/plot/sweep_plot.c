@@ -42,8 +42,10 @@ double marker_radius(size_t points)
 figure_axis described_axis(owned_figure *o, const char *name, const char *description,
                            const char *unit)
 {
-    g_autofree char *label =
-        description != NULL ? text_label(description) : g_strdup(name);
+    if (description == NULL) {
+        return (figure_axis){name, owned_figure_keep(o, text_escape(name)), unit};
+    }
+    g_autofree char *label = text_label(description);
     return (figure_axis){name, owned_figure_keep(o, text_escape(label)), unit};
 }
 
@@ -162,16 +164,17 @@ static const char *point_label(owned_figure *o, const varied *v, size_t i)
 static figure_axis describe_axis(owned_figure *o, varied *v, const sweep_axis *axis)
 {
     const parameter_info *info = sweep_axis_parameter(axis);
-    *v = (varied){.axis = axis,
-                  .words =
-                      info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN};
-    const bool own_name = axis->element > 0 || info == &setting_info;
-    figure_axis out =
-        described_axis(o, axis->name, own_name ? NULL : info->description, info->unit);
+    const bool words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN;
+    *v = (varied){.axis = axis, .words = words};
+
+    // elements of vectors and settings of a law go by their own names
+    const char *description = info->description;
+    if (axis->element > 0 || info == &setting_info) {
+        description = NULL;
+    }
+    figure_axis out = described_axis(o, axis->name, description, info->unit);
     if (axis->logarithmic) {
         out.scale = SCALE_LOGARITHMIC;
-    } else {
-        out.scale = SCALE_LINEAR;
     }
     out.room = DOTS_ROOM;
 
@@ -219,21 +222,44 @@ static double *run_places(owned_figure *o, const sweep *from, const varied *v, i
 
 // ---- layers
 
+// The marker of the points of curve number `index`; a line of many points needs none.
+static marker_kind marker_of(size_t points, size_t index)
+{
+    if (points > MOST_MARKERS) {
+        return MARKER_NONE;
+    }
+    return MARKER_CIRCLE + index % 4;
+}
+
 // One parameter: a curve; dots alone where nothing lies between the points.
 static void describe_line(owned_figure *o, const sweep_picture *p, const varied *v)
 {
     const size_t count = p->sweep->run_count;
-    const bool grid = p->sweep->sampling == SWEEP_GRID, joined = grid && !v->words;
+    figure_series s = {p->key, .count = count, .radius = marker_radius(count)};
+
+    // dots where values were drawn at random
+    if (p->sweep->sampling != SWEEP_GRID) {
+        s.x = run_places(o, p->sweep, v, 0);
+        s.y = p->values;
+        s.no_line = true;
+        s.marker = MARKER_CIRCLE;
+        owned_figure_add(o, 0, s);
+        return;
+    }
+
+    // points of a grid in ascending order
     double *y = owned_figure_numbers(o, count);
     for (size_t i = 0; i < count; i++) {
-        y[i] = p->values[grid ? v->order[i] : i];
+        y[i] = p->values[v->order[i]];
     }
-    owned_figure_add(
-        o, 0,
-        (figure_series){p->key, NULL, grid ? v->place : run_places(o, p->sweep, v, 0), y,
-                        count, .no_line = !joined, .radius = marker_radius(count),
-                        .marker = joined && count > MOST_MARKERS ? MARKER_NONE
-                                                                 : MARKER_CIRCLE});
+    s.x = v->place;
+    s.y = y;
+    s.no_line = v->words;
+    s.marker = MARKER_CIRCLE;
+    if (!v->words) {
+        s.marker = marker_of(count, 0);
+    }
+    owned_figure_add(o, 0, s);
 }
 
 // A parameter of words and one of numbers: a curve for each word, over the numbers.
@@ -241,21 +267,26 @@ static void describe_words(owned_figure *o, const sweep_picture *p, const varied
                            int words)
 {
     const varied *word = &both[words], *number = &both[1 - words];
-    const size_t inner = both[1].count, count = number->count;
+    const size_t count = number->count;
+
+    // the runs go through the second axis first
+    size_t word_step = 1, number_step = 1;
+    if (words == 0) {
+        word_step = number->count;
+    } else {
+        number_step = word->count;
+    }
     for (size_t k = 0; k < word->count; k++) {
         double *y = owned_figure_numbers(o, count);
         for (size_t i = 0; i < count; i++) {
-            size_t w = word->order[k], n = number->order[i];
-            y[i] = p->values[words == 0 ? w * inner + n : n * inner + w];
+            y[i] = p->values[word->order[k] * word_step + number->order[i] * number_step];
         }
         const char *name = point_label(o, word, k);
         owned_figure_add(o, 0,
                          (figure_series){name, name, number->place, y, count,
                                          .colour = palette_slot((int)k),
                                          .radius = marker_radius(count),
-                                         .marker = count > MOST_MARKERS
-                                                       ? MARKER_NONE
-                                                       : MARKER_CIRCLE + k % 4});
+                                         .marker = marker_of(count, k)});
     }
 }
 
@@ -270,6 +301,18 @@ static int axis_of_curves(const varied *both, const sweep *from)
     return -1;
 }
 
+// The radius of shaded dots [pt].
+static double dot_radius(size_t dots)
+{
+    if (dots > 1000) {
+        return 1.5;
+    }
+    if (dots > 200) {
+        return 2.2;
+    }
+    return 3.2;
+}
+
 // Two parameters: a map of every combination, or dots where they were drawn.
 static void describe_map(owned_figure *o, const sweep_picture *p, const varied *both,
                          figure_axis quantity)
@@ -279,18 +322,10 @@ static void describe_map(owned_figure *o, const sweep_picture *p, const varied *
     const double *y = run_places(o, p->sweep, &both[1], 1);
     o->panels[0].colours = OWNED(o, figure_colours, .axis = quantity, .bar = true);
     if (p->sweep->sampling != SWEEP_GRID) {
-        double radius = 1.5;
-        if (!(count > 1000)) {
-            if (count > 200) {
-                radius = 2.2;
-            } else {
-                radius = 3.2;
-            }
-        }
         owned_figure_add(o, 0,
                          (figure_series){p->key, NULL, x, y, count, .shade = p->values,
                                          .no_line = true, .marker = MARKER_CIRCLE,
-                                         .radius = radius});
+                                         .radius = dot_radius(count)});
         return;
     }
     figure_map *map = figure_grid(o, x, y, p->values, count);
@@ -309,11 +344,15 @@ static char *caption_of(const sweep *s, size_t missing)
         text_append(out, "%s%s", i > 0 ? ", " : "", s->axes[i].name);
     }
     if (missing > 0) {
-        text_append(out, "; %zu %s without a value%s", missing,
-                    missing == 1 ? "run" : "runs",
-                    s->axis_count == 1          ? ""
-                    : s->sampling == SWEEP_GRID ? " (hatched, or a gap)"
-                                                : " (empty)");
+        const char *runs = missing == 1 ? "run" : "runs";
+        text_append(out, "; %zu %s without a value", missing, runs);
+    }
+
+    // how they look on a map, and among dots
+    if (missing > 0 && s->axis_count > 1 && s->sampling == SWEEP_GRID) {
+        text_append(out, " (hatched, or a gap)");
+    } else if (missing > 0 && s->axis_count > 1) {
+        text_append(out, " (empty)");
     }
     text_append(out, ". impactlab %s.", lab_version());
     return g_string_free(out, FALSE);
@@ -325,8 +364,9 @@ static char *command_of(const sweep *s)
     GString *command = g_string_new(NULL);
     for (int i = 0; i < s->axis_count; i++) {
         const sweep_axis *axis = &s->axes[i];
-        text_append(command, "%s--vary %s%s=%s", i > 0 ? " " : "",
-                    axis->together ? "with " : "", axis->name, axis->text);
+        const char *with = axis->together ? "with " : "";
+        text_append(command, "%s--vary %s%s=%s", i > 0 ? " " : "", with, axis->name,
+                    axis->text);
     }
     return g_string_free(command, FALSE);
 }
@@ -346,17 +386,23 @@ owned_figure *sweep_figure_create(const sweep_picture *p)
                                       [SWEEP_RANDOM] = " at random",
                                       [SWEEP_LATIN] = " of a Latin hypercube"};
     const sweep *from = p->sweep;
-    const summary_info *info =
-        p->info != NULL ? p->info : &summary_table[summary_index(p->key)];
-    char changes[SCENARIO_CHANGES];
     assert(from->axis_count >= 1 && from->axis_count <= 2);
+
+    // the quantity and what was run
+    const summary_info *info = p->info;
+    if (info == NULL) {
+        info = &summary_table[summary_index(p->key)];
+    }
+    char changes[SCENARIO_CHANGES];
     owned_figure *o =
         owned_figure_create(1, "%s: %s of %zu runs%s%s", from->base->name, info->label,
                             from->run_count, how[from->sampling],
                             scenario_changes(from->base, changes));
     size_t missing = 0;
     for (size_t i = 0; i < from->run_count; i++) {
-        missing += !isfinite(p->values[i]);
+        if (!isfinite(p->values[i])) {
+            missing++;
+        }
     }
 
     // axes and layers
@@ -383,8 +429,6 @@ owned_figure *sweep_figure_create(const sweep_picture *p)
     // the page
     if (missing == from->run_count) {
         panel->remark = "the quantity did not occur in any run";
-    } else {
-        panel->remark = NULL;
     }
     panel->weight = PANEL_WEIGHT;
     o->figure.caption = owned_figure_keep(o, caption_of(from, missing));

@@ -3,8 +3,10 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "render/page/text.h"
 #include "src/base/numbers.h"
 
 // the nice numbers, nicest first; each is tenths / 10
@@ -52,8 +54,11 @@ static double combined(double simplicity, double coverage, double density)
 static double simplicity(const labelling *l)
 {
     double last = l->start + (double)(l->count - 1) * l->j;
-    bool zero = fmod(l->start, l->j) == 0 && l->start <= 0 && last >= 0;
-    return 1 - (double)l->nice / (NICE - 1) - l->j + zero;
+    double score = 1 - (double)l->nice / (NICE - 1) - l->j;
+    if (fmod(l->start, l->j) == 0 && l->start <= 0 && last >= 0) {
+        score += 1;
+    }
+    return score;
 }
 
 static double simplicity_most(int nice, int j)
@@ -219,37 +224,31 @@ void ticks_between(ticks *t, double low, double high, int wanted)
     while ((first - best.j) * unit >= w.low - slack) {
         first -= best.j;
     }
-
-    const int count = (int)floor((w.high + slack - first * unit) / (best.j * unit)) + 1;
-    if (count < TICKS_MOST) {
-        t->count = count;
-    } else {
+    t->count = (int)floor((w.high + slack - first * unit) / (best.j * unit)) + 1;
+    if (t->count > TICKS_MOST) {
         t->count = TICKS_MOST;
     }
+
+    // their values
     double largest = 0;
     for (int i = 0; i < t->count; i++) {
-        double value = tick_value(&best, first + (double)i * best.j);
-        if (value == 0) {
-            t->value[i] = 0;
-        } else {
-            t->value[i] = value;
-        } // no minus zero
+        t->value[i] = tick_value(&best, first + (double)i * best.j);
+        if (t->value[i] == 0) {
+            t->value[i] = 0; // no minus zero
+        }
         largest = fmax(largest, fabs(t->value[i]));
     }
     if (t->count > 1) {
         t->step = tick_value(&best, best.j);
-    } else {
-        t->step = 0;
     }
 
-    // minor ticks fall on rounder numbers than the step itself; long rows of zeros go
-    // into a factor
+    // minor ticks fall on rounder numbers than the step itself
     static const int parts[NICE] = {5, 5, 4, 5, 4, 3};
     if (best.j == 1) {
         t->minor = parts[best.nice];
-    } else {
-        t->minor = 1;
     }
+
+    // long rows of zeros go into a factor
     if (largest > 0 && (largest >= 1e5 || largest < 1e-2)) {
         t->exponent = 3 * (int)floor(log10(largest) / 3);
     }
@@ -262,14 +261,14 @@ void tick_label(const ticks *t, int index, char text[TICK_TEXT])
     double value = t->value[index] / pow(10, t->exponent);
     char digits[TICK_TEXT - 4];
     decimal_print(digits, sizeof digits, "%.*f", t->decimals, fabs(value));
-    snprintf(text, TICK_TEXT, "%s%s", value < 0 ? "\u2212" : "", digits);
+    snprintf(text, TICK_TEXT, "%s%s", text_sign(value), digits);
 }
 
 void tick_factor(const ticks *t, char *text, size_t size)
 {
     text[0] = '\0';
     if (t->exponent != 0) {
-        snprintf(text, size, "\u00d710<sup>%s%d</sup>", t->exponent < 0 ? "\u2212" : "",
-                 t->exponent < 0 ? -t->exponent : t->exponent);
+        snprintf(text, size, "\u00d710<sup>%s%d</sup>", text_sign(t->exponent),
+                 abs(t->exponent));
     }
 }

@@ -253,6 +253,18 @@ static void add_series(owned_figure *o, const trace_key *key, int panel_index,
     }
 }
 
+// Shows a short first pulse once more in an inset.
+static void enlarge_pulse(figure_panel *panel, const trace_run *run)
+{
+    const summary *m = &run->result->summary;
+    const double pulse = m->first_pulse_s, contact = m->first_contact_s;
+    const double duration = run->scenario->parameters.run.duration;
+    if (pulse > 0 && pulse < SHORT_PULSE * duration) {
+        panel->zoom_from = fmax(0, contact - INSET_SPACE * pulse);
+        panel->zoom_to = fmin(duration, contact + (1 + INSET_SPACE) * pulse);
+    }
+}
+
 static void describe_panel(owned_figure *o, const trace_key *key, int index,
                            const trace_panel *from, const trace_run *runs, int run_count)
 {
@@ -272,8 +284,6 @@ static void describe_panel(owned_figure *o, const trace_key *key, int index,
     }
     if (from->signals[1] == NULL) {
         panel->y.symbol = symbol;
-    } else {
-        panel->y.symbol = NULL;
     }
     panel->weight = from->weight;
     panel->y.with_zero = from->with_zero;
@@ -295,14 +305,7 @@ static void describe_panel(owned_figure *o, const trace_key *key, int index,
         panel->level_count = 1;
     }
     if (from->inset) {
-        const summary *m = &runs[0].result->summary;
-        double pulse = m->first_pulse_s,
-               duration = runs[0].scenario->parameters.run.duration;
-        if (pulse > 0 && pulse < SHORT_PULSE * duration) {
-            panel->zoom_from = fmax(0, m->first_contact_s - INSET_SPACE * pulse);
-            panel->zoom_to =
-                fmin(duration, m->first_contact_s + (1 + INSET_SPACE) * pulse);
-        }
+        enlarge_pulse(panel, &runs[0]);
     }
 }
 
@@ -336,6 +339,19 @@ static void add_residuals(owned_figure *o, const trace_panel *panels,
     o->figure.panel_count++;
 }
 
+// What is shaded: contact, or the controller's second mode by its name.
+static char *shading_text(const scenario *s, bool modes)
+{
+    const char *mode = trace_mode_name(s, 1);
+    if (!modes) {
+        return g_strdup("contact");
+    }
+    if (mode == NULL) {
+        return g_strdup("second mode");
+    }
+    return text_printf("%s mode", mode);
+}
+
 owned_figure *trace_figure_create(const char *title, const trace_panel *panels,
                                   int panel_count, const trace_run *runs, int run_count)
 {
@@ -347,14 +363,11 @@ owned_figure *trace_figure_create(const char *title, const trace_panel *panels,
     for (int i = 0; i < panel_count; i++) {
         modes = modes || panels[i].modes;
     }
-    const char *mode = modes ? trace_mode_name(runs[0].scenario, 1) : NULL;
-    g_autofree char *shading = mode != NULL ? text_printf("%s mode", mode)
-                                            : g_strdup(modes ? "second mode" : "contact");
+    g_autofree char *shading = shading_text(runs[0].scenario, modes);
 
     // the page
-    g_autofree char *own_title = title == NULL ? scenario_title(runs[0].scenario) : NULL;
-    owned_figure *o =
-        owned_figure_create(panel_count, "%s", title != NULL ? title : own_title);
+    g_autofree char *own_title = scenario_title(runs[0].scenario);
+    owned_figure *o = owned_figure_create(panel_count, "%s", text_or(title, own_title));
     o->figure.caption = owned_figure_keep(o, trace_caption(runs, run_count, shading));
     o->figure.x = (figure_axis){"time", "Time <i>t</i>", .unit = "s"};
     o->figure.parameters = owned_figure_keep(o, parameters_line(runs[0].scenario));
@@ -398,8 +411,9 @@ status plot_run(const scenario *s, const run_result *result, const run_result *o
                 const figure_mark *notes, int note_count, const char *path, fault *f)
 {
     const trace_run runs[] = {{s, result, "this run"}, {s, old, "old run"}};
+    const int run_count = old != NULL ? 2 : 1;
     owned_figure *o =
-        trace_figure_create(NULL, usual_panels, USUAL_PANELS, runs, old != NULL ? 2 : 1);
+        trace_figure_create(NULL, usual_panels, USUAL_PANELS, runs, run_count);
 
     // notes behind the figure's marks
     const int count = o->figure.mark_count;

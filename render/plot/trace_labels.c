@@ -13,7 +13,10 @@ char *trace_symbol(const scenario *s, int index)
 {
     const signal_info *signal = &signal_table[index];
     const char *symbol = signal->symbol, *body = strstr(symbol, "<sub>");
-    size_t letters = body ? (size_t)(body - symbol) : strlen(symbol);
+    size_t letters = strlen(symbol);
+    if (body != NULL) {
+        letters = (size_t)(body - symbol);
+    }
 
     // words stand upright, the last link bears the number of its body
     if (body == NULL && g_utf8_strlen(symbol, -1) > 2) {
@@ -47,43 +50,41 @@ static int first_link_twin(int index)
 
 char *trace_series_symbol(const scenario *s, int index)
 {
-    int twin = trace_hub_is_first_link(s) ? first_link_twin(index) : -1;
+    const int twin = first_link_twin(index);
     g_autofree char *symbol = trace_symbol(s, index);
-    g_autofree char *other = twin >= 0 ? trace_symbol(s, twin) : NULL;
-    if (twin >= 0) {
-        return text_printf("%s = %s", symbol, other);
+    if (twin < 0 || !trace_hub_is_first_link(s)) {
+        return g_steal_pointer(&symbol);
     }
-    return g_steal_pointer(&symbol);
+    g_autofree char *other = trace_symbol(s, twin);
+    return text_printf("%s = %s", symbol, other);
 }
 
 char *trace_series_label(const scenario *s, int index, bool joined)
 {
     const signal_info *signal = &signal_table[index];
-    bool both = joined && trace_hub_is_first_link(s) && first_link_twin(index) >= 0;
-    g_autofree char *symbol =
-        both ? trace_series_symbol(s, index) : trace_symbol(s, index);
+    if (joined && trace_hub_is_first_link(s) && first_link_twin(index) >= 0) {
+        g_autofree char *both = trace_series_symbol(s, index);
+        return text_printf("%s  hub and first link", both);
+    }
 
     // what belongs to no body is described as a whole
-    return text_printf("%s  %s", symbol,
-                       both                        ? "hub and first link"
-                       : signal->body != BODY_NONE ? signal_body_name(signal->body)
-                                                   : signal->description);
+    const char *words = signal->description;
+    if (signal->body != BODY_NONE) {
+        words = signal_body_name(signal->body);
+    }
+    g_autofree char *symbol = trace_symbol(s, index);
+    return text_printf("%s  %s", symbol, words);
 }
 
 static char *duration_text(double seconds)
 {
-    double factor = 1e6;
-    if (!(seconds < 1e-3)) {
-        if (seconds < 1) {
-            factor = 1e3;
-        } else {
-            factor = 1;
-        }
+    if (seconds < 1e-3) {
+        return text_printf("%g\u2009\u00b5s", seconds * 1e6);
     }
-    return text_printf("%g\u2009%s", seconds * factor,
-                       seconds < 1e-3 ? "\u00b5s"
-                       : seconds < 1  ? "ms"
-                                      : "s");
+    if (seconds < 1) {
+        return text_printf("%g\u2009ms", seconds * 1e3);
+    }
+    return text_printf("%g\u2009s", seconds);
 }
 
 const char *trace_mode_name(const scenario *s, int mode)
@@ -122,7 +123,9 @@ static void add_shading(GString *out, const trace_run *runs, int run_count,
 {
     int full = 0;
     for (int i = 0; i < run_count; i++) {
-        full += !runs[i].points;
+        if (!runs[i].points) {
+            full++;
+        }
     }
     if (full < 2 || runs[0].name == NULL) {
         text_append(out, "Shaded: %s.", shaded);
@@ -143,12 +146,11 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
     const parameters *p = &run->scenario->parameters;
 
     // the arm and what drives it
-    GString *out =
-        g_string_new(p->arm.model == ARM_PRINTED ? "Printed model" : "Corrected model");
-    g_autofree char *step = duration_text(p->method.step);
-    text_append(out, ", %d link%s, %s hub", p->arm.links, p->arm.links == 1 ? "" : "s",
-                hub_texts[p->arm.hub_joint]);
-    if (p->arm.model == ARM_PRINTED) {
+    const bool printed = p->arm.model == ARM_PRINTED;
+    const char *links = p->arm.links == 1 ? "link" : "links";
+    GString *out = g_string_new(printed ? "Printed model" : "Corrected model");
+    text_append(out, ", %d %s, %s hub", p->arm.links, links, hub_texts[p->arm.hub_joint]);
+    if (printed) {
         // the constants in which it departs from the thesis's own numbers or from the
         // beam's
         g_autofree char *inertia = text_number(p->arm.link_inertia, 3);
@@ -159,8 +161,8 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
     add_drive(out, p);
 
     // the method and its step, which for the event method is but the spacing of rows
-    const bool located = p->arm.model != ARM_PRINTED && p->method.name == METHOD_EVENT;
-    if (p->arm.model == ARM_PRINTED || p->method.name == METHOD_NEWMARK) {
+    const bool located = !printed && p->method.name == METHOD_EVENT;
+    if (printed || p->method.name == METHOD_NEWMARK) {
         text_append(out, "Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta,
                     p->method.gamma);
     } else if (p->method.name == METHOD_GENERALIZED_ALPHA) {
@@ -169,7 +171,12 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
     } else {
         text_append(out, "%s engine, located events", run->result->summary.method);
     }
-    text_append(out, located ? ", a row every %s. " : ", <i>h</i> = %s. ", step);
+    g_autofree char *step = duration_text(p->method.step);
+    if (located) {
+        text_append(out, ", a row every %s. ", step);
+    } else {
+        text_append(out, ", <i>h</i> = %s. ", step);
+    }
     add_shading(out, runs, run_count, shaded);
     text_append(out, " impactlab %s.", lab_version());
 
@@ -191,7 +198,11 @@ char *scenario_title(const scenario *s)
 
     // lines break between changes, not within one
     for (const char *c = scenario_changes(s, changes); *c != '\0'; c++) {
-        g_string_append(out, *c == ' ' && c[-1] != ',' ? "\u00a0" : (char[]){*c, '\0'});
+        if (*c == ' ' && c[-1] != ',') {
+            g_string_append(out, "\u00a0");
+        } else {
+            g_string_append_c(out, *c);
+        }
     }
     return g_string_free(out, FALSE);
 }

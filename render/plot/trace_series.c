@@ -43,6 +43,17 @@ static void add_mark(GArray *marks, figure_mark mark)
     g_array_append_val(marks, mark);
 }
 
+// "force mode", or of a mode without a name "mode 2".
+static const char *mode_label(owned_figure *o, const scenario *s, double mode)
+{
+    const char *name = trace_mode_name(s, (int)mode);
+    if (name == NULL) {
+        return owned_figure_printf(o, "mode %g", mode);
+    }
+    g_autofree char *escaped = text_escape(name);
+    return owned_figure_printf(o, "%s mode", escaped);
+}
+
 // Where the controller went into another mode, with the mode's name.
 static void mark_modes(owned_figure *o, GArray *marks, const trace_run *run)
 {
@@ -53,13 +64,8 @@ static void mark_modes(owned_figure *o, GArray *marks, const trace_run *run)
     for (size_t i = 0; i < rows->row_count; i++) {
         double now = rows->rows[i].controller_mode;
         if (isfinite(now) && isfinite(mode) && now != mode && marks->len < TRACE_MARKS) {
-            const char *name = trace_mode_name(run->scenario, (int)now);
-            g_autofree char *escaped =
-                name != NULL ? text_escape(name) : text_printf("%g", now);
-            const char *label = name != NULL ? owned_figure_printf(o, "%s mode", escaped)
-                                             : owned_figure_printf(o, "mode %s", escaped);
             add_mark(marks, (figure_mark){.x = rows->rows[i].time,
-                                          .label = label,
+                                          .label = mode_label(o, run->scenario, now),
                                           .onwards = true});
         }
         if (isfinite(now)) {
@@ -121,7 +127,10 @@ void trace_shade(owned_figure *o, const trace *rows, bool modes)
     // from each first row that is so to the next one that is not
     for (size_t i = 0; i < rows->row_count; i++) {
         const sample *row = &rows->rows[i];
-        bool now = modes ? row->controller_mode == 1 : row->contact > 0.5;
+        bool now = row->contact > 0.5;
+        if (modes) {
+            now = row->controller_mode == 1;
+        }
         if (now && !open) {
             const figure_interval begun = {row->time, row->time};
             g_array_append_val(found, begun);
@@ -234,9 +243,12 @@ static int signal_of(const csv_table *table, const char *column,
     if (named >= 0 || at < 0) {
         return named;
     }
-    char unit[32];
+    // its unit, "[N]" of its heading
+    char unit[32] = "";
     const char *bracket = strrchr(table->headings[at], '[');
-    snprintf(unit, sizeof unit, "%s", bracket != NULL ? bracket + 1 : "");
+    if (bracket != NULL) {
+        snprintf(unit, sizeof unit, "%s", bracket + 1);
+    }
     unit[strcspn(unit, "]")] = '\0';
     for (int i = 0; i < count; i++) {
         int index = signal_find(panels[i].signals[0]);
@@ -264,8 +276,10 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
         *name = g_strdup(file);
     }
 
-    const int signal =
-        column != NULL ? signal_of(&table, column, panels, panel_count) : 0;
+    int signal = 0;
+    if (column != NULL) {
+        signal = signal_of(&table, column, panels, panel_count);
+    }
     status code;
     if (column == NULL || (signal > 0 && csv_table_find(&table, column) >= 0)) {
         code = measured_rows(t, &table, column, signal, f);
