@@ -28,7 +28,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "ui/commands/command.h"
+#include "ui/commands/table.h"
 
 // --- who refuses -----------------------------------------------------------------------
 
@@ -528,8 +528,8 @@ int main(int count, char **words)
     // caches, and hangs at the next one: it has read them before
     FcInit();
 
-    for (int i = 0; i < command_count; i++) {
-        const command *c = command_table[i];
+    for (int i = 0; i < command_table.count; i++) {
+        const command *c = command_table.items[i];
         call plain, calls[MOST_CALLS];
         call_kind kind;
         int number = 0;

@@ -17,12 +17,13 @@ static const search_entry things[] = {
     {"arm.beam_length", "parameter", NULL, 0},
 };
 
-static search_entry thing(int i)
+static search_entry thing(const void *context, int i)
 {
+    (void)context;
     return things[i];
 }
 
-static const search_source source = {4, thing};
+static const search_source source = {4, thing, NULL};
 
 // Index of the best hit, -1 if nothing is found.
 static int best(const char *question)
@@ -100,8 +101,9 @@ TEST(knows_titles)
     assert_int_equal(search_titles(&source, 1, ".", &hit, 1), 0);
 }
 
-static search_entry heading(int i)
+static search_entry heading(const void *context, int i)
 {
+    (void)context;
     const manual_section s = manual_section_at(i);
     return (search_entry){s.heading, s.title, s.texts, s.text_count};
 }
@@ -109,7 +111,7 @@ static search_entry heading(int i)
 // A search for the titles of a page's section leads to one that is called so.
 TEST(finds_every_section_by_its_title)
 {
-    const search_source sections = {manual_sections(), heading};
+    const search_source sections = {manual_sections(), heading, NULL};
     assert_true(manual_sections() > 100);
     for (int i = 0; i < manual_sections(); i++) {
         const manual_section s = manual_section_at(i);

@@ -13,14 +13,14 @@
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 #include "src/base/shipped.h"
-#include "ui/commands/command.h"
+#include "ui/commands/table.h"
 #include "ui/terminal/terminal.h"
 
 // Without a command: what there is to run, and how.
 static int print_welcome(void)
 {
-    const command *list = command_find("list");
-    const arguments none = {.command = list};
+    const command *list = command_find(&command_table, "list");
+    const arguments none = {.command = list, .commands = &command_table};
     printf(
         "impactlab %s: impact and force control of a flexible robot arm\n\nScenarios:\n",
         lab_version());
@@ -54,10 +54,10 @@ static bool is_lab_option(const char *word)
 // Reads what follows the command's name argv[0] and runs it. Returns the exit status.
 static int run_command(const command *c, int argc, char **argv)
 {
-    arguments a;
+    arguments a = {.command = c, .commands = &command_table};
     int result;
 
-    if (!arguments_read(&a, c, argc, argv, &result)) {
+    if (!arguments_read(&a, argc, argv, &result)) {
         if (result == EXIT_DONE) {
             print_help(stdout, c);
         }
@@ -95,14 +95,14 @@ static int dispatch(int argc, char **argv)
         return EXIT_DONE;
     }
     if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
-        print_commands(stdout);
+        print_commands(stdout, &command_table);
         return EXIT_DONE;
     }
-    const command *found = command_find(word);
+    const command *found = command_find(&command_table, word);
     if (found != NULL) {
         return run_command(found, argc - 1, argv + 1);
     }
-    return complain_command(word);
+    return complain_command(&command_table, word);
 }
 
 // What was printed must be whole and have arrived, unless its reader went away first

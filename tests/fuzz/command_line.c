@@ -8,7 +8,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "ui/commands/command.h"
+#include "ui/commands/table.h"
 
 enum { MOST_LINES = 16, MOST_WORDS = 40, MOST_LETTERS = 24, DRAWN_OF = 16 };
 
@@ -217,16 +217,16 @@ static void take_streams(void)
 // Makes a line, reads it, and runs it where it may be run.
 static void try_line(source *s)
 {
-    const command *c = command_table[next(s) % command_count];
+    const command *c = command_table.items[next(s) % command_table.count];
     line l = make(s, c);
     char *words[MOST_WORDS + 1];
-    arguments a;
+    arguments a = {.command = c, .commands = &command_table};
     int code = -1;
 
     // getopt begins anew, and moves words about
     memcpy(words, l.words, sizeof words);
     optind = 0;
-    if (arguments_read(&a, c, l.count, words, &code)) {
+    if (arguments_read(&a, l.count, words, &code)) {
         FUZZ_CHECK(code == EXIT_DONE && a.operand_count >= c->least &&
                    a.operand_count <= c->most);
         if (may_run(&a, &l)) {

@@ -1,5 +1,4 @@
-// Reads the command line by the rows of a command's options; the rows that several
-// commands share.
+// Reads the command line by the rows of a command's options.
 #include "ui/commands/command.h"
 
 #include <assert.h>
@@ -18,85 +17,6 @@
 #include "src/base/whole_file.h"
 #include "src/base/text_stream.h"
 #include "src/base/words.h"
-
-// --- shared options --------------------------------------------------------------------
-
-#define SHARED_OPTIONS(...)                                                              \
-    {                                                                                    \
-        "Options", (const option_row[]){__VA_ARGS__},                                    \
-            (int)(sizeof(option_row[]){__VA_ARGS__} / sizeof(option_row))                \
-    }
-
-const option_table set_options = SHARED_OPTIONS(
-    OPTION(PARAMETERS, "set", "PATH=VALUE",
-           "give a parameter another value (may be repeated)", PLACE(sets)),
-    OPTION(FLAG, "allow-code", NULL,
-           "let the scenario start the program or load the plug-in that it names",
-           PLACE(allow_code)));
-const option_table vary_options = SHARED_OPTIONS(
-    OPTION(PARAMETERS, "vary", "PATH=a:b:n",
-           "vary a parameter: n values from a to b (may be repeated)", PLACE(varies)));
-const option_table json_options = SHARED_OPTIONS(
-    OPTION(RESULT, "json", "FILE|-",
-           "write the results as JSON; - is the standard output", PLACE(json)));
-const option_table drawn_options = SHARED_OPTIONS(
-    OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}",
-           "draw the study; a CSV of what is drawn beside it", PLACE(plot)));
-const option_table quiet_options = SHARED_OPTIONS(
-    OPTION(FLAG, "quiet", NULL, "print no summary", PLACE(quiet), .letter = 'q'));
-
-// its place is nowhere: the program prints the help
-const option_table help_options =
-    SHARED_OPTIONS(OPTION(FLAG, "help", NULL, "print this help", .letter = 'h'));
-
-static const option_row view_rows[] = {
-    OPTION(CHOICE, "gl", "osmesa|egl|cairo|auto",
-           "what draws the arm (auto: the first that is installed)", PLACE(gl)),
-    OPTION(WORD, "camera", "three-quarter|top|side|tip",
-           "where it is seen from (three-quarter); or two angles as -60,40: "
-           "degrees from the arm's heading and above the floor",
-           PLACE(camera)),
-    OPTION(NUMBER, "exaggerate", "X",
-           "draw the arm's bending X times as large, and say so", PLACE(exaggerate),
-           .low = 1, .high = 1000),
-    OPTION(FLAG, "inset", NULL, "show the contact from near by in a corner, too",
-           PLACE(inset)),
-    OPTION(SIZE, "size", "WIDTHxHEIGHT", "of the picture in pixels (1280x720)",
-           PLACE(size), .high = 100000, .unit = "pixels"),
-};
-const option_table view_options = OPTION_TABLE("The arm in space", view_rows);
-
-static const option_row page_rows[] = {
-    OPTION(LENGTH, "width", "85mm|180mm",
-           "width of the page; everything is laid out anew", PLACE(width), .low = 60,
-           .high = 400),
-    OPTION(LENGTH, "height", "60mm", "height of a plot (as its panels want)",
-           PLACE(height), .low = 20, .high = 600),
-    OPTION(TEXT, "font", "serif|sans|NAME", "family of all letters (sans)", PLACE(font)),
-    OPTION(NUMBER, "font-size", "PT",
-           "size of labels (8); others go with it, none below 6", PLACE(font_size),
-           .low = 6, .high = 24, .unit = "pt"),
-    OPTION(CHOICE, "theme", "light|dark|mono",
-           "colours on white, on near black, or greys (light)", PLACE(theme)),
-    OPTION(FLAG, "bare", NULL, "without title and caption, which go to a .txt beside",
-           PLACE(bare)),
-    OPTION(FLAG, "transparent", NULL, "without a ground", PLACE(transparent)),
-    OPTION(NUMBER, "dpi", "N", "resolution of a PNG (200)", PLACE(dpi), .low = 30,
-           .high = 1200),
-    OPTION(FILE, "overlay", "FILE.csv[:COLUMN][@SHIFT]",
-           "points of measured data over recorded signals", PLACE(overlay)),
-    OPTION(TEXT, "signals", "A,B+C", "recorded signals to show: panels, joined by +",
-           PLACE(signals)),
-    OPTION(NUMBER, "from", "X", "where the horizontal axis begins", PLACE(from),
-           .low = -1e9, .high = 1e9, .initial = (double)NAN),
-    OPTION(NUMBER, "to", "X", "where it ends", PLACE(to), .low = -1e9, .high = 1e9,
-           .initial = (double)NAN),
-    OPTION(RESULT, "latex", "FILE.tex",
-           "write the figure environment with caption and label", PLACE(latex)),
-    OPTION(FLAG, "mono", NULL, "the same as --theme mono", PLACE(mono)),
-    OPTION(FLAG, "dark", NULL, "the same as --theme dark", PLACE(dark)),
-};
-const option_table page_options = OPTION_TABLE("Pictures", page_rows);
 
 // --- values ----------------------------------------------------------------------------
 
@@ -261,13 +181,13 @@ enum { ROW_VALUE = 256 };
 // --- getopt ----------------------------------------------------------------------------
 
 // Another command that has an option of this name, without dashes; NULL if none has.
-static const command *owner_of_option(const char *name)
+static const command *owner_of_option(const command_list *all, const char *name)
 {
     const option_row *o;
-    for (int c = 0; c < command_count; c++) {
-        for (int i = 0; (o = command_option(command_table[c], i)) != NULL; i++) {
+    for (int c = 0; c < all->count; c++) {
+        for (int i = 0; (o = command_option(all->items[c], i)) != NULL; i++) {
             if (strcmp(o->name, name) == 0) {
-                return command_table[c];
+                return all->items[c];
             }
         }
     }
@@ -275,8 +195,9 @@ static const command *owner_of_option(const char *name)
 }
 
 // What is said of an option getopt does not take.
-static int complain_option(const command *self, int found, const char *text)
+static int complain_option(const arguments *a, int found, const char *text)
 {
+    const command *self = a->command;
     char shown[96];
     const option_row *o;
 
@@ -287,7 +208,7 @@ static int complain_option(const command *self, int found, const char *text)
 
     // one that is right elsewhere
     snprintf(shown, sizeof shown, "%.*s", (int)strcspn(text, "="), text);
-    const command *owner = owner_of_option(shown + strspn(shown, "-"));
+    const command *owner = owner_of_option(a->commands, shown + strspn(shown, "-"));
     if (owner != NULL) {
         return complain(
             "%s has no option %s, that is one of %s (see impactlab %s --help)",
@@ -367,7 +288,7 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
     while (*exit_status == EXIT_DONE &&
            (found = getopt_long(argc, argv, shorts, longs, NULL)) != -1) {
         if (found == '?' || found == ':') {
-            *exit_status = complain_option(a->command, found, argv[optind - 1]);
+            *exit_status = complain_option(a, found, argv[optind - 1]);
             break;
         }
 
@@ -510,11 +431,9 @@ static bool prepare(arguments *a, int argc)
     return room;
 }
 
-bool arguments_read(arguments *a, const command *self, int argc, char **argv,
-                    int *exit_status)
+bool arguments_read(arguments *a, int argc, char **argv, int *exit_status)
 {
-    assert(argc > 0);
-    *a = (arguments){.command = self};
+    assert(argc > 0 && a->command != NULL && a->commands != NULL);
     *exit_status = EXIT_DONE;
     if (!prepare(a, argc)) {
         arguments_finish(a);
@@ -522,7 +441,7 @@ bool arguments_read(arguments *a, const command *self, int argc, char **argv,
         *exit_status = EXIT_FAILED;
         return false;
     }
-    remember(a, "impactlab ", self->name != NULL ? self->name : "");
+    remember(a, "impactlab ", a->command->name);
     if (take_options(a, argc, argv, exit_status)) {
         arguments_finish(a);
         return false;

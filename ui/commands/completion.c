@@ -176,25 +176,38 @@ static const shell shells[] = {
                 [OFFER_QUANTITIES] = " -x -a '%Q'"}},
 };
 
+// What is written: for which shell, of which commands.
+typedef struct completion {
+    FILE *stream;
+    const shell *shell;
+    const command_list *all;
+} completion;
+
 // Text between single quotes of a shell.
-static void put_quoted(FILE *stream, const shell *h, const char *text)
+static void put_quoted(const completion *w, const char *text)
 {
+    const char *escaped = w->shell->escaped;
     for (; *text != '\0'; text++) {
-        if (h->escaped != NULL && strchr(h->escaped, *text) != NULL) {
-            fputc('\\', stream);
+        if (escaped != NULL && strchr(escaped, *text) != NULL) {
+            fputc('\\', w->stream);
         }
-        fprintf(stream, *text == '\'' ? "'\\''" : "%c", *text);
+        if (*text == '\'') {
+            fputs("'\\''", w->stream);
+        } else {
+            fputc(*text, w->stream);
+        }
     }
 }
 
 // The i-th word of a list of the whole program, NULL after the last.
-static const char *listed_word(char list, const command *c, int i)
+static const char *listed_word(const command_list *all, char list, const command *c,
+                               int i)
 {
-    const option_row *o = list == 'O' ? command_option(c, i) : NULL;
+    const option_row *o;
     switch (list) {
     case 'C':
-        if (i < command_count) {
-            return command_table[i]->name;
+        if (i < all->count) {
+            return all->items[i]->name;
         }
         return NULL;
     case 'P':
@@ -208,13 +221,14 @@ static const char *listed_word(char list, const command *c, int i)
         }
         return NULL;
     case 'O':
+        o = command_option(c, i);
         if (o != NULL) {
             return o->name;
         }
         return NULL;
     default:
         if (c->operand_word != NULL) {
-            return c->operand_word(i);
+            return c->operand_word(all, i);
         }
         return NULL;
     }
@@ -253,77 +267,146 @@ static const char *letter_text(char letter, const command *c, const option_row *
     }
 }
 
-// A text of the shell (NULL: none), of a command and an option of it (NULL where there is
-// none).
-static void put(FILE *stream, const shell *h, const char *text, const command *c,
-                const option_row *o)
+// The words of a list of the whole program, with blanks between them: options with their
+// dashes, parameters with the sign of equality that follows them.
+static void put_list(const completion *w, char list, const command *c)
 {
-    const char *word;
-    for (; text != NULL && *text != '\0'; text++) {
-        const char letter = *text == '%' ? *++text : '\0';
-        if (letter == '\0') {
-            fputc(*text, stream);
-        } else if ((word = letter_text(letter, c, o)) != NULL) {
-            fputs(word, stream);
-        } else if (strchr("shv", letter) != NULL) {
-            put_quoted(stream, h,
-                       letter == 's'   ? c->summary
-                       : letter == 'h' ? o->help
-                                       : o->value);
-        } else if (letter == 'l') {
-            fputc(o->letter, stream);
-        } else if (letter == 'L') {
-            put(stream, h, o->letter != 0 ? h->letter : NULL, c, o);
-        } else if (letter == 'V') {
-            put(stream, h, o->type != OPTION_FLAG ? h->value : NULL, c, o);
-        } else if (letter == 'x') {
-            put(stream, h, h->offers[offers[o->type]], c, o);
-        } else if (letter == 'w') {
-            for (word = o->value; *word != '\0'; word++) {
-                fputc(*word == '|' ? ' ' : *word, stream);
-            }
+    const char *word, *before = "", *behind = "";
+    if (list == 'O') {
+        before = "--";
+    } else if (list == 'P') {
+        behind = "=";
+    }
+    for (int i = 0; (word = listed_word(w->all, list, c, i)) != NULL; i++) {
+        if (i > 0) {
+            fputc(' ', w->stream);
+        }
+        fprintf(w->stream, "%s%s%s", before, word, behind);
+    }
+}
+
+// The words of an option's value, "a|b|c", with blanks between them.
+static void put_choices(FILE *stream, const char *words)
+{
+    for (; *words != '\0'; words++) {
+        if (*words == '|') {
+            fputc(' ', stream);
         } else {
-            for (int i = 0; (word = listed_word(letter, c, i)) != NULL; i++) {
-                fprintf(stream, "%s%s%s%s", i > 0 ? " " : "", letter == 'O' ? "--" : "",
-                        word, letter == 'P' ? "=" : "");
-            }
+            fputc(*words, stream);
         }
     }
 }
 
-static void put_operands(FILE *stream, const shell *h, const command *c)
+static void put(const completion *w, const char *text, const command *c,
+                const option_row *o);
+
+// What stands for a letter of a shell's text.
+static void put_letter(const completion *w, char letter, const command *c,
+                       const option_row *o)
 {
-    put(stream, h, c->operand_word != NULL ? h->words : NULL, c, NULL);
-    put(stream, h, c->takes_scenarios ? h->scenarios : NULL, c, NULL);
+    const char *word = letter_text(letter, c, o);
+    if (word != NULL) {
+        fputs(word, w->stream);
+        return;
+    }
+
+    switch (letter) {
+    // texts
+    case 's':
+        put_quoted(w, c->summary);
+        return;
+    case 'h':
+        put_quoted(w, o->help);
+        return;
+    case 'v':
+        put_quoted(w, o->value);
+        return;
+    case 'l':
+        fputc(o->letter, w->stream);
+        return;
+    case 'w':
+        put_choices(w->stream, o->value);
+        return;
+
+    // other texts of the shell, in which letters stand in their turn
+    case 'L':
+        if (o->letter != 0) {
+            put(w, w->shell->letter, c, o);
+        }
+        return;
+    case 'V':
+        if (o->type != OPTION_FLAG) {
+            put(w, w->shell->value, c, o);
+        }
+        return;
+    case 'x':
+        put(w, w->shell->offers[offers[o->type]], c, o);
+        return;
+
+    default:
+        put_list(w, letter, c);
+        return;
+    }
 }
 
-void write_completion(FILE *stream, const char *name)
+// A text of the shell (NULL: none), of a command and an option of it (NULL where there is
+// none).
+static void put(const completion *w, const char *text, const command *c,
+                const option_row *o)
+{
+    if (text == NULL) {
+        return;
+    }
+    for (; *text != '\0'; text++) {
+        if (*text == '%') {
+            text++;
+            put_letter(w, *text, c, o);
+        } else {
+            fputc(*text, w->stream);
+        }
+    }
+}
+
+static void put_operands(const completion *w, const command *c)
+{
+    if (c->operand_word != NULL) {
+        put(w, w->shell->words, c, NULL);
+    }
+    if (c->takes_scenarios) {
+        put(w, w->shell->scenarios, c, NULL);
+    }
+}
+
+void write_completion(FILE *stream, const command_list *all, const char *name)
 {
     const shell *h = shells;
     while (strcmp(h->name, name) != 0) {
         h++;
     }
-    put(stream, h, h->head, NULL, NULL);
-    for (int i = 0; i < command_count; i++) {
-        put(stream, h, h->listed, command_table[i], NULL);
+
+    // the names of all commands
+    const completion w = {.stream = stream, .shell = h, .all = all};
+    put(&w, h->head, NULL, NULL);
+    for (int i = 0; i < all->count; i++) {
+        put(&w, h->listed, all->items[i], NULL);
     }
-    put(stream, h, h->commands, NULL, NULL);
+    put(&w, h->commands, NULL, NULL);
 
     // each command with its options
-    for (int i = 0; i < command_count; i++) {
-        const command *c = command_table[i];
+    for (int i = 0; i < all->count; i++) {
+        const command *c = all->items[i];
         const option_row *o;
-        put(stream, h, h->begin, c, NULL);
+        put(&w, h->begin, c, NULL);
         if (h->words_first) {
-            put_operands(stream, h, c);
+            put_operands(&w, c);
         }
         for (int k = 0; (o = command_option(c, k)) != NULL; k++) {
-            put(stream, h, h->option, c, o);
+            put(&w, h->option, c, o);
         }
         if (!h->words_first) {
-            put_operands(stream, h, c);
+            put_operands(&w, c);
         }
-        put(stream, h, h->end, c, NULL);
+        put(&w, h->end, c, NULL);
     }
-    put(stream, h, h->tail, NULL, NULL);
+    put(&w, h->tail, NULL, NULL);
 }

@@ -203,7 +203,7 @@ static int figures(const arguments *a)
     return code;
 }
 
-static const char *figure_word(int i)
+static const char *figure_word(const command_list *all, int i)
 {
     const thesis_figure *which = thesis_figure_at(i);
     if (which != NULL) {

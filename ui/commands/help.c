@@ -71,7 +71,7 @@ void print_help(FILE *stream, const command *self)
     }
 }
 
-void print_commands(FILE *stream)
+void print_commands(FILE *stream, const command_list *all)
 {
     static const char *const titles[] = {
 #define GROUP_TITLE(group, title) title,
@@ -86,10 +86,10 @@ void print_commands(FILE *stream)
 
     for (int group = 0; group < COMMAND_GROUP_COUNT; group++) {
         fprintf(stream, "\n%s:\n", titles[group]);
-        for (int i = 0; i < command_count; i++) {
-            if ((int)command_table[i]->group == group) {
-                fprintf(stream, "  %-9s  %s\n", command_table[i]->name,
-                        command_table[i]->summary);
+        for (int i = 0; i < all->count; i++) {
+            const command *c = all->items[i];
+            if ((int)c->group == group) {
+                fprintf(stream, "  %-9s  %s\n", c->name, c->summary);
             }
         }
     }
@@ -106,13 +106,13 @@ enum { HITS = 6, PASSAGE = 330, INDENT = 4, MEANINGS = 8, TEXTS = COMMAND_OPTION
 
 // --- what there is to be found ---------------------------------------------------------
 
-static search_entry section_entry(int i)
+static search_entry section_entry(const void *context, int i)
 {
     const manual_section s = manual_section_at(i);
     return (search_entry){s.heading, s.title, s.texts, s.text_count};
 }
 
-static search_entry parameter_entry(int i)
+static search_entry parameter_entry(const void *context, int i)
 {
     static const char *texts[2];
     texts[0] = parameter_table[i].description;
@@ -121,25 +121,27 @@ static search_entry parameter_entry(int i)
                           texts[1] != NULL ? 2 : 1};
 }
 
-static search_entry quantity_entry(int i)
+static search_entry quantity_entry(const void *context, int i)
 {
     static const char *texts[1];
     texts[0] = summary_table[i].description;
     return (search_entry){summary_table[i].key, "quantity", texts, 1};
 }
 
-static search_entry signal_entry(int i)
+static search_entry signal_entry(const void *context, int i)
 {
     static const char *texts[1];
     texts[0] = signal_table[i].description;
     return (search_entry){signal_table[i].name, "signal", texts, 1};
 }
 
-// A command with its summary, its help and what its own options do.
-static search_entry command_entry(int i)
+// A command with its summary, its help and what its own options do; the context is the
+// list of all.
+static search_entry command_entry(const void *context, int i)
 {
+    const command_list *all = context;
     static const char *texts[TEXTS];
-    const command *c = command_table[i];
+    const command *c = all->items[i];
     int count = 0;
     texts[count++] = c->summary;
     texts[count++] = c->help;
@@ -155,13 +157,13 @@ static search_entry command_entry(int i)
 
 enum { SECTIONS, PARAMETERS, QUANTITIES, SIGNALS, COMMANDS, SOURCES };
 
-static void list_sources(search_source sources[SOURCES])
+static void list_sources(const command_list *all, search_source sources[SOURCES])
 {
     sources[SECTIONS] = (search_source){manual_sections(), section_entry};
     sources[PARAMETERS] = (search_source){parameter_count, parameter_entry};
     sources[QUANTITIES] = (search_source){summary_count, quantity_entry};
     sources[SIGNALS] = (search_source){signal_count, signal_entry};
-    sources[COMMANDS] = (search_source){command_count, command_entry};
+    sources[COMMANDS] = (search_source){all->count, command_entry, all};
 }
 
 // --- how it is shown -------------------------------------------------------------------
@@ -212,7 +214,7 @@ static int cut_length(const char *text, int most)
 
 static void print_hit(FILE *stream, const search_source *sources, const search_hit *hit)
 {
-    const search_entry e = sources[hit->source].entry(hit->index);
+    const search_entry e = search_entry_of(&sources[hit->source], hit->index);
     const char *text = hit->text < e.text_count ? e.texts[hit->text] : "";
 
     fprintf(stream, "\n");
@@ -230,11 +232,11 @@ static void print_hit(FILE *stream, const search_source *sources, const search_h
 
 // Prints what answers a question best: each hit with the passage that fits, and where to
 // read on. Returns how many hits there are.
-static int print_answers(FILE *stream, const char *question)
+static int print_answers(FILE *stream, const command_list *all, const char *question)
 {
     search_source sources[SOURCES];
     search_hit hits[HITS];
-    list_sources(sources);
+    list_sources(all, sources);
     const int count = search_find(sources, SOURCES, question, hits, HITS);
     for (int i = 0; i < count; i++) {
         print_hit(stream, sources, &hits[i]);
@@ -250,15 +252,15 @@ static int print_answers(FILE *stream, const char *question)
     return count;
 }
 
-int print_meanings(FILE *stream, const char *words)
+int print_meanings(FILE *stream, const command_list *all, const char *words)
 {
     search_source sources[SOURCES];
     search_hit hits[MEANINGS];
-    list_sources(sources);
+    list_sources(all, sources);
     const int count = search_titles(sources, SOURCES, words, hits, MEANINGS);
     fprintf(stream, "%s", count > 0 ? "it may mean\n" : "");
     for (int i = 0; i < count; i++) {
-        const search_entry e = sources[hits[i].source].entry(hits[i].index);
+        const search_entry e = search_entry_of(&sources[hits[i].source], hits[i].index);
         fprintf(stream, "  ");
         print_name(stream, hits[i].source, hits[i].index, &e);
         print_indented(stream, e.texts[0], cut_length(e.texts[0], PASSAGE), LINE, INDENT);
@@ -268,26 +270,38 @@ int print_meanings(FILE *stream, const char *words)
 
 // --- the command -----------------------------------------------------------------------
 
-RESULT_WRITER(write_page, command, write_man_page(stream, found))
+// A man page: of all commands, or of the one that it is about.
+typedef struct man_page {
+    const command_list *all;
+    const command *about; // NULL: impactlab itself
+} man_page;
+
+RESULT_WRITER(write_page, man_page, write_man_page(stream, found->all, found->about))
 
 // All man pages, FOLDER/impactlab.1 and FOLDER/impactlab-COMMAND.1. The folder is made if
 // it is not there.
-static int write_pages(const char *folder)
+static int write_pages(const command_list *all, const char *folder)
 {
     int result = EXIT_DONE;
     if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
         complain("the folder '%s' cannot be made: %s", folder, strerror(errno));
         return EXIT_FAILED;
     }
-    for (int i = -1; i < command_count; i++) {
-        const command *c = i < 0 ? NULL : command_table[i];
+    for (int i = -1; i < all->count; i++) {
+        man_page page = {.all = all};
         char path[4096];
-        const int length = snprintf(path, sizeof path, "%s/impactlab%s%s.1", folder,
-                                    c != NULL ? "-" : "", c != NULL ? c->name : "");
+        int length;
+        if (i < 0) {
+            length = snprintf(path, sizeof path, "%s/impactlab.1", folder);
+        } else {
+            page.about = all->items[i];
+            length = snprintf(path, sizeof path, "%s/impactlab-%s.1", folder,
+                              page.about->name);
+        }
         if (length >= (int)sizeof path) {
             return complain("--man-pages %s: the name is too long", folder);
         }
-        result = worse(result, write_file(path, write_page, NULL, c));
+        result = worse(result, write_file(path, write_page, NULL, &page));
     }
     return result;
 }
@@ -301,7 +315,7 @@ static int answer(const arguments *a)
         length += (size_t)snprintf(question + length, sizeof question - length, "%s ",
                                    a->operands[i]);
     }
-    if (print_answers(stdout, question) > 0) {
+    if (print_answers(stdout, a->commands, question) > 0) {
         return EXIT_DONE;
     }
     fault f = {0};
@@ -311,7 +325,7 @@ static int answer(const arguments *a)
         }
     }
     if (a->operand_count == 1 && strchr(a->operands[0], ' ') == NULL) {
-        return complain_command(a->operands[0]);
+        return complain_command(a->commands, a->operands[0]);
     }
     return complain("nothing is known of these words, expected some that the manual, a "
                     "parameter, a quantity or a command has");
@@ -319,21 +333,24 @@ static int answer(const arguments *a)
 
 static int help(const arguments *a)
 {
-    const command *about = a->operand_count == 1 ? command_find(a->operands[0]) : NULL;
+    const command *about = NULL;
+    if (a->operand_count == 1) {
+        about = command_find(a->commands, a->operands[0]);
+    }
 
     if (a->operand_count > 0 && about == NULL) {
         if (a->man) {
-            return complain_command(a->operands[0]);
+            return complain_command(a->commands, a->operands[0]);
         }
         return answer(a);
     }
 
     if (a->completion != NULL) {
-        write_completion(stdout, a->completion);
+        write_completion(stdout, a->commands, a->completion);
         return EXIT_DONE;
     }
     if (a->man_pages != NULL) {
-        return write_pages(a->man_pages);
+        return write_pages(a->commands, a->man_pages);
     }
     if (a->reference != NULL) {
         write_reference(stdout, a->reference);
@@ -341,19 +358,19 @@ static int help(const arguments *a)
     }
 
     if (a->man) {
-        write_man_page(stdout, about);
+        write_man_page(stdout, a->commands, about);
     } else if (about != NULL) {
         print_help(stdout, about);
     } else {
-        print_commands(stdout);
+        print_commands(stdout, a->commands);
     }
     return EXIT_DONE;
 }
 
-static const char *command_word(int i)
+static const char *command_word(const command_list *all, int i)
 {
-    if (i < command_count) {
-        return command_table[i]->name;
+    if (i < all->count) {
+        return all->items[i]->name;
     }
     return NULL;
 }

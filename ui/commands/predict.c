@@ -10,16 +10,16 @@
 
 // Commands of --then.
 enum { MOST_COMMANDS = 64 };
-typedef struct command_list {
+typedef struct voltage_commands {
     double times[MOST_COMMANDS], volts[MOST_COMMANDS];
     int count;
-} command_list;
+} voltage_commands;
 
 // Reads "TIME:VOLTS,TIME:VOLTS", times since the touch in seconds, from 0 on and growing.
-static bool read_commands(const char *text, command_list *list)
+static bool read_commands(const char *text, voltage_commands *list)
 {
     const char *rest = text;
-    *list = (command_list){0};
+    *list = (voltage_commands){0};
     while (rest != NULL && *rest != '\0') {
         const int i = list->count;
         double time, volts;
@@ -208,7 +208,7 @@ static int report(const arguments *a, const scenario *s, const run_result *resul
     static const command_results r = {predict_object, print_predictions,
                                       plot_predictions};
     predicted p = {.result = result};
-    command_list then;
+    voltage_commands then;
     if (!read_commands(a->then, &then)) {
         return EXIT_BAD_ARGUMENTS;
     }

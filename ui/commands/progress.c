@@ -214,7 +214,7 @@ void many_runs_end(const sweep_options *o)
     }
 }
 
-void many_runs_tell_failure(const sweep_progress *p)
+void many_runs_report_failure(const sweep_progress *p)
 {
     assert(p->failed > 0);
     complain("%zu of %zu runs failed; run %zu: %s", p->failed, p->done_now,

@@ -48,7 +48,7 @@ sweep_options many_runs_begin(const arguments *a, const char *word);
 void many_runs_end(const sweep_options *o);
 
 // Prints how many of the newly computed runs failed, and why the first one did.
-void many_runs_tell_failure(const sweep_progress *p);
+void many_runs_report_failure(const sweep_progress *p);
 
 // After an interrupt: says how many runs there are, what became of them, and how to
 // continue. `db`: file in which they are stored, or NULL. Returns the exit status.

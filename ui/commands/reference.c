@@ -125,7 +125,7 @@ static const term examples[] = {
     {NULL},
 };
 
-static void write_overview(FILE *stream)
+static void write_overview(FILE *stream, const command_list *all)
 {
     put(stream,
         ".SH NAME\nimpactlab \\- impact and force control of a flexible robot arm\n"
@@ -143,8 +143,8 @@ static void write_overview(FILE *stream)
                            "all. impactlab --version prints the version.");
 
     put(stream, ".SH COMMANDS\n");
-    for (int i = 0; i < command_count; i++) {
-        const command *c = command_table[i];
+    for (int i = 0; i < all->count; i++) {
+        const command *c = all->items[i];
         put(stream, ".TP\n\\fBimpactlab\\-%s\\fR(1)\n%m.\n", c->name, c->summary);
     }
 
@@ -184,14 +184,14 @@ static void write_command(FILE *stream, const command *c)
     put(stream, ".SH SEE ALSO\n\\fBimpactlab\\fR(1)\n");
 }
 
-void write_man_page(FILE *stream, const command *c)
+void write_man_page(FILE *stream, const command_list *all, const command *c)
 {
     // a page of its own for each command, named as man looks it up
     put(stream, c != NULL ? ".TH IMPACTLAB\\-%u" : ".TH IMPACTLAB",
         c != NULL ? c->name : "");
     put(stream, " 1 \"\" \"impactlab %s\"\n", lab_version());
     if (c == NULL) {
-        write_overview(stream);
+        write_overview(stream, all);
     } else {
         write_command(stream, c);
     }

@@ -156,7 +156,7 @@ static int run_lesson(const arguments *a)
             arguments opened = *a;
             opened.operands = &l.names[i];
             opened.operand_count = 1;
-            code = command_find("lab")->run(&opened);
+            code = command_find(a->commands, "lab")->run(&opened);
         } else if (here.is_lesson && l.all != NULL) {
             json_add(l.all, json_of("name:t scenario:t title:t", leaf, name, here.title));
         } else if (here.is_lesson) {
@@ -301,7 +301,7 @@ static int show(const arguments *a)
 
     // "show k2" asks for something that has no file
     if (result == EXIT_BAD_ARGUMENTS && strpbrk(a->operands[0], "/ ") == NULL) {
-        print_meanings(stderr, a->operands[0]);
+        print_meanings(stderr, a->commands, a->operands[0]);
     }
     return result;
 }
@@ -322,19 +322,19 @@ const command show_command = {
 typedef struct checking {
     json_t *files;  // an object each
     json_t *faults; // the sentences of the present file
-    told_faults told;
+    opening_faults opening;
 } checking;
 
 // Tells and keeps a fault.
 static void take_fault(void *context, const char *sentence)
 {
     checking *c = context;
-    tell_fault(&c->told, sentence);
+    report_opening_fault(&c->opening, sentence);
     json_add(c->faults, json_text(sentence));
 }
 
 // Warns of what a file gives without effect.
-static void tell_idle(const scenario *s, const char *file)
+static void warn_of_idle(const scenario *s, const char *file)
 {
     idle_value idle;
     for (int place = 0; effect_next_idle(s, &place, &idle);) {
@@ -348,7 +348,7 @@ static int check_one(const char *file, const arguments *a, checking *c)
 {
     scenario s;
     int result = EXIT_DONE;
-    c->told = (told_faults){0};
+    c->opening = (opening_faults){0};
     c->faults = json_array();
 
     // a file under test, or the name of a scenario
@@ -360,19 +360,19 @@ static int check_one(const char *file, const arguments *a, checking *c)
     }
     json_t *idle = json_array();
     if (code == STATUS_OK) {
-        tell_idle(&s, file);
+        warn_of_idle(&s, file);
         json_decref(idle);
         idle = export_without_effect(&s);
         scenario_finish(&s);
-        tell_first_fault(&c->told);
+        report_first_fault(&c->opening);
         if (summary_wanted(a)) {
             say("%s: no fault\n", file);
         }
     } else {
-        if (c->told.count == 0) {
+        if (c->opening.count == 0) {
             json_add(c->faults, json_text(status_text(code)));
         }
-        result = tell_unopened(&c->told, code, file);
+        result = report_unopened(&c->opening, code, file);
     }
 
     json_add(c->files,

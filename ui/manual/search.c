@@ -76,7 +76,7 @@ static sqlite3 *open_tables(const search_source *sources, int source_count)
     sqlite3_str_appendall(script, tables);
     for (int s = 0, thing = 1; s < source_count; s++) {
         for (int i = 0; i < sources[s].count; i++, thing++) {
-            const search_entry e = sources[s].entry(i);
+            const search_entry e = search_entry_of(&sources[s], i);
             for (int t = 0; t < e.text_count; t++) {
                 sqlite3_str_appendf(
                     script,

@@ -13,8 +13,15 @@ typedef struct search_entry {
 // Things of one kind: how many there are, and what the i-th of them is.
 typedef struct search_source {
     int count;
-    search_entry (*entry)(int index);
+    search_entry (*entry)(const void *context, int index);
+    const void *context;
 } search_source;
+
+// The thing with that index.
+static inline search_entry search_entry_of(const search_source *source, int index)
+{
+    return source->entry(source->context, index);
+}
 
 // A thing that was found.
 typedef struct search_hit {

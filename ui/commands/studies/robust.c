@@ -218,7 +218,7 @@ static int judge_law(robustness *r, const char *law, int k, const sweep *s)
     const bool tell =
         progress.failed > 0 && (!a->quiet || progress.failed == progress.total);
     if (code == STATUS_OK && tell) {
-        many_runs_tell_failure(&progress);
+        many_runs_report_failure(&progress);
     }
     if (code == STATUS_OK && progress.done > 0) {
         robust_law *found = &r->found[r->judged++];

@@ -15,18 +15,6 @@
 #include "ui/commands/progress.h"
 #include "src/study/follow.h"
 
-// A study that is computed by a call, with what becomes of it.
-#define STUDY(name, type, compute, pieces, count, ...)                                   \
-    static int study_of_##name(const arguments *a, scenario *s)                          \
-    {                                                                                    \
-        static const command_results r = {__VA_ARGS__};                                  \
-        type found;                                                                      \
-        fault f = {0};                                                                   \
-        run_monitor *monitor = work_begin(a, pieces, count);                             \
-        const status code = compute(s, monitor, &found, &f);                             \
-        return work_finish(a, code, &f, &r, s, &found);                                  \
-    }
-
 // --- methods ---------------------------------------------------------------------------
 
 static json_t *methods_object(const scenario *s, const void *found)
@@ -160,10 +148,11 @@ static int plot_methods(const arguments *a, const scenario *s, const void *found
     return publish_study(a, s, "error against cost", &fig);
 }
 
-STUDY(methods, method_study, method_study_compute, "runs", STUDY_RUNS, methods_object,
-      print_methods, plot_methods, .draws_part = true,
-      .kept = "the results are those of these",
-      .none = "there is nothing to show") // without the reference
+static status compute_methods(const scenario *s, run_monitor *monitor, void *found,
+                              fault *f)
+{
+    return method_study_compute(s, monitor, found, f);
+}
 
 // --- links -----------------------------------------------------------------------------
 
@@ -304,9 +293,11 @@ static int plot_links(const arguments *a, const scenario *s, const void *found)
     return publish_study(a, s, "from links to a beam", &fig);
 }
 
-STUDY(links, links_study, links_study_compute, "numbers of links", LINKS_LENGTHS,
-      links_object, print_links, plot_links, .kept = "the table is that of these",
-      .none = "there is nothing to show")
+static status compute_links(const scenario *s, run_monitor *monitor, void *found,
+                            fault *f)
+{
+    return links_study_compute(s, monitor, found, f);
+}
 
 // --- follow ----------------------------------------------------------------------------
 
@@ -413,25 +404,68 @@ static int plot_follow(const arguments *a, const scenario *s, const void *found)
     return publish_study(a, s, "a set-point and a wall that move", &fig);
 }
 
-STUDY(follow, follow_study, follow_study_compute, "runs", FOLLOW_RUNS, follow_object,
-      print_follow, plot_follow, .draws_part = true,
-      .kept = "the results are those of these", .none = "there is nothing to show")
+static status compute_follow(const scenario *s, run_monitor *monitor, void *found,
+                             fault *f)
+{
+    return follow_study_compute(s, monitor, found, f);
+}
 
 // --- the command -----------------------------------------------------------------------
 
+// What a study finds.
+typedef union study_result {
+    method_study methods;
+    links_study links;
+    follow_study follow;
+} study_result;
+
+// A study: its scenario if none is given, what computes it in pieces that are counted,
+// and what becomes of the result.
 typedef struct topic {
-    const char *name, *scenario; // the scenario if none is given
-    int (*study)(const arguments *a, scenario *s);
+    const char *name, *scenario;
+    status (*compute)(const scenario *s, run_monitor *monitor, void *found, fault *f);
+    const char *pieces;
+    int piece_count;
+    command_results results;
 } topic;
 
 static const topic topics[] = {
-    {"methods", "corrected/first-impact", study_of_methods},
-    {"links", "corrected/damped-beam", study_of_links},
-    {"follow", "compare/observer", study_of_follow},
+    {.name = "methods",
+     .scenario = "corrected/first-impact",
+     .compute = compute_methods,
+     .pieces = "runs",
+     .piece_count = STUDY_RUNS,
+     .results = {.json = methods_object,
+                 .text = print_methods,
+                 .plot = plot_methods,
+                 .draws_part = true,
+                 .kept = "the results are those of these",
+                 .none = "there is nothing to show"}}, // without the reference
+    {.name = "links",
+     .scenario = "corrected/damped-beam",
+     .compute = compute_links,
+     .pieces = "numbers of links",
+     .piece_count = LINKS_LENGTHS,
+     .results = {.json = links_object,
+                 .text = print_links,
+                 .plot = plot_links,
+                 .kept = "the table is that of these",
+                 .none = "there is nothing to show"}},
+    {.name = "follow",
+     .scenario = "compare/observer",
+     .compute = compute_follow,
+     .pieces = "runs",
+     .piece_count = FOLLOW_RUNS,
+     .results = {.json = follow_object,
+                 .text = print_follow,
+                 .plot = plot_follow,
+                 .draws_part = true,
+                 .kept = "the results are those of these",
+                 .none = "there is nothing to show"}},
 };
 enum { TOPICS = sizeof topics / sizeof topics[0] };
 
-static const char *topic_word(int i)
+static const char *topic_word(const command_list *all, int i)
 {
     if (i < TOPICS) {
         return topics[i].name;
@@ -439,16 +473,40 @@ static const char *topic_word(int i)
     return NULL;
 }
 
-static int study(const arguments *a)
+// The study of that name, NULL if there is none.
+static const topic *find_topic(const char *name)
 {
     for (const topic *t = topics; t < topics + TOPICS; t++) {
-        if (strcmp(t->name, a->operands[0]) == 0) {
-            return with_scenario(a->operand_count > 1 ? a->operands[1] : t->scenario, a,
-                                 t->study);
+        if (strcmp(t->name, name) == 0) {
+            return t;
         }
     }
-    return complain("there is no study '%s', expected methods, links or follow",
-                    a->operands[0]);
+    return NULL;
+}
+
+// Makes the study that the first operand names, of the scenario.
+static int make_study(const arguments *a, scenario *s)
+{
+    const topic *t = find_topic(a->operands[0]);
+    study_result found;
+    fault f = {0};
+    run_monitor *monitor = work_begin(a, t->pieces, t->piece_count);
+    const status code = t->compute(s, monitor, &found, &f);
+    return work_finish(a, code, &f, &t->results, s, &found);
+}
+
+static int study(const arguments *a)
+{
+    const topic *t = find_topic(a->operands[0]);
+    if (t == NULL) {
+        return complain("there is no study '%s', expected methods, links or follow",
+                        a->operands[0]);
+    }
+    const char *name = t->scenario;
+    if (a->operand_count > 1) {
+        name = a->operands[1];
+    }
+    return with_scenario(name, a, make_study);
 }
 
 const command study_command = {

@@ -158,7 +158,7 @@ static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_pr
         print_summary(o, store, values, failed, p);
     }
     if (p->failed > 0 && (!a->quiet || failed == p->done)) {
-        many_runs_tell_failure(p);
+        many_runs_report_failure(p);
     } else if (failed == p->done) {
         complain("all %zu runs failed; the message of each is in its row", failed);
     }

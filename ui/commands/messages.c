@@ -1,0 +1,185 @@
+// Complaints, and what commands print for people.
+#include "ui/commands/messages.h"
+
+#include <assert.h>
+#include <langinfo.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/base/text_stream.h"
+#include "src/base/words.h"
+
+int complain(const char *format, ...)
+{
+    va_list list;
+    fflush(stdout);
+    fputs("impactlab: ", stderr);
+    va_start(list, format);
+    print_printable_list(stderr, format, list);
+    va_end(list);
+    fputc('\n', stderr);
+    return EXIT_BAD_ARGUMENTS;
+}
+
+int complain_fault(const fault *f)
+{
+    complain("%s", f->text[0] ? f->text : status_text(f->code));
+
+    // what the user can mend, and what went wrong on the way
+    switch (f->code) {
+    case STATUS_OK:
+        return EXIT_DONE;
+    case STATUS_BAD_ARGUMENT:
+    case STATUS_BAD_SCENARIO:
+    case STATUS_CANNOT_READ:
+        return EXIT_BAD_ARGUMENTS;
+    default:
+        return EXIT_FAILED;
+    }
+}
+
+void report_to_stderr(void *context, const char *sentence)
+{
+    (void)context;
+    fflush(stdout);
+    print_printable(stderr, "%s\n", sentence);
+}
+
+void report_first_fault(opening_faults *t)
+{
+    if (t->first != NULL) {
+        report_to_stderr(NULL, t->first);
+    }
+    free(t->first);
+    t->first = NULL;
+}
+
+void report_opening_fault(void *context, const char *sentence)
+{
+    opening_faults *t = context;
+    report_first_fault(t);
+    if (t->count++ == 0) {
+        t->first = strdup(sentence);
+    } else {
+        t->first = NULL;
+    }
+    if (t->first == NULL) {
+        report_to_stderr(NULL, sentence);
+    }
+}
+
+int report_unopened(opening_faults *t, status code, const char *name_or_file)
+{
+    assert(code != STATUS_OK);
+    if (t->count == 0) {
+        complain("'%s': %s", name_or_file, status_text(code));
+    } else if (t->first != NULL && code == STATUS_BAD_ARGUMENT) {
+        complain("%s", t->first);
+        free(t->first);
+        t->first = NULL;
+    }
+    report_first_fault(t);
+    if (code == STATUS_NO_MEMORY) {
+        return EXIT_FAILED;
+    }
+    return EXIT_BAD_ARGUMENTS;
+}
+
+void complain_sentence(void *context, const char *sentence)
+{
+    (void)context;
+    complain("%s", sentence);
+}
+
+void say(const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    print_printable_list(stdout, format, list);
+    va_end(list);
+}
+
+void print_cell(int width, const char *conversion, double value)
+{
+    char text[40] = "-";
+    if (!isnan(value)) {
+        snprintf(text, sizeof text, conversion, value);
+    }
+    printf(" %*s", width, text);
+}
+
+void say_title(const scenario *s)
+{
+    char title[SCENARIO_TITLED];
+    say("%s: %s\n", s->name, scenario_titled(s, title));
+}
+
+bool terminal_has_utf8(void)
+{
+    if (strcmp(nl_langinfo(CODESET), "UTF-8") == 0) {
+        return true;
+    }
+
+    // a locale that is not installed, or had no memory, tells by its name
+    static const char *const places[] = {"LC_ALL", "LC_CTYPE", "LANG"};
+    const char *name = NULL;
+    for (int i = 0; i < 3 && (name == NULL || *name == '\0'); i++) {
+        name = getenv(places[i]);
+    }
+    return name != NULL &&
+           (strcasestr(name, ".UTF-8") != NULL || strcasestr(name, ".utf8") != NULL);
+}
+
+// --- longer texts ----------------------------------------------------------------------
+
+void print_indented(FILE *stream, const char *text, int bytes, int width, int indent)
+{
+    const char *end = text + bytes;
+    int column = 0;
+    assert(bytes >= 0 && indent >= 0 && width > indent);
+    while ((text += strspn(text, " \n")) < end) {
+        char word[256];
+        int length = (int)strcspn(text, " \n");
+        if (!(length < end - text)) {
+            length = (int)(end - text);
+        }
+        snprintf(word, sizeof word, "%.*s", length, text);
+
+        // a word goes to the next line if this one has no room for it
+        int wide = 0;
+        for (const char *c = word; *c != '\0'; c++) {
+            wide += ((unsigned char)*c & 0xC0) != 0x80; // of UTF-8
+        }
+        const bool fits = column > 0 && column + 1 + wide <= width;
+        if (!fits) {
+            fprintf(stream, "%s%*s", column > 0 ? "\n" : "", indent, "");
+        }
+        print_printable(stream, "%s%.*s", fits ? " " : "", length, text);
+        if (fits) {
+            column = column + 1 + wide;
+        } else {
+            column = indent + wide;
+        }
+        text += length;
+    }
+    fprintf(stream, "%s", column > 0 ? "\n" : "");
+}
+
+bool next_paragraph(const char **text, paragraph *p)
+{
+    *text += strspn(*text, "\n");
+    if (**text == '\0') {
+        return false;
+    }
+    *p = (paragraph){.start = *text, .literal = **text == ' '};
+
+    // lines are one paragraph until one that is empty or begins with a blank
+    do {
+        *text += strcspn(*text, "\n");
+        p->bytes = (int)(*text - p->start);
+        *text += **text == '\n';
+    } while (!p->literal && strchr("\n ", **text) == NULL);
+    return true;
+}
