@@ -211,7 +211,7 @@ TEST(the_thesiss_predictors_say_what_they_do_not_know)
         {"wall.motion=sine wall.kind=plane", PREDICTION_STILL_WALL_ONLY, false},
     };
     for (EACH(c, cases)) {
-        parameters p = fixture_parameters(given(c->given));
+        parameters p = fixture_parameters(given("%s", c->given));
         const double q[2] = {0.1, 0.1}, w[2] = {0.6, 0.6};
         const prediction_question question = {.parameters = &p,
                                               .bodies = {{0.1, 0.1, 0.1},
