@@ -1,3 +1,4 @@
+// The constants of an arm that follow from its parameters; its fastest motion.
 #include "src/arm/arm.h"
 
 #include <assert.h>
@@ -53,7 +54,8 @@ static double first_clamped_frequency(const arm *a)
 
         // M x as the moment on each joint, from the tip inwards
         double force = a->tip_mass * y;
-        for (int k = a->links - 1; k >= (root ? 0 : 1); k--) {
+        const int first = root ? 0 : 1;
+        for (int k = a->links - 1; k >= first; k--) {
             const double l = arm_link_of(a, k).length;
             double base = tip_y[k] - l * shape[k];
             double own_force = arm_link_of(a, k).mass * (base + l * shape[k] / 2);
@@ -113,13 +115,18 @@ static double largest_eigenvalue(const arm *source, bool of_velocities)
     // a shape near the fastest mode's, then sweep after sweep until the quotient stands
     memset(still, 0, sizeof still);
     for (int k = 0; k < a.dof; k++) {
-        x[k] = (k % 2 ? -small : small) * (1 + 0.1 * k / a.dof);
+        const double sign = k % 2 == 0 ? 1 : -1;
+        x[k] = sign * small * (1 + 0.1 * k / a.dof);
     }
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
         chain_reaction reaction;
         double size = 0;
-        chain_accelerations(&a, work, of_velocities ? still : x,
-                            of_velocities ? x : still, free_mode, alpha, &reaction);
+        const double *q = x, *w = still;
+        if (of_velocities) {
+            q = still;
+            w = x;
+        }
+        chain_accelerations(&a, work, q, w, free_mode, alpha, &reaction);
         double before = 0;
         for (int k = 0; k < a.dof; k++) {
             size += alpha[k] * alpha[k];
@@ -169,8 +176,13 @@ static double fastest_decay(const arm *a)
            stiffest = fmax(a->joint_stiffness, a->hub_stiffness);
     double damping = fmax(a->joint_damping, a->hub_joint_damping);
     const double ratio = 0.5 * w * damping / stiffest;
-    double decay = ratio > 1 ? w * (ratio + sqrt(ratio * ratio - 1)) : 0;
-    double reach = arm_link_of(a, 0).length * (a->hub_spring ? 0 : 1);
+    double decay = 0, reach = 0;
+    if (ratio > 1) {
+        decay = w * (ratio + sqrt(ratio * ratio - 1));
+    }
+    if (!a->hub_spring) {
+        reach = arm_link_of(a, 0).length;
+    }
     double hub = a->hub_inertia + arm_link_of(a, 0).mass * reach * reach / 12;
     assert(stiffest > 0 && hub > 0);
     decay = fmax(decay, a->air_drag * a->link_length / a->link_mass);

@@ -68,10 +68,13 @@ double wall_rate(const wall_model *w, double compliance, double depth, double ra
             plain_pow(plain_pow(fmax(depth, 0), n + 1) + way, 1 / (n + 1));
         deepest = fmin(deepest, held);
     }
-    double stiffness =
-        n == 1 ? w->stiffness : n * w->stiffness * plain_pow(deepest, n - 1);
-    double damping =
-        w->law == WALL_KELVIN_VOIGT ? w->damping : w->damping * plain_pow(deepest, n);
+    double stiffness = w->stiffness, damping = w->damping;
+    if (n != 1) {
+        stiffness = n * w->stiffness * plain_pow(deepest, n - 1);
+    }
+    if (w->law != WALL_KELVIN_VOIGT) {
+        damping = w->damping * plain_pow(deepest, n);
+    }
     return fmax(sqrt(stiffness * compliance), damping * compliance);
 }
 
@@ -100,7 +103,8 @@ static wall_face returning(const wall_model *w, double depth, double least)
 wall_face wall_face_left_behind(const wall_model *w, double depth)
 {
     assert(!wall_has_face(w));
-    return returning(w, return_time(w, depth) > LEAST_RETURN ? depth : 0, LEAST_DEPTH);
+    const double left = return_time(w, depth) > LEAST_RETURN ? depth : 0;
+    return returning(w, left, LEAST_DEPTH);
 }
 
 double wall_face_acceleration(const wall_model *w, wall_face face)
@@ -220,7 +224,8 @@ static wall_face shake(const wall_model *w, wall_face face, double h, double *wo
     const bool creeps = h * (swings + shakes) > MOST_PIECES;
     double slow, fast, series[TERMS], x[TERMS];
     find_decays(w, &slow, &fast);
-    const int pieces = 1 + (int)(h * ((creeps ? slow : swings) + shakes));
+    const double fastest = creeps ? slow : swings;
+    const int pieces = 1 + (int)(h * (fastest + shakes));
     *work = 0;
     for (int i = 0; i < pieces; i++) {
         const double piece = h / pieces, from = w->shift.time + i * piece;
@@ -251,8 +256,14 @@ wall_face wall_face_after(const wall_model *w, wall_face face, double h)
 {
     assert(h >= 0);
     if (!wall_has_face(w)) {
-        const double passed = face.position > 0 ? h / return_time(w, face.position) : 0;
-        const double left = w->law == WALL_KELVIN_VOIGT ? plain_exp(-passed) : 1 - passed;
+        double passed = 0;
+        if (face.position > 0) {
+            passed = h / return_time(w, face.position);
+        }
+        double left = 1 - passed;
+        if (w->law == WALL_KELVIN_VOIGT) {
+            left = plain_exp(-passed);
+        }
         return returning(w, face.position * left, FACE_AT_REST);
     }
     double series[TERMS], work;

@@ -12,8 +12,11 @@
 
 wall_motion wall_motion_of(const wall_parameters *p)
 {
-    return (wall_motion){.kind = p->kind == WALL_NONE ? MOTION_NONE
-                                                      : (wall_motion_kind)p->motion,
+    wall_motion_kind kind = MOTION_NONE;
+    if (p->kind != WALL_NONE) {
+        kind = (wall_motion_kind)p->motion;
+    }
+    return (wall_motion){.kind = kind,
                          .amplitude = p->motion_amplitude,
                          .frequency = p->motion_frequency,
                          .time = p->motion_time};
@@ -134,8 +137,11 @@ static long interval_of(const wall_path *p, double time)
 static wall_shift path_at(const wall_path *p, double time)
 {
     const long i = interval_of(p, time), last = (long)p->rows - 1;
-    if (i < 0 || i == last) {
-        return (wall_shift){.place = p->places[i < 0 ? 0 : last]};
+    if (i < 0) {
+        return (wall_shift){.place = p->places[0]};
+    }
+    if (i == last) {
+        return (wall_shift){.place = p->places[last]};
     }
     const double h = p->times[i + 1] - p->times[i], x = (time - p->times[i]) / h;
     const double rise = p->places[i + 1] - p->places[i];
@@ -169,7 +175,10 @@ wall_shift wall_motion_at(const wall_motion *m, double time)
                             m->amplitude * rate * rate * 60 * x * y * (y - x)};
     }
     case MOTION_FILE: {
-        wall_shift at = m->path != NULL ? path_at(m->path, since) : (wall_shift){0};
+        wall_shift at = {0};
+        if (m->path != NULL) {
+            at = path_at(m->path, since);
+        }
         at.time = time;
         return at;
     }
@@ -220,7 +229,10 @@ double wall_motion_rate(const wall_motion *m, double time)
 {
     if (m->kind == MOTION_FILE) {
         // a share of an interval
-        const long i = m->path != NULL ? interval_of(m->path, time - m->time) : -1;
+        long i = -1;
+        if (m->path != NULL) {
+            i = interval_of(m->path, time - m->time);
+        }
         if (i >= 0 && i + 1 < (long)m->path->rows) {
             return 1 / (m->path->times[i + 1] - m->path->times[i]);
         }

@@ -38,14 +38,21 @@ static void write_quoted(FILE *stream, const char *text)
 
 void csv_heading(csv_writer *w, const char *name, const char *unit)
 {
-    const char *const parts[] = {name, unit != NULL ? "[" : "", unit != NULL ? unit : "",
-                                 unit != NULL ? "]" : ""};
-    const char *quote =
-        strpbrk(name, ",\"\n") != NULL || strpbrk(parts[2], ",\"\n") != NULL ? "\"" : "";
+    static const char special[] = ",\"\n";
+    const char *quote = "";
+    if (strpbrk(name, special) != NULL ||
+        (unit != NULL && strpbrk(unit, special) != NULL)) {
+        quote = "\"";
+    }
     fprintf(w->stream, "%s%s", w->in_row ? "," : "", quote);
     w->in_row = true;
-    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
-        write_quoted(w->stream, parts[i]);
+
+    // name[unit]
+    write_quoted(w->stream, name);
+    if (unit != NULL) {
+        fputc('[', w->stream);
+        write_quoted(w->stream, unit);
+        fputc(']', w->stream);
     }
     fputs(quote, w->stream);
 }

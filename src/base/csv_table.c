@@ -266,7 +266,10 @@ status csv_table_numbers(const csv_table *t, const char *heading, const char *un
     // its unit
     char own[32];
     const bool said = copy_unit(heading, own) || copy_unit(t->headings[column], own);
-    const double factor = said ? factor_to(own, unit) : 1;
+    double factor = 1;
+    if (said) {
+        factor = factor_to(own, unit);
+    }
     if (factor == 0) {
         return fault_set_place(
             f, STATUS_BAD_ARGUMENT, 1, column + 1,
@@ -328,7 +331,11 @@ double csv_table_at(const double *times, const double *values, size_t rows, doub
     }
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
-        *(times[middle] <= time ? &low : &high) = middle;
+        if (times[middle] <= time) {
+            low = middle;
+        } else {
+            high = middle;
+        }
     }
     if (!linear || high == rows) {
         return values[low];

@@ -91,7 +91,10 @@ void matrix_exponential(const double *matrix, int size, double h, double *result
     // halved until the series converges fast
     int octave;
     const double mantissa = frexp(norm, &octave);
-    int squarings = norm > 0.5 ? octave + (mantissa > 0.5) : 0;
+    int squarings = 0;
+    if (norm > 0.5) {
+        squarings = mantissa > 0.5 ? octave + 1 : octave;
+    }
     double scale = h / ldexp(1, squarings);
     memset(result, 0, bytes);
     memset(power, 0, bytes);
@@ -103,9 +106,13 @@ void matrix_exponential(const double *matrix, int size, double h, double *result
     enum { TERMS = 14 };
     for (int term = 1; term <= TERMS + squarings; term++) {
         // a term of the series, or the square of what there is so far
-        const double *left = term <= TERMS ? matrix : result;
-        const double *right = term <= TERMS ? power : result;
-        double factor = term <= TERMS ? scale / term : 1;
+        const double *left = result, *right = result;
+        double factor = 1;
+        if (term <= TERMS) {
+            left = matrix;
+            right = power;
+            factor = scale / term;
+        }
         for (int i = 0; i < size; i++) {
             for (int j = 0; j < size; j++) {
                 double sum = 0;

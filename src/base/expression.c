@@ -92,9 +92,12 @@ static void read_word(reader *r)
         return;
     }
     if (length == 0) {
-        expression_refuse(r, start, "expected a name, a number, max or '('%s%.20s%s",
-                          *start != '\0' ? ", not '" : " at the end", start,
-                          *start != '\0' ? "'" : "");
+        const char *expected = "expected a name, a number, max or '('";
+        if (*start == '\0') {
+            expression_refuse(r, start, "%s at the end", expected);
+        } else {
+            expression_refuse(r, start, "%s, not '%.20s'", expected, start);
+        }
         return;
     }
     const int found = r->find(r->context, name, &near);
@@ -139,8 +142,11 @@ static void read_product(reader *r)
     while (r->code == STATUS_OK && is_next(r, "*/")) {
         const bool times = *r->at++ == '*';
         read_factor(r);
-        add_step(r, (expression_step){.what = times ? EXPRESSION_MULTIPLY
-                                                    : EXPRESSION_DIVIDE});
+        if (times) {
+            add_step(r, (expression_step){.what = EXPRESSION_MULTIPLY});
+        } else {
+            add_step(r, (expression_step){.what = EXPRESSION_DIVIDE});
+        }
     }
 }
 
@@ -150,8 +156,11 @@ static void read_sum(reader *r)
     while (r->code == STATUS_OK && is_next(r, "+-")) {
         const bool plus = *r->at++ == '+';
         read_product(r);
-        add_step(r,
-                 (expression_step){.what = plus ? EXPRESSION_ADD : EXPRESSION_SUBTRACT});
+        if (plus) {
+            add_step(r, (expression_step){.what = EXPRESSION_ADD});
+        } else {
+            add_step(r, (expression_step){.what = EXPRESSION_SUBTRACT});
+        }
     }
 }
 
@@ -198,9 +207,10 @@ double expression_evaluate(const expression *e, expression_value *value,
     int top = -1;
     for (int i = 0; i < e->count; i++) {
         const expression_step *s = &e->step[i];
-        if (s->what == EXPRESSION_NUMBER || s->what == EXPRESSION_NAME) {
-            stack[++top] =
-                s->what == EXPRESSION_NUMBER ? s->number : value(context, s->name);
+        if (s->what == EXPRESSION_NUMBER) {
+            stack[++top] = s->number;
+        } else if (s->what == EXPRESSION_NAME) {
+            stack[++top] = value(context, s->name);
         } else if (s->what == EXPRESSION_MINUS) {
             stack[top] = -stack[top];
         } else {

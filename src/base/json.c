@@ -33,7 +33,10 @@ json_t *json_text(const char *text)
 {
     errno = 0;
     json_t *string = json_string(text);
-    char *copy = string == NULL && errno != ENOMEM ? strdup(text) : NULL;
+    char *copy = NULL;
+    if (string == NULL && errno != ENOMEM) {
+        copy = strdup(text);
+    }
 
     // a file's name may be no UTF-8, which JSON cannot hold
     for (char *c = copy; c != NULL && *c != '\0'; c++) {
@@ -69,12 +72,19 @@ json_t *json_members(json_t *object, const char *members, ...)
         snprintf(key, sizeof key, "%.*s", length, members);
 
         const char type = members[length + 1];
-        json_put(object, key,
-                 type == 'n'   ? json_number(va_arg(list, double))
-                 : type == 'i' ? json_integer(va_arg(list, int))
-                 : type == 'b' ? json_boolean(va_arg(list, int))
-                 : type == 't' ? json_text(va_arg(list, const char *))
-                               : va_arg(list, json_t *));
+        json_t *value;
+        if (type == 'n') {
+            value = json_number(va_arg(list, double));
+        } else if (type == 'i') {
+            value = json_integer(va_arg(list, int));
+        } else if (type == 'b') {
+            value = json_boolean(va_arg(list, int));
+        } else if (type == 't') {
+            value = json_text(va_arg(list, const char *));
+        } else {
+            value = va_arg(list, json_t *);
+        }
+        json_put(object, key, value);
         members += length + 2;
         members += strspn(members, " ");
     }

@@ -197,7 +197,8 @@ static decimal nearest_within(uint64_t lower, uint64_t value, uint64_t upper, in
     const bool down = lower <= 4 * s, up = 4 * s + 4 <= upper;
     const uint64_t middle = 4 * s + 2;
     const bool nearer_above = value > middle || (value == middle && s % 2 == 1);
-    return (decimal){s + (down != up ? up : nearer_above), k};
+    const bool upper_one = down != up ? up : nearer_above;
+    return (decimal){s + upper_one, k};
 }
 
 // The shortest decimal number that reads back as a finite value above zero, of those the
@@ -211,8 +212,12 @@ static decimal shortest_decimal(double value)
     // value = c 2^q; whole numbers are their own digits
     const uint64_t stored = bits & ((UINT64_C(1) << STORED_BITS) - 1);
     const int exponent = (int)(bits >> STORED_BITS);
-    const uint64_t c = exponent != 0 ? stored | UINT64_C(1) << STORED_BITS : stored;
-    const int q = (exponent != 0 ? exponent : 1) - EXPONENT_OFFSET;
+    uint64_t c = stored;
+    int q = 1 - EXPONENT_OFFSET;
+    if (exponent != 0) { // a normal number, whose first bit is not stored
+        c = stored | UINT64_C(1) << STORED_BITS;
+        q = exponent - EXPONENT_OFFSET;
+    }
     if (q <= 0 && q > -STORED_BITS - 1 && (c & ((UINT64_C(1) << -q) - 1)) == 0) {
         return without_zeros((decimal){c >> -q, 0});
     }
@@ -293,11 +298,12 @@ static char *write_with_exponent(char *text, const char *digits, int count, int 
 // 1e-4, and from 10^(digits) on, but not for less than `most_plain` of them.
 static void write_digits(char *text, double value, int most_plain)
 {
-    if (!isfinite(value)) {
-        snprintf(text, NUMBER_TEXT, "%s",
-                 isnan(value) ? "nan"
-                 : value > 0  ? "inf"
-                              : "-inf");
+    if (isnan(value)) {
+        strcpy(text, "nan");
+        return;
+    }
+    if (isinf(value)) {
+        strcpy(text, value > 0 ? "inf" : "-inf");
         return;
     }
     if (signbit(value)) {
@@ -311,8 +317,14 @@ static void write_digits(char *text, double value, int most_plain)
     char digits[20];
     const decimal d = shortest_decimal(fabs(value));
     const int count = write_whole(digits, d.digits), place = count - 1 + d.exponent;
-    const bool plain = place >= -4 && place < (count > most_plain ? count : most_plain);
-    *(plain ? write_positional : write_with_exponent)(text, digits, count, place) = '\0';
+    const int longest = count > most_plain ? count : most_plain;
+    char *end;
+    if (place >= -4 && place < longest) {
+        end = write_positional(text, digits, count, place);
+    } else {
+        end = write_with_exponent(text, digits, count, place);
+    }
+    *end = '\0';
 }
 
 void number_format(char *text, double value)

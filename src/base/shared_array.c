@@ -33,8 +33,10 @@ static bool map_chunk(void *at)
 // of `from`.
 static bool append_chunk(shared_array *a, const shared_array *from)
 {
-    char *at = (char *)a->base + a->mapped,
-         *there = from != NULL ? (char *)from->base : NULL;
+    char *at = (char *)a->base + a->mapped, *there = NULL;
+    if (from != NULL) {
+        there = from->base;
+    }
     if (a->mapped + ARRAY_CHUNK > a->reserved) {
         return false;
     }
@@ -125,7 +127,10 @@ bool shared_array_share(shared_array *a, const shared_array *from, size_t count)
     assert(a->size == from->size && a->mapped == 0);
     assert(count <= from->capacity);
     size_t bytes = count * a->size;
-    const size_t shared = from->reserved > 0 && a->reserved > 0 ? bytes / ARRAY_CHUNK : 0;
+    size_t shared = 0;
+    if (from->reserved > 0 && a->reserved > 0) {
+        shared = bytes / ARRAY_CHUNK;
+    }
 
     // chunks that are full will not change any more
     for (size_t i = 0; i < shared; i++) {

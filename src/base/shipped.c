@@ -31,8 +31,12 @@ static bool own_file(char *path)
         return realpath(about.dli_fname, path) != NULL;
     }
     ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
-    path[length > 0 ? length : 0] = '\0';
-    return length > 0;
+    if (length <= 0) {
+        path[0] = '\0';
+        return false;
+    }
+    path[length] = '\0';
+    return true;
 }
 
 // FOLDER/NAME if it is there, to be freed. True unless there is no memory; *path is NULL
@@ -61,7 +65,10 @@ char *shipped_path(shipped_part part)
     }
 
     // PREFIX/bin/impactlab, PREFIX/lib/x86_64-linux-gnu/libimpactlab.so.1
-    char *end = known ? strrchr(own, '/') : NULL;
+    char *end = NULL;
+    if (known) {
+        end = strrchr(own, '/');
+    }
     for (int above = 0; above < 4 && end != NULL && end != own; above++) {
         *end = '\0';
         if (!path_in(own, places[part].in_prefix, &path) || path != NULL) {

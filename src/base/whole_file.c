@@ -96,7 +96,11 @@ static bool is_same_file(const struct stat *a, const struct stat *b)
 static const char *folder_of(const char *path, char folder[PATH_MAX])
 {
     const int length = (int)folder_length(path);
-    snprintf(folder, PATH_MAX, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".");
+    if (length > 0) {
+        snprintf(folder, PATH_MAX, "%.*s", length, path);
+    } else {
+        strcpy(folder, ".");
+    }
     return folder;
 }
 
@@ -146,7 +150,10 @@ static int find_target(const char *path, char target[PATH_MAX], mode_t *mode)
 {
     struct stat about = {.st_mode = 0};
     char folder[PATH_MAX];
-    const int reason = path[0] == '\0' ? ENOENT : follow_links(path, target);
+    if (path[0] == '\0') {
+        return ENOENT;
+    }
+    const int reason = follow_links(path, target);
     if (reason != 0) {
         return reason;
     }
@@ -161,8 +168,11 @@ static int find_target(const char *path, char target[PATH_MAX], mode_t *mode)
     } else {
         *mode = 0;
     }
-    if (there && (S_ISDIR(*mode) || access(target, W_OK) != 0)) {
-        return S_ISDIR(*mode) ? EISDIR : errno;
+    if (there && S_ISDIR(*mode)) {
+        return EISDIR;
+    }
+    if (there && access(target, W_OK) != 0) {
+        return errno;
     }
 
     // what stands beside it, as a temporary will
@@ -177,7 +187,10 @@ status whole_file_check(const char *path, fault *f)
 {
     char target[PATH_MAX];
     mode_t mode;
-    const int reason = strcmp(path, "-") == 0 ? 0 : find_target(path, target, &mode);
+    if (strcmp(path, "-") == 0) {
+        return STATUS_OK;
+    }
+    const int reason = find_target(path, target, &mode);
     if (reason == 0) {
         return STATUS_OK;
     }
@@ -197,8 +210,9 @@ bool whole_file_same_place(const char *path, const char *other)
     if (there && is_same_file(&here[0], &here[1])) {
         return true;
     }
+    const char *const names[2] = {path, other};
     for (int i = 0; i < 2; i++) {
-        if (follow_links(i == 0 ? path : other, places[i]) != 0 ||
+        if (follow_links(names[i], places[i]) != 0 ||
             stat(folder_of(places[i], folder), &around[i]) != 0) {
             return false;
         }
@@ -243,7 +257,10 @@ status whole_file_keeps(const char *path, fault *why)
 {
     struct stat about;
     const bool is_file = stat(path, &about) == 0 && S_ISREG(about.st_mode);
-    const char *result = is_file ? whole_file_result_at(path) : NULL;
+    const char *result = NULL;
+    if (is_file) {
+        result = whole_file_result_at(path);
+    }
     FAULT_IF(result != NULL, why, STATUS_BAD_ARGUMENT,
              "is read, and a result would be written over it to '%.300s', expected "
              "another file",
@@ -587,10 +604,12 @@ char *whole_file_read(const char *path, size_t most, size_t *length, fault *why)
     }
     for (size_t room = 0; count > 0 && *length < most;) {
         if (*length == room) {
-            if (room > most / 2) {
+            if (room == 0) {
+                room = most < 65536 ? most : 65536;
+            } else if (room > most / 2) {
                 room = most;
             } else {
-                room = room + (room > 0 ? room : most < 65536 ? most : 65536);
+                room = 2 * room;
             }
             char *more = realloc(bytes, room + 1);
             if (more == NULL) {

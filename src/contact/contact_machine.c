@@ -103,9 +103,10 @@ static bool chatters(const arm *a, motion *m, const impact_result *result, doubl
 {
     double *state = m->state;
     double flight = state[SLOT_TIME] - state[SLOT_LAST_IMPACT];
-    double fastest = m->wall_has_face ? fmax(a->highest_frequency,
-                                             sqrt(a->wall.stiffness / a->wall.face_mass))
-                                      : a->highest_frequency;
+    double fastest = a->highest_frequency;
+    if (m->wall_has_face) {
+        fastest = fmax(fastest, sqrt(a->wall.stiffness / a->wall.face_mass));
+    }
     bool is_short =
         state[SLOT_LAST_IMPACT] >= 0 && flight * fastest < SHORT_FLIGHT * 2 * M_PI;
     if (is_short) {
@@ -274,7 +275,8 @@ void motion_start_at(const arm *a, motion *m, const double *angles,
     // the impact that follows immediately; a gap of rounding is none
     const penetration at = chain_penetration(a, q, w);
     const bool closed = at.depth >= -START_ROUNDING * a->links * a->link_length;
-    const bool touching = closed && (m->wall_gives ? at.rate >= 0 : at.rate == 0);
+    const bool stays = at.rate == 0 || (m->wall_gives && at.rate > 0);
+    const bool touching = closed && stays;
     contact_resolve(a, m, touching, MOTION_REACHED);
     m->record.start_energy +=
         motion_wall_energy(a, m, m->state); // of a depth by rounding

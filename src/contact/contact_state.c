@@ -80,18 +80,26 @@ static const hub_friction *friction_order(const double *state, motion_event even
     const bool breaks_away = (event == MOTION_RELEASE || event == MOTION_TOUCH) &&
                              state[SLOT_FRICTION] != HUB_STICK;
     const bool slides = event == MOTION_SLIP || breaks_away;
-    const bool backwards = breaks_away ? state[SLOT_FRICTION] == HUB_BACKWARD
-                                       : state[SLOT_FRICTION_TORQUE] > 0;
-    return orders[!slides ? 0 : backwards ? 2 : 1];
+    if (!slides) {
+        return orders[0];
+    }
+    bool backwards = state[SLOT_FRICTION_TORQUE] > 0;
+    if (breaks_away) {
+        backwards = state[SLOT_FRICTION] == HUB_BACKWARD;
+    }
+    return backwards ? orders[2] : orders[1];
 }
 
 // What of a violation is rounding in the states that an event leads to.
 static double rounding_after(const arm *a, const motion *m, motion_event event)
 {
-    const double more = event == MOTION_RELEASE ? larger(m->engine->left_out, 1) : 1;
-    const bool accelerates = event == MOTION_RELEASE || event == MOTION_SLIP;
-    const double beyond =
-        accelerates ? more * (motion_rounding(a, m) - 1 + motion_wall_rounding(a, m)) : 0;
+    double more = 1, beyond = 0;
+    if (event == MOTION_RELEASE) {
+        more = larger(m->engine->left_out, 1);
+    }
+    if (event == MOTION_RELEASE || event == MOTION_SLIP) {
+        beyond = more * (motion_rounding(a, m) - 1 + motion_wall_rounding(a, m));
+    }
     return FORCE_TOLERANCE * (1 + beyond) + motion_face_rounding(a, m);
 }
 
@@ -106,7 +114,8 @@ void contact_resolve(const arm *a, motion *m, bool touching, motion_event event)
     double hub_velocity = state_velocities(m, state)[0];
     bool hub_rests = hub_velocity == 0 && a->motor.stiction > 0;
     hub_friction sliding = hub_velocity < 0 ? HUB_BACKWARD : HUB_FORWARD;
-    int choices = hub_rests ? 3 : 1, ways = touching && !m->wall_gives ? 2 : 1;
+    int choices = hub_rests ? 3 : 1;
+    int ways = touching && !m->wall_gives ? 2 : 1;
 
     // the state that the event has ended would be violated an instant later: its
     // successor is taken even if rounding makes it look worse
@@ -141,7 +150,8 @@ void contact_resolve(const arm *a, motion *m, bool touching, motion_event event)
             least = v;
             best = tried;
         }
-        if (v <= (i < preferred ? rounding : FORCE_TOLERANCE / 1000)) {
+        const double allowed = i < preferred ? rounding : FORCE_TOLERANCE / 1000;
+        if (v <= allowed) {
             best = tried;
             break;
         }

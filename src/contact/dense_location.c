@@ -1,3 +1,5 @@
+// Locates events, and peaks of the force, in steps whose engine knows the motion between
+// its ends.
 
 #include <math.h>
 
@@ -79,8 +81,10 @@ static double first_zero_crossing(const arm *a, const motion *m, event_function 
                                   step_point lo, step_point hi, int cuts, double known)
 {
     const double length = hi.time - lo.time;
-    const double second =
-        isfinite(known) ? known : m->engine->second_derivative(a, m, w, lo.time, hi.time);
+    double second = known;
+    if (!isfinite(known)) {
+        second = m->engine->second_derivative(a, m, w, lo.time, hi.time);
+    }
     const double room = second * length * length / 8;
     if (fmin(lo.at.value, hi.at.value) > room || !isfinite(room)) {
         return -1;
@@ -121,9 +125,10 @@ void dense_search_event(const arm *a, motion *m, step_end *end)
         }
         step_point lo = {0, m->engine->event_function(a, m, w, 0)},
                    hi = {end->length, m->engine->event_function(a, m, w, end->length)};
-        double fall = lo.at.value < 0
-                          ? 0
-                          : first_zero_crossing(a, m, w, lo, hi, MOST_CUTS, HUGE_VAL);
+        double fall = 0;
+        if (!(lo.at.value < 0)) {
+            fall = first_zero_crossing(a, m, w, lo, hi, MOST_CUTS, HUGE_VAL);
+        }
         if (fall >= 0) {
             *end = (step_end){fall, true, w};
         }
@@ -174,10 +179,10 @@ static void raise_peak(const arm *a, motion *m, step_point lo, step_point hi, in
 {
     // no larger force is possible here, or the slope keeps its sign
     const double length = hi.time - lo.time;
-    const double second =
-        isfinite(known)
-            ? known
-            : m->engine->second_derivative(a, m, EVENT_OF_FORCE, lo.time, hi.time);
+    double second = known;
+    if (!isfinite(known)) {
+        second = m->engine->second_derivative(a, m, EVENT_OF_FORCE, lo.time, hi.time);
+    }
     const double most = fmax(lo.at.value, hi.at.value) + second * length * length / 8;
     const double change = second * length / 2; // of the slope from the nearer end
     if (most <= m->record.pulse_peak * (1 + SAME_PEAK) ||

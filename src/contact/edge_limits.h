@@ -32,7 +32,11 @@ static inline int edge_powers(const double *terms, const double limits[3], doubl
     // matters; and a positive rate or acceleration that delays the fall is not taken for
     // rounding
     if (powers > 0 && terms[powers] < 0) {
-        powers = terms[0] > 0 ? 0 : terms[powers - 1] > 0 ? powers - 1 : powers;
+        if (terms[0] > 0) {
+            powers = 0;
+        } else if (terms[powers - 1] > 0) {
+            powers--;
+        }
     }
     return powers;
 }

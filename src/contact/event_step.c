@@ -136,8 +136,11 @@ static status tried_step(const arm *a, motion *m, double until, double step,
     const double left = m->record.tstop - m->state[SLOT_TIME];
     *end = (step_end){.length = wanted};
     status s = step_to_event(a, m, end);
-    const double reached = s == STATUS_OK ? end->length : wanted;
-    const double spare = s == STATUS_OK && end->any ? 0 : LEAST_AFTER_TSTOP * step;
+    double reached = wanted, spare = LEAST_AFTER_TSTOP * step;
+    if (s == STATUS_OK) {
+        reached = end->length;
+        spare = end->any ? 0 : spare;
+    }
     if (!(reached <= left - spare)) {
         *end = (step_end){.length = left};
         if (s == STATUS_OK) {

@@ -213,12 +213,18 @@ static status search_interval(const arm *a, motion *m, event_function w, step_en
 {
     const double h = end->length;
     double v0 = event_value(a, m, m->state, w), v1 = event_value(a, m, m->trial, w);
-    double guess = v0 > 0 && v1 < 0 ? h * guess_crossing(m, h, w, v0, v1) : 0.5 * h;
+    double guess = 0.5 * h;
+    if (v0 > 0 && v1 < 0) {
+        guess = h * guess_crossing(m, h, w, v0, v1);
+    }
     double lo = 0, hi = h, tolerance = event_tolerance(w);
 
     // admissible at the end: only a dip in between can matter
     if (v1 >= -tolerance) {
-        double dip = v0 > 0 && v1 > 0 ? suspected_dip(a, m, h, w, v0, v1) : -1;
+        double dip = -1;
+        if (v0 > 0 && v1 > 0) {
+            dip = suspected_dip(a, m, h, w, v0, v1);
+        }
         if (dip < 0) {
             return STATUS_OK;
         }

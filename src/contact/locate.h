@@ -17,11 +17,19 @@ static inline bool event_function_active(const arm *a, const motion *m, event_fu
     bool held = m->dof == 1 && contact && motion_wall_is_rigid(m);
 
     // an event function is of use only where its event could end the present state
-    return w == EVENT_OF_GAP        ? (!contact || m->wall_gives) && wall_stands(&a->wall)
-           : w == EVENT_OF_FORCE    ? contact
-           : w == EVENT_OF_HUB      ? !stuck && !held && a->motor.stiction > 0
-           : w == EVENT_OF_STICTION ? stuck && !held
-                                    : m->electric && a->motor.current_limit < HUGE_VAL;
+    if (w == EVENT_OF_GAP) {
+        return (!contact || m->wall_gives) && wall_stands(&a->wall);
+    }
+    if (w == EVENT_OF_FORCE) {
+        return contact;
+    }
+    if (w == EVENT_OF_HUB) {
+        return !stuck && !held && a->motor.stiction > 0;
+    }
+    if (w == EVENT_OF_STICTION) {
+        return stuck && !held;
+    }
+    return m->electric && a->motor.current_limit < HUGE_VAL;
 }
 
 // Tolerance of the event function: how far below zero still counts as admissible, in its

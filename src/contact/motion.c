@@ -70,7 +70,10 @@ force_bounds motion_held_forces(const arm *a, const motion *m, double *state)
     assert(m->dof == 1 && wall_stands(&a->wall));
     const double one = 1, *q = state_angles(m, state),
                  lever = chain_penetration_rate(a, q, &one);
-    const double weight = a->gravity != 0 ? chain_weight(a, 0) * inline_cos(q[0]) : 0;
+    double weight = 0;
+    if (a->gravity != 0) {
+        weight = chain_weight(a, 0) * inline_cos(q[0]);
+    }
     const double balanced = (a->motor.torque + state[SLOT_MOTOR_TORQUE] - weight) / lever;
     const double friction = a->motor.stiction / fabs(lever);
     return (force_bounds){larger(balanced - friction, 0), larger(balanced + friction, 0)};
@@ -125,8 +128,13 @@ void motion_gap_edges(const arm *a, const motion *m, double limits[3])
     // so does that of its spring, by the face's place; one without a mass returns at a
     // rate that has the error of the place where it was left
     const bool returns = m->wall_gives && state_face_swings(m, m->state);
-    const double rate = returns ? wall_face_rate(&a->wall, state_face(m->state)) : 0;
-    const double yields = m->wall_has_face ? 1 / a->wall.face_mass : 0;
+    double rate = 0, yields = 0;
+    if (returns) {
+        rate = wall_face_rate(&a->wall, state_face(m->state));
+    }
+    if (m->wall_has_face) {
+        yields = 1 / a->wall.face_mass;
+    }
     limits[0] = EDGE_GAP;
     limits[1] = EDGE_RATE + EDGE_PLACE * rate;
     limits[2] = EDGE_RATE * (motion_rounding(a, m) + yields) + EDGE_PLACE * rate * rate +
@@ -182,8 +190,10 @@ double motion_vibration(const arm *a, motion *m, double *state)
         return a->highest_frequency;
     }
     const double wall = fastest_wall_rate(a, m, state);
-    const double current =
-        a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
+    double current = 0;
+    if (a->motor.inductance > 0) {
+        current = a->motor.resistance / a->motor.inductance;
+    }
     const double own = a->highest_frequency * chain_stiffened(a, state_angles(m, state));
     if (wall > 0 || current > 0) {
         return sqrt(own * own + wall * wall + current * current);

@@ -287,7 +287,13 @@ static inline bool state_is_held_still(const motion *m, const double *state)
     const contact_state now = contact_state_of(state);
     const bool stuck = now.friction == HUB_STICK,
                held = now.contact && motion_wall_is_rigid(m);
-    return !state_face_swings(m, state) && (m->dof == 1 ? stuck || held : stuck && held);
+    if (state_face_swings(m, state)) {
+        return false;
+    }
+    if (m->dof == 1) {
+        return stuck || held;
+    }
+    return stuck && held;
 }
 static inline bool motion_held_still(const motion *m)
 {
@@ -372,17 +378,21 @@ double motion_decay_length(const arm *a, double reach, double since);
 static inline double motion_wall_energy(const arm *a, const motion *m,
                                         const double *state)
 {
+    if (motion_wall_is_rigid(m)) {
+        return 0;
+    }
     const wall_model wall = wall_at(&a->wall, state[SLOT_TIME]);
-    return motion_wall_is_rigid(m) ? 0 : wall_face_energy(&wall, state_face(state));
+    return wall_face_energy(&wall, state_face(state));
 }
 
 // The same with what the weight has gained since the start in a tilted plane [J].
 static inline double motion_held_energy(const arm *a, const motion *m, double *state)
 {
-    const double weight =
-        a->gravity != 0
-            ? chain_weight_energy(a, state_angles(m, state)) - state[SLOT_START_WEIGHT]
-            : 0;
+    double weight = 0;
+    if (a->gravity != 0) {
+        weight =
+            chain_weight_energy(a, state_angles(m, state)) - state[SLOT_START_WEIGHT];
+    }
     return motion_wall_energy(a, m, state) + weight;
 }
 

@@ -124,8 +124,8 @@ status zeno_monitor_check(zeno_monitor *p, const arm *a, const motion *m, double
     }
 
     char cause[ZENO_CAUSE_SIZE];
-    zeno_monitor_cause(a, m, meets_wall ? MOTION_TOUCH : MOTION_REACHED, cause,
-                       sizeof cause);
+    const motion_event last = meets_wall ? MOTION_TOUCH : MOTION_REACHED;
+    zeno_monitor_cause(a, m, last, cause, sizeof cause);
     return fault_set(f, STATUS_NO_PROGRESS,
                      "at t = %.9g s of %g s: %ld strides by %s passed %.3g s, at which "
                      "the run is given up: %s",

@@ -1,3 +1,4 @@
+// The account of a run in sentences, from its events and energies.
 #include "src/session/session.h"
 
 #include <assert.h>

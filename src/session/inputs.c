@@ -58,8 +58,10 @@ static double effect_time(const session *s)
 static status add_input(session *s, const session_input *in, fault *f)
 {
     // room for it
-    const int room =
-        s->input_count < s->input_total ? s->input_total : s->input_count + 1;
+    int room = s->input_count + 1;
+    if (s->input_count < s->input_total) {
+        room = s->input_total;
+    }
     session_input *inputs = realloc(s->inputs, (size_t)room * sizeof *inputs);
     if (inputs == NULL) {
         return fault_no_memory(f);
@@ -155,7 +157,10 @@ status session_adjust(session *s, int parameter, const char *text, fault *f)
         s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
 
     // of control.settings the same number
-    const size_t name = text[0] == '.' ? strcspn(text, "=") + 1 : 0;
+    size_t name = 0;
+    if (text[0] == '.') {
+        name = strcspn(text, "=") + 1;
+    }
     if (last == NULL || last->kind == SESSION_INPUT_PUSH ||
         last->parameter != parameter || strncmp(last->text, text, name) != 0 ||
         last->time != s->now) {

@@ -116,8 +116,9 @@ static status build_effective(const session *s, scenario *to, fault *f)
         if (in->kind == SESSION_INPUT_START) {
             TRY(parameter_set_text(&to->parameters, in->parameter, in->text, f));
         } else {
+            const bool pushes = in->kind == SESSION_INPUT_PUSH;
             action a = {.time = in->time,
-                        .kind = in->kind == SESSION_INPUT_PUSH ? ACTION_PUSH : ACTION_SET,
+                        .kind = pushes ? ACTION_PUSH : ACTION_SET,
                         .parameter = in->parameter,
                         .value = in->value,
                         .added = true};
@@ -169,7 +170,11 @@ static bool end_computing(session *s)
 static bool outside_is_same(session *s, const parameters *p, char stamp[SHA256_TEXT])
 {
     // before a consent no program is opened, but what is only read is looked at
-    outside_stamp(p->code_allowed ? ~0u : outside_files(), p, stamp);
+    unsigned looked_at = ~0u;
+    if (!p->code_allowed) {
+        looked_at = outside_files();
+    }
+    outside_stamp(looked_at, p, stamp);
     if (strcmp(stamp, s->outside) == 0) {
         return true;
     }
@@ -331,7 +336,9 @@ status session_go_on(session *s, fault *f)
     // a cursor that has been further than the rows there are stays remembered
     double seen = s->seen;
     status code = start_run(s, &s->effective, f);
-    s->version += code == STATUS_OK;
+    if (code == STATUS_OK) {
+        s->version++;
+    }
     session_follow(s);
     session_seek(s, s->now);
     s->seen = fmax(seen, s->now);

@@ -45,10 +45,11 @@ static void write_number(FILE *stream, const char *before, double value)
 
 static void write_input(FILE *stream, const session_input *in)
 {
-    const bool start = in->kind == SESSION_INPUT_START,
-               push = in->kind == SESSION_INPUT_PUSH;
-    write_number(stream, start ? "start: " : push ? "push: " : "from: ", in->time);
-    if (push) {
+    static const char *const words[] = {[SESSION_INPUT_START] = "start: ",
+                                        [SESSION_INPUT_TIMED] = "from: ",
+                                        [SESSION_INPUT_PUSH] = "push: "};
+    write_number(stream, words[in->kind], in->time);
+    if (in->kind == SESSION_INPUT_PUSH) {
         write_number(stream, " ", in->value);
         fputc('\n', stream);
     } else {
@@ -80,7 +81,11 @@ void session_file_write(FILE *stream, const session_file *file)
         if (i == 0 || !same_base(&r->from.base, &file->runs[i - 1].from.base)) {
             write_base(stream, &r->from.base);
         }
-        fprintf(stream, i == 0 ? "present:\n" : "pinned: %s\n", r->name);
+        if (i == 0) {
+            fputs("present:\n", stream);
+        } else {
+            fprintf(stream, "pinned: %s\n", r->name);
+        }
         for (int k = 0; k < r->from.input_count; k++) {
             write_input(stream, &r->from.inputs[k]);
         }
@@ -184,9 +189,10 @@ static status read_parameter_change(const session_reader *r, const run_origin *f
     fault f = {0};
     if ((timed && !rig_can_change(&scratch, in->parameter)) ||
         parameter_set_text(&scratch, in->parameter, in->text, &f) != STATUS_OK) {
-        return refuse_line(r, f.text[0]
-                                  ? f.text
-                                  : "a parameter that does not change during a run");
+        if (f.text[0] != '\0') {
+            return refuse_line(r, f.text);
+        }
+        return refuse_line(r, "a parameter that does not change during a run");
     }
     in->value = parameter_get(&scratch, in->parameter);
     return STATUS_OK;
@@ -199,9 +205,11 @@ static status append_input(session_reader *r, session_input_kind kind, const cha
     const char *rest;
     run_origin *from = file->run_count > 0 ? &file->runs[file->run_count - 1].from : NULL;
     status code = STATUS_OK;
-    if (from == NULL || from->input_count == MOST_INPUTS) {
-        return refuse_line(r, from == NULL ? "a change, expected a run before it"
-                                           : "too many changes");
+    if (from == NULL) {
+        return refuse_line(r, "a change, expected a run before it");
+    }
+    if (from->input_count == MOST_INPUTS) {
+        return refuse_line(r, "too many changes");
     }
     if (kind == SESSION_INPUT_PUSH) {
         const bool good = read_two_numbers(text, &in.time, &in.value, &rest) &&
@@ -237,10 +245,12 @@ static status append_input(session_reader *r, session_input_kind kind, const cha
 static status append_line(session_reader *r, const char *line)
 {
     const size_t more = strlen(line);
-    char *longer = r->text != NULL ? realloc(r->text, r->length + more + 2) : NULL;
+    if (r->text == NULL) {
+        return refuse_line(r, "text without a scenario");
+    }
+    char *longer = realloc(r->text, r->length + more + 2);
     if (longer == NULL) {
-        return r->text == NULL ? refuse_line(r, "text without a scenario")
-                               : fault_no_memory(r->fault);
+        return fault_no_memory(r->fault);
     }
     r->text = longer;
     r->length += (size_t)sprintf(r->text + r->length, "%s\n", line);

@@ -30,7 +30,9 @@ static double whiteness_of(const double *series, const double *deviation, size_t
     size_t count = 0;
     for (size_t i = 0; i < rows; i++) {
         squares += series[i] * series[i];
-        count += deviation[i] > 0;
+        if (deviation[i] > 0) {
+            count++;
+        }
     }
     if (count > 0) {
         *rms = sqrt(squares / (double)count);
@@ -303,7 +305,9 @@ status identify_judge(identification *id, const double *jacobian, fault *f)
     id->undetermined = 0;
     for (int k = 0; k < p; k++) {
         id->singular[k] = sqrt(fmax(values[k] / misfit, 0));
-        id->undetermined += id->singular[k] < LEAST_KNOWN;
+        if (id->singular[k] < LEAST_KNOWN) {
+            id->undetermined++;
+        }
     }
     find_covariance(id, values, scatter);
     for (int i = 0; i < p; i++) {

@@ -129,22 +129,14 @@ static double deviation_of(const sensor_parameters *s, int channel, double *rang
     return fmax(sqrt(noise * noise + step * step / 12) / gain, LEAST_DEVIATION);
 }
 
-// Finds touches and releases in the force that was recorded, and says what counts:
-// nothing near them, forces in contact, and what is within its range. A reading that
-// stays within a step of its converter for some samples is one reading.
-static status weigh(recorded_trace *t, const parameters *p, fault *f)
+// Finds the touches in the force that was recorded, and marks the samples within
+// IDENTIFY_GUARD of a touch or a release, near[rows].
+static void find_touches(recorded_trace *t, double threshold, unsigned char *near)
 {
     const double *force = t->reading[force_channel(t)];
-    SCOPED(free_kept) unsigned char *near = calloc(t->rows, 1);
-    t->contacts = calloc(t->rows, sizeof *t->contacts);
-    if (!(near != NULL && t->contacts != NULL)) {
-        return fault_no_memory(f);
-    }
-
     double released = -HUGE_VAL;
     for (size_t i = 1; force != NULL && i < t->rows; i++) {
-        const bool was = force[i - 1] > p->control.contact_threshold,
-                   is = force[i] > p->control.contact_threshold;
+        const bool was = force[i - 1] > threshold, is = force[i] > threshold;
         if (was == is) {
             continue;
         }
@@ -153,6 +145,8 @@ static status weigh(recorded_trace *t, const parameters *p, fault *f)
             t->contacts[t->contact_count++] = at;
         }
         released = at;
+
+        // before it and behind it
         for (size_t k = i; k-- > 0 && at - t->time[k] <= IDENTIFY_GUARD;) {
             near[k] = 1;
         }
@@ -160,40 +154,56 @@ static status weigh(recorded_trace *t, const parameters *p, fault *f)
             near[k] = 1;
         }
     }
+}
 
+// Sets the deviation of each reading of a channel, 0 of one that does not count, and adds
+// those that count to the residuals.
+static status weigh_channel(recorded_trace *t, int c, const parameters *p,
+                            const unsigned char *near, fault *f)
+{
+    double range;
+    bool dithered;
+    const double deviation = deviation_of(&p->sensor, c, &range, &dithered);
+    const double *read = t->reading[c];
+    t->deviation[c] = calloc(t->rows, sizeof *t->deviation[c]);
+    if (t->deviation[c] == NULL) {
+        return fault_no_memory(f);
+    }
+    for (size_t i = 0, end; i < t->rows; i = end) {
+        // samples that are one reading, unless noise covers the steps
+        end = i + 1;
+        while (!dithered && end < t->rows && read[end] == read[i]) {
+            end++;
+        }
+
+        for (size_t k = i; k < end; k++) {
+            const double size = fabs(residual_of(&p->sensor, c, read[k]));
+            const bool touches =
+                c != CHANNEL_FSR || read[k] > p->control.contact_threshold;
+            if (!near[k] && touches && size < range - NEAR_RANGE * deviation) {
+                t->deviation[c][k] = deviation * sqrt((double)(end - i));
+                t->residuals++;
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+// Finds touches and releases in the force that was recorded, and says what counts:
+// nothing near them, forces in contact, and what is within its range. A reading that
+// stays within a step of its converter for some samples is one reading.
+static status weigh(recorded_trace *t, const parameters *p, fault *f)
+{
+    SCOPED(free_kept) unsigned char *near = calloc(t->rows, 1);
+    t->contacts = calloc(t->rows, sizeof *t->contacts);
+    if (near == NULL || t->contacts == NULL) {
+        return fault_no_memory(f);
+    }
+    find_touches(t, p->control.contact_threshold, near);
     t->residuals = (size_t)t->contact_count;
     for (int c = 0; c < CHANNELS; c++) {
-        double range;
-        bool dithered;
-        const double deviation = deviation_of(&p->sensor, c, &range, &dithered);
-        const double *read = t->reading[c];
-        if (read == NULL) {
-            continue;
-        }
-        t->deviation[c] = calloc(t->rows, sizeof *t->deviation[c]);
-        if (t->deviation[c] == NULL) {
-            return fault_no_memory(f);
-        }
-        for (size_t i = 0, end; i < t->rows; i = end) {
-            for (end = i + 1; !dithered && end < t->rows && read[end] == read[i];) {
-                end++;
-            }
-            if (dithered) {
-                end = i + 1;
-            }
-            for (size_t k = i; k < end; k++) {
-                const bool counts =
-                    !near[k] &&
-                    fabs(residual_of(&p->sensor, c, read[k])) <
-                        range - NEAR_RANGE * deviation &&
-                    (c != CHANNEL_FSR || read[k] > p->control.contact_threshold);
-                if (counts) {
-                    t->deviation[c][k] = deviation * sqrt((double)(end - i));
-                } else {
-                    t->deviation[c][k] = 0;
-                }
-                t->residuals += counts;
-            }
+        if (t->reading[c] != NULL) {
+            TRY(weigh_channel(t, c, p, near, f));
         }
     }
     return STATUS_OK;
@@ -244,7 +254,9 @@ status identify_add_trace(identification *id, const char *file, char *const *col
         const signal_info *signal = &signal_table[identify_signals[c]];
         TRY(read_column(&table, signal->name, signal->unit, false, columns, count,
                         &t->reading[c], f));
-        readings += t->reading[c] != NULL;
+        if (t->reading[c] != NULL) {
+            readings++;
+        }
     }
     if (readings == 0) {
         return fault_set_place(
@@ -381,7 +393,9 @@ static double reading_at(const trace *run, sensors *eyes, int channel, double ti
     double value[2];
     for (int i = 0; i < 2; i++) {
         size_t row = trace_row_at(run, (whole + i + 1 - SAME_INSTANT) * period);
-        row += row < last;
+        if (row < last) {
+            row++;
+        }
         value[i] = signal_value(&run->rows[row], identify_signals[channel]);
     }
     if (share > SAME_INSTANT) {

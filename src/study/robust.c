@@ -308,16 +308,29 @@ static void judge_runs(robust_law *out, const sweep *s, const size_t *runs, size
             allowed = derived.parameters.control.force_limit;
         }
 
-        out->failed += isnan(of[STEPS][i]);
-        settled += !isnan(of[SETTLING][i]);
-        separated += of[SEPARATIONS][i] > 0;
-        exceeded += largest > allowed;
+        // what is counted
+        if (isnan(of[STEPS][i])) {
+            out->failed++;
+        }
+        if (!isnan(of[SETTLING][i])) {
+            settled++;
+        }
+        if (of[SEPARATIONS][i] > 0) {
+            separated++;
+        }
+        if (largest > allowed) {
+            exceeded++;
+        }
+
+        // in percent of the command, and as a share of the approach
         of[OVER][i] *= 100 / command;
         of[SMOOTHED][i] *= 100 / command;
-        out->overshoots[i] = of[many ? SMOOTHED : OVER][i];
-        out->by_smoothed += many;
+        out->overshoots[i] = of[OVER][i];
+        if (many) {
+            out->overshoots[i] = of[SMOOTHED][i];
+            out->by_smoothed++;
+        }
         of[ERROR][i] = 100 * fabs(of[ERROR][i]) / command;
-
         of[BACK][i] /= of[APPROACH][i];
 
         // a push begins anew

@@ -195,13 +195,19 @@ static status take_point(void *context, size_t i, const summary *m, fault *f)
     solution *found = s->found;
     TRY(ending(m->status, f));
     const trial t = s->trials[i] = trial_of(s, point_value(s, i), m);
-    if (!t.known && (found->unknown++ == 0 || i < s->first_unknown)) {
-        s->first_unknown = i;
-        snprintf(found->reason, sizeof found->reason, "%.500s", m->message);
+    if (!t.known) {
+        if (found->unknown == 0 || i < s->first_unknown) {
+            s->first_unknown = i;
+            snprintf(found->reason, sizeof found->reason, "%.500s", m->message);
+        }
+        found->unknown++;
+    } else if (isnan(t.quantity)) {
+        found->missing++;
+    } else if (holds(s, &t)) {
+        found->holding++;
+    } else {
+        found->failing++;
     }
-    found->missing += t.known && isnan(t.quantity);
-    found->holding += holds(s, &t);
-    found->failing += !isnan(t.quantity) && !holds(s, &t);
     found->done++;
     run_monitor_count(s->monitor);
     return STATUS_OK;

@@ -105,9 +105,10 @@ static void choose_system(printed_motion *m, printed_row *r)
 // last force and not at the contact, so that a force may outlive it.
 static status reevaluate(printed_motion *m, printed_row *r)
 {
-    const bool wanted = m->arm.switches.force_after_release
-                            ? m->force > 0 || m->contact_steps == 1
-                            : r->contact;
+    bool wanted = r->contact;
+    if (m->arm.switches.force_after_release) {
+        wanted = m->force > 0 || m->contact_steps == 1;
+    }
 
     memcpy(r->acceleration, r->newmark_acceleration, sizeof r->acceleration);
     if (!wanted) {
@@ -213,11 +214,12 @@ status printed_motion_step(printed_motion *m, fault *f)
 
     // the equations' own failures
     status result = try_step(m, &r);
+    const char *where = r.contact ? "in" : "without";
+    const char *why =
+        result == STATUS_SINGULAR ? "are singular" : "have a residual that is not finite";
     FAULT_IF(result != STATUS_OK, f, result,
-             "the equations of the step from t = %.9g s %s contact %s", start,
-             r.contact ? "in" : "without",
-             result == STATUS_SINGULAR ? "are singular"
-                                       : "have a residual that is not finite");
+             "the equations of the step from t = %.9g s %s contact %s", start, where,
+             why);
 
     // an overflow, reported before the next step starts from it
     r.force = m->force;
@@ -227,8 +229,10 @@ status printed_motion_step(printed_motion *m, fault *f)
              end);
 
     // the step's end is what the next one starts from
-    const double *fed = m->arm.switches.feed_newmark_acceleration ? r.newmark_acceleration
-                                                                  : r.acceleration;
+    const double *fed = r.acceleration;
+    if (m->arm.switches.feed_newmark_acceleration) {
+        fed = r.newmark_acceleration;
+    }
     memcpy(m->fed_acceleration, fed, sizeof m->fed_acceleration);
     m->steps++;
     r.gap = gap_at(&m->arm, r.angle);

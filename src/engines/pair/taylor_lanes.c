@@ -36,12 +36,16 @@ int taylor_limit_width(int width)
 static const taylor_loops *loops_of(int width)
 {
 #if defined __x86_64__
-    const taylor_loops *one =
-        taylor_width() >= 4 ? &taylor_loops_1_avx2 : &taylor_loops_1;
-    return width == 8   ? &taylor_loops_8
-           : width == 4 ? &taylor_loops_4
-           : width == 2 ? &taylor_loops_2
-                        : one;
+    if (width == 8) {
+        return &taylor_loops_8;
+    }
+    if (width == 4) {
+        return &taylor_loops_4;
+    }
+    if (width == 2) {
+        return &taylor_loops_2;
+    }
+    return taylor_width() >= 4 ? &taylor_loops_1_avx2 : &taylor_loops_1;
 #else
     (void)width;
     return &taylor_loops_1;

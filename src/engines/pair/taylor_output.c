@@ -132,8 +132,13 @@ void taylor_dense_output(const arm *a, motion *m, output_quantity of, double fro
     }
 
     const int hub = a->first == 0 ? AT_ANGLE_1 : AT_ANGLE_0;
-    const int place = of == OUTPUT_FORCE ? AT_FORCE : of == OUTPUT_GAP ? AT_GAP : hub;
-    const int terms = of == OUTPUT_FORCE ? order : order + 2;
+    int place = hub, terms = order + 2;
+    if (of == OUTPUT_FORCE) {
+        place = AT_FORCE;
+        terms = order;
+    } else if (of == OUTPUT_GAP) {
+        place = AT_GAP;
+    }
     const double *term = taylor_terms(lane, place, terms);
     for (int i = 0; i <= count; i++) {
         const double t = s->used + (from + i * width);
@@ -264,7 +269,10 @@ bool taylor_excludes_event(const motion *m, event_function w)
 static double known_root(const taylor_integrator *s, int place, bool clear)
 {
     const double root = s->lane.block[place] - s->used;
-    return clear ? HUGE_VAL : s->lane.block[place] > 0 ? root : -1;
+    if (clear) {
+        return HUGE_VAL;
+    }
+    return s->lane.block[place] > 0 ? root : -1;
 }
 
 void taylor_first_event(const arm *a, motion *m, step_end *end)

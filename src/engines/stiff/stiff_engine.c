@@ -137,9 +137,10 @@ static bool end_at_event(stiff_integrator *s, const arm *a, motion *m, step_end 
             return false;
         }
         double miss = miss_of(s, a, m, at.first);
-        const step_end other = h > at.length * (1 + AT_EVENT)
-                                   ? another_event(s, a, m, at.first)
-                                   : (step_end){0};
+        step_end other = {0};
+        if (h > at.length * (1 + AT_EVENT)) {
+            other = another_event(s, a, m, at.first);
+        }
         if (other.any) {
             at = other;
             miss = at.length - h;
@@ -248,16 +249,25 @@ static void change_drive(stiff_integrator *s, const arm *a, motion *m)
 // The error that a step of this arm may have, as a share of the momentum.
 static double tolerance_of(const arm *a, const motion *m)
 {
-    const double current =
-        a->motor.inductance > 0 ? a->motor.resistance / a->motor.inductance : 0;
+    double current = 0;
+    if (a->motor.inductance > 0) {
+        current = a->motor.resistance / a->motor.inductance;
+    }
     const double others = fmax(fmax(FAST_DECAY, a->highest_frequency), current);
     const bool decays = a->fastest_decay > others;
     const bool bounces =
         a->wall.restitution > 0 && a->fastest_decay <= a->highest_frequency;
+    double tolerance = m->tolerance;
     if (m->wall_moves) {
-        return m->tolerance * DRIVEN * (decays ? DECAYING : 1);
+        tolerance *= DRIVEN;
     }
-    return m->tolerance * (decays ? DECAYING : bounces ? BOUNCING : 1);
+    if (decays) {
+        return tolerance * DECAYING;
+    }
+    if (bounces && !m->wall_moves) {
+        return tolerance * BOUNCING;
+    }
+    return tolerance;
 }
 
 // What errors of this step are a share of: the largest momentum so far. The least is what
@@ -265,9 +275,11 @@ static double tolerance_of(const arm *a, const motion *m)
 static double scale_of(const stiff_integrator *s, const arm *a, motion *m, double before)
 {
     const motor_model *motor = &a->motor;
-    const double torque = motor->electric ? motor->torque_constant * motor->gain *
-                                                motor->voltage / motor->resistance
-                                          : motor->torque;
+    double torque = motor->torque;
+    if (motor->electric) {
+        torque =
+            motor->torque_constant * motor->gain * motor->voltage / motor->resistance;
+    }
     const double driven = fabs(torque) * LEAST_TURN + TINY_ENERGY;
     const double least =
         sqrt(2 * (driven + chain_strain_energy(a, state_angles(m, m->state))));
@@ -297,12 +309,13 @@ static void keep_start(stiff_integrator *s, motion *m, double scale)
 static bool solve_within_error(stiff_integrator *s, const arm *a, motion *m)
 {
     const double *before = state_kept(m, m->state);
-    const double was = before[STIFF_LENGTH],
-                 offset = was > 0 ? before[KEPT_USED] / was : 0;
+    const double was = before[STIFF_LENGTH];
+    const double offset = was > 0 ? before[KEPT_USED] / was : 0;
     const bool jumped = m->state[SLOT_JUMPED] != 0;
     const bool begins = !(was > 0) || (jumped && before[STIFF_EVENT] != 0);
     const double scale = s->kept[STIFF_SCALE];
-    double h = first_try(a, m, begins), rate = begins ? 0.5 : before[STIFF_RATE];
+    double h = first_try(a, m, begins);
+    double rate = begins ? 0.5 : before[STIFF_RATE];
     bool fresh = begins, again = false;
     for (int i = 0; i < MOST_ATTEMPTS && h > SHORTEST; i++, again = true) {
         s->step.length = h;
@@ -430,10 +443,10 @@ static double stiff_advance(const arm *a, motion *m, double remaining, double st
     const double *kept = state_kept(m, m->state);
     (void)step;
     const double left = kept[KEPT_LENGTH] - kept[KEPT_USED];
-    const bool goes_on =
-        m->state[SLOT_JUMPED] == 0 && kept[KEPT_LENGTH] > 0 &&
-        left > (kept[STIFF_EVENT] != 0 ? 0 : LEAST_LEFT * kept[KEPT_LENGTH]);
-    if (goes_on) {
+    const double least = kept[STIFF_EVENT] != 0 ? 0 : LEAST_LEFT * kept[KEPT_LENGTH];
+    const bool continues =
+        m->state[SLOT_JUMPED] == 0 && kept[KEPT_LENGTH] > 0 && left > least;
+    if (continues) {
         resume_stiff_step(s, a, m);
     } else if (!make_stiff_step(s, a, m)) {
         s->known = false;

@@ -337,12 +337,9 @@ static void set_gap(stiff_integrator *s, const arm *a, const motion *m)
     const double h = s->step.length;
     double start = m->state[SLOT_GAP], rates[RADAU_LANES];
     const wall_model wall = wall_at(&a->wall, m->state[SLOT_TIME]);
-    if (m->state[SLOT_JUMPED] != 0 ? fabs(start) <= EDGE_GAP : s->kept[STIFF_GAP] != 0) {
-        if (m->state[SLOT_JUMPED] != 0) {
-            start = 0;
-        } else {
-            start = s->kept[STIFF_GAP];
-        }
+    const bool jumped = m->state[SLOT_JUMPED] != 0;
+    if ((jumped && fabs(start) <= EDGE_GAP) || (!jumped && s->kept[STIFF_GAP] != 0)) {
+        start = jumped ? 0 : s->kept[STIFF_GAP];
     }
     for (int i = 0; i < RADAU_LANES; i++) {
         rates[i] = s->step.rate.at[i];

@@ -27,10 +27,8 @@ static void choose_drive(stiff_step *s, const motor_model *m, double current, do
     const double limit = m->current_limit, rounding = 1e-11;
     const double wanted = (m->gain * m->voltage - m->back_emf * w) / m->resistance;
     const bool flows = m->inductance > 0;
-    double side = -1;
-    if (!((flows ? current : wanted) < 0)) {
-        side = 1;
-    }
+    const double present = flows ? current : wanted;
+    const double side = present < 0 ? -1 : 1;
     if (flows) {
         s->drive = STIFF_FLOWS;
     } else {
@@ -44,7 +42,8 @@ static void choose_drive(stiff_step *s, const motor_model *m, double current, do
     // where the voltage would drive it beyond, or is about to
     const double beyond = side * wanted - limit,
                  grows = -side * m->back_emf * acceleration;
-    if (fabs(beyond) > rounding * limit ? beyond > 0 : grows > 0) {
+    const bool off_limit = fabs(beyond) > rounding * limit;
+    if ((off_limit && beyond > 0) || (!off_limit && grows > 0)) {
         s->drive = STIFF_LIMITED;
     }
 }
@@ -170,8 +169,10 @@ bool stiff_solve_stages(stiff_integrator *integrator, bool fresh, double offset,
         if (i > 0) {
             *rate = smaller(larger(theta, LEAST_RATE), 0.5);
         }
-        if (i == 0 ? now * theta < wanted
-                   : theta < 1 && now * theta / (1 - theta) < wanted) {
+        if (i == 0 && now * theta < wanted) {
+            return true;
+        }
+        if (i > 0 && theta < 1 && now * theta / (1 - theta) < wanted) {
             return true;
         }
         if (now < LEAST_SHARE * scale) {

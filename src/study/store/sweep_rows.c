@@ -109,7 +109,9 @@ status sweep_store_quantity(sweep_store *of, sweep_share share, const char *key,
             continue;
         }
         bool ok = strcmp(ended, "failed") != 0;
-        failures += !ok;
+        if (!ok) {
+            failures++;
+        }
         if (ok && sqlite3_column_type(rows, 2) != SQLITE_NULL) {
             values[(run - first) / step] = sqlite3_column_double(rows, 2);
         }

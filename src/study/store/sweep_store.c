@@ -341,7 +341,9 @@ static status copy_row(merging *m, const char *path, sqlite3_stmt *row, fault *f
         done = sqlite3_step(m->store.insert);
     }
     sqlite3_reset(m->store.insert);
-    m->merged->runs += done == SQLITE_DONE;
+    if (done == SQLITE_DONE) {
+        m->merged->runs++;
+    }
 
     // the number of a run is its key
     if (done == SQLITE_DONE) {
