@@ -16,7 +16,7 @@ enum { MOST_COLUMNS = 4096, SHOWN = 60 };
 // --- the file --------------------------------------------------------------------------
 
 // The whole file as a text on the heap, the caller's in any case.
-static status read_text(const char *path, char **text, fault *f)
+static status read_table_text(const char *path, char **text, fault *f)
 {
     size_t length;
     fault why = {0};
@@ -115,7 +115,7 @@ status csv_table_read(csv_table *t, const char *path, size_t least, fault *f)
     *t = (csv_table){.file = strdup(path)};
     status code;
     if (t->file != NULL) {
-        code = read_text(path, &t->text, f);
+        code = read_table_text(path, &t->text, f);
     } else {
         code = fault_no_memory(f);
     }

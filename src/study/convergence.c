@@ -17,9 +17,9 @@ double observed_order(double coarse, double middle, double fine)
 {
     double first = coarse - middle, second = middle - fine;
     double rounding = ROUNDING * fmax(fabs(coarse), fabs(fine));
-    bool told = fabs(first) > rounding && fabs(second) > rounding && first * second > 0 &&
-                fabs(first) > fabs(second);
-    if (told) {
+    bool known = fabs(first) > rounding && fabs(second) > rounding &&
+                 first * second > 0 && fabs(first) > fabs(second);
+    if (known) {
         return plain_log(first / second) / M_LN2;
     }
     return (double)NAN;

@@ -153,6 +153,63 @@ static bool orthogonalise(const identification *id, const double *jacobian, doub
     return true;
 }
 
+// Of one channel of all traces, for each parameter: the products of the columns, and the
+// sum over blocks of the square of (sum in the block of a r).
+typedef struct channel_sums {
+    double products[IDENTIFY_PATHS * IDENTIFY_PATHS], squares[IDENTIFY_PATHS];
+} channel_sums;
+
+// Ends a block: its sums are squared and begin anew.
+static void end_block(channel_sums *of, double *sums, int count)
+{
+    for (int a = 0; a < count; a++) {
+        of->squares[a] += sums[a] * sums[a];
+        sums[a] = 0;
+    }
+}
+
+// Adds a channel of a trace, whose first residual is number `at`.
+static void add_readings(const identification *id, const recorded_trace *t, int channel,
+                         const double *alone, size_t at, channel_sums *of)
+{
+    const size_t m = id->residuals;
+    const int p = id->count;
+    const double *read = t->reading[channel];
+    double sums[IDENTIFY_PATHS] = {0}, begun = -HUGE_VAL;
+    for (size_t i = 0; i < t->rows; i++) {
+        // a reading that stays is one reading: no block ends in it
+        const bool stays = i > 0 && read[i] == read[i - 1];
+        if (t->time[i] - begun >= BLOCK && !stays) {
+            begun = t->time[i];
+            end_block(of, sums, p);
+        }
+        if (!(t->deviation[channel][i] > 0)) {
+            continue;
+        }
+        for (int a = 0; a < p; a++) {
+            sums[a] += alone[(size_t)a * m + at] * id->residual[at];
+            for (int b = 0; b < p; b++) {
+                of->products[a * p + b] +=
+                    alone[(size_t)a * m + at] * alone[(size_t)b * m + at];
+            }
+        }
+        at++;
+    }
+    end_block(of, sums, p);
+}
+
+// How many residuals a channel of a trace has.
+static size_t residuals_of_channel(const recorded_trace *t, int channel)
+{
+    size_t count = 0;
+    for (size_t i = 0; t->reading[channel] != NULL && i < t->rows; i++) {
+        if (t->deviation[channel][i] > 0) {
+            count++;
+        }
+    }
+    return count;
+}
+
 // How far the residuals of a channel of all traces scatter where the parameters look:
 // over blocks that are longer than what correlates them,
 //
@@ -164,49 +221,26 @@ static bool orthogonalise(const identification *id, const double *jacobian, doub
 static void add_channel(const identification *id, int channel, const double *alone,
                         double *information, double *scatter)
 {
-    const size_t m = id->residuals;
     const int p = id->count;
-    double part[IDENTIFY_PATHS * IDENTIFY_PATHS] = {0}, squares[IDENTIFY_PATHS] = {0};
+    channel_sums of = {0};
     size_t at = 0;
     for (int k = 0; k < id->trace_count; k++) {
         const recorded_trace *t = &id->traces[k];
         for (int c = 0; c < CHANNELS; c++) {
-            const double *read = t->reading[c], *deviation = t->deviation[c];
-            double sums[IDENTIFY_PATHS] = {0}, begun = -HUGE_VAL;
-            for (size_t i = 0; read != NULL && i < t->rows; i++) {
-                // a reading that stays is one reading: no block ends in it
-                const bool stays = i > 0 && read[i] == read[i - 1];
-                if (t->time[i] - begun >= BLOCK && !stays) {
-                    begun = t->time[i];
-                    for (int a = 0; a < p; a++) {
-                        squares[a] += sums[a] * sums[a];
-                        sums[a] = 0;
-                    }
-                }
-                if (!(deviation[i] > 0)) {
-                    continue;
-                }
-                for (int a = 0; a < p && c == channel; a++) {
-                    sums[a] += alone[(size_t)a * m + at] * id->residual[at];
-                    for (int b = 0; b < p; b++) {
-                        part[a * p + b] +=
-                            alone[(size_t)a * m + at] * alone[(size_t)b * m + at];
-                    }
-                }
-                at++;
+            if (c == channel && t->reading[c] != NULL) {
+                add_readings(id, t, c, alone, at, &of);
             }
-            for (int a = 0; a < p; a++) {
-                squares[a] += sums[a] * sums[a];
-            }
+            at += residuals_of_channel(t, c);
         }
         at += (size_t)t->contact_count;
     }
 
+    // the mean over the parameters that look at this channel
     double rho = 0;
     int looking = 0;
     for (int a = 0; a < p; a++) {
-        if (part[a * p + a] > 0) {
-            rho += squares[a] / part[a * p + a];
+        if (of.products[a * p + a] > 0) {
+            rho += of.squares[a] / of.products[a * p + a];
             looking++;
         }
     }
@@ -216,8 +250,8 @@ static void add_channel(const identification *id, int channel, const double *alo
         rho = 1;
     }
     for (int i = 0; i < p * p; i++) {
-        information[i] += part[i];
-        scatter[i] += rho * part[i];
+        information[i] += of.products[i];
+        scatter[i] += rho * of.products[i];
     }
 }
 

@@ -160,7 +160,7 @@ void identify_write_set(FILE *stream, const identification *id)
     // what a law is told of a parameter, as a factor of the true value
     const struct {
         int parameter, belief;
-    } told[] = {
+    } beliefs[] = {
         {PARAMETER_INDEX(arm.k2), PARAMETER_INDEX(belief.k2_factor)},
         {PARAMETER_INDEX(arm.mass), PARAMETER_INDEX(belief.mass_factor)},
         {PARAMETER_INDEX(arm.hub_inertia), PARAMETER_INDEX(belief.inertia_factor)},
@@ -193,12 +193,12 @@ void identify_write_set(FILE *stream, const identification *id)
         fputs(with, stream);
         with = "with ";
         write_line(stream, fit->axis.name, fit, drawn, i, NULL);
-        for (size_t k = 0; k < sizeof told / sizeof *told; k++) {
-            if (strcmp(parameter_table[told[k].parameter].path, fit->axis.name) == 0) {
+        for (size_t k = 0; k < sizeof beliefs / sizeof *beliefs; k++) {
+            if (strcmp(parameter_table[beliefs[k].parameter].path, fit->axis.name) == 0) {
                 const double belief =
-                    parameter_get(&id->base->parameters, told[k].belief);
+                    parameter_get(&id->base->parameters, beliefs[k].belief);
                 fputs(with, stream);
-                write_line(stream, parameter_table[told[k].belief].path, fit, drawn, i,
+                write_line(stream, parameter_table[beliefs[k].belief].path, fit, drawn, i,
                            &belief);
             }
         }

@@ -275,9 +275,9 @@ static void compute_beam(const parameters *p, double speed, links_row *rows)
 void links_judge(links_row *row)
 {
     // values that have no limit told may agree with the last one: three at least
-    const bool told = !isnan(row->beam) || !isnan(row->limit);
+    const bool known = !isnan(row->beam) || !isnan(row->limit);
     int i = LINKS_LENGTHS - 1;
-    if (told) {
+    if (known) {
         row->aim = row->limit;
     } else {
         row->aim = row->value[i];
@@ -293,7 +293,7 @@ void links_judge(links_row *row)
             break;
         }
         row->off = fmax(row->off, off);
-        if (told || i <= LINKS_LENGTHS - 3) {
+        if (known || i <= LINKS_LENGTHS - 3) {
             row->enough = links_numbers[i];
         } else {
             row->enough = 0;

@@ -13,7 +13,7 @@
 enum { MOST_SET_BYTES = 65536 };
 
 // The whole file as a text on the heap, the caller's in any case.
-static status read_text(const char *path, char **text, fault *f)
+static status read_set_text(const char *path, char **text, fault *f)
 {
     size_t length;
     fault why = {0};
@@ -139,7 +139,7 @@ status robust_set_read(robust_set *set, const char *path, fault *f)
     *set = (robust_set){.file = strdup(path)};
     status code;
     if (set->file != NULL) {
-        code = read_text(path, &set->text, f);
+        code = read_set_text(path, &set->text, f);
     } else {
         code = fault_no_memory(f);
     }
@@ -273,80 +273,101 @@ static void find_quantiles(double *values, size_t count, double *quantiles)
 enum { JUDGED(NUMBER) QUANTITIES };
 static const char *const keys[QUANTITIES] = {JUDGED(KEY)};
 
+// The quantities of the runs of a law, and how many of the runs did what.
+typedef struct judged_runs {
+    double *of[QUANTITIES];
+    double pushed; // instant of the script's last push [s]
+    size_t settled, separated, exceeded;
+} judged_runs;
+
+static double last_push(const scenario *s)
+{
+    double pushed = 0;
+    for (int i = 0; i < s->action_count; i++) {
+        const action *a = &s->actions[i];
+        if (a->kind == ACTION_PUSH) {
+            pushed = fmax(pushed, a->time);
+        }
+    }
+    return pushed;
+}
+
+// Counts what run i did; `s` is its scenario, NULL where it cannot be made. Brings its
+// overshoots and its error to percent of the command, and its return to a share of the
+// approach.
+static void count_run(judged_runs *j, robust_law *out, size_t i, const scenario *s)
+{
+    double *const *of = j->of;
+    const double command = of[COMMAND][i];
+    const bool many = s != NULL && s->parameters.arm.links > 2;
+
+    // the largest force, of an arm of many links without its ringing
+    double largest = of[PEAK][i], allowed = ROBUST_EXCESS * command;
+    if (many) {
+        largest = of[SMOOTHED][i] + command;
+    }
+    if (s != NULL && s->parameters.control.force_limit > 0) {
+        allowed = s->parameters.control.force_limit;
+    }
+    if (largest > allowed) {
+        j->exceeded++;
+    }
+    if (isnan(of[STEPS][i])) {
+        out->failed++;
+    }
+    if (!isnan(of[SETTLING][i])) {
+        j->settled++;
+    }
+    if (of[SEPARATIONS][i] > 0) {
+        j->separated++;
+    }
+
+    // in the units of the table
+    of[OVER][i] *= 100 / command;
+    of[SMOOTHED][i] *= 100 / command;
+    out->overshoots[i] = of[OVER][i];
+    if (many) {
+        out->overshoots[i] = of[SMOOTHED][i];
+        out->by_smoothed++;
+    }
+    of[ERROR][i] = 100 * fabs(of[ERROR][i]) / command;
+    of[BACK][i] /= of[APPROACH][i];
+}
+
+// Times from the start and from contact, or from the last push, which begins anew, on.
+static void time_run(judged_runs *j, size_t i)
+{
+    double *contact = &j->of[CONTACT][i], *settling = &j->of[SETTLING][i];
+    const double at = *contact + *settling;
+    if (at > j->pushed) {
+        *settling = at - fmax(*contact, j->pushed);
+    } else if (isnan(at)) {
+        *settling = at;
+    } else {
+        *settling = 0;
+    }
+    if (j->pushed > 0) {
+        *contact = (double)NAN;
+    } else {
+        *contact = at;
+    }
+}
+
 // Judges the runs, whose quantities stand `most` behind one another; what is sorted is
 // overwritten.
 static void judge_runs(robust_law *out, const sweep *s, const size_t *runs, size_t most,
                        double *values)
 {
     const size_t n = out->runs;
-    double *of[QUANTITIES];
-    size_t settled = 0, separated = 0, exceeded = 0;
-    double pushed = 0; // instant of the script's last push [s]
-    for (int i = 0; i < s->base->action_count; i++) {
-        const action *a = &s->base->actions[i];
-        if (a->kind == ACTION_PUSH) {
-            pushed = fmax(pushed, a->time);
-        }
-    }
+    judged_runs j = {.pushed = last_push(s->base)};
     for (int q = 0; q < QUANTITIES; q++) {
-        of[q] = values + (size_t)q * most;
+        j.of[q] = values + (size_t)q * most;
     }
-
-    // each run
     for (size_t i = 0; i < n; i++) {
         scenario derived;
-        bool known = sweep_scenario(s, runs[i], &derived, NULL) == STATUS_OK;
-        bool many = known && derived.parameters.arm.links > 2;
-        double command = of[COMMAND][i];
-
-        // the largest force, of an arm of many links without its ringing
-        double largest = of[PEAK][i], allowed = ROBUST_EXCESS * command;
-        if (many) {
-            largest = of[SMOOTHED][i] + command;
-        }
-        if (known && derived.parameters.control.force_limit > 0) {
-            allowed = derived.parameters.control.force_limit;
-        }
-
-        // what is counted
-        if (isnan(of[STEPS][i])) {
-            out->failed++;
-        }
-        if (!isnan(of[SETTLING][i])) {
-            settled++;
-        }
-        if (of[SEPARATIONS][i] > 0) {
-            separated++;
-        }
-        if (largest > allowed) {
-            exceeded++;
-        }
-
-        // in percent of the command, and as a share of the approach
-        of[OVER][i] *= 100 / command;
-        of[SMOOTHED][i] *= 100 / command;
-        out->overshoots[i] = of[OVER][i];
-        if (many) {
-            out->overshoots[i] = of[SMOOTHED][i];
-            out->by_smoothed++;
-        }
-        of[ERROR][i] = 100 * fabs(of[ERROR][i]) / command;
-        of[BACK][i] /= of[APPROACH][i];
-
-        // a push begins anew
-        double contact = of[CONTACT][i], at = contact + of[SETTLING][i];
-        if (pushed > 0) {
-            of[CONTACT][i] = (double)NAN;
-        } else {
-            of[CONTACT][i] = at;
-        }
-        if (at > pushed) {
-            of[SETTLING][i] = at - fmax(contact, pushed);
-        } else if (isnan(at)) {
-            of[SETTLING][i] = at;
-        } else {
-            of[SETTLING][i] = 0;
-        }
+        const bool known = sweep_scenario(s, runs[i], &derived, NULL) == STATUS_OK;
+        count_run(&j, out, i, known ? &derived : NULL);
+        time_run(&j, i);
     }
 
     // all of them
@@ -357,16 +378,16 @@ static void judge_runs(robust_law *out, const sweep *s, const size_t *runs, size
     } else {
         out->overshoot_of = "peak and smoothed";
     }
-    out->settled = (double)settled / (double)n;
-    out->separated = (double)separated / (double)n;
-    out->exceeded = (double)exceeded / (double)n;
+    out->settled = (double)j.settled / (double)n;
+    out->separated = (double)j.separated / (double)n;
+    out->exceeded = (double)j.exceeded / (double)n;
     find_quantiles(out->overshoots, n, out->overshoot);
-    find_quantiles(of[OVER], n, out->raw);
-    find_quantiles(of[SMOOTHED], n, out->smoothed);
-    find_quantiles(of[SETTLING], n, out->settling);
-    find_quantiles(of[CONTACT], n, out->from_start);
-    find_quantiles(of[ERROR], n, out->error);
-    find_quantiles(of[BACK], n, out->back);
+    find_quantiles(j.of[OVER], n, out->raw);
+    find_quantiles(j.of[SMOOTHED], n, out->smoothed);
+    find_quantiles(j.of[SETTLING], n, out->settling);
+    find_quantiles(j.of[CONTACT], n, out->from_start);
+    find_quantiles(j.of[ERROR], n, out->error);
+    find_quantiles(j.of[BACK], n, out->back);
 }
 
 status robust_law_of(robust_law *out, const char *law, const sweep *s, sweep_share share,
