@@ -53,7 +53,7 @@ picture artwork_picture(const artwork *a, const figure_options *options)
                      .dpi = options->look.dpi,
                      .transparent = options->look.transparent,
                      .command = options->command,
-                     .alternative = a->alternative != NULL ? a->alternative : a->title,
+                     .alternative = text_or(a->alternative, a->title),
                      .title = a->title,
                      .software = picture_software(),
                      .parameters = a->parameters,
@@ -94,7 +94,7 @@ static void append_plain(GString *out, const char *before, const char *markup)
 
 static void append_axis(GString *out, const char *before, const figure_axis *a)
 {
-    append_plain(out, before, a->label != NULL ? a->label : a->name);
+    append_plain(out, before, text_or(a->label, a->name));
     if (a->unit != NULL && a->unit[0] != '\0') {
         g_autofree char *unit = text_unit(a->unit);
         text_append(out, " in %s", unit);
@@ -104,8 +104,9 @@ static void append_axis(GString *out, const char *before, const figure_axis *a)
 // What a figure shows, in words: its panels, their axes and what is drawn.
 static char *describe_figure(const figure *fig)
 {
-    GString *out = g_string_new(fig->title != NULL ? fig->title : "Figure");
-    text_append(out, ". %d panel%s", fig->panel_count, fig->panel_count == 1 ? "" : "s");
+    GString *out = g_string_new(text_or(fig->title, "Figure"));
+    const char *panels = fig->panel_count == 1 ? "panel" : "panels";
+    text_append(out, ". %d %s", fig->panel_count, panels);
     append_axis(out, " over ", &fig->x);
 
     // panel by panel: its axis, heading, colours and curves
@@ -203,7 +204,13 @@ static char *latex_escape(const char *plain)
         if (strchr("#$%&_{}", *plain) != NULL) {
             g_string_append_c(out, '\\');
         }
-        g_string_append_c(out, strchr("\\~^", *plain) != NULL ? ' ' : *plain);
+
+        // what cannot be escaped is left out
+        if (strchr("\\~^", *plain) != NULL) {
+            g_string_append_c(out, ' ');
+        } else {
+            g_string_append_c(out, *plain);
+        }
     }
     return g_string_free(out, FALSE);
 }
@@ -213,23 +220,32 @@ char *latex_environment(const artwork *a, const char *tex, const char *file)
     g_autofree char *tex_folder = g_path_get_dirname(tex),
                     *folder = g_path_get_dirname(file);
     g_autofree char *name = g_path_get_basename(file);
-    const int dot = (int)(picture_ending(name) - name),
-              stem = dot > 0 ? dot : (int)strlen(name);
-    g_autofree char *title = text_escape(a->title != NULL ? a->title : ""),
-                    *heading = latex_of_markup(title);
-    g_autofree char *caption = latex_of_markup(a->caption != NULL ? a->caption : "");
-    g_autofree char *alt =
-        latex_escape(a->alternative != NULL ? a->alternative : a->title);
 
+    // the label is the file's name without its ending, the picture's path goes from the
+    // LaTeX file
+    int stem = (int)(picture_ending(name) - name);
+    if (stem == 0) {
+        stem = (int)strlen(name);
+    }
+    const char *picture_path = file;
+    if (strcmp(tex_folder, folder) == 0) {
+        picture_path = name;
+    }
+
+    // title and caption
+    g_autofree char *title = text_escape(text_or(a->title, ""));
+    g_autofree char *heading = latex_of_markup(title);
+    g_autofree char *caption = latex_of_markup(text_or(a->caption, ""));
+    g_autofree char *alt = latex_escape(text_or(a->alternative, a->title));
+    const char *between = caption[0] != '\0' ? ". " : "";
     return text_printf("\\begin{figure}\n"
                        "  \\centering\n"
                        "  \\includegraphics[width=%.4gmm,alt={%s}]{%s}\n"
                        "  \\caption{%s%s%s}\n"
                        "  \\label{fig:%.*s}\n"
                        "\\end{figure}\n",
-                       a->width * 25.4 / 72, alt,
-                       strcmp(tex_folder, folder) == 0 ? name : file, heading,
-                       caption[0] != '\0' ? ". " : "", caption, stem, name);
+                       a->width * 25.4 / 72, alt, picture_path, heading, between, caption,
+                       stem, name);
 }
 
 // ---- what stands beside a picture
@@ -252,7 +268,10 @@ status artwork_publish_csv(const artwork *a, const char *path, fault *f)
     static const char heading[] = "panel,"; // of figure_write_csv
     g_autofree char *csv = artwork_beside(path, ".csv");
     char start[sizeof heading] = "";
-    FILE *there = a->plotted != NULL ? fopen(csv, "re") : NULL;
+    FILE *there = NULL;
+    if (a->plotted != NULL) {
+        there = fopen(csv, "re");
+    }
     const bool written = there != NULL && fread(start, 1, sizeof start - 1, there) > 0;
     if (there != NULL) {
         fclose(there);
@@ -273,9 +292,10 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
     // text of a picture that has none of its own
     if (o->look.bare) {
         g_autofree char *txt = artwork_beside(path, ".txt");
-        g_autofree char *caption = text_plain(a->caption != NULL ? a->caption : "");
-        g_autofree char *text = text_printf("%s%s%s\n", a->title != NULL ? a->title : "",
-                                            caption[0] != '\0' ? "\n\n" : "", caption);
+        g_autofree char *caption = text_plain(text_or(a->caption, ""));
+        const char *between = caption[0] != '\0' ? "\n\n" : "";
+        g_autofree char *text =
+            text_printf("%s%s%s\n", text_or(a->title, ""), between, caption);
         TRY(write_text(txt, text, f));
     }
     if (o->latex != NULL) {
@@ -299,9 +319,10 @@ void figure_take_range(figure *fig, const figure_options *o)
 status figure_publish(const figure *fig, const figure_options *o, const char *path,
                       bool with_csv, fault *f)
 {
+    const char *option = o->overlay != NULL ? "--overlay" : "--signals";
     FAULT_IF(o->overlay != NULL || o->signals != NULL, f, STATUS_BAD_ARGUMENT,
              "%s: the picture shows no recorded signals that %s could choose or lie over",
-             path, o->overlay != NULL ? "--overlay" : "--signals");
+             path, option);
 
     // a copy with the look and the range asked for
     figure shown = *fig;

@@ -153,10 +153,10 @@ status diagram_contact(const figure_order *order, artwork *out, fault *f)
 
     // two steps during contact
     const trace *t = &d->run->result.trace;
-    size_t first = liveliest_pair(t);
+    const size_t first = liveliest_pair(t), second = MIN(first + 1, t->row_count - 1);
     arm_shapes *of = &d->shapes;
     of->one = shape_of(&t->rows[first]);
-    of->other = shape_of(&t->rows[first + 1 < t->row_count ? first + 1 : first]);
+    of->other = shape_of(&t->rows[second]);
 
     // the numbers, and what is left of the constraint (3.9)
     double a = d->p.arm.length * cos(d->p.wall.angle),
@@ -383,6 +383,15 @@ static void draw_arm(sketch *s, const diagram *d)
     sketch_small(s, shifted(joint_page, -4, 34), (anchor){1, 1}, "cut");
 }
 
+// An arc between two angles with a head that points as `sense` turns.
+static arc turning_arc(point centre, double radius, double low, double high, double sense)
+{
+    if (sense < 0) {
+        return (arc){centre, radius, high, low, true};
+    }
+    return (arc){centre, radius, low, high, true};
+}
+
 // The last body on its own, along the page.
 static void draw_cut_body(sketch *s, const diagram *d)
 {
@@ -403,26 +412,24 @@ static void draw_cut_body(sketch *s, const diagram *d)
     sketch_arrow(s, (point){hit.x, y - 6 - wall}, (point){hit.x, y - 6}, 5);
     write_value(s, (point){hit.x, y - 14 - wall}, 0.5, "<i>F̂</i><sup>c</sup>",
                 b.wall_impulse, "N s");
-    sketch_arrow(s, (point){hinge.x, pin > 0 ? y - 6 : y - 6 + pin},
-                 (point){hinge.x, pin > 0 ? y - 6 - pin : y - 6}, 5);
+    sketch_arrow(s, (point){hinge.x, y - 6 + fmin(0, pin)},
+                 (point){hinge.x, y - 6 - fmax(0, pin)}, 5);
     write_value(s, (point){hinge.x, y - 14 - fabs(pin)}, 0.5, "<i>X̂</i><sup>c</sup>",
                 b.hinge_impulse, "N s");
 
     // the hinge's torque about C, and how the body's motion jumps
-    sketch_arc(s,
-               (arc){hinge, 18, b.hinge_torque < 0 ? 3.7 : 2.6,
-                     b.hinge_torque < 0 ? 2.6 : 3.7, true},
-               0);
+    sketch_arc(s, turning_arc(hinge, 18, 2.6, 3.7, b.hinge_torque), 0);
     write_value(s, (point){hinge.x - 4, y + 44}, 0.5, "<i>Ŷ</i><sup>c</sup>",
                 b.hinge_torque, "N m s");
-    double jump = SPEED_LENGTH * b.centre_jump, from = b.centre_jump < 0 ? y + 7 : y - 7;
+    const double jump = SPEED_LENGTH * b.centre_jump;
+    double from = y - 7;
+    if (b.centre_jump < 0) {
+        from = y + 7;
+    }
     sketch_dashed_arrow(s, (point){centre.x, from}, (point){centre.x, from - jump}, 1);
     write_value(s, (point){centre.x - 8, from - 0.7 * jump}, 1, "Δ<i>v</i><sub>C</sub>",
                 b.centre_jump, "m/s");
-    sketch_arc(s,
-               (arc){(point){centre.x, y}, 30, b.angular_jump < 0 ? -0.5 : -1.6,
-                     b.angular_jump < 0 ? -1.6 : -0.5, true},
-               1);
+    sketch_arc(s, turning_arc((point){centre.x, y}, 30, -1.6, -0.5, b.angular_jump), 1);
     write_value(s, (point){centre.x + 30, y + 22}, 0, "Δ<i>ω</i>", b.angular_jump,
                 "rad/s");
 

@@ -81,7 +81,10 @@ static status read_panel(const char *text, trace_panel *p, fault *f)
 {
     g_auto(GStrv) words = g_strsplit(text, "+", -1);
     for (int i = 0; i == 0 || words[i] != NULL; i++) {
-        const char *name = words[i] != NULL ? g_strstrip(words[i]) : "";
+        const char *name = "";
+        if (words[i] != NULL) {
+            name = g_strstrip(words[i]);
+        }
         int index = signal_find(name);
 
         // known, with room, and of the panel's one unit
@@ -110,7 +113,7 @@ static status read_signals(const char *text, trace_panel *panels, int *count, fa
                  "'%s': a figure has at most %d panels", text, FIGURE_PANELS - 1);
         trace_panel *p = &panels[*count];
         *p = (trace_panel){.weight = 1};
-        TRY(read_panel(words[*count] != NULL ? words[*count] : "", p, f));
+        TRY(read_panel(text_or(words[*count], ""), p, f));
 
         // what goes without saying for a panel of its first signal
         const signal_info *signal = &signal_table[signal_index(p->signals[0])];

@@ -95,13 +95,14 @@ static void add_printed_peak(owned_figure *o, const summary *m,
     // how far the run is from it
     double more = m->first_pulse_peak_N - forces[column];
     double late = m->first_pulse_time_to_peak_s - delays[column];
+    const char *height = more < 0 ? "lower" : "higher";
+    const char *delay = late < 0 ? "earlier" : "later";
     text_append(caption,
                 " Diamond: the peak of Table 4.3, %.2f\u2009N after %.0f\u2009ms; "
                 "that of the printed run's first pulse is %.2f\u2009N %s and comes "
                 "%.0f\u2009ms %s.",
-                forces[column], 1e3 * delays[column], fabs(more),
-                more < 0 ? "lower" : "higher", 1e3 * fabs(late),
-                late < 0 ? "earlier" : "later");
+                forces[column], 1e3 * delays[column], fabs(more), height,
+                1e3 * fabs(late), delay);
 }
 
 // What the catalogue adds to a figure of recorded signals.
@@ -154,8 +155,9 @@ static status open_signals(const figure_order *order, artwork *out, const scenar
         }
         memcpy(panels, which->panels, sizeof panels);
         panels[0].modes = which->modes;
-        drawn = run_figure_create(order->title, which->panel_count > 0 ? panels : NULL,
-                                  which->panel_count, runs, count, order->options, f);
+        const trace_panel *shown = which->panel_count > 0 ? panels : NULL;
+        drawn = run_figure_create(order->title, shown, which->panel_count, runs, count,
+                                  order->options, f);
     }
     if (drawn == NULL) {
         run_close(opened[0]);
@@ -182,19 +184,26 @@ status scenario_figure_open(const char *name, run_monitor *monitor, artwork *out
 
 // ---- any figure
 
+// "Fig. 3.4  ...", "Table 4.1  ...", or the caption alone.
+static char *numbered_title(const thesis_figure *which)
+{
+    if (which->id[0] == 'T') {
+        return text_printf("Table %s  %s", which->id + 1, which->caption);
+    }
+    if (g_ascii_isdigit(which->id[0])) {
+        return text_printf("Fig. %s  %s", which->id, which->caption);
+    }
+    return g_strdup(which->caption);
+}
+
 status figure_open(const thesis_figure *which, const figure_options *o, artwork *out,
                    fault *f)
 {
     FAULT_IF(which->open != NULL && (o->overlay != NULL || o->signals != NULL), f,
              STATUS_BAD_ARGUMENT,
              "%s shows no recorded signals that %s could choose or lie over", which->id,
-             o->overlay != NULL ? o->overlay : o->signals);
-    // "Fig. 3.4  ...", "Table 4.1  ...", or the caption alone
-    const bool table = which->id[0] == 'T',
-               numbered = table || g_ascii_isdigit(which->id[0]);
-    g_autofree char *title = numbered ? text_printf("%s %s  %s", table ? "Table" : "Fig.",
-                                                    which->id + table, which->caption)
-                                      : g_strdup(which->caption);
+             text_or(o->overlay, o->signals));
+    g_autofree char *title = numbered_title(which);
     const figure_order order = {which, title, o, NULL};
     if (which->open != NULL) {
         return which->open(&order, out, f);
@@ -213,7 +222,7 @@ status figure_draw(const char *id, const figure_options *o, const char *folder,
     // every format is known before anything is computed
     g_auto(GStrv) list = g_strsplit(formats, ",", -1);
     for (int i = 0; i == 0 || list[i] != NULL; i++) {
-        const char *format = list[i] != NULL ? list[i] : "";
+        const char *format = text_or(list[i], "");
         FAULT_IF(picture_format_of(format) == FORMAT_NONE, f, STATUS_BAD_ARGUMENT,
                  "there is no figure format '%s', expected png, pdf or svg", format);
     }

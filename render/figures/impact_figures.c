@@ -79,8 +79,10 @@ status figure_force_profile(const figure_order *order, artwork *out, fault *f)
     owned_figure *o = fig.plot;
     figure_panel *panel = &o->panels[0];
     const summary *m = &fig.run->result.summary;
-    double pulse =
-        isfinite(m->first_pulse_s) ? m->first_pulse_s : fig.peak_time - fig.contact;
+    double pulse = m->first_pulse_s;
+    if (!isfinite(pulse)) {
+        pulse = fig.peak_time - fig.contact;
+    }
     add_signal(&fig, 0, "force", NULL);
     panel->y.label = "Contact force <i>f</i>";
     panel->weight = 1.7;
@@ -192,6 +194,12 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
         {"Angular velocity <i>θ̇</i><sub>2</sub>",
          "Angular velocity <i>θ̇</i><sub>3</sub>"},
         {"Angle <i>θ</i><sub>2</sub>", "Angle <i>θ</i><sub>3</sub>"}};
+    static const char *const approximations[2] = {"linear approximation",
+                                                  "quadratic approximation (4.19)"};
+    static const char *const assumptions[2] = {
+        "The predictors assume that velocities fall to zero in a straight line",
+        "The angles that belong to velocities falling to zero in a straight line"};
+    static const char *const units[2] = {"rad/s", "rad"};
     const bool of_angle = order->which->variant == 1;
     impact_figure fig = open_impact(order, PANELS, f);
     if (fig.plot == NULL) {
@@ -206,14 +214,16 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
     double most[PANELS], period = fig.peak_time - fig.contact;
     for (int i = 0; i < PANELS; i++) {
         const char *name = signals[of_angle][i];
-        // one legend speaks for both panels, so both have its colours
-        add_signal(&fig, i, name, i == 0 ? "computed" : NULL)->colour = 0;
-
         const assumption a = {angles[i], velocities[i], period, of_angle};
-        add_assumption(&fig, i, &a,
-                       i > 0      ? NULL
-                       : of_angle ? "quadratic approximation (4.19)"
-                                  : "linear approximation");
+
+        // the first panel's legend is that of both, so both have its colours
+        const char *computed = NULL, *approximation = NULL;
+        if (i == 0) {
+            computed = "computed";
+            approximation = approximations[of_angle];
+        }
+        add_signal(&fig, i, name, computed)->colour = 0;
+        add_assumption(&fig, i, &a, approximation);
         most[i] = departure(&fig, name, &a);
         fig.plot->panels[i].y.label = labels[of_angle][i];
     }
@@ -224,11 +234,7 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
         "First and last link of corrected/first-impact from first contact to "
         "the peak of the force, <i>T</i> = %.1f\u2009ms. %s. Largest "
         "departure between them: %.2g and %.2g\u2009%s.",
-        1e3 * period,
-        of_angle
-            ? "The angles that belong to velocities falling to zero in a straight line"
-            : "The predictors assume that velocities fall to zero in a straight line",
-        most[0], most[1], of_angle ? "rad" : "rad/s");
+        1e3 * period, assumptions[of_angle], most[0], most[1], units[of_angle]);
     *out = artwork_of_owned(fig.plot);
     return STATUS_OK;
 }

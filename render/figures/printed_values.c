@@ -133,15 +133,18 @@ status printed_values_figure(const figure_order *order, artwork *out, fault *f)
 
     // panels side by side have their residuals in a row below, panels in a column next to
     // them
-    bool rows_of_tables = figure_columns(fig) == TABLES;
+    int panels_a_table = 2, to_residuals = 1;
+    if (figure_columns(fig) == TABLES) {
+        panels_a_table = 1;
+        to_residuals = TABLES;
+    }
     for (int t = 0; t < TABLES; t++) {
         const table_row *rows[QUANTITIES];
         for (int q = 0; q < kind->count; q++) {
             rows[q] = computed_row(all, tables[t], "printed", kind->quantities[q].key);
         }
-        figure_panel *shown = &plot->panels[rows_of_tables ? t : 2 * t];
-        add_table(plot, kind, all->voltage, rows, shown,
-                  rows_of_tables ? shown + TABLES : shown + 1);
+        figure_panel *shown = &plot->panels[panels_a_table * t];
+        add_table(plot, kind, all->voltage, rows, shown, shown + to_residuals);
     }
 
     *out = artwork_of_owned(plot);

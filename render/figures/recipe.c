@@ -1,3 +1,4 @@
+// Figures from recipes: what the recipe names is opened, and what it shows is described.
 #include "render/figures/figures.h"
 
 #include <stdlib.h>
@@ -40,22 +41,23 @@ static status open_source(recipe *r, recipe_source *s, const char *recipe_path, 
 {
     fault why = {0};
     status code = STATUS_OK;
-    g_autofree char *path =
-        path_of(recipe_path, s->kind == SOURCE_RUN ? s->scenario : s->file);
+    g_autofree char *path = path_of(recipe_path, text_or(s->scenario, s->file));
 
     if (s->kind == SOURCE_RUN) {
-        bool own = g_file_test(path, G_FILE_TEST_IS_REGULAR);
-        s->run = owned_figure_own(r->plot,
-                                  run_open_changed(own ? path : s->scenario, s->change,
-                                                   s->change_count, NULL, &why),
-                                  run_close);
+        // a file beside the recipe, or a scenario's name
+        const char *name = s->scenario;
+        if (g_file_test(path, G_FILE_TEST_IS_REGULAR)) {
+            name = path;
+        }
+        opened_run *run = run_open_changed(name, s->change, s->change_count, NULL, &why);
+        s->run = owned_figure_own(r->plot, run, run_close);
         code = why.code;
     } else if (s->kind == SOURCE_DATA) {
         code = open_data(r, s, path, &why);
     } else {
         const char *const keys[] = {s->x, s->y, s->z};
-        code = sweep_table_read(path, keys, s->z != NULL ? 3 : 2, s->columns, &s->count,
-                                &why);
+        const int columns = s->z != NULL ? 3 : 2;
+        code = sweep_table_read(path, keys, columns, s->columns, &s->count, &why);
         for (int i = 0; i < SWEEP_TABLE_COLUMNS; i++) {
             owned_figure_own(r->plot, s->columns[i], free);
         }
@@ -74,7 +76,7 @@ static status open_source(recipe *r, recipe_source *s, const char *recipe_path, 
 // The legend text of a source, markup.
 static const char *label_of(recipe *r, const recipe_source *s)
 {
-    return owned_figure_keep(r->plot, text_escape(s->label != NULL ? s->label : s->name));
+    return owned_figure_keep(r->plot, text_escape(text_or(s->label, s->name)));
 }
 
 // The first source's scenario, whose bodies the symbols name.
@@ -98,21 +100,18 @@ static int colour_of(int index)
 // otherwise the key itself.
 static figure_axis column_axis(recipe *r, const char *key)
 {
-    int parameter = parameter_find(key), quantity = summary_find(key);
-    const char *words;
+    const int parameter = parameter_find(key), quantity = summary_find(key);
     if (parameter >= 0) {
-        words = parameter_table[parameter].description;
-    } else if (quantity >= 0) {
-        words = summary_table[quantity].label;
-    } else {
-        words = NULL;
+        const parameter_info *info = &parameter_table[parameter];
+        return described_axis(r->plot, key, info->description, info->unit);
+    }
+    if (quantity >= 0) {
+        const summary_info *info = &summary_table[quantity];
+        return described_axis(r->plot, key, info->label, info->unit);
     }
 
     // what neither table describes goes by its own name, without a unit
-    return described_axis(r->plot, key, words,
-                          parameter >= 0  ? parameter_table[parameter].unit
-                          : quantity >= 0 ? summary_table[quantity].unit
-                                          : "");
+    return described_axis(r->plot, key, NULL, "");
 }
 
 // ---- tables
@@ -129,9 +128,7 @@ static void add_curve(recipe *r, int panel, const recipe_source *s)
     owned_figure_add(r->plot, panel,
                      (figure_series){s->name, label_of(r, s), s->columns[0],
                                      s->columns[1], s->count, .colour = colour_of(index),
-                                     .marker = s->count > 80
-                                                   ? MARKER_NONE
-                                                   : MARKER_CIRCLE + index % 4});
+                                     .marker = marker_of(s->count, (size_t)index)});
 }
 
 static void add_map(recipe *r, int panel, const recipe_source *s)
@@ -168,15 +165,15 @@ static void add_signal(recipe *r, int panel, const recipe_source *s, int index,
     }
 
     const trace_run run = {&s->run->scenario, &s->run->result, .points = data};
-    const int slot = data ? 6 : colour_of(p->series_count);
+    const int colour_of_run = colour_of(p->series_count);
     figure_series *out =
         owned_figure_add(r->plot, panel, trace_series(&run, index, r->plot));
 
     // several signals of one run are told by their symbols, several runs by their labels
     const char *label = label_of(r, s);
     if (signals > 1) {
-        g_autofree char *symbol =
-            trace_symbol(data ? first_scenario(r) : run.scenario, index);
+        const scenario *bodies = data ? first_scenario(r) : run.scenario;
+        g_autofree char *symbol = trace_symbol(bodies, index);
         if (r->source_count > 1) {
             label = owned_figure_printf(r->plot, "%s %s", label, symbol);
         } else {
@@ -188,12 +185,11 @@ static void add_signal(recipe *r, int panel, const recipe_source *s, int index,
     out->label = label;
     out->name = owned_figure_printf(r->plot, "%s %s", s->name, signal_table[index].name);
     out->style = LINE_SOLID;
-    out->colour = slot;
-    out->no_line = data;
+    out->colour = colour_of_run;
     if (data) {
+        out->colour = 6;
+        out->no_line = true;
         out->marker = MARKER_CIRCLE;
-    } else {
-        out->marker = MARKER_NONE;
     }
 }
 
@@ -209,18 +205,12 @@ static void add_difference(recipe *r, int panel)
                                           signal_index(from->signals[0]), r->plot));
 
     // points where data are compared, else a line
-    const bool data = of->kind == SOURCE_DATA;
     s->name = "difference";
-    if (data) {
+    s->colour = 7;
+    if (of->kind == SOURCE_DATA) {
         s->colour = 6;
-    } else {
-        s->colour = 7;
-    }
-    s->no_line = data;
-    if (data) {
+        s->no_line = true;
         s->marker = MARKER_CIRCLE;
-    } else {
-        s->marker = MARKER_NONE;
     }
 }
 
@@ -230,38 +220,38 @@ static void add_difference(recipe *r, int panel)
 // has a word of its own.
 static void describe_axis(recipe *r, const recipe_panel *from, figure_axis *y)
 {
-    figure_axis told = {0};
+    figure_axis usual = {0};
     if (from->signal_count > 0) {
         const int index = signal_index(from->signals[0]);
         const signal_info *signal = &signal_table[index];
         g_autofree char *symbol = trace_symbol(first_scenario(r), index);
-        told.name = signal->name;
-        told.unit = signal->unit;
+        usual.name = signal->name;
+        usual.unit = signal->unit;
         if (from->compared) {
-            told.label = owned_figure_printf(r->plot, "Difference of %s", symbol);
+            usual.label = owned_figure_printf(r->plot, "Difference of %s", symbol);
         } else if (from->signal_count > 1) {
-            told.label = signal->quantity;
+            usual.label = signal->quantity;
         } else {
-            told.label = owned_figure_printf(r->plot, "%s %s", signal->quantity, symbol);
+            usual.label = owned_figure_printf(r->plot, "%s %s", signal->quantity, symbol);
         }
         if (from->signal_count == 1) {
-            y->symbol =
-                owned_figure_printf(r->plot, "%s%s", from->compared ? "Δ" : "", symbol);
+            const char *delta = from->compared ? "Δ" : "";
+            y->symbol = owned_figure_printf(r->plot, "%s%s", delta, symbol);
         }
     } else if (from->source_count > 0) {
         const recipe_source *table = &r->sources[from->sources[0]];
-        told = column_axis(r, table->y);
+        usual = column_axis(r, table->y);
         if (table->z != NULL) {
             y->room = 0;
         } else {
             y->room = 0.05;
         }
     }
-    y->name = told.name;
-    y->unit = told.unit;
-    if (y->label == NULL) {
-        y->label = told.label;
-    }
+
+    // the recipe's own label comes first
+    y->name = usual.name;
+    y->unit = usual.unit;
+    y->label = text_or(y->label, usual.label);
     if (from->logarithmic) {
         y->scale = SCALE_LOGARITHMIC;
     } else {
@@ -312,22 +302,20 @@ static void describe_panel(recipe *r, int panel)
 static void describe_horizontal(recipe *r, figure_axis *x)
 {
     const recipe_source *first = &r->sources[0];
-    figure_axis told = {.name = "time", .label = "Time <i>t</i>", .unit = "s"};
+    figure_axis usual = {.name = "time", .label = "Time <i>t</i>", .unit = "s"};
     if (first->kind == SOURCE_TABLE) {
-        told = column_axis(r, first->x);
+        usual = column_axis(r, first->x);
         if (first->z != NULL) {
             x->room = 0;
         } else {
             x->room = 0.03;
         }
     }
-    x->name = told.name;
-    if (x->label == NULL) {
-        x->label = told.label;
-    }
-    if (x->unit == NULL) {
-        x->unit = told.unit;
-    }
+
+    // the recipe's own label and unit come first
+    x->name = usual.name;
+    x->label = text_or(x->label, usual.label);
+    x->unit = text_or(x->unit, usual.unit);
     if (r->logarithmic) {
         x->scale = SCALE_LOGARITHMIC;
     } else {
@@ -352,7 +340,8 @@ static void describe(recipe *r, const figure_options *o)
     for (int i = 0; i < r->source_count; i++) {
         if (r->sources[i].kind == SOURCE_RUN) {
             g_autofree char *line = parameters_line(&r->sources[i].run->scenario);
-            text_append(values, "%s%s", values->len > 0 ? "; " : "", line);
+            const char *separator = values->len > 0 ? "; " : "";
+            text_append(values, "%s%s", separator, line);
         }
     }
     shown->parameters = owned_figure_keep(r->plot, g_string_free(values, FALSE));

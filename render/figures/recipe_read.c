@@ -48,19 +48,21 @@ static const char *heading_of(recipe_context *c, const multiples *m, int index)
 {
     const parameter_info *info = &parameter_table[parameter_find(m->parameter)];
     const char *value = m->value[index], *rest = value + strspn(value, "+-.0123456789eE");
-    g_autofree char *unit = text_unit(rest[0] == '\0' ? info->unit : "");
     g_autofree char *escaped = text_escape(value);
+    if (rest[0] != '\0') {
+        return recipe_keep(c, g_steal_pointer(&escaped));
+    }
+    if (info->unit[0] != '\0') {
+        g_autofree char *unit = text_unit(info->unit);
+        return recipe_keep(c, text_printf("%s\u2009%s", escaped, unit));
+    }
 
     // the name of the parameter says what a number without any unit is
-    const char *dot = strrchr(info->path, '.');
-    bool bare = rest[0] == '\0' && unit[0] == '\0';
-    char *heading;
-    if (bare) {
-        heading = text_printf("%s = %s", dot != NULL ? dot + 1 : info->path, escaped);
-    } else {
-        heading = text_printf("%s%s%s", escaped, unit[0] != '\0' ? "\u2009" : "", unit);
+    const char *name = info->path, *dot = strrchr(name, '.');
+    if (dot != NULL) {
+        name = dot + 1;
     }
-    return recipe_keep(c, heading);
+    return recipe_keep(c, text_printf("%s = %s", name, escaped));
 }
 
 // A run with the parameter at a value; false after a fault.
@@ -229,8 +231,9 @@ TAKE(take_from, panel)
 TAKE(take_difference, panel)
 {
     recipe_panel *p = into;
-    const tree_node *first = node->kind == TREE_LIST ? node->first : NULL;
-    if (first == NULL || first->next == NULL || first->next->next != NULL) {
+    const tree_node *first = node->first;
+    if (node->kind != TREE_LIST || first == NULL || first->next == NULL ||
+        first->next->next != NULL) {
         report_node(&c->reader, node,
                     "difference is %s, expected two names: [this, less that]",
                     node_kind_name(node));
@@ -240,7 +243,10 @@ TAKE(take_difference, panel)
     p->of = recipe_find_source(c, first);
     p->less = recipe_find_source(c, first->next);
     for (const tree_node *item = first; item != NULL; item = item->next) {
-        const int index = item == first ? p->of : p->less;
+        int index = p->less;
+        if (item == first) {
+            index = p->of;
+        }
         if (index >= 0 && c->recipe->sources[index].kind == SOURCE_TABLE) {
             report_node(&c->reader, item, "'%s' is a table, expected a run or data",
                         item->text);

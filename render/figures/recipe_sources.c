@@ -50,11 +50,14 @@ const tree_node *recipe_first(recipe_context *c, const tree_node *list, const ch
 static void read_number(recipe_context *c, const tree_node *node, const recipe_key *key,
                         double *value)
 {
-    const char *unit = key->unit != NULL ? key->unit : "";
-    if (reader_quantity(&c->reader, node, key->key, unit, value) &&
-        key->expected != NULL &&
-        !(*value >= key->low && *value <= key->high &&
-          (!key->whole || *value == (int)*value))) {
+    if (!reader_quantity(&c->reader, node, key->key, text_or(key->unit, ""), value) ||
+        key->expected == NULL) {
+        return;
+    }
+
+    // within its range, and without decimals where it counts something
+    const bool within = *value >= key->low && *value <= key->high;
+    if (!within || (key->whole && *value != (int)*value)) {
         report_node(&c->reader, node, "%s is %g, expected %s", key->key, *value,
                     key->expected);
     }
@@ -119,6 +122,21 @@ static void take_value(recipe_context *c, const tree_node *node, const recipe_ke
     }
 }
 
+// Reports a key that the form does not have, with the most similar one.
+static void check_key(recipe_context *c, const tree_node *node, const recipe_form *form,
+                      const char *key)
+{
+    nearest_word near = nearest_begin(key);
+    for (int i = 0; form->keys[i].key != NULL; i++) {
+        nearest_try(&near, form->keys[i].key);
+        if (strcmp(form->keys[i].key, key) == 0) {
+            return;
+        }
+    }
+    report_node(&c->reader, node, "unknown key '%.60s' in %s, did you mean '%s'?", key,
+                form->what, text_or(near.best, form->keys[0].key));
+}
+
 void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form,
                 void *into)
 {
@@ -127,19 +145,11 @@ void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form
         return;
     }
 
-    // what is not known, with the most similar key
+    // what is not known
     for (const tree_node *child = map->first; child != NULL; child = child->next) {
         const char *key = reader_key(&c->reader, map, child);
-        nearest_word near = key != NULL ? nearest_begin(key) : (nearest_word){0};
-        bool found = key == NULL;
-        for (int i = 0; !found && keys[i].key != NULL; i++) {
-            nearest_try(&near, keys[i].key);
-            found = strcmp(keys[i].key, key) == 0;
-        }
-        if (!found) {
-            report_node(&c->reader, child->key,
-                        "unknown key '%.60s' in %s, did you mean '%s'?", key, form->what,
-                        near.best != NULL ? near.best : keys[0].key);
+        if (key != NULL) {
+            check_key(c, child->key, form, key);
         }
     }
 
@@ -166,16 +176,16 @@ const tree_node *recipe_child(const tree_node *map, const char *key)
 
 bool recipe_knows_parameter(recipe_context *c, const tree_node *node, const char *path)
 {
-    bool known = parameter_find(path) >= 0;
+    if (parameter_find(path) >= 0) {
+        return true;
+    }
     nearest_word near = nearest_begin(path);
-    for (int i = 0; i < parameter_count && !known; i++) {
+    for (int i = 0; i < parameter_count; i++) {
         nearest_try(&near, parameter_table[i].path);
     }
-    if (!known) {
-        report_node(&c->reader, node, "there is no parameter '%.60s', did you mean '%s'?",
-                    path, near.best != NULL ? near.best : "motor.voltage");
-    }
-    return known;
+    report_node(&c->reader, node, "there is no parameter '%.60s', did you mean '%s'?",
+                path, text_or(near.best, "motor.voltage"));
+    return false;
 }
 
 TAKE(take_set, source)
@@ -213,13 +223,14 @@ TAKE(end_source, source)
 {
     recipe_source *s = into;
     s->at = (place){node->line, node->column};
-    const char *needed = s->kind == SOURCE_RUN ? s->scenario : s->file;
-
-    if (needed == NULL) {
-        report_node(&c->reader, node, "there is no '%s' here",
-                    s->kind == SOURCE_RUN ? "scenario" : "file");
+    const char *needed = s->file, *key = "file";
+    if (s->kind == SOURCE_RUN) {
+        needed = s->scenario;
+        key = "scenario";
     }
-
+    if (needed == NULL) {
+        report_node(&c->reader, node, "there is no '%s' here", key);
+    }
     if (s->kind == SOURCE_TABLE && (s->x == NULL || s->y == NULL)) {
         report_node(&c->reader, node,
                     "a table needs 'x' and 'y', the names of its columns");
@@ -228,19 +239,17 @@ TAKE(end_source, source)
     // a run is more than its scenario's name
     if (s->label == NULL && s->name == NULL && s->change_count > 0 && needed != NULL) {
         GString *label = g_string_new(needed);
+        const char *before = ", with ";
         for (int i = 0; i < s->change_count; i++) {
-            text_append(label, "%s%s", i == 0 ? ", with " : ", ", s->change[i]);
+            text_append(label, "%s%s", before, s->change[i]);
+            before = ", ";
         }
         s->label = recipe_keep(c, g_string_free(label, FALSE));
     }
 
     // a name that only it has
     if (s->name == NULL) {
-        if (needed != NULL) {
-            s->name = needed;
-        } else {
-            s->name = "";
-        }
+        s->name = text_or(needed, "");
     }
     for (const recipe_source *other = c->recipe->sources; other != s; other++) {
         if (strcmp(other->name, s->name) == 0) {
@@ -284,17 +293,26 @@ const recipe_form recipe_tables = {"a table",
 
 int recipe_find_source(recipe_context *c, const tree_node *node)
 {
-    nearest_word near = nearest_begin(node_is_scalar(node) ? node->text : "");
-    for (int i = 0; node_is_scalar(node) && i < c->recipe->source_count; i++) {
+    if (!node_is_scalar(node)) {
+        report_node(&c->reader, node, "no run, data or table is named ''");
+        return -1;
+    }
+    nearest_word near = nearest_begin(node->text);
+    for (int i = 0; i < c->recipe->source_count; i++) {
         nearest_try(&near, c->recipe->sources[i].name);
         if (strcmp(c->recipe->sources[i].name, node->text) == 0) {
             return i;
         }
     }
 
-    report_node(&c->reader, node, "no run, data or table is named '%.60s'%s%s%s",
-                node_is_scalar(node) ? node->text : "",
-                near.best ? ", did you mean '" : "", near.best ? near.best : "",
-                near.best ? "'?" : "");
+    // with the most similar one, where there is one
+    if (near.best == NULL) {
+        report_node(&c->reader, node, "no run, data or table is named '%.60s'",
+                    node->text);
+    } else {
+        report_node(&c->reader, node,
+                    "no run, data or table is named '%.60s', did you mean '%s'?",
+                    node->text, near.best);
+    }
     return -1;
 }

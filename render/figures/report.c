@@ -258,7 +258,7 @@ static status add_png(GString *html, const picture *p, const char *alternative, 
 // A member of plain text.
 static json_t *plain_json(const char *markup)
 {
-    g_autofree char *plain = text_plain(markup != NULL ? markup : "");
+    g_autofree char *plain = text_plain(text_or(markup, ""));
     return json_text(plain);
 }
 
@@ -275,7 +275,7 @@ static json_t *series_json(const figure_panel *panel)
                                   round(255 * c.blue)};
             json_add(all, json_of("ink:o dashed:b label:o", json_numbers(ink, 3),
                                   s->secondary || s->style != LINE_SOLID,
-                                  plain_json(s->label != NULL ? s->label : s->name)));
+                                  plain_json(text_or(s->label, s->name))));
         }
     }
     return all;
@@ -301,7 +301,7 @@ static void add_panels(GString *html, const figure *fig, const figure_report *se
     }
     char *json = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(9));
     loss_unless(json != NULL);
-    g_autofree char *escaped = g_markup_escape_text(json != NULL ? json : "", -1);
+    g_autofree char *escaped = g_markup_escape_text(text_or(json, ""), -1);
     text_append(html, " data-panels=\"%s\"", escaped);
     free(json);
     json_decref(all);

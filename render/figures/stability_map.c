@@ -300,8 +300,10 @@ static double printed_force(const newmark_map *m, int panel, double beta, double
     s.parameters.method.beta = beta;
     s.parameters.method.gamma = gamma;
     status code = run_scenario(&s, false, &result);
-    double force =
-        code == STATUS_OK ? result.summary.peak_force_N / m->peak : (double)INFINITY;
+    double force = (double)INFINITY;
+    if (code == STATUS_OK) {
+        force = result.summary.peak_force_N / m->peak;
+    }
     run_finish(&result);
     return force;
 }

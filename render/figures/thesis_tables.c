@@ -89,13 +89,15 @@ status table_motor(const figure_order *order, artwork *out, fault *f)
     // a parameter's description beside its row, or above it
     const page_look *look = &order->options->look;
     const bool above = look->width > 0 && look->width < DESCRIPTIONS_BESIDE;
-    table_page *t = new_table(order, columns, above ? 3 : 4);
+    const size_t beside = above ? 3 : 4;
+    table_page *t = new_table(order, columns, beside);
     for (size_t i = 0; i < G_N_ELEMENTS(constants); i++) {
         const int index = parameter_find(constants[i].path);
         const parameter_info *info = &parameter_table[index];
         g_autofree char *unit = text_unit(info->unit);
-        g_autofree char *used = text_printf("%.6g\u2009%s", parameter_get(&p, index),
-                                            strcmp(unit, "ohm") == 0 ? "Ω" : unit);
+        const char *sign = strcmp(unit, "ohm") == 0 ? "Ω" : unit;
+        g_autofree char *used =
+            text_printf("%.6g\u2009%s", parameter_get(&p, index), sign);
         g_autofree char *name = text_printf("%s: %s", info->path, info->description);
         if (above) {
             table_add_group(t, name);
@@ -115,14 +117,18 @@ status table_motor(const figure_order *order, artwork *out, fault *f)
 static void add_pair(table_page *t, const char *name, double beta, double gamma,
                      double fastest)
 {
-    bool always = 2 * beta >= gamma;
-    // a pair with a bound has a longest step, that of the fastest mode
-    double critical = always ? 0 : 1 / sqrt(gamma / 2 - beta);
     g_autofree char *pair = text_printf("%.4g, %.4g", beta, gamma);
+    const char *consistency = gamma > 0.5 ? "1" : "2";
+    if (2 * beta >= gamma) {
+        table_add_row(t, (const char *[]){name, pair, "none", "any", consistency});
+        return;
+    }
+
+    // a pair with a bound has a longest step, that of the fastest mode
+    const double critical = 1 / sqrt(gamma / 2 - beta);
     g_autofree char *bound = text_printf("%.4g", critical);
     g_autofree char *step = text_printf("%.3g\u2009ms", 1e3 * critical / fastest);
-    table_add_row(t, (const char *[]){name, pair, always ? "none" : bound,
-                                      always ? "any" : step, gamma > 0.5 ? "1" : "2"});
+    table_add_row(t, (const char *[]){name, pair, bound, step, consistency});
 }
 
 status table_stability(const figure_order *order, artwork *out, fault *f)
@@ -227,7 +233,7 @@ static char *cell_text(const char *format, double value)
         return g_strdup("–");
     }
     g_autofree char *text = text_printf(format, fabs(value));
-    return text_printf("%s%s", value < 0 ? "\u2212" : "", text);
+    return text_printf("%s%s", text_sign(value), text);
 }
 
 // A row of four values, each times `scale`.
@@ -278,12 +284,17 @@ status table_predictions(const figure_order *order, artwork *out, fault *f)
             computed_row(all, table, "printed", quantities[q].quantity);
         const table_row *corrected =
             computed_row(all, table, "corrected", quantities[q].quantity);
-        bool delay = strncmp(quantities[q].quantity, "delay", 5) == 0;
-        double scale = delay ? 1e3 : 1;
-        const char *format = delay ? "%.1f" : "%.2f";
 
+        // forces in newtons, delays in milliseconds, which the thesis rounds
+        double scale = 1;
+        const char *format = "%.2f", *printed_format = "%.2f";
+        if (strncmp(quantities[q].quantity, "delay", 5) == 0) {
+            scale = 1e3;
+            format = "%.1f";
+            printed_format = "%.0f";
+        }
         table_add_group(t, quantities[q].label);
-        add_values(t, "thesis", printed->printed, scale, delay ? "%.0f" : "%.2f");
+        add_values(t, "thesis", printed->printed, scale, printed_format);
         add_model(t, printed, scale, format);
         add_model(t, corrected, scale, format);
     }

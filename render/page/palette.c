@@ -103,24 +103,20 @@ void set_line_style(cairo_t *cr, line_style style, double width)
     assert(width > 0);
     static const double dashed[] = {5, 2.2}, dotted[] = {1.2, 1.8},
                         dash_dot[] = {7, 2, 1.4, 2};
-    double scaled[4];
+    double scaled[4] = {0};
 
     // lengths are multiples of the line's width
-    const double *pattern;
+    const double *pattern = NULL;
+    int count = 0;
     if (style == LINE_DASHED) {
         pattern = dashed;
+        count = 2;
     } else if (style == LINE_DOTTED) {
         pattern = dotted;
-    } else {
+        count = 2;
+    } else if (style == LINE_DASH_DOT) {
         pattern = dash_dot;
-    }
-    int count = 0;
-    if (style != LINE_SOLID) {
-        if (style == LINE_DASH_DOT) {
-            count = 4;
-        } else {
-            count = 2;
-        }
+        count = 4;
     }
     for (int i = 0; i < count; i++) {
         scaled[i] = pattern[i] * width;
@@ -129,6 +125,8 @@ void set_line_style(cairo_t *cr, line_style style, double width)
     cairo_set_dash(cr, scaled, count, 0);
     cairo_set_line_width(cr, width);
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
-    cairo_set_line_cap(cr,
-                       style == LINE_SOLID ? CAIRO_LINE_CAP_ROUND : CAIRO_LINE_CAP_BUTT);
+    cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
+    if (style == LINE_SOLID) {
+        cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+    }
 }

@@ -61,12 +61,18 @@ static void convert_row(const unsigned char *from, unsigned char *to, int width,
     for (int i = 0; i < width; i++) {
         uint32_t pixel;
         memcpy(&pixel, from + 4 * i, sizeof pixel);
-        uint32_t a = alpha ? pixel >> 24 : 255;
+        uint32_t a = 255;
+        if (alpha) {
+            a = pixel >> 24;
+        }
 
         // rounded; where nothing shows there is nothing to divide by
         for (int k = 0; k < 3; k++) {
             uint32_t part = pixel >> (16 - 8 * k) & 255;
-            *to++ = (unsigned char)(a == 0 || a == 255 ? part : (part * 255 + a / 2) / a);
+            if (a != 0 && a != 255) {
+                part = (part * 255 + a / 2) / a;
+            }
+            *to++ = (unsigned char)part;
         }
         if (alpha) {
             *to++ = (unsigned char)a;
@@ -100,7 +106,9 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi,
 
     // libpng reports through `own` and a long jump
     cairo_surface_flush(surface);
-    size_t width = (size_t)cairo_image_surface_get_width(surface);
+    const size_t width = (size_t)cairo_image_surface_get_width(surface);
+    const png_uint_32 height = (png_uint_32)cairo_image_surface_get_height(surface);
+    const int kind = has_alpha(surface) ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB;
     unsigned char *row = malloc(4 * width + 1);
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &own, fail, warn);
     png_infop info = png ? png_create_info_struct(png) : NULL;
@@ -114,11 +122,8 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi,
     if (setjmp(png_jmpbuf(png)) == 0) {
         png_uint_32 per_metre = (png_uint_32)lround(dpi / 0.0254);
         png_set_write_fn(png, stream, write_bytes, NULL);
-        png_set_IHDR(png, info, (png_uint_32)width,
-                     (png_uint_32)cairo_image_surface_get_height(surface), 8,
-                     has_alpha(surface) ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
-                     PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                     PNG_FILTER_TYPE_DEFAULT);
+        png_set_IHDR(png, info, (png_uint_32)width, height, 8, kind, PNG_INTERLACE_NONE,
+                     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         png_set_pHYs(png, info, per_metre, per_metre, PNG_RESOLUTION_METER);
         // flat colours and thin lines: filters would cost twice the time and make larger
         // files
@@ -286,7 +291,10 @@ static status paint_surface(cairo_surface_t *surface, const picture *p, bool fin
 
 status picture_write_png(const picture *p, FILE *stream, fault *f)
 {
-    double dpi = p->dpi != 0 ? p->dpi : DEFAULT_DPI;
+    double dpi = DEFAULT_DPI;
+    if (p->dpi != 0) {
+        dpi = p->dpi;
+    }
     FAULT_IF(!(dpi >= LEAST_DPI && dpi <= MOST_DPI), f, STATUS_BAD_ARGUMENT,
              "a PNG of %g dpi, expected %g to %g", dpi, LEAST_DPI, MOST_DPI);
     double pixels_across = round(p->width * dpi / 72),
@@ -297,10 +305,10 @@ status picture_write_png(const picture *p, FILE *stream, fault *f)
              "a PNG of %.0f x %.0f pixels, expected 1 to %g along each edge",
              pixels_across, pixels_down, MOST_PIXELS);
 
+    const cairo_format_t format =
+        p->transparent ? CAIRO_FORMAT_ARGB32 : CAIRO_FORMAT_RGB24;
     g_autoptr(cairo_surface_t) surface =
-        cairo_image_surface_create(p->transparent ? CAIRO_FORMAT_ARGB32
-                                                  : CAIRO_FORMAT_RGB24,
-                                   (int)pixels_across, (int)pixels_down);
+        cairo_image_surface_create(format, (int)pixels_across, (int)pixels_down);
     // the page ends exactly where the pixels do
     cairo_surface_set_device_scale(surface, pixels_across / p->width,
                                    pixels_down / p->height);

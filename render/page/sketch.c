@@ -241,7 +241,10 @@ static double direction_of(point from, point to)
 static void draw_arrow(const sketch *s, point from, point to)
 {
     double length = length_of(from, to), head = fmin(HEAD_LENGTH, length);
-    double share = length > 0 ? 1 - 0.8 * head / length : 0;
+    double share = 0;
+    if (length > 0) {
+        share = 1 - 0.8 * head / length;
+    }
     picture_line(s->cr, from.x, from.y, from.x + share * (to.x - from.x),
                  from.y + share * (to.y - from.y));
     draw_head(s, to, direction_of(from, to), head);
@@ -272,9 +275,13 @@ void sketch_arc(const sketch *s, arc a, int slot)
 {
     assert(a.radius > 0);
     const point c = a.centre;
-    double turn = a.to > a.from ? 1 : -1;
+    const double turn = a.to > a.from ? 1 : -1;
+
     // the head takes the arc's last bit
-    double bit = a.head ? turn * fmin(0.8 * ARC_HEAD / a.radius, fabs(a.to - a.from)) : 0;
+    double bit = 0;
+    if (a.head) {
+        bit = turn * fmin(0.8 * ARC_HEAD / a.radius, fabs(a.to - a.from));
+    }
 
     // cairo's y points down, so that its angles run the other way
     set_pen(s, LINE_WIDTH, slot);

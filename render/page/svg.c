@@ -37,7 +37,7 @@ static gboolean rename_id(const GMatchInfo *match, GString *out, gpointer names)
     g_autofree char *before = g_match_info_fetch(match, 1),
                     *id = g_match_info_fetch(match, 2);
     const char *name = g_hash_table_lookup(names, id);
-    text_append(out, "%s%s", before, name != NULL ? name : id);
+    text_append(out, "%s%s", before, text_or(name, id));
     return FALSE;
 }
 
@@ -97,6 +97,25 @@ static text_pattern verbose = {"rgb\\(" PER_CENT ", *" PER_CENT ", *" PER_CENT
 // How the tag of a line begins.
 #define LINE_TAG "<path style=\"fill:none;"
 
+// A number without zeros at its end, and without a sign of zero.
+static void append_number(GString *out, double value, int decimals)
+{
+    g_autofree char *text = text_printf("%.*f", decimals, value);
+    size_t length = strlen(text);
+    while (text[length - 1] == '0') {
+        length--;
+    }
+    if (text[length - 1] == '.') {
+        length--;
+    }
+    text[length] = '\0';
+    if (strcmp(text, "-0") == 0) {
+        g_string_append(out, "0");
+    } else {
+        g_string_append(out, text);
+    }
+}
+
 static gboolean shorten(const GMatchInfo *match, GString *out, gpointer of_lines)
 {
     const int group = g_match_info_get_match_count(match) - 1;
@@ -109,15 +128,12 @@ static gboolean shorten(const GMatchInfo *match, GString *out, gpointer of_lines
         }
     } else if (group > 3) {
         // the places of a path are those after a space
-        g_autofree char *number = g_match_info_fetch(match, group), *text = NULL;
-        text = text_printf("%.*f", group == 4 && *(bool *)of_lines ? 1 : 2,
-                           decimal_parse(number, NULL));
-        size_t length = strlen(text);
-        while (text[length - 1] == '0') {
-            length--;
+        int decimals = 2;
+        if (group == 4 && *(bool *)of_lines) {
+            decimals = 1;
         }
-        text[text[length - 1] == '.' ? length - 1 : length] = '\0';
-        g_string_append(out, strcmp(text, "-0") == 0 ? "0" : text);
+        g_autofree char *number = g_match_info_fetch(match, group);
+        append_number(out, decimal_parse(number, NULL), decimals);
     }
     return FALSE;
 }
@@ -178,13 +194,12 @@ static gboolean compact(const GMatchInfo *match, GString *out, gpointer context)
 
 char *svg_for_page(const char *svg, const char *prefix, GHashTable *known)
 {
-    const char *root = strstr(svg, "<svg");
-    g_autofree char *own = svg_renumber_ids(root ? root : svg, prefix);
+    const char *root = text_or(strstr(svg, "<svg"), svg);
+    g_autofree char *own = svg_renumber_ids(root, prefix);
 
     // the page that holds the picture says what it is
-    char *from = strstr(own, "<metadata>"),
-         *to = from ? strstr(from, "</metadata>") : NULL;
-    if (to != NULL) {
+    char *from = strstr(own, "<metadata>"), *to = strstr(own, "</metadata>");
+    if (from != NULL && to != NULL) {
         to += strlen("</metadata>");
         memmove(from, to, strlen(to) + 1);
     }

@@ -127,9 +127,10 @@ static void choose_columns(PangoContext *context, const table_page *t,
         double more = fmax(0, room * t->columns[i].share / sum - least[i]);
         if (need > room) {
             widths[i] = room * least[i] / need;
+        } else if (asked > 0) {
+            widths[i] = least[i] + spare * more / asked;
         } else {
-            widths[i] =
-                least[i] + (asked > 0 ? spare * more / asked : spare / t->column_count);
+            widths[i] = least[i] + spare / t->column_count;
         }
     }
 }
@@ -140,6 +141,15 @@ static double text_height(const table_layout *l, const char *markup, double widt
     text_block t = cell_block(&l->frame, markup, bold);
     t.width = width - 2 * CELL_SPACE;
     return text_measure(l->context, &t).height;
+}
+
+// Space over the cells of a row, and under them.
+static double space_over(int row)
+{
+    if (row == HEADING) {
+        return CELL_SPACE;
+    }
+    return CELL_SPACE / 2;
 }
 
 static double row_height(const table_layout *l, const table_page *t, int row)
@@ -154,7 +164,7 @@ static double row_height(const table_layout *l, const table_page *t, int row)
         const char *text = cell_at(t, row, i);
         most = fmax(most, text_height(l, text, l->widths[i], row == HEADING));
     }
-    return most + (row == HEADING ? 2 : 1) * CELL_SPACE;
+    return most + 2 * space_over(row);
 }
 
 static void lay_out(table_layout *l, const table_page *t, PangoContext *context)
@@ -217,8 +227,7 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
                            &(text_block){cell_at(t, row, 0), CELL_SIZE, .bold = true,
                                          .width = s.right - s.left - 2 * CELL_SPACE});
         } else {
-            draw_cells(&s, &l, t, row,
-                       y + (row == HEADING ? CELL_SPACE : CELL_SPACE / 2));
+            draw_cells(&s, &l, t, row, y + space_over(row));
         }
         y += height;
         if (row == HEADING) {
@@ -267,9 +276,11 @@ static void add_html_cells(GString *html, const table_page *t, int row)
     // Pango's <span> and <sub> are HTML's; its colours and sizes are not used in cells
     const char *tag = row == HEADING ? "th" : "td";
     for (int i = 0; i < t->column_count; i++) {
-        text_append(html, "<%s%s>%s</%s>", tag,
-                    t->columns[i].align == TEXT_LEFT ? "" : " class=\"number\"",
-                    cell_at(t, row, i), tag);
+        const char *class = "";
+        if (t->columns[i].align != TEXT_LEFT) {
+            class = " class=\"number\"";
+        }
+        text_append(html, "<%s%s>%s</%s>", tag, class, cell_at(t, row, i), tag);
     }
 }
 

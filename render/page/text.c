@@ -103,10 +103,11 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     page_libraries++;
     PangoLayout *layout = pango_layout_new(context);
     PangoFontDescription *font = pango_font_description_new();
-    pango_font_description_set_family(font, t->family != NULL ? t->family : TEXT_FAMILY);
+    pango_font_description_set_family(font, text_or(t->family, TEXT_FAMILY));
     pango_font_description_set_size(font, (int)(t->size * PANGO_SCALE));
-    pango_font_description_set_weight(font,
-                                      t->bold ? PANGO_WEIGHT_BOLD : PANGO_WEIGHT_NORMAL);
+    if (t->bold) {
+        pango_font_description_set_weight(font, PANGO_WEIGHT_BOLD);
+    }
     pango_layout_set_font_description(layout, font);
     pango_font_description_free(font);
 

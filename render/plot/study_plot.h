@@ -52,6 +52,10 @@ owned_figure *sweep_figure_create(const sweep_picture *p);
 // The radius of markers of so many points [pt].
 double marker_radius(size_t points);
 
+// The marker of the points of curve number `index` of a panel; none where a line has so
+// many points that they could not be told apart.
+marker_kind marker_of(size_t points, size_t index);
+
 // An axis with a name, its label the beginning of a description (NULL: the name); name
 // and unit are borrowed.
 figure_axis described_axis(owned_figure *o, const char *name, const char *description,

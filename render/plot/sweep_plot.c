@@ -39,6 +39,14 @@ double marker_radius(size_t points)
     return 2.4;
 }
 
+marker_kind marker_of(size_t points, size_t index)
+{
+    if (points > MOST_MARKERS) {
+        return MARKER_NONE;
+    }
+    return MARKER_CIRCLE + index % 4;
+}
+
 figure_axis described_axis(owned_figure *o, const char *name, const char *description,
                            const char *unit)
 {
@@ -221,15 +229,6 @@ static double *run_places(owned_figure *o, const sweep *from, const varied *v, i
 }
 
 // ---- layers
-
-// The marker of the points of curve number `index`; a line of many points needs none.
-static marker_kind marker_of(size_t points, size_t index)
-{
-    if (points > MOST_MARKERS) {
-        return MARKER_NONE;
-    }
-    return MARKER_CIRCLE + index % 4;
-}
 
 // One parameter: a curve; dots alone where nothing lies between the points.
 static void describe_line(owned_figure *o, const sweep_picture *p, const varied *v)
