@@ -112,4 +112,12 @@ tuned() {
 tuned arm.yaml --set wall.restitution=0.97 --vary wall.restitution=0.95:1 --minimise impacts
 tuned compare/observer --set belief.links=5 --vary belief.links=2:9 --minimise settling_time_s
 
+# a name of a file that cannot be a title makes a scenario that can be read again
+for name in $'tab\there.yaml' $'line\nhere.yaml'; do
+    echo 'motor: {voltage: 1}' >"$name"
+    expect 0 tune "$name" --vary motor.voltage=1:2 --minimise peak_force_N --runs 2 -o again.yaml
+    expect 0 check again.yaml
+    rm again.yaml
+done
+
 nothing_failed

@@ -6,6 +6,13 @@
 #include "src/base/words.h"
 #include "src/tables/signals.h"
 
+// Whether a control character of UTF-8 begins there.
+static bool is_control(const char *at)
+{
+    const unsigned char c = (unsigned char)at[0];
+    return c < 0x20 || c == 0x7f || (c == 0xc2 && (unsigned char)at[1] < 0xa0);
+}
+
 // Copies prose; only the description may have several lines. NULL after a fault.
 static char *parse_prose(reader *r, const tree_node *node, const char *what,
                          bool many_lines)
@@ -19,10 +26,8 @@ static char *parse_prose(reader *r, const tree_node *node, const char *what,
 
     // control characters are not allowed
     for (size_t i = 0; i < length; i++) {
-        unsigned char c = (unsigned char)node->text[i];
-        bool control = c < 0x20 || c == 0x7f ||
-                       (c == 0xc2 && (unsigned char)node->text[i + 1] < 0xa0);
-        if (control && !(many_lines && (c == '\n' || c == '\t'))) {
+        const char c = node->text[i];
+        if (is_control(node->text + i) && !(many_lines && (c == '\n' || c == '\t'))) {
             report_node(r, node, "%s holds %s, expected %s", what,
                         c == '\n' ? "several lines" : "a control character",
                         many_lines ? "text" : "one line of text");
@@ -188,9 +193,12 @@ static void complete(reader *r, const char *name)
     s->file = strdup(r->path);
 
     // the name stands in for a title, if it can
-    const char *title = strlen(called) <= SCENARIO_TITLE ? called : "untitled";
+    bool can = strlen(called) <= SCENARIO_TITLE;
+    for (const char *c = called; *c != '\0'; c++) {
+        can = can && !is_control(c);
+    }
     if (s->title == NULL) {
-        s->title = strdup(title);
+        s->title = strdup(can ? called : "untitled");
     }
     if (s->description == NULL) {
         s->description = strdup("");
