@@ -77,7 +77,7 @@ done
 mkfifo pipe
 for file in pipe /dev/zero; do
     endless() {
-        timeout 20 "$program" "$@" >out 2>err </dev/null
+        timeout -k 1 20 "$program" "$@" >out 2>err </dev/null
         [ $? = 2 ] || fail "impactlab $*: not refused"
         says err "'$file' is a device or a pipe"
     }
@@ -90,11 +90,38 @@ for file in pipe /dev/zero; do
     endless robust compare/hybrid --over "$file" --runs 1
     endless plot "$file"
     endless merge "$file" -o none.sqlite
+    endless sweep arm.yaml --vary motor.voltage=1:2:2 --db "$file"
+    endless compare arm.yaml arm.yaml --overlay "$file:force@0.1"
+    endless lab arm.yaml --script "$file"
+    endless bench --only tables_s --baseline "$file"
+    timeout -k 1 20 "$program" run arm.yaml --set control.law=plugin --allow-code \
+        --set "control.plugin=$(readlink -f "$file")" >out 2>err
+    [ $? = 1 ] && says err "is a device or a pipe"
     for command in session\ open data open; do
         timeout 20 "$program" lab arm.yaml --size 100x20 --keys ":$command $file<Enter>" >out 2>err
         [ $? = 1 ] && says err "'$file' is a device or a pipe"
     done
 done
+
+# an overlay without an end is refused before the run, not behind it
+timeout -k 1 20 "$program" run arm.yaml --overlay pipe --plot arm.png >out 2>err
+[ ! -s out ] || fail "the run was computed before its overlay was refused"
+
+# a set that ships is found by its name from any folder, as a scenario is; a file comes first
+expect 0 robust compare/hybrid --over sets/robust.set --runs 2 --json shipped.json
+expect 0 robust compare/hybrid --runs 2 --json usual.json
+for file in shipped usual; do
+    grep -v '_time_s\|"command"' $file.json >$file.kept
+done
+cmp -s shipped.kept usual.kept || fail "--over sets/robust.set is not the set that ships"
+expect 0 tune compare/hybrid --over sets/robust.set --vary control.kv=1:2 --runs 4 \
+    --minimise overshoot_nine_tenths_percent
+mkdir sets
+echo 'belief.no_such=1:2' >sets/robust.set
+expect 2 robust compare/hybrid --over sets/robust.set --runs 2
+says err "no_such"
+expect 2 robust compare/hybrid --over sets/none.set --runs 2
+says err "'sets/none.set' cannot be opened"
 
 # rows that no memory holds are refused before the first
 timeout 20 "$program" run arm.yaml --set run.duration=1e5 --set method.step=1e-5 --csv many.csv >out 2>err

@@ -562,10 +562,21 @@ void whole_file_abandon(whole_file *w)
 
 // --- reading ---------------------------------------------------------------------------
 
+status whole_file_is_plain(const char *path, fault *why)
+{
+    struct stat about;
+    if (stat(path, &about) == 0 && !S_ISREG(about.st_mode) && !S_ISDIR(about.st_mode)) {
+        return fault_set(why, STATUS_BAD_ARGUMENT,
+                         "is a device or a pipe, expected a plain file");
+    }
+    return STATUS_OK;
+}
+
 FILE *whole_file_open_to_read(const char *path, fault *why)
 {
-    // without waiting for the other end of a pipe
-    if (whole_file_keeps(path, why) != STATUS_OK) {
+    // opening a pipe would wait for its other end
+    if (whole_file_keeps(path, why) != STATUS_OK ||
+        whole_file_is_plain(path, why) != STATUS_OK) {
         return NULL;
     }
     FILE *stream = NULL;
@@ -575,9 +586,6 @@ FILE *whole_file_open_to_read(const char *path, fault *why)
         fault_set(why, STATUS_CANNOT_READ, "cannot be opened (%s)", strerror(errno));
     } else if (fstat(file, &about) != 0 || S_ISDIR(about.st_mode)) {
         fault_set(why, STATUS_CANNOT_READ, "cannot be read (%s)", strerror(EISDIR));
-    } else if (!S_ISREG(about.st_mode)) {
-        fault_set(why, STATUS_BAD_ARGUMENT,
-                  "is a device or a pipe, expected a plain file");
     } else if ((stream = fdopen(file, "r")) == NULL) {
         fault_no_memory(why);
     }

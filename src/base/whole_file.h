@@ -65,6 +65,11 @@ void whole_file_forget_results(void);
 // name.
 status whole_file_keeps(const char *path, fault *why) __attribute__((warn_unused_result));
 
+// STATUS_BAD_ARGUMENT if a device or a pipe stands there, which need have no end; `why`
+// goes on after its name.
+status whole_file_is_plain(const char *path, fault *why)
+    __attribute__((warn_unused_result));
+
 // Opens a plain file for reading: no device or pipe, which need have no end, and no place
 // of a result. NULL where that cannot be, and `why` goes on after its name:
 // STATUS_CANNOT_READ, STATUS_BAD_ARGUMENT, STATUS_NO_MEMORY.

@@ -72,8 +72,8 @@ static status explain_withheld(const rig *r, fault *f)
     const bool program = c->law == LAW_PROCESS;
     return fault_set_at(
         f, STATUS_NOT_ALLOWED, program ? "control.command" : "control.plugin",
-        "the scenario wants to %s '%.200s', which can do whatever you can: "
-        "if you trust it, allow that with --allow-code",
+        "the scenario wants to %s '%.200s', which can do whatever you can, with any "
+        "file: if you trust it and all that it loads, allow that with --allow-code",
         program ? "start the program" : "load the plug-in",
         program ? c->command : c->plugin);
 }

@@ -423,6 +423,19 @@ static bool may_be_listed(const char *name)
            !(strncmp(name, no_scenarios, skipped) == 0 && name[skipped] == '/');
 }
 
+char *scenario_file_or_folder_file(const char *name)
+{
+    if (is_file(name) || !may_be_listed(name)) {
+        return strdup(name);
+    }
+    char *path = find_file(name, "");
+    if (path == NULL || is_file(path)) {
+        return path;
+    }
+    free(path);
+    return strdup(name);
+}
+
 // The file of a scenario that the list has, on the heap; *path is NULL if it has none of
 // that name. It has none at all if a folder is not there; STATUS_NO_MEMORY is the only
 // failure.

@@ -225,6 +225,10 @@ status scenario_open(scenario *s, const char *name_or_file, fault_handler report
 // memory.
 char *scenario_folder_file(const char *name);
 
+// The same for a name or a path: a file of that name, else the one in the scenario
+// folders, else the name as it is.
+char *scenario_file_or_folder_file(const char *name);
+
 // The names of all scenarios in and below the scenario folder, sorted with numbers as
 // numbers (fig-3-2 before fig-3-10); free each and the array. STATUS_CANNOT_READ if there
 // is no folder. The folders are those of IMPACTLAB_SCENARIOS, separated by colons, of

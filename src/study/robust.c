@@ -136,10 +136,10 @@ static bool allocate_cases(robust_set *set)
 
 status robust_set_read(robust_set *set, const char *path, fault *f)
 {
-    *set = (robust_set){.file = strdup(path)};
+    *set = (robust_set){.file = scenario_file_or_folder_file(path)};
     status code;
     if (set->file != NULL) {
-        code = read_set_text(path, &set->text, f);
+        code = read_set_text(set->file, &set->text, f);
     } else {
         code = fault_no_memory(f);
     }

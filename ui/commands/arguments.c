@@ -323,17 +323,23 @@ static bool take_options(arguments *a, int argc, char **argv, int *exit_status)
 
 // --- the whole command line ------------------------------------------------------------
 
-// What is read must stay: FILE, or FILE.csv:COLUMN@SHIFT.
+// What is read must stay, and have an end: FILE, or FILE.csv:COLUMN@SHIFT.
 static int check_kept(const char *text)
 {
     char file[PATH_MAX];
     fault why = {0};
     snprintf(file, sizeof file, "%s", text);
-    status code = whole_file_keeps(file, &why);
+    status code = whole_file_is_plain(file, &why);
+    if (code == STATUS_OK) {
+        code = whole_file_keeps(file, &why);
+    }
     for (const char *mark = "@:"; *mark != '\0' && code == STATUS_OK; mark++) {
         char *end = strrchr(file, *mark);
         if (end != NULL) {
             *end = '\0';
+            code = whole_file_is_plain(file, &why);
+        }
+        if (end != NULL && code == STATUS_OK) {
             code = whole_file_keeps(file, &why);
         }
     }

@@ -14,7 +14,8 @@ const option_table set_options = SHARED_OPTIONS(
     OPTION(PARAMETERS, "set", "PATH=VALUE",
            "give a parameter another value (may be repeated)", PLACE(sets)),
     OPTION(FLAG, "allow-code", NULL,
-           "let the scenario start the program or load the plug-in that it names",
+           "let every scenario of the command start its program or load its plug-in, "
+           "which may do whatever you can",
            PLACE(allow_code)));
 const option_table vary_options = SHARED_OPTIONS(
     OPTION(PARAMETERS, "vary", "PATH=a:b:n",

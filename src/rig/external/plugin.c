@@ -5,6 +5,8 @@
 #include <dlfcn.h>
 #include <string.h>
 
+#include "src/base/whole_file.h"
+
 // The controller that a loaded object exports, NULL if it has none.
 static const controller *exported_controller(void *library)
 {
@@ -20,6 +22,12 @@ static const controller *exported_controller(void *library)
 
 status plugin_open(plugin *p, const char *file, fault *f)
 {
+    // a name without a slash is looked for by the system
+    fault why = {0};
+    *p = (plugin){0};
+    if (strchr(file, '/') != NULL && whole_file_is_plain(file, &why) != STATUS_OK) {
+        return fault_set(f, STATUS_CANNOT_READ, "control.plugin = %s %s", file, why.text);
+    }
     *p = (plugin){.library = dlopen(file, RTLD_NOW | RTLD_LOCAL)};
     FAULT_IF(p->library == NULL, f, STATUS_CANNOT_READ,
              "control.plugin = %s cannot be loaded: %.600s", file, dlerror());

@@ -239,6 +239,49 @@ static status check_row(const sweep_database *store, sqlite3_stmt *row,
     return STATUS_OK;
 }
 
+// STATUS_BAD_ARGUMENT unless the runs have these columns and no others: another build has
+// other results.
+static status check_names(const sweep_database *store, sqlite3_stmt *rows,
+                          const run_column *expected, int count, fault *f)
+{
+    const int found = sqlite3_column_count(rows);
+    const char *lacks = NULL, *beyond = NULL;
+
+    // what this build writes and the file lacks
+    for (int i = 0; i < count && lacks == NULL; i++) {
+        lacks = expected[i].told.key;
+        for (int k = 0; k < found && lacks != NULL; k++) {
+            const char *name = sqlite3_column_name(rows, k);
+            if (name == NULL) {
+                return fault_no_memory(f);
+            }
+            if (strcmp(name, lacks) == 0) {
+                lacks = NULL;
+            }
+        }
+    }
+
+    // what the file has and this build does not write
+    for (int k = 0; k < found && beyond == NULL; k++) {
+        beyond = sqlite3_column_name(rows, k);
+        for (int i = 0; i < count && beyond != NULL; i++) {
+            if (strcmp(beyond, expected[i].told.key) == 0) {
+                beyond = NULL;
+            }
+        }
+    }
+    if (lacks == NULL && beyond == NULL) {
+        return STATUS_OK;
+    }
+    return fault_set(f, STATUS_BAD_ARGUMENT,
+                     "'%.200s' was made by another build: its runs %s%.60s%s%s%.60s%s",
+                     store->path, lacks != NULL ? "lack " : "",
+                     lacks != NULL ? lacks : "",
+                     lacks != NULL && beyond != NULL ? " and " : "",
+                     beyond != NULL ? "have " : "", beyond != NULL ? beyond : "",
+                     beyond != NULL ? ", which this one does not know" : "");
+}
+
 status database_check_runs(sweep_database *store, unsigned char *seen, size_t *count,
                            fault *f)
 {
@@ -252,7 +295,11 @@ status database_check_runs(sweep_database *store, unsigned char *seen, size_t *c
         found = sqlite3_column_count(rows);
     }
 
-    // name by name, in their order, and none beyond
+    if (code == STATUS_OK) {
+        code = check_names(store, rows, expected, columns, f);
+    }
+
+    // in their order
     for (int i = 0; i < columns && code == STATUS_OK; i++) {
         const char *name = NULL;
         if (i < found) {
@@ -264,11 +311,6 @@ status database_check_runs(sweep_database *store, unsigned char *seen, size_t *c
                              store->path, name != NULL ? name : "nothing", i + 1,
                              expected[i].told.key);
         }
-    }
-    if (code == STATUS_OK && found != columns) {
-        code =
-            fault_set(f, STATUS_BAD_ARGUMENT, "'%s' has %d columns of runs, expected %d",
-                      store->path, found, columns);
     }
 
     // row by row

@@ -178,6 +178,10 @@ static status check_outside(sweep_database *store, fault *f)
 // as the database: closing it earlier would drop the database's own locks on the file.
 static status lock_file(sweep_database *store, fault *f)
 {
+    fault why = {0};
+    if (whole_file_is_plain(store->path, &why) != STATUS_OK) {
+        return whole_file_unread(store->path, &why, f);
+    }
     store->lock = open(store->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     FAULT_IF(store->lock < 0, f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s",
              store->path, strerror(errno));
