@@ -146,8 +146,12 @@ static void end_crashed(int number)
         "impactlab: crashed, for want of memory in a library or by a "
         "fault of its own; no half-written file is left\n";
     const bool in_libraries = page_in_libraries() || linear_is_loading();
-    ssize_t ignored = in_libraries ? write(STDERR_FILENO, drawing, sizeof drawing - 1)
-                                   : write(STDERR_FILENO, own, sizeof own - 1);
+    ssize_t ignored;
+    if (in_libraries) {
+        ignored = write(STDERR_FILENO, drawing, sizeof drawing - 1);
+    } else {
+        ignored = write(STDERR_FILENO, own, sizeof own - 1);
+    }
     (void)ignored;
     if (in_libraries) {
         whole_file_remove_unfinished();

@@ -128,10 +128,19 @@ int api_signal(const char *name, impactlab_error *error)
     for (int i = 0; i < signal_count; i++) {
         nearest_try(&near, signal_table[i].name);
     }
-    api_fail(error, STATUS_BAD_ARGUMENT, "there is no signal '%.200s'%s%s%s", name,
-             near.best ? ", did you mean '" : "", near.best ? near.best : "",
-             near.best ? "'?" : "");
+    api_fail_unknown(error, "signal", name, near.best);
     return -1;
+}
+
+int api_fail_unknown(impactlab_error *error, const char *kind, const char *name,
+                     const char *near)
+{
+    if (near == NULL) {
+        return api_fail(error, STATUS_BAD_ARGUMENT, "there is no %s '%.200s'", kind,
+                        name);
+    }
+    return api_fail(error, STATUS_BAD_ARGUMENT,
+                    "there is no %s '%.200s', did you mean '%s'?", kind, name, near);
 }
 
 int api_text(char **text, void (*write)(FILE *stream, const void *what), const void *what,

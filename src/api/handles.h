@@ -62,6 +62,11 @@ int api_axis(const char *path, sweep_axis *axis, impactlab_error *error);
 // Index of a signal, likewise.
 int api_signal(const char *name, impactlab_error *error);
 
+// Says that there is no such thing of that kind ("signal"), and the name that is `near`
+// (NULL: none is). Returns the code.
+int api_fail_unknown(impactlab_error *error, const char *kind, const char *name,
+                     const char *near);
+
 // A run of a copy of the scenario, of which nothing is computed yet; NULL, with an error,
 // without memory.
 impactlab_run *api_new_run(const scenario *s, impactlab_error *error);

@@ -112,8 +112,13 @@ int impactlab_loop_set_input(impactlab_loop *loop, const char *path, double valu
         return IMPACTLAB_BAD_ARGUMENT;
     }
     fault f = {.text = "", .path = ""};
-    if (text != number ? loop_set_text(loop->loop, index, text, &f)
-                       : loop_set_number(loop->loop, index, value, &f) != STATUS_OK) {
+    status code;
+    if (text != number) {
+        code = loop_set_text(loop->loop, index, text, &f);
+    } else {
+        code = loop_set_number(loop->loop, index, value, &f);
+    }
+    if (code != STATUS_OK) {
         return api_error(error, &f);
     }
     return api_done(error);

@@ -73,8 +73,10 @@ int impactlab_run_create_with(impactlab_run **run, const impactlab_scenario *han
     status code = run_scenario_with(&made->scenario, &options, &made->result);
     *run = made;
     fault f = {.text = "", .path = ""};
-    if (code == STATUS_OK ? code
-                          : summary_fault(&made->result.summary, &f) != STATUS_OK) {
+    if (code != STATUS_OK) {
+        code = summary_fault(&made->result.summary, &f);
+    }
+    if (code != STATUS_OK) {
         return api_error(error, &f);
     }
     return api_done(error);
@@ -113,10 +115,7 @@ int impactlab_run_quantity(const impactlab_run *run, const char *key, double *va
     API_NEEDS(error, run, key, value);
     int index = summary_find(key);
     if (index < 0) {
-        const char *near = summary_suggest(key);
-        return api_fail(error, STATUS_BAD_ARGUMENT, "there is no quantity '%.200s'%s%s%s",
-                        key, near ? ", did you mean '" : "", near ? near : "",
-                        near ? "'?" : "");
+        return api_fail_unknown(error, "quantity", key, summary_suggest(key));
     }
     *value = summary_value(&run->result.summary, index);
     return api_done(error);

@@ -16,18 +16,23 @@ static impactlab_parameter parameter_row(const parameter_info *info)
         [PARAMETER_BOOLEAN] = "boolean", [PARAMETER_CHOICE] = "choice",
         [PARAMETER_TEXT] = "text",       [PARAMETER_LIST] = "list"};
 
+    impactlab_parameter row = {.path = info->path,
+                               .type = types[info->type],
+                               .unit = info->unit,
+                               .choices = "",
+                               .description = info->description,
+                               .timed = info->timed};
+    if (info->type == PARAMETER_CHOICE) {
+        row.choices = info->choices;
+    }
+
     // a text has neither a number to begin with nor bounds
-    const bool text = parameter_is_text(info);
-    return (impactlab_parameter){.path = info->path,
-                                 .type = types[info->type],
-                                 .unit = info->unit,
-                                 .choices =
-                                     info->type == PARAMETER_CHOICE ? info->choices : "",
-                                 .description = info->description,
-                                 .initial = text ? 0 : info->default_corrected,
-                                 .minimum = text ? 0 : info->minimum,
-                                 .maximum = text ? 0 : info->maximum,
-                                 .timed = info->timed};
+    if (!parameter_is_text(info)) {
+        row.initial = info->default_corrected;
+        row.minimum = info->minimum;
+        row.maximum = info->maximum;
+    }
+    return row;
 }
 
 // The rows point into the tables of the program, which say the same under other names;

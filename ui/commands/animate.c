@@ -1,3 +1,4 @@
+// impactlab animate: films of one or more runs.
 #include "ui/commands/command.h"
 
 #include <unistd.h>

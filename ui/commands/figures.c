@@ -49,8 +49,8 @@ typedef struct asked_figure {
 // Figures in the order in which they were asked for.
 typedef struct figure_list {
     asked_figure *figures;
-    size_t *order;      // in which they are begun
-    size_t count, told; // told: number of those already reported
+    size_t *order;          // in which they are begun
+    size_t count, reported; // of all, and of those already reported
     size_t drawn;
     bool quiet;
     const char *folder, *formats;
@@ -69,8 +69,10 @@ static void draw_one(void *context, size_t i, void *scratch, void *result)
                             list->formats, tex.stream, &drawn->fault);
         drawn->tex = text_stream_close(&tex, NULL);
     }
-    *code = drawn->fault.code =
-        drawn->tex != NULL ? *code : fault_no_memory(&drawn->fault);
+    if (drawn->tex == NULL) {
+        *code = fault_no_memory(&drawn->fault);
+    }
+    drawn->fault.code = *code;
 }
 
 // Prints every figure whose predecessors have been printed.
@@ -91,11 +93,12 @@ static status take_one(void *context, size_t i, const void *result, fault *f)
         *f = taken->fault;
         return code;
     }
-    for (; list->told < list->count && list->figures[list->told].taken; list->told++) {
-        const asked_figure *told = &list->figures[list->told];
-        if (!list->quiet && told->fault.code == STATUS_OK) {
-            say("%-10s  %s/%s  %s\n", told->figure->id, list->folder, told->figure->file,
-                told->figure->caption);
+    for (; list->reported < list->count && list->figures[list->reported].taken;
+         list->reported++) {
+        const asked_figure *next = &list->figures[list->reported];
+        if (!list->quiet && next->fault.code == STATUS_OK) {
+            say("%-10s  %s/%s  %s\n", next->figure->id, list->folder, next->figure->file,
+                next->figure->caption);
         }
     }
     return STATUS_OK;
@@ -147,12 +150,20 @@ static status draw_and_write(figure_list *list, const arguments *a, fault *f)
 static int figures(const arguments *a)
 {
     fault f = {0};
-    size_t count =
-        a->operand_count > 0 ? (size_t)a->operand_count : (size_t)thesis_figure_count();
+    size_t count = (size_t)a->operand_count;
+    if (count == 0) {
+        count = (size_t)thesis_figure_count();
+    }
     figure_list list = {.count = count,
                         .quiet = !summary_wanted(a),
-                        .folder = a->output ? a->output : DEFAULT_FOLDER,
-                        .formats = a->format ? a->format : DEFAULT_FORMATS};
+                        .folder = DEFAULT_FOLDER,
+                        .formats = DEFAULT_FORMATS};
+    if (a->output != NULL) {
+        list.folder = a->output;
+    }
+    if (a->format != NULL) {
+        list.formats = a->format;
+    }
 
     int code = EXIT_DONE;
     int ended = check_ids(a);

@@ -183,9 +183,12 @@ static void print_name(FILE *stream, int source, int index, const search_entry *
     }
     if (source == SECTIONS) {
         fprintf(stream, "%s, \"%s\"\n", manual_section_at(index).page, e->title);
+    } else if (source == COMMANDS) {
+        fprintf(stream, "impactlab %s\n", e->title);
+    } else if (unit[0] != '\0') {
+        fprintf(stream, "%s %s [%s]\n", e->above, e->title, unit);
     } else {
-        fprintf(stream, "%s %s%s%s%s\n", source == COMMANDS ? "impactlab" : e->above,
-                e->title, unit[0] != '\0' ? " [" : "", unit, unit[0] != '\0' ? "]" : "");
+        fprintf(stream, "%s %s\n", e->above, e->title);
     }
 }
 

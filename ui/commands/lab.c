@@ -30,7 +30,10 @@ static const char first_scenario[] = "corrected/first-impact";
 static int run_script(explorer *ex, const char *path)
 {
     char line[LINE_TEXT];
-    FILE *stream = strcmp(path, "-") == 0 ? stdin : fopen(path, "r");
+    FILE *stream = stdin;
+    if (strcmp(path, "-") != 0) {
+        stream = fopen(path, "r");
+    }
     if (stream == NULL) {
         return complain("%s cannot be read: %s", path, strerror(errno));
     }
@@ -83,7 +86,10 @@ static int run_off_screen(explorer *ex, const arguments *a)
     } else {
         ex->state.size = (screen_size){120, 40};
     }
-    int code = a->script != NULL ? run_script(ex, a->script) : EXIT_DONE;
+    int code = EXIT_DONE;
+    if (a->script != NULL) {
+        code = run_script(ex, a->script);
+    }
     if (code == EXIT_DONE && a->keys != NULL && !explorer_keys(ex, a->keys, &f)) {
         code = complain_fault(&f);
     }

@@ -110,6 +110,22 @@ void print_cell(int width, const char *conversion, double value)
     printf(" %*s", width, text);
 }
 
+const char *blank_before(const char *unit)
+{
+    if (unit[0] != '\0') {
+        return " ";
+    }
+    return "";
+}
+
+const char *plural_ending(size_t count)
+{
+    if (count == 1) {
+        return "";
+    }
+    return "s";
+}
+
 void say_title(const scenario *s)
 {
     char title[SCENARIO_TITLED];
@@ -150,21 +166,27 @@ void print_indented(FILE *stream, const char *text, int bytes, int width, int in
         // a word goes to the next line if this one has no room for it
         int wide = 0;
         for (const char *c = word; *c != '\0'; c++) {
-            wide += ((unsigned char)*c & 0xC0) != 0x80; // of UTF-8
+            if (((unsigned char)*c & 0xC0) != 0x80) { // not a later byte of UTF-8
+                wide++;
+            }
         }
-        const bool fits = column > 0 && column + 1 + wide <= width;
-        if (!fits) {
-            fprintf(stream, "%s%*s", column > 0 ? "\n" : "", indent, "");
-        }
-        print_printable(stream, "%s%.*s", fits ? " " : "", length, text);
-        if (fits) {
-            column = column + 1 + wide;
+        if (column > 0 && column + 1 + wide <= width) {
+            fputc(' ', stream);
+            column++;
         } else {
-            column = indent + wide;
+            if (column > 0) {
+                fputc('\n', stream);
+            }
+            fprintf(stream, "%*s", indent, "");
+            column = indent;
         }
+        print_printable(stream, "%.*s", length, text);
+        column += wide;
         text += length;
     }
-    fprintf(stream, "%s", column > 0 ? "\n" : "");
+    if (column > 0) {
+        fputc('\n', stream);
+    }
 }
 
 bool next_paragraph(const char **text, paragraph *p)

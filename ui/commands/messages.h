@@ -24,6 +24,12 @@ void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 // of that width, "-" for NaN.
 void print_cell(int width, const char *conversion, double value);
 
+// What stands between a number and its unit: a blank, "" where the unit is "".
+const char *blank_before(const char *unit);
+
+// "s" behind the name of things that are not one, "" of one.
+const char *plural_ending(size_t count);
+
 // Prints "NAME: TITLE" and what was changed since the scenario was read, as a line.
 void say_title(const scenario *s);
 

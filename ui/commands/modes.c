@@ -1,3 +1,4 @@
+// impactlab modes: natural frequencies and shapes of the arm.
 #include "ui/commands/command.h"
 
 #include <math.h>

@@ -40,14 +40,17 @@ static int read_theme(const arguments *a, figure_theme *theme)
 
 int read_picture_options(const arguments *a, figure_options *o)
 {
-    const char *font = a->font != NULL ? a->font : "sans";
+    const char *font = a->font; // NULL: the usual one, without serifs
+    if (font != NULL && strcasecmp(font, "sans") == 0) {
+        font = NULL;
+    } else if (font != NULL && strcasecmp(font, "serif") == 0) {
+        font = SERIF;
+    }
     bool ranged = !isnan(a->from) || !isnan(a->to);
     *o = (figure_options){.look = {.width = a->width,
                                    .height = a->height,
                                    .dpi = a->dpi,
-                                   .font = strcasecmp(font, "sans") == 0    ? NULL
-                                           : strcasecmp(font, "serif") == 0 ? SERIF
-                                                                            : font,
+                                   .font = font,
                                    .letters = a->font_size,
                                    .bare = a->bare,
                                    .transparent = a->transparent},

@@ -1,3 +1,4 @@
+// impactlab predict: what methods predict of a contact before it is simulated.
 #include "ui/commands/command.h"
 
 #include <math.h>

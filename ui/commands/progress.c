@@ -189,8 +189,13 @@ static void show_progress(void *context, const sweep_progress *p)
         snprintf(failed, sizeof failed, ", %zu failed", p->failed);
     }
 
-    snprintf(line, sizeof line, "%s%s[%.*s%*s] %3zu %%  %zu of %zu runs%s%s",
-             word != NULL ? word : "", word != NULL ? " " : "", filled, full_bar,
+    // the word, the bar, and numbers behind it
+    int length = 0;
+    if (word != NULL) {
+        length = snprintf(line, sizeof line, "%.100s ", word);
+    }
+    snprintf(line + length, sizeof line - (size_t)length,
+             "[%.*s%*s] %3zu %%  %zu of %zu runs%s%s", filled, full_bar,
              BAR_LENGTH - filled, "", 100 * p->done / p->total, p->done, p->total, failed,
              left);
     fprintf(stderr, "\r%-78.78s", line);
@@ -199,12 +204,14 @@ static void show_progress(void *context, const sweep_progress *p)
 sweep_options many_runs_begin(const arguments *a, const char *word)
 {
     interrupts_catch();
-    return (sweep_options){.jobs = many_runs_jobs(a),
-                           .stop = &interrupted,
-                           .abandon = &interrupts_abandon,
-                           .report =
-                               isatty(STDERR_FILENO) && !a->quiet ? show_progress : NULL,
-                           .context = (void *)word};
+    sweep_options o = {.jobs = many_runs_jobs(a),
+                       .stop = &interrupted,
+                       .abandon = &interrupts_abandon,
+                       .context = (void *)word};
+    if (isatty(STDERR_FILENO) && !a->quiet) {
+        o.report = show_progress;
+    }
+    return o;
 }
 
 void many_runs_end(const sweep_options *o)
@@ -223,8 +230,12 @@ void many_runs_report_failure(const sweep_progress *p)
 
 int many_runs_stopped(const char *db, size_t done, size_t total, const char *what_became)
 {
-    complain("stopped: %zu of %zu runs were done, %s%s%s%s", done, total, what_became,
-             db != NULL ? "; they are kept in '" : "", db != NULL ? db : "",
-             db != NULL ? "', from where the same command goes on" : "");
+    if (db == NULL) {
+        complain("stopped: %zu of %zu runs were done, %s", done, total, what_became);
+    } else {
+        complain("stopped: %zu of %zu runs were done, %s; they are kept in '%s', from "
+                 "where the same command goes on",
+                 done, total, what_became, db);
+    }
     return EXIT_FAILED;
 }

@@ -1,3 +1,4 @@
+// impactlab run: one run, its numbers, events and expectations.
 #include "ui/commands/command.h"
 
 #include "render/page/picture_file.h"
@@ -87,9 +88,15 @@ static void print_events(const scenario *s, const trace *t)
 
 static void print_expectations(const scenario *s, const summary *m)
 {
-    bool ticks = terminal_has_utf8();
+    // of one that is not met, of one that is
+    static const char *const words[] = {"NOT MET", "ok "};
+    static const char *const ticks[] = {"\u2717", "\u2713"};
+    const char *const *marks = words;
     if (s->expectation_count == 0) {
         return;
+    }
+    if (terminal_has_utf8()) {
+        marks = ticks;
     }
 
     printf("\nExpected:\n");
@@ -97,7 +104,7 @@ static void print_expectations(const scenario *s, const summary *m)
         const expectation *e = &s->expectations[i];
         char found[64], wanted[64];
         const char *label = summary_table[e->quantity].label;
-        const char *unit = summary_table[e->quantity].unit, *space = unit[0] ? " " : "";
+        const char *unit = summary_table[e->quantity].unit, *space = blank_before(unit);
 
         double value = summary_value(m, e->quantity);
         bool met = expectation_is_met(e, value);
@@ -107,9 +114,7 @@ static void print_expectations(const scenario *s, const summary *m)
         snprintf(wanted, sizeof wanted, e->is_null ? "none" : "%g within %g", e->value,
                  e->tolerance);
 
-        printf("  %s %s: %s (expected %s)\n",
-               met ? (ticks ? "\u2713" : "ok ") : (ticks ? "\u2717" : "NOT MET"), label,
-               found, wanted);
+        printf("  %s %s: %s (expected %s)\n", marks[met], label, found, wanted);
     }
 }
 
@@ -133,12 +138,16 @@ static void print_run(const scenario *s, const void *found)
     if (p->control.law != LAW_NONE) {
         snprintf(drive, sizeof drive, "law %s", control_law_table[p->control.law].word);
     }
+    snprintf(wall, sizeof wall, "no");
+    if (p->wall.kind != WALL_NONE) {
+        value_text(p, "wall.kind", wall);
+    }
     say_title(s);
     printf("%s model, %d link%s, %s hub, %s wall, %s, method %s, h = %g s, %g s\n\n",
-           value_text(p, "arm.model", model), p->arm.links, p->arm.links == 1 ? "" : "s",
-           value_text(p, "arm.hub_joint", joint),
-           p->wall.kind == WALL_NONE ? "no" : value_text(p, "wall.kind", wall), drive,
-           value_text(p, "method.name", method), p->method.step, p->run.duration);
+           value_text(p, "arm.model", model), p->arm.links,
+           plural_ending((size_t)p->arm.links), value_text(p, "arm.hub_joint", joint),
+           wall, drive, value_text(p, "method.name", method), p->method.step,
+           p->run.duration);
 
     // what failed before its first step has no numbers: the sentence that follows says
     // why
@@ -164,7 +173,10 @@ static int run_and_report(const arguments *a, scenario *s)
     // results are written of a run that failed, too
     static const command_results r = {run_json, print_run, plot_signals, write_signals,
                                       .draws_part = true};
-    int exit_status = a->scene != NULL ? write_scene(a, s, &result) : EXIT_DONE;
+    int exit_status = EXIT_DONE;
+    if (a->scene != NULL) {
+        exit_status = write_scene(a, s, &result);
+    }
     exit_status =
         worse(exit_status, write_results(a, &r, s, &result, code != STATUS_STOPPED));
 
@@ -173,8 +185,11 @@ static int run_and_report(const arguments *a, scenario *s)
     } else if (code != STATUS_OK) {
         complain("%s failed: %s", s->name,
                  result.summary.message[0] ? result.summary.message : status_text(code));
-        exit_status = worse(exit_status, code == STATUS_BAD_SCENARIO ? EXIT_BAD_ARGUMENTS
-                                                                     : EXIT_FAILED);
+        if (code == STATUS_BAD_SCENARIO) {
+            exit_status = worse(exit_status, EXIT_BAD_ARGUMENTS);
+        } else {
+            exit_status = worse(exit_status, EXIT_FAILED);
+        }
     } else if (result.summary.inaccurate) {
         complain("%s is inaccurate: %s", s->name, result.summary.message);
         exit_status = worse(exit_status, EXIT_FAILED);

@@ -29,10 +29,18 @@ typedef struct listing {
 static int open_listing(listing *l, const arguments *a)
 {
     fault f = {0};
-    *l = (listing){.all = a->json != NULL ? json_array() : NULL};
-    const bool room = a->json == NULL || l->all != NULL;
-    if ((room ? scenario_list(&l->names, &l->count, &f) : fault_no_memory(&f)) !=
-        STATUS_OK) {
+    status code = STATUS_OK;
+    *l = (listing){0};
+    if (a->json != NULL) {
+        l->all = json_array();
+        if (l->all == NULL) {
+            code = fault_no_memory(&f);
+        }
+    }
+    if (code == STATUS_OK) {
+        code = scenario_list(&l->names, &l->count, &f);
+    }
+    if (code != STATUS_OK) {
         json_decref(l->all);
         return complain_fault(&f);
     }

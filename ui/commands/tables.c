@@ -1,3 +1,4 @@
+// impactlab tables: Tables 4.1 to 4.3 of the thesis, printed and computed.
 #include "ui/commands/progress.h"
 
 #include <math.h>

@@ -62,8 +62,12 @@ static void read_words(question_words *q, const char *question, bool all)
             }
         }
         word[length] = '\0';
-        q->count += length > 0 && (all || !says_little(word));
-        question += *question != '\0';
+        if (length > 0 && (all || !says_little(word))) {
+            q->count++;
+        }
+        if (*question != '\0') {
+            question++;
+        }
     }
 }
 
@@ -100,11 +104,9 @@ static sqlite3 *open_tables(const search_source *sources, int source_count)
     loss_unless(made);
     if (!made) {
         sqlite3_close(database);
+        return NULL;
     }
-    if (made) {
-        return database;
-    }
-    return NULL;
+    return database;
 }
 
 // Runs a statement on the terms and takes its rows as hits; returns how many there are.
@@ -156,11 +158,17 @@ static void correct_word(sqlite3 *database, char word[WORD])
     strcpy(word, best);
 }
 
+// What search_titles (`titled`) and search_find give.
 static int find(const search_source *sources, int source_count, const char *question,
                 search_hit *hits, int most, bool titled)
 {
     question_words q;
     char terms[TERMS] = "(";
+    const char *sql = best_things, *joint = " OR ";
+    if (titled) {
+        sql = titled_things;
+        joint = " AND ";
+    }
     sqlite3 *database = open_tables(sources, source_count);
 
     // a question of little words only is about these
@@ -173,16 +181,16 @@ static int find(const search_source *sources, int source_count, const char *ques
             correct_word(database, q.words[i]);
         }
         const size_t length = strlen(terms);
-        snprintf(terms + length, sizeof terms - length, "%s\"%s\"%s",
-                 i == 0   ? ""
-                 : titled ? " AND "
-                          : " OR ",
-                 q.words[i], i + 1 == q.count ? ")" : "");
+        snprintf(terms + length, sizeof terms - length, "%s\"%s\"", i > 0 ? joint : "",
+                 q.words[i]);
     }
+    const size_t length = strlen(terms);
+    snprintf(terms + length, sizeof terms - length, ")");
 
-    const char *sql = titled ? titled_things : best_things;
-    const int count =
-        database != NULL && q.count > 0 ? take_hits(database, sql, terms, hits, most) : 0;
+    int count = 0;
+    if (database != NULL && q.count > 0) {
+        count = take_hits(database, sql, terms, hits, most);
+    }
     sqlite3_close(database);
     return count;
 }

@@ -1,3 +1,4 @@
+// impactlab bench: how long runs and studies take, beside times measured before.
 #include "ui/commands/progress.h"
 
 #include <string.h>

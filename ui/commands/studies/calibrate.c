@@ -1,3 +1,4 @@
+// impactlab calibrate: stiffness from presses against the wall, command by command.
 #include "ui/commands/command.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+// impactlab compare: the numbers and curves of several runs side by side.
 #include "ui/commands/command.h"
 
 #include "ui/commands/pictures.h"

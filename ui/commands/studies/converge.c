@@ -1,3 +1,4 @@
+// impactlab converge: the numbers of a run as its step is halved.
 #include "ui/commands/command.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+// impactlab identify: fits parameters to measured data and says how far to trust them.
 
 #include "render/plot/study_plot.h"
 #include "src/base/json.h"

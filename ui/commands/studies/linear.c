@@ -48,12 +48,14 @@ typedef struct analysis {
 static status find_roots(root_set *set, const linear_system *s, const char *name,
                          int output, fault *f)
 {
-    *set = (root_set){name != NULL ? "zero" : "pole", name != NULL ? name : "", s->states,
+    *set = (root_set){"pole", "", s->states,
                       calloc((size_t)s->states + 1, sizeof *set->values)};
     if (set->values == NULL) {
         return fault_no_memory(f);
     }
     if (name != NULL) {
+        set->kind = "zero";
+        set->output = name;
         return linear_zeros(s, output, &set->count, set->values, f);
     }
     return linear_poles(s, set->values, f);
@@ -174,11 +176,14 @@ static json_t *as_json(const scenario *base, const void *found)
     if (r->count > 0) {
         const linear_margins *m = &x->margins;
         json_t *loop = json_array();
-        json_t *margins =
-            !x->stable
-                ? json_null()
-                : json_of("gain_db:n gain_down_db:n phase_deg:n delay_s:n disk:n",
-                          m->gain_db, m->gain_down_db, m->phase_deg, m->delay_s, m->disk);
+        json_t *margins;
+        if (x->stable) {
+            margins =
+                json_of("gain_db:n gain_down_db:n phase_deg:n delay_s:n disk:n",
+                        m->gain_db, m->gain_down_db, m->phase_deg, m->delay_s, m->disk);
+        } else {
+            margins = json_null();
+        }
         for (int i = 0; i < r->count; i++) {
             json_add(loop, json_of("frequency_Hz:n gain_db:n phase_deg:n",
                                    r->frequency[i] / TWO_PI,
@@ -282,11 +287,12 @@ static void print_analysis(const scenario *s, const void *found)
     printf("\n");
     for (const root_set *set = x->sets; set < x->sets + SETS && set->values != NULL;
          set++) {
-        char title[64];
-        snprintf(title, sizeof title, set > x->sets ? "zeros, motor to %s" : "poles%s",
-                 set > x->sets   ? set->output
-                 : x->period > 0 ? ", loop closed"
-                                 : "");
+        char title[64] = "poles";
+        if (set > x->sets) {
+            snprintf(title, sizeof title, "zeros, motor to %s", set->output);
+        } else if (x->period > 0) {
+            snprintf(title, sizeof title, "poles, loop closed");
+        }
         printf("\n  %-24s %14s %14s %10s\n", title, "real [1/s]", "imag. [rad/s]",
                "damping");
         for (int i = 0; i < set->count; i++) {

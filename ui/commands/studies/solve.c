@@ -1,3 +1,4 @@
+// impactlab solve: the limit of a parameter up to which a condition on a result holds.
 
 #include "src/base/json.h"
 #include "src/base/numbers.h"
@@ -53,32 +54,39 @@ static void print_answer(const scenario *s, const void *asked)
     const solution *found = &q->found;
     const solve_condition *c = &q->condition;
     const summary_info *quantity = &summary_table[c->quantity];
-    const parameter_info *parameter = sweep_axis_parameter(&q->axis);
+    const char *unit = sweep_axis_parameter(&q->axis)->unit, *gap = blank_before(unit);
     char bound[NUMBER_TEXT], low[NUMBER_TEXT], high[NUMBER_TEXT];
     number_format_short(bound, c->bound);
     number_format_short(low, fmin(q->axis.low, q->axis.high));
     number_format_short(high, fmax(q->axis.low, q->axis.high));
 
     // the question, with the range that was looked at
+    char relation[3] = ">";
+    if (c->below) {
+        relation[0] = '<';
+    }
+    if (c->equal) {
+        relation[1] = '=';
+    }
     say_title(s);
-    say("%s %s%s %s%s%s for %s from %s to %s%s%s, %d runs\n", quantity->label,
-        c->below ? "<" : ">", c->equal ? "=" : "", bound, quantity->unit[0] ? " " : "",
-        quantity->unit, q->axis.name, low, high, parameter->unit[0] ? " " : "",
-        parameter->unit, found->done);
+    say("%s %s %s%s%s for %s from %s to %s%s%s, %d runs\n", quantity->label, relation,
+        bound, blank_before(quantity->unit), quantity->unit, q->axis.name, low, high, gap,
+        unit, found->done);
 
+    // the answer: each limit
     for (int i = 0; i < found->count; i++) {
         const solve_limit *limit = &found->limits[i];
         char value[64], reached[64];
         decimal_print(value, sizeof value, "%.7g", limit->value);
         decimal_print(reached, sizeof reached, "%.7g", limit->reached);
-        say("\n  %s %s = %s%s%s, where the %s is %s%s%s%s",
-            limit->holds_below ? "up to" : "from", q->axis.name, value,
-            parameter->unit[0] ? " " : "", parameter->unit, quantity->label, reached,
-            quantity->unit[0] ? " " : "", quantity->unit,
-            limit->jumps ? " and jumps" : "");
+        say("\n  %s %s = %s%s%s, where the %s is %s%s%s",
+            limit->holds_below ? "up to" : "from", q->axis.name, value, gap, unit,
+            quantity->label, reached, blank_before(quantity->unit), quantity->unit);
+        if (limit->jumps) {
+            say(" and jumps");
+        }
         if (found->stopped) {
-            say("; it does not hold at %.7g%s%s", limit->beyond,
-                parameter->unit[0] ? " " : "", parameter->unit);
+            say("; it does not hold at %.7g%s%s", limit->beyond, gap, unit);
         }
     }
     if (found->count == 0) {

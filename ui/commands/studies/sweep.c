@@ -50,9 +50,13 @@ static void print_values(const sweep *s, size_t run)
         const parameter_info *info = sweep_axis_parameter(&s->axes[i]);
         char text[128];
         sweep_value_text(s, run, i, text, sizeof text);
-        say("%s%s = %s%s%s%s", i > 0 ? ", " : "", s->axes[i].name, text,
-            info->unit[0] ? " " : "", info->unit,
-            sweep_idle(s, run, i) != NULL ? " (no effect)" : "");
+        if (i > 0) {
+            say(", ");
+        }
+        say("%s = %s%s%s", s->axes[i].name, text, blank_before(info->unit), info->unit);
+        if (sweep_idle(s, run, i) != NULL) {
+            say(" (no effect)");
+        }
     }
 }
 
@@ -60,7 +64,7 @@ static void print_values(const sweep *s, size_t run)
 static void print_extreme(const sweep *s, const char *word, const double *values,
                           size_t run, const char *unit)
 {
-    printf("  %-9s %.6g%s%s  in run %zu: ", word, values[run], unit[0] ? " " : "", unit,
+    printf("  %-9s %.6g%s%s  in run %zu: ", word, values[run], blank_before(unit), unit,
            run + 1);
     print_values(s, run);
     printf("\n");
@@ -77,13 +81,16 @@ static void print_summary(const sweep_order *o, const sweep_store *store,
     // how many runs there were
     char changes[SCENARIO_CHANGES];
     say("%s%s: %zu run%s (%s), %zu failed", o->scenario->name,
-        scenario_changes(o->scenario, changes), p->done, p->done == 1 ? "" : "s",
+        scenario_changes(o->scenario, changes), p->done, plural_ending(p->done),
         sweep_sampling_name(s->sampling), failed);
     if (p->done_now < p->done) {
         printf(", %zu were there already", p->done - p->done_now);
     }
-    printf("\n%s%s%s%s\n", quantity->label, unit[0] ? " [" : "", unit,
-           unit[0] ? "]" : "");
+    printf("\n%s", quantity->label);
+    if (unit[0] != '\0') {
+        printf(" [%s]", unit);
+    }
+    printf("\n");
 
     // each value, where no file has them
     const bool listed =
@@ -334,7 +341,7 @@ static int merge(const arguments *a)
     // a sweep with missing runs is a valid file: the same sweep continues in it
     if (summary_wanted(a)) {
         say("%s: %zu of %zu runs from %d part%s\n", a->output, merged.runs, merged.total,
-            a->operand_count, a->operand_count == 1 ? "" : "s");
+            a->operand_count, plural_ending((size_t)a->operand_count));
     }
     if (a->json != NULL) {
         return write_json(a->json, json_of("file:t runs:o runs_of_sweep:o", a->output,
