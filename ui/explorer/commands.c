@@ -173,13 +173,9 @@ bool act_unkey(explorer_state *st, const char *argument)
                name, built_in);
 }
 
-// --- settings --------------------------------------------------------------------------
+// --- sessions --------------------------------------------------------------------------
 
-#define REMEMBERED                                                                       \
-    " theme glyphs colours pixels closeup mouse bending colourby rate lanes slow speed " \
-    "panes "                                                                             \
-    "axis "                                                                              \
-    "key unkey "
+#define SESSION_ENDING ".session"
 
 // Whether a line's first word is one of some with blanks round each.
 static bool begins_with_one(const char *line, const char *words)
@@ -189,7 +185,8 @@ static bool begins_with_one(const char *line, const char *words)
     return strstr(words, word) != NULL;
 }
 
-bool explorer_look(explorer_state *st, const char *line)
+// Carries out a line that says how runs are looked at, and none that does anything else.
+static bool carry_out_look(explorer_state *st, const char *line)
 {
     if (begins_with_one(line,
                         " panes axis zoom mark trace phase spectrum signal lanes limit "
@@ -198,6 +195,45 @@ bool explorer_look(explorer_state *st, const char *line)
     }
     return act_refuse(st, "'%.60s' does not belong into a session", line);
 }
+
+bool explorer_open_session(explorer_state *st, const char *path)
+{
+    return explorer_resume_session(st, path, carry_out_look);
+}
+
+bool act_session(explorer_state *st, const char *argument)
+{
+    char word[8];
+    const char *path = text_cut(argument, " ", word, sizeof word);
+    const bool saves = strcmp(word, "save") == 0;
+    if (saves && path[0] == '\0') {
+        prompt_open(&st->prompt, st->session_path[0] ? st->session_path : "lab.session",
+                    "session save ");
+        return true;
+    }
+    if ((!saves && strcmp(word, "open") != 0) || path[0] == '\0') {
+        return act_refuse(st,
+                          "session takes save or open, and a file such as lab.session");
+    }
+
+    // a name without the ending by which the lab knows a session gets it
+    char whole[LINE_TEXT];
+    const bool there = !saves && access(path, F_OK) == 0;
+    const int stem = (int)(there ? strlen(path) : text_stem(path, SESSION_ENDING));
+    snprintf(whole, sizeof whole, "%.*s%s", stem, path, there ? "" : SESSION_ENDING);
+    if (saves) {
+        return explorer_save_session(st, whole);
+    }
+    return explorer_open_session(st, whole);
+}
+
+// --- settings --------------------------------------------------------------------------
+
+#define REMEMBERED                                                                       \
+    " theme glyphs colours pixels closeup mouse bending colourby rate lanes slow speed " \
+    "panes "                                                                             \
+    "axis "                                                                              \
+    "key unkey "
 
 // Executes a line of the file; errors are reported with line and column.
 static bool execute_line(explorer_state *st, const char *path, int number,
@@ -293,6 +329,7 @@ static void write_settings(const explorer_state *st, FILE *stream)
 
 bool act_remember(explorer_state *st, const char *argument)
 {
+    (void)argument;
     char path[1024];
     whole_file file;
     if (!user_file(USER_SETTINGS, "lab", path, sizeof path, true)) {

@@ -1,3 +1,4 @@
+// Completion of the prompt: commands, parameters, values, signals and files.
 #include "ui/explorer/explorer.h"
 
 #include <ctype.h>

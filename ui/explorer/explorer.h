@@ -99,8 +99,17 @@ bool complete_prompt(explorer_state *st);
 // message why, and nothing changed, if it cannot be.
 bool explorer_open_session(explorer_state *st, const char *path);
 
-// Writes one of what there is. Errors of writing stay in the stream; STATUS_NO_MEMORY, or
-// STATUS_CANNOT_WRITE for a pane that no line can say.
+// The same with the function that carries out the lines on how the runs are looked at:
+// the table of commands, which knows the session's command, is above this.
+typedef bool line_function(explorer_state *st, const char *line);
+bool explorer_resume_session(explorer_state *st, const char *path, line_function *look);
+
+// Saves what there is as a session. False, with the message why, if the file is there
+// already and not this visit's own, the run is incomplete, or it cannot be written.
+bool explorer_save_session(explorer_state *st, const char *path);
+
+// Writes a session of what there is. Errors of writing stay in the stream;
+// STATUS_NO_MEMORY, or STATUS_CANNOT_WRITE for a pane that no line can say.
 status explorer_write_session(explorer_state *st, FILE *stream, fault *f);
 
 // --- recovery --------------------------------------------------------------------------
@@ -118,9 +127,6 @@ double recovery_keep(explorer *ex, bool changed, double now);
 
 // Removes the file if the user ended the lab; else what was changed last is written.
 void recovery_end(explorer *ex, bool orderly);
-
-// Carries out a line that says how runs are looked at, and none that does anything else.
-bool explorer_look(explorer_state *st, const char *line);
 
 // --- settings --------------------------------------------------------------------------
 

@@ -223,7 +223,7 @@ void explorer_key(explorer *ex, int key)
         st->palette.selected = -1;
         act_hush(st);
     } else if (st->page != PANEL_NONE && !quits) {
-        panel_of(st->page)->key(st, key);
+        panel_key(st, key);
     } else {
         key_by_table(ex, key);
     }
@@ -248,13 +248,7 @@ void explorer_paste(explorer *ex, int character)
 // Passes a gesture to the panel of its hit area; false if it has no effect.
 static bool give(explorer *ex, const panel_gesture *g)
 {
-    const panel *p = g->hit.panel != PANEL_NONE ? panel_of(g->hit.panel) : NULL;
-    const int turn = pointer_wheel(g->event);
-    if (p != NULL && p->wheel != 0 && turn != 0) {
-        ex->state.drawn.scroll[g->hit.panel] += p->wheel * turn;
-        return true;
-    }
-    const bool taken = p != NULL && p->point != NULL && p->point(&ex->state, g);
+    const bool taken = panel_point(&ex->state, g);
 
     // an entry of the palette that was chosen with the mouse
     if (ex->state.palette.picked && ex->state.prompt.open) {

@@ -11,8 +11,6 @@
 #include "src/session/session_file.h"
 #include "ui/explorer/explorer.h"
 
-static const char ending[] = ".session";
-
 // --- saving ----------------------------------------------------------------------------
 
 // Adds a line on how the runs are looked at, if it is needed.
@@ -132,7 +130,7 @@ static status write_session(explorer_state *st, const char *path, fault *f)
     return whole_file_close(&file, explorer_write_session(st, file.stream, f), f);
 }
 
-static bool save_session(explorer_state *st, const char *path)
+bool explorer_save_session(explorer_state *st, const char *path)
 {
     // a file is replaced only if it is the one this visit goes on with
     if (access(path, F_OK) == 0 && strcmp(path, st->session_path) != 0) {
@@ -209,7 +207,7 @@ static bool take_session(explorer_state *st, const session_file *file)
     return true;
 }
 
-bool explorer_open_session(explorer_state *st, const char *path)
+bool explorer_resume_session(explorer_state *st, const char *path, line_function *look)
 {
     static session_file file;
     if (!act_worked(st, session_file_read(&file, path, &st->fault))) {
@@ -220,7 +218,7 @@ bool explorer_open_session(explorer_state *st, const char *path)
     bool done = take_session(st, &file);
     message_line said = {.text = ""};
     for (int i = 0; i < file.line_count && done; i++) {
-        if (!explorer_look(st, file.lines[i]) && said.text[0] == '\0') {
+        if (!look(st, file.lines[i]) && said.text[0] == '\0') {
             said = st->message;
         }
     }
@@ -245,30 +243,4 @@ bool explorer_open_session(explorer_state *st, const char *path)
     }
     session_file_finish(&file);
     return done;
-}
-
-bool act_session(explorer_state *st, const char *argument)
-{
-    char word[8];
-    const char *path = text_cut(argument, " ", word, sizeof word);
-    const bool saves = strcmp(word, "save") == 0;
-    if (saves && path[0] == '\0') {
-        prompt_open(&st->prompt, st->session_path[0] ? st->session_path : "lab.session",
-                    "session save ");
-        return true;
-    }
-    if ((!saves && strcmp(word, "open") != 0) || path[0] == '\0') {
-        return act_refuse(st,
-                          "session takes save or open, and a file such as lab.session");
-    }
-
-    // a name without the ending by which the lab knows a session gets it
-    char whole[LINE_TEXT];
-    const bool there = !saves && access(path, F_OK) == 0;
-    const int stem = (int)(there ? strlen(path) : text_stem(path, ending));
-    snprintf(whole, sizeof whole, "%.*s%s", stem, path, there ? "" : ending);
-    if (saves) {
-        return save_session(st, whole);
-    }
-    return explorer_open_session(st, whole);
 }

@@ -12,12 +12,7 @@
 
 #include <term.h>
 
-terminal_state tty = {.wake = {-1, -1}};
-
 // --- signals ---------------------------------------------------------------------------
-
-volatile sig_atomic_t terminal_leaving;    // the signal that asks to leave
-volatile sig_atomic_t terminal_suspending; // ^Z was pressed
 
 // those that ask for something, then those that end the program at once
 static const int signals[] = {SIGINT,    SIGTERM, SIGHUP,  SIGQUIT, SIGWINCH, SIGCONT,

@@ -13,17 +13,22 @@
 // after such a pause what is missing of a sequence does not come [s]
 #define SEQUENCE_TIME 0.25
 
+// The code of a key of ncurses, 0 for one that has no meaning here.
 static int key_of_curses(int key)
 {
-    switch (key) {
-#define KEY_OF_CURSES(code, name, curses)                                                \
-    case curses:                                                                         \
-        return KEY_CODE_##code;
-        KEY_LIST(KEY_OF_CURSES)
-#undef KEY_OF_CURSES
-    default:
-        return key == KEY_ENTER ? KEY_CODE_ENTER : 0;
+    static const struct {
+        int curses, code;
+    } codes[] = {
+#define CURSES_AND_CODE(code, name, curses) {curses, KEY_CODE_##code},
+        KEY_LIST(CURSES_AND_CODE)
+#undef CURSES_AND_CODE
+            {KEY_ENTER, KEY_CODE_ENTER}};
+    for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++) {
+        if (codes[i].curses == key) {
+            return codes[i].code;
+        }
     }
+    return 0;
 }
 
 // Reads an answer of the terminal; true if the screen should be redrawn.

@@ -7,9 +7,6 @@
 #include "ui/explorer/state/command_list.h"
 #include "ui/explorer/state/state.h"
 
-// An action has an argument and a panel a layout, also where they make no use of it.
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-
 // A command's function: takes its argument as text, "" if there is none.
 typedef bool action_function(explorer_state *st, const char *argument);
 

@@ -76,6 +76,7 @@ bool act_pan(explorer_state *st, const char *argument)
 
 bool act_follow(explorer_state *st, const char *argument)
 {
+    (void)argument;
     st->window.adrift = false;
     return act_tell(st, "the curves follow the cursor");
 }

@@ -235,16 +235,19 @@ static bool turn(explorer_state *st, int direction)
 
 bool act_undo(explorer_state *st, const char *argument)
 {
+    (void)argument;
     return turn(st, -1);
 }
 
 bool act_redo(explorer_state *st, const char *argument)
 {
+    (void)argument;
     return turn(st, 1);
 }
 
 bool act_model(explorer_state *st, const char *argument)
 {
+    (void)argument;
     bool printed = st->session.effective.parameters.arm.model == ARM_PRINTED;
     return act_give(st, PARAMETER_INDEX(arm.model), printed ? "corrected" : "printed");
 }

@@ -160,6 +160,7 @@ bool act_panes(explorer_state *st, const char *argument)
 
 bool act_focus(explorer_state *st, const char *argument)
 {
+    (void)argument;
     int focused = panes_focused(&st->panes);
     if (focused < 0) {
         return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
@@ -278,6 +279,7 @@ bool act_band(explorer_state *st, const char *argument)
 
 bool act_alone(explorer_state *st, const char *argument)
 {
+    (void)argument;
     st->panes.alone = !st->panes.alone;
     return true;
 }

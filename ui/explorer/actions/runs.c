@@ -35,6 +35,7 @@ static bool pin(explorer_state *st, const char *name)
 
 bool act_branch(explorer_state *st, const char *argument)
 {
+    (void)argument;
     return pin(st, "") &&
            act_tell(st,
                     "branched at %.4f s: change something, the old run stays beside "
@@ -52,6 +53,7 @@ bool act_pin(explorer_state *st, const char *argument)
 
 bool act_forget(explorer_state *st, const char *argument)
 {
+    (void)argument;
     session_forget_ghost(&st->session);
     if (st->pinned.baseline >= 0) {
         run_list_drop(&st->pinned, st->pinned.baseline);

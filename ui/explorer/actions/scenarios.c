@@ -79,6 +79,7 @@ bool act_find(explorer_state *st, const char *argument)
 
 bool act_stop(explorer_state *st, const char *argument)
 {
+    (void)argument;
     session *s = &st->session;
     if (s->computing == NULL) {
         return act_refuse(st, "nothing is being computed");
@@ -91,6 +92,7 @@ bool act_stop(explorer_state *st, const char *argument)
 
 bool act_allow(explorer_state *st, const char *argument)
 {
+    (void)argument;
     session *s = &st->session;
     bool kept;
     if (s->run.summary.status != STATUS_NOT_ALLOWED) {
@@ -215,6 +217,7 @@ bool act_answer(explorer_state *st, const char *argument)
 
 bool act_continue(explorer_state *st, const char *argument)
 {
+    (void)argument;
     const lesson *l = &st->session.base.lesson;
     const lesson_step *step = present_step(st);
     if (step == NULL) {

@@ -135,6 +135,7 @@ bool act_advance(explorer_state *st, double seconds)
 
 bool act_play(explorer_state *st, const char *argument)
 {
+    (void)argument;
     session *s = &st->session;
     session_forget_ghost(s);
     st->playback.playing = !st->playback.playing;
@@ -283,6 +284,7 @@ bool act_slow(explorer_state *st, const char *argument)
 
 bool act_restart(explorer_state *st, const char *argument)
 {
+    (void)argument;
     session_seek(&st->session, 0);
     st->session.seen = 0;
     st->playback.playing = true;

@@ -125,6 +125,7 @@ bool act_mark(explorer_state *st, const char *argument)
 
 bool act_side(explorer_state *st, const char *argument)
 {
+    (void)argument;
     bool narrow = st->size.width > 0 && st->size.width < SIDE_WIDTH;
 
     // the panels of the side, then those that are folded for want of room
@@ -155,6 +156,7 @@ bool act_side(explorer_state *st, const char *argument)
 
 bool act_statistics(explorer_state *st, const char *argument)
 {
+    (void)argument;
     const bool there = st->side.panel == PANEL_STATISTICS;
     if (there) {
         st->side.panel = PANEL_PARAMETERS;
@@ -216,6 +218,7 @@ bool act_runs(explorer_state *st, const char *argument)
 
 bool act_why(explorer_state *st, const char *argument)
 {
+    (void)argument;
     return act_need_whole_run(st) && toggle_page(st, PANEL_WHY);
 }
 
@@ -272,12 +275,14 @@ bool act_note(explorer_state *st, const char *argument)
 
 bool act_notes(explorer_state *st, const char *argument)
 {
+    (void)argument;
     st->note = 0;
     return toggle_page(st, PANEL_NOTES);
 }
 
 bool act_changes(explorer_state *st, const char *argument)
 {
+    (void)argument;
     if (st->session.input_count > 0) {
         st->change = st->session.input_count - 1;
     } else {
@@ -386,16 +391,19 @@ bool act_bending(explorer_state *st, const char *argument)
 
 bool act_redraw(explorer_state *st, const char *argument)
 {
+    (void)argument;
     return st->looks.redraw = true;
 }
 
 bool act_quit_now(explorer_state *st, const char *argument)
 {
+    (void)argument;
     return st->quit = true;
 }
 
 bool act_quit(explorer_state *st, const char *argument)
 {
+    (void)argument;
     const session *s = &st->session;
     const int pins = st->kept_pins == st->pinned.pinned ? 0 : st->pinned.count;
     int changes = st->saved_version == state_run_id(st) ? 0 : s->input_count;

@@ -32,6 +32,7 @@ static void draw_rest(const explorer_state *st, screen *s, area a)
 
 static bool go_there(explorer_state *st, const char *number)
 {
+    (void)number;
     if (st->change < st->session.input_count) {
         act_scrub(st, st->session.inputs[st->change].time);
     }
@@ -57,4 +58,4 @@ static const page_list list = {
              {'r' & 0x1f, act_redo},
              {'g', go_there, true}}};
 
-const panel changes_panel = {.name = "changes", .list = &list, LIST_PAGE};
+const panel changes_panel = {.name = "changes", .list = &list};

@@ -1,3 +1,4 @@
+// The whole screen of the explorer: title, panels, the page, status and prompt.
 #include "ui/explorer/panels/panel.h"
 
 #include <string.h>
@@ -392,13 +393,13 @@ static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
         }
     }
     area at = {a.x, a.y, a.width, fold_stack(st, lay, rows, left)};
-    panel_of(st->side.panel)->draw(st, lay, s, at);
+    panel_draw(st->side.panel, st, lay, s, at);
     draw_tabs(lay, s, at);
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         at.y += at.height;
         at.height = rows[id];
         if (rows[id] > 0) {
-            panel_of((panel_id)id)->draw(st, lay, s, at);
+            panel_draw((panel_id)id, st, lay, s, at);
         }
     }
 }
@@ -409,7 +410,7 @@ static void draw_panels(const explorer_state *st, layout *lay, screen *s, area b
     const panel *strip = panel_of(PANEL_LESSON);
     const int taken = strip->rows(st, (screen_size){s->width, body.height});
     if (taken > 0) {
-        strip->draw(st, lay, s, (area){0, body.y, s->width, taken});
+        panel_draw(PANEL_LESSON, st, lay, s, (area){0, body.y, s->width, taken});
         body.y += taken;
         body.height -= taken;
     }
@@ -419,14 +420,14 @@ static void draw_panels(const explorer_state *st, layout *lay, screen *s, area b
     if (top > arm) {
         top = arm;
     }
-    panel_of(PANEL_ARM)->draw(st, lay, s, (area){body.x, body.y, left, top});
+    panel_draw(PANEL_ARM, st, lay, s, (area){body.x, body.y, left, top});
 
     // on a narrow screen the side takes the place of the curves
     area below = {body.x, body.y + top, left, body.height - top};
     if (right == 0 && st->side.in_front) {
         draw_stack(st, lay, s, below);
     } else {
-        panel_of(PANEL_CURVES)->draw(st, lay, s, below);
+        panel_draw(PANEL_CURVES, st, lay, s, below);
     }
     if (right > 0) {
         draw_stack(st, lay, s, (area){left, body.y, right, body.height});
@@ -457,12 +458,12 @@ void compose_screen(const explorer_state *st, layout *lay, screen *s)
     draw_title(st, s);
     draw_panels(st, lay, s, body);
     if (st->page != PANEL_NONE) {
-        panel_of(st->page)->draw(st, lay, s, body);
+        panel_draw(st->page, st, lay, s, body);
     }
     int rows = draw_bottom(st, s);
     draw_status(st, s, s->height - 1 - rows);
     if (palette_shows(&st->prompt)) {
         const area above = {0, 1, s->width, s->height - 2 - rows};
-        panel_of(PANEL_PALETTE)->draw(st, lay, s, above);
+        panel_draw(PANEL_PALETTE, st, lay, s, above);
     }
 }

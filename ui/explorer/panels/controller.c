@@ -109,7 +109,7 @@ static void draw_brief(screen *s, area a, const sample *row, const parameters *p
 // fold.
 static int rows(const explorer_state *st, screen_size body)
 {
-    const int room = body.height - panel_of(PANEL_PREDICTORS)->rows(st, body);
+    const int room = body.height - predictors_rows(st, body);
     if (!state_has_law(st)) {
         return 0;
     }
@@ -124,6 +124,7 @@ static int rows(const explorer_state *st, screen_size body)
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 {
+    (void)lay;
     const sample *row = session_sample(&st->session);
     parameters p = state_parameters(st);
     char title[128];

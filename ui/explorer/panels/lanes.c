@@ -1,3 +1,4 @@
+// The lanes below the curves, on their time axis, and the map of the run above them.
 #include "ui/explorer/panels/panel.h"
 
 #include <math.h>

@@ -46,6 +46,7 @@ static int rows(const explorer_state *st, screen_size body)
 
 static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 {
+    (void)lay;
     const lesson *l = &st->session.base.lesson;
     char text[1024], title[LINE_TEXT];
     text_line lines[MOST_LINES];

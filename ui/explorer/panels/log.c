@@ -64,6 +64,7 @@ static int find_later_inputs(const explorer_state *st, size_t seen, int later[MO
 
 static int rows(const explorer_state *st, screen_size body)
 {
+    (void)st;
     if (body.width >= SIDE_WIDTH && body.height >= 26) {
         return body.height / 4;
     }

@@ -16,12 +16,14 @@ static void draw_rest(const explorer_state *st, screen *s, area a)
 
 static bool go_there(explorer_state *st, const char *number)
 {
+    (void)number;
     act_scrub(st, st->notes[st->note].time);
     return true;
 }
 
 static bool drop(explorer_state *st, const char *number)
 {
+    (void)number;
     act_drop_note(st, st->note);
     return true;
 }
@@ -40,4 +42,4 @@ static const page_list list = {.title = "notes (Enter goes there, d drops, Esc c
                                         {'x', drop},
                                         {KEY_CODE_DELETE, drop}}};
 
-const panel notes_panel = {.name = "notes", .list = &list, LIST_PAGE};
+const panel notes_panel = {.name = "notes", .list = &list};

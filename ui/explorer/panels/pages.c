@@ -224,7 +224,7 @@ static void draw_help(const explorer_state *st, layout *lay, screen *s, area bod
     draw_page(st, lay, s, body, &p, title, 0);
 }
 
-const panel help_panel = {PAGE("help"), .draw = draw_help};
+const panel help_panel = {.name = "help", .draw = draw_help, .key = page_key};
 
 // --- the scenario ----------------------------------------------------------------------
 
@@ -261,7 +261,7 @@ static void draw_info(const explorer_state *st, layout *lay, screen *s, area bod
     draw_page(st, lay, s, body, &p, title, 0);
 }
 
-const panel info_panel = {PAGE("info"), .draw = draw_info};
+const panel info_panel = {.name = "info", .draw = draw_info, .key = page_key};
 
 // --- what one stands on ----------------------------------------------------------------
 
@@ -325,7 +325,7 @@ static void draw_explain(const explorer_state *st, layout *lay, screen *s, area 
               "what is here (? lists keys and commands, Esc closes)", 0);
 }
 
-const panel explain_panel = {PAGE("explain"), .draw = draw_explain};
+const panel explain_panel = {.name = "explain", .draw = draw_explain, .key = page_key};
 
 // The page of a first visit: what is behind it goes on, the first key closes it and acts.
 static void draw_welcome(const explorer_state *st, layout *lay, screen *s, area body)
@@ -342,7 +342,7 @@ static void draw_welcome(const explorer_state *st, layout *lay, screen *s, area 
     draw_page(st, lay, s, body, &p, "a first visit (any key goes on)", 0);
 }
 
-const panel welcome_panel = {PAGE("welcome"), .draw = draw_welcome};
+const panel welcome_panel = {.name = "welcome", .draw = draw_welcome, .key = page_key};
 
 // --- the account of the run ------------------------------------------------------------
 
@@ -357,7 +357,7 @@ static void draw_why(const explorer_state *st, layout *lay, screen *s, area body
     draw_page(st, lay, s, body, &p, "why (Esc closes)", 0);
 }
 
-const panel why_panel = {PAGE("why"), .draw = draw_why};
+const panel why_panel = {.name = "why", .draw = draw_why, .key = page_key};
 
 // --- the poles -------------------------------------------------------------------------
 
@@ -469,4 +469,4 @@ static void draw_poles(const explorer_state *st, layout *lay, screen *s, area bo
     }
 }
 
-const panel poles_panel = {PAGE("poles"), .draw = draw_poles};
+const panel poles_panel = {.name = "poles", .draw = draw_poles, .key = page_key};

@@ -1,3 +1,4 @@
+// Panes whose axis is not time: one signal over another, and spectra.
 #include "ui/explorer/panels/panel.h"
 
 #include <assert.h>

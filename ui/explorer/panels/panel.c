@@ -1,20 +1,10 @@
+// What panels have in common: lines of runs, numbers, places for the mouse, pages that
+// are scrolled and pages that are lists.
 #include "ui/explorer/panels/panel.h"
 
 #include <assert.h>
 #include <limits.h>
 #include <math.h>
-
-static const panel *const panels[PANEL_IDS] = {
-#define PANEL_POINTER(id, place, description) [id] = &description,
-    PANEL_LIST(PANEL_POINTER)
-#undef PANEL_POINTER
-};
-
-const panel *panel_of(panel_id id)
-{
-    assert(id > PANEL_NONE && id < PANEL_IDS);
-    return panels[id];
-}
 
 int pointer_wheel(pointer_event e)
 {
@@ -209,30 +199,16 @@ int page_scroll(layout *lay, panel_id id, area a, int lines, int head)
     return layout_keep_scroll(lay, id, beyond > 0 ? beyond : 0);
 }
 
-bool page_point(explorer_state *st, const panel_gesture *g)
-{
-    const int wheel = pointer_wheel(g->event);
-    for (int i = 0; wheel != 0 && i < WHEEL_LINES && st->page != PANEL_NONE; i++) {
-        panel_of(st->page)->key(st, wheel < 0 ? KEY_CODE_UP : KEY_CODE_DOWN);
-    }
-    return wheel != 0;
-}
-
 // --- lists -----------------------------------------------------------------------------
-
-static const page_list *open_list(const explorer_state *st)
-{
-    return panel_of(st->page)->list;
-}
 
 static int *list_number(explorer_state *st, size_t place)
 {
     return (int *)((char *)st + place);
 }
 
-void list_draw(const explorer_state *st, layout *lay, screen *s, area body)
+void list_draw(const page_list *list, const explorer_state *st, layout *lay, screen *s,
+               area body)
 {
-    const page_list *list = open_list(st);
     const int count = *(const int *)((const char *)st + list->count);
     const int selected = *(const int *)((const char *)st + list->selected);
     const int edges = 2 + list->head + list->foot;
@@ -257,20 +233,18 @@ void list_draw(const explorer_state *st, layout *lay, screen *s, area body)
     }
 }
 
-bool list_point(explorer_state *st, const panel_gesture *g)
+bool list_point(const page_list *list, explorer_state *st, const panel_gesture *g)
 {
-    const page_list *list = panel_of(g->hit.panel)->list;
     const int index = g->hit.index + g->event.y - g->hit.area.y;
     const bool pressed = g->event.kind == POINTER_PRESS && g->hit.part == PART_LINES;
     if (pressed && index < *list_number(st, list->count)) {
         *list_number(st, list->selected) = index;
     }
-    return pressed || page_point(st, g);
+    return pressed;
 }
 
-bool list_key_pressed(explorer_state *st, int key)
+bool list_key_pressed(const page_list *list, explorer_state *st, int key)
 {
-    const page_list *list = open_list(st);
     const int *count = list_number(st, list->count);
     int *selected = list_number(st, list->selected);
     char number[16];

@@ -160,15 +160,29 @@ typedef struct panel {
     // Handles a key while the page is open. Pages only.
     bool (*key)(explorer_state *st, int key);
 
-    const struct page_list *list; // of a page that is one, LIST_PAGE
+    // Of a page that is a list, in the place of its draw, point and key; else NULL.
+    const struct page_list *list;
 } panel;
 
 #define PANEL_DECLARATION(id, place, description) extern const panel description;
 PANEL_LIST(PANEL_DECLARATION)
 #undef PANEL_DECLARATION
 
+// --- the catalogue ---------------------------------------------------------------------
+// catalogue.c alone knows all panels; no panel calls it.
+
 // The description of a panel; not for PANEL_NONE.
 const panel *panel_of(panel_id id);
+
+// Draws a panel into an area of the screen, a page that is a list included.
+void panel_draw(panel_id id, const explorer_state *st, layout *lay, screen *s, area a);
+
+// Passes a gesture of the mouse to the panel of its hit area; false if it has no effect.
+// The wheel scrolls the panel, or presses a page's keys for up and down.
+bool panel_point(explorer_state *st, const panel_gesture *g);
+
+// Passes a key to the page that is open; false if it was refused.
+bool panel_key(explorer_state *st, int key);
 
 // --- pages -----------------------------------------------------------------------------
 // Keys and mouse in pages that are scrolled line by line.
@@ -182,9 +196,6 @@ int page_scroll(layout *lay, panel_id id, area a, int lines, int head);
 
 // The frame of a page, which says how many of its lines are shown down to its end.
 void draw_page_frame(screen *s, area a, const char *title, int last, int count);
-
-// What the description of such a page has in common.
-#define PAGE(title) .name = title, .point = page_point, .key = page_key
 
 // A key of a page that is a list: what it does with the number of the selected line, from
 // 1, as its argument.
@@ -208,14 +219,16 @@ typedef struct page_list {
     list_key keys[12];         // then one with key 0
 } page_list;
 
-void list_draw(const explorer_state *st, layout *lay, screen *s, area body);
-bool list_point(explorer_state *st, const panel_gesture *g);
-bool list_key_pressed(explorer_state *st, int key);
+// Draws the list that is open, handles a press of the mouse on it, and a key.
+void list_draw(const page_list *list, const explorer_state *st, layout *lay, screen *s,
+               area body);
+bool list_point(const page_list *list, explorer_state *st, const panel_gesture *g);
+bool list_key_pressed(const page_list *list, explorer_state *st, int key);
 
-#define LIST_PAGE .draw = list_draw, .point = list_point, .key = list_key_pressed
+// --- the predictors --------------------------------------------------------------------
 
-// The wheel presses a page's keys for up and down.
-bool page_point(explorer_state *st, const panel_gesture *g);
+// The rows that their panel takes of a stack, which the controller's leaves to it.
+int predictors_rows(const explorer_state *st, screen_size body);
 
 // --- the arm ---------------------------------------------------------------------------
 

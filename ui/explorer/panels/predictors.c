@@ -128,8 +128,9 @@ static void predictor_line(screen *s, area a, int line, const char *label,
     }
 }
 
-static int rows(const explorer_state *st, screen_size body)
+int predictors_rows(const explorer_state *st, screen_size body)
 {
+    (void)st;
     if (body.width >= SIDE_WIDTH && body.height >= 15) {
         return ROWS;
     }
@@ -174,4 +175,6 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     }
 }
 
-const panel predictors_panel = {.name = "predictors", .rows = rows, .draw = draw};
+const panel predictors_panel = {.name = "predictors",
+                                .rows = predictors_rows,
+                                .draw = draw};

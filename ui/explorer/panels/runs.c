@@ -115,6 +115,7 @@ static void draw_rest(const explorer_state *st, screen *s, area a)
 
 static bool subtract(explorer_state *st, const char *number)
 {
+    (void)number;
     return act_difference(st, "");
 }
 
@@ -136,7 +137,7 @@ static const page_list list = {.title = "pinned runs (Esc closes)",
                                         {KEY_CODE_DELETE, act_unpin},
                                         {'D', subtract, true}}};
 
-const panel run_list_panel = {.name = "run list", .list = &list, LIST_PAGE};
+const panel run_list_panel = {.name = "run list", .list = &list};
 
 // --- the comparison --------------------------------------------------------------------
 
@@ -219,4 +220,6 @@ static void draw_comparison(const explorer_state *st, layout *lay, screen *s, ar
     }
 }
 
-const panel comparison_panel = {PAGE("comparison"), .draw = draw_comparison};
+const panel comparison_panel = {.name = "comparison",
+                                .draw = draw_comparison,
+                                .key = page_key};

@@ -153,9 +153,8 @@ static bool point(explorer_state *st, const panel_gesture *g)
 {
     scenario_menu *menu = &st->scenarios;
 
-    // all else is the page's own
     if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
-        return page_point(st, g);
+        return false;
     }
 
     // in a line without a scenario nothing happens
