@@ -2,7 +2,7 @@
 # The architecture as the includes show it: every arrow points down, no module stands in a circle, and
 # every place that the manual names is there.
 #
-#   test_architecture.sh SOURCE_ROOT
+#   test_architecture.sh SOURCE_ROOT BUILD_ROOT
 #
 # A module is a .c with its .h. The rooms of each floor are listed from the lowest up; a file may
 # include its own room and what stands before it in the list, nothing else of the project.
@@ -97,4 +97,31 @@ done < <(grep -oHE '`(src|render|ui|tests|scenarios|docs)/[A-Za-z0-9_./*-]*[A-Za
     CONTRIBUTING.md README.md $(find docs -name '*.md') | tr -d '`' | sort -u)
 [ "$lost" = 0 ]
 
-echo "$arrows includes, all of them downward, no circle"
+# "caller callee" of each two files of the program of which one uses what the other defines, as the
+# linker sees it; copies of a file for other widths of vectors are left out
+list_calls() {
+    find "$2" -name '*.c.o' -path '*.a.p/*' ! -path '*/tests/*' ! -path '*_[1248].a.p/*' ! -path '*_avx2.a.p/*' -print0 |
+        xargs -0 nm -A | awk '
+            { file = $1; sub(/:[0-9a-f]*$/, "", file); sub(/.*\//, "", file); sub(/\.c\.o$/, "", file) }
+            $(NF - 1) ~ /^[TDRBCVW]$/ && !($NF in home) { home[$NF] = file }
+            $(NF - 1) == "U" { wants[file, $NF] }
+            END {
+                for (pair in wants) {
+                    split(pair, of, SUBSEP)
+                    if (of[2] in home && home[of[2]] != of[1]) print of[1], home[of[2]]
+                }
+            }' | sort -u
+}
+
+calls=$(list_calls "$@")
+if [ "$(wc -l <<<"$calls")" -lt 500 ]; then
+    echo "only $(wc -l <<<"$calls") calls between files were found, so this test sees nothing"
+    exit 1
+fi
+if ! circle=$(tsort <<<"$calls" 2>&1 >/dev/null); then
+    echo "files that call each other in a circle:"
+    sed 's/^tsort: //' <<<"$circle"
+    exit 1
+fi
+
+echo "$arrows includes, all of them downward, no circle of them and none of calls"
