@@ -381,7 +381,8 @@ static const struct known {
     double most;
     const char *why;
 } known[] = {
-    {"force_reading with hysteresis alone", INFINITY, "extremes of parabolas, to 1e-3"},
+    {"force_reading with hysteresis alone", (double)INFINITY,
+     "extremes of parabolas, to 1e-3"},
     {"max_penetration_m", 1e-4, "a depth beyond the end of a step"},
     {"smoothed_over_command_N", 1e-5, "the largest window is found nearly"},
 };
@@ -562,7 +563,7 @@ static double quantity(const motion *m, const char *key)
     double value;
     impactlab_error error;
     if (impactlab_run_quantity(m->run, key, &value, &error) != IMPACTLAB_OK) {
-        return NAN;
+        return (double)NAN;
     }
     return value;
 }
@@ -695,7 +696,7 @@ static void check_rows(rig *r, motion *m)
 
         // time goes on
         if (i > 0) {
-            expect(r, "order of rows", t, t - m->of[TIME][i - 1], 0, INFINITY);
+            expect(r, "order of rows", t, t - m->of[TIME][i - 1], 0, (double)INFINITY);
         }
         if (m->sample_count == 0) {
             continue;
@@ -740,7 +741,7 @@ static void check_instants(rig *r, const motion *m)
 {
     const double period = 1 / number(r, "control.rate"),
                  width = number(r, "control.jitter");
-    double first = INFINITY, last = -INFINITY;
+    double first = (double)INFINITY, last = -(double)INFINITY;
     for (int k = 0; k < m->sample_count; k++) {
         const double late = m->samples[k].time - k * period;
         first = fmin(first, late);
@@ -765,8 +766,8 @@ typedef struct pieces {
     size_t count;
 } pieces;
 
-// The instant of a change of the voltage in or at the ends of (from, to); NAN if there is
-// none.
+// The instant of a change of the voltage in or at the ends of (from, to); (double)NAN if
+// there is none.
 static double change_within(const motion *m, int *next, double from, double to)
 {
     while (*next < m->sample_count && m->samples[*next].applied < from - INSTANT) {
@@ -779,7 +780,7 @@ static double change_within(const motion *m, int *next, double from, double to)
             return fmax(from, fmin(to, m->samples[k].applied));
         }
     }
-    return NAN;
+    return (double)NAN;
 }
 
 static double slope(const piece *p)
@@ -978,7 +979,7 @@ static void follower_strike(follower *f, double size)
     if (f->state.T > 0) {
         play_follow(f, 0);
     } else {
-        f->play_low = f->play_high = INFINITY;
+        f->play_low = f->play_high = (double)INFINITY;
     }
 }
 
@@ -1330,7 +1331,8 @@ static void check_optional(rig *r, const motion *m, const pieces *force,
 // --- the summary -----------------------------------------------------------------------
 
 typedef struct touches {
-    double first, release; // first contact, first release [s], NAN if there is none
+    double first,
+        release; // first contact, first release [s], (double)NAN if there is none
     int impacts;
     double impulse;  // of the first impact [N s]
     double impulses; // of all
@@ -1338,7 +1340,7 @@ typedef struct touches {
 
 static touches touches_of(const motion *m)
 {
-    touches t = {.first = NAN, .release = NAN};
+    touches t = {.first = (double)NAN, .release = (double)NAN};
     for (size_t i = 0; i < impactlab_run_event_count(m->run); i++) {
         impactlab_event e;
         impactlab_run_event(m->run, i, &e);
@@ -1369,7 +1371,7 @@ typedef struct largest {
 
 static largest largest_within(const pieces *f, double from, double to)
 {
-    largest l = {-INFINITY, -INFINITY};
+    largest l = {-(double)INFINITY, -(double)INFINITY};
     for (size_t i = 0; i < f->count; i++) {
         const piece *p = &f->of[i];
         if (p->to >= from - INSTANT && p->from <= to + INSTANT) {
@@ -1400,7 +1402,7 @@ static void check_peak(rig *r, const motion *m, const pieces *force, const char 
     if (l.high > 1e-6 && !isnan(at)) {
         const largest there =
             largest_within(force, first + at - spacing, first + at + spacing);
-        expect(r, when, first + at, peak, -INFINITY, there.high + slack);
+        expect(r, when, first + at, peak, -(double)INFINITY, there.high + slack);
     }
 }
 
@@ -1477,7 +1479,7 @@ static void check_steady(rig *r, const motion *m, const pieces *force, const tou
         const double settled = quantity(m, "settling_time_s");
         if (isnan(settled)) {
             expect(r, "settling_time_s is null, settled", m->ends, latest,
-                   m->ends - 2 * spacing, INFINITY);
+                   m->ends - 2 * spacing, (double)INFINITY);
         } else {
             expect(r, "settling_time_s", m->ends, settled, earliest - t->first - INSTANT,
                    latest - t->first + INSTANT);
@@ -1508,8 +1510,8 @@ static void check_smoothed(rig *r, const motion *m, const pieces *force,
     }
 
     // running integral at the ends of pieces
-    double *sum = malloc((force->count + 1) * sizeof(double)), low = -INFINITY,
-           high = -INFINITY;
+    double *sum = malloc((force->count + 1) * sizeof(double)), low = -(double)INFINITY,
+           high = -(double)INFINITY;
     double error = 0;
     sum[0] = 0;
     for (size_t i = 0; i < force->count; i++) {
@@ -1547,7 +1549,7 @@ static void check_smoothed(rig *r, const motion *m, const pieces *force,
     free(sum);
     const double slack = error + 1e-9 * fabs(high) + 1e-9;
     expect(r, "smoothed_over_command_N", from, said + wanted, low - slack, high + slack);
-    expect(r, "smoothed within peak and impulses", from, said + wanted, -INFINITY,
+    expect(r, "smoothed within peak and impulses", from, said + wanted, -(double)INFINITY,
            peak_of(m) + t->impulses / window + 1e-9);
 }
 
@@ -1559,7 +1561,7 @@ static void check_sensor_peak(rig *r, const motion *m, const pieces *force,
     if (!has_quantity(m, key)) {
         return;
     }
-    double low = -INFINITY, high = -INFINITY;
+    double low = -(double)INFINITY, high = -(double)INFINITY;
     follower f = {.of = force, .blows = impulses, .state = {.T = 1e-3}};
     for (size_t i = 0; i < force->count; i++) {
         const double end = force->of[i].to;
@@ -1583,7 +1585,7 @@ static void check_sensor_peak(rig *r, const motion *m, const pieces *force,
 
 static double largest_of(const motion *m, const double *column, double sign)
 {
-    double most = -INFINITY;
+    double most = -(double)INFINITY;
     for (size_t i = 0; i < m->count; i++) {
         most = fmax(most, sign * column[i]);
     }
@@ -1593,7 +1595,7 @@ static double largest_of(const motion *m, const double *column, double sign)
 // The largest speed towards the wall up to an instant, or beyond it without contact.
 static largest speed_towards(const motion *m, bool before, double t)
 {
-    largest l = {-INFINITY, -INFINITY};
+    largest l = {-(double)INFINITY, -(double)INFINITY};
     pieces gap_rate = pieces_of(m, m->of[GAP_VELOCITY]);
     for (size_t i = 0; i < m->count; i++) {
         const double at = m->of[TIME][i];
@@ -1615,7 +1617,7 @@ static largest speed_towards(const motion *m, bool before, double t)
 // is below it, by no more than means of neighbours differ.
 static largest speed_towards_face(const motion *m, double t)
 {
-    double before = NAN, apart = 0, most = 0;
+    double before = (double)NAN, apart = 0, most = 0;
     for (size_t i = 0; i + 1 < m->count; i++) {
         const double h = m->of[TIME][i + 1] - m->of[TIME][i];
         const bool flight = m->of[CONTACT][i] == 0 && m->of[CONTACT][i + 1] == 0;
@@ -1798,7 +1800,7 @@ static double check_ledger(rig *r, const motion *m)
     const double open =
         fmax(largest_of(m, c[RESIDUAL], 1), largest_of(m, c[RESIDUAL], -1));
     expect(r, "energy_residual_J", 0, quantity(m, "energy_residual_J"),
-           open - ROUNDING * scale, INFINITY);
+           open - ROUNDING * scale, (double)INFINITY);
     expect_near(r, "motor_work_J", 0, quantity(m, "motor_work_J"),
                 c[MOTOR_WORK][m->count - 1], 1e-12 * scale);
     return scale;
@@ -1959,7 +1961,7 @@ static void check_noise(rig *r)
             count++;
         }
         const double sigma = noises[k].deviation;
-        expect(r, "samples with noise", 0, count, 1000, INFINITY);
+        expect(r, "samples with noise", 0, count, 1000, (double)INFINITY);
         expect_near(r, noises[k].path, 0, sum / count, 0, 5 * sigma / sqrt(count));
         expect_near(r, noises[k].path, 0, squares / count, sigma * sigma,
                     5 * sigma * sigma * sqrt(2 / count));
