@@ -100,8 +100,8 @@ done < <(grep -oHE '`(src|render|ui|tests|scenarios|docs)/[A-Za-z0-9_./*-]*[A-Za
 # "caller callee" of each two files of the program of which one uses what the other defines, as the
 # linker sees it; copies of a file for other widths of vectors are left out
 list_calls() {
-    find "$2" -name '*.c.o' -path '*.a.p/*' ! -path '*/tests/*' ! -path '*_[1248].a.p/*' ! -path '*_avx2.a.p/*' -print0 |
-        xargs -0 nm -A | awk '
+    (cd "$1" && find . -name '*.c.o' -path '*.a.p/*' ! -path './tests/*' ! -path '*_[1248].a.p/*' \
+        ! -path '*_avx2.a.p/*' -print0 | xargs -0 nm -A) | awk '
             { file = $1; sub(/:[0-9a-f]*$/, "", file); sub(/.*\//, "", file); sub(/\.c\.o$/, "", file) }
             $(NF - 1) ~ /^[TDRBCVW]$/ && !($NF in home) { home[$NF] = file }
             $(NF - 1) == "U" { wants[file, $NF] }
@@ -113,7 +113,7 @@ list_calls() {
             }' | sort -u
 }
 
-calls=$(list_calls "$@")
+calls=$(list_calls "$2")
 if [ "$(wc -l <<<"$calls")" -lt 500 ]; then
     echo "only $(wc -l <<<"$calls") calls between files were found, so this test sees nothing"
     exit 1

@@ -329,7 +329,7 @@ silent err
 
 # a script ends, or what is no line of one ends it
 expect 2 lab hit.yaml --quiet --script /dev/zero
-says err "/dev/zero:1: no command, expected a text of less than"
+says err "is a device or a pipe, expected a plain file"
 expect 2 lab hit.yaml --quiet --script .
 says err ". cannot be read: Is a directory"
 { printf 'seek 0.1\nseek '; printf '%0300d\n' 1; } >long.script
