@@ -190,5 +190,7 @@ TEST(a_parameter_that_no_run_takes_has_no_limit)
     sweep_axis axis = {0};
     REFUSED(STATUS_BAD_ARGUMENT, "wall.stiffness has no effect in any run",
             solve_axis_read(&axis, "wall.stiffness=1000:2000", &s, &f));
+    sweep_axis_finish(&axis);
     DONE(solve_axis_read(&axis, "motor.voltage=1:2", &s, &f));
+    sweep_axis_finish(&axis);
 }
