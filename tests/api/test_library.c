@@ -350,6 +350,8 @@ TEST(a_question_ends_a_run)
     check_done(impactlab_run_signal(run, "time", &time, &told));
     assert_true(time.count > 0);
 
+    impactlab_run_destroy(run);
+
     // who is asked and says no changes nothing
     set(scenario, "run.duration", "0.5");
     impactlab_scenario_stop_when(scenario, is_enough, &never);
