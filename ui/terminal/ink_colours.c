@@ -96,16 +96,25 @@ rgb colour_256(int index)
     // the PC's text mode, which has the largest difference between bright and dark
     // colours
     if (index < 16) {
-        const unsigned char on = index & 8 ? 255 : 170, off = index & 8 ? 85 : 0;
-        unsigned char green = 85;
-        if (index != 3) {
-            if (index & 2) {
-                green = on;
-            } else {
-                green = off;
-            }
-        } // 3 is brown
-        return (rgb){index & 1 ? on : off, green, index & 4 ? on : off};
+        unsigned char on = 170, off = 0;
+        if (index & 8) {
+            on = 255;
+            off = 85;
+        }
+        rgb c = {off, off, off};
+        if (index & 1) {
+            c.red = on;
+        }
+        if (index & 2) {
+            c.green = on;
+        }
+        if (index & 4) {
+            c.blue = on;
+        }
+        if (index == 3) {
+            c.green = 85; // brown instead of a dark yellow
+        }
+        return c;
     }
     if (index >= 232) {
         unsigned char grey = (unsigned char)(8 + 10 * (index - 232));
@@ -134,12 +143,19 @@ static int nearest(colour_theme theme, ink i, bool few, unsigned taken, bool gre
     }
 
     // of 256 the first 16 are whatever the user has made of them
-    for (int index = few ? 0 : 16; index < (few ? 16 : 256); index++) {
+    int first = 16, end = 256, grounds = 2;
+    if (few) {
+        first = 0;
+        end = 16;
+        grounds = 1;
+    }
+    for (int index = first; index < end; index++) {
         const rgb c = colour_256(index);
+
         // no colour for what has none, and the other way round where there are some
-        bool readable = (is_grey(c) ? greys || is_grey(wanted) : !is_grey(wanted)) &&
-                        !(few && taken >> index & 1);
-        for (int g = 0; g < (few ? 1 : 2); g++) {
+        const bool suits = is_grey(c) == is_grey(wanted) || (is_grey(c) && greys);
+        bool readable = suits && !(few && taken >> index & 1);
+        for (int g = 0; g < grounds; g++) {
             readable = readable && rgb_contrast(c, theme_grounds(theme)[g]) >= least;
         }
         if (readable && rgb_distance(c, wanted) < distance) {

@@ -174,11 +174,13 @@ void screen_frame(screen *s, int x, int y, int width, int height, ink colour,
     for (int row = y; row <= bottom; row++) {
         for (int column = x; column <= right; column++) {
             bool side = column == x || column == right, level = row == y || row == bottom;
-            screen_put(s, column, row,
-                       level  ? 0x2500
-                       : side ? 0x2502
-                              : ' ',
-                       level || side ? colour : INK_TEXT);
+            uint32_t line = ' ';
+            if (level) {
+                line = 0x2500;
+            } else if (side) {
+                line = 0x2502;
+            }
+            screen_put(s, column, row, line, level || side ? colour : INK_TEXT);
         }
     }
 

@@ -120,7 +120,10 @@ static void paint_cells(FILE *stream, const screen *s, glyph_set glyphs, bool wh
             cell c = s->cells[i], *old = &tty.shown.cells[i];
             bool blank =
                 (c.glyph == ' ' && c.ink != INK_SELECTED) || c.glyph >= GLYPH_PICTURE;
-            bool same = whole ? blank : c.glyph == old->glyph && c.ink == old->ink;
+            bool same = c.glyph == old->glyph && c.ink == old->ink;
+            if (whole) {
+                same = blank;
+            }
             *old = c;
 
             // the last cell may scroll the screen; it is worth nothing

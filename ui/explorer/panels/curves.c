@@ -317,6 +317,21 @@ static void draw_band(const explorer_state *st, const plot_frame *f, const pane 
     }
 }
 
+// Why a pane shows no curve.
+static const char *reason_of_emptiness(const explorer_state *st, const pane *p)
+{
+    if (!pane_is_over_time(p)) {
+        return "nothing to see yet";
+    }
+    if (state_subtracts(st) && pane_is_derived(p)) {
+        return "an expression has no difference";
+    }
+    if (p->view == VIEW_RESIDUAL) {
+        return "no measured data (:data FILE.csv)";
+    }
+    return "this run has no such values";
+}
+
 static void draw_pane(const explorer_state *st, layout *lay, screen *s, int index, area a)
 {
     const pane *shown = &st->panes.pane[index];
@@ -332,14 +347,15 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     if (!over_time) {
         layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_VIEW, index, inside});
     }
-    if (over_time ? !state_pane_axis(st, index, &f.axis)
-                  : !draw_pane_view(st, s, shown, inside, &f.axis)) {
+    bool has_values;
+    if (over_time) {
+        has_values = state_pane_axis(st, index, &f.axis);
+    } else {
+        has_values = draw_pane_view(st, s, shown, inside, &f.axis);
+    }
+    if (!has_values) {
         screen_text(s, inside.x, inside.y, inside.width, INK_DIM,
-                    !over_time ? "nothing to see yet"
-                    : state_subtracts(st) && pane_is_derived(shown)
-                        ? "an expression has no difference"
-                    : shown->view == VIEW_RESIDUAL ? "no measured data (:data FILE.csv)"
-                                                   : "this run has no such values");
+                    reason_of_emptiness(st, shown));
         return;
     }
     draw_value_axis(s, labels, f.axis);

@@ -382,18 +382,24 @@ static void add_poles(page *p, const parameters *values, linear_place place)
         }
     }
     loss_unless(code != STATUS_NO_MEMORY);
-    if (code != STATUS_OK || count == 0) {
-        add_text(p, "%s",
-                 code != STATUS_OK ? f.text : "none: nothing is left that could move");
+    if (code != STATUS_OK) {
+        add_text(p, "%s", f.text);
+    } else if (count == 0) {
+        add_text(p, "none: nothing is left that could move");
     }
     for (int i = 0; code == STATUS_OK && i < count; i++) {
         const double complex s = poles[i];
         const bool rests = cabs(s) < 1e-6; // rounding of a pole at the origin
+        double frequency = 0, damping = (double)NAN, decay = (double)NAN; // [Hz], [], [s]
+        if (!rests) {
+            frequency = cabs(s) / (2 * acos(-1));
+            damping = linear_damping(s);
+            decay = -1 / creal(s);
+        }
         if (cimag(s) >= 0) {
             snprintf(new_line(p)->text, LINE_TEXT, "%12s%12s%12s",
-                     draw_number(rests ? 0 : cabs(s) / (2 * acos(-1))).text,
-                     draw_number(rests ? (double)NAN : linear_damping(s)).text,
-                     draw_number(rests ? (double)NAN : -1 / creal(s)).text);
+                     draw_number(frequency).text, draw_number(damping).text,
+                     draw_number(decay).text);
         }
     }
     free(poles);

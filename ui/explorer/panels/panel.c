@@ -216,9 +216,13 @@ void list_draw(const page_list *list, const explorer_state *st, layout *lay, scr
         page_area(body, list->width, edges + (count > 0 ? count : list->least));
     const area lines = {a.x + 1, a.y + 1 + list->head, a.width - 2, a.height - edges};
     const int first = draw_first_line(selected, count, lines.height);
-    const char *title = a.width < 60 && list->narrow != NULL ? list->narrow : list->title;
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
-                 count == 0 && list->empty != NULL ? list->empty : title);
+    const char *title = list->title;
+    if (count == 0 && list->empty != NULL) {
+        title = list->empty;
+    } else if (a.width < 60 && list->narrow != NULL) {
+        title = list->narrow;
+    }
+    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
     list->draw_rest(st, s, (area){a.x + 2, a.y + 1, a.width - 4, a.height - 2});
 
     // the lines lie over the page, so a click meets them first
@@ -250,8 +254,12 @@ bool list_key_pressed(const page_list *list, explorer_state *st, int key)
     char number[16];
 
     // up and down
-    const int by =
-        key == KEY_CODE_UP || key == 'k' ? -1 : key == KEY_CODE_DOWN || key == 'j';
+    int by = 0;
+    if (key == KEY_CODE_UP || key == 'k') {
+        by = -1;
+    } else if (key == KEY_CODE_DOWN || key == 'j') {
+        by = 1;
+    }
     if (by != 0) {
         if (*selected + by >= 0 && *selected + by < *count) {
             *selected += by;

@@ -109,11 +109,13 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a,
     const int length =
         fit_value(shown, sizeof shown, room - (int)strlen(name) - 3, value, info);
     const int start = room - length;
-    screen_text(s, a.x + 1, a.y, start - 2,
-                inert   ? INK_FRAME
-                : given ? INK_TITLE
-                        : INK_TEXT,
-                name);
+    ink colour = INK_TEXT;
+    if (inert) {
+        colour = INK_FRAME;
+    } else if (given) {
+        colour = INK_TITLE;
+    }
+    screen_text(s, a.x + 1, a.y, start - 2, colour, name);
     screen_text(s, a.x + start, a.y, room - start, k.knob, shown);
     if (has_slider && slider >= LEAST_SLIDER && !inert) {
         draw_track(lay, s, (area){a.x + room + 1, a.y, slider, 1}, &k);

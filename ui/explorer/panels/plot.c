@@ -201,7 +201,13 @@ static void axis_label(const ticks *t, int index, char *text, size_t size)
 // outer one.
 static bool outranks(double value, double other, bool upper_half)
 {
-    return other != 0 && (value == 0 || (upper_half ? value > other : value < other));
+    if (value == 0 || other == 0) {
+        return other != 0;
+    }
+    if (upper_half) {
+        return value > other;
+    }
+    return value < other;
 }
 
 // The row of an axis at which a value lies.
@@ -218,7 +224,13 @@ void draw_value_axis(screen *s, area a, value_range axis)
 
     // as many as have a row each: one that is left out would make the others look uneven
     bool fit = false;
-    for (int wanted = h >= 12 ? 5 : h >= 6 ? 4 : 3; wanted > 1 && !fit; wanted--) {
+    int most = 3;
+    if (h >= 12) {
+        most = 5;
+    } else if (h >= 6) {
+        most = 4;
+    }
+    for (int wanted = most; wanted > 1 && !fit; wanted--) {
         ticks_between(&t, axis.low, axis.high, wanted);
         fit = true;
         for (int i = 1; i < t.count; i++) {

@@ -120,11 +120,16 @@ static void predictor_line(screen *s, area a, int line, const char *label,
         screen_text(s, a.x + 18, y, room - 20, INK_DIM,
                     unknown != NULL ? unknown : "would not hold");
     } else {
-        screen_print(s, a.x + 18, y, room - 20, INK_FORCE,
-                     !isfinite(p->delay) ? "%.3f N"
-                     : a.width < 36      ? "%.2f N, %.0f ms"
-                                         : "%.3f N in %.0f ms",
-                     p->force, 1e3 * p->delay);
+        const double delay = 1e3 * p->delay; // [ms]
+        char text[64];
+        if (!isfinite(delay)) {
+            snprintf(text, sizeof text, "%.3f N", p->force);
+        } else if (a.width < 36) {
+            snprintf(text, sizeof text, "%.2f N, %.0f ms", p->force, delay);
+        } else {
+            snprintf(text, sizeof text, "%.3f N in %.0f ms", p->force, delay);
+        }
+        screen_text(s, a.x + 18, y, room - 20, INK_FORCE, text);
     }
 }
 

@@ -73,10 +73,12 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         screen_print(s, x, y, NUMBER, INK_TITLE, "%9s", draw_number(value).text);
         x += NUMBER;
         if (beside != NULL) {
-            screen_print(s, x, y, NUMBER, differs ? INK_WARNING : INK_DIM, "%9s",
-                         !signal_is_state(i) ? draw_number(difference).text
-                         : differs           ? "other"
-                                             : "same");
+            number_text said = draw_number(difference);
+            if (signal_is_state(i)) {
+                snprintf(said.text, sizeof said.text, "%s", differs ? "other" : "same");
+            }
+            const ink colour = differs ? INK_WARNING : INK_DIM;
+            screen_print(s, x, y, NUMBER, colour, "%9s", said.text);
             x += NUMBER;
         }
         if (wide || beside == NULL) {
