@@ -35,9 +35,10 @@ static bool find_command(explorer_state *st, const char *line, int *index)
     for (int i = 0; i < explorer_command_count; i++) {
         nearest_try(&near, explorer_command_table[i].name);
     }
-    return act_refuse(st, "there is no command '%s'%s%s%s", name,
-                      near.best ? ", did you mean " : "", near.best ? near.best : "",
-                      near.best ? "?" : " (? lists them)");
+    if (near.best == NULL) {
+        return act_refuse(st, "there is no command '%s' (? lists them)", name);
+    }
+    return act_refuse(st, "there is no command '%s', did you mean %s?", name, near.best);
 }
 
 bool explorer_execute(explorer_state *st, const char *line)
@@ -124,7 +125,10 @@ bool act_key(explorer_state *st, const char *argument)
     key_name(key, name, sizeof name);
     const char *old = key_line(&st->keys, key);
     if (line[0] == '\0') {
-        return act_tell(st, old ? "%s does '%s'" : "%s does nothing", name, old);
+        if (old == NULL) {
+            return act_tell(st, "%s does nothing", name);
+        }
+        return act_tell(st, "%s does '%s'", name, old);
     }
 
     // a copy of the old meaning: its place gets the new one
@@ -134,9 +138,10 @@ bool act_key(explorer_state *st, const char *argument)
         st->message.at = (int)(line - argument);
         return false;
     }
-    const bool other = before[0] != '\0' && strcmp(before, line) != 0;
-    return act_tell(st, other ? "%s does '%s' now, no longer '%s'" : "%s does '%s' now",
-                    name, line, before);
+    if (before[0] != '\0' && strcmp(before, line) != 0) {
+        return act_tell(st, "%s does '%s' now, no longer '%s'", name, line, before);
+    }
+    return act_tell(st, "%s does '%s' now", name, line);
 }
 
 bool act_unkey(explorer_state *st, const char *argument)
@@ -158,8 +163,10 @@ bool act_unkey(explorer_state *st, const char *argument)
     const int own = key_own(&st->keys, key);
     if (own >= 0) {
         st->keys.own[own] = st->keys.own[--st->keys.count];
-        return act_tell(st, built_in ? "%s does '%s' again" : "%s does nothing now", name,
-                        built_in);
+        if (built_in == NULL) {
+            return act_tell(st, "%s does nothing now", name);
+        }
+        return act_tell(st, "%s does '%s' again", name, built_in);
     }
 
     // one of the explorer's own does nothing then
@@ -245,8 +252,12 @@ static bool execute_line(explorer_state *st, const char *path, int number,
     st->message.at = begin;
     const bool taken =
         strchr("#", line[begin]) != NULL || begins_with_one(line + begin, REMEMBERED);
-    const bool done =
-        taken ? explorer_execute(st, line) : act_refuse(st, "this is no setting");
+    bool done = false;
+    if (taken) {
+        done = explorer_execute(st, line);
+    } else {
+        act_refuse(st, "this is no setting");
+    }
 
     // the place in the file comes before what is wrong
     return done || act_refuse(st, "%s:%d:%d is ignored: %.200s", path, number,
@@ -303,7 +314,11 @@ static void write_axes_and_keys(const explorer_state *st, FILE *stream)
         const user_key *own = &st->keys.own[i];
         char name[KEY_NAME];
         key_name(own->key, name, sizeof name);
-        fprintf(stream, own->line[0] ? "key %s %s\n" : "unkey %s\n", name, own->line);
+        if (own->line[0] != '\0') {
+            fprintf(stream, "key %s %s\n", name, own->line);
+        } else {
+            fprintf(stream, "unkey %s\n", name);
+        }
     }
 }
 
@@ -317,13 +332,15 @@ static void write_settings(const explorer_state *st, FILE *stream)
             st->looks.rate, st->playback.speed, st->playback.slow);
 
     // panes that the user did not choose are those that suit the scenario
-    fputs(st->panes.chosen ? "panes " : "", stream);
-    for (int i = 0; i < PANES_OF_TABLE; i++) {
-        if (st->panes.chosen && st->panes.pane[i].shown) {
-            fprintf(stream, "%d", i + 1);
+    if (st->panes.chosen) {
+        fprintf(stream, "panes ");
+        for (int i = 0; i < PANES_OF_TABLE; i++) {
+            if (st->panes.pane[i].shown) {
+                fprintf(stream, "%d", i + 1);
+            }
         }
+        fprintf(stream, "\n");
     }
-    fputs(st->panes.chosen ? "\n" : "", stream);
     write_axes_and_keys(st, stream);
 }
 

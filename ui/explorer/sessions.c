@@ -71,7 +71,9 @@ static void add_looks(const explorer_state *st, session_file *file)
     add_line(file, st->panes.chosen, "panes %s", shown);
     for (int i = 0, number = 1; i < PANES; i++) {
         add_pane(st, file, i, number);
-        number += i < PANES_OF_TABLE || st->panes.pane[i].shown;
+        if (i < PANES_OF_TABLE || st->panes.pane[i].shown) {
+            number++;
+        }
     }
     const time_window *w = &st->window;
     const int band = st->band.signal, limit = st->limit.signal;
@@ -80,10 +82,12 @@ static void add_looks(const explorer_state *st, session_file *file)
         add_line(file, true, "note @%.17g %.200s", st->notes[i].time, st->notes[i].text);
     }
     add_line(file, st->looks.by_run, "colourby run");
-    add_line(file, band >= 0, "band %s %.17g", band >= 0 ? signal_table[band].name : "",
-             st->band.bound);
-    add_line(file, limit >= 0, "limit %s %.17g",
-             limit >= 0 ? signal_table[limit].name : "", st->limit.bound);
+    if (band >= 0) {
+        add_line(file, true, "band %s %.17g", signal_table[band].name, st->band.bound);
+    }
+    if (limit >= 0) {
+        add_line(file, true, "limit %s %.17g", signal_table[limit].name, st->limit.bound);
+    }
     add_line(file, st->mark.set, "mark %.17g", st->mark.time);
 }
 
@@ -234,11 +238,10 @@ bool explorer_resume_session(explorer_state *st, const char *path, line_function
         if (said.text[0] != '\0') {
             done = act_warn(st, "%.200s: %.400s", path, said.text);
         } else {
-            done =
-                act_tell_failed_run(st) ||
-                act_tell(st, "%.200s: %d change%s, %d pinned run%s", path,
-                         st->session.input_count, st->session.input_count == 1 ? "" : "s",
-                         st->pinned.count, st->pinned.count == 1 ? "" : "s");
+            const int changes = st->session.input_count, pins = st->pinned.count;
+            done = act_tell_failed_run(st) ||
+                   act_tell(st, "%.200s: %d change%s, %d pinned run%s", path, changes,
+                            changes == 1 ? "" : "s", pins, pins == 1 ? "" : "s");
         }
     }
     session_file_finish(&file);

@@ -29,8 +29,13 @@ bool act_worked(explorer_state *st, status code)
 {
     const fault f = st->fault;
     st->fault = (fault){0};
-    return code == STATUS_OK ||
-           act_refuse(st, "%s", f.text[0] ? f.text : status_text(code));
+    if (code == STATUS_OK) {
+        return true;
+    }
+    if (f.text[0] != '\0') {
+        return act_refuse(st, "%s", f.text);
+    }
+    return act_refuse(st, "%s", status_text(code));
 }
 
 bool act_read_number(explorer_state *st, const char *text, double *value)
@@ -112,14 +117,23 @@ bool act_tell_failed_run(explorer_state *st)
     const summary *m = &st->session.run.summary;
     const control_parameters *c = &st->session.effective.parameters.control;
     if (m->status == STATUS_NOT_ALLOWED) {
-        const bool program = c->law == LAW_PROCESS;
+        const char *does = "load", *what = c->plugin;
+        if (c->law == LAW_PROCESS) {
+            does = "start";
+            what = c->command;
+        }
         return act_warn(st,
                         "y lets it %s '%.200s', which can do whatever you can; all else "
                         "works without (:allow later)",
-                        program ? "start" : "load", program ? c->command : c->plugin);
+                        does, what);
     }
-    return (m->status != STATUS_OK && act_warn(st, "the run stops: %s", m->message)) ||
-           (m->inaccurate && act_warn(st, "the run is inaccurate: %s", m->message));
+    if (m->status != STATUS_OK) {
+        return act_warn(st, "the run stops: %s", m->message);
+    }
+    if (m->inaccurate) {
+        return act_warn(st, "the run is inaccurate: %s", m->message);
+    }
+    return false;
 }
 
 bool act_need_whole_run(explorer_state *st)
@@ -137,9 +151,12 @@ bool act_need_short_runs(explorer_state *st, const char *command, int runs)
     const summary *s = &st->session.run.summary;
     const bool waits = st->session.effective.parameters.control.law == LAW_PROCESS;
     const double takes = waits ? s->wall_time_s : s->cpu_time_s;
-    return !(isfinite(st->session.patience) && takes * runs > LONGEST_WAIT) ||
-           act_refuse(st, "a run takes %.2g s here: 'impactlab %s' computes them beside",
-                      takes, command);
+    if (isfinite(st->session.patience) && takes * runs > LONGEST_WAIT) {
+        return act_refuse(st,
+                          "a run takes %.2g s here: 'impactlab %s' computes them beside",
+                          takes, command);
+    }
+    return true;
 }
 
 bool act_tell_change(explorer_state *st)

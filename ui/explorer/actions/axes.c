@@ -41,9 +41,14 @@ bool act_zoom(explorer_state *st, const char *argument)
     if (strcmp(argument, "all") == 0) {
         st->window = (time_window){0};
     } else if (strcmp(argument, "in") == 0 || strcmp(argument, "out") == 0) {
-        double now = st->session.now;
-        bool visible = now >= from && now <= to;
-        act_zoom_at(st, argument[0] == 'i' ? 0.5 : 2, visible ? now : (from + to) / 2);
+        double about = st->session.now, factor = 2;
+        if (!(about >= from && about <= to)) {
+            about = (from + to) / 2;
+        }
+        if (argument[0] == 'i') {
+            factor = 0.5;
+        }
+        act_zoom_at(st, factor, about);
     } else if (sscanf(argument, "%lf %lf %c", &from, &to, &rest) == 2 && from < to &&
                isfinite(to - from)) {
         st->window.adrift = true;
@@ -61,8 +66,10 @@ bool act_pan(explorer_state *st, const char *argument)
     state_window(st, &from, &to);
 
     // directions are a quarter of what is visible
-    if (strcmp(argument, "left") == 0 || strcmp(argument, "right") == 0) {
-        seconds = (argument[0] == 'l' ? -0.25 : 0.25) * (to - from);
+    if (strcmp(argument, "left") == 0) {
+        seconds = -(to - from) / 4;
+    } else if (strcmp(argument, "right") == 0) {
+        seconds = (to - from) / 4;
     } else if (!act_read_number(st, argument, &seconds)) {
         return false;
     }
@@ -151,7 +158,10 @@ static bool apply(explorer_state *st, int index, char *const words[4], int count
 
     // a kind of scaling by name, or the next one
     const int present = (int)st->panes.pane[index].scaling;
-    int scaling = strcmp(word, "next") == 0 ? (present + 1) % AXIS_SCALINGS : -1;
+    int scaling = -1;
+    if (strcmp(word, "next") == 0) {
+        scaling = (present + 1) % AXIS_SCALINGS;
+    }
     for (int i = 0; i < AXIS_SCALINGS; i++) {
         if (strcmp(word, axis_scaling_words[i]) == 0) {
             scaling = i;
@@ -161,10 +171,14 @@ static bool apply(explorer_state *st, int index, char *const words[4], int count
     // or the axis as it is now, changed
     if (scaling >= 0) {
         set_scaling(st, index, (axis_scaling)scaling);
-    } else if (strcmp(word, "in") == 0 || strcmp(word, "out") == 0) {
-        act_scale_axis(st, index, word[0] == 'i' ? 0.5 : 2, 0.5);
-    } else if (strcmp(word, "up") == 0 || strcmp(word, "down") == 0) {
-        act_shift_axis(st, index, word[0] == 'u' ? 0.25 : -0.25);
+    } else if (strcmp(word, "in") == 0) {
+        act_scale_axis(st, index, 0.5, 0.5);
+    } else if (strcmp(word, "out") == 0) {
+        act_scale_axis(st, index, 2, 0.5);
+    } else if (strcmp(word, "up") == 0) {
+        act_shift_axis(st, index, 0.25);
+    } else if (strcmp(word, "down") == 0) {
+        act_shift_axis(st, index, -0.25);
     } else {
         return act_refuse(st,
                           "axis takes auto, grow, calm, fixed, in, out, up, down or two "
@@ -182,8 +196,11 @@ bool act_axis(explorer_state *st, const char *argument)
     }
 
     // limits are two words, everything else is one; a pane may follow
-    bool limits = (strtod(words[0], &end), end != words[0]);
-    int used = limits ? 2 : 1;
+    int used = 1;
+    strtod(words[0], &end);
+    if (end != words[0]) {
+        used = 2;
+    }
     if (count < used) {
         return act_refuse(st, "an axis has two limits, such as 0 2, and then a pane");
     }
@@ -193,14 +210,14 @@ bool act_axis(explorer_state *st, const char *argument)
     if (count == used && index < 0) {
         return act_refuse(st, "no pane of curves is shown");
     }
-    if (!(count == used || act_read_pane(st, words[used], &index))) {
+    if (count > used && !act_read_pane(st, words[used], &index)) {
         return false;
     }
 
     // that pane, or all of them
     for (int i = 0; i < PANES; i++) {
         const bool meant = (i == index || index < 0) && st->panes.pane[i].count > 0;
-        if (!(!meant || apply(st, i, words, used))) {
+        if (meant && !apply(st, i, words, used)) {
             return false;
         }
     }

@@ -25,11 +25,14 @@ static bool act_adjust(explorer_state *st, int parameter, double value)
 
     // a value that is as it was leaves no change
     const int changes = s->input_count;
-    return act_worked(st, session_adjust(s, parameter, text, &st->fault)) &&
-           (s->input_count < changes
-                ? act_tell(st, "%s is %s %s again", parameter_table[parameter].path, text,
-                           parameter_table[parameter].unit)
-                : act_tell_change(st));
+    if (!act_worked(st, session_adjust(s, parameter, text, &st->fault))) {
+        return false;
+    }
+    if (s->input_count < changes) {
+        return act_tell(st, "%s is %s %s again", parameter_table[parameter].path, text,
+                        parameter_table[parameter].unit);
+    }
+    return act_tell_change(st);
 }
 
 // The parameter of a path, of its last part or of a beginning of either.
@@ -64,9 +67,11 @@ bool act_set(explorer_state *st, const char *argument)
     if (value[0] == '\0') {
         const parameter_info *info = &parameter_table[parameter];
         const char *inert = state_inert_reason(st, parameter);
-        return act_tell(st, "%s: %s%s%s", info->path, info->description,
-                        inert != NULL ? "; without effect, " : "",
-                        inert != NULL ? inert : "");
+        if (inert != NULL) {
+            return act_tell(st, "%s: %s; without effect, %s", info->path,
+                            info->description, inert);
+        }
+        return act_tell(st, "%s: %s", info->path, info->description);
     }
     return act_give(st, parameter, value);
 }
@@ -81,8 +86,11 @@ static double nudge_step(int parameter, double value)
 
     // the scale is that of the usual value, so that it stays as the value moves
     parameters_defaults(&p, ARM_CORRECTED);
-    const double usual = parameter_get(&p, parameter);
-    if (!slider_scale_of(parameter, isfinite(usual) ? usual : value, &scale)) {
+    double usual = parameter_get(&p, parameter);
+    if (!isfinite(usual)) {
+        usual = value;
+    }
+    if (!slider_scale_of(parameter, usual, &scale)) {
         return 0;
     }
 
@@ -96,7 +104,11 @@ static double nudge_step(int parameter, double value)
 // A real parameter's value one nudge up or down; what goes down comes up to where it was.
 static double nudged(int parameter, double value, int direction)
 {
-    const double step = nudge_step(parameter, direction < 0 ? value * (1 - 1e-6) : value);
+    double above = value; // where the step is that of going up
+    if (direction < 0) {
+        above = value * (1 - 1e-6);
+    }
+    const double step = nudge_step(parameter, above);
     char text[NUMBER_TEXT];
     snprintf(text, sizeof text, "%.6g", value + direction * step);
     return strtod(text, NULL);
@@ -110,7 +122,9 @@ bool act_nudge(explorer_state *st, const char *argument)
     if (st->side.panel == PANEL_SWEEP && lab_sweep_is_map(&st->sweep)) {
         const int across = (int)st->sweep.axis.count,
                   to = st->sweep.selected % across + direction;
-        act_select_swept(st, to >= 0 && to < across ? direction : 0);
+        if (to >= 0 && to < across) {
+            act_select_swept(st, direction);
+        }
         return true;
     }
     const parameter_info *info = &parameter_table[index];
@@ -219,18 +233,24 @@ static bool turn(explorer_state *st, int direction)
 {
     session *s = &st->session;
     session_forget_ghost(s);
-    if (s->input_count == (direction < 0 ? 0 : s->input_total) &&
-        state_can_turn(st, direction)) {
+    const bool back = direction < 0;
+    const int last = back ? 0 : s->input_total;
+    if (s->input_count == last && state_can_turn(st, direction)) {
         if (!act_worked(st, state_turn(st, direction, &st->fault))) {
             return false;
         }
-        return act_tell(st, "in %s again, %s", s->base.name,
-                        direction < 0 ? "U opens the one you left" : "u goes back");
+        if (back) {
+            return act_tell(st, "in %s again, U opens the one you left", s->base.name);
+        }
+        return act_tell(st, "in %s again, u goes back", s->base.name);
     }
-    if (!act_worked(st, (direction < 0 ? session_undo : session_redo)(s, &st->fault))) {
-        return false;
+
+    // a change
+    if (back) {
+        return act_worked(st, session_undo(s, &st->fault)) &&
+               act_tell(st, "undone, U puts it in again");
     }
-    return act_tell(st, direction < 0 ? "undone, U puts it in again" : "put in again");
+    return act_worked(st, session_redo(s, &st->fault)) && act_tell(st, "put in again");
 }
 
 bool act_undo(explorer_state *st, const char *argument)
@@ -312,7 +332,8 @@ static int read_change(explorer_state *st, const char **text)
 {
     const int count = st->session.input_count;
     if (count == 0) {
-        return (act_refuse(st, "there are no changes"), -1);
+        act_refuse(st, "there are no changes");
+        return -1;
     }
     return act_read_index(st, text, count, "changes", ":changes");
 }
@@ -320,7 +341,7 @@ static int read_change(explorer_state *st, const char **text)
 bool act_change(explorer_state *st, const char *argument)
 {
     const int index = read_change(st, &argument);
-    if (!(index >= 0)) {
+    if (index < 0) {
         return false;
     }
     char text[LINE_TEXT];
@@ -344,7 +365,7 @@ bool act_drop(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT];
     const int index = read_change(st, &argument);
-    if (!(index >= 0)) {
+    if (index < 0) {
         return false;
     }
 

@@ -28,9 +28,12 @@ static bool refuse_law(explorer_state *st, const char *name)
     for (int i = 0; i < LAW_COUNT; i++) {
         nearest_try(&near, control_law_table[i].word);
     }
-    return act_refuse(st, "there is no control law '%.60s'%s%s%s", name,
-                      near.best ? ", did you mean '" : " (:law and Tab lists them)",
-                      near.best ? near.best : "", near.best ? "'?" : "");
+    if (near.best == NULL) {
+        return act_refuse(st, "there is no control law '%.60s' (:law and Tab lists them)",
+                          name);
+    }
+    return act_refuse(st, "there is no control law '%.60s', did you mean '%s'?", name,
+                      near.best);
 }
 
 // Changes the control law; if the lock on a mode prevents it, the message says what to
@@ -59,10 +62,16 @@ bool act_law(explorer_state *st, const char *argument)
     }
 
     // without a name: off, or on again
-    const char *again = st->last_law[0] ? st->last_law : "hybrid";
-    return change_law(st, off || (!named && state_has_law(st)) ? "none"
-                          : named                              ? argument
-                                                               : again);
+    if (off || (!named && state_has_law(st))) {
+        return change_law(st, "none");
+    }
+    if (named) {
+        return change_law(st, argument);
+    }
+    if (st->last_law[0] != '\0') {
+        return change_law(st, st->last_law);
+    }
+    return change_law(st, "hybrid");
 }
 
 // The value of control.lock that an argument asks for: a mode, "none", or the next one of
@@ -104,11 +113,13 @@ static bool lock(explorer_state *st, const char *wanted)
     const int parameter = PARAMETER_INDEX(control.lock);
 
     // going on through the modes at one instant replaces the lock there
-    const session_input *last =
-        s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
-    const bool replaces = last != NULL && last->kind == SESSION_INPUT_TIMED &&
-                          last->time == s->now && last->parameter == parameter;
-    if (!(!replaces || act_worked(st, session_undo(s, &st->fault)))) {
+    bool replaces = false;
+    if (s->input_count > 0) {
+        const session_input *last = &s->inputs[s->input_count - 1];
+        replaces = last->kind == SESSION_INPUT_TIMED && last->time == s->now &&
+                   last->parameter == parameter;
+    }
+    if (replaces && !act_worked(st, session_undo(s, &st->fault))) {
         return false;
     }
 
@@ -119,10 +130,13 @@ static bool lock(explorer_state *st, const char *wanted)
         loss_unless(!replaces || session_redo(s, NULL) == STATUS_OK);
         return false;
     }
-    return (other && st->message.warning) ||
-           (strcmp(wanted, "none") == 0
-                ? act_tell(st, "the law chooses its mode itself from %.4f s on", s->now)
-                : act_tell(st, "held in '%s' from %.4f s on", wanted, s->now));
+    if (other && st->message.warning) {
+        return true;
+    }
+    if (strcmp(wanted, "none") == 0) {
+        return act_tell(st, "the law chooses its mode itself from %.4f s on", s->now);
+    }
+    return act_tell(st, "held in '%s' from %.4f s on", wanted, s->now);
 }
 
 bool act_lock(explorer_state *st, const char *argument)

@@ -30,7 +30,7 @@ bool act_data(explorer_state *st, const char *argument)
     if (!act_need_whole_run(st)) {
         return false;
     }
-    if (!(at == NULL || act_read_number(st, at + 1, &shift))) {
+    if (at != NULL && !act_read_number(st, at + 1, &shift)) {
         return false;
     }
     snprintf(path, sizeof path, "%.*s",
@@ -72,18 +72,31 @@ static bool tell_fit(explorer_state *st, const identification *id)
     for (int i = 0; i < id->count; i++) {
         const fitted_parameter *fit = &id->fit[i];
         const char *unit = sweep_axis_parameter(&fit->axis)->unit;
-        text_add(text, sizeof text,
-                 !fit->determined       ? "%s%s is not determined"
-                 : identify_at_end(fit) ? "%s%s %.5g, at the end of its range"
-                                        : "%s%s %.5g +- %.2g%s%s",
-                 i > 0 ? "; " : "", strchr(fit->axis.name, '.') + 1, fit->value,
-                 fit->standard_error, unit[0] ? " " : "", unit);
+        if (i > 0) {
+            text_add(text, sizeof text, "; ");
+        }
+        text_add(text, sizeof text, "%s", strchr(fit->axis.name, '.') + 1);
+        if (!fit->determined) {
+            text_add(text, sizeof text, " is not determined");
+        } else if (identify_at_end(fit)) {
+            text_add(text, sizeof text, " %.5g, at the end of its range", fit->value);
+        } else {
+            text_add(text, sizeof text, " %.5g +- %.2g%s%s", fit->value,
+                     fit->standard_error, unit[0] ? " " : "", unit);
+        }
     }
-    return act_tell(st, "%s%s", text,
-                    id->undetermined > 0 ? ": fit fewer, or record more"
-                    : misfits            ? "; pinned, but far off the data"
-                    : id->white          ? "; that run is pinned"
-                                : "; pinned, but the data show more than the model has");
+
+    // what to think of the fit as a whole
+    if (id->undetermined > 0) {
+        return act_tell(st, "%s: fit fewer, or record more", text);
+    }
+    if (misfits) {
+        return act_tell(st, "%s; pinned, but far off the data", text);
+    }
+    if (id->white) {
+        return act_tell(st, "%s; that run is pinned", text);
+    }
+    return act_tell(st, "%s; pinned, but the data show more than the model has", text);
 }
 
 // Pins the run that was compared with the data in the end, and lays these under it.
@@ -110,10 +123,11 @@ bool act_identify(explorer_state *st, const char *argument)
     identification id = {.base = &st->session.effective,
                          .starts = FIT_STARTS,
                          .jobs = FIT_THREADS};
-    if (argument[0] == '\0' || st->measured.row_count == 0) {
-        return act_refuse(st, argument[0] == '\0'
-                                  ? "identify takes parameters, such as k2 stiction"
-                                  : "there are no measured data: :data FILE.csv");
+    if (argument[0] == '\0') {
+        return act_refuse(st, "identify takes parameters, such as k2 stiction");
+    }
+    if (st->measured.row_count == 0) {
+        return act_refuse(st, "there are no measured data: :data FILE.csv");
     }
     if (!(act_need_whole_run(st) && act_need_short_runs(st, "identify", FIT_RUNS))) {
         return false;

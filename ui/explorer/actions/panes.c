@@ -62,7 +62,11 @@ static bool read_signals(explorer_state *st, const char *argument, pane *own)
     size_t length = 0;
     int depth = 0;
     for (const char *c = argument;; c++) {
-        depth += (*c == '(') - (*c == ')');
+        if (*c == '(') {
+            depth++;
+        } else if (*c == ')') {
+            depth--;
+        }
         if (*c != '\0' && *c != ' ' && (*c != ',' || depth > 0)) {
             word[length++] = *c;
         } else if (length > 0 && (*c != ' ' || !computes)) {
@@ -176,9 +180,11 @@ bool act_toggle_signal(explorer_state *st, int index, int k)
     pane *p = &st->panes.pane[index];
     p->hidden ^= 1u << k;
     p->grown = value_range_empty;
-    return act_tell(st, "%s is %s", signal_table[p->signals[k]].name,
-                    p->hidden >> k & 1 ? "hidden (K or a click on its legend shows it)"
-                                       : "shown");
+    const char *name = signal_table[p->signals[k]].name;
+    if (p->hidden >> k & 1) {
+        return act_tell(st, "%s is hidden (K or a click on its legend shows it)", name);
+    }
+    return act_tell(st, "%s is shown", name);
 }
 
 // One signal after the other is hidden, from the last to the first, then all are shown.
@@ -186,7 +192,7 @@ bool act_signal(explorer_state *st, const char *argument)
 {
     char text[LINE_TEXT], *words[4] = {argument[0] == '\0' ? text : NULL};
     int index = panes_focused(&st->panes);
-    if (!(act_split(argument, text, words) != 2 || act_read_pane(st, words[1], &index))) {
+    if (act_split(argument, text, words) == 2 && !act_read_pane(st, words[1], &index)) {
         return false;
     }
     const int signal = signal_find_any(words[0]);
@@ -230,17 +236,22 @@ static bool read_bound(explorer_state *st, const char *argument, const char *com
 {
     char text[LINE_TEXT], *words[4];
     solved_limit read = {.signal = -1};
-    const bool done =
-        act_split(argument, text, words) == 2 &&
-                (read.signal = signal_find_any(words[0])) >= 0
-            ? act_read_number(st, words[1], &read.bound)
-            : strcmp(argument, "off") == 0 ||
-                  act_refuse(st, "%s takes a signal and a value, such as force 2, or off",
-                             command);
-    if (done) {
+    if (strcmp(argument, "off") == 0) {
         *bound = read;
+        return true;
     }
-    return done;
+    if (act_split(argument, text, words) == 2) {
+        read.signal = signal_find_any(words[0]);
+    }
+    if (read.signal < 0) {
+        return act_refuse(st, "%s takes a signal and a value, such as force 2, or off",
+                          command);
+    }
+    if (!act_read_number(st, words[1], &read.bound)) {
+        return false;
+    }
+    *bound = read;
+    return true;
 }
 
 bool act_limit(explorer_state *st, const char *argument)
@@ -258,23 +269,27 @@ bool act_band(explorer_state *st, const char *argument)
         return act_refuse(st, "a band has a tolerance above 0");
     }
     st->band = band;
-    if (band.signal < 0 || !st->session.has_other) {
-        return act_tell(st, "%s",
-                        band.signal < 0 ? "no band" : "b pins the run that it is round");
+    if (band.signal < 0) {
+        return act_tell(st, "no band");
+    }
+    if (!st->session.has_other) {
+        return act_tell(st, "b pins the run that it is round");
+    }
+    const char *round = st->pinned.runs[st->pinned.baseline].name;
+    if (signal_is_derived(band.signal) || signal_is_state(band.signal)) {
+        return act_tell(st, "the band is round '%s'", round);
     }
 
     // where the present run leaves it
     const session *s = &st->session;
     run_difference d = {.on = true};
     difference_update(&d, 1, &s->run.trace, &s->other.trace);
-    const bool told = signal_is_derived(band.signal) || signal_is_state(band.signal);
-    const double first = told ? -1 : difference_first_beyond(&d, band.signal, band.bound);
+    const double first = difference_first_beyond(&d, band.signal, band.bound);
     difference_finish(&d);
-    return act_tell(st,
-                    told        ? "the band is round '%s'"
-                    : first < 0 ? "this run stays within the band round '%s'"
-                                : "this run leaves the band round '%s' at %.5f s",
-                    st->pinned.runs[st->pinned.baseline].name, first);
+    if (first < 0) {
+        return act_tell(st, "this run stays within the band round '%s'", round);
+    }
+    return act_tell(st, "this run leaves the band round '%s' at %.5f s", round, first);
 }
 
 bool act_alone(explorer_state *st, const char *argument)

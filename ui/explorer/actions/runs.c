@@ -97,8 +97,11 @@ bool act_take(explorer_state *st, const char *argument)
                                    &st->fault);
     } else {
         code = session_reopen(&other, from, st->session.patience, &st->fault);
-        if (code == STATUS_OK &&
-            (code = state_take_session(st, &other, &st->fault)) != STATUS_OK) {
+        if (code != STATUS_OK) {
+            return act_worked(st, code);
+        }
+        code = state_take_session(st, &other, &st->fault);
+        if (code != STATUS_OK) {
             session_finish(&other);
         }
     }
@@ -184,16 +187,23 @@ bool act_difference(explorer_state *st, const char *argument)
     }
     const int signal = st->panes.pane[focused].signals[0];
     const signal_info *info = &signal_table[signal];
-    const bool derived = signal_is_derived(signal),
-               none = derived || signal_is_state(signal);
-    const double first = none ? 0 : difference_first_beyond(d, signal, tolerance);
+    if (signal_is_derived(signal)) {
+        return act_tell(
+            st, "minus '%s', but an expression has no difference; D shows the runs",
+            name);
+    }
+    if (signal_is_state(signal)) {
+        return act_tell(
+            st, "minus '%s', but states such as %s are this run's; D shows the runs",
+            name, info->name);
+    }
+    const double first = difference_first_beyond(d, signal, tolerance);
+    if (first < 0) {
+        return act_tell(st, "minus '%s': %s never differs by more than %g %s", name,
+                        info->name, tolerance, info->unit);
+    }
     return act_tell(
-        st,
-        derived     ? "minus '%s', but an expression has no difference; D shows the runs"
-        : none      ? "minus '%s', but states such as %s are this run's; D shows the runs"
-        : first < 0 ? "minus '%s': %s never differs by more than %g %s"
-                    : "minus '%s': %s differs by more than %g %s from %.5f s on; D shows "
-                      "the runs",
+        st, "minus '%s': %s differs by more than %g %s from %.5f s on; D shows the runs",
         name, info->name, tolerance, info->unit, first);
 }
 
@@ -367,11 +377,13 @@ bool act_continue_sweep(explorer_state *st)
              clock_seconds(CLOCK_MONOTONIC) - begin < LONGEST_MAP_PIECE);
 
     // only the last one is news
-    return !lab_sweep_is_done(sweep) ||
-           act_tell(st,
-                    "%d runs: arrows%s choose one, Enter opens it, M another metric, Esc "
-                    "ends it",
-                    sweep->count, lab_sweep_is_map(sweep) ? " and < >" : "");
+    if (!lab_sweep_is_done(sweep)) {
+        return true;
+    }
+    const char *across = lab_sweep_is_map(sweep) ? " and < >" : "";
+    return act_tell(
+        st, "%d runs: arrows%s choose one, Enter opens it, M another metric, Esc ends it",
+        sweep->count, across);
 }
 
 bool act_sweep(explorer_state *st, const char *argument)
@@ -392,12 +404,21 @@ bool act_sweep(explorer_state *st, const char *argument)
         const int parameter = st->parameters.parameter;
         const parameters p = state_parameters(st);
         const double value = parameter_get(&p, parameter);
-        const bool number = slider_scale_of(parameter, value, &scale), about = value > 0;
-        prompt_open(&st->prompt, NULL, number ? "sweep %s=%g:%g:8%s" : "sweep %s=",
-                    parameter_table[parameter].path,
-                    about ? fmax(scale.low, value / 4) : scale.low,
-                    about ? fmin(scale.high, value * 4) : scale.high,
-                    about && scale.logarithmic ? ":log" : "");
+        const bool number = slider_scale_of(parameter, value, &scale);
+        const char *path = parameter_table[parameter].path, *spacing = "";
+        if (number && value > 0) {
+            scale.low = fmax(scale.low, value / 4);
+            scale.high = fmin(scale.high, value * 4);
+        }
+        if (value > 0 && scale.logarithmic) {
+            spacing = ":log";
+        }
+        if (number) {
+            prompt_open(&st->prompt, NULL, "sweep %s=%g:%g:8%s", path, scale.low,
+                        scale.high, spacing);
+        } else {
+            prompt_open(&st->prompt, NULL, "sweep %s=", path);
+        }
         return act_tell(st,
                         "first value, last value, number of runs; or values with commas");
     }
@@ -424,9 +445,13 @@ bool act_metric(explorer_state *st, const char *argument)
     int metric = summary_find(argument);
     if (argument[0] != '\0' && metric < 0) {
         const char *near = summary_suggest(argument);
-        return act_refuse(st, "there is no number '%.60s' of a run's summary%s%s%s",
-                          argument, near ? ", did you mean '" : "", near ? near : "",
-                          near ? "'?" : "");
+        if (near == NULL) {
+            return act_refuse(st, "there is no number '%.60s' of a run's summary",
+                              argument);
+        }
+        return act_refuse(
+            st, "there is no number '%.60s' of a run's summary, did you mean '%s'?",
+            argument, near);
     }
 
     // the next one that any of the runs has
@@ -443,7 +468,7 @@ bool act_metric(explorer_state *st, const char *argument)
             metric = -1;
         }
     }
-    if (!(metric < 0)) {
+    if (metric >= 0) {
         sweep->metric = metric;
     }
     return act_tell(st, "%s: %s", summary_table[sweep->metric].label,

@@ -30,9 +30,14 @@ bool act_open_scenario(explorer_state *st, const char *name)
     }
     st->playback.playing = true;
     const char *title = st->session.base.title ? st->session.base.title : "";
-    return act_tell_failed_run(st) ||
-           act_tell(st, changes > 0 ? "%s (u returns to %s and its changes)" : "%s",
-                    title, st->visits[st->present_visit - 1].from.base.name);
+    if (act_tell_failed_run(st)) {
+        return true;
+    }
+    if (changes == 0) {
+        return act_tell(st, "%s", title);
+    }
+    return act_tell(st, "%s (u returns to %s and its changes)", title,
+                    st->visits[st->present_visit - 1].from.base.name);
 }
 
 // The list of scenarios with the present one selected.
@@ -60,12 +65,17 @@ bool act_open(explorer_state *st, const char *argument)
     }
 
     // the neighbour in the list, or one by name
-    const bool next = strcmp(argument, "+1") == 0,
-               near = next || strcmp(argument, "-1") == 0;
-    const int at = scenario_menu_find(menu, st->session.base.name) + (next ? 1 : -1);
-    return act_open_scenario(st, near && menu->count > 0
-                                     ? menu->names[(at + 2 * menu->count) % menu->count]
-                                     : argument);
+    int by = 0;
+    if (strcmp(argument, "+1") == 0) {
+        by = 1;
+    } else if (strcmp(argument, "-1") == 0) {
+        by = -1;
+    }
+    if (by == 0 || menu->count == 0) {
+        return act_open_scenario(st, argument);
+    }
+    const int at = scenario_menu_find(menu, st->session.base.name) + by;
+    return act_open_scenario(st, menu->names[(at + 2 * menu->count) % menu->count]);
 }
 
 bool act_find(explorer_state *st, const char *argument)
@@ -106,11 +116,16 @@ bool act_allow(explorer_state *st, const char *argument)
     }
     const bool done = act_worked(st, consent_remember(&s->base, &kept, &st->fault));
     st->playback.playing = true;
-    return act_tell_failed_run(st) ||
-           (done &&
-            act_tell(st,
-                     kept ? "allowed, and remembered for just this scenario and program"
-                          : "allowed for this visit"));
+    if (act_tell_failed_run(st)) {
+        return true;
+    }
+    if (!done) {
+        return false;
+    }
+    if (kept) {
+        return act_tell(st, "allowed, and remembered for just this scenario and program");
+    }
+    return act_tell(st, "allowed for this visit");
 }
 
 void act_tell_replay(explorer_state *st)
@@ -199,7 +214,10 @@ bool act_answer(explorer_state *st, const char *argument)
     }
     if (argument[0] == '\0') {
         prompt_open(&st->prompt, NULL, "answer ");
-        return act_tell(st, choice ? "the number of an answer" : "a number");
+        if (choice) {
+            return act_tell(st, "the number of an answer");
+        }
+        return act_tell(st, "a number");
     }
     if (!act_read_number(st, argument, &value)) {
         return false;

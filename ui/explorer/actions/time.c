@@ -166,11 +166,12 @@ bool act_tell_event(explorer_state *st)
 
     // an event with its numbers
     if (e != NULL) {
-        return act_tell(st,
-                        e->kind == EVENT_IMPACT
-                            ? "%s at %.6f s: %.4g N s at %.4g m/s, %.4g J lost"
-                            : "%s at %.6f s",
-                        event_name(e->kind), e->time, e->impulse, e->speed, e->loss);
+        const char *name = event_name(e->kind);
+        if (e->kind == EVENT_IMPACT) {
+            return act_tell(st, "%s at %.6f s: %.4g N s at %.4g m/s, %.4g J lost", name,
+                            e->time, e->impulse, e->speed, e->loss);
+        }
+        return act_tell(st, "%s at %.6f s", name, e->time);
     }
 
     // else it may be the instant of another mode
@@ -219,7 +220,8 @@ bool act_touch(explorer_state *st, const char *argument)
                 (t->rows[before].contact != 0 && t->rows[before].time >= e->time))) {
             before--;
         }
-        if (t->rows[before].contact == 0 && (back ? before < row : before > row)) {
+        const bool beyond = (back && before < row) || (!back && before > row);
+        if (t->rows[before].contact == 0 && beyond) {
             found = before;
             if (!back) {
                 break;
@@ -251,8 +253,10 @@ bool act_speed(explorer_state *st, const char *argument)
     double wanted = st->playback.speed;
 
     // a step up or down, or the speed itself
-    if (strcmp(argument, "up") == 0 || strcmp(argument, "down") == 0) {
-        wanted = playback_next_speed(&st->playback, argument[0] == 'u' ? 1 : -1);
+    if (strcmp(argument, "up") == 0) {
+        wanted = playback_next_speed(&st->playback, 1);
+    } else if (strcmp(argument, "down") == 0) {
+        wanted = playback_next_speed(&st->playback, -1);
     } else if (!act_read_number(st, argument, &wanted)) {
         return false;
     }
@@ -276,10 +280,10 @@ bool act_slow(explorer_state *st, const char *argument)
         return act_refuse(st, "impacts are shown 1 to %d times slower", MOST_SLOW);
     }
     st->playback.slow = factor;
-    return act_tell(st,
-                    factor > 1 ? "impacts are shown %g times slower"
-                               : "impacts are shown at the speed of the rest",
-                    factor);
+    if (factor > 1) {
+        return act_tell(st, "impacts are shown %g times slower", factor);
+    }
+    return act_tell(st, "impacts are shown at the speed of the rest");
 }
 
 bool act_restart(explorer_state *st, const char *argument)

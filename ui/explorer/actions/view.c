@@ -16,8 +16,11 @@ bool act_select(explorer_state *st, const char *argument)
 
     // the sweep selects among its runs, panels in which nothing is selected scroll
     if (st->side.panel == PANEL_SWEEP) {
-        act_select_swept(st, lab_sweep_is_map(sweep) ? -direction * (int)sweep->axis.count
-                                                     : direction);
+        int by = direction;
+        if (lab_sweep_is_map(sweep)) {
+            by = -direction * (int)sweep->axis.count;
+        }
+        act_select_swept(st, by);
     } else if (st->side.panel != PANEL_PARAMETERS) {
         st->drawn.scroll[st->side.panel] += direction;
     } else {
@@ -117,10 +120,21 @@ bool act_mark(explorer_state *st, const char *argument)
     }
     const size_t side = argument[0] != '\0' ? 0 : trace_side(&s->run.trace, s->row);
     st->mark = (time_mark){argument[0] != '\0' || !st->mark.set, time, side};
-    return act_tell(st, st->mark.set
-                            ? "mark set: values now show the difference to it, X "
-                              "statistics from it to the cursor"
-                            : "no mark");
+    if (!st->mark.set) {
+        return act_tell(st, "no mark");
+    }
+    return act_tell(st, "mark set: values now show the difference to it, X statistics "
+                        "from it to the cursor");
+}
+
+// Whether Tab passes over a panel: one of the side with nothing to show, or one of the
+// stack that has room there.
+static bool is_passed_over(const explorer_state *st, panel_id id)
+{
+    if (panel_place_of(id) == PLACE_SIDE) {
+        return id == PANEL_SWEEP && !lab_sweep_is_on(&st->sweep);
+    }
+    return !st->drawn.folded[id];
 }
 
 bool act_side(explorer_state *st, const char *argument)
@@ -136,10 +150,7 @@ bool act_side(explorer_state *st, const char *argument)
         } else {
             next = (panel_id)(next + 1);
         }
-    } while (next != PANEL_NONE &&
-             (panel_place_of(next) == PLACE_SIDE
-                  ? next == PANEL_SWEEP && !lab_sweep_is_on(&st->sweep)
-                  : !st->drawn.folded[next]));
+    } while (next != PANEL_NONE && is_passed_over(st, next));
 
     // a narrow screen: curves, each panel of the side, curves again
     if (narrow && (!st->side.in_front || next == PANEL_NONE)) {
@@ -366,10 +377,10 @@ bool act_rate(explorer_state *st, const char *argument)
         return act_refuse(st, "a rate is at least 1 kB/s, or off");
     }
     st->looks.rate = rate;
-    return act_tell(st,
-                    rate > 0 ? "pictures take at most %g kB/s"
-                             : "pictures as fast as they are drawn",
-                    rate);
+    if (rate > 0) {
+        return act_tell(st, "pictures take at most %g kB/s", rate);
+    }
+    return act_tell(st, "pictures as fast as they are drawn");
 }
 
 bool act_bending(explorer_state *st, const char *argument)
@@ -383,10 +394,10 @@ bool act_bending(explorer_state *st, const char *argument)
         return act_refuse(st, "bending is drawn 1 to %d times as large", MOST);
     }
     st->looks.bending = factor;
-    return act_tell(st,
-                    factor == 1 ? "bending is drawn as it is"
-                                : "bending is drawn %g times as large",
-                    factor);
+    if (factor == 1) {
+        return act_tell(st, "bending is drawn as it is");
+    }
+    return act_tell(st, "bending is drawn %g times as large", factor);
 }
 
 bool act_redraw(explorer_state *st, const char *argument)

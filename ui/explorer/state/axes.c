@@ -160,7 +160,9 @@ static value_range calm_range(const trace *t, int signal, size_t first, size_t l
     size_t count = 0;
     for (size_t r = first; r < end; r += stride) {
         values[count] = signal_value(&t->rows[r], signal);
-        count += isfinite(values[count]) != 0;
+        if (isfinite(values[count])) {
+            count++;
+        }
     }
     if (count == 0) {
         return value_range_empty;

@@ -176,7 +176,9 @@ bool key_bind(key_bindings *b, int key, const char *line)
     if (at < USER_KEYS) {
         b->own[at].key = key;
         snprintf(b->own[at].line, sizeof b->own[at].line, "%s", line);
-        b->count += index < 0;
+        if (index < 0) {
+            b->count++;
+        }
     }
     return at < USER_KEYS;
 }

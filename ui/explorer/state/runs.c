@@ -25,7 +25,9 @@ int run_list_of_scenario(const run_list *list, const session *s)
 {
     int count = 0;
     for (int i = 0; i < list->count; i++) {
-        count += same_base(&list->runs[i].from.base, &s->base);
+        if (same_base(&list->runs[i].from.base, &s->base)) {
+            count++;
+        }
     }
     return count;
 }

@@ -122,13 +122,23 @@ int scenario_menu_lines(const scenario_menu *menu, int *selected)
 void scenario_menu_move(scenario_menu *menu, int lines)
 {
     int at;
-    const int count = scenario_menu_lines(menu, &at), to = at < 0 ? 0 : at + lines;
-    const int last = count - 1, kept = to > last ? last : to < 0 ? 0 : to;
-    if (count > 0) {
-        menu->selected = menu->shown[kept];
-    } else {
+    const int count = scenario_menu_lines(menu, &at);
+    if (count == 0) {
         menu->selected = 0;
+        return;
     }
+
+    // from the selected line if the filter lets it pass, within the list
+    int to = 0;
+    if (at >= 0) {
+        to = at + lines;
+    }
+    if (to > count - 1) {
+        to = count - 1;
+    } else if (to < 0) {
+        to = 0;
+    }
+    menu->selected = menu->shown[to];
 }
 
 // --- lessons ---------------------------------------------------------------------------

@@ -18,7 +18,9 @@ int state_visible_pins(const explorer_state *st)
 {
     int count = 0;
     for (int i = 0; i < st->pinned.count; i++) {
-        count += !st->pinned.runs[i].hidden;
+        if (!st->pinned.runs[i].hidden) {
+            count++;
+        }
     }
     return count;
 }
@@ -46,8 +48,10 @@ int state_runs(const explorer_state *st, const pane *p, shown_run runs[SHOWN_RUN
     runs[count++] = (shown_run){SHOWN_PRESENT, 0, &s->run.trace, state_run_id(st)};
     for (int i = 0; i < pins->count; i++) {
         const pinned_run *r = &pins->runs[i];
-        runs[count] = (shown_run){SHOWN_PINNED, i, &r->run.trace, pinned_id | r->id};
-        count += !r->hidden;
+        if (!r->hidden) {
+            runs[count++] =
+                (shown_run){SHOWN_PINNED, i, &r->run.trace, pinned_id | r->id};
+        }
     }
     for (int i = 0; i < lab_sweep_curves(&st->sweep); i++) {
         const swept_run *r = &st->sweep.runs[i];

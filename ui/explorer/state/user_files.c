@@ -24,11 +24,14 @@ bool user_file(user_folder folder, const char *name, char *path, size_t size, bo
     const char *base = getenv(folders[folder].variable), *home = getenv("HOME");
 
     // where such files belong, or the usual place below the home folder
-    const bool given = base != NULL && base[0] == '/',
-               usual = home != NULL && home[0] == '/';
-    snprintf(path, size, "%s", given ? base : usual ? home : "~");
-    text_add(path, size, "%s%s/impactlab/%s", given ? "" : "/",
-             given ? "" : folders[folder].usual, name);
+    const bool given = base != NULL && base[0] == '/';
+    const bool usual = home != NULL && home[0] == '/';
+    if (given) {
+        snprintf(path, size, "%s", base);
+    } else {
+        snprintf(path, size, "%s/%s", usual ? home : "~", folders[folder].usual);
+    }
+    text_add(path, size, "/impactlab/%s", name);
     if ((!given && !usual) || strlen(path) + 1 >= size) {
         return false;
     }
