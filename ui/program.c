@@ -52,7 +52,7 @@ static bool is_lab_option(const char *word)
 }
 
 // Reads what follows the command's name argv[0] and runs it. Returns the exit status.
-static int run_command(const command *c, int argc, char **argv)
+static int call_command(const command *c, int argc, char **argv)
 {
     arguments a = {.command = c, .commands = &command_table};
     int result;
@@ -81,12 +81,12 @@ static int dispatch(int argc, char **argv)
     if (word == NULL) {
         char *call[] = {"lab", NULL};
         if (terminal_usable(&f)) {
-            return run_command(&lab_command, 1, call);
+            return call_command(&lab_command, 1, call);
         }
         return print_welcome();
     }
     if (is_lab_option(word)) {
-        return run_command(&lab_command, argc, argv);
+        return call_command(&lab_command, argc, argv);
     }
 
     // what is asked of the program as a whole
@@ -100,7 +100,7 @@ static int dispatch(int argc, char **argv)
     }
     const command *found = command_find(&command_table, word);
     if (found != NULL) {
-        return run_command(found, argc - 1, argv + 1);
+        return call_command(found, argc - 1, argv + 1);
     }
     return complain_command(&command_table, word);
 }

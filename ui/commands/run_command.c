@@ -10,7 +10,7 @@
 #include "src/base/words.h"
 #include "src/scenario/effect.h"
 #include "src/tables/parameters.h"
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 
 enum { EVENTS_SHOWN = 16 };

@@ -10,7 +10,7 @@
 #include "src/base/whole_file.h"
 #include "src/exchange/mat_file.h"
 #include "src/study/result_rows.h"
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 
 #define TWO_PI (2 * 3.14159265358979323846)

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "render/scene/film.h"
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 
 enum { BAR_LENGTH = 40 };

@@ -1,7 +1,7 @@
 // impactlab compare: the numbers and curves of several runs side by side.
 #include "ui/commands/command.h"
 
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 
 #include <math.h>
 #include <stdlib.h>

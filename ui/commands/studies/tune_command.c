@@ -9,7 +9,7 @@
 #include "src/study/store/sweep_store.h"
 #include "src/study/linear/linear.h"
 #include "src/study/tune.h"
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 
 // What is judged on draws that the search did not see: the values as given, those found,

@@ -1,4 +1,4 @@
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 
 #include <assert.h>
 #include <math.h>

@@ -12,7 +12,7 @@
 #include "src/base/words.h"
 #include "src/study/pool.h"
 #include "ui/commands/progress.h"
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 
 // --- figures ---------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@
 #include "src/study/robust.h"
 #include "src/tables/settings.h"
 #include "ui/commands/progress.h"
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 
 enum { DEFAULT_RUNS = 200, DEFAULT_CASE_RUNS = 4 };
 

@@ -6,7 +6,7 @@
 
 #include "src/arm/modes.h"
 #include "src/base/json.h"
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 
 #define TWO_PI (2 * 3.14159265358979323846)
 

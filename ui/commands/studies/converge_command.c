@@ -7,7 +7,7 @@
 #include "src/base/json.h"
 #include "src/base/numbers.h"
 #include "src/study/convergence.h"
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 
 // The panel, and for --plot its runs.

@@ -11,7 +11,7 @@
 #include "src/base/json.h"
 #include "src/study/convergence.h"
 #include "src/study/links.h"
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 #include "src/study/follow.h"
 

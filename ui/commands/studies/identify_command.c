@@ -4,7 +4,7 @@
 #include "src/base/json.h"
 #include "src/base/numbers.h"
 #include "src/study/identify.h"
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 
 enum { MOST_LINKS = 8 };

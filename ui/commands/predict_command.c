@@ -6,7 +6,7 @@
 #include "src/base/json.h"
 #include "src/base/numbers.h"
 #include "src/run/run.h"
-#include "ui/commands/pictures.h"
+#include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
 
 // Commands of --then.
