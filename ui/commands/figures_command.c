@@ -1,7 +1,6 @@
-// The commands that draw figures: those of the thesis, of a recipe, and a report of many.
+// impactlab figures: draws the figures and tables of the thesis.
 #include "ui/commands/command.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,151 +10,231 @@
 #include "src/base/whole_file.h"
 #include "src/base/words.h"
 #include "src/study/pool.h"
-#include "ui/commands/progress.h"
 #include "ui/commands/command_pictures.h"
-
-// --- figures ---------------------------------------------------------------------------
+#include "ui/commands/progress.h"
 
 #define DEFAULT_FOLDER  "figures"
 #define DEFAULT_FORMATS "png"
 
-// Whether every ID names a figure; says which does not.
-static int check_ids(const arguments *a)
-{
-    for (int i = 0; i < a->operand_count; i++) {
-        nearest_word near = nearest_begin(a->operands[i]);
-        if (thesis_figure_find(a->operands[i]) != NULL) {
-            continue;
-        }
-
-        const thesis_figure *known;
-        for (int k = 0; (known = thesis_figure_at(k)) != NULL; k++) {
-            nearest_try(&near, known->id);
-        }
-        return complain("there is no figure '%s', did you mean '%s'? (impactlab figures "
-                        "--help lists all)",
-                        a->operands[i], near.best ? near.best : thesis_figure_at(0)->id);
-    }
-    return EXIT_DONE;
-}
-
+// One of the figures that were asked for.
 typedef struct asked_figure {
     const thesis_figure *figure;
     char *tex;   // its figure environment, NULL before it is drawn
     fault fault; // of a file of it that could not be written
-    bool taken;  // it is drawn, and the drawing thread is through with it
+    bool done;   // it is drawn, or was tried
 } asked_figure;
 
 // Figures in the order in which they were asked for.
 typedef struct figure_list {
     asked_figure *figures;
-    size_t *order;          // in which they are begun
-    size_t count, reported; // of all, and of those already reported
-    size_t drawn;
+    size_t *order; // in which they are begun
+    size_t count;
+    size_t printed; // the first ones, whose lines are printed
+    size_t drawn;   // without a fault
     bool quiet;
     const char *folder, *formats;
     figure_options options;
     const fault *failed; // of the first file that could not be written, NULL: all could
 } figure_list;
 
-static void draw_one(void *context, size_t i, void *scratch, void *result)
+// --- what is drawn ---------------------------------------------------------------------
+
+// Complains about an ID that names no figure. Returns the exit status.
+static int complain_figure(const char *id)
 {
+    nearest_word near = nearest_begin(id);
+    const thesis_figure *known;
+    for (int i = 0; (known = thesis_figure_at(i)) != NULL; i++) {
+        nearest_try(&near, known->id);
+    }
+
+    const char *suggested = near.best;
+    if (suggested == NULL) {
+        suggested = thesis_figure_at(0)->id;
+    }
+    return complain("there is no figure '%s', did you mean '%s'? (impactlab figures "
+                    "--help lists all)",
+                    id, suggested);
+}
+
+// Lists the figures whose IDs are given, without any all there are. Returns the exit
+// status.
+static int choose_figures(figure_list *list, const arguments *a)
+{
+    list->count = (size_t)a->operand_count;
+    if (list->count == 0) {
+        list->count = (size_t)thesis_figure_count();
+    }
+    list->figures = g_new0(asked_figure, list->count);
+
+    for (size_t i = 0; i < list->count; i++) {
+        if (a->operand_count == 0) {
+            list->figures[i].figure = thesis_figure_at((int)i);
+            continue;
+        }
+        list->figures[i].figure = thesis_figure_find(a->operands[i]);
+        if (list->figures[i].figure == NULL) {
+            return complain_figure(a->operands[i]);
+        }
+    }
+    return EXIT_DONE;
+}
+
+// Slow figures are begun first, so that no thread is left with one at the end.
+static void order_slow_first(figure_list *list)
+{
+    size_t placed = 0;
+    list->order = g_new(size_t, list->count);
+    for (size_t i = 0; i < list->count; i++) {
+        if (list->figures[i].figure->slow) {
+            list->order[placed++] = i;
+        }
+    }
+    for (size_t i = 0; i < list->count; i++) {
+        if (!list->figures[i].figure->slow) {
+            list->order[placed++] = i;
+        }
+    }
+}
+
+static void figure_list_finish(figure_list *list)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        free(list->figures[i].tex);
+    }
+    g_free(list->figures);
+    g_free(list->order);
+}
+
+// --- drawing, on several threads -------------------------------------------------------
+
+// Draws the i-th figure to be begun; the result is its status.
+static void draw_piece(void *context, size_t i, void *scratch, void *result)
+{
+    (void)scratch;
     const figure_list *list = context;
     asked_figure *drawn = &list->figures[list->order[i]];
     status *code = result;
+
+    // the figure environment waits in memory until it is its turn in the file
     text_stream tex;
-    if (text_stream_open(&tex)) {
-        *code = figure_draw(drawn->figure->id, &list->options, list->folder,
-                            list->formats, tex.stream, &drawn->fault);
-        drawn->tex = text_stream_close(&tex, NULL);
+    if (!text_stream_open(&tex)) {
+        *code = fault_no_memory(&drawn->fault);
+        return;
     }
+    *code = figure_draw(drawn->figure->id, &list->options, list->folder, list->formats,
+                        tex.stream, &drawn->fault);
+    drawn->tex = text_stream_close(&tex, NULL);
     if (drawn->tex == NULL) {
         *code = fault_no_memory(&drawn->fault);
     }
     drawn->fault.code = *code;
 }
 
-// Prints every figure whose predecessors have been printed.
-static status take_one(void *context, size_t i, const void *result, fault *f)
+// Prints a line for each figure before which all are done.
+static void print_done_figures(figure_list *list)
 {
-    figure_list *list = context;
-    asked_figure *taken = &list->figures[list->order[i]];
-    const status code = *(const status *)result;
-    if (code == STATUS_STOPPED) {
-        return STATUS_OK; // as if it had not been begun
-    }
-    taken->taken = true;
-    list->drawn += code == STATUS_OK;
-    if (code != STATUS_OK && list->failed == NULL) {
-        list->failed = &taken->fault;
-    }
-    if (code != STATUS_OK && code != STATUS_CANNOT_WRITE) {
-        *f = taken->fault;
-        return code;
-    }
-    for (; list->reported < list->count && list->figures[list->reported].taken;
-         list->reported++) {
-        const asked_figure *next = &list->figures[list->reported];
+    while (list->printed < list->count && list->figures[list->printed].done) {
+        const asked_figure *next = &list->figures[list->printed++];
         if (!list->quiet && next->fault.code == STATUS_OK) {
             say("%-10s  %s/%s  %s\n", next->figure->id, list->folder, next->figure->file,
                 next->figure->caption);
         }
     }
+}
+
+// Takes a figure that a thread is through with. A file that cannot be written keeps no
+// other figure from being drawn; every other fault ends the work.
+static status collect_piece(void *context, size_t i, const void *result, fault *f)
+{
+    figure_list *list = context;
+    asked_figure *collected = &list->figures[list->order[i]];
+    const status code = *(const status *)result;
+    if (code == STATUS_STOPPED) {
+        return STATUS_OK; // as if it had not been begun
+    }
+
+    collected->done = true;
+    if (code == STATUS_OK) {
+        list->drawn++;
+    } else if (list->failed == NULL) {
+        list->failed = &collected->fault;
+    }
+    if (code != STATUS_OK && code != STATUS_CANNOT_WRITE) {
+        *f = collected->fault;
+        return code;
+    }
+    print_done_figures(list);
     return STATUS_OK;
 }
 
-// Draws the figures that were asked for, on as many threads as there are processors, and
-// writes their environments.
-static status draw_and_write(figure_list *list, const arguments *a, fault *f)
+// Writes the figure environments of what was drawn to --latex.
+static status write_environments(const figure_list *list, const char *path, fault *f)
+{
+    whole_file out;
+    TRY(whole_file_open(&out, path, f));
+    for (size_t i = 0; i < list->count; i++) {
+        if (list->figures[i].done) {
+            fputs(list->figures[i].tex, out.stream);
+        }
+    }
+    return whole_file_commit(&out, f);
+}
+
+static status draw_figures(figure_list *list, const arguments *a, fault *f)
 {
     const pool_work work = {.context = list,
                             .count = list->count,
                             .result_size = sizeof(status),
-                            .compute = draw_one,
-                            .collect = take_one,
+                            .compute = draw_piece,
+                            .collect = collect_piece,
                             .stop = &interrupted};
-    for (size_t i = 0; i < list->count; i++) {
-        if (a->operand_count > 0) {
-            list->figures[i].figure = thesis_figure_find(a->operands[i]);
-        } else {
-            list->figures[i].figure = thesis_figure_at((int)i);
-        }
+    order_slow_first(list);
+    TRY(pool_run(&work, many_runs_jobs(a), f));
+    if (a->latex != NULL) {
+        return write_environments(list, a->latex, f);
     }
-
-    // slow ones first, so that no thread is left with one at the end
-    list->order = (size_t *)(list->figures + list->count);
-    size_t placed = 0;
-    for (int slow = 1; slow >= 0; slow--) {
-        for (size_t i = 0; i < list->count; i++) {
-            if (list->figures[i].figure->slow == slow) {
-                list->order[placed++] = i;
-            }
-        }
-    }
-
-    whole_file out;
-    status code = pool_run(&work, many_runs_jobs(a), f);
-    if (code == STATUS_OK && a->latex != NULL &&
-        (code = whole_file_open(&out, a->latex, f)) == STATUS_OK) {
-        for (size_t i = 0; i < list->count; i++) {
-            if (list->figures[i].taken) {
-                fputs(list->figures[i].tex, out.stream);
-            }
-        }
-        code = whole_file_commit(&out, f);
-    }
-    return code;
+    return STATUS_OK;
 }
 
-static int figures(const arguments *a)
+// --- the command -----------------------------------------------------------------------
+
+static json_t *figures_json(const figure_list *list)
 {
-    fault f = {0};
-    size_t count = (size_t)a->operand_count;
-    if (count == 0) {
-        count = (size_t)thesis_figure_count();
+    json_t *array = json_array();
+    for (size_t i = 0; i < list->count; i++) {
+        const asked_figure *asked = &list->figures[i];
+        if (asked->done && asked->fault.code == STATUS_OK) {
+            json_add(array, json_of("id:t folder:t file:t formats:t caption:t",
+                                    asked->figure->id, list->folder, asked->figure->file,
+                                    list->formats, asked->figure->caption));
+        }
     }
-    figure_list list = {.count = count,
-                        .quiet = !summary_wanted(a),
+    return array;
+}
+
+// Says what became of all figures. Returns the exit status.
+static int report_figures(const figure_list *list, const arguments *a)
+{
+    int result = EXIT_DONE;
+    if (a->json != NULL) {
+        result = write_json(a->json, figures_json(list));
+    }
+    if (list->failed != NULL) {
+        result = worse(result, complain_fault(list->failed));
+    }
+    if (interrupted != 0 && list->drawn < list->count) {
+        complain("stopped: %zu of %zu figures were drawn and are kept", list->drawn,
+                 list->count);
+        result = worse(result, EXIT_FAILED);
+    }
+    return result;
+}
+
+static int draw_thesis_figures(const arguments *a)
+{
+    SCOPED(figure_list_finish)
+    figure_list list = {.quiet = !summary_wanted(a),
                         .folder = DEFAULT_FOLDER,
                         .formats = DEFAULT_FORMATS};
     if (a->output != NULL) {
@@ -164,9 +243,7 @@ static int figures(const arguments *a)
     if (a->format != NULL) {
         list.formats = a->format;
     }
-
-    int code = EXIT_DONE;
-    int ended = check_ids(a);
+    int ended = choose_figures(&list, a);
     if (ended != EXIT_DONE) {
         return ended;
     }
@@ -175,55 +252,26 @@ static int figures(const arguments *a)
         return ended;
     }
 
-    // lists of figures to be drawn and of their results; an interrupt leaves those that
-    // are drawn
+    // an interrupt leaves the figures that are drawn
+    fault f = {0};
     interrupts_catch();
-    list.figures = calloc(count, sizeof *list.figures + sizeof *list.order);
-    status drawn;
-    if (list.figures != NULL) {
-        drawn = draw_and_write(&list, a, &f);
-    } else {
-        drawn = fault_no_memory(&f);
+    if (draw_figures(&list, a, &f) != STATUS_OK) {
+        return complain_fault(&f);
     }
-    if (drawn != STATUS_OK) {
-        code = complain_fault(&f);
-    } else if (a->json != NULL) {
-        json_t *array = json_array();
-        for (size_t i = 0; i < count; i++) {
-            const thesis_figure *which = list.figures[i].figure;
-            if (list.figures[i].taken && list.figures[i].fault.code == STATUS_OK) {
-                json_add(array,
-                         json_of("id:t folder:t file:t formats:t caption:t", which->id,
-                                 list.folder, which->file, list.formats, which->caption));
-            }
-        }
-        code = write_json(a->json, array);
-    }
-    if (drawn == STATUS_OK && list.failed != NULL) {
-        code = worse(code, complain_fault(list.failed));
-    }
-    if (drawn == STATUS_OK && interrupted != 0 && list.drawn < count) {
-        code = worse(EXIT_FAILED,
-                     complain("stopped: %zu of %zu figures were drawn and are kept",
-                              list.drawn, count));
-    }
-    for (size_t i = 0; list.figures != NULL && i < count; i++) {
-        free(list.figures[i].tex);
-    }
-    free(list.figures);
-    return code;
+    return report_figures(&list, a);
 }
 
 static const char *figure_word(const command_list *all, int i)
 {
-    const thesis_figure *which = thesis_figure_at(i);
-    if (which != NULL) {
-        return which->id;
+    (void)all;
+    const thesis_figure *known = thesis_figure_at(i);
+    if (known == NULL) {
+        return NULL;
     }
-    return NULL;
+    return known->id;
 }
 
-static const option_row rows[] = {
+static const option_row figures_rows[] = {
     OUTPUT_OPTION(PLACE, "FOLDER", "folder to write to (figures)"),
     OPTION(TEXT, "format", "png,pdf,svg", "which kinds of files to write", PLACE(format)),
 };
@@ -241,131 +289,6 @@ const command figures_command = {
         "residuals; "
         "errors: how near they\ncome out; beta-gamma: the map of Newmark's parameters.\n",
     .operand_word = figure_word,
-    .options = {&json_options, OWN_OPTIONS(rows), &quiet_options, &page_options},
-    .run = figures,
-};
-
-// --- plot ------------------------------------------------------------------------------
-
-static int plot(const arguments *a)
-{
-    figure_options o;
-
-    // what can be refused before the recipe is read
-    int ended = read_picture_options(a, &o);
-    if (ended != EXIT_DONE) {
-        return ended;
-    }
-    if (o.overlay != NULL || o.signals != NULL) {
-        return complain(
-            "a recipe says itself which signals and data it shows, --%s is for runs",
-            o.overlay != NULL ? "overlay" : "signals");
-    }
-
-    // the recipe's name with .png, in the present folder, unless there is another
-    const char *slash = strrchr(a->operands[0], '/');
-    const char *name = slash != NULL ? slash + 1 : a->operands[0],
-               *dot = strrchr(name, '.');
-    const int length = dot != NULL && dot != name ? (int)(dot - name) : (int)strlen(name);
-    SCOPED(free_kept) char *path = NULL;
-    if (a->plot != NULL ? asprintf(&path, "%s", a->plot) < 0
-                        : asprintf(&path, "%.*s.png", length, name) < 0) {
-        path = NULL;
-    }
-    fault f = {0};
-    if (path != NULL) {
-        if (picture_check_path(path, &f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
-    } else {
-        if (fault_no_memory(&f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
-    }
-
-    // what the command line does not name: the picture, and what stands beside it
-    g_autofree char *csv = artwork_beside(path, ".csv"),
-                    *text = artwork_beside(path, ".txt");
-    const bool named = a->plot != NULL;
-    if ((!named && !whole_file_add_result(path)) || !whole_file_add_result(csv) ||
-        (a->bare && !named && !whole_file_add_result(text))) {
-        return complain("two results cannot both be written to %s or beside it", path);
-    }
-
-    // faults in the recipe are reported as they are found and leave `why` empty
-    interrupts_catch();
-    SCOPED(artwork_finish) artwork art = {0};
-    fault why = {0};
-    if (recipe_open(a->operands[0], &o, report_to_stderr, NULL, &art, &why) !=
-        STATUS_OK) {
-        return why.code != STATUS_OK ? complain_fault(&why) : EXIT_BAD_ARGUMENTS;
-    }
-    if (artwork_publish(&art, &o, path, true, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
-
-    // a default name is not known to the user yet
-    if (!a->quiet) {
-        say("%s: %s\n", a->operands[0], path);
-    }
-    return EXIT_DONE;
-}
-
-static const option_row plot_rows[] = {
-    OPTION(PICTURE, "output", "FILE.{png,pdf,svg}",
-           "where to draw it (the recipe's name, as PNG)", PLACE(plot), .letter = 'o'),
-};
-
-const command plot_command = {
-    CALLED("plot", PICTURES,
-           "Draw a figure from a recipe: runs, data and tables in panels"),
-    OPERANDS("RECIPE.yaml", 1, 1),
-    .help = "A recipe names runs with changed parameters, measured data and the "
-            "databases of sweeps, and the\npanels that show them. A CSV of what "
-            "is drawn stands beside the picture. Examples are "
-            "in\nscenarios/recipes, all keys in docs/reference/recipes.md.\n",
-    .options = {OWN_OPTIONS(plot_rows), &quiet_options, &page_options},
-    .run = plot,
-};
-
-// --- report ----------------------------------------------------------------------------
-
-static int report(const arguments *a)
-{
-    fault f = {0};
-    const char *folder = a->output ? a->output : "report";
-    const int items = a->operand_count > 0 ? a->operand_count : thesis_figure_count();
-    const int steps = 2 * items; // computed, then drawn
-    run_monitor *monitor = work_begin(a, "steps", steps);
-    status code = report_write(folder, a->operands, a->operand_count, monitor, &f);
-    work_end();
-
-    if (code == STATUS_STOPPED) {
-        complain("stopped: %d of %d steps were done, the report is as it was before",
-                 monitor->pieces, steps);
-        return EXIT_FAILED;
-    }
-    if (code != STATUS_OK) {
-        return complain_fault(&f);
-    }
-    if (!a->quiet) {
-        say("%s/report.html\n%s/report.pdf\n", folder, folder);
-    }
-    return EXIT_DONE;
-}
-
-static const option_row report_rows[] = {
-    OUTPUT_OPTION(PLACE, "FOLDER", "folder to write to (report)"),
-};
-
-const command report_command = {
-    CALLED("report", THESIS, "Figures and tables as one web page and one PDF"),
-    SCENARIOS("[SCENARIO|RECIPE.yaml]...", 0, 64),
-    .help = "Of the scenarios and recipes named, or without any of the whole "
-            "thesis. Into the folder 'report' unless -o says otherwise. The page "
-            "needs no other file and no network. Under\neach item stand its "
-            "scenario, its model and the command that makes it again.\n^C ends "
-            "it and leaves the report of before (exit status 130).\n",
-    .options = {OWN_OPTIONS(report_rows), &quiet_options},
-    .run = report,
+    .options = {&json_options, OWN_OPTIONS(figures_rows), &quiet_options, &page_options},
+    .run = draw_thesis_figures,
 };

@@ -1,0 +1,110 @@
+// impactlab plot: draws a figure from a recipe.
+#include "ui/commands/command.h"
+
+#include <string.h>
+
+#include "render/figures/figures.h"
+#include "render/page/picture_file.h"
+#include "src/base/whole_file.h"
+#include "src/base/words.h"
+#include "ui/commands/command_pictures.h"
+#include "ui/commands/interrupts.h"
+
+// Where the picture goes if -o does not say it: a PNG of the recipe's name in the present
+// folder. To be freed with g_free.
+static char *default_picture(const char *recipe)
+{
+    g_autofree char *name = g_path_get_basename(recipe);
+    char *dot = strrchr(name, '.');
+    if (dot != NULL && dot != name) {
+        *dot = '\0';
+    }
+    return g_strconcat(name, ".png", NULL);
+}
+
+// Claims the places of the picture and of what stands beside it, as far as the command
+// line has not. Returns the exit status.
+static int claim_places(const arguments *a, const char *path)
+{
+    g_autofree char *csv = artwork_beside(path, ".csv");
+    g_autofree char *text = artwork_beside(path, ".txt");
+    bool free_places = whole_file_add_result(csv);
+    if (a->plot == NULL) {
+        free_places = free_places && whole_file_add_result(path) &&
+                      (!a->bare || whole_file_add_result(text));
+    }
+    if (!free_places) {
+        return complain("two results cannot both be written to %s or beside it", path);
+    }
+    return EXIT_DONE;
+}
+
+// Draws the figure of a recipe. Returns the exit status.
+static int draw_recipe(const char *recipe, const figure_options *o, const char *path)
+{
+    // faults in the recipe are reported as they are found and leave `f` empty
+    SCOPED(artwork_finish) artwork art = {0};
+    fault f = {0};
+    interrupts_catch();
+    if (recipe_open(recipe, o, report_to_stderr, NULL, &art, &f) != STATUS_OK) {
+        if (f.code == STATUS_OK) {
+            return EXIT_BAD_ARGUMENTS;
+        }
+        return complain_fault(&f);
+    }
+    if (artwork_publish(&art, o, path, true, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    return EXIT_DONE;
+}
+
+static int plot_recipe(const arguments *a)
+{
+    const char *recipe = a->operands[0];
+    figure_options o;
+    int ended = read_picture_options(a, &o);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
+    if (o.overlay != NULL || o.signals != NULL) {
+        return complain(
+            "a recipe says itself which signals and data it shows, --%s is for runs",
+            o.overlay != NULL ? "overlay" : "signals");
+    }
+
+    g_autofree char *path = g_strdup(a->plot);
+    if (path == NULL) {
+        path = default_picture(recipe);
+    }
+    fault f = {0};
+    if (picture_check_path(path, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    ended = claim_places(a, path);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
+
+    const int result = draw_recipe(recipe, &o, path);
+    if (result == EXIT_DONE && !a->quiet) {
+        say("%s: %s\n", recipe, path); // a default name is not known to the user yet
+    }
+    return result;
+}
+
+static const option_row plot_rows[] = {
+    OPTION(PICTURE, "output", "FILE.{png,pdf,svg}",
+           "where to draw it (the recipe's name, as PNG)", PLACE(plot), .letter = 'o'),
+};
+
+const command plot_command = {
+    CALLED("plot", PICTURES,
+           "Draw a figure from a recipe: runs, data and tables in panels"),
+    OPERANDS("RECIPE.yaml", 1, 1),
+    .help = "A recipe names runs with changed parameters, measured data and the "
+            "databases of sweeps, and the\npanels that show them. A CSV of what "
+            "is drawn stands beside the picture. Examples are "
+            "in\nscenarios/recipes, all keys in docs/reference/recipes.md.\n",
+    .options = {OWN_OPTIONS(plot_rows), &quiet_options, &page_options},
+    .run = plot_recipe,
+};

@@ -1,0 +1,53 @@
+// impactlab report: figures and tables as one web page and one PDF.
+#include "ui/commands/command.h"
+
+#include "render/figures/figures.h"
+#include "ui/commands/progress.h"
+
+static int write_report(const arguments *a)
+{
+    const char *folder = "report";
+    if (a->output != NULL) {
+        folder = a->output;
+    }
+    int items = a->operand_count;
+    if (items == 0) {
+        items = thesis_figure_count();
+    }
+
+    // each item is computed, then drawn
+    const int steps = 2 * items;
+    fault f = {0};
+    run_monitor *monitor = work_begin(a, "steps", steps);
+    const status code = report_write(folder, a->operands, a->operand_count, monitor, &f);
+    work_end();
+
+    if (code == STATUS_STOPPED) {
+        complain("stopped: %d of %d steps were done, the report is as it was before",
+                 monitor->pieces, steps);
+        return EXIT_FAILED;
+    }
+    if (code != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    if (!a->quiet) {
+        say("%s/report.html\n%s/report.pdf\n", folder, folder);
+    }
+    return EXIT_DONE;
+}
+
+static const option_row report_rows[] = {
+    OUTPUT_OPTION(PLACE, "FOLDER", "folder to write to (report)"),
+};
+
+const command report_command = {
+    CALLED("report", THESIS, "Figures and tables as one web page and one PDF"),
+    SCENARIOS("[SCENARIO|RECIPE.yaml]...", 0, 64),
+    .help = "Of the scenarios and recipes named, or without any of the whole "
+            "thesis. Into the folder 'report' unless -o says otherwise. The page "
+            "needs no other file and no network. Under\neach item stand its "
+            "scenario, its model and the command that makes it again.\n^C ends "
+            "it and leaves the report of before (exit status 130).\n",
+    .options = {OWN_OPTIONS(report_rows), &quiet_options},
+    .run = write_report,
+};

@@ -1,0 +1,183 @@
+// impactlab show: the resolved parameters of a scenario, its script and what it expects.
+#include "ui/commands/command.h"
+
+#include <string.h>
+
+#include "src/base/json.h"
+#include "src/base/numbers.h"
+#include "src/rig/controller_values.h"
+#include "src/rig/rig.h"
+#include "src/run/export.h"
+#include "src/tables/settings.h"
+#include "src/tables/summary.h"
+
+enum { DESCRIPTION_WIDTH = 96 };
+
+// One line of the table of parameters.
+typedef struct shown_parameter {
+    const char *path;
+    bool is_given; // by the scenario or --set
+    const char *value, *unit, *range, *description;
+} shown_parameter;
+
+static void print_parameter(const shown_parameter *p)
+{
+    char mark = ' ';
+    if (p->is_given) {
+        mark = '=';
+    }
+    say("%-33s %c %18s %-9s  %-29s  %s\n", p->path, mark, p->value, p->unit, p->range,
+        p->description);
+}
+
+// --- numbers of the control law --------------------------------------------------------
+
+// The i-th number of a law, under control.settings. One that is a parameter of its own
+// stands in the table instead, unless the settings give it.
+static void print_law_setting(const scenario *s, const controller *law, int i)
+{
+    const controller_parameter number = controller_parameter_at(law, i);
+    char path[PARAMETER_TEXT_SIZE], value[NUMBER_TEXT], range[64];
+    double shown = number.initial;
+    const bool is_given = settings_get(&s->parameters, number.name, &shown);
+
+    snprintf(path, sizeof path, "control.%s", number.name);
+    if (!is_given && parameter_find(path) >= 0) {
+        return;
+    }
+
+    snprintf(path, sizeof path, "control.settings.%s", number.name);
+    number_format_short(value, shown);
+    snprintf(range, sizeof range, "%g to %g", number.minimum, number.maximum);
+    print_parameter(&(shown_parameter){path, is_given, value, number.unit, range,
+                                       number.description});
+}
+
+// The settings as they were given: all that is known of a controller that is loaded when
+// the run starts.
+static void print_given_settings(const scenario *s)
+{
+    const char *rest = s->parameters.control.settings;
+    setting given;
+    while (settings_next(&rest, &given)) {
+        char path[2 * PARAMETER_TEXT_SIZE];
+        snprintf(path, sizeof path, "control.settings.%s", given.name);
+        print_parameter(&(shown_parameter){path, true, given.value, "", "",
+                                           setting_info.description});
+    }
+}
+
+static void print_settings(const scenario *s)
+{
+    const controller *law = controller_of(s->parameters.control.law);
+    if (law == NULL) {
+        print_given_settings(s);
+        return;
+    }
+    for (int i = 0; i < law->parameter_count; i++) {
+        print_law_setting(s, law, i);
+    }
+}
+
+// --- the scenario ----------------------------------------------------------------------
+
+static void print_parameters(const scenario *s)
+{
+    printf("\n= was given, all else is a default\n\n%-33s   %12s %-9s  %-18s\n",
+           "parameter", "value", "unit", "range");
+    for (int i = 0; i < parameter_count; i++) {
+        const parameter_info *info = &parameter_table[i];
+        char value[128], range[RANGE_TEXT];
+        parameter_format(&s->parameters, i, value, sizeof value);
+        print_parameter(&(shown_parameter){info->path, s->parameters.set[i], value,
+                                           info->unit, format_range(info, "|", range),
+                                           info->description});
+        if (i == PARAMETER_INDEX(control.settings)) {
+            print_settings(s);
+        }
+    }
+}
+
+static void print_script(const scenario *s)
+{
+    printf("\nScript:\n");
+    for (int i = 0; i < s->action_count; i++) {
+        const action *a = &s->actions[i];
+        if (a->kind == ACTION_PUSH) {
+            printf("  at %g s: push the tip with %g N s\n", a->time, a->value);
+        } else {
+            char value[128], path[ACTION_PATH];
+            action_format_value(a, value, sizeof value);
+            say("  at %g s: %s = %s\n", a->time, action_path(a, path), value);
+        }
+    }
+}
+
+static void print_expected_values(const scenario *s)
+{
+    printf("\nExpected:\n");
+    for (int i = 0; i < s->expectation_count; i++) {
+        const expectation *e = &s->expectations[i];
+        const char *key = summary_table[e->quantity].key;
+        if (e->is_null) {
+            printf("  %s does not occur\n", key);
+        } else {
+            printf("  %s = %g within %g\n", key, e->value, e->tolerance);
+        }
+    }
+}
+
+// All values by path, and the paths of those that were given.
+static json_t *scenario_json(const scenario *s)
+{
+    json_t *given = json_array();
+    char title[SCENARIO_TITLED];
+    for (int i = 0; i < parameter_count; i++) {
+        if (s->parameters.set[i]) {
+            json_add(given, json_string(parameter_table[i].path));
+        }
+    }
+    return json_of("scenario:t title:t description:t parameters:o given:o", s->name,
+                   scenario_titled(s, title), s->description,
+                   export_parameters(&s->parameters), given);
+}
+
+static int show_scenario(const arguments *a, scenario *s)
+{
+    if (a->json != NULL) {
+        return write_json(a->json, scenario_json(s));
+    }
+
+    say_title(s);
+    print_indented(stdout, s->description, (int)strlen(s->description), DESCRIPTION_WIDTH,
+                   0);
+    print_parameters(s);
+    if (s->action_count > 0) {
+        print_script(s);
+    }
+    if (s->expectation_count > 0) {
+        print_expected_values(s);
+    }
+    return EXIT_DONE;
+}
+
+static int show_or_explain(const arguments *a)
+{
+    const int result = with_scenario(a->operands[0], a, show_scenario);
+
+    // "show k2" asks for something that has no file
+    if (result == EXIT_BAD_ARGUMENTS && strpbrk(a->operands[0], "/ ") == NULL) {
+        print_meanings(stderr, a->commands, a->operands[0]);
+    }
+    return result;
+}
+
+const command show_command = {
+    CALLED("show", ONE_RUN,
+           "The resolved parameters of a scenario, with units and ranges"),
+    ONE_SCENARIO,
+    .help = "A parameter marked with = was given by the scenario or by --set, "
+            "the others have their defaults.\n",
+    .options = {&set_options, &json_options},
+    .run = show_or_explain,
+};
