@@ -7,9 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "render/page/page.h"
 #include "render/page/text.h"
-#include "src/study/linear/linear.h"
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 #include "src/base/shipped.h"
@@ -136,27 +134,14 @@ static void end_without_picture(const char *reason)
     _exit(EXIT_FAILED);
 }
 
-// A crash: no half-written file, and a sentence. In libraries it is for want of
-// memory, which is no fault of ours and ends the program as everywhere else.
+// A crash: no half-written file, and a sentence.
 static void end_crashed(int number)
 {
-    static const char drawing[] =
-        "impactlab: a library crashed, as it does where it finds no memory\n";
-    static const char own[] =
+    static const char sentence[] =
         "impactlab: crashed, for want of memory in a library or by a "
         "fault of its own; no half-written file is left\n";
-    const bool in_libraries = page_in_libraries() || linear_is_loading();
-    ssize_t ignored;
-    if (in_libraries) {
-        ignored = write(STDERR_FILENO, drawing, sizeof drawing - 1);
-    } else {
-        ignored = write(STDERR_FILENO, own, sizeof own - 1);
-    }
+    const ssize_t ignored = write(STDERR_FILENO, sentence, sizeof sentence - 1);
     (void)ignored;
-    if (in_libraries) {
-        whole_file_remove_unfinished();
-        _exit(EXIT_FAILED);
-    }
     end_cleanly(number);
 }
 

@@ -188,7 +188,7 @@ static void draw_springs(sketch *s, const diagram *d)
     cairo_fill_preserve(s->cr);
     set_colour(s->cr, s->colours->axis);
     cairo_set_line_width(s->cr, 0.8);
-    picture_stroke(s->cr);
+    cairo_stroke(s->cr);
 
     sketch_label(s, (point){mass, y}, (anchor){0.5, 0.5}, "<i>m</i><sub>c</sub>");
     sketch_arrow(s, (point){mass - 14, y - 30}, (point){mass + 34, y - 30}, 2);

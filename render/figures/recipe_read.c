@@ -376,7 +376,6 @@ bool recipe_read(recipe *r, const char *path, const char *text, size_t length,
 
     tree_node *root = tree_parse(text, length, &f);
     if (root == NULL) {
-        c.reader.no_memory = f.code == STATUS_NO_MEMORY;
         reader_report_at(&c.reader, f.line, f.column, "%s", f.text);
     } else {
         take_recipe(&c, root);

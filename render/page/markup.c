@@ -18,23 +18,19 @@
 char *text_replaced(text_pattern *p, const char *text, GRegexEvalCallback give,
                     gpointer context)
 {
-    page_libraries++;
     // compiled by whichever thread comes first
     if (g_once_init_enter(&p->compiled)) {
-        GRegex *regex =
-            g_regex_new(p->expression, G_REGEX_RAW | G_REGEX_DOTALL | G_REGEX_OPTIMIZE, 0,
-                        NULL);
-        if (regex == NULL) {
-            g_error("out of memory");
-        }
+        const GRegexCompileFlags flags = G_REGEX_RAW | G_REGEX_DOTALL | G_REGEX_OPTIMIZE;
+        GRegex *regex = g_regex_new(p->expression, flags, 0, NULL);
         g_once_init_leave(&p->compiled, (gsize)regex);
     }
-    char *out =
-        g_regex_replace_eval((GRegex *)p->compiled, text, -1, 0, 0, give, context, NULL);
+
+    g_autoptr(GError) error = NULL;
+    const GRegex *regex = (const GRegex *)p->compiled;
+    char *out = g_regex_replace_eval(regex, text, -1, 0, 0, give, context, &error);
     if (out == NULL) {
-        g_error("out of memory");
+        g_error("a text cannot be searched: %s", error->message);
     }
-    page_libraries--;
     return out;
 }
 

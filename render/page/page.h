@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cairo.h>
-#include <signal.h>
 #include <stdbool.h>
 
 #include "src/tables/signals.h"
@@ -71,17 +70,6 @@ typedef struct figure_report {
 // report (may be NULL).
 void report_add_text(figure_report *report, const char *markup, double size,
                      figure_rect place);
-
-// How deep this thread is in libraries that crash without memory: fontconfig and Pango,
-// cairo's strokes and files, GLib's regular expressions.
-extern _Thread_local volatile sig_atomic_t page_libraries; // libraries.c
-
-// Whether this thread is in one of them, or is not the program's first while Pango is at
-// work. For a signal handler.
-bool page_in_libraries(void);
-
-// To be called before Pango looks for fonts, which it does on threads of its own.
-void page_begin_fonts(void);
 
 // --- colours and line patterns of figures: palette.c
 

@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
-#include <errno.h>
 #include <math.h>
 #include <png.h>
 #include <setjmp.h>
@@ -109,13 +108,14 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi,
     const size_t width = (size_t)cairo_image_surface_get_width(surface);
     const png_uint_32 height = (png_uint_32)cairo_image_surface_get_height(surface);
     const int kind = has_alpha(surface) ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB;
-    unsigned char *row = malloc(4 * width + 1);
+    g_autofree unsigned char *row = g_malloc(4 * width + 1);
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &own, fail, warn);
-    png_infop info = png ? png_create_info_struct(png) : NULL;
-    if (row == NULL || info == NULL) {
-        free(row);
-        png_destroy_write_struct(&png, &info);
-        return fault_set(f, STATUS_NO_MEMORY, "no memory for a PNG");
+    png_infop info = NULL;
+    if (png != NULL) {
+        info = png_create_info_struct(png);
+    }
+    if (info == NULL) {
+        g_error("out of memory");
     }
 
     // one row at a time
@@ -136,7 +136,6 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi,
     }
 
     png_destroy_write_struct(&png, &info);
-    free(row);
     if (own.code != STATUS_OK) {
         return fault_set(f, own.code, "%s", own.text);
     }
@@ -219,74 +218,42 @@ static cairo_status_t to_stream(void *stream, const unsigned char *bytes, unsign
     return CAIRO_STATUS_WRITE_ERROR;
 }
 
-// What cairo met on the way, where drawing itself came to `code`.
-static status drawn(status code, cairo_status_t state, fault *f)
-{
-    const bool well = state == CAIRO_STATUS_SUCCESS ||
-                      state == CAIRO_STATUS_WRITE_ERROR ||
-                      state == CAIRO_STATUS_SURFACE_FINISHED;
-    if (code != STATUS_OK || well) {
-        return code;
-    }
-    return fault_set(f, STATUS_NO_MEMORY, "a picture could not be drawn: %s",
-                     cairo_status_to_string(state));
-}
-
-// Where a drawing keeps that a line of it lacks a piece.
-static const cairo_user_data_key_t lacking;
-
-void picture_stroke(cairo_t *cr)
-{
-    // a request for memory that is refused within the call leaves its mark
-    const int before = errno;
-    errno = 0;
-    page_libraries++;
-    cairo_stroke(cr);
-    page_libraries--;
-    if (errno == ENOMEM) {
-        cairo_set_user_data(cr, &lacking, cr, NULL);
-    }
-    errno = before;
-}
-
 void picture_line(cairo_t *cr, double x0, double y0, double x1, double y1)
 {
     cairo_move_to(cr, x0, y0);
     cairo_line_to(cr, x1, y1);
-    picture_stroke(cr);
+    cairo_stroke(cr);
+}
+
+// The status of a drawing, `code`, or that of an error which cairo met on the way.
+static status check_drawing(status code, cairo_status_t state, fault *f)
+{
+    const bool failed = state != CAIRO_STATUS_SUCCESS &&
+                        state != CAIRO_STATUS_WRITE_ERROR &&
+                        state != CAIRO_STATUS_SURFACE_FINISHED;
+    FAULT_IF(code == STATUS_OK && failed, f, STATUS_NO_MEMORY,
+             "a picture could not be drawn: %s", cairo_status_to_string(state));
+    return code;
 }
 
 status picture_end_drawing(cairo_t *cr, status code, fault *f)
 {
-    const bool lacks = cairo_get_user_data(cr, &lacking) != NULL;
-    code = drawn(code, lacks ? CAIRO_STATUS_NO_MEMORY : cairo_status(cr), f);
+    code = check_drawing(code, cairo_status(cr), f);
     cairo_destroy(cr);
     return code;
-}
-
-// Lets cairo write: without memory for a font it may end in an assertion of its own.
-static void write_out(cairo_surface_t *surface, void (*call)(cairo_surface_t *surface))
-{
-    page_libraries++;
-    call(surface);
-    page_libraries--;
 }
 
 // Draws on a surface and finishes it.
 static status paint_surface(cairo_surface_t *surface, const picture *p, bool finish,
                             fault *f)
 {
-    // libraries without memory may draw another letter, or none, and say nothing
-    errno = 0;
     cairo_t *cr = cairo_create(surface);
     const status painted = p->paint(cr, p->what, f);
-    status code = picture_end_drawing(cr, painted, f);
+    const status ended = picture_end_drawing(cr, painted, f);
     if (finish) {
-        write_out(surface, cairo_surface_finish);
+        cairo_surface_finish(surface);
     }
-    const cairo_status_t state =
-        errno == ENOMEM ? CAIRO_STATUS_NO_MEMORY : cairo_surface_status(surface);
-    return drawn(code, state, f);
+    return check_drawing(ended, cairo_surface_status(surface), f);
 }
 
 status picture_write_png(const picture *p, FILE *stream, fault *f)
@@ -348,10 +315,10 @@ static status write_pages(FILE *stream, const picture *p, int count, fault *f)
         cairo_pdf_surface_set_size(surface, p[i].width, p[i].height);
         code = paint_surface(surface, &p[i], i == count - 1, f);
         if (i < count - 1) {
-            write_out(surface, cairo_surface_show_page);
+            cairo_surface_show_page(surface);
         }
     }
-    write_out(surface, cairo_surface_destroy);
+    cairo_surface_destroy(surface);
     return code;
 }
 

@@ -36,17 +36,12 @@ typedef struct picture {
 // The program and its version, as files of pictures name what made them.
 const char *picture_software(void);
 
-// Strokes and clears the path, as cairo_stroke does. If cairo gets no memory for the
-// outline of a long line, it omits a piece of it without reporting an error;
-// picture_end_drawing reports it.
-void picture_stroke(cairo_t *cr);
-
-// Strokes a straight line so.
+// Strokes a straight line.
 void picture_line(cairo_t *cr, double x0, double y0, double x1, double y1);
 
 // Ends a drawing: destroys cr and returns `code`, the status of drawing, or
-// STATUS_NO_MEMORY if cairo met an error, after which it draws nothing, or if a piece of
-// a line is missing. Errors of writing are found by the caller when closing the stream.
+// STATUS_NO_MEMORY if cairo met an error, after which it draws nothing. Errors of writing
+// are found by the caller when closing the stream.
 status picture_end_drawing(cairo_t *cr, status code, fault *f);
 
 // The ending of a path's last part with its dot; without one its end.

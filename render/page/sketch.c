@@ -290,7 +290,7 @@ void sketch_arc(const sketch *s, arc a, int slot)
     } else {
         cairo_arc(s->cr, c.x, c.y, a.radius, -a.from, -(a.to - bit));
     }
-    picture_stroke(s->cr);
+    cairo_stroke(s->cr);
 
     if (a.head) {
         double direction = -(a.to - bit / 2) - turn * G_PI / 2;
@@ -308,7 +308,7 @@ void sketch_disc(const sketch *s, point centre, double radius, int slot, bool fi
         set_colour(s->cr, s->colours->page);
         cairo_fill_preserve(s->cr);
         set_colour(s->cr, sketch_colour(s, slot));
-        picture_stroke(s->cr);
+        cairo_stroke(s->cr);
     } else {
         cairo_fill(s->cr);
     }
@@ -328,7 +328,7 @@ void sketch_bar(const sketch *s, point from, point to, double thickness)
     cairo_stroke_preserve(s->cr);
     set_colour(s->cr, s->colours->shade);
     cairo_set_line_width(s->cr, thickness - 1.4);
-    picture_stroke(s->cr);
+    cairo_stroke(s->cr);
 }
 
 void sketch_mass_point(const sketch *s, point at)
@@ -353,7 +353,7 @@ void sketch_spiral(const sketch *s, point centre, double radius, int slot)
         double r = radius * (0.2 + 0.8 * share);
         cairo_line_to(s->cr, centre.x + r * cos(angle), centre.y + r * sin(angle));
     }
-    picture_stroke(s->cr);
+    cairo_stroke(s->cr);
 }
 
 // A line from one point to another, in lengths along it and across it to the right on the
@@ -392,7 +392,7 @@ static void draw_zigzag(const sketch *s, const guide *g, int turns, double heigh
     }
     line_to_point(s, guide_at(g, g->length - lead, 0));
     line_to_point(s, guide_at(g, g->length, 0));
-    picture_stroke(s->cr);
+    cairo_stroke(s->cr);
 }
 
 void sketch_coil(const sketch *s, point from, point to, int turns, int slot)
@@ -421,7 +421,7 @@ void sketch_wall(const sketch *s, point from, point to)
         cairo_move_to(s->cr, start.x, start.y);
         line_to_point(s, guide_at(&g, at - 0.7 * depth, 0.7 * depth));
     }
-    picture_stroke(s->cr);
+    cairo_stroke(s->cr);
 }
 
 // ---- text

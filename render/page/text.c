@@ -2,7 +2,6 @@
 #include "render/page/text.h"
 
 #include <assert.h>
-#include <errno.h>
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +13,6 @@ static bool family_is_there(const char *family)
     PangoFontFamily **families = NULL;
     int count = 0;
     bool there = false;
-    page_begin_fonts();
     pango_font_map_list_families(pango_cairo_font_map_get_default(), &families, &count);
     for (int i = 0; i < count && !there; i++) {
         there = g_ascii_strcasecmp(pango_font_family_get_name(families[i]), family) == 0;
@@ -30,9 +28,7 @@ status text_check_font(fault *f)
     enum { THERE = 1, MISSING };
     static gsize known;
     if (g_once_init_enter(&known)) {
-        page_libraries++;
         const bool there = family_is_there(TEXT_FAMILY);
-        page_libraries--;
         g_once_init_leave(&known, there ? THERE : MISSING);
     }
 
@@ -45,17 +41,13 @@ status text_check_font(fault *f)
 
 status text_check_family(const char *family, fault *f)
 {
-    page_libraries++;
     const bool there = family_is_there(family);
-    page_libraries--;
     FAULT_IF(!there, f, STATUS_BAD_ARGUMENT, "the font '%s' is not installed", family);
     return STATUS_OK;
 }
 
 PangoContext *text_context_create(void)
 {
-    page_libraries++;
-    page_begin_fonts();
     PangoContext *context =
         pango_font_map_create_context(pango_cairo_font_map_get_default());
     cairo_font_options_t *options = cairo_font_options_create();
@@ -64,17 +56,9 @@ PangoContext *text_context_create(void)
     cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
     pango_cairo_context_set_font_options(context, options);
 
-    // without memory for its copy the context would draw with other options, and say
-    // nothing
-    const cairo_font_options_t *taken = pango_cairo_context_get_font_options(context);
-    if (cairo_font_options_status(options) != CAIRO_STATUS_SUCCESS || taken == NULL ||
-        !cairo_font_options_equal(taken, options)) {
-        g_error("out of memory");
-    }
     cairo_font_options_destroy(options);
     pango_context_set_round_glyph_positions(context, FALSE);
     pango_cairo_context_set_resolution(context, 72);
-    page_libraries--;
     return context;
 }
 
@@ -100,7 +84,6 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
     static const PangoAlignment alignments[] = {PANGO_ALIGN_LEFT, PANGO_ALIGN_CENTER,
                                                 PANGO_ALIGN_RIGHT};
 
-    page_libraries++;
     PangoLayout *layout = pango_layout_new(context);
     PangoFontDescription *font = pango_font_description_new();
     pango_font_description_set_family(font, text_or(t->family, TEXT_FAMILY));
@@ -130,34 +113,14 @@ PangoLayout *text_layout_create(PangoContext *context, const text_block *t)
             balance(layout, t->width);
         }
     }
-    page_libraries--;
     return layout;
-}
-
-// HarfBuzz sets letters elsewhere where it finds no memory, and tells nobody: what an
-// allocation leaves in errno does. Shaping stands between the two; without memory the
-// program ends as by GLib.
-static void begin_shaping(void)
-{
-    page_libraries++;
-    errno = 0;
-}
-
-static void end_shaping(void)
-{
-    page_libraries--;
-    if (errno == ENOMEM) {
-        g_error("out of memory");
-    }
 }
 
 text_size text_measure(PangoContext *context, const text_block *t)
 {
     PangoRectangle logical;
-    begin_shaping();
     PangoLayout *layout = text_layout_create(context, t);
     pango_layout_get_extents(layout, NULL, &logical);
-    end_shaping();
     g_object_unref(layout);
     return (text_size){(double)logical.width / PANGO_SCALE,
                        (double)logical.height / PANGO_SCALE};
@@ -174,7 +137,6 @@ figure_rect text_put(cairo_t *cr, PangoContext *context, const text_block *t, do
 
     set_colour(cr, c);
     cairo_move_to(cr, x, y);
-    begin_shaping();
     // the context has to know whether cr is rotated
     pango_cairo_update_context(cr, context);
     PangoLayout *layout = text_layout_create(context, t);
@@ -183,7 +145,6 @@ figure_rect text_put(cairo_t *cr, PangoContext *context, const text_block *t, do
     cairo_rel_move_to(cr, -(double)logical.x / PANGO_SCALE, 0);
     pango_cairo_show_layout(cr, layout);
     g_object_unref(layout);
-    end_shaping();
     return (figure_rect){x, y, size.width, size.height};
 }
 

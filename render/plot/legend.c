@@ -170,7 +170,7 @@ void draw_inset(drawing *d, const panel_layout *l)
     clip_out_labels(d);
     set_plain_line(d->cr, d->style.colours->mark, MARK_WIDTH);
     cairo_rectangle(d->cr, left, top, right - left, bottom - top);
-    picture_stroke(d->cr);
+    cairo_stroke(d->cr);
     cairo_restore(d->cr);
 }
 

@@ -225,7 +225,7 @@ static void draw_contour(const drawing *d, const panel_layout *l, double level)
         }
     }
 
-    picture_stroke(d->cr);
+    cairo_stroke(d->cr);
 }
 
 void draw_map(drawing *d, const panel_layout *l)
@@ -309,7 +309,7 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
     }
     set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
     cairo_rectangle(d->cr, bar.x, bar.y, bar.width, bar.height);
-    picture_stroke(d->cr);
+    cairo_stroke(d->cr);
 
     // what it is, upwards at the right
     g_autofree char *title = axis_title(&l->colours);

@@ -158,7 +158,7 @@ void pane_curve_paint(cairo_t *cr, const pane_frame *f, const pane_curve *c)
         trace_rows(cr, f, c, until);
     }
     set_pen(cr, f, c);
-    picture_stroke(cr);
+    cairo_stroke(cr);
 }
 
 // A straight line a pixel wide, of dots or not.

@@ -195,7 +195,7 @@ static void draw_marker(const drawing *d, const panel_layout *l, const figure_se
         set_colour(d->cr, d->style.colours->axis);
         cairo_set_line_width(d->cr, GRID_WIDTH);
     }
-    picture_stroke(d->cr);
+    cairo_stroke(d->cr);
     cairo_restore(d->cr);
 }
 
@@ -210,7 +210,7 @@ static void stroke(void *context, stroke_kind kind, double x, double y)
 {
     stroke_context *s = context;
     if (kind == STROKE_DOT) {
-        picture_stroke(s->cr);
+        cairo_stroke(s->cr);
         cairo_arc(s->cr, x, y, s->radius, 0, 2 * G_PI);
         cairo_fill(s->cr);
     } else if (kind == STROKE_MOVE) {
@@ -236,14 +236,14 @@ void draw_series(const drawing *d, const panel_layout *l, const plane *p)
         if (s->rim && !s->no_line) {
             set_plain_line(d->cr, palette_of(THEME_COLOUR)->page, width + 2 * RIM);
             curve_trace(p, s, stroke, &context);
-            picture_stroke(d->cr);
+            cairo_stroke(d->cr);
             set_series(d, l, i);
             set_colour(d->cr, palette_of(THEME_COLOUR)->text);
         }
 
         if (!s->no_line) {
             curve_trace(p, s, stroke, &context);
-            picture_stroke(d->cr);
+            cairo_stroke(d->cr);
         }
 
         // markers on the panel are not cut at its edge

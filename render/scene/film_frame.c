@@ -230,7 +230,7 @@ static void draw_traces(const film_painter *p, cairo_t *cr, double time)
         cairo_line_to(cr, x, panel.y + panel.height);
         cairo_set_line_width(cr, 1.1);
         cairo_set_source_rgb(cr, 0.835, 0.369, 0);
-        picture_stroke(cr);
+        cairo_stroke(cr);
     }
     cairo_restore(cr);
 

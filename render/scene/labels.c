@@ -63,7 +63,7 @@ void labels_flash(const scene *sc, cairo_t *cr, vector place, double radius,
         cairo_move_to(cr, at.x + 0.5 * r * cos(angle), at.y + 0.5 * r * sin(angle));
         cairo_line_to(cr, at.x + far * r * cos(angle), at.y + far * r * sin(angle));
     }
-    picture_stroke(cr);
+    cairo_stroke(cr);
 }
 
 void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double force)

@@ -75,7 +75,7 @@ static void disc(const painter *g, double x, double y, double radius, colour c,
     set_colour(g->cr, paler(g, c, share));
     cairo_fill_preserve(g->cr);
     set_colour(g->cr, c);
-    picture_stroke(g->cr);
+    cairo_stroke(g->cr);
 }
 
 // --- what stands still -----------------------------------------------------------------
@@ -90,7 +90,7 @@ static void hatch(const painter *g, double x, double y, double dx, double dy)
         cairo_line_to(g->cr, x + at * ux + depth * (0.5 * ux + uy),
                       y + at * uy + depth * (0.5 * uy - ux));
     }
-    picture_stroke(g->cr);
+    cairo_stroke(g->cr);
 }
 
 // A flat wall lies along the arm, on the far side of it; any wall has the place where the
@@ -196,7 +196,7 @@ static void paint_pull(const painter *g, double x, double y)
         cairo_line_to(g->cr, x + along * ux - across * uy, y + along * uy + across * ux);
     }
     cairo_line_to(g->cr, to_x, to_y);
-    picture_stroke(g->cr);
+    cairo_stroke(g->cr);
     cairo_arc(g->cr, to_x, to_y, 3, 0, 2 * M_PI);
     cairo_fill(g->cr);
 }
@@ -213,7 +213,7 @@ static void paint_all(const painter *g)
     if (p->other != NULL) {
         beam_path(g, p->other);
         pen(g, paler(g, p->colours.other, 0.35), fmax(1.5, 0.5 * beam));
-        picture_stroke(g->cr);
+        cairo_stroke(g->cr);
     }
     const sample row = beam_path(g, p->rows);
     cairo_path_t *path = cairo_copy_path(g->cr);
@@ -233,7 +233,7 @@ static void paint_all(const painter *g)
     pen(g, p->colours.arm, beam);
     cairo_stroke_preserve(g->cr);
     pen(g, paler(g, p->colours.arm, 0.45), fmax(1, beam - 3));
-    picture_stroke(g->cr);
+    cairo_stroke(g->cr);
 
     const double x = plan_x(g->view, g->joints[links].x),
                  y = plan_y(g->view, g->joints[links].y);

@@ -220,7 +220,7 @@ static status paint_inset(scene *sc, const double *times, int count,
     set_colour(cr, sc->around->faint);
     cairo_set_line_width(cr, fmax(1, labels_scale(sc)));
     cairo_rectangle(cr, left, margin, width, height);
-    picture_stroke(cr);
+    cairo_stroke(cr);
     if (!sc->options.plain) {
         labels_inset(sc, cr, left, margin + height, larger);
     }

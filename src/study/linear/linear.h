@@ -80,10 +80,6 @@ status linear_poles(const linear_system *s, double complex *values, fault *f);
 status linear_zeros(const linear_system *s, int output, int *count,
                     double complex *values, fault *f);
 
-// Whether LAPACK is being loaded: Fortran's library crashes where it finds no memory. For
-// signals.
-bool linear_is_loading(void);
-
 // Damping ratio of a pole or zero; 1 of a decaying real one, NaN at the origin.
 double linear_damping(double complex s);
 

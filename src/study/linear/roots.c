@@ -3,7 +3,6 @@
 #include <assert.h>
 #include <dlfcn.h>
 #include <math.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,20 +23,13 @@ typedef void (*dgeev)(const char *left, const char *right, const int *n, double 
 typedef void (*zgesv)(const int *n, const int *columns, double complex *a, const int *lda,
                       int *pivots, double complex *b, const int *ldb, int *info);
 
-static volatile sig_atomic_t loading;
 static dgeev eigenvalues_of;
 static zgesv solve_complex;
-
-bool linear_is_loading(void)
-{
-    return loading;
-}
 
 // Loads both, once; false without LAPACK.
 static bool load_lapack(void)
 {
     if (solve_complex == NULL) {
-        loading = true;
         void *library = dlopen("liblapack.so.3", RTLD_NOW | RTLD_LOCAL);
         void *one = NULL, *other = NULL;
         if (library != NULL) {
@@ -48,7 +40,6 @@ static bool load_lapack(void)
         }
         memcpy(&eigenvalues_of, &one, sizeof one);
         memcpy(&solve_complex, &other, sizeof other);
-        loading = false;
     }
     return solve_complex != NULL;
 }
