@@ -8,15 +8,14 @@
 //   test_command_faults MOST [COMMAND [CALL [REQUEST]]]
 //
 // MOST requests of a call are refused, evenly, or all if there are not more; of a single
-// one it is told where it was made. Each call is a process of its own (fork). Without a
-// sanitizer all allocations of the process count, libraries' too; with one, whose
-// allocator takes no other's place, those of this project (the linker's --wrap).
+// one it is told where it was made. Each call is a process of its own (fork). The
+// requests of this project count (the linker's --wrap), not those of the libraries that
+// draw, which may crash without memory.
 #include <assert.h>
 #include <dirent.h>
 #include <errno.h>
 #include <execinfo.h>
 #include <fcntl.h>
-#include <fontconfig/fontconfig.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -52,35 +51,21 @@ static bool refused(void)
     return true;
 }
 
-#ifdef REFUSES_OWN
-#define HERE(name)  __wrap_##name
-#define THERE(name) __real_##name
-#else
-#define HERE(name)  name
-#define THERE(name) __libc_##name
-#endif
-
 // A function of the C library that gives `none` where it is refused.
-#define REFUSABLE(here, there, type, none, parameters, arguments)                        \
-    type here parameters;                                                                \
-    type there parameters;                                                               \
-    type here parameters                                                                 \
+#define REFUSABLE(type, name, none, parameters, arguments)                               \
+    type __wrap_##name parameters;                                                       \
+    type __real_##name parameters;                                                       \
+    type __wrap_##name parameters                                                        \
     {                                                                                    \
-        return refused() ? (errno = ENOMEM, none) : there arguments;                     \
+        return refused() ? (errno = ENOMEM, none) : __real_##name arguments;             \
     }
-REFUSABLE(HERE(malloc), THERE(malloc), void *, NULL, (size_t size), (size))
-REFUSABLE(HERE(calloc), THERE(calloc), void *, NULL, (size_t count, size_t size),
-          (count, size))
-REFUSABLE(HERE(realloc), THERE(realloc), void *, NULL, (void *memory, size_t size),
-          (memory, size))
-
-#ifdef REFUSES_OWN
-// What asks for memory on this project's behalf.
-REFUSABLE(__wrap_strdup, __real_strdup, char *, NULL, (const char *text), (text))
-REFUSABLE(__wrap_strndup, __real_strndup, char *, NULL, (const char *text, size_t most),
-          (text, most))
-REFUSABLE(__wrap_vasprintf, __real_vasprintf, int, -1,
-          (char **text, const char *format, va_list list), (text, format, list))
+REFUSABLE(void *, malloc, NULL, (size_t size), (size))
+REFUSABLE(void *, calloc, NULL, (size_t count, size_t size), (count, size))
+REFUSABLE(void *, realloc, NULL, (void *memory, size_t size), (memory, size))
+REFUSABLE(char *, strdup, NULL, (const char *text), (text))
+REFUSABLE(char *, strndup, NULL, (const char *text, size_t most), (text, most))
+REFUSABLE(int, vasprintf, -1, (char **text, const char *format, va_list list),
+          (text, format, list))
 
 int __wrap_asprintf(char **text, const char *format, ...);
 int __wrap_asprintf(char **text, const char *format, ...)
@@ -91,7 +76,6 @@ int __wrap_asprintf(char **text, const char *format, ...)
     va_end(list);
     return length;
 }
-#endif
 
 // --- the calls -------------------------------------------------------------------------
 
@@ -523,10 +507,6 @@ int main(int count, char **words)
     setvbuf(stdout, NULL, _IOLBF, 0);
     setenv("XDG_CONFIG_HOME", folder, 1);
     prepare();
-
-    // fontconfig keeps a lock of its own where memory is refused while it reads its
-    // caches, and hangs at the next one: it has read them before
-    FcInit();
 
     for (int i = 0; i < command_table.count; i++) {
         const command *c = command_table.items[i];
