@@ -27,11 +27,6 @@ static void begin(whole_file *w, const char *path, const char *text)
     fputs(text, w->stream);
 }
 
-static bool is_there(const char *path)
-{
-    return access(path, F_OK) == 0;
-}
-
 TEST_IN_FOLDER(appears_only_when_committed)
 {
     put_file("old", "old");
@@ -88,19 +83,59 @@ TEST_IN_FOLDER(mode_follows_the_umask_or_the_old_file)
     umask(before);
 }
 
-// Also one to what is not there yet.
-TEST_IN_FOLDER(a_link_stays_a_link_and_leads_to_the_new_file)
+static bool is_link(const char *path)
 {
     struct stat about;
+    assert_int_equal(lstat(path, &about), 0);
+    return S_ISLNK(about.st_mode);
+}
+
+TEST_IN_FOLDER(a_link_to_a_file_stays_a_link)
+{
     put_file("target", "old");
-    for (EACH_TEXT(c, "target", "later")) {
-        assert_int_equal(symlink(*c, "link"), 0);
-        write_new("link");
-        assert_int_equal(lstat("link", &about), 0);
-        assert_true(S_ISLNK(about.st_mode));
-        assert_holds(*c, "new");
-        unlink("link");
-    }
+    assert_int_equal(symlink("target", "link"), 0);
+    write_new("link");
+    assert_true(is_link("link"));
+    assert_holds("target", "new");
+}
+
+// Whoever left the link does not choose where a file begins.
+TEST_IN_FOLDER(a_link_to_nothing_becomes_the_file)
+{
+    assert_int_equal(symlink("later", "link"), 0);
+    write_new("link");
+    assert_false(is_link("link"));
+    assert_holds("link", "new");
+    assert_int_equal(files(), 1);
+}
+
+// A run that was killed left its temporary, and another one of the same number writes.
+TEST_IN_FOLDER(a_temporary_of_a_killed_run_is_left_alone)
+{
+    whole_file w;
+    begin(&w, "first", "new");
+    int number;
+    assert_int_equal(sscanf(strrchr(w.temporary, '-'), "-%d", &number), 1);
+    const char *left = formatted(".impactlab-%ld-%d.part", (long)getpid(), number + 1);
+    put_file(left, "left");
+    DONE(whole_file_commit(&w, &f));
+    write_new("second");
+    assert_holds(left, "left");
+    assert_holds("second", "new");
+    unlink(left);
+}
+
+TEST_IN_FOLDER(two_ways_to_one_place_are_told)
+{
+    assert_int_equal(mkdir("folder", 0777), 0);
+    put_file("there", "");
+    assert_int_equal(symlink("there", "link"), 0);
+    assert_true(whole_file_same_place("later", "./folder/../later"));
+    assert_true(whole_file_same_place("there", "link"));
+    assert_true(whole_file_same_place("-", "-"));
+    assert_false(whole_file_same_place("later", "folder/later"));
+    assert_false(whole_file_same_place("later", "there"));
+    assert_false(whole_file_same_place("-", "there"));
 }
 
 TEST_IN_FOLDER(a_full_device_is_reported_and_stays_a_device)
@@ -232,107 +267,6 @@ TEST_IN_FOLDER(why_a_write_failed_is_known_at_the_end)
     assert_holds("kept", "old");
 }
 
-// A run that was killed leaves its temporary; the next one removes it, but none of a run
-// that lives.
-TEST_IN_FOLDER(what_killed_runs_left_goes)
-{
-    int told[2];
-    char byte;
-    assert_int_equal(mkdir("folder", 0777), 0);
-    assert_int_equal(pipe(told), 0);
-    put_file("folder/.impactlab-notes.part", "no temporary of ours");
-    put_file("folder/.impactlab-1-2.part.txt", "neither");
-    put_file("folder/.impactlab-999999-0.part", "left by nobody");
-    assert_int_equal(mkfifo("folder/.impactlab-1-7.part", 0600), 0);
-
-    // another process writes into it
-    pid_t other = fork();
-    if (other == 0) {
-        whole_file file;
-        _exit(whole_file_open(&file, "folder/other", NULL) != STATUS_OK ||
-              write(told[1], "x", 1) != 1 || pause() == 0);
-    }
-    assert_int_equal(read(told[0], &byte, 1), 1);
-    const char *living = formatted("folder/.impactlab-%ld-0.part", (long)other);
-    whole_file mine;
-    begin(&mine, "folder/mine", "");
-    whole_file_abandon(&mine);
-    assert_true(is_there(living));
-    assert_false(is_there("folder/.impactlab-999999-0.part"));
-
-    // killed: what it left goes with the next file in the folder
-    kill(other, SIGKILL);
-    waitpid(other, NULL, 0);
-    for (EACH_TEXT(c, "elsewhere", "folder/mine")) {
-        assert_true(is_there(living));
-        begin(&mine, *c, "");
-        whole_file_abandon(&mine);
-    }
-    assert_false(is_there(living));
-    for (EACH_TEXT(c, "folder/.impactlab-notes.part", "folder/.impactlab-1-2.part.txt",
-                   "folder/.impactlab-1-7.part")) {
-        assert_int_equal(unlink(*c), 0);
-    }
-    close(told[0]);
-    close(told[1]);
-}
-
-// A run in another process that opens a file at that moment looks for what killed ones
-// left.
-static bool cleans_before_rename;
-static struct rlimit descriptors;
-int rename(const char *from, const char *to)
-{
-    if (cleans_before_rename) {
-        setrlimit(RLIMIT_NOFILE, &descriptors);
-        whole_file_clean_folder(".");
-    }
-    return renameat(AT_FDCWD, from, AT_FDCWD, to);
-}
-
-// Until a file has its name its temporary is nobody's to remove, be there descriptors
-// left or not.
-TEST_IN_FOLDER(a_temporary_is_locked_until_it_has_its_name)
-{
-    whole_file w;
-    begin(&w, "new", "new");
-    assert_int_equal(getrlimit(RLIMIT_NOFILE, &descriptors), 0);
-    const struct rlimit none = {(rlim_t)w.descriptor + 1, descriptors.rlim_max};
-    assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
-    cleans_before_rename = true;
-    const bool committed = whole_file_commit(&w, NULL) == STATUS_OK;
-    cleans_before_rename = false;
-    assert_true(committed);
-    assert_holds("new", "new");
-}
-
-// In a folder like /tmp a link of somebody else's leads nowhere, as the kernel has it.
-TEST_IN_FOLDER(a_strangers_link_is_not_followed)
-{
-    assert_int_equal(mkdir("shared", 0777), 0);
-    assert_int_equal(chmod("shared", 01777), 0);
-    assert_int_equal(symlink("../target", "shared/link"), 0);
-    whole_file file;
-    begin(&file, "shared/link", "");
-    whole_file_abandon(&file);
-
-    // only root can make a link somebody else's
-    if (geteuid() == 0) {
-        assert_int_equal(lchown("shared/link", 12345, 12345), 0);
-        REFUSED(STATUS_CANNOT_WRITE, strerror(EACCES),
-                whole_file_open(&file, "shared/link", &f));
-        assert_int_equal(whole_file_check("shared/link", NULL), STATUS_CANNOT_WRITE);
-        assert_int_equal(chmod("shared", 0755), 0);
-        begin(&file, "shared/link", "");
-        whole_file_abandon(&file);
-
-        // one that belongs to the owner of the folder is
-        assert_int_equal(chown("shared", 12345, 12345), 0);
-        assert_int_equal(chmod("shared", 01777), 0);
-        assert_int_equal(whole_file_check("shared/link", NULL), STATUS_OK);
-    }
-}
-
 // More at once than are recorded for a signal: each is still complete.
 TEST_IN_FOLDER(several_files_are_written_at_once)
 {
@@ -362,28 +296,7 @@ TEST_IN_FOLDER(a_signal_leaves_no_temporaries)
     begin(&two, "two", "");
     assert_int_equal(files(), before + 3);
 
-    // a process that writes one of them ends before it could make its file again
-    int ended = 0;
-    const pid_t writer = fork();
-    assert_true(writer >= 0);
-    if (writer == 0) {
-        pause();
-        _exit(0);
-    }
-
-    // the program that ends makes no other: here it is a child
-    const pid_t ends = fork();
-    assert_true(ends >= 0);
-    if (ends == 0) {
-        whole_file late;
-        whole_file_set_writer(writer);
-        whole_file_remove_unfinished();
-        _exit(whole_file_open(&late, "three", NULL) == STATUS_CANNOT_WRITE ? 7 : 1);
-    }
-    assert_int_equal(waitpid(ends, &ended, 0), ends);
-    assert_true(WIFEXITED(ended) && WEXITSTATUS(ended) == 7);
-    assert_int_equal(waitpid(writer, &ended, 0), writer);
-    assert_true(WIFSIGNALED(ended) && WTERMSIG(ended) == SIGKILL);
+    whole_file_remove_unfinished();
     assert_int_equal(files(), before + 1);
     assert_holds("one", "old");
     whole_file_abandon(&one);
@@ -421,71 +334,11 @@ TEST_IN_FOLDER(devices_and_the_standard_output_can_be_abandoned)
 
 TEST_IN_FOLDER(a_link_may_be_absolute)
 {
+    put_file("target", "old");
     assert_int_equal(mkdir("below", 0700), 0);
     assert_int_equal(symlink(formatted("%s/target", test_folder), "below/link"), 0);
     write_new("below/link");
     assert_holds("target", "new");
-}
-
-// Only what is a temporary by name and kind is cleaned away.
-TEST_IN_FOLDER(what_only_looks_left_behind_stays)
-{
-    static const char *const others[] = {".impactlab-1-2.party", ".impactlab-1.part",
-                                         ".impactlab-x-2.part", ".impactlab-1-2.par"};
-    const int before = files();
-    for (EACH(one, others)) {
-        put_file(*one, "mine");
-    }
-    put_file("mine", "mine");
-    assert_int_equal(symlink("mine", ".impactlab-1-3.part"), 0);
-    assert_int_equal(mkfifo(".impactlab-1-4.part", 0600), 0);
-    assert_int_equal(mkdir(".impactlab-1-5.part", 0700), 0);
-    put_file(".impactlab-1-6.part", "left");
-    whole_file_clean_folder("nowhere");
-    whole_file_clean_folder(".");
-    assert_false(is_there(".impactlab-1-6.part"));
-    assert_int_equal(files(), before + 8);
-    for (EACH_TEXT(c, ".impactlab-1-5.part", ".impactlab-1-4.part",
-                   ".impactlab-1-3.part")) {
-        assert_int_equal(remove(*c), 0);
-    }
-    for (EACH(one, others)) {
-        unlink(*one);
-    }
-}
-
-// Names that are all taken are no reason to touch what has them.
-TEST_IN_FOLDER(a_folder_without_a_free_name_is_said)
-{
-    enum { NAMES = 1000 };
-    whole_file first, w;
-    begin(&first, "kept", "whole");
-    for (int i = 0; i < NAMES; i++) {
-        const char *name = formatted(".impactlab-%ld-%d.part", (long)getpid(), i);
-        assert_true(mkdir(name, 0700) == 0 || i == 0);
-    }
-    REFUSED(STATUS_CANNOT_WRITE, strerror(EEXIST), whole_file_open(&w, "other", &f));
-
-    // open files are still written
-    DONE(whole_file_commit(&first, &f));
-    assert_holds("kept", "whole");
-    for (int i = 1; i < NAMES; i++) {
-        assert_int_equal(rmdir(formatted(".impactlab-%ld-%d.part", (long)getpid(), i)),
-                         0);
-    }
-}
-
-// A stranger's file with a temporary's name is none of ours.
-TEST_IN_FOLDER(what_another_user_left_stays)
-{
-    if (geteuid() != 0) {
-        skip(); // only root can make a file somebody else's
-    }
-    put_file(".impactlab-1-8.part", "a stranger's");
-    assert_int_equal(chown(".impactlab-1-8.part", 12345, 12345), 0);
-    whole_file_clean_folder(".");
-    assert_holds(".impactlab-1-8.part", "a stranger's");
-    unlink(".impactlab-1-8.part");
 }
 
 TEST_IN_FOLDER(a_link_to_itself_leads_nowhere)

@@ -5,7 +5,7 @@
 
 #include "render/figures/recipe_parts.h"
 #include "render/plot/study_plot.h"
-#include "src/base/whole_file.h"
+#include "src/base/input_file.h"
 
 // ---- opening what the recipe names
 
@@ -359,9 +359,9 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
 {
     size_t length;
     fault why = {0};
-    char *text = whole_file_read(path, TREE_MAX_BYTES + 1, &length, &why);
+    char *text = input_file_read(path, TREE_MAX_BYTES + 1, &length, &why);
     if (text == NULL) {
-        return whole_file_unread(path, &why, f);
+        return input_file_fault(path, &why, f);
     }
 
     // what it says, and what it names
@@ -390,7 +390,7 @@ bool recipe_is(const char *path)
 {
     size_t length;
     fault unused = {0};
-    char *text = whole_file_read(path, TREE_MAX_BYTES, &length, &unused);
+    char *text = input_file_read(path, TREE_MAX_BYTES, &length, &unused);
     if (text == NULL) {
         return false;
     }

@@ -7,10 +7,10 @@
 #include <poll.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "render/page/text.h"
@@ -26,37 +26,28 @@ typedef struct film_format {
     const char *ending; // of its files' names
     const char *codec;  // ffmpeg's arguments for it
     bool palette; // the first frame defines the colours of all others and is not shown
-    const char *mark; // that a complete file has at an offset
-    long offset;
 } film_format;
 
-// Fixed numbers of threads and bitexact keep the bytes alike. Marks: ISO/IEC 14496-12, an
-// ftyp box first; RFC 8794, the EBML mark; GIF89a; RFC 9649, WEBP in a RIFF file.
+// Fixed numbers of threads and bitexact keep the bytes alike.
 static const film_format formats[] = {
     {.ending = ".mp4",
      .codec = "-vf scale=out_color_matrix=bt709 -c:v libx264 -preset veryfast -crf "
               "18 -threads 2 -pix_fmt yuv420p -colorspace bt709 -color_primaries "
-              "bt709 -color_trc bt709 -movflags +faststart -f mp4",
-     .mark = "ftyp",
-     .offset = 4},
+              "bt709 -color_trc bt709 -movflags +faststart -f mp4"},
     {.ending = ".webm",
      .codec = "-vf scale=out_color_matrix=bt709 -c:v libvpx-vp9 -b:v 0 -crf 24 "
               "-deadline realtime -cpu-used 7 -row-mt 1 -threads 2 -pix_fmt yuv420p "
-              "-colorspace bt709 -color_primaries bt709 -color_trc bt709 -f webm",
-     .mark = "\x1a\x45\xdf\xa3"},
+              "-colorspace bt709 -color_primaries bt709 -color_trc bt709 -f webm"},
     // the first frame only gives the palette: no later one has to wait for the film's end
     {.ending = ".gif",
      .codec = "-filter_complex "
               "split[a][b];[a]trim=end_frame=1,palettegen[p];[b]trim=start_frame=1,"
               "setpts=PTS-STARTPTS[c];[c][p]paletteuse=dither=none:diff_mode=rectangle "
               "-loop 0 -f gif",
-     .palette = true,
-     .mark = "GIF8"},
+     .palette = true},
     {.ending = ".webp",
      .codec =
-         "-c:v libwebp_anim -lossless 0 -q:v 82 -compression_level 4 -loop 0 -f webp",
-     .mark = "WEBP",
-     .offset = 8},
+         "-c:v libwebp_anim -lossless 0 -q:v 82 -compression_level 4 -loop 0 -f webp"},
 };
 
 struct film_file {
@@ -64,12 +55,12 @@ struct film_file {
     const film_options *options;
     const png_note *notes;
     int note_count;
-    char *path;
+    const char *path;
     int frames;      // written so far
     whole_file file; // of a film
-    pid_t encoder;   // 0: not running
+    GPid encoder;    // 0: not running
     int pipe;        // to it; -1 if closed
-    FILE *words;     // its messages
+    FILE *messages;  // of it
 };
 
 // ---- checks
@@ -95,7 +86,6 @@ static status check_folder(const char *path, fault *f)
              "%s is a file: expected the name of a folder, or one that ends in "
              ".mp4, .webm, .gif or .webp",
              path);
-    whole_file_clean_folder(path);
     g_autoptr(GDir) folder = g_dir_open(path, 0, NULL);
     FAULT_IF(folder == NULL || g_dir_read_name(folder) != NULL, f, STATUS_CANNOT_WRITE,
              "the folder %s is not empty: frames of two films would mix, empty it "
@@ -143,53 +133,40 @@ static const char *key_of(const char *keyword)
     return "description";
 }
 
-// To be freed with g_strfreev.
+// The encoder's command line. To be freed with g_strfreev.
 static char **list_arguments(const film_file *film, const char *target)
 {
     const film_options *o = film->options;
-    GPtrArray *list = g_ptr_array_new();
+    g_autoptr(GStrvBuilder) arguments = g_strv_builder_new();
 
     // raw frames from the pipe
-    g_autofree char *words =
+    g_autofree char *fixed =
         text_printf("ffmpeg -hide_banner -loglevel error -nostats -y -f rawvideo "
                     "-pix_fmt bgr0 -s %dx%d -r %d -i pipe:0 -an %s -fflags +bitexact "
                     "-flags:v +bitexact",
                     o->width, o->height, o->frames_per_second, film->format->codec);
-    g_autofree char **each =
-        g_strsplit(words, " ", -1); // the list takes the words themselves
-    for (int i = 0; each[i] != NULL; i++) {
-        g_ptr_array_add(list, each[i]);
-    }
+    g_auto(GStrv) words = g_strsplit(fixed, " ", -1);
+    g_strv_builder_addv(arguments, (const char **)words);
+
+    // the metadata, and the place of the film
     for (int i = 0; i < film->note_count; i++) {
         const png_note *note = &film->notes[i];
-        if (note->text != NULL) {
-            g_ptr_array_add(list, g_strdup("-metadata"));
-            g_ptr_array_add(list,
-                            text_printf("%s=%s", key_of(note->keyword), note->text));
-        }
+        g_autofree char *value = text_printf("%s=%s", key_of(note->keyword), note->text);
+        g_strv_builder_add_many(arguments, "-metadata", value, NULL);
     }
-
-    g_ptr_array_add(list, g_strconcat("file:", target, NULL));
-    g_ptr_array_add(list, NULL);
-    return (char **)g_ptr_array_free(list, FALSE);
-}
-
-// Where the film is written before it is whole.
-static const char *target_of(const film_file *film)
-{
-    if (film->file.temporary != NULL) {
-        return film->file.temporary;
-    }
-    return film->file.path;
+    g_autofree char *output = g_strconcat("file:", target, NULL);
+    g_strv_builder_add(arguments, output);
+    return g_strv_builder_end(arguments);
 }
 
 // In the child: a group of its own, as an interrupt of the terminal reaches us, and we
-// end it in order.
-static void part_from_us(gpointer context)
+// end it in order; if we are killed, it is too.
+static void prepare_encoder(gpointer context)
 {
     (void)context;
     setpgid(0, 0);
     signal(SIGPIPE, SIG_DFL);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
 }
 
 // Starts the encoder: raw frames (0xAARRGGBB without the alpha) become the film,
@@ -198,26 +175,28 @@ static status start_encoder(film_file *film, fault *f)
 {
     int ends[2];
     g_autoptr(GError) error = NULL;
-    g_auto(GStrv) words = list_arguments(film, target_of(film));
-    film->words = tmpfile();
-    FAULT_IF(film->words == NULL ||
+    const char *target = film->file.temporary;
+    if (target[0] == '\0') {
+        target = film->file.path; // a pipe that is written in place
+    }
+    g_auto(GStrv) arguments = list_arguments(film, target);
+
+    film->messages = tmpfile();
+    FAULT_IF(film->messages == NULL ||
                  socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0,
              f, STATUS_CANNOT_WRITE, "the program ffmpeg could not be started: %s",
              strerror(errno));
+
     const bool started =
-        g_spawn_async_with_fds(NULL, words, NULL,
+        g_spawn_async_with_fds(NULL, arguments, NULL,
                                G_SPAWN_SEARCH_PATH | G_SPAWN_DO_NOT_REAP_CHILD |
                                    G_SPAWN_STDOUT_TO_DEV_NULL,
-                               part_from_us, NULL, &film->encoder, ends[0], -1,
-                               fileno(film->words), &error);
+                               prepare_encoder, NULL, &film->encoder, ends[0], -1,
+                               fileno(film->messages), &error);
     close(ends[0]);
     film->pipe = ends[1];
-    if (!started) {
-        film->encoder = 0;
-        return fault_set(f, STATUS_CANNOT_WRITE,
-                         "the program ffmpeg could not be started: %s", error->message);
-    }
-    whole_file_set_writer(film->encoder);
+    FAULT_IF(!started, f, STATUS_CANNOT_WRITE,
+             "the program ffmpeg could not be started: %s", error->message);
     return STATUS_OK;
 }
 
@@ -226,104 +205,100 @@ static bool is_asked_to_stop(const film_file *film)
     return film->options->stop != NULL && *film->options->stop != 0;
 }
 
-static void close_pipe(film_file *film)
+// Ends the frames and waits for the encoder's end, the status of which is returned. One
+// that hangs is killed when we are asked to stop.
+static int wait_for_encoder(film_file *film)
 {
+    int result = -1;
     if (film->pipe >= 0) {
         close(film->pipe);
         film->pipe = -1;
     }
-}
-
-// Waits for the encoder's end and returns its status. One that hangs is ended when we are
-// asked to stop.
-static int wait_for_encoder(film_file *film)
-{
-    const struct timespec moment = {.tv_nsec = 5000000};
-    int result = -1;
     while (film->encoder > 0 && waitpid(film->encoder, &result, WNOHANG) == 0) {
         if (is_asked_to_stop(film)) {
             kill(film->encoder, SIGKILL);
         }
-        nanosleep(&moment, NULL);
+        g_usleep(5000);
     }
-    if (film->encoder > 0) {
-        whole_file_set_writer(0);
-        film->encoder = 0;
-    }
+    film->encoder = 0;
     return result;
 }
 
-// Ends the frames, waits for the encoder and reads what it complained about first: that
-// is the cause, later complaints follow from it. True if it succeeded without any.
-static bool end_encoder(film_file *film, char *said, size_t size)
+// Waits for the encoder. STATUS_OK if it succeeded without a complaint and left a film;
+// of several complaints the first is the cause, later ones follow from it.
+static status end_encoder(film_file *film, fault *f)
 {
-    close_pipe(film);
+    char said[512] = "";
     const int result = wait_for_encoder(film);
-    said[0] = '\0';
-    rewind(film->words);
-    while (said[0] == '\0' && fgets(said, (int)size, film->words) != NULL) {
+    rewind(film->messages);
+    while (said[0] == '\0' && fgets(said, sizeof said, film->messages) != NULL) {
         said[strcspn(said, "\r\n")] = '\0';
     }
-    return WIFEXITED(result) && WEXITSTATUS(result) == 0 && said[0] == '\0';
+
+    // a stop also makes it fail, so that is asked for first
+    FAULT_IF(is_asked_to_stop(film), f, STATUS_STOPPED,
+             "stopped: %d frames were painted, no film is left", film->frames);
+    if (result != 0 && said[0] == '\0') {
+        strcpy(said, "nothing");
+    }
+    FAULT_IF(said[0] != '\0', f, STATUS_CANNOT_WRITE,
+             "%s could not be made, ffmpeg says: %s", film->path, said);
+    FAULT_IF(lseek(film->file.descriptor, 0, SEEK_END) == 0, f, STATUS_CANNOT_WRITE,
+             "%s could not be made: ffmpeg left no film", film->path);
+    return STATUS_OK;
 }
 
-// Sends bytes of a frame. STATUS_CANNOT_WRITE if the program accepts no more,
-// STATUS_STOPPED if stop became true while it accepted nothing; no fault is set.
-static status send_bytes(const film_file *film, const unsigned char *bytes, size_t length)
+// Sends bytes of a frame. False if the encoder accepts no more, or if we are asked to
+// stop while it accepts nothing.
+static bool send_bytes(const film_file *film, const unsigned char *bytes, size_t length)
 {
     while (length > 0) {
         // not longer than a moment, in case the encoder hangs
         struct pollfd ready = {.fd = film->pipe, .events = POLLOUT};
         poll(&ready, 1, PATIENCE);
         if (is_asked_to_stop(film)) {
-            return STATUS_STOPPED;
+            return false;
         }
 
         // a reader that went away is an error, not a signal
-        ssize_t sent = send(film->pipe, bytes, length, MSG_NOSIGNAL | MSG_DONTWAIT);
-        if (sent < 0 && errno != EINTR && errno != EAGAIN) {
-            return STATUS_CANNOT_WRITE;
-        }
-        if (sent > 0) {
+        const ssize_t sent = send(film->pipe, bytes, length, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (sent >= 0) {
             bytes += sent;
-        }
-        if (sent > 0) {
             length -= (size_t)sent;
+        } else if (errno != EINTR && errno != EAGAIN) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Row by row, as a surface's rows may be longer than the picture.
+static status send_frame(film_file *film, cairo_surface_t *frame, fault *f)
+{
+    cairo_surface_flush(frame);
+    const unsigned char *data = cairo_image_surface_get_data(frame);
+    const ptrdiff_t stride = cairo_image_surface_get_stride(frame);
+    for (int row = 0; row < film->options->height; row++) {
+        if (!send_bytes(film, data + row * stride, 4 * (size_t)film->options->width)) {
+            TRY(end_encoder(film, f));
+            return fault_set(f, STATUS_CANNOT_WRITE,
+                             "%s could not be made: ffmpeg ended before the last frame",
+                             film->path);
         }
     }
     return STATUS_OK;
-}
-
-// Whether the finished file has the mark of its format.
-static bool looks_whole(const film_file *film)
-{
-    char found[4];
-    FILE *file = fopen(target_of(film), "rb");
-    if (file == NULL) {
-        return false;
-    }
-    const bool whole = fseek(file, film->format->offset, SEEK_SET) == 0 &&
-                       fread(found, 1, sizeof found, file) == sizeof found &&
-                       memcmp(found, film->format->mark, sizeof found) == 0;
-    fclose(file);
-    return whole;
 }
 
 // ---- the film
 
 void film_file_abandon(film_file *film)
 {
-    // an encoder that runs is stopped at once
     if (film->encoder > 0) {
         kill(film->encoder, SIGKILL);
-        wait_for_encoder(film);
     }
-    close_pipe(film);
-    if (film->format != NULL) {
-        whole_file_abandon(&film->file);
-    }
-    g_clear_pointer(&film->words, fclose);
-    g_free(film->path);
+    wait_for_encoder(film);
+    whole_file_abandon(&film->file);
+    g_clear_pointer(&film->messages, fclose);
     g_free(film);
 }
 
@@ -346,11 +321,20 @@ status film_file_open(film_file **out, const char *path, const film_options *opt
     *out = NULL;
     TRY(film_file_check(path, f));
     g_autoptr(film_file) film = g_new0(film_file, 1);
-    *film = (film_file){format_of(path), options,        notes,
-                        note_count,      g_strdup(path), .pipe = -1};
+    film->format = format_of(path);
+    film->options = options;
+    film->notes = notes;
+    film->note_count = note_count;
+    film->path = path;
+    film->pipe = -1;
     TRY(open_target(film, f));
     *out = g_steal_pointer(&film);
     return STATUS_OK;
+}
+
+bool film_file_wants_palette(const film_file *film)
+{
+    return film->format != NULL && film->format->palette;
 }
 
 static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
@@ -359,82 +343,28 @@ static status add_to_folder(film_file *film, cairo_surface_t *frame, fault *f)
     g_autofree char *path =
         text_printf("%s/frame-%05d.png", film->path, film->frames + 1);
     TRY(whole_file_open(&file, path, f));
-    status code =
+    const status code =
         png_file_write(file.stream, frame, FRAME_DPI, film->notes, film->note_count, f);
     return whole_file_close(&file, code, f);
 }
 
-bool film_file_wants_palette(const film_file *film)
-{
-    return film->format != NULL && film->format->palette;
-}
-
-static status stopped(const film_file *film, fault *f)
-{
-    return fault_set(f, STATUS_STOPPED,
-                     "stopped: %d frames were painted, no film is left", film->frames);
-}
-
-static status complain_encoder(const film_file *film, const char *said, fault *f)
-{
-    return fault_set(f, STATUS_CANNOT_WRITE, "%s could not be made, ffmpeg says: %s",
-                     film->path, said[0] ? said : "nothing");
-}
-
-// Row by row, as a surface's rows may be longer than the picture.
-static status send_frame(film_file *film, cairo_surface_t *frame, fault *f)
-{
-    char said[512];
-    status code = STATUS_OK;
-    cairo_surface_flush(frame);
-    const unsigned char *data = cairo_image_surface_get_data(frame);
-    ptrdiff_t stride = cairo_image_surface_get_stride(frame);
-    for (int row = 0; row < film->options->height && code == STATUS_OK; row++) {
-        code = send_bytes(film, data + row * stride, 4 * (size_t)film->options->width);
-    }
-    if (code == STATUS_OK || code == STATUS_STOPPED) {
-        if (code == STATUS_OK) {
-            return code;
-        }
-        return stopped(film, f);
-    }
-    end_encoder(film, said, sizeof said);
-    return complain_encoder(film, said, f);
-}
-
 status film_file_add(film_file *film, cairo_surface_t *frame, fault *f)
 {
-    status code;
     if (film->format == NULL) {
-        code = add_to_folder(film, frame, f);
+        TRY(add_to_folder(film, frame, f));
     } else {
-        code = send_frame(film, frame, f);
+        TRY(send_frame(film, frame, f));
     }
     film->frames++;
-    return code;
+    return STATUS_OK;
 }
 
 status film_file_commit(film_file *film, fault *f)
 {
     // of no more use, whatever comes of it; frames in a folder are there already
     G_GNUC_UNUSED g_autoptr(film_file) ended = film;
-    char said[512];
     if (film->format == NULL) {
         return STATUS_OK;
     }
-
-    // only an encoder can fail this late; a stop also makes it fail, so that is asked for
-    // first
-    status code = STATUS_OK;
-    const bool content = end_encoder(film, said, sizeof said);
-    if (is_asked_to_stop(film)) {
-        code = stopped(film, f);
-    } else if (!content) {
-        code = complain_encoder(film, said, f);
-    } else if (film->file.temporary != NULL && !looks_whole(film)) {
-        code = fault_set(f, STATUS_CANNOT_WRITE,
-                         "%s could not be made: ffmpeg left a file that is no such film",
-                         film->path);
-    }
-    return whole_file_close(&film->file, code, f);
+    return whole_file_close(&film->file, end_encoder(film, f), f);
 }

@@ -9,7 +9,7 @@
 #include <strings.h>
 
 #include "src/base/numbers.h"
-#include "src/base/whole_file.h"
+#include "src/base/input_file.h"
 
 enum { MOST_COLUMNS = 4096, SHOWN = 60 };
 
@@ -20,9 +20,9 @@ static status read_table_text(const char *path, char **text, fault *f)
 {
     size_t length;
     fault why = {0};
-    *text = whole_file_read(path, SIZE_MAX / 4, &length, &why);
+    *text = input_file_read(path, SIZE_MAX / 4, &length, &why);
     if (*text == NULL) {
-        return whole_file_unread(path, &why, f);
+        return input_file_fault(path, &why, f);
     }
     if (strlen(*text) != length) {
         return fault_set(f, STATUS_BAD_ARGUMENT,

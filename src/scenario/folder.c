@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 
 #include "src/base/shipped.h"
-#include "src/base/whole_file.h"
+#include "src/base/input_file.h"
 #include "src/scenario/scenario.h"
 #include "src/scenario/yaml_tree.h"
 #include "src/base/words.h"
@@ -120,7 +120,7 @@ status scenario_read(scenario *s, const char *path, const char *name,
 
     // one byte more than is allowed, so that the parser sees what is too long
     size_t length;
-    char *text = whole_file_read(path, (size_t)TREE_MAX_BYTES + 1, &length, &why);
+    char *text = input_file_read(path, (size_t)TREE_MAX_BYTES + 1, &length, &why);
     if (why.code == STATUS_NO_MEMORY) {
         return report_no_memory(report, context);
     }

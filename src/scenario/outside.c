@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "src/base/whole_file.h"
+#include "src/base/result_places.h"
 
 #define PATH(field) offsetof(parameters, field)
 
@@ -90,7 +90,7 @@ static bool add_file(sha256 *h, const char *path, reading how)
     }
     if (how == KEPT) {
         errno = EBUSY;
-        return whole_file_result_at(path) == NULL;
+        return result_places_find(path) == NULL;
     }
     if (how == CONTENT || what.st_size <= SMALL) {
         return add_content(h, path);
@@ -211,7 +211,7 @@ status outside_keep(const parameters *p, fault *f)
         sha256_init(&unused);
         parameter_format(p, parameter, value, sizeof value);
         const char *path = parameter_table[parameter].path;
-        const char *result = whole_file_result_at(value);
+        const char *result = result_places_find(value);
         if (!add_source(&unused, o, value, KEPT) && errno == EBUSY) {
             return fault_set_at(f, STATUS_BAD_ARGUMENT, path,
                                 "%s = '%s' names a file that %s would be written over, "

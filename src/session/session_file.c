@@ -7,7 +7,7 @@
 
 #include "src/base/numbers.h"
 #include "src/base/text_stream.h"
-#include "src/base/whole_file.h"
+#include "src/base/input_file.h"
 #include "src/rig/rig.h"
 #include "src/scenario/outside.h"
 
@@ -357,9 +357,9 @@ status session_file_read(session_file *file, const char *path, fault *f)
 {
     *file = (session_file){.baseline = -1};
     fault why = {0};
-    FILE *stream = whole_file_open_to_read(path, &why);
+    FILE *stream = input_file_open(path, &why);
     if (stream == NULL) {
-        return whole_file_unread(path, &why, f);
+        return input_file_fault(path, &why, f);
     }
     fault own = {0};
     session_reader r = {.file = file, .path = path, .fault = &own};

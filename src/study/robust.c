@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "src/base/numbers.h"
-#include "src/base/whole_file.h"
+#include "src/base/input_file.h"
 
 // --- the sets of arms ------------------------------------------------------------------
 
@@ -17,9 +17,9 @@ static status read_set_text(const char *path, char **text, fault *f)
 {
     size_t length;
     fault why = {0};
-    *text = whole_file_read(path, MOST_SET_BYTES + 1, &length, &why);
+    *text = input_file_read(path, MOST_SET_BYTES + 1, &length, &why);
     if (*text == NULL) {
-        return whole_file_unread(path, &why, f);
+        return input_file_fault(path, &why, f);
     }
     if (!(length <= MOST_SET_BYTES && strlen(*text) == length)) {
         return fault_set(

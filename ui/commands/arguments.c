@@ -14,6 +14,8 @@
 #include "render/figures/artwork.h"
 #include "render/page/picture_file.h"
 #include "src/base/numbers.h"
+#include "src/base/input_file.h"
+#include "src/base/result_places.h"
 #include "src/base/whole_file.h"
 #include "src/base/text_stream.h"
 #include "src/base/words.h"
@@ -329,18 +331,18 @@ static int check_kept(const char *text)
     char file[PATH_MAX];
     fault why = {0};
     snprintf(file, sizeof file, "%s", text);
-    status code = whole_file_is_plain(file, &why);
+    status code = input_file_check_plain(file, &why);
     if (code == STATUS_OK) {
-        code = whole_file_keeps(file, &why);
+        code = input_file_check_kept(file, &why);
     }
     for (const char *mark = "@:"; *mark != '\0' && code == STATUS_OK; mark++) {
         char *end = strrchr(file, *mark);
         if (end != NULL) {
             *end = '\0';
-            code = whole_file_is_plain(file, &why);
+            code = input_file_check_plain(file, &why);
         }
         if (end != NULL && code == STATUS_OK) {
-            code = whole_file_keeps(file, &why);
+            code = input_file_check_kept(file, &why);
         }
     }
     if (code != STATUS_OK) {
@@ -362,7 +364,7 @@ static int check_places(const arguments *a)
                             "expected another place",
                             o->name, path);
         }
-        if (path != NULL && !whole_file_add_result(path)) {
+        if (path != NULL && !result_places_add(path)) {
             return complain("two results cannot both be written to %s",
                             strcmp(path, "-") == 0 ? "the standard output" : path);
         }
@@ -371,7 +373,7 @@ static int check_places(const arguments *a)
     // the text of a picture that has none of its own
     g_autofree char *text =
         a->bare && a->plot != NULL ? artwork_beside(a->plot, ".txt") : NULL;
-    if (text != NULL && !whole_file_add_result(text)) {
+    if (text != NULL && !result_places_add(text)) {
         return complain("two results cannot both be written to %s", text);
     }
 
@@ -478,7 +480,7 @@ void arguments_finish(arguments *a)
         }
     }
     free(a->command_line);
-    whole_file_forget_results();
+    result_places_forget();
     *a = (arguments){0};
 }
 

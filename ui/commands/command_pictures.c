@@ -8,7 +8,7 @@
 
 #include "render/page/text.h"
 #include "src/base/numbers.h"
-#include "src/base/whole_file.h"
+#include "src/base/result_places.h"
 
 #define SERIF "DejaVu Serif"
 
@@ -88,7 +88,7 @@ static int publish_figure(const arguments *a, const figure *fig)
     }
     g_autofree char *csv = artwork_beside(a->plot, ".csv");
     fault f = {0};
-    if (figure_publish(fig, &o, a->plot, whole_file_result_at(csv) == NULL, &f) !=
+    if (figure_publish(fig, &o, a->plot, result_places_find(csv) == NULL, &f) !=
         STATUS_OK) {
         return complain_fault(&f);
     }

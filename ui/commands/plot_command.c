@@ -5,7 +5,7 @@
 
 #include "render/figures/figures.h"
 #include "render/page/picture_file.h"
-#include "src/base/whole_file.h"
+#include "src/base/result_places.h"
 #include "src/base/words.h"
 #include "ui/commands/command_pictures.h"
 #include "ui/commands/interrupts.h"
@@ -28,10 +28,10 @@ static int claim_places(const arguments *a, const char *path)
 {
     g_autofree char *csv = artwork_beside(path, ".csv");
     g_autofree char *text = artwork_beside(path, ".txt");
-    bool free_places = whole_file_add_result(csv);
+    bool free_places = result_places_add(csv);
     if (a->plot == NULL) {
-        free_places = free_places && whole_file_add_result(path) &&
-                      (!a->bare || whole_file_add_result(text));
+        free_places = free_places && result_places_add(path) &&
+                      (!a->bare || result_places_add(text));
     }
     if (!free_places) {
         return complain("two results cannot both be written to %s or beside it", path);

@@ -6,6 +6,8 @@
 
 #include "render/plot/trace_plot.h"
 #include "render/scene/scene.h"
+#include "src/base/input_file.h"
+#include "src/base/result_places.h"
 #include "src/base/whole_file.h"
 #include "src/base/words.h"
 #include "src/run/export.h"
@@ -125,13 +127,13 @@ static bool is_free(explorer_state *st, const char *name)
     const session *s = &st->session;
     const char *const read[] = {s->base.file,
                                 st->measured.row_count > 0 ? st->measured_file : NULL};
-    whole_file_add_result(name);
+    result_places_add(name);
     bool kept = outside_keep(&s->effective.parameters, &st->fault) == STATUS_OK;
     for (size_t i = 0; i < sizeof read / sizeof read[0]; i++) {
-        kept = kept &&
-               (read[i] == NULL || whole_file_keeps(read[i], &st->fault) == STATUS_OK);
+        kept = kept && (read[i] == NULL ||
+                        input_file_check_kept(read[i], &st->fault) == STATUS_OK);
     }
-    whole_file_forget_results();
+    result_places_forget();
     return kept ||
            act_refuse(st, "%.200s is a file that this run reads: another name", name);
 }

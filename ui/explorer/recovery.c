@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -34,6 +35,7 @@ static void *write_text(void *context)
     if (r->code == STATUS_OK) {
         // a copy of the descriptor keeps the lock when the file is closed
         const int lock = fcntl(file.descriptor, F_DUPFD_CLOEXEC, 0);
+        flock(lock, LOCK_EX | LOCK_NB);
         fputs(r->text, file.stream);
         r->code = whole_file_commit(&file, &r->fault);
         close(r->code == STATUS_OK ? r->lock : lock);
@@ -130,6 +132,28 @@ void recovery_end(explorer *ex, bool orderly)
 
 // --- offering --------------------------------------------------------------------------
 
+// Locks a regular file of the user's by its name in a folder, if nobody else has a lock
+// on it: the lab that wrote it has ended. Returns what holds the lock, to be closed, or
+// -1.
+static int lock_left(int folder, const char *name)
+{
+    struct stat about, named;
+    const int file = openat(folder, name, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+
+    // it may have become another file since it was opened, and the name another one's
+    const bool left = file >= 0 && fstat(file, &about) == 0 && S_ISREG(about.st_mode) &&
+                      about.st_uid == geteuid() && flock(file, LOCK_EX | LOCK_NB) == 0 &&
+                      fstatat(folder, name, &named, AT_SYMLINK_NOFOLLOW) == 0 &&
+                      named.st_ino == about.st_ino;
+    if (left) {
+        return file;
+    }
+    if (file >= 0) {
+        close(file);
+    }
+    return -1;
+}
+
 bool recovery_begin(explorer *ex)
 {
     recovery *r = &ex->recovery;
@@ -148,7 +172,7 @@ bool recovery_begin(explorer *ex)
         const char *found = entry->d_name;
         const bool newer = strncmp(found, offered, strlen(offered)) == 0 &&
                            strcmp(found, r->left + length) > 0;
-        const int lock = newer ? whole_file_lock_left(dirfd(folder), found) : -1;
+        const int lock = newer ? lock_left(dirfd(folder), found) : -1;
         if (lock >= 0) {
             close(r->left_lock);
             r->left_lock = lock;

@@ -5,7 +5,7 @@
 #include <dlfcn.h>
 #include <string.h>
 
-#include "src/base/whole_file.h"
+#include "src/base/input_file.h"
 
 // The controller that a loaded object exports, NULL if it has none.
 static const controller *exported_controller(void *library)
@@ -25,7 +25,7 @@ status plugin_open(plugin *p, const char *file, fault *f)
     // a name without a slash is looked for by the system
     fault why = {0};
     *p = (plugin){0};
-    if (strchr(file, '/') != NULL && whole_file_is_plain(file, &why) != STATUS_OK) {
+    if (strchr(file, '/') != NULL && input_file_check_plain(file, &why) != STATUS_OK) {
         return fault_set(f, STATUS_CANNOT_READ, "control.plugin = %s %s", file, why.text);
     }
     *p = (plugin){.library = dlopen(file, RTLD_NOW | RTLD_LOCAL)};

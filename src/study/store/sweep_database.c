@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "src/base/whole_file.h"
+#include "src/base/input_file.h"
 #include "src/tables/summary.h"
 
 // Of a value or a row: what is stored is shorter, what a file may make up on reading need
@@ -363,9 +363,9 @@ status database_open(sweep_database *store, int flags, fault *f)
     flags |= SQLITE_OPEN_NOMUTEX;
     if ((flags & SQLITE_OPEN_READONLY) != 0) {
         fault why = {0};
-        FILE *file = whole_file_open_to_read(store->path, &why);
+        FILE *file = input_file_open(store->path, &why);
         if (file == NULL) {
-            return whole_file_unread(store->path, &why, f);
+            return input_file_fault(store->path, &why, f);
         }
         fclose(file);
     }

@@ -11,6 +11,7 @@
 
 #include "src/base/text_stream.h"
 #include "src/study/store/sweep_database.h"
+#include "src/base/input_file.h"
 #include "src/base/whole_file.h"
 
 // Creates the tables `sweep` and `run` and marks the database as a sweep; in a
@@ -179,8 +180,8 @@ static status check_outside(sweep_database *store, fault *f)
 static status lock_file(sweep_database *store, fault *f)
 {
     fault why = {0};
-    if (whole_file_is_plain(store->path, &why) != STATUS_OK) {
-        return whole_file_unread(store->path, &why, f);
+    if (input_file_check_plain(store->path, &why) != STATUS_OK) {
+        return input_file_fault(store->path, &why, f);
     }
     store->lock = open(store->path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     FAULT_IF(store->lock < 0, f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s",
