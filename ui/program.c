@@ -30,23 +30,29 @@ static int print_welcome(void)
 }
 
 // Whether a word is "--NAME" or "--NAME=VALUE".
-static bool is_called(const char *name, const char *word)
+static bool is_option_named(const char *word, const char *name)
 {
-    return name != NULL && strncmp(word, "--", 2) == 0 &&
-           strncmp(word + 2, name, strlen(name)) == 0 &&
-           strchr("=", word[2 + strlen(name)]) != NULL;
+    if (name == NULL || strncmp(word, "--", 2) != 0) {
+        return false;
+    }
+    const char *rest = word + 2;
+    const size_t length = strlen(name);
+    return strncmp(rest, name, length) == 0 &&
+           (rest[length] == '\0' || rest[length] == '=');
 }
 
 // The lab's own options may stand without a command.
 static bool is_lab_option(const char *word)
 {
     const option_row *o;
-    bool found = false;
     for (int i = 0; (o = command_option(&lab_command, i)) != NULL; i++) {
-        const bool named = is_called(o->name, word) || is_called(o->alias, word);
-        found = found || (named && o != help_options.rows);
+        const bool named =
+            is_option_named(word, o->name) || is_option_named(word, o->alias);
+        if (named && o != help_options.rows) {
+            return true;
+        }
     }
-    return found;
+    return false;
 }
 
 // Reads what follows the command's name argv[0] and runs it. Returns the exit status.
@@ -54,13 +60,14 @@ static int call_command(const command *c, int argc, char **argv)
 {
     arguments a = {.command = c, .commands = &command_table};
     int result;
-
     if (!arguments_read(&a, argc, argv, &result)) {
         if (result == EXIT_DONE) {
             print_help(stdout, c);
         }
         return result;
     }
+
+    // nothing is computed whose results could not be written
     result = check_results(&a);
     if (result == EXIT_DONE) {
         result = command_run(&a);
@@ -69,20 +76,24 @@ static int call_command(const command *c, int argc, char **argv)
     return result;
 }
 
+// Without arguments it is the lab, or a welcome where there is no terminal.
+static int run_without_arguments(void)
+{
+    fault f = {0};
+    char *lab[] = {"lab", NULL};
+    if (terminal_usable(&f)) {
+        return call_command(&lab_command, 1, lab);
+    }
+    return print_welcome();
+}
+
 // Runs the command that argv asks for. Returns the exit status.
 static int dispatch(int argc, char **argv)
 {
-    fault f = {0};
-    const char *word = argc > 1 ? argv[1] : NULL;
-
-    // without a command, or with options of its own, it is the lab
-    if (word == NULL) {
-        char *call[] = {"lab", NULL};
-        if (terminal_usable(&f)) {
-            return call_command(&lab_command, 1, call);
-        }
-        return print_welcome();
+    if (argc < 2) {
+        return run_without_arguments();
     }
+    const char *word = argv[1];
     if (is_lab_option(word)) {
         return call_command(&lab_command, argc, argv);
     }
@@ -96,6 +107,8 @@ static int dispatch(int argc, char **argv)
         print_commands(stdout, &command_table);
         return EXIT_DONE;
     }
+
+    // a command by its name
     const command *found = command_find(&command_table, word);
     if (found != NULL) {
         return call_command(found, argc - 1, argv + 1);
@@ -104,11 +117,13 @@ static int dispatch(int argc, char **argv)
 }
 
 // What was printed must be whole and have arrived, unless its reader went away first
-// (impactlab
-// list | head).
+// (impactlab list | head).
 static int close_output(int result)
 {
-    const int reason = loss_noted() ? ENOMEM : stream_failure(stdout);
+    int reason = stream_failure(stdout);
+    if (loss_noted()) {
+        reason = ENOMEM;
+    }
     if (reason == 0 || reason == EPIPE || result != EXIT_DONE) {
         return result;
     }
@@ -188,9 +203,12 @@ int program_run(int argc, char **argv)
 
     // numbers keep their decimal point: only the character set follows the locale
     setlocale(LC_CTYPE, "");
+
     // a write that fails is reported where it is made, not by a signal
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
+
+    // however it ends, no half-written file is left
     catch_endings();
     text_when_giving_up(end_without_picture);
     return close_output(dispatch(argc, argv));

@@ -1,3 +1,4 @@
+// The passages of the manual, from the table that passages.sh makes of its pages.
 #include "ui/manual/search.h"
 
 #include <assert.h>
