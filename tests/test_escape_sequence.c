@@ -12,8 +12,8 @@ typedef struct meant {
 // Feeds what follows an escape until the sequence is over or the text is.
 static meant feed(escape_sequence *e, const char *text)
 {
-    meant m = {.result = SEQUENCE_GOES_ON};
-    for (; *text && m.result == SEQUENCE_GOES_ON; text++, m.taken++) {
+    meant m = {.result = SEQUENCE_CONTINUES};
+    for (; *text && m.result == SEQUENCE_CONTINUES; text++, m.taken++) {
         m.result = escape_sequence_take(e, (unsigned char)*text, &m.mouse);
     }
     return m;
@@ -73,15 +73,15 @@ TEST(test_pasted_text_has_marks)
     assert_int_equal(feed_fresh("[201~").result, SEQUENCE_PASTED);
 
     // also while answers of the terminal are awaited
-    escape_sequence e = {.state = SEQUENCE_ESCAPED, .awaits = true};
+    escape_sequence e = {.state = SEQUENCE_ESCAPED, .awaits_answers = true};
     assert_int_equal(feed(&e, "[200~").result, SEQUENCE_PASTE);
 }
 
 TEST(test_a_sequence_may_come_in_pieces)
 {
     escape_sequence e = {.state = SEQUENCE_ESCAPED};
-    assert_int_equal(feed(&e, "[<0;4").result, SEQUENCE_GOES_ON);
-    assert_int_equal(feed(&e, "5;30").result, SEQUENCE_GOES_ON);
+    assert_int_equal(feed(&e, "[<0;4").result, SEQUENCE_CONTINUES);
+    assert_int_equal(feed(&e, "5;30").result, SEQUENCE_CONTINUES);
     assert_int_equal(feed(&e, "M").result, SEQUENCE_MOUSE);
     assert_int_equal(e.state, SEQUENCE_NONE);
 }

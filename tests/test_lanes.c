@@ -16,7 +16,7 @@ static area find_part(const explorer *ex, hit_part part)
 static screen drawn(explorer *ex, int width, int height)
 {
     screen s = {0};
-    assert_true(screen_resize(&s, width, height));
+    screen_resize(&s, width, height);
     explorer_draw(ex, &s);
     return s;
 }

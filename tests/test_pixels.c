@@ -148,7 +148,7 @@ static void draw_pictures(explorer *ex, screen *s, picture_layer *layer)
 {
     *layer = (picture_layer){.cell_width = 8, .cell_height = 16};
     s->pictures = layer;
-    assert_true(screen_resize(s, 120, 40));
+    screen_resize(s, 120, 40);
     explorer_draw(ex, s);
     assert_true(layer->count >= 3);
 }
@@ -212,14 +212,13 @@ TEST_IN_FOLDER(test_what_is_written_is_the_picture)
 
         // five bits of each colour, and hundredths of it
         SCOPED(free_kept)
-        WRITTEN(lines, assert_true(sixel_write(stream, &block, SIXEL_COLOURS)));
+        WRITTEN(lines, sixel_write(stream, &block, SIXEL_COLOURS));
         SCOPED(forget) decoded sixel = decode_sixel(lines);
         assert_in_range(difference(&sixel, &png), 0, 10);
 
         // to the bit
         SCOPED(free_kept)
-        WRITTEN(text,
-                assert_true(kitty_write(stream, &block, i + 1, p->width, p->height)));
+        WRITTEN(text, kitty_write(stream, &block, i + 1, p->width, p->height));
         SCOPED(forget) decoded kitty = decode_kitty(text, &columns, &rows);
         assert_int_equal(columns, p->width);
         assert_int_equal(rows, p->height);
@@ -237,7 +236,7 @@ TEST(test_few_registers_are_enough)
                                   : (uint32_t)(i % 64 * 0x030201);
     }
     const pixel_block block = {pixels, 64, 20, 64};
-    SCOPED(free_kept) WRITTEN(text, assert_true(sixel_write(stream, &block, 4)));
+    SCOPED(free_kept) WRITTEN(text, sixel_write(stream, &block, 4));
     assert_null(strstr(text, "#4"));
     SCOPED(forget) decoded d = decode_sixel(text);
     // the commonest are as they were
@@ -325,7 +324,7 @@ TEST(test_a_picture_that_failed_is_words)
     SCOPED(pictures_finish) picture_layer layer = {.cell_width = 8, .cell_height = 16};
     picture_region regions[PICTURE_REGIONS];
     s.pictures = &layer;
-    assert_true(screen_resize(&s, 60, 20));
+    screen_resize(&s, 60, 20);
 
     picture_end(&s, picture_begin(&s, 0, 0, 50, 5));
     cairo_t *broken = picture_begin(&s, 10, 6, 40, 7);
@@ -360,10 +359,11 @@ static pixel_protocol answered(const char *const *answers, int count, bool caref
 {
     pixel_answers_begin(a, careful);
     for (int i = 0; i < count; i++) {
-        escape_sequence e = {.state = SEQUENCE_ESCAPED, .awaits = true};
+        escape_sequence e = {.state = SEQUENCE_ESCAPED, .awaits_answers = true};
         pointer_event ignored;
-        sequence_result result = SEQUENCE_GOES_ON;
-        for (const char *c = answers[i]; *c != '\0' && result == SEQUENCE_GOES_ON; c++) {
+        sequence_result result = SEQUENCE_CONTINUES;
+        for (const char *c = answers[i]; *c != '\0' && result == SEQUENCE_CONTINUES;
+             c++) {
             result = escape_sequence_take(&e, (unsigned char)*c, &ignored);
         }
         if (result == SEQUENCE_ANSWER) {
@@ -430,19 +430,19 @@ TEST(test_answers_are_no_keys)
 
     // where none is awaited ESC P is two keys
     assert_int_equal(escape_sequence_take(&e, 'P', &ignored), SEQUENCE_OTHER_KEY);
-    e = (escape_sequence){.state = SEQUENCE_ESCAPED, .awaits = true};
+    e = (escape_sequence){.state = SEQUENCE_ESCAPED, .awaits_answers = true};
     const char text[] =
         "P>|a name that is a good deal longer than all that there is room "
         "for in a sequence, and yet no key\033\\";
     for (size_t i = 0; i + 2 < sizeof text; i++) {
-        assert_int_equal(escape_sequence_take(&e, text[i], &ignored), SEQUENCE_GOES_ON);
+        assert_int_equal(escape_sequence_take(&e, text[i], &ignored), SEQUENCE_CONTINUES);
     }
     assert_int_equal(escape_sequence_take(&e, '\\', &ignored), SEQUENCE_ANSWER);
     assert_int_equal(e.introducer, 'P');
 
     // one that is broken off loses no key
-    e = (escape_sequence){.state = SEQUENCE_ESCAPED, .awaits = true};
-    assert_int_equal(escape_sequence_take(&e, '_', &ignored), SEQUENCE_GOES_ON);
-    assert_int_equal(escape_sequence_take(&e, 27, &ignored), SEQUENCE_GOES_ON);
+    e = (escape_sequence){.state = SEQUENCE_ESCAPED, .awaits_answers = true};
+    assert_int_equal(escape_sequence_take(&e, '_', &ignored), SEQUENCE_CONTINUES);
+    assert_int_equal(escape_sequence_take(&e, 27, &ignored), SEQUENCE_CONTINUES);
     assert_int_equal(escape_sequence_take(&e, 'q', &ignored), SEQUENCE_OTHER_KEY);
 }

@@ -65,17 +65,13 @@ static int run_script(explorer *ex, const char *path)
     return code;
 }
 
-static int print_screen(explorer *ex)
+static void print_screen(explorer *ex)
 {
     screen s = {0};
-    if (!screen_resize(&s, ex->state.size.width, ex->state.size.height)) {
-        complain("%s", status_text(STATUS_NO_MEMORY));
-        return EXIT_FAILED;
-    }
+    screen_resize(&s, ex->state.size.width, ex->state.size.height);
     explorer_draw(ex, &s);
     screen_dump(&s, ex->state.looks.glyphs, stdout);
     screen_finish(&s);
-    return EXIT_DONE;
 }
 
 static int run_off_screen(explorer *ex, const arguments *a)
@@ -94,7 +90,7 @@ static int run_off_screen(explorer *ex, const arguments *a)
         code = complain_fault(&f);
     }
     if (code == EXIT_DONE && !a->quiet) {
-        code = print_screen(ex);
+        print_screen(ex);
     }
 
     // the keys went on, but what they were to do is not done
@@ -143,8 +139,8 @@ static void show(explorer *ex, screen *s, picture_layer *layer)
     } else {
         layer->ground = theme_grounds(l->theme)[0];
     }
-    if ((width != s->width || height != s->height) && !screen_resize(s, width, height)) {
-        return;
+    if (width != s->width || height != s->height) {
+        screen_resize(s, width, height);
     }
     terminal_mouse(l->mouse);
     l->shown_depth = l->depth;

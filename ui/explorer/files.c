@@ -43,11 +43,10 @@ static void write_screen(explorer_state *st, FILE *stream)
 {
     static layout unused;
     screen s = {0};
-    if (screen_resize(&s, st->size.width, st->size.height)) {
-        state_update(st);
-        compose_screen(st, &unused, &s);
-        screen_dump(&s, st->looks.glyphs, stream);
-    }
+    screen_resize(&s, st->size.width, st->size.height);
+    state_update(st);
+    compose_screen(st, &unused, &s);
+    screen_dump(&s, st->looks.glyphs, stream);
     screen_finish(&s);
 }
 

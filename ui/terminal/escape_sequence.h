@@ -18,15 +18,15 @@ typedef enum sequence_state {
 
 typedef struct escape_sequence {
     sequence_state state;
-    bool awaits;     // answers are expected: strings are recognised too
-    char introducer; // of an answer: '[', 'P', ']' or '_'
-    char final;      // of an answer that begins with '['
-    char text[96];   // parameters so far; of an answer the whole text, terminated by zero
+    bool awaits_answers; // answers are expected: strings are recognised too
+    char introducer;     // of an answer: '[', 'P', ']' or '_'
+    char final;          // of an answer that begins with '['
+    char text[96]; // parameters so far; of an answer the whole text, terminated by zero
     int length;
 } escape_sequence;
 
 typedef enum sequence_result {
-    SEQUENCE_GOES_ON,
+    SEQUENCE_CONTINUES,
     SEQUENCE_OVER,   // it had no meaning or was skipped
     SEQUENCE_MOUSE,  // the first button or the wheel
     SEQUENCE_ANSWER, // given by introducer, text and final

@@ -3,8 +3,8 @@
 #include <assert.h>
 #include <math.h>
 
-// As many colours as can be told apart with 4.6 of contrast on both grounds, also without
-// the sensitivity for red or for green, near the hues of Okabe and Ito 2008.
+// Colours that can be told apart, also without the sensitivity for red or for green, each
+// with a contrast of 4.6 on both grounds; near the hues of Okabe and Ito 2008.
 static const struct {
     rgb dark, light;
 } inks[INK_COUNT] = {
@@ -28,28 +28,27 @@ static const struct {
     {{255, 255, 30}, {87, 116, 111}},
 };
 
+enum { GROUNDS = 2 }; // of a theme
+
 bool ink_rgb(colour_theme theme, ink i, rgb *colour)
 {
-    if (theme == COLOURS_LIGHT) {
-        *colour = inks[i].light;
-    } else {
-        *colour = inks[i].dark;
-    }
+    *colour = theme == COLOURS_LIGHT ? inks[i].light : inks[i].dark;
     return theme != COLOURS_MONO && i != INK_TEXT && i != INK_TITLE && i != INK_SELECTED;
 }
 
 const rgb *theme_grounds(colour_theme theme)
 {
-    static const rgb grounds[2][2] = {{{0, 0, 0}, {40, 44, 52}},
-                                      {{255, 255, 255}, {253, 246, 227}}};
-    return grounds[theme == COLOURS_LIGHT];
+    static const rgb dark[GROUNDS] = {{0, 0, 0}, {40, 44, 52}};
+    static const rgb light[GROUNDS] = {{255, 255, 255}, {253, 246, 227}};
+    return theme == COLOURS_LIGHT ? light : dark;
 }
 
 // --- measures --------------------------------------------------------------------------
 
-static double linear(unsigned char value)
+// A component of sRGB as an intensity of light, 0 to 1 (IEC 61966-2-1).
+static double intensity(unsigned char component)
 {
-    double share = value / 255.0;
+    const double share = component / 255.0;
     if (share <= 0.04045) {
         return share / 12.92;
     }
@@ -58,22 +57,26 @@ static double linear(unsigned char value)
 
 static double luminance(rgb c)
 {
-    return 0.2126 * linear(c.red) + 0.7152 * linear(c.green) + 0.0722 * linear(c.blue);
+    return 0.2126 * intensity(c.red) + 0.7152 * intensity(c.green) +
+           0.0722 * intensity(c.blue);
 }
 
 double rgb_contrast(rgb a, rgb b)
 {
-    double one = luminance(a) + 0.05, other = luminance(b) + 0.05;
-    return fmax(one, other) / fmin(one, other);
+    const double of_a = luminance(a) + 0.05, of_b = luminance(b) + 0.05;
+    return fmax(of_a, of_b) / fmin(of_a, of_b);
 }
 
-// Ottosson 2020
+// Lightness and two axes of colour, in which distances are as people see them (Ottosson
+// 2020).
 static void oklab(rgb c, double lab[3])
 {
-    double r = linear(c.red), g = linear(c.green), b = linear(c.blue);
-    double l = cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
-    double m = cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
-    double s = cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
+    const double r = intensity(c.red), g = intensity(c.green), b = intensity(c.blue);
+
+    // the responses of the three cones of an eye
+    const double l = cbrt(0.4122214708 * r + 0.5363325363 * g + 0.0514459929 * b);
+    const double m = cbrt(0.2119034982 * r + 0.6806995451 * g + 0.1073969566 * b);
+    const double s = cbrt(0.0883024619 * r + 0.2817188376 * g + 0.6299787005 * b);
     lab[0] = 0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s;
     lab[1] = 1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s;
     lab[2] = 0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s;
@@ -81,47 +84,44 @@ static void oklab(rgb c, double lab[3])
 
 double rgb_distance(rgb a, rgb b)
 {
-    double x[3], y[3];
-    oklab(a, x);
-    oklab(b, y);
-    return hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]);
+    double of_a[3], of_b[3];
+    oklab(a, of_a);
+    oklab(b, of_b);
+    return hypot(hypot(of_a[0] - of_b[0], of_a[1] - of_b[1]), of_a[2] - of_b[2]);
 }
 
 // --- terminals with fewer colours ------------------------------------------------------
 
+// The first 16 as the PC's text mode has them, which has the largest difference between
+// bright and dark colours: a bit each for red, green and blue, one for bright.
+static rgb colour_16(int index)
+{
+    enum { BROWN = 3 };
+    if (index == BROWN) {
+        return (rgb){170, 85, 0};
+    }
+    const bool bright = (index & 8) != 0;
+    const unsigned char on = bright ? 255 : 170, off = bright ? 85 : 0;
+    return (rgb){.red = index & 1 ? on : off,
+                 .green = index & 2 ? on : off,
+                 .blue = index & 4 ? on : off};
+}
+
 rgb colour_256(int index)
 {
+    enum { CUBE = 16, GREYS = 232 }; // where a cube of colours begins, and greys
     static const unsigned char levels[6] = {0, 95, 135, 175, 215, 255};
-
-    // the PC's text mode, which has the largest difference between bright and dark
-    // colours
-    if (index < 16) {
-        unsigned char on = 170, off = 0;
-        if (index & 8) {
-            on = 255;
-            off = 85;
-        }
-        rgb c = {off, off, off};
-        if (index & 1) {
-            c.red = on;
-        }
-        if (index & 2) {
-            c.green = on;
-        }
-        if (index & 4) {
-            c.blue = on;
-        }
-        if (index == 3) {
-            c.green = 85; // brown instead of a dark yellow
-        }
-        return c;
+    if (index < CUBE) {
+        return colour_16(index);
     }
-    if (index >= 232) {
-        unsigned char grey = (unsigned char)(8 + 10 * (index - 232));
+    if (index >= GREYS) {
+        const unsigned char grey = (unsigned char)(8 + 10 * (index - GREYS));
         return (rgb){grey, grey, grey};
     }
-    index -= 16;
-    return (rgb){levels[index / 36], levels[index / 6 % 6], levels[index % 6]};
+
+    // red changes slowest, blue fastest
+    const int in_cube = index - CUBE;
+    return (rgb){levels[in_cube / 36], levels[in_cube / 6 % 6], levels[in_cube % 6]};
 }
 
 static bool is_grey(rgb c)
@@ -129,62 +129,110 @@ static bool is_grey(rgb c)
     return c.red == c.green && c.green == c.blue;
 }
 
-// The nearest colour of 256, or of the first 16 (`few`), that has enough contrast on the
-// grounds and is none of those taken (bits); a grey may stand for a colour if `greys`. -1
-// if there is none.
-static int nearest(colour_theme theme, ink i, bool few, unsigned taken, bool greys)
+// What colours an ink may have: those from `first` to before `end` that are not among
+// those taken (bits, of the first 16), that differ enough from the first grounds, and no
+// grey for a colour unless that is allowed.
+typedef struct colour_search {
+    int first, end;
+    unsigned taken;
+    int grounds;
+    double contrast; // at least
+    bool greys;
+} colour_search;
+
+static bool is_allowed(const colour_search *search, colour_theme theme, int index,
+                       rgb wanted)
 {
-    // lines need less contrast than text
-    double least = i == INK_FRAME ? 3 : 4.5, distance = (double)INFINITY;
-    rgb wanted;
+    // no colour for what has none, and the other way round where there are some
+    const rgb c = colour_256(index);
+    if (is_grey(wanted) && !is_grey(c)) {
+        return false;
+    }
+    if (!is_grey(wanted) && is_grey(c) && !search->greys) {
+        return false;
+    }
+    if (index < 16 && (search->taken >> index & 1) != 0) {
+        return false;
+    }
+    for (int g = 0; g < search->grounds; g++) {
+        if (rgb_contrast(c, theme_grounds(theme)[g]) < search->contrast) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// The nearest of those colours, -1 if there is none.
+static int nearest(const colour_search *search, colour_theme theme, ink i)
+{
+    double least = (double)INFINITY;
     int best = -1;
+    rgb wanted;
     if (!ink_rgb(theme, i, &wanted)) {
         return -1;
     }
-
-    // of 256 the first 16 are whatever the user has made of them
-    int first = 16, end = 256, grounds = 2;
-    if (few) {
-        first = 0;
-        end = 16;
-        grounds = 1;
-    }
-    for (int index = first; index < end; index++) {
-        const rgb c = colour_256(index);
-
-        // no colour for what has none, and the other way round where there are some
-        const bool suits = is_grey(c) == is_grey(wanted) || (is_grey(c) && greys);
-        bool readable = suits && !(few && taken >> index & 1);
-        for (int g = 0; g < grounds; g++) {
-            readable = readable && rgb_contrast(c, theme_grounds(theme)[g]) >= least;
-        }
-        if (readable && rgb_distance(c, wanted) < distance) {
+    for (int index = search->first; index < search->end; index++) {
+        const double distance = rgb_distance(colour_256(index), wanted);
+        if (distance < least && is_allowed(search, theme, index, wanted)) {
             best = index;
-            distance = rgb_distance(c, wanted);
+            least = distance;
         }
+    }
+    return best;
+}
+
+// Lines need less contrast than text.
+static double needed_contrast(ink i)
+{
+    return i == INK_FRAME ? 3 : 4.5;
+}
+
+// Of 256 the first 16 are whatever the user has made of them.
+static int find_256(colour_theme theme, ink i)
+{
+    const colour_search search = {.first = 16,
+                                  .end = 256,
+                                  .grounds = GROUNDS,
+                                  .contrast = needed_contrast(i),
+                                  .greys = true};
+    return nearest(&search, theme, i);
+}
+
+// Of 16 the nearest one that is not taken, at need a grey, or one that is taken.
+static int nearest_of_16(colour_theme theme, ink i, unsigned taken)
+{
+    colour_search search = {.end = 16,
+                            .taken = taken,
+                            .grounds = 1,
+                            .contrast = needed_contrast(i)};
+    int best = nearest(&search, theme, i);
+    if (best < 0) {
+        search.greys = true;
+        best = nearest(&search, theme, i);
+    }
+    if (best < 0) {
+        search.taken = 0;
+        best = nearest(&search, theme, i);
     }
     return best;
 }
 
 static int find_16(colour_theme theme, ink i)
 {
-    unsigned taken = 0;
     int best = -1;
-    // curves differ as long as there are colours
-    for (int k = i < INK_SERIES_0 ? (int)i : INK_SERIES_0; k <= (int)i; k++) {
-        best = nearest(theme, (ink)k, true, taken, false);
-        if (best < 0) {
-            best = nearest(theme, (ink)k, true, taken, true);
-        }
-        if (best < 0) {
-            best = nearest(theme, (ink)k, true, 0, true);
-        }
-        if (best < 0) {
-            taken |= 0;
-        } else {
-            taken |= 1u << best;
+    if (i < INK_SERIES_0) {
+        best = nearest_of_16(theme, i, 0);
+    } else {
+        // curves differ as long as there are colours
+        unsigned taken = 0;
+        for (int curve = INK_SERIES_0; curve <= (int)i; curve++) {
+            best = nearest_of_16(theme, (ink)curve, taken);
+            if (best >= 0) {
+                taken |= 1u << best;
+            }
         }
     }
+
     // black and white are the text's own, which the user may have exchanged
     if (best == 0 || best == 7 || best == 15) {
         return -1;
@@ -194,13 +242,18 @@ static int find_16(colour_theme theme, ink i)
 
 int ink_index(colour_theme theme, ink i, colour_depth depth)
 {
-    // found once: kept with 2 added, so that 0 is unknown
-    static short kept[2][COLOUR_THEMES][INK_COUNT];
     assert(theme < COLOUR_THEMES && i < INK_COUNT);
-    short *known = &kept[depth == DEPTH_256][theme][i];
+
+    // remembered with 2 added, so that 0 is unknown
+    static short remembered[2][COLOUR_THEMES][INK_COUNT];
+    short *known = &remembered[depth == DEPTH_256][theme][i];
     if (*known == 0) {
-        const int found =
-            depth == DEPTH_256 ? nearest(theme, i, false, 0, true) : find_16(theme, i);
+        int found;
+        if (depth == DEPTH_256) {
+            found = find_256(theme, i);
+        } else {
+            found = find_16(theme, i);
+        }
         *known = (short)(found + 2);
     }
     return *known - 2;

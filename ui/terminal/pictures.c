@@ -19,8 +19,8 @@ void pictures_clear(screen *s)
     }
 }
 
-// Makes sure that a picture has a surface of its size without an error; false without
-// memory.
+// Gives a picture a surface of its size, the one it has if that fits; false if cairo has
+// none.
 static bool fit_surface(screen_picture *p, int width, int height)
 {
     const bool fits = p->surface != NULL &&
@@ -38,7 +38,7 @@ cairo_t *picture_begin(screen *s, int x, int y, int width, int height)
 {
     picture_layer *layer = s->pictures;
 
-    // kept within the screen
+    // only what is within the screen
     if (x + width > s->width) {
         width = s->width - x;
     }
@@ -66,7 +66,7 @@ cairo_t *picture_begin(screen *s, int x, int y, int width, int height)
     }
     layer->count++;
 
-    // its ground
+    // its background
     cairo_t *cr = cairo_create(p->surface);
     cairo_set_source_rgb(cr, layer->ground.red / 255.0, layer->ground.green / 255.0,
                          layer->ground.blue / 255.0);
@@ -74,13 +74,11 @@ cairo_t *picture_begin(screen *s, int x, int y, int width, int height)
     return cr;
 }
 
-// Blanks in the place of a picture, with words in the middle.
+// Words in the middle of where a picture was to be, and blanks around them.
 static void put_words(screen *s, int picture, const char *words)
 {
     const screen_picture *p = &s->pictures->items[picture];
     const uint32_t glyph = GLYPH_PICTURE + (uint32_t)picture;
-    const int length = (int)strlen(words);
-    const int x = length < p->width ? p->x + (p->width - length) / 2 : p->x;
     for (int row = p->y; row < p->y + p->height; row++) {
         for (int column = p->x; column < p->x + p->width; column++) {
             if (s->cells[(long)row * s->width + column].glyph == glyph) {
@@ -88,7 +86,12 @@ static void put_words(screen *s, int picture, const char *words)
             }
         }
     }
-    screen_text(s, x, p->y + p->height / 2, p->width, INK_TEXT, words);
+
+    int margin = (p->width - (int)strlen(words)) / 2;
+    if (margin < 0) {
+        margin = 0;
+    }
+    screen_text(s, p->x + margin, p->y + p->height / 2, p->width, INK_TEXT, words);
 }
 
 void picture_end(screen *s, cairo_t *cr)
@@ -102,8 +105,34 @@ void picture_end(screen *s, cairo_t *cr)
     }
 }
 
-// The regions of one picture, behind the `count` there are: rows with the same run hang
-// together.
+// How many cells of a row show a picture, one after the other from x on, up to `most`.
+static int run_length(const screen *s, int x, int y, uint32_t glyph, int most)
+{
+    const cell *row = s->cells + (long)y * s->width;
+    int length = 0;
+    while (x + length < s->width && length < most && row[x + length].glyph == glyph) {
+        length++;
+    }
+    return length;
+}
+
+// The region among the given ones that a run of cells continues downwards, NULL if there
+// is none.
+static picture_region *region_above(picture_region *regions, int count, int x, int y,
+                                    int length, int most_height)
+{
+    for (int i = 0; i < count; i++) {
+        picture_region *r = &regions[i];
+        if (r->x == x && r->width == length && r->y + r->height == y &&
+            r->height < most_height) {
+            return r;
+        }
+    }
+    return NULL;
+}
+
+// Adds the regions of one picture behind the `count` that there are; returns how many
+// there are then.
 static int add_regions(const screen *s, int picture, int most_width, int most_height,
                        picture_region *regions, int count)
 {
@@ -111,24 +140,23 @@ static int add_regions(const screen *s, int picture, int most_width, int most_he
     const uint32_t glyph = GLYPH_PICTURE + (uint32_t)picture;
     const int first = count;
     for (int y = p->y; y < p->y + p->height; y++) {
-        const cell *row = s->cells + (long)y * s->width;
-        for (int x = p->x, length; x<p->x + p->width; x += length> 0 ? length : 1) {
-            for (length = 0; x + length < s->width && length < most_width &&
-                             row[x + length].glyph == glyph;) {
-                length++;
+        int x = p->x;
+        while (x < p->x + p->width) {
+            const int length = run_length(s, x, y, glyph, most_width);
+            if (length == 0) {
+                x++;
+                continue;
             }
 
-            // continues the one above, or begins another
-            bool goes_on = length == 0;
-            for (int k = first; k < count && !goes_on; k++) {
-                picture_region *above = &regions[k];
-                goes_on = above->x == x && above->width == length &&
-                          above->y + above->height == y && above->height < most_height;
-                above->height += goes_on;
-            }
-            if (!goes_on && count < PICTURE_REGIONS) {
+            // continues the region above, or begins another
+            picture_region *above =
+                region_above(regions + first, count - first, x, y, length, most_height);
+            if (above != NULL) {
+                above->height++;
+            } else if (count < PICTURE_REGIONS) {
                 regions[count++] = (picture_region){picture, x, y, length, 1};
             }
+            x += length;
         }
     }
     return count;
@@ -138,8 +166,11 @@ int pictures_regions(const screen *s, int most_width, int most_height,
                      picture_region regions[PICTURE_REGIONS])
 {
     assert(most_width > 0 && most_height > 0);
+    if (s->pictures == NULL) {
+        return 0;
+    }
     int count = 0;
-    for (int i = 0; s->pictures != NULL && i < s->pictures->count; i++) {
+    for (int i = 0; i < s->pictures->count; i++) {
         cairo_surface_flush(s->pictures->items[i].surface);
         count = add_regions(s, i, most_width, most_height, regions, count);
     }
@@ -148,12 +179,14 @@ int pictures_regions(const screen *s, int most_width, int most_height,
 
 rgb picture_ink(const screen *s, colour_theme theme, ink i)
 {
-    const rgb black = {0, 0, 0}, white = {255, 255, 255};
-    const rgb ground = s->pictures->ground;
     rgb colour;
     if (ink_rgb(theme, i, &colour)) {
         return colour;
     }
+
+    // the default colour of text: what stands out more
+    const rgb black = {0, 0, 0}, white = {255, 255, 255};
+    const rgb ground = s->pictures->ground;
     if (rgb_contrast(white, ground) > rgb_contrast(black, ground)) {
         return white;
     }

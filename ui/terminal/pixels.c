@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <glib.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -11,7 +10,7 @@
 // Sixel: a picture in bands of six rows. Each band is drawn once for every colour in it,
 // a character for each column with a bit for each row; repeated characters are counted.
 
-enum { BIN_BITS = 5, BINS = 1 << (3 * BIN_BITS), BAND = 6 };
+enum { BIN_BITS = 5, BINS = 1 << (3 * BIN_BITS), BAND_ROWS = 6 };
 
 // Pixels that are alike in the upper bits of red, green and blue.
 typedef struct colour_bin {
@@ -22,9 +21,9 @@ typedef struct colour_bin {
 
 typedef struct sixel_picture {
     const pixel_block *block;
-    colour_bin *bins;         // BINS of them; the first are the colours
-    int colours;              // used
-    unsigned char *colour_of; // a bin's
+    colour_bin *bins;         // BINS of them; the first are the picture's colours
+    int colours;              // how many
+    unsigned char *colour_of; // the colour of each bin
     unsigned char *bits;      // of a band: for each colour in it, a row of columns
 } sixel_picture;
 
@@ -35,16 +34,17 @@ static int bin_of(uint32_t pixel)
                  (pixel >> shift & 31));
 }
 
-static int by_count(const void *a, const void *b)
+// Orders bins from the commonest to the rarest, for qsort.
+static int compare_by_count(const void *a, const void *b)
 {
-    const colour_bin *x = a, *y = b;
-    if (x->count < y->count) {
+    const colour_bin *left = a, *right = b;
+    if (left->count < right->count) {
         return 1;
     }
-    if (x->count > y->count) {
+    if (left->count > right->count) {
         return -1;
     }
-    return x->bin - y->bin;
+    return left->bin - right->bin;
 }
 
 // The nearest of the picture's colours.
@@ -54,10 +54,10 @@ static int nearest_colour(const sixel_picture *p, const colour_bin *wanted)
     long least = 4L * 256 * 256;
     for (int i = 0; i < p->colours; i++) {
         const colour_bin *c = &p->bins[i];
-        const long r = (long)c->red - (long)wanted->red,
-                   g = (long)c->green - (long)wanted->green;
-        const long b = (long)c->blue - (long)wanted->blue,
-                   distance = r * r + g * g + b * b;
+        const long red = (long)c->red - (long)wanted->red;
+        const long green = (long)c->green - (long)wanted->green;
+        const long blue = (long)c->blue - (long)wanted->blue;
+        const long distance = red * red + green * green + blue * blue;
         if (distance < least) {
             least = distance;
             best = i;
@@ -66,9 +66,8 @@ static int nearest_colour(const sixel_picture *p, const colour_bin *wanted)
     return best;
 }
 
-// Chooses the colours: the means of the commonest bins; other bins take the nearest of
-// them.
-static void choose_colours(sixel_picture *p, int most)
+// Sums the pixels of each bin.
+static void fill_bins(sixel_picture *p)
 {
     const pixel_block *b = p->block;
     for (int i = 0; i < BINS; i++) {
@@ -84,6 +83,13 @@ static void choose_colours(sixel_picture *p, int most)
             bin->count++;
         }
     }
+}
+
+// Chooses the colours: the means of the commonest bins; other bins take the nearest of
+// them.
+static void choose_colours(sixel_picture *p, int most)
+{
+    fill_bins(p);
 
     // only those that occur are sorted
     int used = 0;
@@ -92,18 +98,21 @@ static void choose_colours(sixel_picture *p, int most)
             p->bins[used++] = p->bins[i];
         }
     }
-    qsort(p->bins, (size_t)used, sizeof *p->bins, by_count);
-    if (used < most) {
-        p->colours = used;
-    } else {
-        p->colours = most;
-    }
+    qsort(p->bins, (size_t)used, sizeof *p->bins, compare_by_count);
+
+    // sums become means; the commonest are colours as they are
+    p->colours = used < most ? used : most;
     for (int i = 0; i < used; i++) {
         colour_bin *bin = &p->bins[i];
         bin->red /= bin->count;
         bin->green /= bin->count;
         bin->blue /= bin->count;
-        p->colour_of[bin->bin] = (unsigned char)(i < most ? i : nearest_colour(p, bin));
+
+        int colour = i;
+        if (i >= most) {
+            colour = nearest_colour(p, bin);
+        }
+        p->colour_of[bin->bin] = (unsigned char)colour;
     }
 }
 
@@ -123,90 +132,94 @@ static void write_row(FILE *stream, const unsigned char *bits, int width)
         const int character = '?' + bits[x];
         if (count > 3) {
             fprintf(stream, "!%d%c", count, character);
-        }
-        for (int i = 0; count <= 3 && i < count; i++) {
-            putc_unlocked(character, stream);
+        } else {
+            for (int i = 0; i < count; i++) {
+                putc_unlocked(character, stream);
+            }
         }
         x += count;
     }
 }
 
+// The band of rows from `top` on, colour by colour.
 static void write_band(FILE *stream, sixel_picture *p, int top)
 {
     const pixel_block *b = p->block;
-    int slot[SIXEL_COLOURS], order[SIXEL_COLOURS], slots = 0;
-    memset(slot, -1, sizeof slot);
+    int slot_of[SIXEL_COLOURS], colour_in[SIXEL_COLOURS], slots = 0;
+    memset(slot_of, -1, sizeof slot_of);
 
-    // the bits of each colour that occurs
-    for (int y = top; y < top + BAND && y < b->height; y++) {
+    // each colour that occurs has a slot of bits
+    for (int y = top; y < top + BAND_ROWS && y < b->height; y++) {
         const uint32_t *row = b->pixels + (long)y * b->stride;
         for (int x = 0; x < b->width; x++) {
             const int colour = p->colour_of[bin_of(row[x])];
-            if (slot[colour] < 0) {
-                slot[colour] = slots;
+            if (slot_of[colour] < 0) {
                 memset(p->bits + (long)slots * b->width, 0, (size_t)b->width);
-                order[slots++] = colour;
+                slot_of[colour] = slots;
+                colour_in[slots++] = colour;
             }
-            p->bits[(long)slot[colour] * b->width + x] |= (unsigned char)(1 << (y - top));
+            p->bits[(long)slot_of[colour] * b->width + x] |=
+                (unsigned char)(1 << (y - top));
         }
     }
 
     // back to the left between colours, down at the end
     for (int i = 0; i < slots; i++) {
-        fprintf(stream, "%s#%d", i > 0 ? "$" : "", order[i]);
+        if (i > 0) {
+            putc_unlocked('$', stream);
+        }
+        fprintf(stream, "#%d", colour_in[i]);
         write_row(stream, p->bits + (long)i * b->width, b->width);
     }
     putc_unlocked('-', stream);
 }
 
-bool sixel_write(FILE *stream, const pixel_block *block, int colours)
+// A share of 255 in hundredths, rounded.
+static int percent_of(uint64_t share)
+{
+    return (int)(share * 100 + 127) / 255;
+}
+
+void sixel_write(FILE *stream, const pixel_block *block, int colours)
 {
     assert(block->width > 0 && block->height > 0);
     assert(colours >= 2 && colours <= SIXEL_COLOURS);
-    sixel_picture p = {.block = block};
-    p.bins = malloc(BINS * sizeof *p.bins);
-    p.colour_of = calloc(BINS, 1);
-    p.bits = malloc((size_t)SIXEL_COLOURS * (size_t)block->width);
-    const bool done = p.bins != NULL && p.colour_of != NULL && p.bits != NULL;
+    g_autofree colour_bin *bins = g_new(colour_bin, BINS);
+    g_autofree unsigned char *colour_of = g_new0(unsigned char, BINS);
+    g_autofree unsigned char *bits =
+        g_new(unsigned char, (size_t)SIXEL_COLOURS *(size_t)block->width);
+    sixel_picture p = {.block = block,
+                       .bins = bins,
+                       .colour_of = colour_of,
+                       .bits = bits};
+    choose_colours(&p, colours);
 
-    if (done) {
-        // no pixel is omitted, so that the background does not matter
-        choose_colours(&p, colours);
-        fprintf(stream, "\033P0;1;0q\"1;1;%d;%d", block->width, block->height);
-        for (int i = 0; i < p.colours; i++) {
-            const colour_bin *c = &p.bins[i];
-            fprintf(stream, "#%d;2;%d;%d;%d", i, (int)(c->red * 100 + 127) / 255,
-                    (int)(c->green * 100 + 127) / 255, (int)(c->blue * 100 + 127) / 255);
-        }
-        for (int top = 0; top < block->height; top += BAND) {
-            write_band(stream, &p, top);
-        }
-        fputs("\033\\", stream);
+    // size and colours; no pixel is omitted, so that the background does not matter
+    fprintf(stream, "\033P0;1;0q\"1;1;%d;%d", block->width, block->height);
+    for (int i = 0; i < p.colours; i++) {
+        const colour_bin *c = &p.bins[i];
+        fprintf(stream, "#%d;2;%d;%d;%d", i, percent_of(c->red), percent_of(c->green),
+                percent_of(c->blue));
     }
 
-    free(p.bins);
-    free(p.colour_of);
-    free(p.bits);
-    return done;
+    // the picture
+    for (int top = 0; top < block->height; top += BAND_ROWS) {
+        write_band(stream, &p, top);
+    }
+    fputs("\033\\", stream);
 }
 
 // --- kitty -----------------------------------------------------------------------------
 // The terminal graphics protocol of kitty: pixels, compressed by zlib, in base 64, in
 // chunks.
 
-enum { CHUNK = 4096, CHUNK_BYTES = CHUNK / 4 * 3 };
+enum { CHUNK = 4096, CHUNK_BYTES = CHUNK / 4 * 3 }; // coded, and what it codes
 
-bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns,
-                 int rows)
+// Red, green and blue of all pixels, row after row.
+static unsigned char *plain_pixels(const pixel_block *block, size_t size)
 {
-    assert(block->width > 0 && block->height > 0);
-    assert(number > 0 && columns > 0 && rows > 0);
-    const size_t size = 3 * (size_t)block->width * (size_t)block->height;
-    uLongf packed_size = compressBound(size);
-    unsigned char *plain = malloc(size), *packed = malloc(packed_size), *at = plain;
-
-    // red, green and blue, row after row
-    for (int y = 0; plain != NULL && y < block->height; y++) {
+    unsigned char *plain = g_new(unsigned char, size), *at = plain;
+    for (int y = 0; y < block->height; y++) {
         const uint32_t *row = block->pixels + (long)y * block->stride;
         for (int x = 0; x < block->width; x++) {
             *at++ = (unsigned char)(row[x] >> 16);
@@ -214,29 +227,36 @@ bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns
             *at++ = (unsigned char)row[x];
         }
     }
-    const bool done = plain != NULL && packed != NULL &&
-                      compress2(packed, &packed_size, plain, size, Z_BEST_SPEED) == Z_OK;
+    return plain;
+}
+
+void kitty_write(FILE *stream, const pixel_block *block, int number, int columns,
+                 int rows)
+{
+    assert(block->width > 0 && block->height > 0);
+    assert(number > 0 && columns > 0 && rows > 0);
+    const size_t size = 3 * (size_t)block->width * (size_t)block->height;
+    uLongf packed_size = compressBound(size);
+    g_autofree unsigned char *plain = plain_pixels(block, size);
+    g_autofree unsigned char *packed = g_new(unsigned char, packed_size);
+    if (compress2(packed, &packed_size, plain, size, Z_BEST_SPEED) != Z_OK) {
+        g_error("out of memory");
+    }
 
     // the first chunk says what it is, all but the last that more come; no answer is
     // wanted
-    for (size_t sent = 0; done && sent < packed_size; sent += CHUNK_BYTES) {
-        const size_t left = packed_size - sent,
-                     count = left < CHUNK_BYTES ? left : CHUNK_BYTES;
+    for (size_t sent = 0; sent < packed_size; sent += CHUNK_BYTES) {
+        const size_t left = packed_size - sent;
+        const bool last = left <= CHUNK_BYTES;
         fputs("\033_G", stream);
         if (sent == 0) {
             fprintf(stream, "a=T,i=%d,p=1,f=24,s=%d,v=%d,c=%d,r=%d,o=z,C=1,q=2,", number,
                     block->width, block->height, columns, rows);
         }
-        fprintf(stream, "m=%d;", left > CHUNK_BYTES);
-        gchar *coded = g_base64_encode(packed + sent, count);
-        fputs(coded, stream);
-        g_free(coded);
-        fputs("\033\\", stream);
+        g_autofree gchar *coded =
+            g_base64_encode(packed + sent, last ? left : CHUNK_BYTES);
+        fprintf(stream, "m=%d;%s\033\\", !last, coded);
     }
-
-    free(plain);
-    free(packed);
-    return done;
 }
 
 // --- what a terminal says --------------------------------------------------------------
@@ -249,6 +269,9 @@ enum {
     LEAST_REGISTERS = 2, // a terminal that says less is taken to have said nothing
     MOST_SAID = 1 << 20, // no number beyond this is believed
 };
+
+// What answers begin with, as they are given back with what was asked.
+enum { CELL_SIZE = 6, SIXEL_REGISTERS = 1, SIXEL_SIZE = 2 };
 
 // version, device attributes
 static const char ask_name[] = "\033[>q\033[c";
@@ -276,18 +299,22 @@ const char *pixel_answers_begin(pixel_answers *a, bool multiplexer)
 static int read_numbers(const char *text, int *numbers, int most)
 {
     int count = 0;
-    for (bool more = true; more && count < most;) {
+    while (count < most) {
         char *end;
         const long value = strtol(text, &end, 10);
-        const bool taken = end != text && value >= 0 && value <= MOST_SAID;
-        numbers[count] = (int)value;
-        count += taken;
-        more = taken && *end == ';';
+        if (end == text || value < 0 || value > MOST_SAID) {
+            break;
+        }
+        numbers[count++] = (int)value;
+        if (*end != ';') {
+            break;
+        }
         text = end + 1;
     }
     return count;
 }
 
+// The device attributes, which end the answers to a query; returns the next query.
 static const char *take_attributes(pixel_answers *a, const char *text)
 {
     int numbers[32];
@@ -295,7 +322,9 @@ static const char *take_attributes(pixel_answers *a, const char *text)
 
     // each number but the first is something that the terminal can do
     for (int i = 1; i < count; i++) {
-        a->sixel = a->sixel || numbers[i] == SIXEL_ATTRIBUTE;
+        if (numbers[i] == SIXEL_ATTRIBUTE) {
+            a->sixel = true;
+        }
     }
     if (a->stage == PIXELS_ASKED_NAME) {
         a->stage = PIXELS_ASKED;
@@ -319,56 +348,59 @@ static void take_ground(pixel_answers *a, const char *text)
     a->has_ground = true;
 }
 
+static bool is_usual_cell(int height, int width)
+{
+    return height >= LEAST_CELL && height <= MOST_CELL && width >= LEAST_CELL &&
+           width <= MOST_CELL;
+}
+
 // "6;HEIGHT;WIDTH" of a cell, "1;0;COLOURS" or "2;0;WIDTH;HEIGHT" of sixel pictures.
 static void take_sizes(pixel_answers *a, const char *text, char final)
 {
     int n[4];
     const int count = read_numbers(text, n, 4);
-    if (final == 't' && count == 3 && n[0] == 6) {
-        const bool usual = n[1] >= LEAST_CELL && n[1] <= MOST_CELL &&
-                           n[2] >= LEAST_CELL && n[2] <= MOST_CELL;
-        if (usual) {
-            a->cell_height = n[1];
-        } else {
-            a->cell_height = 0;
-        }
-        if (usual) {
-            a->cell_width = n[2];
-        } else {
-            a->cell_width = 0;
-        }
-    } else if (final == 'S' && count >= 3 && n[0] == 1 && n[1] == 0) {
-        if (n[2] >= LEAST_REGISTERS) {
-            a->registers = n[2];
-        } else {
-            a->registers = 0;
-        }
-    } else if (final == 'S' && count == 4 && n[0] == 2 && n[1] == 0) {
+    const bool of_sixels = final == 'S' && count >= 3 && n[1] == 0;
+
+    if (final == 't' && count == 3 && n[0] == CELL_SIZE) {
+        const bool usual = is_usual_cell(n[1], n[2]);
+        a->cell_height = usual ? n[1] : 0;
+        a->cell_width = usual ? n[2] : 0;
+    } else if (of_sixels && n[0] == SIXEL_REGISTERS) {
+        a->registers = n[2] >= LEAST_REGISTERS ? n[2] : 0;
+    } else if (of_sixels && count == 4 && n[0] == SIXEL_SIZE) {
         a->most_width = n[2];
         a->most_height = n[3];
     }
+}
+
+// Whether a text is kitty's answer that it could read the picture: "Gi=31;OK".
+static bool is_kitty_consent(const char *text)
+{
+    int number = 0;
+    return sscanf(text, "Gi=%d;", &number) == 1 && number == KITTY_QUESTION &&
+           strstr(text, ";OK") != NULL;
 }
 
 const char *pixel_answers_take(pixel_answers *a, const escape_sequence *answer)
 {
     const char *text = answer->text, kind = answer->introducer;
     const bool asked = a->stage == PIXELS_ASKED, private = text[0] == '?';
-    int number = 0;
     if (a->stage == PIXELS_UNASKED) {
         return "";
     }
 
-    // by what begins and ends it; "Gi=31;OK": the picture could be read
+    // by what begins and ends it
     if (kind == '[' && answer->final == 'c' && private && a->stage != PIXELS_ANSWERED) {
         return take_attributes(a, text + 1);
-    } else if (kind == '[') {
-        take_sizes(a, text + private, answer->final);
-    } else if (kind == 'P') {
-        a->multiplexer = a->multiplexer || strncmp(text, ">|tmux", 6) == 0;
+    }
+    if (kind == '[') {
+        take_sizes(a, private ? text + 1 : text, answer->final);
+    } else if (kind == 'P' && strncmp(text, ">|tmux", 6) == 0) {
+        a->multiplexer = true;
     } else if (kind == ']' && asked && strncmp(text, "11;", 3) == 0) {
         take_ground(a, text + 3);
-    } else if (kind != ']' && asked && sscanf(text, "Gi=%d;", &number) == 1) {
-        a->kitty = a->kitty || (number == KITTY_QUESTION && strstr(text, ";OK") != NULL);
+    } else if (kind == '_' && asked && is_kitty_consent(text)) {
+        a->kitty = true;
     }
     return "";
 }

@@ -23,13 +23,13 @@ enum { SIXEL_COLOURS = 256 }; // most of one picture
 // Writes the block as a sixel picture of at most `colours` (2 to SIXEL_COLOURS) colours,
 // drawn from the cursor's cell on. Nearly equal colours are replaced by their mean; if
 // there are more than allowed, the rare ones are replaced by the nearest of the others.
-// False without memory, with nothing written; errors of the stream stay in it.
-bool sixel_write(FILE *stream, const pixel_block *block, int colours);
+// Errors of the stream stay in it.
+void sixel_write(FILE *stream, const pixel_block *block, int colours);
 
 // Writes the block as picture `number` (above 0) of kitty's protocol, filling columns x
 // rows cells from the cursor on, and replaces the previous one of that number. The cursor
-// does not move. False without memory, with nothing written.
-bool kitty_write(FILE *stream, const pixel_block *block, int number, int columns,
+// does not move.
+void kitty_write(FILE *stream, const pixel_block *block, int number, int columns,
                  int rows);
 
 // --- what a terminal says --------------------------------------------------------------

@@ -68,9 +68,8 @@ typedef struct screen {
 // characters.
 #define GLYPH_PICTURE 0x110000u
 
-// Resizes a screen to width x height cells, at least 1 x 1; false without memory, with
-// the screen unchanged.
-bool screen_resize(screen *s, int width, int height);
+// Gives a screen width x height empty cells, at least 1 x 1; it keeps its pictures.
+void screen_resize(screen *s, int width, int height);
 void screen_finish(screen *s);
 void screen_clear(screen *s);
 

@@ -14,31 +14,32 @@
 
 // --- signals ---------------------------------------------------------------------------
 
-// those that ask for something, then those that end the program at once
+// First those that ask for something, then those that end the program at once.
 static const int signals[] = {SIGINT,    SIGTERM, SIGHUP,  SIGQUIT, SIGWINCH, SIGCONT,
                               SIGTSTP,   SIGSEGV, SIGABRT, SIGFPE,  SIGBUS,   SIGILL,
                               SIGTRAP,   SIGXCPU, SIGSYS,  SIGUSR1, SIGUSR2,  SIGALRM,
                               SIGVTALRM, SIGPROF, SIGIO,   SIGPWR,  SIGSTKFLT};
 enum {
     SIGNALS = sizeof signals / sizeof signals[0],
-    POLITE = 7,
+    POLITE_SIGNALS = 7, // the first ones
     SIGNAL_STACK = 64 * 1024
 };
 static struct sigaction before[SIGNALS];
 static char signal_stack[SIGNAL_STACK];
 
+// Wakes terminal_wait, which does what the signal asks for.
 static void on_polite(int number)
 {
-    int kept = errno;
-    char byte = 0;
+    const int errno_before = errno;
     if (number == SIGTSTP) {
         terminal_suspending = 1;
     } else if (number != SIGWINCH && number != SIGCONT) {
         terminal_leaving = number;
     }
+    const char byte = 0;
     ssize_t ignored = write(tty.wake[1], &byte, 1);
     (void)ignored;
-    errno = kept;
+    errno = errno_before;
 }
 
 void terminal_give_back(void)
@@ -54,7 +55,7 @@ void terminal_give_back(void)
 static void on_fatal(int number)
 {
     terminal_give_back();
-    for (int i = POLITE; i < SIGNALS; i++) {
+    for (int i = POLITE_SIGNALS; i < SIGNALS; i++) {
         if (signals[i] == number) {
             sigaction(number, &before[i], NULL);
         }
@@ -64,18 +65,24 @@ static void on_fatal(int number)
 
 static void take_signals(void)
 {
+    const struct sigaction polite = {.sa_handler = on_polite};
+    const struct sigaction fatal = {.sa_handler = on_fatal, .sa_flags = SA_ONSTACK};
     stack_t stack = {.ss_sp = signal_stack, .ss_size = sizeof signal_stack};
     sigaltstack(&stack, NULL);
     for (int i = 0; i < SIGNALS; i++) {
-        const struct sigaction polite = {.sa_handler = on_polite};
-        const struct sigaction fatal = {.sa_handler = on_fatal, .sa_flags = SA_ONSTACK};
         sigaction(signals[i], NULL, &before[i]);
 
         // one that is ignored ends nothing and stays ignored; so does ^Z of a shell
         // without jobs
-        const bool stays = i >= POLITE || signals[i] == SIGTSTP;
-        if (!stays || before[i].sa_handler != SIG_IGN) {
-            sigaction(signals[i], i < POLITE ? &polite : &fatal, NULL);
+        const bool is_ignored = before[i].sa_handler == SIG_IGN;
+        const bool may_stay_ignored = i >= POLITE_SIGNALS || signals[i] == SIGTSTP;
+        if (is_ignored && may_stay_ignored) {
+            continue;
+        }
+        if (i < POLITE_SIGNALS) {
+            sigaction(signals[i], &polite, NULL);
+        } else {
+            sigaction(signals[i], &fatal, NULL);
         }
     }
 }
@@ -91,12 +98,14 @@ static void give_signals_back(void)
 
 // --- opening and closing ---------------------------------------------------------------
 
+// Whether tigetstr has found a text: NULL and -1 are two ways of "no".
+static bool is_capability(const char *text)
+{
+    return text != NULL && text != (const char *)-1;
+}
+
 bool terminal_usable(fault *f)
 {
-    const char *name = getenv("TERM");
-    int code;
-
-    // both ends must be one
     if (!isatty(STDIN_FILENO) || !isatty(STDOUT_FILENO)) {
         fault_set(f, STATUS_BAD_ARGUMENT,
                   "the lab needs a terminal for its input and its output "
@@ -104,12 +113,16 @@ bool terminal_usable(fault *f)
         return false;
     }
 
-    // one that can place its cursor
-    bool known =
-        name != NULL && name[0] != '\0' && setupterm(name, STDOUT_FILENO, &code) == OK;
-    const char *place = known ? tigetstr("cup") : NULL;
-    bool usable = place != NULL && place != (const char *)-1;
-    if (known) {
+    // one that is known and can place its cursor
+    const char *name = getenv("TERM"), *reason = "which is not known";
+    bool usable = false;
+    int code;
+    if (name == NULL) {
+        name = "";
+    }
+    if (name[0] != '\0' && setupterm(name, STDOUT_FILENO, &code) == OK) {
+        usable = is_capability(tigetstr("cup"));
+        reason = "which cannot place its cursor";
         del_curterm(cur_term);
     }
     if (!usable) {
@@ -117,17 +130,24 @@ bool terminal_usable(fault *f)
                   "TERM is '%s', %s; the lab needs a terminal that can place its "
                   "cursor: TERM=xterm-256color suits most (TERM=xterm-256color "
                   "impactlab)",
-                  name ? name : "",
-                  known ? "which cannot place its cursor" : "which is not known");
+                  name, reason);
     }
     return usable;
 }
 
 void terminal_prepare_crash(const char *text)
 {
-    for (; text != NULL && text != (const char *)-1 && *text; text++) {
-        if (text[0] == '$' && text[1] == '<' && strchr(text, '>') != NULL) {
-            text = strchr(text, '>');
+    if (!is_capability(text)) {
+        return;
+    }
+    for (; *text != '\0'; text++) {
+        // padding, "$<5>", is left out
+        const char *padding_end = NULL;
+        if (text[0] == '$' && text[1] == '<') {
+            padding_end = strchr(text, '>');
+        }
+        if (padding_end != NULL) {
+            text = padding_end;
         } else if (tty.restore_length < sizeof tty.restore) {
             tty.restore[tty.restore_length++] = *text;
         }
@@ -155,27 +175,71 @@ static void define_common_keys(void)
     }
 }
 
+// Whether what shows the terminal passes strings on or prints them, as multiplexers and
+// old consoles do.
+static bool is_multiplexer_or_console(void)
+{
+    const char *name = getenv("TERM");
+    return getenv("TMUX") != NULL || getenv("STY") != NULL || name == NULL ||
+           strncmp(name, "screen", 6) == 0 || strncmp(name, "tmux", 4) == 0 ||
+           strcmp(name, "linux") == 0;
+}
+
 // Asks whether the terminal draws pictures; what it answers comes with the keys.
 static void ask_for_pixels(void)
 {
-    const char *name = getenv("TERM");
-
-    // a multiplexer passes strings on or shows them, and old consoles print them
-    const bool careful = getenv("TMUX") != NULL || getenv("STY") != NULL ||
-                         name == NULL || strncmp(name, "screen", 6) == 0 ||
-                         strncmp(name, "tmux", 4) == 0 || strcmp(name, "linux") == 0;
-    const char *question = pixel_answers_begin(&tty.pixels, careful);
-    tty.sequence.awaits = true;
+    const char *question = pixel_answers_begin(&tty.pixels, is_multiplexer_or_console());
+    tty.sequence.awaits_answers = true;
     terminal_send(question, strlen(question));
 }
 
 void terminal_bracket_pastes(bool on)
 {
+    static const char marked[] = "\033[?2004h", unmarked[] = "\033[?2004l";
+
     // a console that does not know it may print it
     const char *name = getenv("TERM");
-    if (name != NULL && strcmp(name, "linux") != 0) {
-        terminal_send(on ? "\033[?2004h" : "\033[?2004l", 8);
+    if (name == NULL || strcmp(name, "linux") == 0) {
+        return;
     }
+    if (on) {
+        terminal_send(marked, strlen(marked));
+    } else {
+        terminal_send(unmarked, strlen(unmarked));
+    }
+}
+
+// What a crash sends to give the terminal back.
+static void prepare_crashes(void)
+{
+    tty.restore_length = 0;
+    terminal_prepare_crash("\033\\"); // ends a picture that is cut off
+    terminal_prepare_crash(tigetstr("rmkx"));
+    terminal_prepare_crash("\033[?1000l\033[?1002l\033[?1006l\033[?2004l\033[?2026l");
+    terminal_prepare_crash(tigetstr("sgr0"));
+    terminal_prepare_crash(tigetstr("cnorm"));
+    terminal_prepare_crash(tigetstr("rmcup"));
+}
+
+// Sets how ncurses reads: keys one by one and unseen, no waiting.
+static void set_up_input(void)
+{
+    cbreak();
+    noecho();
+    nonl();
+    keypad(stdscr, TRUE);
+    define_common_keys();
+
+    // we read mouse reports ourselves, where the terminal has any
+    tty.has_mouse = is_capability(tigetstr("kmous"));
+    keyok(KEY_MOUSE, FALSE);
+    tty.sequence.state = SEQUENCE_NONE;
+    tty.pasting = false;
+
+    // terminal_wait does the waiting
+    nodelay(stdscr, TRUE);
+    set_escdelay(25);
+    typeahead(-1);
 }
 
 status terminal_open(fault *f)
@@ -196,36 +260,11 @@ status terminal_open(fault *f)
         terminal_close();
         return fault_set(f, STATUS_BAD_ARGUMENT, "the terminal cannot be used");
     }
-
-    // what a crash sends to give the terminal back
-    tty.restore_length = 0;
-    terminal_prepare_crash("\033\\"); // ends a picture that is cut off
-    terminal_prepare_crash(tigetstr("rmkx"));
-    terminal_prepare_crash("\033[?1000l\033[?1002l\033[?1006l\033[?2004l\033[?2026l");
-    terminal_prepare_crash(tigetstr("sgr0"));
-    terminal_prepare_crash(tigetstr("cnorm"));
-    terminal_prepare_crash(tigetstr("rmcup"));
-
-    // keys come one by one, and unseen
-    cbreak();
-    noecho();
-    nonl();
-    keypad(stdscr, TRUE);
-    define_common_keys();
-
-    // we read mouse reports ourselves, where the terminal has any
-    const char *reports = tigetstr("kmous");
-    tty.has_mouse = reports != NULL && reports != (const char *)-1;
-    keyok(KEY_MOUSE, FALSE);
-    tty.sequence.state = SEQUENCE_NONE;
-    tty.pasting = false;
-
-    // no waiting in ncurses: terminal_wait does that
-    nodelay(stdscr, TRUE);
-    set_escdelay(25);
-    typeahead(-1);
+    prepare_crashes();
+    set_up_input();
     curs_set(0);
 
+    // colours and pictures, if there are any
     tty.colours = has_colors();
     if (tty.colours) {
         start_color();
@@ -242,6 +281,7 @@ void terminal_close(void)
         terminal_mouse(false);
         terminal_bracket_pastes(false);
         terminal_remove_pictures();
+
         // where there is no alternate screen the prompt comes back to an empty one
         clearok(stdscr, TRUE);
         erase();
@@ -256,8 +296,9 @@ void terminal_close(void)
     tcsetattr(STDIN_FILENO, TCSANOW, &tty.saved);
     screen_finish(&tty.shown);
     give_signals_back();
-    for (int i = 0; i < 2 && tty.wake[0] >= 0; i++) {
-        close(tty.wake[i]);
+    if (tty.wake[0] >= 0) {
+        close(tty.wake[0]);
+        close(tty.wake[1]);
     }
     tty.wake[0] = tty.wake[1] = -1;
 
@@ -270,27 +311,23 @@ void terminal_close(void)
 
 void terminal_size(int *width, int *height)
 {
-    if (COLS > 0) {
-        *width = COLS;
-    } else {
-        *width = 1;
-    }
-    if (LINES > 0) {
-        *height = LINES;
-    } else {
-        *height = 1;
-    }
+    *width = COLS > 0 ? COLS : 1;
+    *height = LINES > 0 ? LINES : 1;
 }
 
 void terminal_mouse(bool on)
 {
-    if (on != tty.mouse && tty.has_mouse) {
-        // ncurses has to wait for the end of a report that it has begun to read, so it is
-        // not asked
-        const char *reports = on ? "\033[?1000h\033[?1002h\033[?1006h"
-                                 : "\033[?1006l\033[?1002l\033[?1000l";
-        ssize_t ignored = write(STDOUT_FILENO, reports, strlen(reports));
-        (void)ignored;
-        tty.mouse = on;
+    // presses, drags, and coordinates in decimals
+    static const char reports_on[] = "\033[?1000h\033[?1002h\033[?1006h";
+    static const char reports_off[] = "\033[?1006l\033[?1002l\033[?1000l";
+    if (on == tty.mouse || !tty.has_mouse) {
+        return;
     }
+
+    // ncurses has to wait for the end of a report that it has begun to read, so it is not
+    // asked
+    const char *reports = on ? reports_on : reports_off;
+    ssize_t ignored = write(STDOUT_FILENO, reports, strlen(reports));
+    (void)ignored;
+    tty.mouse = on;
 }

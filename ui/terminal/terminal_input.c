@@ -10,7 +10,7 @@
 
 #include "src/base/clock.h"
 
-// after such a pause what is missing of a sequence does not come [s]
+// After such a pause what is missing of a sequence does not come [s].
 #define SEQUENCE_TIME 0.25
 
 // The code of a key of ncurses, 0 for one that has no meaning here.
@@ -36,58 +36,68 @@ static bool take_answer(void)
 {
     const terminal_pixels before = terminal_pixels_known();
     const bool asking = tty.pixels.stage != PIXELS_ANSWERED;
-    const char *next = pixel_answers_take(&tty.pixels, &tty.sequence);
-    terminal_send(next, strlen(next));
-    tty.sequence.awaits = tty.pixels.stage != PIXELS_ANSWERED;
+    const char *next_question = pixel_answers_take(&tty.pixels, &tty.sequence);
+    const bool answered = tty.pixels.stage == PIXELS_ANSWERED;
+    terminal_send(next_question, strlen(next_question));
+    tty.sequence.awaits_answers = !answered;
 
-    // when all is said: what the questions may have left on the screen goes
-    const terminal_pixels now = terminal_pixels_known();
-    if (asking && tty.pixels.stage == PIXELS_ANSWERED) {
+    // with the last answer what the questions may have left on the screen goes
+    if (asking && answered) {
         if (tty.pixels.kitty) {
             terminal_prepare_crash("\033_Ga=d,d=A,q=2\033\\");
         }
         return true;
     }
+    const terminal_pixels now = terminal_pixels_known();
     return before.cell_width != now.cell_width || before.cell_height != now.cell_height;
 }
 
-// Goes on with a sequence by the next character. False if that is a key of its own; *in
-// is then the escape before it, if that stood alone.
+// Passes the next character to the sequence that has begun, unless that was broken off.
+static sequence_result continue_sequence(wint_t key, int kind, pointer_event *pointer)
+{
+    const double now = clock_seconds(CLOCK_MONOTONIC);
+    const bool in_time =
+        tty.sequence.state == SEQUENCE_ESCAPED || now - tty.sequence_time < SEQUENCE_TIME;
+    tty.sequence_time = now;
+    if (kind == OK && in_time) {
+        return escape_sequence_take(&tty.sequence, (int)key, pointer);
+    }
+    return SEQUENCE_OTHER_KEY;
+}
+
+// Takes the next character of a sequence. False if that is a key of its own; *in is then
+// the escape before it, if that stood alone.
 static bool take_sequence(wint_t key, int kind, terminal_input *in)
 {
-    bool escaped = tty.sequence.state == SEQUENCE_ESCAPED;
-    sequence_result result = SEQUENCE_OTHER_KEY;
-
-    if (kind == OK &&
-        (escaped || clock_seconds(CLOCK_MONOTONIC) - tty.sequence_time < SEQUENCE_TIME)) {
-        result = escape_sequence_take(&tty.sequence, (int)key, &in->pointer);
-    }
-    tty.sequence_time = clock_seconds(CLOCK_MONOTONIC);
-
-    // a key after the escape: it was no sequence, and the escape a key of its own
-    if (result == SEQUENCE_OTHER_KEY) {
+    const bool escaped = tty.sequence.state == SEQUENCE_ESCAPED;
+    in->kind = TERMINAL_NONE;
+    switch (continue_sequence(key, kind, &in->pointer)) {
+    case SEQUENCE_OTHER_KEY:
+        // the escape was a key of its own
         tty.sequence.state = SEQUENCE_NONE;
-        *in = (terminal_input){.kind = escaped ? TERMINAL_KEY : TERMINAL_NONE,
-                               .code = KEY_CODE_ESCAPE};
+        *in = (terminal_input){.kind = TERMINAL_NONE, .code = KEY_CODE_ESCAPE};
+        if (escaped) {
+            in->kind = TERMINAL_KEY;
+        }
         return false;
-    }
-
-    // an answer that changes what can be shown has all drawn anew
-    if (result == SEQUENCE_ANSWER) {
+    case SEQUENCE_ANSWER:
+        // one that changes what can be shown has all drawn again
         if (take_answer()) {
             in->kind = TERMINAL_RESIZE;
-        } else {
-            in->kind = TERMINAL_NONE;
         }
-        return true;
-    }
-    if (result == SEQUENCE_PASTE || result == SEQUENCE_PASTED) {
-        tty.pasting = result == SEQUENCE_PASTE;
-    }
-    if (result == SEQUENCE_MOUSE) {
+        break;
+    case SEQUENCE_MOUSE:
         in->kind = TERMINAL_POINTER;
-    } else {
-        in->kind = TERMINAL_NONE;
+        break;
+    case SEQUENCE_PASTE:
+        tty.pasting = true;
+        break;
+    case SEQUENCE_PASTED:
+        tty.pasting = false;
+        break;
+    case SEQUENCE_CONTINUES:
+    case SEQUENCE_OVER:
+        break;
     }
     return true;
 }
@@ -96,8 +106,20 @@ static bool take_sequence(wint_t key, int kind, terminal_input *in)
 // key that no terminal pastes where the end was lost.
 static terminal_input key_input(int code)
 {
-    tty.pasting = tty.pasting && code != KEY_CODE_ESCAPE && code != ('c' & 0x1f);
+    if (code == KEY_CODE_ESCAPE || code == ('c' & 0x1f)) {
+        tty.pasting = false;
+    }
     return (terminal_input){.kind = TERMINAL_KEY, .code = code, .pasted = tty.pasting};
+}
+
+// Returns a key to ncurses, as the next one that it gives.
+static void put_back(wint_t key, int kind)
+{
+    if (kind == KEY_CODE_YES) {
+        ungetch((int)key);
+    } else {
+        unget_wch((wchar_t)key);
+    }
 }
 
 // The input that has arrived; TERMINAL_NONE if there is none, or only a part of a
@@ -108,33 +130,32 @@ static terminal_input pending_input(void)
     wint_t key = 0;
     int kind;
     while ((kind = get_wch(&key)) != ERR) {
-        // in the middle of a sequence
-        bool taken = false;
+        // in the middle of a sequence; the key after an escape that stood alone is the
+        // next one
         if (tty.sequence.state != SEQUENCE_NONE) {
-            taken = take_sequence(key, kind, &in);
+            const bool taken = take_sequence(key, kind, &in);
+            if (!taken && in.kind != TERMINAL_NONE) {
+                put_back(key, kind);
+            }
+            if (in.kind != TERMINAL_NONE) {
+                return in;
+            }
+            if (taken) {
+                continue;
+            }
+        }
 
-            // the key after an escape that stood alone is the next one
-            if (!taken && in.kind != TERMINAL_NONE && kind == KEY_CODE_YES) {
-                ungetch((int)key);
-            } else if (!taken && in.kind != TERMINAL_NONE) {
-                unget_wch((wchar_t)key);
-            }
+        // a key by itself, or an escape, which may begin a sequence
+        if (kind == KEY_CODE_YES && key == KEY_RESIZE) {
+            return (terminal_input){.kind = TERMINAL_RESIZE};
         }
-        if (in.kind != TERMINAL_NONE) {
-            return in;
-        }
-        if (!taken && kind == KEY_CODE_YES) {
-            if (key == KEY_RESIZE) {
-                return (terminal_input){.kind = TERMINAL_RESIZE};
-            }
+        if (kind == KEY_CODE_YES) {
             return key_input(key_of_curses((int)key));
         }
-        if (!taken && key != KEY_CODE_ESCAPE) {
+        if (key != KEY_CODE_ESCAPE) {
             return key_input((int)key);
         }
-        if (!taken) {
-            tty.sequence.state = SEQUENCE_ESCAPED;
-        }
+        tty.sequence.state = SEQUENCE_ESCAPED;
     }
 
     // no more came after an escape: it was the key
@@ -145,8 +166,8 @@ static terminal_input pending_input(void)
     return in;
 }
 
-// Gives the terminal back, mouse included, stops until the shell lets us go on, and takes
-// the terminal over again.
+// Gives the terminal back, mouse included, stops until the shell continues the program,
+// and takes the terminal over again.
 static void suspend(void)
 {
     struct sigaction ours, plain = {.sa_handler = SIG_DFL};
@@ -169,13 +190,26 @@ static void suspend(void)
     terminal_bracket_pastes(true);
 }
 
-// Takes the bytes that signals left, and the terminal's new size.
+// Asks for the terminal's size, and for that of a cell if it was known: it may change
+// with it.
+static void ask_for_size(void)
+{
+    struct winsize size;
+    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 &&
+        size.ws_row > 0) {
+        resizeterm(size.ws_row, size.ws_col);
+    }
+    if (tty.pixels.stage == PIXELS_ANSWERED && tty.pixels.cell_width > 0) {
+        tty.sequence.awaits_answers = true;
+        terminal_send(pixel_ask_cell, strlen(pixel_ask_cell));
+    }
+}
+
+// Does what signals have asked for.
 static terminal_input after_signal(void)
 {
+    // the bytes only woke terminal_wait, the flags tell why
     char bytes[64];
-    struct winsize size;
-
-    // the bytes only woke the loop, the flags tell why
     while (read(tty.wake[0], bytes, sizeof bytes) > 0) {
     }
 
@@ -187,18 +221,17 @@ static terminal_input after_signal(void)
     if (terminal_leaving != 0) {
         return (terminal_input){.kind = TERMINAL_LEAVE};
     }
-
-    // whatever the signal was, the size is asked for
-    if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 &&
-        size.ws_row > 0) {
-        resizeterm(size.ws_row, size.ws_col);
-    }
-    // of a cell again, too, which a change of size may change, if it was known
-    if (tty.pixels.stage == PIXELS_ANSWERED && tty.pixels.cell_width > 0) {
-        tty.sequence.awaits = true;
-        terminal_send(pixel_ask_cell, strlen(pixel_ask_cell));
-    }
+    ask_for_size();
     return (terminal_input){.kind = TERMINAL_RESIZE};
+}
+
+// Whether standard input, which can be read but gave nothing, was closed at its other
+// end.
+static bool input_has_ended(short events)
+{
+    int waiting = 0;
+    return ioctl(STDIN_FILENO, FIONREAD, &waiting) == 0 && waiting == 0 &&
+           (events & (POLLHUP | POLLERR)) != 0;
 }
 
 terminal_input terminal_wait(double seconds)
@@ -210,26 +243,24 @@ terminal_input terminal_wait(double seconds)
 
     // for a key, or for a signal's byte
     struct pollfd watched[2] = {{STDIN_FILENO, POLLIN, 0}, {tty.wake[0], POLLIN, 0}};
-    int ready = poll(watched, 2, seconds < 0 ? -1 : (int)(1e3 * seconds + 0.999));
-    if (ready > 0 && watched[1].revents != 0) {
-        return after_signal();
+    int milliseconds = -1;
+    if (seconds >= 0) {
+        milliseconds = (int)(1e3 * seconds + 0.999);
     }
-    if (ready > 0 && watched[0].revents & POLLIN) {
-        in = pending_input();
-
-        // readable, but there is nothing: its other end was closed
-        int waiting = 0;
-        bool ended = in.kind == TERMINAL_NONE &&
-                     ioctl(STDIN_FILENO, FIONREAD, &waiting) == 0 && waiting == 0 &&
-                     watched[0].revents & (POLLHUP | POLLERR);
-        if (ended) {
-            in.kind = TERMINAL_LEAVE;
-        }
+    const int ready = poll(watched, 2, milliseconds);
+    if (ready <= 0) {
         return in;
     }
+    if (watched[1].revents != 0) {
+        return after_signal();
+    }
 
-    // neither has anything and yet something happened: the terminal is gone
-    if (ready > 0) {
+    // something happened to the input: a key, or the terminal is gone
+    const bool readable = (watched[0].revents & POLLIN) != 0;
+    if (readable) {
+        in = pending_input();
+    }
+    if (!readable || (in.kind == TERMINAL_NONE && input_has_ended(watched[0].revents))) {
         in.kind = TERMINAL_LEAVE;
     }
     return in;

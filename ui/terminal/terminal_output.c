@@ -1,5 +1,5 @@
-// What the terminal shows: cells by the sequences of its description, in colours that
-// this does not know by those that all terminals with them have; pictures.
+// What the terminal shows: cells by the sequences of its description, and, for colours
+// that this does not know, by those that all terminals with such colours have; pictures.
 #include "ui/terminal/terminal.h"
 #include "ui/terminal/terminal_state.h"
 
@@ -36,11 +36,10 @@ void terminal_send(const char *bytes, size_t count)
         const ssize_t taken = write(STDOUT_FILENO, bytes + sent, count - sent);
         if (taken > 0) {
             sent += (size_t)taken;
-        }
-        if (taken < 0 && errno == EAGAIN) {
+        } else if (taken < 0 && errno == EAGAIN) {
             struct pollfd room = {STDOUT_FILENO, POLLOUT, 0};
             poll(&room, 1, 1000);
-        } else if (taken == 0 || (taken < 0 && errno != EINTR)) {
+        } else if (taken == 0 || errno != EINTR) {
             break; // the terminal is gone, which reading will find out
         }
     }
@@ -67,37 +66,60 @@ static void put_capability(FILE *stream, const char *name, int number)
 // One of 16 or 256 colours: terminals of eight show the bright ones as bold.
 static void put_indexed(FILE *stream, int index, colour_depth depth)
 {
-    if (COLORS >= 8 && COLORS <= 256 && (depth == DEPTH_16 || COLORS == 256)) {
+    const bool described = COLORS >= 8 && COLORS <= 256;
+    if (described && (depth == DEPTH_16 || COLORS == 256)) {
         put_capability(stream, "setaf", index < COLORS ? index : index & 7);
     } else if (depth == DEPTH_256) {
         fprintf(stream, "\033[38;5;%dm", index);
+    } else if (index < 8) {
+        fprintf(stream, "\033[%dm", 30 + index);
     } else {
-        fprintf(stream, "\033[%dm", index < 8 ? 30 + index : 90 + index - 8);
+        fprintf(stream, "\033[%dm", 90 + index - 8);
     }
 }
 
-// Selects an ink. Bold, dim and underlined cells say without colours what these say
+// Selects an ink without colours: bold, dim and underlined cells say what these say
 // elsewhere.
-static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
+static void put_plain_ink(FILE *stream, ink i)
+{
+    switch (i) {
+    case INK_SELECTED:
+        put_capability(stream, "rev", 0);
+        break;
+    case INK_TITLE:
+    case INK_EVENT:
+    case INK_FORCE:
+        put_capability(stream, "bold", 0);
+        break;
+    case INK_WARNING:
+        put_capability(stream, "bold", 0);
+        put_capability(stream, "smul", 0);
+        break;
+    case INK_DIM:
+    case INK_OTHER:
+        put_capability(stream, "dim", 0);
+        break;
+    default:
+        break;
+    }
+}
+
+// Selects an ink in colours, if it has one.
+static void put_coloured_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
 {
     rgb c;
-    const bool mono = theme == COLOURS_MONO || depth == DEPTH_MONO;
-    const bool coloured = !mono && ink_rgb(theme, i, &c);
+    const bool coloured = ink_rgb(theme, i, &c), few = coloured && depth == DEPTH_16;
     const int index = ink_index(theme, i, depth);
-    const bool bright = coloured && depth == DEPTH_16 && COLORS == 8 && index >= 8;
 
     // many terminals show bold dark colours as bright ones, which are not readable on
     // light ground
-    const bool faint = theme == COLOURS_LIGHT && depth == DEPTH_16 && coloured;
+    const bool bright = few && COLORS == 8 && index >= 8;
     const bool bold = i == INK_TITLE || i == INK_EVENT || i == INK_WARNING;
-    put_capability(stream, "sgr0", 0);
+    const bool bold_is_readable = !(few && theme == COLOURS_LIGHT);
     if (i == INK_SELECTED) {
         put_capability(stream, "rev", 0);
-    } else if (bright || (bold && !faint) || (mono && i == INK_FORCE)) {
+    } else if (bright || (bold && bold_is_readable)) {
         put_capability(stream, "bold", 0);
-    }
-    if (mono && (i == INK_DIM || i == INK_OTHER || i == INK_WARNING)) {
-        put_capability(stream, i == INK_WARNING ? "smul" : "dim", 0);
     }
 
     // the colour in the terminal's own units
@@ -108,26 +130,51 @@ static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
     }
 }
 
+static void put_ink(FILE *stream, ink i, colour_theme theme, colour_depth depth)
+{
+    put_capability(stream, "sgr0", 0);
+    if (theme == COLOURS_MONO || depth == DEPTH_MONO) {
+        put_plain_ink(stream, i);
+    } else {
+        put_coloured_ink(stream, i, theme, depth);
+    }
+}
+
+static bool is_blank(cell c)
+{
+    return (c.glyph == ' ' && c.ink != INK_SELECTED) || c.glyph >= GLYPH_PICTURE;
+}
+
+// What takes no cell or two would break the grid.
+static void put_glyph(FILE *stream, uint32_t glyph)
+{
+    char text[5];
+    if (wcwidth((wchar_t)glyph) != 1) {
+        glyph = '?';
+    }
+    glyph_encode(glyph, text);
+    fputs(text, stream);
+}
+
 // Writes the cells that have changed (all of them if `whole`; the terminal is empty
 // then).
 static void paint_cells(FILE *stream, const screen *s, glyph_set glyphs, bool whole)
 {
     const char *place = tigetstr("cup");
-    int at_x = -1, at_y = -1, colour = -1;
+    int at_x = -1, at_y = -1, ink_set = -1;
     for (int y = 0; y < s->height; y++) {
         for (int x = 0; x < s->width; x++) {
-            long i = (long)y * s->width + x;
-            cell c = s->cells[i], *old = &tty.shown.cells[i];
-            bool blank =
-                (c.glyph == ' ' && c.ink != INK_SELECTED) || c.glyph >= GLYPH_PICTURE;
-            bool same = c.glyph == old->glyph && c.ink == old->ink;
-            if (whole) {
-                same = blank;
-            }
-            *old = c;
+            const long i = (long)y * s->width + x;
+            const cell c = s->cells[i], before = tty.shown.cells[i];
+            tty.shown.cells[i] = c;
 
-            // the last cell may scroll the screen; it is worth nothing
-            if (same || (x == s->width - 1 && y == s->height - 1)) {
+            // what is there already; the last cell may scroll the screen and is worth
+            // nothing
+            bool there = c.glyph == before.glyph && c.ink == before.ink;
+            if (whole) {
+                there = is_blank(c);
+            }
+            if (there || (x == s->width - 1 && y == s->height - 1)) {
                 continue;
             }
 
@@ -136,16 +183,11 @@ static void paint_cells(FILE *stream, const screen *s, glyph_set glyphs, bool wh
                 sequences = stream;
                 tputs(tparm(place, (long)y, (long)x), 1, put_byte);
             }
-            if (colour != (int)c.ink) {
+            if (ink_set != (int)c.ink) {
                 put_ink(stream, c.ink, tty.theme, tty.depth);
-                colour = (int)c.ink;
+                ink_set = (int)c.ink;
             }
-
-            // what takes no cell or two would break the grid
-            char text[5];
-            uint32_t glyph = glyph_in_set(c.glyph, glyphs);
-            glyph_encode(wcwidth((wchar_t)glyph) == 1 ? glyph : '?', text);
-            fputs(text, stream);
+            put_glyph(stream, glyph_in_set(c.glyph, glyphs));
             at_x = x + 1;
             at_y = y;
         }
@@ -155,7 +197,7 @@ static void paint_cells(FILE *stream, const screen *s, glyph_set glyphs, bool wh
 
 // --- pictures --------------------------------------------------------------------------
 
-enum { LARGEST = 1 << 16 }; // cells of a region
+enum { UNLIMITED = 1 << 16 }; // cells of a region
 
 // The regions on the terminal.
 typedef struct shown_pictures {
@@ -190,14 +232,18 @@ terminal_pixels terminal_pixels_known(void)
 static pixel_block block_of(const screen *s, const picture_region *r)
 {
     const screen_picture *p = &s->pictures->items[r->picture];
-    const int cell_width = s->pictures->cell_width,
-              cell_height = s->pictures->cell_height;
+    const int cell_width = s->pictures->cell_width;
+    const int cell_height = s->pictures->cell_height;
     const int stride = cairo_image_surface_get_stride(p->surface) / 4;
-    const long offset =
-        (long)(r->y - p->y) * cell_height * stride + (long)(r->x - p->x) * cell_width;
+
+    // from the region's upper left corner on
+    const long left = (long)(r->x - p->x) * cell_width;
+    const long top = (long)(r->y - p->y) * cell_height;
     const void *pixels = cairo_image_surface_get_data(p->surface);
-    return (pixel_block){(const uint32_t *)pixels + offset, r->width * cell_width,
-                         r->height * cell_height, stride};
+    return (pixel_block){.pixels = (const uint32_t *)pixels + top * stride + left,
+                         .width = r->width * cell_width,
+                         .height = r->height * cell_height,
+                         .stride = stride};
 }
 
 // Fowler, Noll and Vo's hash, of pixels instead of bytes.
@@ -205,27 +251,44 @@ static uint64_t hash_of(const pixel_block *b)
 {
     uint64_t hash = 14695981039346656037u;
     for (int y = 0; y < b->height; y++) {
+        const uint32_t *row = b->pixels + (long)y * b->stride;
         for (int x = 0; x < b->width; x++) {
-            hash =
-                (hash ^ (b->pixels[(long)y * b->stride + x] & 0xffffff)) * 1099511628211u;
+            hash ^= row[x] & 0xffffff;
+            hash *= 1099511628211u;
         }
     }
     return hash;
 }
 
-// Shows the regions that are not on the terminal yet, and remembers them.
+// The colours of sixel pictures: as many as the terminal has registers for, if it said
+// so.
+static int sixel_colours(void)
+{
+    const int registers = tty.pixels.registers;
+    if (registers > 0 && registers < SIXEL_COLOURS) {
+        return registers;
+    }
+    return SIXEL_COLOURS;
+}
+
+// Whether region i is on the terminal as it is.
+static bool region_is_shown(int i, const picture_region *r, uint64_t hash)
+{
+    return i < shown.count && memcmp(&shown.regions[i], r, sizeof *r) == 0 &&
+           shown.hashes[i] == hash;
+}
+
+// Shows the regions that are not on the terminal yet (all of them if `whole`), and
+// remembers them.
 static void write_regions(FILE *stream, const screen *s, const picture_region *regions,
                           int count, bool whole)
 {
     const bool kitty = tty.pixels.kitty;
-    const int said = tty.pixels.registers;
-    const int colours = said > 0 && said < SIXEL_COLOURS ? said : SIXEL_COLOURS;
     for (int i = 0; i < count; i++) {
         const picture_region *r = &regions[i];
         const pixel_block block = block_of(s, r);
         const uint64_t hash = hash_of(&block);
-        if (!whole && i < shown.count && memcmp(&shown.regions[i], r, sizeof *r) == 0 &&
-            shown.hashes[i] == hash) {
+        if (!whole && region_is_shown(i, r, hash)) {
             continue;
         }
 
@@ -234,14 +297,14 @@ static void write_regions(FILE *stream, const screen *s, const picture_region *r
         if (kitty) {
             kitty_write(stream, &block, i + 1, r->width, r->height);
         } else {
-            sixel_write(stream, &block, colours);
+            sixel_write(stream, &block, sixel_colours());
         }
         fputs("\0338", stream);
         shown.regions[i] = *r;
         shown.hashes[i] = hash;
     }
 
-    // those that are no longer there: blanks have cleared sixels, others are told to go
+    // those that are gone: blanks have cleared sixels, others have to be removed
     for (int i = count; kitty && i < shown.count; i++) {
         fprintf(stream, "\033_Ga=d,d=I,i=%d,q=2\033\\", i + 1);
     }
@@ -252,20 +315,24 @@ static void write_regions(FILE *stream, const screen *s, const picture_region *r
 static void paint_pictures(FILE *stream, const screen *s, bool whole)
 {
     const pixel_answers *a = &tty.pixels;
+    const picture_layer *layer = s->pictures;
     picture_region regions[PICTURE_REGIONS];
-    if (pixel_answers_protocol(a) == PIXELS_NONE ||
-        (s->pictures == NULL && shown.count == 0)) {
+    int count = 0;
+    if (pixel_answers_protocol(a) == PIXELS_NONE || (layer == NULL && shown.count == 0)) {
         return;
     }
 
     // in parts that the terminal takes
-    int width = LARGEST, height = LARGEST;
-    if (s->pictures != NULL && !a->kitty && a->most_width > 0 && a->most_height > 0) {
-        width = a->most_width / s->pictures->cell_width;
-        height = a->most_height / s->pictures->cell_height;
+    if (layer != NULL) {
+        int width = UNLIMITED, height = UNLIMITED;
+        if (!a->kitty && a->most_width > 0 && a->most_height > 0) {
+            width = a->most_width / layer->cell_width;
+            height = a->most_height / layer->cell_height;
+        }
+        if (width > 0 && height > 0) {
+            count = pictures_regions(s, width, height, regions);
+        }
     }
-    const bool fit = width > 0 && height > 0 && s->pictures != NULL;
-    const int count = fit ? pictures_regions(s, width, height, regions) : 0;
     write_regions(stream, s, regions, count, whole);
 }
 
@@ -280,26 +347,38 @@ void terminal_remove_pictures(void)
 
 // --- the screen ------------------------------------------------------------------------
 
+// Whether the terminal's description says that it has all colours.
+static bool all_colours_described(void)
+{
+    const char *direct = tigetstr("RGB");
+    return tigetflag("RGB") == 1 || tigetnum("RGB") > 0 || tigetflag("Tc") == 1 ||
+           (direct != NULL && direct != (const char *)-1) || COLORS > 256;
+}
+
+// Whether the terminal says of itself that it has. GNU screen and the console hand the
+// claim of the terminal that they were started from on.
+static bool all_colours_claimed(void)
+{
+    const char *claim = getenv("COLORTERM"), *name = getenv("TERM");
+    if (claim == NULL ||
+        (strcmp(claim, "truecolor") != 0 && strcmp(claim, "24bit") != 0)) {
+        return false;
+    }
+    if (name == NULL) {
+        return true;
+    }
+    const bool console = strcmp(name, "linux") == 0;
+    const bool gnu_screen = strncmp(name, "screen", 6) == 0 && getenv("TMUX") == NULL;
+    return !console && !gnu_screen;
+}
+
 colour_depth terminal_depth(void)
 {
-    const char *none = getenv("NO_COLOR"), *claim = getenv("COLORTERM"),
-               *name = getenv("TERM");
-    const char *direct = tigetstr("RGB");
-    if (!tty.colours || (none != NULL && none[0] != '\0')) {
+    const char *no_colour = getenv("NO_COLOR");
+    if (!tty.colours || (no_colour != NULL && no_colour[0] != '\0')) {
         return DEPTH_MONO;
     }
-
-    // what the terminal's description says, and what the terminal says of itself
-    bool described = tigetflag("RGB") == 1 || tigetnum("RGB") > 0 ||
-                     tigetflag("Tc") == 1 ||
-                     (direct != NULL && direct != (const char *)-1) || COLORS > 256;
-    bool claimed =
-        claim != NULL && (strcmp(claim, "truecolor") == 0 || strcmp(claim, "24bit") == 0);
-    // GNU screen and the console hand the claim of the terminal they were started from on
-    bool hearsay =
-        name != NULL && (strcmp(name, "linux") == 0 ||
-                         (strncmp(name, "screen", 6) == 0 && getenv("TMUX") == NULL));
-    if (described || (claimed && !hearsay)) {
+    if (all_colours_described() || all_colours_claimed()) {
         return DEPTH_TRUE;
     }
     if (COLORS >= 256) {
@@ -312,7 +391,11 @@ bool terminal_is_light(void)
 {
     // "foreground;background", with the background's number among the 16 colours at the
     // end
-    const char *claim = getenv("COLORFGBG"), *last = claim ? strrchr(claim, ';') : NULL;
+    const char *claim = getenv("COLORFGBG");
+    if (claim == NULL) {
+        return false;
+    }
+    const char *last = strrchr(claim, ';');
     return last != NULL && (strcmp(last, ";7") == 0 || strcmp(last, ";15") == 0);
 }
 
@@ -320,14 +403,14 @@ void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme,
                    colour_depth depth, bool whole)
 {
     assert(s->width > 0 && s->height > 0);
-
-    // another size, theme or depth: everything anew
-    bool same_size = tty.shown.width == s->width && tty.shown.height == s->height;
     if (depth == DEPTH_AUTO) {
         depth = terminal_depth();
     }
-    if (!same_size && !screen_resize(&tty.shown, s->width, s->height)) {
-        return;
+
+    // with another size, theme or depth everything is drawn again
+    const bool same_size = tty.shown.width == s->width && tty.shown.height == s->height;
+    if (!same_size) {
+        screen_resize(&tty.shown, s->width, s->height);
     }
     whole = whole || !same_size || tty.theme != theme || tty.depth != depth;
     tty.theme = theme;
@@ -341,23 +424,20 @@ void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme,
     // all at once; a terminal that knows synchronised output shows it at once, others
     // ignore it
     text_stream all;
-    char *bytes = NULL;
+    if (!text_stream_open(&all)) {
+        g_error("out of memory");
+    }
+    fputs("\033[?2026h", all.stream);
+    paint_cells(all.stream, s, glyphs, whole);
+    paint_pictures(all.stream, s, whole);
+    fputs("\033[?2026l", all.stream);
+
     size_t size;
-    const shown_pictures before = shown;
-    if (text_stream_open(&all)) {
-        fputs("\033[?2026h", all.stream);
-        paint_cells(all.stream, s, glyphs, whole);
-        paint_pictures(all.stream, s, whole);
-        fputs("\033[?2026l", all.stream);
-        bytes = text_stream_close(&all, &size);
+    char *bytes = text_stream_close(&all, &size);
+    if (bytes == NULL) {
+        g_error("out of memory");
     }
-    if (bytes != NULL) {
-        terminal_send(bytes, size);
-    } else {
-        // no memory: nothing was sent, and the next picture is a whole one
-        shown = before;
-        screen_finish(&tty.shown);
-    }
+    terminal_send(bytes, size);
     free(bytes);
 }
 
@@ -365,9 +445,9 @@ void terminal_show(const screen *s, glyph_set glyphs, colour_theme theme,
 
 void terminal_copy(const char *text)
 {
-    gchar *coded = g_base64_encode((const guchar *)text, strlen(text));
-    terminal_send("\033]52;c;", 7);
+    static const char begin[] = "\033]52;c;", end[] = "\a";
+    g_autofree gchar *coded = g_base64_encode((const guchar *)text, strlen(text));
+    terminal_send(begin, strlen(begin));
     terminal_send(coded, strlen(coded));
-    terminal_send("\a", 1);
-    g_free(coded);
+    terminal_send(end, strlen(end));
 }
