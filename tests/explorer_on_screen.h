@@ -29,13 +29,13 @@ static inline void press(explorer *ex, const char *keys)
 // The value of a parameter where the cursor is, and the run's largest force.
 static inline double value_of(const explorer *ex, int parameter)
 {
-    parameters p = session_parameters_at(&ex->state.session, ex->state.session.now);
+    parameters p = session_parameters_at(&ex->model.session, ex->model.session.now);
     return parameter_get(&p, parameter);
 }
 
 static inline double peak(const explorer *ex)
 {
-    return ex->state.session.run.summary.peak_force_N;
+    return ex->model.session.run.summary.peak_force_N;
 }
 
 // Keys with values in them, as printf writes them.
@@ -45,8 +45,8 @@ static inline double peak(const explorer *ex)
 static inline void press_warns(explorer *ex, const char *keys, const char *says)
 {
     press(ex, keys);
-    fail_if(!ex->state.message.warning || strstr(ex->state.message.text, says) == NULL,
-            "%s leaves '%s', no warning that says '%s'", keys, ex->state.message.text,
+    fail_if(!ex->input.message.warning || strstr(ex->input.message.text, says) == NULL,
+            "%s leaves '%s', no warning that says '%s'", keys, ex->input.message.text,
             says);
 }
 
@@ -54,7 +54,7 @@ static inline void press_warns(explorer *ex, const char *keys, const char *says)
 static inline void press_prompts(explorer *ex, const char *keys, const char *wanted)
 {
     press(ex, keys);
-    assert_string_equal(ex->state.prompt.text, wanted);
+    assert_string_equal(ex->input.prompt.text, wanted);
 }
 
 // The screen as text, to be freed.
@@ -117,14 +117,14 @@ static inline void assert_shows_everywhere(explorer *ex, const char *wanted)
 static inline void press_opens(explorer *ex, const char *keys, const char *name)
 {
     press(ex, keys);
-    assert_string_equal(ex->state.session.base.name, name);
+    assert_string_equal(ex->model.session.base.name, name);
 }
 
 // Keys that leave the lab, or do not.
 static inline void press_quits(explorer *ex, const char *keys, bool quits)
 {
     press(ex, keys);
-    assert_int_equal(ex->state.quit, quits);
+    assert_int_equal(ex->input.quit, quits);
 }
 
 // The uppermost part of this kind on a screen of 120 x 40.

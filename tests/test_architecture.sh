@@ -85,6 +85,14 @@ if grep -rnE --include='*.[ch]' 'g_(strdup_v?printf|string_(append_)?v?printf|ma
     exit 1
 fi
 
+# the explorer's state is whole in its loop alone: all others are given the parts that they read or change
+whole='ui/explorer/(explorer|keys|recovery)\.c|ui/explorer/explorer\.h|ui/commands/lab_command\.c'
+if grep -rnE --include='*.[ch]' '(^|[^a-z_])explorer( \*| [a-z]+;)' ui | grep -vE "^($whole):" |
+    grep -vE '^[^:]*:[0-9]+: *//'; then
+    echo "only the explorer's loop has it whole, all else is given the parts of ui/explorer/state/state.h"
+    exit 1
+fi
+
 # places that the manual names exist ("NAME" and "*" stand for something)
 lost=0
 while IFS=: read -r page place; do

@@ -3,13 +3,13 @@
 
 static void carry_out(explorer *ex, const char *line)
 {
-    fail_if(!explorer_carry_out(ex, line), "%s: %s", line, ex->state.message.text);
+    fail_if(!explorer_carry_out(ex, line), "%s: %s", line, ex->input.message.text);
 }
 
 static void refuse(explorer *ex, const char *line)
 {
     fail_if(explorer_carry_out(ex, line), "'%s' is taken", line);
-    assert_true(ex->state.message.warning);
+    assert_true(ex->input.message.warning);
 }
 
 // A pane's axis after the screen was drawn.
@@ -23,7 +23,7 @@ static void check_axis(explorer *ex, int index, double low, double high)
 TEST(test_an_automatic_axis_spans_what_is_visible)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    double peak = ex.state.session.run.summary.first_pulse_peak_N;
+    double peak = ex.model.session.run.summary.first_pulse_peak_N;
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     check_relative(ex.layout.axes[0].high, peak, 1e-3);
     // before the impact there is no force, and then a smaller one
@@ -40,18 +40,18 @@ TEST(test_a_growing_axis_never_shrinks)
     carry_out(&ex, "axis grow 1");
     double highest = 0;
     for (double t = 0; t <= 1; t += 0.05) {
-        session_seek(&ex.state.session, t);
+        session_seek(&ex.model.session, t);
         free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
         assert_true(ex.layout.axes[0].high >= highest);
-        highest = ex.state.panes.pane[0].grown.high > highest
-                      ? ex.state.panes.pane[0].grown.high
+        highest = ex.view.panes.pane[0].grown.high > highest
+                      ? ex.view.panes.pane[0].grown.high
                       : highest;
         // what is still to come does not count
         assert_true(t > 0.36 ||
-                    ex.state.panes.pane[0].grown.high <
-                        ex.state.session.run.summary.first_pulse_peak_N * 0.999);
+                    ex.view.panes.pane[0].grown.high <
+                        ex.model.session.run.summary.first_pulse_peak_N * 0.999);
     }
-    check_relative(highest, ex.state.session.run.summary.first_pulse_peak_N, 1e-3);
+    check_relative(highest, ex.model.session.run.summary.first_pulse_peak_N, 1e-3);
     // neither going back nor a weaker run makes it shrink
     carry_out(&ex, "seek 0.1");
     carry_out(&ex, "set motor.voltage 0.3");
@@ -74,7 +74,7 @@ TEST(test_a_fixed_axis_stays)
     check_axis(&ex, 0, 0.875, 3.375);
     carry_out(&ex, "axis auto all");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
-    assert_int_equal(ex.state.panes.pane[0].scaling, AXIS_AUTO);
+    assert_int_equal(ex.view.panes.pane[0].scaling, AXIS_AUTO);
 }
 
 TEST(test_keys_change_the_axis_of_the_pane_in_focus)
@@ -82,16 +82,16 @@ TEST(test_keys_change_the_axis_of_the_pane_in_focus)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     press(&ex, "w");
-    assert_int_equal(panes_focused(&ex.state.panes), 2);
+    assert_int_equal(panes_focused(&ex.view.panes), 2);
     for (EACH_OF(axis_scaling, c, AXIS_GROW, AXIS_FIXED, AXIS_CALM, AXIS_AUTO)) {
         press(&ex, "a");
-        assert_int_equal(ex.state.panes.pane[2].scaling, *c);
+        assert_int_equal(ex.view.panes.pane[2].scaling, *c);
     }
     press(&ex, "v");
-    assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_FIXED);
-    assert_int_equal(ex.state.panes.pane[0].scaling, AXIS_AUTO);
+    assert_int_equal(ex.view.panes.pane[2].scaling, AXIS_FIXED);
+    assert_int_equal(ex.view.panes.pane[0].scaling, AXIS_AUTO);
     press(&ex, "V<S-Up><S-Down>ww");
-    assert_int_equal(panes_focused(&ex.state.panes), 0);
+    assert_int_equal(panes_focused(&ex.view.panes), 0);
     // alone it has all rows
     press_shows(&ex, "e", "!gap ");
     press_shows(&ex, "e", "gap ");
@@ -109,7 +109,7 @@ TEST(test_wrong_axes_are_told)
                    "zoom 2 1", "zoom 1 2 3", "pan", "pan nowhere", "pan left")) {
         refuse(&ex, *c);
     }
-    assert_int_equal(ex.state.panes.pane[0].scaling, AXIS_AUTO);
+    assert_int_equal(ex.view.panes.pane[0].scaling, AXIS_AUTO);
     carry_out(&ex, "trace impulse");
     carry_out(&ex, "axis 0 1 10");
     assert_shows(&ex, "10   N s");
@@ -136,32 +136,32 @@ TEST(test_the_visible_part_follows_the_cursor_until_it_is_panned)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "zz");
     for (double t = 0; t <= 1; t += 0.07) {
-        session_seek(&ex.state.session, t);
+        session_seek(&ex.model.session, t);
         free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
-        state_window(&ex.state, &from, &to);
+        view_window(&ex.model, &ex.view, &from, &to);
         assert_true(from <= t && t <= to);
         check_close(to - from, 0.25, 1e-12);
     }
     carry_out(&ex, "seek 0.5");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
-    state_window(&ex.state, &from, &to);
+    view_window(&ex.model, &ex.view, &from, &to);
     press(&ex, "(");
-    check_close(ex.state.window.from, from - 0.0625, 1e-12);
+    check_close(ex.view.window.from, from - 0.0625, 1e-12);
     press_draws(&ex, "<S-Left><S-Left><S-Left><S-Left><S-Left><S-Left><S-Left><S-Left>");
-    check_close(ex.state.window.from, 0, 0);
+    check_close(ex.view.window.from, 0, 0);
     press_draws(&ex, ")f");
-    state_window(&ex.state, &from, &to);
+    view_window(&ex.model, &ex.view, &from, &to);
     assert_true(from <= 0.5 && 0.5 <= to);
     carry_out(&ex, "pan 0.1");
     press(&ex, "0");
-    state_window(&ex.state, &from, &to);
+    view_window(&ex.model, &ex.view, &from, &to);
     check_close(from, 0, 0);
     check_close(to, 1, 0);
     // a run that became shorter
     carry_out(&ex, "zoom 0.9 1");
     carry_out(&ex, "set run.duration 0.5");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
-    state_window(&ex.state, &from, &to);
+    view_window(&ex.model, &ex.view, &from, &to);
     check_close(to, 0.5, 1e-12);
 }
 
@@ -176,10 +176,10 @@ TEST(test_a_controlled_run_shows_readings_and_commands)
     }
     // the same panes as before where the user chose them
     press(&ex, ":panes 4<Enter>:open corrected/first-impact<Enter>");
-    assert_false(ex.state.panes.pane[0].shown);
+    assert_false(ex.view.panes.pane[0].shown);
     press(&ex, ":set control.law hybrid<Enter>");
     free(picture(&ex, 160, 60, GLYPHS_BRAILLE));
-    assert_int_equal(ex.state.panes.pane[0].count, 3);
+    assert_int_equal(ex.view.panes.pane[0].count, 3);
 }
 
 TEST(test_curves_of_one_pane_look_different)
@@ -217,7 +217,7 @@ TEST(test_ranges_of_long_runs_are_exact)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     carry_out(&ex, "extend 99");
     carry_out(&ex, "seek end");
-    const trace *t = &ex.state.session.run.trace;
+    const trace *t = &ex.model.session.run.trace;
     assert_true(t->row_count > 90000);
     int velocity = SIGNAL_INDEX(last_velocity), angle = SIGNAL_INDEX(last_angle);
     carry_out(&ex, "trace last_velocity last_angle");
@@ -225,16 +225,16 @@ TEST(test_ranges_of_long_runs_are_exact)
     for (EACH(c, parts)) {
         double low = (double)INFINITY, high = (double)-INFINITY;
         carry_out(&ex, formatted("zoom %g %g", (*c)[0], (*c)[1]));
-        state_update(&ex.state);
-        for (size_t r = trace_row_at(t, ex.state.window.from);
-             r <= trace_row_at(t, ex.state.window.to) + 1; r++) {
+        state_update(&ex.model, &ex.view);
+        for (size_t r = trace_row_at(t, ex.view.window.from);
+             r <= trace_row_at(t, ex.view.window.to) + 1; r++) {
             const double one = signal_value(&t->rows[r], velocity);
             const double other = signal_value(&t->rows[r], angle);
             low = fmin(low, fmin(one, other));
             high = fmax(high, fmax(one, other));
         }
         value_range axis;
-        assert_true(state_pane_axis(&ex.state, PANES_OF_TABLE, &axis));
+        assert_true(view_pane_axis(&ex.model, &ex.view, PANES_OF_TABLE, &axis));
         if (high - low > 1e-12) {
             check_close(axis.low, low, 0);
             check_close(axis.high, high, 0);
@@ -268,7 +268,7 @@ TEST(test_brief_touches_are_on_the_axis)
     carry_out(&ex, "seek 1");
     screen_resize(&s, 80, 24);
     explorer_draw(&ex, &s);
-    assert_true(ex.state.session.run.summary.separations >= 5);
+    assert_true(ex.model.session.run.summary.separations >= 5);
     assert_int_equal(columns_in_contact(&s),
-                     (int)ex.state.session.run.summary.separations);
+                     (int)ex.model.session.run.summary.separations);
 }

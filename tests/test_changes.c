@@ -16,19 +16,19 @@ TEST(test_typing_replaces_the_value)
     // C-u clears the value only, then the line
     press_prompts(&ex, "<Enter><Right><C-u>", "set motor.voltage ");
     press(&ex, "<C-u>");
-    assert_string_equal(ex.state.prompt.text, "");
+    assert_string_equal(ex.input.prompt.text, "");
     press(&ex, "<Esc><Enter><Backspace>2<Enter>");
     check_close(value_of(&ex, voltage), 2, 0);
 
     // more than the amplifier gets is said
     press_shows(&ex, "<Enter>20<Enter>", "the command saturates at 10 V");
-    assert_true(ex.state.message.warning);
+    assert_true(ex.input.message.warning);
 }
 
 // The first event of a kind after an instant; fails if there is none.
 static double event_after(const explorer *ex, event_kind kind, double time)
 {
-    const trace *t = &ex->state.session.run.trace;
+    const trace *t = &ex->model.session.run.trace;
     for (EACH_EVENT(e, t)) {
         if (e->kind == kind && e->time >= time) {
             return e->time;
@@ -42,7 +42,7 @@ static void change_before_contact(const char *name, const char *setting)
 {
     OPEN_EXPLORER(ex, name);
     press(&ex, "<End>II");
-    const session *s = &ex.state.session;
+    const session *s = &ex.model.session;
     const double instant = s->now;
     const size_t row = s->row;
     assert_int_equal(session_sample(s)->contact, 0);
@@ -77,26 +77,26 @@ TEST(test_a_change_comes_before_the_contact_it_was_made_before)
 TEST(test_what_has_no_effect_says_why)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
-    assert_int_equal(ex.state.parameters.parameter, PARAMETER_INDEX(control.force));
+    assert_int_equal(ex.view.parameters.parameter, PARAMETER_INDEX(control.force));
     press_shows(&ex, ":set motor.voltage 2<Enter>",
                 "without effect: the control law commands the voltage");
-    assert_true(ex.state.message.warning);
+    assert_true(ex.input.message.warning);
     press_shows(&ex, ":set<Enter>",
                 "set takes a parameter and a value, such as arm.k2 10");
     press_shows(&ex, ":set sensor.film_gain<Enter>",
                 "no piezo film is fitted (sensor.film)");
     press(&ex, ":open corrected/first-impact<Enter>");
-    assert_int_equal(ex.state.parameters.parameter, PARAMETER_INDEX(motor.voltage));
-    assert_null(state_inert_reason(&ex.state, PARAMETER_INDEX(motor.voltage)));
+    assert_int_equal(ex.view.parameters.parameter, PARAMETER_INDEX(motor.voltage));
+    assert_null(model_inert_reason(&ex.model, PARAMETER_INDEX(motor.voltage)));
     press_shows(&ex, ":set printed.newton_iterations<Enter>",
                 "it belongs to arm.model = printed");
 
     // a parameter that is called inert is: the run is the same to the last bit
     press(&ex, ":seek end<Enter>");
-    const double end = session_sample(&ex.state.session)->hub_angle;
+    const double end = session_sample(&ex.model.session)->hub_angle;
     press(&ex, ":set printed.newton_iterations 5<Enter>:set control.kp 3<Enter>:set "
                "arm.k1 100<Enter>:seek end<Enter>");
-    check_close(session_sample(&ex.state.session)->hub_angle, end, 0);
+    check_close(session_sample(&ex.model.session)->hub_angle, end, 0);
 }
 
 // What one link's springs and a limited current do is not called without effect, and the
@@ -120,7 +120,7 @@ TEST(test_inert_is_what_has_no_effect)
     for (EACH(c, cases)) {
         OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, c->lines);
-        assert_int_equal(state_inert_reason(&ex.state, c->parameter) != NULL, c->inert);
+        assert_int_equal(model_inert_reason(&ex.model, c->parameter) != NULL, c->inert);
     }
 }
 
@@ -128,7 +128,7 @@ TEST(test_predictors_take_the_voltage_in_force)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":set motor.voltage 0<Enter>i");
-    const session *s = &ex.state.session;
+    const session *s = &ex.model.session;
     const sample *row = session_sample(s);
     parameters p = session_parameters_at(s, s->now);
     check_close(row->voltage, 1, 0.01);
@@ -184,19 +184,19 @@ TEST(test_changes_to_come_are_seen_edited_and_dropped)
 
     // the push goes, and comes back
     press(&ex, "d");
-    assert_int_equal(ex.state.session.input_count, 1);
+    assert_int_equal(ex.model.session.input_count, 1);
     press(&ex, "U");
-    assert_int_equal(ex.state.session.input_count, 2);
+    assert_int_equal(ex.model.session.input_count, 2);
 
     // another value at the same instant, which undoing takes back
     press(&ex, "k<Enter>3<Enter><Esc>");
-    check_close(session_parameters_at(&ex.state.session, 0.5).motor.voltage, 3, 0);
-    check_close(session_parameters_at(&ex.state.session, 0.49).motor.voltage, 1, 0);
-    check_close(ex.state.session.now, 0.7, 1e-15);
+    check_close(session_parameters_at(&ex.model.session, 0.5).motor.voltage, 3, 0);
+    check_close(session_parameters_at(&ex.model.session, 0.49).motor.voltage, 1, 0);
+    check_close(ex.model.session.now, 0.7, 1e-15);
     press(&ex, "u");
-    check_close(session_parameters_at(&ex.state.session, 0.5).motor.voltage, 2, 0);
+    check_close(session_parameters_at(&ex.model.session, 0.5).motor.voltage, 2, 0);
     press(&ex, ":drop 1<Enter>");
-    check_close(session_parameters_at(&ex.state.session, 0.5).motor.voltage, 1, 0);
+    check_close(session_parameters_at(&ex.model.session, 0.5).motor.voltage, 1, 0);
     press_warns(&ex, ":drop 7<Enter>", "");
 }
 
@@ -208,12 +208,12 @@ TEST(test_nudges_are_one_change_and_reversible)
     check_close(value_of(&ex, voltage), 0.9, 1e-15);
     press(&ex, "<lt><lt>");
     check_close(value_of(&ex, voltage), 0.7, 1e-15);
-    assert_int_equal(ex.state.session.input_count, 1);
+    assert_int_equal(ex.model.session.input_count, 1);
     press(&ex, "u");
     check_close(value_of(&ex, voltage), 1, 0);
     press(&ex, "<lt>>");
     check_close(value_of(&ex, voltage), 1, 0);
-    assert_int_equal(ex.state.session.input_count, 0);
+    assert_int_equal(ex.model.session.input_count, 0);
 
     // for any number, the same number of steps back leads to the former value
     for (int i = 0; i < parameter_count; i++) {
@@ -224,7 +224,7 @@ TEST(test_nudges_are_one_change_and_reversible)
         if (info->type != PARAMETER_REAL || leaves || !(before > info->minimum)) {
             continue;
         }
-        parameter_list_select(&ex.state.parameters, (parameter_line){i, false});
+        parameter_list_select(&ex.view.parameters, (parameter_line){i, false});
         press(&ex, "<lt><lt><lt>>>>");
         fail_if(fabs(value_of(&ex, i) - before) > 1e-5 * fabs(before),
                 "%s: %.17g and then %.17g", info->path, before, value_of(&ex, i));
@@ -236,7 +236,7 @@ TEST_IN_FOLDER(test_saving_never_replaces_a_file_unasked)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press_shows(&ex, ":save run.csv<Enter>", formatted("saved %s/run.csv", test_folder));
     assert_false(explorer_carry_out(&ex, "save run.csv"));
-    assert_non_null(strstr(ex.state.message.text, "is there already"));
+    assert_non_null(strstr(ex.input.message.text, "is there already"));
     assert_true(explorer_carry_out(&ex, "save! run.csv"));
 
     // names that are proposed say what changed, and count
@@ -284,8 +284,8 @@ TEST(test_values_and_last_parts_are_completed_in_turn)
     press_prompts(&ex, "<Tab>", "set wall.kind point");
     press_prompts(&ex, "<C-u>set stic<Tab>", "set motor.stiction ");
     press(&ex, "0.01<Enter>:set resti 0.5<Enter>");
-    check_close(ex.state.session.effective.parameters.motor.stiction, 0.01, 0);
-    check_close(ex.state.session.effective.parameters.wall.restitution, 0.5, 0);
+    check_close(ex.model.session.effective.parameters.motor.stiction, 0.01, 0);
+    check_close(ex.model.session.effective.parameters.wall.restitution, 0.5, 0);
     press_prompts(&ex, ":open three<Tab>", "open corrected/three-links ");
     press_prompts(&ex, "<C-u>theme l<Tab>", "theme light ");
 }
@@ -304,10 +304,10 @@ TEST(test_leaving_asks_if_changes_would_be_lost)
     assert_shows(&ex, "1 change would be lost");
     press_quits(&ex, "<Right>q", false);
     press_quits(&ex, "q", true);
-    ex.state.quit = false;
+    ex.input.quit = false;
     press_quits(&ex, "<C-c>", false);
     press_quits(&ex, "<C-c>", true);
-    ex.state.quit = false;
+    ex.input.quit = false;
     press_quits(&ex, "u<C-c>", true);
 }
 
@@ -315,10 +315,10 @@ TEST(test_an_interrupt_stops_a_computation_first)
 {
     SCOPED(explorer_finish) explorer ex;
     open_changed(&ex, "corrected/twenty-links", "run.duration=20", 0);
-    assert_non_null(ex.state.session.computing);
+    assert_non_null(ex.model.session.computing);
     press(&ex, "<C-c>");
-    assert_null(ex.state.session.computing);
-    assert_false(ex.state.quit);
+    assert_null(ex.model.session.computing);
+    assert_false(ex.input.quit);
     press_quits(&ex, "<C-c>", true);
 }
 
@@ -328,7 +328,7 @@ static void assert_panes(explorer *ex, int height, const char *wanted)
     char shown[PANES + 1] = "";
     free(picture(ex, 120, height, GLYPHS_BRAILLE));
     for (int i = 0, n = 0; i < PANES; i++) {
-        if (ex->state.panes.pane[i].shown) {
+        if (ex->view.panes.pane[i].shown) {
             shown[n++] = (char)('0' + (i + 1) % 10);
             shown[n] = '\0';
         }

@@ -81,7 +81,7 @@ TEST(test_the_status_keeps_what_matters)
     assert_shows_at(&ex, 90, 24, "corrected, hybrid");
 
     // the last row of that instant, of all that there are
-    const trace *t = &ex.state.session.run.trace;
+    const trace *t = &ex.model.session.run.trace;
     size_t row = 0;
     while (row < t->row_count && t->rows[row].time < 0.65 + 1e-9) {
         row++;

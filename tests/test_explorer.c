@@ -47,10 +47,10 @@ TEST(test_playing_shows_an_impact_within_seconds)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     assert_shows(&ex, "free flight");
     press(&ex, "<Space>");
-    act_advance(&ex.state, 2);
+    act_advance(&ex.model, &ex.view, &ex.input, 2);
     assert_shows(&ex, "impact 0.0443 N s", "in contact");
-    act_advance(&ex.state, 100);
-    assert_false(ex.state.playback.playing);
+    act_advance(&ex.model, &ex.view, &ex.input, 100);
+    assert_false(ex.view.playback.playing);
     assert_shows(&ex, "end of the run");
 }
 
@@ -60,22 +60,22 @@ TEST(test_a_lower_voltage_is_compared_with_the_run_before)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<Space>");
-    act_advance(&ex.state, 3);
+    act_advance(&ex.model, &ex.view, &ex.input, 3);
     press_shows(&ex, "<Space>NNNN<Home>nN:seek 0.2<Enter>b<Enter>",
                 ":set motor.voltage 1");
     press_shows(&ex, "<Backspace>0.5<Enter>", "motor.voltage = 0.5 V from 0.2000 s on");
-    check_below(ex.state.session.run.summary.peak_force_N,
-                ex.state.session.other.summary.peak_force_N);
+    check_below(ex.model.session.run.summary.peak_force_N,
+                ex.model.session.other.summary.peak_force_N);
     press_shows(&ex, "c", "two runs (Esc closes)");
     assert_shows(&ex, formatted("%-30s %11.4g %11.4g", "first pulse peak [N]",
-                                ex.state.session.run.summary.first_pulse_peak_N,
-                                ex.state.session.other.summary.first_pulse_peak_N));
+                                ex.model.session.run.summary.first_pulse_peak_N,
+                                ex.model.session.other.summary.first_pulse_peak_N));
     press(&ex, "<Esc>u");
-    check_close(ex.state.session.run.summary.peak_force_N,
-                ex.state.session.other.summary.peak_force_N, 0);
+    check_close(ex.model.session.run.summary.peak_force_N,
+                ex.model.session.other.summary.peak_force_N, 0);
     press(&ex, "U");
-    check_below(ex.state.session.run.summary.peak_force_N,
-                ex.state.session.other.summary.peak_force_N);
+    check_below(ex.model.session.run.summary.peak_force_N,
+                ex.model.session.other.summary.peak_force_N);
 }
 
 // The number of dots drawn in the column of cells that shows an instant.
@@ -122,9 +122,9 @@ TEST(test_the_list_filters_and_opens)
     press_opens(&ex, ":open thesis/fig-3-4<Enter>", "thesis/fig-3-4");
     assert_shows(&ex, "printed");
     press_warns(&ex, ":open nowhere<Enter>", "");
-    assert_string_equal(ex.state.session.base.name, "thesis/fig-3-4");
+    assert_string_equal(ex.model.session.base.name, "thesis/fig-3-4");
     press(&ex, "[");
-    assert_string_not_equal(ex.state.session.base.name, "thesis/fig-3-4");
+    assert_string_not_equal(ex.model.session.base.name, "thesis/fig-3-4");
 }
 
 TEST(test_what_is_typed_is_completed)
@@ -143,7 +143,7 @@ TEST(test_help_lists_every_key)
     press_shows(&ex, "?", ":branch");
     press_shows(&ex, "<End>", "leave the lab");
     press_shows(&ex, "<Esc>", "!leave the lab");
-    assert_false(ex.state.quit);
+    assert_false(ex.input.quit);
     press_quits(&ex, "q", true);
 }
 
@@ -159,20 +159,20 @@ TEST(test_pages_scroll_to_their_ends)
 TEST_IN_FOLDER(test_saved_scenario_and_screen)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    ex.state.size.width = 100;
-    ex.state.size.height = 30;
+    ex.view.size.width = 100;
+    ex.view.size.height = 30;
     press(&ex, ":seek 0.2<Enter>");
     assert_true(explorer_carry_out(&ex, "set motor.voltage 0.5"));
     static const char *const endings[] = {"csv", "yaml", "txt", "svg"};
     for (EACH(one, endings)) {
         const char *line = formatted("save run.%s", *one);
-        fail_if(!explorer_carry_out(&ex, line), "%s: %s", line, ex.state.message.text);
+        fail_if(!explorer_carry_out(&ex, line), "%s: %s", line, ex.input.message.text);
     }
     assert_false(explorer_carry_out(&ex, "save /nowhere/run.csv"));
     assert_false(explorer_carry_out(&ex, "save run.doc"));
-    double peak = ex.state.session.run.summary.peak_force_N;
+    double peak = ex.model.session.run.summary.peak_force_N;
     assert_true(explorer_carry_out(&ex, "open ./run.yaml"));
-    check_close(ex.state.session.run.summary.peak_force_N, peak, 0);
+    check_close(ex.model.session.run.summary.peak_force_N, peak, 0);
     for (EACH(one, endings)) {
         assert_int_equal(access(formatted("run.%s", *one), F_OK), 0);
     }
@@ -183,10 +183,10 @@ TEST(test_a_click_moves_the_cursor)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     click_at(&ex, ex.layout.plot.x + ex.layout.plot.width / 2, ex.layout.plot.y + 3);
-    check_close(ex.state.session.now, 0.5, 0.02);
+    check_close(ex.model.session.now, 0.5, 0.02);
     click_at(&ex, 119, 39);
     click_at(&ex, -5, 1000);
-    check_close(ex.state.session.now, 0.5, 0.02);
+    check_close(ex.model.session.now, 0.5, 0.02);
 }
 
 TEST(test_every_scenario_and_every_size_draws)
@@ -201,10 +201,10 @@ TEST(test_every_scenario_and_every_size_draws)
         }
     }
     free(picture(&ex, 20, 3, GLYPHS_ASCII));
-    for (int i = 0; i < ex.state.scenarios.count; i++) {
+    for (int i = 0; i < ex.view.scenarios.count; i++) {
         press(&ex, "]");
-        session_seek(&ex.state.session, 0.6 * session_end(&ex.state.session));
-        assert_shows(&ex, ex.state.session.base.name);
+        session_seek(&ex.model.session, 0.6 * session_end(&ex.model.session));
+        assert_shows(&ex, ex.model.session.base.name);
     }
 }
 
@@ -224,9 +224,9 @@ TEST(test_many_links_are_predicted_while_the_run_rests)
 {
     OPEN_EXPLORER(ex, "corrected/five-links");
     press(&ex, "i");
-    const trace *t = &ex.state.session.run.trace;
-    const sample *row = session_sample(&ex.state.session);
-    const double *w = t->velocities + ex.state.session.row * (size_t)t->angle_count;
+    const trace *t = &ex.model.session.run.trace;
+    const sample *row = session_sample(&ex.model.session);
+    const double *w = t->velocities + ex.model.session.row * (size_t)t->angle_count;
     check_close(w[0], row->hub_velocity, 0);
     check_close(w[1], row->first_velocity, 0); // behind the beam's root
     check_close(w[t->angle_count - 1], row->last_velocity, 0);
@@ -261,15 +261,15 @@ TEST(test_random_keys_do_no_harm)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     for (int i = 0; i < 4000; i++) {
         bool saving =
-            ex.state.prompt.open && (strncmp(ex.state.prompt.text, "s", 1) == 0 &&
-                                     strncmp(ex.state.prompt.text, "set ", 4) != 0);
-        bool lengthens = ex.state.session.effective.parameters.run.duration > 3;
+            ex.input.prompt.open && (strncmp(ex.input.prompt.text, "s", 1) == 0 &&
+                                     strncmp(ex.input.prompt.text, "set ", 4) != 0);
+        bool lengthens = ex.model.session.effective.parameters.run.duration > 3;
         int key = chance(&r, 3) > 0 ? ' ' + chance(&r, 95) : keys[chance(&r, 16)];
         key = saving || (lengthens && key == 'x') ? KEY_CODE_ESCAPE : key;
         explorer_key(&ex, key);
-        ex.state.quit = false;
+        ex.input.quit = false;
         if (i % 7 == 0) {
-            act_advance(&ex.state, random_uniform(&r));
+            act_advance(&ex.model, &ex.view, &ex.input, random_uniform(&r));
             click_at(&ex, chance(&r, 130), chance(&r, 45));
             explorer_key(&ex, chance(&r, 2) ? KEY_CODE_DOWN : KEY_CODE_UP);
             free(picture(&ex, 1 + chance(&r, 160), 1 + chance(&r, 60),
@@ -277,7 +277,7 @@ TEST(test_random_keys_do_no_harm)
         }
     }
     // what was done can be saved, and gives the same run
-    free(save_and_compare(&ex.state.session));
+    free(save_and_compare(&ex.model.session));
 }
 
 // The lab draws and takes keys while a long run is computed; what it shows in the end is
@@ -291,32 +291,32 @@ TEST(test_a_long_run_is_drawn_while_it_is_computed)
                 "wait for its end, or stop it with Esc");
     press_shows(&ex, "b", "wait for its end, or stop it");
     press(&ex, "<Esc>");
-    assert_null(ex.state.session.computing);
+    assert_null(ex.model.session.computing);
     assert_shows(&ex, "stopped at", "!computing");
     // Space at the end of the rows continues when there are more
     press(&ex, "<End><Space>");
-    assert_true(ex.state.playback.playing);
+    assert_true(ex.view.playback.playing);
     assert_shows(&ex, "computing");
     press(&ex, ":set run.duration 3<Enter>:stop<Enter>:set run.duration 4<Enter>");
-    while (ex.state.session.computing != NULL) {
-        act_advance(&ex.state, 0.01);
+    while (ex.model.session.computing != NULL) {
+        act_advance(&ex.model, &ex.view, &ex.input, 0.01);
         explorer_follow(&ex);
         free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
     }
     OPEN_EXPLORER(patient, "corrected/twenty-links");
     press(&patient, ":set run.duration 20<Enter>:set run.duration 3<Enter>:set "
                     "run.duration 4<Enter>");
-    patient.state.playback.playing = ex.state.playback.playing = false;
-    patient.state.playback.speed = ex.state.playback.speed;
+    patient.view.playback.playing = ex.view.playback.playing = false;
+    patient.view.playback.speed = ex.view.playback.speed;
     press(&ex, ":seek 2<Enter>");
     press(&patient, ":seek end<Enter>:seek 2<Enter>");
-    ex.state.session.seen = patient.state.session.seen;
-    ex.state.session.base.parameters = patient.state.session.base.parameters;
-    ex.state.session.input_count = patient.state.session.input_count = 0;
+    ex.model.session.seen = patient.model.session.seen;
+    ex.model.session.base.parameters = patient.model.session.base.parameters;
+    ex.model.session.input_count = patient.model.session.input_count = 0;
     KEPT_TEXT(one) = picture(&ex, 150, 50, GLYPHS_BRAILLE);
     KEPT_TEXT(other) = picture(&patient, 150, 50, GLYPHS_BRAILLE);
     assert_string_equal(one, other);
-    ex.state.session.input_count = 0;
+    ex.model.session.input_count = 0;
 }
 
 // Legends, values and what is subtracted from them are of one row: before an impact
@@ -325,10 +325,10 @@ TEST(test_both_sides_of_an_impact_are_told_apart)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.5<Enter>b:set motor.voltage 2<Enter>:panes 1<Enter>I<Tab>");
-    const sample before = *session_sample(&ex.state.session);
+    const sample before = *session_sample(&ex.model.session);
     press_shows(&ex, "<Right>",
-                formatted("force %.4g ", session_sample(&ex.state.session)->force));
-    check_close(session_sample(&ex.state.session)->time, before.time, 0);
+                formatted("force %.4g ", session_sample(&ex.model.session)->force));
+    check_close(session_sample(&ex.model.session)->time, before.time, 0);
     press_shows(&ex, "<Left>", "force 0 ", "hub_velocity             0.5851         0 ",
                 "last_velocity            0.9001         0 ");
     press_shows(&ex, "<Right>", "hub_velocity             0.9061         0 ");
@@ -343,7 +343,7 @@ TEST(test_marks_lie_in_the_run)
     for (EACH_TEXT(c, "1e9", "-1e300", "1.0001")) {
         press_text(&ex, ":mark %s<Enter>", *c);
         assert_shows(&ex, "the run goes from 0 to 1 s");
-        assert_false(ex.state.mark.set);
+        assert_false(ex.view.mark.set);
     }
     press_shows(&ex, ":mark 1<Enter>", "mark set");
     press_draws(&ex, ":zoom 0.1 0.1000001<Enter>");

@@ -12,17 +12,17 @@ TEST(test_opening_loses_nothing)
         press(&ex, ":seek 0.1<Enter>:set motor.voltage 0.5<Enter>b:seek 0.3<Enter>");
         const double changed = peak(&ex);
         press(&ex, *c);
-        assert_string_not_equal(ex.state.session.base.name, "corrected/first-impact");
-        assert_int_equal(ex.state.session.input_count, 0);
-        assert_int_equal(ex.state.pinned.count, 1);
+        assert_string_not_equal(ex.model.session.base.name, "corrected/first-impact");
+        assert_int_equal(ex.model.session.input_count, 0);
+        assert_int_equal(ex.model.pinned.count, 1);
         const double other = peak(&ex);
 
         // the run that is compared with is still the pinned one
-        assert_true(ex.state.session.has_other);
-        check_close(ex.state.session.other.summary.peak_force_N, changed, 0);
+        assert_true(ex.model.session.has_other);
+        check_close(ex.model.session.other.summary.peak_force_N, changed, 0);
         press_opens(&ex, "u", "corrected/first-impact");
         check_close(peak(&ex), changed, 0);
-        check_close(ex.state.session.now, 0.3, 1e-12);
+        check_close(ex.model.session.now, 0.3, 1e-12);
         press(&ex, "U");
         check_close(peak(&ex), other, 0);
         press(&ex, "uuU");
@@ -41,9 +41,9 @@ TEST(test_openings_are_undone_one_by_one)
     }
     for (int i = 0; i < VISITS - 1; i++) {
         const bool was_printed =
-            strcmp(ex.state.session.base.name, "thesis/fig-3-4") == 0;
+            strcmp(ex.model.session.base.name, "thesis/fig-3-4") == 0;
         press(&ex, "u");
-        assert_int_equal(strcmp(ex.state.session.base.name, "thesis/fig-3-4") == 0,
+        assert_int_equal(strcmp(ex.model.session.base.name, "thesis/fig-3-4") == 0,
                          !was_printed);
     }
     press_shows(&ex, "u", "nothing to undo");
@@ -56,13 +56,13 @@ TEST(test_a_pinned_run_of_another_scenario_is_drawn_and_taken)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     const double first = peak(&ex);
     press(&ex, "b]");
-    assert_int_equal(state_run_count(&ex.state), 2);
+    assert_int_equal(model_run_count(&ex.model), 2);
     assert_shows_everywhere(&ex, " first-impact");
     const double second = peak(&ex);
     press_shows(&ex, "R", "of corrected/first-impact");
     press_opens(&ex, "<Enter>", "corrected/first-impact");
     check_close(peak(&ex), first, 0);
-    check_close(ex.state.session.other.summary.peak_force_N, second, 0);
+    check_close(ex.model.session.other.summary.peak_force_N, second, 0);
     press(&ex, "u");
     check_close(peak(&ex), second, 0);
 }
@@ -72,13 +72,13 @@ TEST(test_a_lesson_wants_a_pin_of_its_own)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "b:lesson beta-and-gamma<Enter>y");
-    assert_int_equal(ex.state.lesson.step, 0);
+    assert_int_equal(ex.model.lesson.step, 0);
     press(&ex, "by");
-    assert_int_equal(ex.state.lesson.step, 1);
+    assert_int_equal(ex.model.lesson.step, 1);
 
     // and is where it was on return
     press(&ex, "]u");
-    assert_int_equal(ex.state.lesson.step, 1);
+    assert_int_equal(ex.model.lesson.step, 1);
 }
 
 TEST(test_leaving_asks_for_everything_that_would_be_lost)
@@ -163,7 +163,7 @@ TEST(test_parameters_keep_their_rows)
     }
     assert_shows_at(&ex, 80, 24, "impact dynamics");
     press(&ex, "<Tab><Tab><Tab><Tab><Tab>");
-    assert_true(ex.state.side.panel != PANEL_NONE);
+    assert_true(ex.view.side.panel != PANEL_NONE);
 
     // a tall screen gives its rows to the curves
     free(picture(&ex, 200, 60, GLYPHS_BRAILLE));
@@ -175,23 +175,23 @@ TEST(test_a_signal_is_hidden_by_a_key_or_a_click)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":seek 0.5<Enter>K");
-    assert_int_equal(ex.state.panes.pane[0].hidden, 4);
+    assert_int_equal(ex.view.panes.pane[0].hidden, 4);
     press(&ex, "K");
-    assert_int_equal(ex.state.panes.pane[0].hidden, 2);
+    assert_int_equal(ex.view.panes.pane[0].hidden, 2);
     press(&ex, "KK");
-    assert_int_equal(ex.state.panes.pane[0].hidden, 0);
+    assert_int_equal(ex.view.panes.pane[0].hidden, 0);
     const hit_area legend = part_on_screen(&ex, PANEL_CURVES, PART_LEGEND);
     click_at(&ex, legend.area.x, legend.area.y);
-    assert_int_equal(ex.state.panes.pane[legend.index / PANE_SIGNALS].hidden,
+    assert_int_equal(ex.view.panes.pane[legend.index / PANE_SIGNALS].hidden,
                      1u << legend.index % PANE_SIGNALS);
-    check_close(ex.state.session.now, 0.5, 1e-12);
+    check_close(ex.model.session.now, 0.5, 1e-12);
 
     // the axis is that of what is shown
     value_range all, calm;
     press(&ex, ":signal all<Enter>");
-    assert_true(state_pane_axis(&ex.state, 0, &all));
+    assert_true(view_pane_axis(&ex.model, &ex.view, 0, &all));
     press(&ex, ":signal force_reading<Enter>");
-    assert_true(state_pane_axis(&ex.state, 0, &calm));
+    assert_true(view_pane_axis(&ex.model, &ex.view, 0, &calm));
     check_below(calm.high, all.high);
 }
 
@@ -220,13 +220,13 @@ TEST(test_a_limit_is_asked_for_in_few_keys)
     assert_shows_everywhere(&ex, "limit");
 
     // the answer is pinned, the present run stays
-    const pinned_run *p = &ex.state.pinned.runs[0];
-    assert_int_equal(ex.state.pinned.count, 1);
+    const pinned_run *p = &ex.model.pinned.runs[0];
+    assert_int_equal(ex.model.pinned.count, 1);
     assert_string_equal(p->name, "voltage 1.4441");
     check_close(p->run.summary.peak_force_N, 2, 1e-9);
     assert_true(p->run.summary.peak_force_N < 2);
     check_close(peak(&ex), before, 0);
-    check_close(ex.state.session.now, 0.3, 1e-12);
+    check_close(ex.model.session.now, 0.3, 1e-12);
 
     // none, nonsense, and a range of one's own
     press_shows(&ex, ":solve voltage=0.1:0.2 peak_force_N<lt>2<Enter>",
@@ -235,7 +235,7 @@ TEST(test_a_limit_is_asked_for_in_few_keys)
                 "did you mean 'peak_force_N'?");
     press_warns(&ex, ":solve control.law peak_force_N<lt>2<Enter>", "");
     press_shows(&ex, ":solve voltage<Enter>", "solve takes");
-    assert_int_equal(ex.state.pinned.count, 1);
+    assert_int_equal(ex.model.pinned.count, 1);
 }
 
 // Why a run is as it is, whole at every size.
@@ -280,7 +280,7 @@ TEST(test_own_panes_stand_side_by_side)
     press(&ex, keys);
     press(&ex, ":spectrum force<Enter>:phase gap force<Enter>:panes 1<Enter>:trace "
                "10<Enter>:trace 11<Enter>:trace 12<Enter>:trace 13<Enter>");
-    const pane *own = &ex.state.panes.pane[PANES_OF_TABLE];
+    const pane *own = &ex.view.panes.pane[PANES_OF_TABLE];
     assert_true(own[0].shown && own[1].shown && own[2].shown && own[3].shown);
     assert_int_equal(own[0].signals[0], SIGNAL_INDEX(impulse));
     assert_int_equal(own[1].signals[0], SIGNAL_INDEX(gap));
@@ -302,6 +302,6 @@ TEST(test_the_transition_is_three_steps_shorter_in_few_keys)
     OPEN_EXPLORER(ex, "lessons/hybrid-law");
     press(&ex, keys);
     assert_true(count_keys(keys) <= 5);
-    check_close(ex.state.session.effective.parameters.control.transition_time, 0.32,
+    check_close(ex.model.session.effective.parameters.control.transition_time, 0.32,
                 1e-9);
 }

@@ -6,24 +6,24 @@ TEST(test_a_key_gets_another_command)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press_shows(&ex, ":key x step 5<Enter>", "x does 'step 5' now, no longer 'extend'");
-    size_t before = ex.state.session.row;
+    size_t before = ex.model.session.row;
     press(&ex, "x");
-    assert_int_equal(ex.state.session.row, before + 5);
+    assert_int_equal(ex.model.session.row, before + 5);
     press(&ex,
           ":key \u00e4 seek 0.3<Enter>:key C-t trace 5<Enter>:key F1 seek end<Enter>");
     explorer_key(&ex, 0xe4);
-    check_close(ex.state.session.now, 0.3, 0.002);
+    check_close(ex.model.session.now, 0.3, 0.002);
     press(&ex, "<C-t>");
-    assert_true(ex.state.panes.pane[4].shown);
+    assert_true(ex.view.panes.pane[4].shown);
     press(&ex, "<F1>");
-    check_close(ex.state.session.now, 1, 1e-9);
+    check_close(ex.model.session.now, 1, 1e-9);
     press_shows(&ex, ":key x<Enter>", "x does 'step 5'");
     // taken back, then off, then back again
     press_shows(&ex, ":unkey x<Enter>", "x does 'extend' again");
     press_shows(&ex, ":unkey x<Enter>x", "'x' does nothing here");
-    check_close(ex.state.session.effective.parameters.run.duration, 1, 0);
+    check_close(ex.model.session.effective.parameters.run.duration, 1, 0);
     press(&ex, ":unkey x<Enter>x");
-    check_close(ex.state.session.effective.parameters.run.duration, 2, 0);
+    check_close(ex.model.session.effective.parameters.run.duration, 2, 0);
 }
 
 TEST(test_wrong_keys_are_told)
@@ -45,12 +45,12 @@ TEST(test_wrong_keys_are_told)
         {"kex x play", "did you mean key?", 0},
     };
     for (EACH(c, wrong)) {
-        assert_false(explorer_execute(&ex.state, c->line));
-        const message_line result = ex.state.message;
+        assert_false(explorer_execute(&ex.model, &ex.view, &ex.input, c->line));
+        const message_line result = ex.input.message;
         fail_if(strstr(result.text, c->why) == NULL || result.at != c->at,
                 "'%s' at %d: %s", c->line, result.at, result.text);
     }
-    assert_int_equal(ex.state.keys.count, 0);
+    assert_int_equal(ex.view.keys.count, 0);
     // a full table
     for (int i = 0; i < USER_KEYS; i++) {
         assert_true(
@@ -71,7 +71,7 @@ TEST(test_the_help_shows_the_keys_that_are)
     press_shows(&ex, "<Home>", "w Right l Left h PgDn PgUp");
     // no line is wider than the page, and every command is there, at any width
     for (int width = 26; width < 200; width += 7) {
-        int count = help_write(&ex.state.keys, width, lines, 600);
+        int count = help_write(&ex.view.keys, width, lines, 600);
         assert_true(count < 600);
         for (int i = 0; i < explorer_command_count; i++) {
             bool found = false;
@@ -110,24 +110,24 @@ TEST_IN_FOLDER(test_settings_keep_looks_axes_and_keys)
                 "mark<Enter>:remember<Enter>",
                 "settings kept");
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    explorer_load_settings(&ex);
-    assert_string_equal(ex.state.message.text, "");
-    assert_int_equal(ex.state.looks.theme, COLOURS_LIGHT);
-    assert_int_equal(ex.state.looks.glyphs, GLYPHS_BLOCKS);
-    assert_int_equal(ex.state.looks.depth, DEPTH_16);
-    assert_int_equal(ex.state.panes.pane[0].scaling, AXIS_FIXED);
-    check_close(ex.state.panes.pane[0].fixed.low, -0.5, 0);
-    check_close(ex.state.panes.pane[0].fixed.high, 2.25, 0);
-    assert_int_equal(ex.state.panes.pane[2].scaling, AXIS_GROW);
-    assert_int_equal(ex.state.panes.pane[3].scaling, AXIS_AUTO);
-    assert_int_equal(ex.state.keys.count, 5);
-    assert_string_equal(key_line(&ex.state.keys, '<'), "step -5");
-    assert_string_equal(key_line(&ex.state.keys, ' '), "step 3");
-    assert_string_equal(key_line(&ex.state.keys, '#'), "mark");
-    assert_string_equal(key_line(&ex.state.keys, 't' & 0x1f), "trace 5");
-    assert_null(key_line(&ex.state.keys, 'x'));
+    explorer_load_settings(&ex.model, &ex.view, &ex.input);
+    assert_string_equal(ex.input.message.text, "");
+    assert_int_equal(ex.view.looks.theme, COLOURS_LIGHT);
+    assert_int_equal(ex.view.looks.glyphs, GLYPHS_BLOCKS);
+    assert_int_equal(ex.view.looks.depth, DEPTH_16);
+    assert_int_equal(ex.view.panes.pane[0].scaling, AXIS_FIXED);
+    check_close(ex.view.panes.pane[0].fixed.low, -0.5, 0);
+    check_close(ex.view.panes.pane[0].fixed.high, 2.25, 0);
+    assert_int_equal(ex.view.panes.pane[2].scaling, AXIS_GROW);
+    assert_int_equal(ex.view.panes.pane[3].scaling, AXIS_AUTO);
+    assert_int_equal(ex.view.keys.count, 5);
+    assert_string_equal(key_line(&ex.view.keys, '<'), "step -5");
+    assert_string_equal(key_line(&ex.view.keys, ' '), "step 3");
+    assert_string_equal(key_line(&ex.view.keys, '#'), "mark");
+    assert_string_equal(key_line(&ex.view.keys, 't' & 0x1f), "trace 5");
+    assert_null(key_line(&ex.view.keys, 'x'));
     // without a choice of panes a controlled run shows its own
-    assert_false(ex.state.panes.chosen);
+    assert_false(ex.view.panes.chosen);
 }
 
 TEST_IN_FOLDER(test_faults_in_settings_are_told_with_their_place)
@@ -140,16 +140,16 @@ TEST_IN_FOLDER(test_faults_in_settings_are_told_with_their_place)
                   "axis 2 1 1\n"
                   "theme light\n");
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    explorer_load_settings(&ex);
-    assert_false(ex.state.quit);
-    assert_int_equal(ex.state.looks.theme, COLOURS_LIGHT);
-    assert_string_equal(key_line(&ex.state.keys, 'x'), "step 5");
-    assert_true(ex.state.message.warning);
+    explorer_load_settings(&ex.model, &ex.view, &ex.input);
+    assert_false(ex.input.quit);
+    assert_int_equal(ex.view.looks.theme, COLOURS_LIGHT);
+    assert_string_equal(key_line(&ex.view.keys, 'x'), "step 5");
+    assert_true(ex.input.message.warning);
     assert_non_null(
-        strstr(ex.state.message.text,
+        strstr(ex.input.message.text,
                formatted("%s/impactlab/lab:3:7 is ignored: there is no command 'stepp'",
                          test_folder)));
-    assert_non_null(strstr(ex.state.message.text, "(and 2 more)"));
+    assert_non_null(strstr(ex.input.message.text, "(and 2 more)"));
     assert_false(explorer_carry_out(&ex, "remember"));
-    assert_non_null(strstr(ex.state.message.text, "left alone"));
+    assert_non_null(strstr(ex.input.message.text, "left alone"));
 }

@@ -16,21 +16,21 @@ TEST(long_lines_of_a_view_are_kept_whole_or_refused)
     assert_in_range(length, LINE_TEXT - 3, LINE_TEXT - 1);
     {
         OPEN_EXPLORER(ex, "corrected/first-impact");
-        assert_true(explorer_execute(&ex.state, line));
+        assert_true(explorer_execute(&ex.model, &ex.view, &ex.input, line));
         press_text(&ex, ":session save %s<Enter>", path);
-        assert_false(ex.state.message.warning);
+        assert_false(ex.input.message.warning);
     }
     OPEN_EXPLORER(ex, "compare/hybrid");
     press_text(&ex, ":session open %s<Enter>", path);
-    assert_false(ex.state.message.warning);
-    const pane *p = &ex.state.panes.pane[PANES_OF_TABLE];
+    assert_false(ex.input.message.warning);
+    const pane *p = &ex.view.panes.pane[PANES_OF_TABLE];
     assert_int_equal(p->count, 4);
     assert_int_equal(strlen(signal_table[p->signals[3]].name), strlen(sum) + 3);
 
     // the same beside others takes more than a line can
-    assert_false(
-        explorer_execute(&ex.state, formatted("%s+force+force+force+force", line)));
-    assert_non_null(strstr(ex.state.message.text, "too long"));
+    assert_false(explorer_execute(&ex.model, &ex.view, &ex.input,
+                                  formatted("%s+force+force+force+force", line)));
+    assert_non_null(strstr(ex.input.message.text, "too long"));
 }
 
 TEST(notes_are_kept_in_time_and_in_sessions)
@@ -40,13 +40,13 @@ TEST(notes_are_kept_in_time_and_in_sessions)
         OPEN_EXPLORER(ex, "corrected/first-impact");
         press(&ex, ":seek 0.4<Enter>:note late<Enter>:note @0.1 early, by "
                    "hand<Enter>:note @0.4 later<Enter>:notes<Enter>");
-        assert_int_equal(ex.state.note_count, 2);
+        assert_int_equal(ex.model.note_count, 2);
         assert_shows_everywhere(&ex, "early, by hand");
         assert_shows_everywhere(&ex, "0.40000 s  later");
 
         // Enter goes to the selected one
         press(&ex, "<Enter>");
-        check_close(ex.state.session.now, 0.1, 1e-3);
+        check_close(ex.model.session.now, 0.1, 1e-3);
         press_warns(&ex, ":note<Enter>:note<Enter>", "takes a text");
         press_warns(&ex, ":note @nan x<Enter>", "no instant");
         press_text(&ex,
@@ -57,25 +57,25 @@ TEST(notes_are_kept_in_time_and_in_sessions)
     }
     OPEN_EXPLORER(ex, "compare/hybrid");
     press_text(&ex, ":session open %s<Enter>", path);
-    assert_false(ex.state.message.warning);
-    assert_int_equal(ex.state.note_count, 2);
-    assert_string_equal(ex.state.notes[0].text, "early, by hand");
-    check_close(ex.state.notes[1].time, 0.4, 1e-12);
-    assert_int_equal(ex.state.band.signal, SIGNAL_INDEX(force));
-    assert_int_equal(ex.state.looks.by_run, 1);
-    assert_true(signal_is_derived(ex.state.panes.pane[PANES_OF_TABLE].signals[0]));
-    assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].scaling, AXIS_CALM);
+    assert_false(ex.input.message.warning);
+    assert_int_equal(ex.model.note_count, 2);
+    assert_string_equal(ex.model.notes[0].text, "early, by hand");
+    check_close(ex.model.notes[1].time, 0.4, 1e-12);
+    assert_int_equal(ex.model.band.signal, SIGNAL_INDEX(force));
+    assert_int_equal(ex.view.looks.by_run, 1);
+    assert_true(signal_is_derived(ex.view.panes.pane[PANES_OF_TABLE].signals[0]));
+    assert_int_equal(ex.view.panes.pane[PANES_OF_TABLE].scaling, AXIS_CALM);
 
     // no more than there is room for, and they can be dropped
     for (int i = 0; i < 40; i++) {
         press_text(&ex, ":note @%d x<Enter>", i + 1);
     }
-    assert_non_null(strstr(ex.state.message.text, "are the most"));
+    assert_non_null(strstr(ex.input.message.text, "are the most"));
     press(&ex, ":notes<Enter>");
     for (int i = 0; i < 40; i++) {
         press(&ex, "jd");
     }
-    assert_int_equal(ex.state.note_count, 0);
+    assert_int_equal(ex.model.note_count, 0);
     free(picture(&ex, 40, 12, GLYPHS_ASCII));
 }
 
@@ -83,16 +83,16 @@ TEST(a_band_tells_where_it_is_left)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "b:set motor.voltage 1.1<Enter><End>:band force 0.1<Enter>");
-    const session *s = &ex.state.session;
+    const session *s = &ex.model.session;
     double instant = (double)NAN;
-    sscanf(strstr(ex.state.message.text, "' at ") + 5, "%lf", &instant);
+    sscanf(strstr(ex.input.message.text, "' at ") + 5, "%lf", &instant);
 
     // before that instant the runs are closer, at it they are not
     const sample *row = &s->run.trace.rows[trace_row_at(&s->run.trace, instant + 1e-5)];
     const sample *other = &s->other.trace.rows[trace_row_at(&s->other.trace, instant)];
     assert_true(fabs(row->force - other->force) > 0.1);
     press(&ex, ":band force 9<Enter>");
-    assert_non_null(strstr(ex.state.message.text, "stays within"));
+    assert_non_null(strstr(ex.input.message.text, "stays within"));
     press(&ex, ":band force 0.5<Enter>");
     assert_shows_everywhere(&ex, "force");
     press_warns(&ex, ":band force<Enter>", "a signal and a value");
@@ -106,10 +106,10 @@ TEST(a_map_gives_what_single_runs_give)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, ":sweep control.transition_time=0.1:0.3:3 arm.k2=4:6:2<Enter>");
-    const lab_sweep *m = &ex.state.sweep;
+    const lab_sweep *m = &ex.model.sweep;
     assert_true(lab_sweep_is_map(m) && lab_sweep_is_done(m));
     assert_int_equal(m->count, 6);
-    assert_int_equal(state_run_count(&ex.state), 1);
+    assert_int_equal(model_run_count(&ex.model), 1);
     assert_shows_everywhere(&ex, "6 of 6");
 
     // one up, one to the right; beyond the edge there is nothing
@@ -125,9 +125,9 @@ TEST(a_map_gives_what_single_runs_give)
 
     // Enter opens the run of the cell
     press(&ex, "<Enter>");
-    check_close(ex.state.session.run.summary.peak_force_N, peak, 0);
-    check_close(ex.state.session.effective.parameters.control.transition_time, 0.2, 0);
-    check_close(ex.state.session.effective.parameters.arm.k2, 6, 0);
+    check_close(ex.model.session.run.summary.peak_force_N, peak, 0);
+    check_close(ex.model.session.effective.parameters.control.transition_time, 0.2, 0);
+    check_close(ex.model.session.effective.parameters.arm.k2, 6, 0);
 
     press_warns(&ex, ":sweep arm.k2=1:2:40 motor.voltage=1:2:40<Enter>", "too many");
     press_warns(&ex, ":sweep arm.k2=1:2:4 arm.k2=1:2:4<Enter>", "different");
@@ -140,7 +140,7 @@ TEST(a_map_gives_what_single_runs_give)
 // `begin` [s].
 static void write_recording(explorer *ex, const char *path, double begin)
 {
-    const trace *t = &ex->state.session.run.trace;
+    const trace *t = &ex->model.session.run.trace;
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fputs("time[s],command[V],encoder[rad],tachometer[rad/s],force_reading[N]\n", file);
@@ -164,18 +164,18 @@ TEST(the_arm_that_was_measured_is_found)
     // what was measured less what this run reads, at the rows of the table
     assert_shows_everywhere(&ex, "force");
     assert_shows(&ex, "data minus run");
-    const trace *rest = &ex.state.residual.trace;
+    const trace *rest = &ex.model.residual.trace;
     assert_true(rest->row_count > 200);
     check_close(trace_statistics(rest, SIGNAL_INDEX(encoder), 0.2, 1).mean, 0, 0.02);
     assert_true(trace_statistics(rest, SIGNAL_INDEX(encoder), 0.2, 1).maximum > 1e-3);
 
     // the fit finds 5.5, and its run is pinned
     press(&ex, ":identify k2<Enter>");
-    assert_false(ex.state.message.warning);
-    assert_int_equal(ex.state.pinned.count, 1);
-    assert_string_equal(ex.state.pinned.runs[0].name, "identified");
+    assert_false(ex.input.message.warning);
+    assert_int_equal(ex.model.pinned.count, 1);
+    assert_string_equal(ex.model.pinned.runs[0].name, "identified");
     double found = 0;
-    assert_int_equal(sscanf(ex.state.message.text, "k2 %lf", &found), 1);
+    assert_int_equal(sscanf(ex.input.message.text, "k2 %lf", &found), 1);
     check_close(found, 5.5, 0.05);
     press_warns(&ex, ":identify nosuch<Enter>", "nosuch");
     press_warns(&ex, ":identify<Enter>", "takes parameters");
@@ -195,18 +195,18 @@ TEST(the_pinned_fit_is_the_run_that_was_compared)
                "1.3<Enter>");
     write_recording(&ex, path, 7.25);
     for (int i = 0; i < INSTANTS; i++) {
-        const trace *t = &ex.state.session.run.trace;
+        const trace *t = &ex.model.session.run.trace;
         angle[i] = t->rows[trace_row_at(t, 0.05 * i)].hub_angle;
     }
     press(&ex, "uuu");
     press_text(&ex, ":data %s<Enter>:residual encoder<Enter>:identify k2<Enter>", path);
-    fail_if(ex.state.message.warning, "%s", ex.state.message.text);
+    fail_if(ex.input.message.warning, "%s", ex.input.message.text);
     press_draws(&ex, "R<Enter>");
-    const trace *t = &ex.state.session.run.trace;
+    const trace *t = &ex.model.session.run.trace;
     for (int i = 0; i < INSTANTS; i++) {
         check_close(t->rows[trace_row_at(t, 0.05 * i)].hub_angle, angle[i], 1e-3);
     }
-    check_close(ex.state.measured.rows[0].time, 0, 1e-3);
+    check_close(ex.model.measured.rows[0].time, 0, 1e-3);
 }
 
 // Data that were laid to the run's touch stay there when that moves; given a shift they
@@ -218,12 +218,12 @@ TEST(data_follow_the_touch_of_a_changed_run)
     write_recording(&ex, path, 7.25);
     press_text(&ex, ":data %s<Enter>", path);
     press_draws(&ex, ":set initial.angle -0.15<Enter>");
-    const trace *data = &ex.state.measured;
+    const trace *data = &ex.model.measured;
     size_t r = 0;
     while (!(data->rows[r].force_reading > 0.2)) {
         r++;
     }
-    check_close(data->rows[r].time, ex.state.session.run.summary.first_contact_s, 0.006);
+    check_close(data->rows[r].time, ex.model.session.run.summary.first_contact_s, 0.006);
     press_text(&ex, ":data %s@-7<Enter>", path);
     press_draws(&ex, "u");
     check_close(data->rows[0].time, 0.25, 1e-12);
@@ -237,7 +237,7 @@ TEST(data_without_a_command_say_what_is_missing_and_what_for)
     press_text(&ex, ":data %s<Enter>", path);
     press_warns(&ex, ":identify k2<Enter>",
                 "no column 'command', the voltage [V] with which");
-    assert_non_null(strstr(ex.state.message.text, "record it, or rename its heading"));
+    assert_non_null(strstr(ex.input.message.text, "record it, or rename its heading"));
 }
 
 TEST(a_page_says_how_much_of_it_is_shown)
@@ -254,7 +254,7 @@ TEST(a_page_says_how_much_of_it_is_shown)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":poles<Enter>");
     assert_shows_at(&ex, 80, 24, "free, 5.48 Hz");
-    ex.state.page = PANEL_WELCOME;
+    ex.view.page = PANEL_WELCOME;
     assert_shows_at(&ex, 80, 24, "1  The arm hits the wall by itself.");
 }
 
@@ -262,17 +262,17 @@ TEST(what_is_copied_gives_the_run_again)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":set arm.k2 5<Enter>:copy run<Enter>");
-    assert_string_equal(ex.state.copied,
+    assert_string_equal(ex.input.copied,
                         "impactlab run 'corrected/first-impact' --set 'arm.k2=5'\n");
     press(&ex, ":edit motor.voltage<Enter><Esc>:copy<Enter>");
-    assert_non_null(strstr(ex.state.copied, "motor.voltage="));
+    assert_non_null(strstr(ex.input.copied, "motor.voltage="));
 
     // a change at an instant is no option: the scenario itself is copied
     press(&ex, ":seek 0.4<Enter>:push 0.01<Enter>:copy run<Enter>");
-    assert_non_null(strstr(ex.state.copied, "script"));
+    assert_non_null(strstr(ex.input.copied, "script"));
     free(picture(&ex, 80, 24, GLYPHS_BRAILLE));
     press(&ex, ":copy screen<Enter>");
-    assert_non_null(strstr(ex.state.copied, "impactlab"));
+    assert_non_null(strstr(ex.input.copied, "impactlab"));
     press_warns(&ex, ":copy all<Enter>", "value, run or screen");
 }
 
@@ -286,7 +286,7 @@ TEST_IN_FOLDER(the_first_visit_is_the_only_one)
 
     // the first key closes the page and acts
     press_shows(&ex, "b", "!a first visit");
-    assert_int_equal(ex.state.pinned.count, 1);
+    assert_int_equal(ex.model.pinned.count, 1);
     explorer_welcome(&ex);
     assert_shows(&ex, "!a first visit");
     assert_int_equal(access("impactlab/visited", F_OK), 0);
@@ -312,7 +312,7 @@ TEST(predictors_and_modes_are_explained)
     assert_shows_at(&ex, 80, 24, "nothing is left that could move");
     assert_shows(&ex, "0 Hz");
     press(&ex, "<Esc>:rate 200<Enter>");
-    check_close(ex.state.looks.rate, 200, 0);
+    check_close(ex.view.looks.rate, 200, 0);
     press_warns(&ex, ":rate 0.1<Enter>", "at least 1 kB/s");
 }
 
@@ -394,12 +394,12 @@ TEST_IN_FOLDER(the_walk_through_does_what_it_says)
         }
 
         // what was saved gives the run again
-        free(save_and_compare(&ex.state.session));
+        free(save_and_compare(&ex.model.session));
         KEPT_SCENARIO(saved);
         assert_int_equal(scenario_open(&saved, "mine.yaml", NULL, NULL), STATUS_OK);
         KEPT_RUN(again);
         run_scenario(&saved, true, &again);
-        assert_same_trace(&ex.state.session.run.trace, &again.trace);
+        assert_same_trace(&ex.model.session.run.trace, &again.trace);
     }
 }
 

@@ -30,8 +30,8 @@ TEST(test_the_contact_lane_is_where_rows_touch)
     assert_true(lanes.width > 20 && lanes.height >= 2);
 
     // every column: filled if and only if a row in it is in contact
-    const trace *t = &ex.state.session.run.trace;
-    const double duration = ex.state.session.effective.parameters.run.duration;
+    const trace *t = &ex.model.session.run.trace;
+    const double duration = ex.model.session.effective.parameters.run.duration;
     int filled = 0;
     for (int i = 0; i < lanes.width; i++) {
         const double from = duration * i / lanes.width,
@@ -81,7 +81,7 @@ TEST(test_a_click_moves_the_cursor_or_the_window)
     const area lanes = find_part(&ex, PART_LANES);
     explorer_point(&ex, (pointer_event){POINTER_PRESS, lanes.x + lanes.width / 2, lanes.y,
                                         false, false});
-    check_close(ex.state.session.now, 0.5, 0.02);
+    check_close(ex.model.session.now, 0.5, 0.02);
     explorer_point(&ex, (pointer_event){POINTER_RELEASE, lanes.x, lanes.y, false, false});
 
     // the map is there while a part is visible, and moves it
@@ -92,6 +92,6 @@ TEST(test_a_click_moves_the_cursor_or_the_window)
     assert_true(map.width > 20);
     explorer_point(&ex, (pointer_event){POINTER_PRESS, map.x + map.width * 3 / 4, map.y,
                                         false, false});
-    check_close(ex.state.window.to - ex.state.window.from, 0.1, 1e-9);
-    check_close((ex.state.window.to + ex.state.window.from) / 2, 0.75, 0.02);
+    check_close(ex.view.window.to - ex.view.window.from, 0.1, 1e-9);
+    check_close((ex.view.window.to + ex.view.window.from) / 2, 0.75, 0.02);
 }

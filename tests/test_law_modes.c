@@ -18,9 +18,9 @@ TEST(test_the_panel_is_whole_on_every_screen)
                    "bang-bang", "reverse-torque")) {
         char mode[MODE_NAME_SIZE];
         assert_true(explorer_carry_out(&ex, formatted("law %s", *c)));
-        session_seek(&ex.state.session, 0.9);
-        law_mode_name(state_law_modes(&ex.state),
-                      session_sample(&ex.state.session)->controller_mode, mode,
+        session_seek(&ex.model.session, 0.9);
+        law_mode_name(model_law_modes(&ex.model),
+                      session_sample(&ex.model.session)->controller_mode, mode,
                       sizeof mode);
         for (int k = 0; k < 8; k++) {
             int width = sizes[k / 2][0], height = sizes[k / 2][1];
@@ -51,9 +51,9 @@ TEST(test_a_narrow_screen_shows_the_panel_beside_the_parameters)
 TEST(test_a_command_beyond_the_limit_is_marked)
 {
     OPEN_EXPLORER(ex, "compare/bang-bang");
-    session_seek(&ex.state.session, 0.02);
+    session_seek(&ex.model.session, 0.02);
     assert_shows(&ex, "saturated");
-    session_seek(&ex.state.session, 1.4);
+    session_seek(&ex.model.session, 1.4);
     assert_shows(&ex, "!saturated");
 }
 
@@ -64,15 +64,15 @@ TEST(test_one_key_goes_through_the_modes)
     for (EACH_TEXT(c, "approach", "impact", "force")) {
         press(&ex, "L");
         // going on replaces the lock made at the same instant
-        assert_int_equal(ex.state.session.input_count, 1);
+        assert_int_equal(ex.model.session.input_count, 1);
         assert_shows(&ex, formatted("locked: %s (F frees)", *c));
         assert_shows(&ex, formatted("[%s]", *c));
     }
     press(&ex, "L");
-    assert_int_equal(ex.state.session.input_count, 0);
+    assert_int_equal(ex.model.session.input_count, 0);
     assert_shows(&ex, "not locked");
     press(&ex, ":lock approach<Enter>:seek 1.1<Enter>F");
-    assert_int_equal(ex.state.session.input_count, 2);
+    assert_int_equal(ex.model.session.input_count, 2);
     assert_shows(&ex, "not locked");
     press_shows(&ex, ":seek 1<Enter>", "locked: approach");
     press_shows(&ex, "uu", "not locked");
@@ -84,8 +84,8 @@ TEST(test_a_lock_is_saved_and_run_again_byte_for_byte)
     OPEN_EXPLORER(ex, "compare/recovering");
     press(&ex,
           ":seek 0.4<Enter>:lock approach<Enter>:seek 0.6<Enter>LLb:seek 0.8<Enter>F");
-    assert_false(ex.state.message.warning);
-    KEPT_TEXT(text) = save_and_compare(&ex.state.session);
+    assert_false(ex.input.message.warning);
+    KEPT_TEXT(text) = save_and_compare(&ex.model.session);
     assert_non_null(strstr(text, "set: {control.lock: \"approach\"}"));
 }
 
@@ -113,7 +113,7 @@ TEST(test_the_log_names_modes)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, "nn");
-    check_close(ex.state.session.now, 0.295, 0);
+    check_close(ex.model.session.now, 0.295, 0);
     assert_shows(&ex, "goes into its mode 'impact' at 0.295000 s",
                  "0.29500 s  mode impact");
     press_shows(&ex, "<End>", "mode force");
@@ -123,5 +123,5 @@ TEST(test_the_log_names_modes)
     press(&ex, ":seek 0.3<Enter>");
     hit_area log = part_on_screen(&ex, PANEL_LOG, PART_LINES);
     click_at(&ex, log.area.x + 3, log.area.y + 2 - log.index);
-    check_close(ex.state.session.now, 0.295, 0);
+    check_close(ex.model.session.now, 0.295, 0);
 }

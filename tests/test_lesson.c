@@ -5,28 +5,28 @@
 // Goes through a lesson by its own commands.
 static void go_through(explorer *ex, const char *name)
 {
-    const lesson *l = &ex->state.session.base.lesson;
+    const lesson *l = &ex->model.session.base.lesson;
     for (int i = 0; i < l->step_count; i++) {
         const lesson_step *step = &l->steps[i];
-        fail_if(ex->state.lesson.step != i || !ex->state.lesson.on,
-                "%s is at step %d, expected %d", name, ex->state.lesson.step + 1, i + 1);
+        fail_if(ex->model.lesson.step != i || !ex->model.lesson.on,
+                "%s is at step %d, expected %d", name, ex->model.lesson.step + 1, i + 1);
 
         // asked before it is done it gives a hint and stays
         if (step->check != LESSON_READ) {
             explorer_carry_out(ex, "continue");
-            fail_if(ex->state.lesson.step != i || strlen(step->hint) < 5,
+            fail_if(ex->model.lesson.step != i || strlen(step->hint) < 5,
                     "%s: step %d is done before anything is, or has no hint", name,
                     i + 1);
         }
         for (int k = 0; k < step->command_count; k++) {
             fail_if(!explorer_carry_out(ex, step->commands[k]), "%s: step %d: '%s': %s",
-                    name, i + 1, step->commands[k], ex->state.message.text);
+                    name, i + 1, step->commands[k], ex->input.message.text);
         }
-        fail_if(step->check != LESSON_READ && !ex->state.lesson.passed,
+        fail_if(step->check != LESSON_READ && !ex->model.lesson.passed,
                 "%s: step %d is not done by its own commands", name, i + 1);
         explorer_carry_out(ex, "continue");
     }
-    assert_false(ex->state.lesson.on);
+    assert_false(ex->model.lesson.on);
 }
 
 TEST(test_a_copy_keeps_its_lesson)
@@ -73,9 +73,9 @@ TEST(test_every_lesson_can_be_gone_through)
 TEST(test_every_step_fits_a_small_screen)
 {
     OPEN_EXPLORER(ex, "lessons/impulse-and-force");
-    const lesson *l = &ex.state.session.base.lesson;
+    const lesson *l = &ex.model.session.base.lesson;
     for (int i = 0; i < l->step_count; i++) {
-        ex.state.lesson = (lesson_progress){.on = true, .step = i};
+        ex.model.lesson = (lesson_progress){.on = true, .step = i};
         assert_shows_at(&ex, 80, 24, "lesson, step");
         assert_shows_at(&ex, 80, 24, "energy");
 
@@ -124,7 +124,7 @@ TEST(test_what_a_step_names_is_on_the_screen)
     };
     for (EACH(c, named)) {
         OPEN_EXPLORER(ex, formatted("lessons/%s", c->lesson));
-        const lesson *l = &ex.state.session.base.lesson;
+        const lesson *l = &ex.model.session.base.lesson;
         for (int i = 0; i < c->step - !c->done; i++) {
             for (int k = 0; k < l->steps[i].command_count; k++) {
                 assert_true(explorer_carry_out(&ex, l->steps[i].commands[k]));
@@ -155,20 +155,20 @@ TEST(test_wrong_answers_are_not_taken)
 {
     OPEN_EXPLORER(ex, "lessons/hybrid-law");
     press_warns(&ex, "A1<Enter>", "");
-    assert_false(ex.state.lesson.passed);
+    assert_false(ex.model.lesson.passed);
     press(&ex, "A3<Enter>");
-    assert_true(ex.state.lesson.passed);
+    assert_true(ex.model.lesson.passed);
     press(&ex, "yA3<Enter>");
-    assert_false(ex.state.lesson.passed);
+    assert_false(ex.model.lesson.passed);
     press(&ex, "A1.76<Enter>");
-    assert_true(ex.state.lesson.passed);
+    assert_true(ex.model.lesson.passed);
 
     // by name, from anywhere; and out of it
     press(&ex, ":open corrected/first-impact<Enter>");
-    assert_false(ex.state.lesson.on);
+    assert_false(ex.model.lesson.on);
     press(&ex, ":lesson step-size<Enter>");
-    assert_true(ex.state.lesson.on);
+    assert_true(ex.model.lesson.on);
     press(&ex, ":lesson off<Enter>");
-    assert_false(ex.state.lesson.on);
+    assert_false(ex.model.lesson.on);
     press_warns(&ex, ":lesson no-such<Enter>", "");
 }

@@ -12,18 +12,18 @@ TEST(test_clicks_and_drags_in_curves_move_the_cursor)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     hit_area c = part_on_screen(&ex, PANEL_CURVES, PART_BODY);
     click(&ex, c.area.x + c.area.width / 2, c.area.y + 3);
-    check_close(ex.state.session.now, 0.5, 0.02);
+    check_close(ex.model.session.now, 0.5, 0.02);
     point(&ex, POINTER_PRESS, c.area.x + c.area.width / 4, c.area.y + 3);
-    check_close(ex.state.session.now, 0.25, 0.02);
+    check_close(ex.model.session.now, 0.25, 0.02);
     // a drag continues beyond the edges
     point(&ex, POINTER_DRAG, c.area.x + 3 * c.area.width / 4, c.area.y - 5);
-    check_close(ex.state.session.now, 0.75, 0.02);
+    check_close(ex.model.session.now, 0.75, 0.02);
     point(&ex, POINTER_DRAG, 119, 39);
-    check_close(ex.state.session.now, 1, 0.02);
+    check_close(ex.model.session.now, 1, 0.02);
     point(&ex, POINTER_RELEASE, 119, 39);
     // a release without its press is a click, too
     point(&ex, POINTER_RELEASE, c.area.x + c.area.width / 2, c.area.y + 3);
-    check_close(ex.state.session.now, 0.5, 0.02);
+    check_close(ex.model.session.now, 0.5, 0.02);
 }
 
 TEST(test_the_wheel_zooms_where_it_points)
@@ -36,24 +36,24 @@ TEST(test_the_wheel_zooms_where_it_points)
     for (int i = 0; i < 5; i++) {
         point(&ex, POINTER_WHEEL_UP, x, c.area.y + 3);
     }
-    state_window(&ex.state, &from, &to);
+    view_window(&ex.model, &ex.view, &from, &to);
     check_close(to - from, pow(0.8, 5), 1e-9);
     check_close((0.3 - from) / (to - from), 0.3, 0.02);
     explorer_point(&ex, (pointer_event){.kind = POINTER_WHEEL_DOWN,
                                         .x = x,
                                         .y = c.area.y + 3,
                                         .shift = true});
-    check_close(ex.state.window.from, from + 0.1 * (to - from), 1e-9);
+    check_close(ex.view.window.from, from + 0.1 * (to - from), 1e-9);
     for (int i = 0; i < 9; i++) {
         point(&ex, POINTER_WHEEL_DOWN, x, c.area.y + 3);
     }
-    state_window(&ex.state, &from, &to);
+    view_window(&ex.model, &ex.view, &from, &to);
     check_close(to - from, 1, 0);
 
     // over a legend, too
     const hit_area l = part_on_screen(&ex, PANEL_CURVES, PART_LEGEND);
     point(&ex, POINTER_WHEEL_UP, l.area.x, l.area.y);
-    state_window(&ex.state, &from, &to);
+    view_window(&ex.model, &ex.view, &from, &to);
     check_close(from, 0.2 * (l.area.x - c.area.x + 0.5) / c.area.width, 1e-9);
 }
 
@@ -62,19 +62,19 @@ TEST(test_the_time_axis_is_dragged)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     hit_area a = part_on_screen(&ex, PANEL_CURVES, PART_TIME_AXIS);
     click(&ex, a.area.x + a.area.width / 2, a.area.y);
-    check_close(ex.state.session.now, 0.5, 0.02);
+    check_close(ex.model.session.now, 0.5, 0.02);
     press(&ex, "z");
     a = part_on_screen(&ex, PANEL_CURVES, PART_TIME_AXIS);
-    double from, to, now = ex.state.session.now;
-    state_window(&ex.state, &from, &to);
+    double from, to, now = ex.model.session.now;
+    view_window(&ex.model, &ex.view, &from, &to);
     point(&ex, POINTER_PRESS, a.area.x + 20, a.area.y + 1);
     point(&ex, POINTER_DRAG, a.area.x + 10, a.area.y + 1);
     point(&ex, POINTER_RELEASE, a.area.x + 10, a.area.y + 1);
-    check_close(ex.state.window.from, from + 10.0 / a.area.width * (to - from), 1e-9);
-    check_close(ex.state.session.now, now, 0);
+    check_close(ex.view.window.from, from + 10.0 / a.area.width * (to - from), 1e-9);
+    check_close(ex.model.session.now, now, 0);
     point(&ex, POINTER_WHEEL_UP, a.area.x + 10, a.area.y + 1);
-    check_below(ex.state.window.from, from + 10.0 / a.area.width * (to - from));
-    assert_true(ex.state.window.adrift);
+    check_below(ex.view.window.from, from + 10.0 / a.area.width * (to - from));
+    assert_true(ex.view.window.adrift);
 }
 
 TEST(test_an_axis_of_values_is_dragged_and_zoomed)
@@ -84,14 +84,14 @@ TEST(test_an_axis_of_values_is_dragged_and_zoomed)
     assert_int_equal(a.index, 3);
     double low = ex.layout.axes[3].low, high = ex.layout.axes[3].high;
     point(&ex, POINTER_PRESS, a.area.x + 2, a.area.y + 1);
-    assert_int_equal(panes_focused(&ex.state.panes), 3);
+    assert_int_equal(panes_focused(&ex.view.panes), 3);
     point(&ex, POINTER_DRAG, a.area.x + 2, a.area.y + 2);
     point(&ex, POINTER_RELEASE, a.area.x + 2, a.area.y + 2);
     // what is under the pointer goes down with it
-    check_close(ex.state.panes.pane[3].fixed.low, low + (high - low) / a.area.height,
+    check_close(ex.view.panes.pane[3].fixed.low, low + (high - low) / a.area.height,
                 1e-9);
     point(&ex, POINTER_WHEEL_UP, a.area.x + 2, a.area.y + 1);
-    check_close(ex.state.panes.pane[3].fixed.high - ex.state.panes.pane[3].fixed.low,
+    check_close(ex.view.panes.pane[3].fixed.high - ex.view.panes.pane[3].fixed.low,
                 0.8 * (high - low), 1e-9);
 }
 
@@ -100,26 +100,26 @@ TEST(test_events_and_scenarios_are_clicked)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>");
     hit_area log = part_on_screen(&ex, PANEL_LOG, PART_LINES);
-    const event *third = &ex.state.session.run.trace.events[log.index + 2];
+    const event *third = &ex.model.session.run.trace.events[log.index + 2];
     click(&ex, log.area.x + 2, log.area.y + 2);
-    check_close(ex.state.session.now, third->time, 0);
+    check_close(ex.model.session.now, third->time, 0);
     // below the last one there is nothing
     click(&ex, log.area.x + 2, log.area.y + log.area.height - 1);
     press(&ex, "o<Home>");
     hit_area list = part_on_screen(&ex, PANEL_SCENARIOS, PART_LINES);
-    const char *name = ex.state.scenarios.names[list.index + 1];
+    const char *name = ex.view.scenarios.names[list.index + 1];
     click(&ex, list.area.x + 3, list.area.y + 1);
-    assert_int_equal(ex.state.page, PANEL_SCENARIOS);
-    assert_string_equal(ex.state.scenarios.names[ex.state.scenarios.selected], name);
+    assert_int_equal(ex.view.page, PANEL_SCENARIOS);
+    assert_string_equal(ex.view.scenarios.names[ex.view.scenarios.selected], name);
     click(&ex, list.area.x + 3, list.area.y + 1);
-    assert_int_equal(ex.state.page, PANEL_NONE);
-    assert_string_equal(ex.state.session.base.name, name);
+    assert_int_equal(ex.view.page, PANEL_NONE);
+    assert_string_equal(ex.model.session.base.name, name);
     // a click outside the list closes it
     press(&ex, "o");
     (void)part_on_screen(&ex, PANEL_SCENARIOS, PART_LINES);
     click(&ex, 1, 5);
-    assert_int_equal(ex.state.page, PANEL_NONE);
-    assert_string_equal(ex.state.session.base.name, name);
+    assert_int_equal(ex.view.page, PANEL_NONE);
+    assert_string_equal(ex.model.session.base.name, name);
 }
 
 TEST(test_the_wheel_scrolls_pages_and_panels)
@@ -128,7 +128,7 @@ TEST(test_the_wheel_scrolls_pages_and_panels)
     press(&ex, "?");
     hit_area page = part_on_screen(&ex, PANEL_HELP, PART_BODY);
     point(&ex, POINTER_WHEEL_DOWN, page.area.x + 5, page.area.y + 5);
-    assert_int_equal(ex.state.drawn.scroll[PANEL_HELP], 3);
+    assert_int_equal(ex.view.drawn.scroll[PANEL_HELP], 3);
     for (int i = 0; i < 50; i++) {
         point(&ex, POINTER_WHEEL_DOWN, page.area.x + 5, page.area.y + 5);
     }
@@ -136,7 +136,7 @@ TEST(test_the_wheel_scrolls_pages_and_panels)
     for (int i = 0; i < 50; i++) {
         point(&ex, POINTER_WHEEL_UP, page.area.x + 5, page.area.y + 5);
     }
-    assert_int_equal(ex.state.drawn.scroll[PANEL_HELP], 0);
+    assert_int_equal(ex.view.drawn.scroll[PANEL_HELP], 0);
     press(&ex, "<Esc><Tab>");
     hit_area values = part_on_screen(&ex, PANEL_VALUES, PART_BODY);
     assert_shows(&ex, "!calculated_for");
@@ -146,12 +146,12 @@ TEST(test_the_wheel_scrolls_pages_and_panels)
     assert_shows(&ex, "calculated_for");
     // elsewhere it selects parameters as the arrows do, but not while something is typed
     press_draws(&ex, "<Tab><Tab>");
-    int before = ex.state.parameters.parameter;
+    int before = ex.view.parameters.parameter;
     point(&ex, POINTER_WHEEL_DOWN, values.area.x + 5, values.area.y + 5);
-    assert_int_not_equal(ex.state.parameters.parameter, before);
+    assert_int_not_equal(ex.view.parameters.parameter, before);
     press(&ex, ":set ");
     point(&ex, POINTER_WHEEL_UP, values.area.x + 5, values.area.y + 5);
-    assert_string_equal(ex.state.prompt.text, "set ");
+    assert_string_equal(ex.input.prompt.text, "set ");
 }
 
 TEST(test_random_pointing_does_no_harm)
@@ -171,10 +171,10 @@ TEST(test_random_pointing_does_no_harm)
                          1 + (int)random_below(&r, 50), GLYPHS_BRAILLE));
         }
         double from, to;
-        state_window(&ex.state, &from, &to);
+        view_window(&ex.model, &ex.view, &from, &to);
         assert_true(from >= 0 && from < to &&
                     to <=
-                        ex.state.session.effective.parameters.run.duration * (1 + 1e-12));
+                        ex.model.session.effective.parameters.run.duration * (1 + 1e-12));
     }
 }
 
@@ -194,20 +194,20 @@ TEST(test_a_box_drawn_with_control_is_zoomed_into)
 
     // instants from side to side, values from the second row down to the last
     double from, to;
-    state_window(&ex.state, &from, &to);
+    view_window(&ex.model, &ex.view, &from, &to);
     check_close(from, 0.25, 0.02);
     check_close(to, 0.5, 0.02);
-    const pane *of = &ex.state.panes.pane[p.index];
+    const pane *of = &ex.view.panes.pane[p.index];
     assert_int_equal(of->scaling, AXIS_FIXED);
     check_close(of->fixed.low, axis.low, 1e-9);
     check_close(of->fixed.high, axis.high - (axis.high - axis.low) / p.area.height, 1e-9);
-    assert_true(ex.state.session.now == 0);
+    assert_true(ex.model.session.now == 0);
 
     // a box whose release was lost is over with the next press
     e = (pointer_event){POINTER_PRESS, x + 1, y, false, true};
     explorer_point(&ex, e);
     click(&ex, x + width / 2, y);
-    state_window(&ex.state, &from, &to);
+    view_window(&ex.model, &ex.view, &from, &to);
     check_close(to - from, 0.25, 0.03);
-    check_close(ex.state.session.now, 0.375, 0.02);
+    check_close(ex.model.session.now, 0.375, 0.02);
 }

@@ -6,8 +6,8 @@ TEST(test_words_find_things_of_every_kind)
     static palette_entry entries[PALETTE_ENTRIES];
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<C-p>");
-    const scenario_menu *menu = &ex.state.scenarios;
-    const key_bindings *keys = &ex.state.keys;
+    const scenario_menu *menu = &ex.view.scenarios;
+    const key_bindings *keys = &ex.view.keys;
     static const struct {
         const char *words, *first;
         palette_kind kind;
@@ -41,19 +41,19 @@ TEST(test_enter_does_what_the_entry_is_for)
     press_prompts(&ex, ":seek 0.2<Enter><C-p>stiction<Enter>",
                   "set motor.stiction 0.045");
     press(&ex, "0.01<Enter>");
-    const parameters p = state_parameters(&ex.state);
+    const parameters p = model_parameters(&ex.model);
     check_close(p.motor.stiction, 0.01, 0);
 
     // a command that takes something waits for it, another is carried out
     press_prompts(&ex, "<C-p>seek<Enter>", "seek ");
     press(&ex, "0.1<Enter>");
-    check_close(ex.state.session.now, 0.1, 1e-12);
+    check_close(ex.model.session.now, 0.1, 1e-12);
     press(&ex, "<C-p>branch<Enter>");
-    assert_true(ex.state.session.has_other);
+    assert_true(ex.model.session.has_other);
 
     // a signal gets a pane, a scenario opens
     press(&ex, "<C-p>energy_residual<Enter>");
-    assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].signals[0],
+    assert_int_equal(ex.view.panes.pane[PANES_OF_TABLE].signals[0],
                      SIGNAL_INDEX(energy_residual));
     press_opens(&ex, "<C-p>fig-3-4<Enter>", "thesis/fig-3-4");
 }
@@ -65,16 +65,16 @@ TEST(test_the_prompt_has_it_too)
 
     // nothing is selected until Down is pressed, Up leaves the list again
     press(&ex, "<Down>");
-    assert_int_equal(ex.state.palette.selected, 0);
+    assert_int_equal(ex.view.palette.selected, 0);
     press(&ex, "<Up>");
-    assert_int_equal(ex.state.palette.selected, -1);
+    assert_int_equal(ex.view.palette.selected, -1);
     press(&ex, "<Down><Enter>");
-    assert_true(ex.state.session.has_other);
+    assert_true(ex.model.session.has_other);
 
     // the input continues as words
     press_prompts(&ex, ":voltage_limit<C-p><Enter>", "set motor.voltage_limit 10");
     press(&ex, "<Esc>");
-    assert_false(ex.state.prompt.open);
+    assert_false(ex.input.prompt.open);
 }
 
 TEST(test_a_click_takes_an_entry)
@@ -90,5 +90,5 @@ TEST(test_a_click_takes_an_entry)
             explorer_point(&ex, down);
         }
     }
-    assert_false(ex.state.prompt.open);
+    assert_false(ex.input.prompt.open);
 }

@@ -29,13 +29,13 @@ TEST(test_a_phase_pane_ends_where_the_signals_end)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>:phase force gap<Enter>e");
-    assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE].signals[1], SIGNAL_INDEX(gap));
-    const trace *t = &ex.state.session.run.trace;
+    assert_int_equal(ex.view.panes.pane[PANES_OF_TABLE].signals[1], SIGNAL_INDEX(gap));
+    const trace *t = &ex.model.session.run.trace;
     const double most = trace_statistics(t, SIGNAL_INDEX(gap), 0, HUGE_VAL).maximum;
     assert_shows(&ex, formatted("gap %s", draw_number(most).text), "force over gap");
 
     // neither its axis nor a click in it does anything to the time
-    const double now = ex.state.session.now;
+    const double now = ex.model.session.now;
     press(&ex, "vVaz");
     for (int i = 0; i < ex.layout.hit_count; i++) {
         const hit_area h = ex.layout.hits[i];
@@ -44,9 +44,9 @@ TEST(test_a_phase_pane_ends_where_the_signals_end)
                                                 false, false});
         }
     }
-    check_close(ex.state.session.now, now, 0);
+    check_close(ex.model.session.now, now, 0);
     press(&ex, ":trace force<Enter>");
-    assert_int_equal(ex.state.panes.pane[PANES_OF_TABLE + 1].view, VIEW_TIME);
+    assert_int_equal(ex.view.panes.pane[PANES_OF_TABLE + 1].view, VIEW_TIME);
 }
 
 TEST(test_statistics_are_from_the_mark_to_the_cursor)
@@ -54,7 +54,7 @@ TEST(test_statistics_are_from_the_mark_to_the_cursor)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "<End>:seek 0.45<Enter>m:seek 0.25<Enter>X");
     const signal_statistics s =
-        trace_statistics(&ex.state.session.run.trace, SIGNAL_INDEX(force), 0.25, 0.45);
+        trace_statistics(&ex.model.session.run.trace, SIGNAL_INDEX(force), 0.25, 0.45);
     assert_shows(&ex, "mark and cursor, 0.25 to 0.45 s");
     assert_shows(&ex, formatted("max %s", draw_number(s.maximum).text));
     assert_shows(&ex, formatted("integral %s N s", draw_number(s.integral).text));
@@ -68,22 +68,22 @@ TEST_IN_FOLDER(test_measured_data_touch_when_the_run_does)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     FILE *stream = fopen("data.csv", "w");
     assert_non_null(stream);
-    const trace *t = &ex.state.session.run.trace;
+    const trace *t = &ex.model.session.run.trace;
     fputs("time[ms],force[mN],encoder[rad]\n", stream);
     for (EACH_ROW(row, t)) {
         fprintf(stream, "%.17g,%.17g,\n", 1e3 * (row->time + 0.125), 1e3 * row->force);
     }
     fclose(stream);
     press(&ex, ":data data.csv<Enter>");
-    assert_int_equal(ex.state.measured.row_count, t->row_count);
+    assert_int_equal(ex.model.measured.row_count, t->row_count);
     for (size_t r = 0; r < t->row_count; r++) {
-        check_close(ex.state.measured.rows[r].time, t->rows[r].time, 1e-9);
-        check_close(ex.state.measured.rows[r].force, t->rows[r].force, 1e-9);
-        assert_true(isnan(ex.state.measured.rows[r].encoder));
+        check_close(ex.model.measured.rows[r].time, t->rows[r].time, 1e-9);
+        check_close(ex.model.measured.rows[r].force, t->rows[r].force, 1e-9);
+        assert_true(isnan(ex.model.measured.rows[r].encoder));
     }
     assert_shows_everywhere(&ex, "shifted by -0.125 s");
     press_warns(&ex, ":data /nowhere.csv<Enter>", "");
-    assert_int_equal(ex.state.measured.row_count, t->row_count);
+    assert_int_equal(ex.model.measured.row_count, t->row_count);
 
     // beside pins, a difference, a sweep and another scenario, and by hand
     press(&ex, "b:set arm.k2 5<Enter>DD:sweep arm.k2=4:8:3<Enter>");
@@ -91,9 +91,9 @@ TEST_IN_FOLDER(test_measured_data_touch_when_the_run_does)
     press(&ex, ":open compare/hybrid<Enter>u");
     free(picture(&ex, 100, 30, GLYPHS_BRAILLE));
     press(&ex, ":data data.csv@0.5<Enter>");
-    check_close(ex.state.measured.rows[0].time, 0.625, 1e-9);
+    check_close(ex.model.measured.rows[0].time, 0.625, 1e-9);
     press(&ex, ":data off<Enter>");
-    assert_int_equal(ex.state.measured.row_count, 0);
+    assert_int_equal(ex.model.measured.row_count, 0);
     free(picture(&ex, 200, 60, GLYPHS_BRAILLE));
 }
 
@@ -101,8 +101,8 @@ TEST(test_a_pane_of_expressions)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
     press(&ex, "<End>:trace force - force_reading, max(force, 1)*2<Enter>");
-    const pane *p = &ex.state.panes.pane[PANES_OF_TABLE];
-    const sample *row = &ex.state.session.run.trace.rows[900];
+    const pane *p = &ex.view.panes.pane[PANES_OF_TABLE];
+    const sample *row = &ex.model.session.run.trace.rows[900];
     assert_int_equal(p->count, 2);
     check_close(signal_value(row, p->signals[0]), row->force - row->force_reading, 0);
     check_close(signal_value(row, p->signals[1]), 2 * fmax(row->force, 1), 0);
@@ -111,7 +111,7 @@ TEST(test_a_pane_of_expressions)
 
     // units: of a product none, of a share that of the whole
     press(&ex, ":trace force*gap, gap/2, force+gap<Enter>");
-    p = &ex.state.panes.pane[PANES_OF_TABLE + 1];
+    p = &ex.view.panes.pane[PANES_OF_TABLE + 1];
     assert_string_equal(signal_table[p->signals[0]].unit, "");
     assert_string_equal(signal_table[p->signals[1]].unit, "m");
     assert_string_equal(signal_table[p->signals[2]].unit, "");
@@ -130,10 +130,10 @@ TEST(test_a_pane_of_expressions)
                  {":trace force -<Enter>", "at the end"},
                  {":trace force gap time contact impulse<Enter>", "at most 4"},
                  {":trace forc<Enter>", "there is no signal 'forc'"}};
-    const int before = ex.state.panes.focus;
+    const int before = ex.view.panes.focus;
     for (EACH(c, wrong)) {
         press_warns(&ex, c->line, c->says);
-        assert_int_equal(ex.state.panes.focus, before);
+        assert_int_equal(ex.view.panes.focus, before);
     }
 
     // more than there are places for: a sentence; one whose pane was replaced is free
@@ -141,7 +141,7 @@ TEST(test_a_pane_of_expressions)
     for (int i = 0; i < 40; i++) {
         press_text(&ex, ":trace force+%d, gap+%d<Enter>", i, i);
     }
-    assert_non_null(strstr(ex.state.message.text, "expressions are shown already"));
+    assert_non_null(strstr(ex.input.message.text, "expressions are shown already"));
     free(picture(&ex, 120, 40, GLYPHS_BRAILLE));
 }
 
@@ -150,9 +150,9 @@ TEST(test_a_calm_axis_leaves_a_spike_out)
     value_range wide, calm;
     OPEN_EXPLORER(ex, "compare/hybrid");
     press_draws(&ex, "<End>");
-    assert_true(state_pane_axis(&ex.state, 0, &wide));
+    assert_true(view_pane_axis(&ex.model, &ex.view, 0, &wide));
     press(&ex, ":axis calm 1<Enter>");
-    assert_true(state_pane_axis(&ex.state, 0, &calm));
+    assert_true(view_pane_axis(&ex.model, &ex.view, 0, &calm));
 
     // the reading's spike of 6 N is a few samples long, the force stays below 2 N
     assert_true(wide.high > 4);

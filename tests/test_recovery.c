@@ -76,10 +76,10 @@ TEST_IN_FOLDER(what_was_done_is_offered_and_comes_back)
     open_watched(&next, true);
     assert_shows_at(&next, 80, 24, "y goes on");
     press(&next, "y");
-    fail_if(next.state.message.warning, "%s", next.state.message.text);
-    assert_same_trace(&next.state.session.run.trace, &ex.state.session.run.trace);
-    assert_int_equal(next.state.pinned.count, 1);
-    assert_int_equal(next.state.note_count, 1);
+    fail_if(next.input.message.warning, "%s", next.input.message.text);
+    assert_same_trace(&next.model.session.run.trace, &ex.model.session.run.trace);
+    assert_int_equal(next.model.pinned.count, 1);
+    assert_int_equal(next.model.note_count, 1);
     assert_string_equal(next.recovery.path, ex.recovery.path);
     press_quits(&next, "q", false); // it is not saved
     press_prompts(&next, ":session save<Enter>", "session save lab.session");
@@ -196,7 +196,7 @@ TEST_IN_FOLDER(whatever_ends_it_the_file_is_whole)
         fail_if(changes != written && changes != written + 1, "%d of %d changes", changes,
                 written);
         press(&next, "y");
-        assert_int_equal(next.state.session.input_count, changes);
+        assert_int_equal(next.model.session.input_count, changes);
         recovery_end(&next, true);
         assert_int_equal(files_called("rec"), 0);
     }

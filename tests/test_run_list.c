@@ -4,7 +4,7 @@
 TEST(test_runs_are_pinned_with_what_was_changed)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    const run_list *list = &ex.state.pinned;
+    const run_list *list = &ex.model.pinned;
     press(&ex, "b:seek 0.1<Enter>:set motor.voltage 0.5<Enter>b");
     assert_int_equal(list->count, 2);
     assert_string_equal(list->runs[0].name, "as opened");
@@ -15,16 +15,16 @@ TEST(test_runs_are_pinned_with_what_was_changed)
     assert_int_equal(list->count, 2);
     assert_int_equal(list->baseline, 1);
     press(&ex, ":baseline 1<Enter>");
-    check_close(ex.state.session.other.summary.peak_force_N,
+    check_close(ex.model.session.other.summary.peak_force_N,
                 list->runs[0].run.summary.peak_force_N, 0);
 
     // what differs, in both directions
     char text[LINE_TEXT];
     press(&ex, ":seek 0<Enter>:set arm.k2 5<Enter>");
-    run_list_differences(&list->runs[1], &ex.state.session, text, sizeof text);
+    run_list_differences(&list->runs[1], &ex.model.session, text, sizeof text);
     assert_string_equal(text, "(now: k2 5)");
     press(&ex, "uu");
-    run_list_differences(&list->runs[1], &ex.state.session, text, sizeof text);
+    run_list_differences(&list->runs[1], &ex.model.session, text, sizeof text);
     assert_string_equal(text, "voltage 0.5 from 0.1 s");
 }
 
@@ -34,7 +34,7 @@ TEST(test_names_are_cut_between_words)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.1234<Enter>:set motor.voltage 0.25<Enter>b");
     const char name[] = "voltage 0.25 from 0.1234 s";
-    assert_string_equal(ex.state.pinned.runs[0].name, name);
+    assert_string_equal(ex.model.pinned.runs[0].name, name);
     assert_shows_at(&ex, 100, 40, "voltage 0.25 from… ");
     assert_shows_at(&ex, 100, 40, formatted("!%s", name));
 
@@ -51,17 +51,17 @@ TEST(test_no_more_than_seven_and_none_is_lost)
     for (int i = 0; i < PINNED_RUNS; i++) {
         press_text(&ex, ":set arm.k2 %d<Enter>b", 4 + i);
     }
-    assert_int_equal(ex.state.pinned.count, PINNED_RUNS);
+    assert_int_equal(ex.model.pinned.count, PINNED_RUNS);
     press_warns(&ex, ":set arm.k2 20<Enter>b", "7 runs are pinned already");
-    assert_int_equal(ex.state.pinned.count, PINNED_RUNS);
+    assert_int_equal(ex.model.pinned.count, PINNED_RUNS);
 
     // dropping the baseline leaves another one, dropping all leaves none
     for (int i = 0; i < PINNED_RUNS; i++) {
-        assert_true(ex.state.session.has_other);
+        assert_true(ex.model.session.has_other);
         press(&ex, "B");
     }
-    assert_int_equal(ex.state.pinned.count, 0);
-    assert_false(ex.state.session.has_other);
+    assert_int_equal(ex.model.pinned.count, 0);
+    assert_false(ex.model.session.has_other);
 }
 
 TEST(test_taking_a_run_brings_all_of_it_back)
@@ -75,8 +75,8 @@ TEST(test_taking_a_run_brings_all_of_it_back)
     // the other way round: the present one is pinned and compared with
     press(&ex, ":take 1<Enter>");
     check_close(peak(&ex), opened, 0);
-    check_close(ex.state.session.other.summary.peak_force_N, halved, 0);
-    assert_int_equal(ex.state.session.input_count, 0);
+    check_close(ex.model.session.other.summary.peak_force_N, halved, 0);
+    assert_int_equal(ex.model.session.input_count, 0);
     press(&ex, ":take 2<Enter>");
     check_close(peak(&ex), halved, 0);
     press(&ex, "u");
@@ -87,25 +87,25 @@ TEST(test_hidden_runs_are_not_drawn)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "b:set arm.k2 5<Enter>b:set arm.k2 6<Enter>");
-    assert_int_equal(state_run_count(&ex.state), 3);
+    assert_int_equal(model_run_count(&ex.model), 3);
     press(&ex, ":hide 1<Enter>");
-    assert_int_equal(state_run_count(&ex.state), 2);
-    assert_string_equal(state_run_name(&ex.state, 1), "k2 5");
+    assert_int_equal(model_run_count(&ex.model), 2);
+    assert_string_equal(model_run_name(&ex.model, 1), "k2 5");
 
     // by keys on the page, and back
     press(&ex, "R<Up><Up> <Esc>");
-    assert_int_equal(state_run_count(&ex.state), 3);
+    assert_int_equal(model_run_count(&ex.model), 3);
     press(&ex, ":rename 1 soft arm<Enter>");
-    assert_string_equal(state_run_name(&ex.state, 1), "soft arm");
+    assert_string_equal(model_run_name(&ex.model, 1), "soft arm");
 }
 
 TEST(test_a_run_of_a_few_rows_is_pinned_too)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":set run.duration 0.005<Enter>b");
-    assert_int_equal(ex.state.pinned.count, 1);
+    assert_int_equal(ex.model.pinned.count, 1);
     press(&ex, ":set motor.voltage<Enter>>");
-    assert_true(ex.state.session.has_ghost);
+    assert_true(ex.model.session.has_ghost);
 }
 
 TEST(test_the_difference_is_that_of_the_runs)
@@ -116,13 +116,13 @@ TEST(test_the_difference_is_that_of_the_runs)
     // of the run from itself nothing
     press(&ex, "D");
     free(picture(&ex, 100, 30, GLYPHS_BRAILLE));
-    check_close(difference_first_beyond(&ex.state.difference, SIGNAL_INDEX(force), 0), -1,
+    check_close(difference_first_beyond(&ex.model.difference, SIGNAL_INDEX(force), 0), -1,
                 0);
 
     // rows are the same up to a change, and then as far apart as the voltages
     press(&ex, ":set motor.voltage 0.5<Enter>");
     free(picture(&ex, 100, 30, GLYPHS_BRAILLE));
-    const run_difference *d = &ex.state.difference;
+    const run_difference *d = &ex.model.difference;
     const int voltage = SIGNAL_INDEX(voltage), angle = SIGNAL_INDEX(hub_angle);
     check_close(difference_first_beyond(d, voltage, 0.1), 0.1, 1e-9);
     assert_true(difference_first_beyond(d, angle, 0) > 0.1);
@@ -130,7 +130,7 @@ TEST(test_the_difference_is_that_of_the_runs)
     check_close(signal_value(LAST_ROW(t), voltage), -0.5, 1e-15);
     assert_shows(&ex, "minus baseline");
     press(&ex, "D");
-    assert_int_equal(state_run_count(&ex.state), 2);
+    assert_int_equal(model_run_count(&ex.model), 2);
 }
 
 // Contact, sticking and modes are no amounts: beside the differences they are the present
@@ -139,7 +139,7 @@ TEST(test_states_are_not_subtracted)
 {
     OPEN_EXPLORER(ex, "compare/hybrid");
     press_draws(&ex, ":seek 0.4<Enter>b:set control.force 2<Enter>:seek 1<Enter>8D");
-    const trace *d = &ex.state.difference.trace, *run = &ex.state.session.run.trace;
+    const trace *d = &ex.model.difference.trace, *run = &ex.model.session.run.trace;
     double forces = 0;
     assert_true(d->row_count > 1000);
     for (size_t i = 0; i < d->row_count; i++) {
@@ -180,9 +180,9 @@ TEST(test_a_sweep_gives_what_single_runs_give)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":sweep motor.voltage=0.5:2:4<Enter>");
-    const lab_sweep *swept = &ex.state.sweep;
+    const lab_sweep *swept = &ex.model.sweep;
     assert_int_equal(swept->count, 4);
-    assert_int_equal(state_run_count(&ex.state), 5);
+    assert_int_equal(model_run_count(&ex.model), 5);
     assert_shows(&ex, "sweep motor.voltage, 4 of 4");
 
     // the run of a row, opened, is that run; u leads back
@@ -197,7 +197,7 @@ TEST(test_a_sweep_gives_what_single_runs_give)
     press(&ex, ":metric contact_impulse_Ns<Enter>");
     assert_int_equal(swept->metric, SUMMARY_INDEX(contact_impulse_Ns));
     press(&ex, "<Esc>");
-    assert_int_equal(state_run_count(&ex.state), 1);
+    assert_int_equal(model_run_count(&ex.model), 1);
 
     // what cannot be run says so
     press_warns(&ex, ":sweep motor.voltage=1:2:40<Enter>", "");

@@ -10,7 +10,7 @@ static void save(explorer *ex)
 {
     unlink(path);
     fail_if(!explorer_carry_out(ex, "session save lab.session"), "%s",
-            ex->state.message.text);
+            ex->input.message.text);
 }
 
 // Runs of two scenarios, changes, pushes, pins, panes, axes, zoom and mark come back to
@@ -32,28 +32,29 @@ TEST(test_what_was_done_comes_back)
     press_quits(&ex, "q", true);
 
     OPEN_EXPLORER(again, "corrected/three-links");
-    fail_if(!explorer_open_session(&again.state, path), "%s", again.state.message.text);
-    assert_same_trace(&again.state.session.run.trace, &ex.state.session.run.trace);
-    assert_int_equal(again.state.pinned.count, ex.state.pinned.count);
-    assert_int_equal(again.state.pinned.baseline, ex.state.pinned.baseline);
-    for (int i = 0; i < ex.state.pinned.count; i++) {
-        const pinned_run *a = &again.state.pinned.runs[i], *b = &ex.state.pinned.runs[i];
+    fail_if(!explorer_open_session(&again.model, &again.view, &again.input, path), "%s",
+            again.input.message.text);
+    assert_same_trace(&again.model.session.run.trace, &ex.model.session.run.trace);
+    assert_int_equal(again.model.pinned.count, ex.model.pinned.count);
+    assert_int_equal(again.model.pinned.baseline, ex.model.pinned.baseline);
+    for (int i = 0; i < ex.model.pinned.count; i++) {
+        const pinned_run *a = &again.model.pinned.runs[i], *b = &ex.model.pinned.runs[i];
         assert_same_trace(&a->run.trace, &b->run.trace);
         assert_string_equal(a->name, b->name);
         assert_int_equal(a->hidden, b->hidden);
     }
-    check_close(again.state.session.now, 0.5, 0);
-    check_close(again.state.mark.time, 0.3, 0);
+    check_close(again.model.session.now, 0.5, 0);
+    check_close(again.view.mark.time, 0.3, 0);
     for (int i = 0; i < PANES; i++) {
-        assert_int_equal(again.state.panes.pane[i].shown, ex.state.panes.pane[i].shown);
+        assert_int_equal(again.view.panes.pane[i].shown, ex.view.panes.pane[i].shown);
     }
-    check_close(again.state.panes.pane[0].fixed.high, 3, 0);
-    assert_int_equal(again.state.panes.pane[1].hidden, ex.state.panes.pane[1].hidden);
-    assert_int_equal(again.state.panes.pane[2].scaling, ex.state.panes.pane[2].scaling);
-    assert_int_not_equal(again.state.panes.pane[1].hidden, 0);
-    assert_int_equal(again.state.limit.signal, SIGNAL_INDEX(force));
-    check_close(again.state.limit.bound, 2.5, 0);
-    assert_int_equal(again.state.panes.pane[2].scaling, AXIS_GROW);
+    check_close(again.view.panes.pane[0].fixed.high, 3, 0);
+    assert_int_equal(again.view.panes.pane[1].hidden, ex.view.panes.pane[1].hidden);
+    assert_int_equal(again.view.panes.pane[2].scaling, ex.view.panes.pane[2].scaling);
+    assert_int_not_equal(again.view.panes.pane[1].hidden, 0);
+    assert_int_equal(again.model.limit.signal, SIGNAL_INDEX(force));
+    check_close(again.model.limit.bound, 2.5, 0);
+    assert_int_equal(again.view.panes.pane[2].scaling, AXIS_GROW);
 
     // and again
     assert_true(explorer_carry_out(&again, "session save lab.session"));
@@ -61,7 +62,7 @@ TEST(test_what_was_done_comes_back)
 
     // the run is changed and undone as any other; opening it is undone, too
     press(&again, "uu");
-    assert_int_equal(again.state.session.input_count, ex.state.session.input_count - 2);
+    assert_int_equal(again.model.session.input_count, ex.model.session.input_count - 2);
     press_opens(&again, "uuu", "corrected/three-links");
 }
 
@@ -81,21 +82,21 @@ TEST(test_changed_recordings_are_told)
         ":set control.playback_file command.csv<Enter>:set control.law playback<Enter>");
     save(&ex);
     OPEN_EXPLORER(same, "corrected/three-links");
-    assert_true(explorer_open_session(&same.state, path));
-    fail_if(same.state.message.warning, "%s", same.state.message.text);
+    assert_true(explorer_open_session(&same.model, &same.view, &same.input, path));
+    fail_if(same.input.message.warning, "%s", same.input.message.text);
 
     write_command("2");
     OPEN_EXPLORER(other, "corrected/three-links");
-    assert_true(explorer_open_session(&other.state, path));
-    assert_true(other.state.message.warning);
-    assert_non_null(strstr(other.state.message.text, "has changed since it was kept"));
+    assert_true(explorer_open_session(&other.model, &other.view, &other.input, path));
+    assert_true(other.input.message.warning);
+    assert_non_null(strstr(other.input.message.text, "has changed since it was kept"));
 
     // so is one that was put there between the run and its keeping
     write_command("3");
     save(&other);
     OPEN_EXPLORER(late, "corrected/three-links");
-    assert_true(explorer_open_session(&late.state, path));
-    assert_true(late.state.message.warning);
+    assert_true(explorer_open_session(&late.model, &late.view, &late.input, path));
+    assert_true(late.input.message.warning);
     unlink("command.csv");
 }
 
@@ -117,11 +118,11 @@ TEST(test_the_command_that_is_told_works)
 {
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, "b:session save s 1<Enter>");
-    fail_if(strstr(ex.state.message.text, "impactlab lab 's 1.session'") == NULL, "%s",
-            ex.state.message.text);
+    fail_if(strstr(ex.input.message.text, "impactlab lab 's 1.session'") == NULL, "%s",
+            ex.input.message.text);
     assert_true(file_has("s 1.session", "impactlab-session"));
     press(&ex, "b:session save s 1<Enter>");
-    assert_false(ex.state.message.warning);
+    assert_false(ex.input.message.warning);
     OPEN_EXPLORER(again, "corrected/three-links");
     press_opens(&again, ":session open s 1<Enter>", "corrected/first-impact");
 }
@@ -138,8 +139,8 @@ TEST(test_a_file_from_elsewhere_starts_nothing)
                   "cursor: 0 0\nbaseline: 0\nview: save %s\nview: allow\n",
                   mark, mark));
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    explorer_open_session(&ex.state, path);
-    assert_int_equal(ex.state.session.run.summary.status, STATUS_NOT_ALLOWED);
+    explorer_open_session(&ex.model, &ex.view, &ex.input, path);
+    assert_int_equal(ex.model.session.run.summary.status, STATUS_NOT_ALLOWED);
     assert_shows(&ex, "does not belong into a session");
     assert_int_equal(access(mark, F_OK), -1);
 }
@@ -177,11 +178,11 @@ TEST(test_broken_files_are_refused_with_their_line)
     press(&ex, "b:set arm.k2 5<Enter>");
     for (EACH(c, cases)) {
         put_file(path, c->text);
-        fail_if(explorer_open_session(&ex.state, path) ||
-                    strstr(ex.state.message.text, c->says) == NULL,
-                "'%s' says '%s'", c->text, ex.state.message.text);
-        assert_int_equal(ex.state.pinned.count, 1);
-        assert_int_equal(ex.state.session.input_count, 1);
+        fail_if(explorer_open_session(&ex.model, &ex.view, &ex.input, path) ||
+                    strstr(ex.input.message.text, c->says) == NULL,
+                "'%s' says '%s'", c->text, ex.input.message.text);
+        assert_int_equal(ex.model.pinned.count, 1);
+        assert_int_equal(ex.model.session.input_count, 1);
     }
 
     // any beginning of a good one is told, or is whole; none crashes
@@ -210,11 +211,11 @@ TEST(test_pins_without_room_are_refused)
     }
     save(&ex);
     press(&ex, ":session save<Enter>"); // proposes the visit's own file
-    assert_true(ex.state.prompt.open);
+    assert_true(ex.input.prompt.open);
     press(&ex, "<Esc>");
-    assert_false(explorer_open_session(&ex.state, path));
+    assert_false(explorer_open_session(&ex.model, &ex.view, &ex.input, path));
     assert_shows(&ex, "have no room");
-    assert_int_equal(ex.state.pinned.count, 4);
+    assert_int_equal(ex.model.pinned.count, 4);
 }
 
 ALL_BETWEEN(enter_folder, leave_folder)

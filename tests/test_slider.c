@@ -65,30 +65,30 @@ TEST(test_the_run_follows_a_drag)
     OPEN_EXPLORER(ex, "corrected/first-impact");
     press(&ex, ":seek 0.2<Enter>");
     hit_area s = slider_of(&ex, voltage);
-    unsigned computed = ex.state.session.version;
+    unsigned computed = ex.model.session.version;
     point(&ex, POINTER_PRESS, s.area.x + s.area.width / 2, s.area.y);
     for (int i = 0; i < 10; i++) {
         point(&ex, POINTER_DRAG, s.area.x + s.area.width - 1 - i / 5, s.area.y + i);
     }
     // the run follows the mouse, the run before is its ghost, and all of it is one change
-    assert_true(ex.state.session.version > computed);
-    assert_true(ex.state.session.has_ghost);
+    assert_true(ex.model.session.version > computed);
+    assert_true(ex.model.session.has_ghost);
     check_below(1, value_of(&ex, voltage));
-    assert_int_equal(ex.state.session.input_count, 1);
+    assert_int_equal(ex.model.session.input_count, 1);
     point(&ex, POINTER_DRAG, s.area.x + s.area.width + 50, s.area.y);
     assert_shows(&ex, "5 V");
     point(&ex, POINTER_RELEASE, s.area.x + s.area.width + 50, s.area.y);
-    assert_int_equal(ex.state.session.input_count, 1);
+    assert_int_equal(ex.model.session.input_count, 1);
     check_close(value_of(&ex, voltage), 5, 0);
-    check_close(ex.state.session.inputs[0].time, 0.2, 0);
+    check_close(ex.model.session.inputs[0].time, 0.2, 0);
     // a click where the knob is changes nothing
     s = slider_of(&ex, voltage);
     point(&ex, POINTER_PRESS, s.area.x + s.area.width - 1, s.area.y);
     point(&ex, POINTER_RELEASE, s.area.x + s.area.width - 1, s.area.y);
-    assert_int_equal(ex.state.session.input_count, 1);
+    assert_int_equal(ex.model.session.input_count, 1);
     press(&ex, "u");
     check_close(value_of(&ex, voltage), 1, 0);
-    assert_false(ex.state.session.has_ghost);
+    assert_false(ex.model.session.has_ghost);
 }
 
 TEST(test_clicks_select_and_the_wheel_nudges)
@@ -99,8 +99,8 @@ TEST(test_clicks_select_and_the_wheel_nudges)
     // the line of it, not its slider
     point(&ex, POINTER_PRESS, s.area.x - 10, s.area.y);
     point(&ex, POINTER_RELEASE, s.area.x - 10, s.area.y);
-    assert_int_equal(ex.state.parameters.parameter, limit);
-    assert_int_equal(ex.state.session.input_count, 0);
+    assert_int_equal(ex.view.parameters.parameter, limit);
+    assert_int_equal(ex.model.session.input_count, 0);
     s = slider_of(&ex, limit);
     point(&ex, POINTER_WHEEL_UP, s.area.x + 1, s.area.y);
     check_close(value_of(&ex, limit), 11, 0);
@@ -124,7 +124,7 @@ TEST(test_the_selected_number_has_a_slider_on_every_screen)
     static const char *const tracks[] = {"\u2500\u25cf\u2500", "\u2500\u25cf\u2500",
                                          "-o-"};
     OPEN_EXPLORER(ex, "corrected/first-impact");
-    ex.state.side.in_front = true;
+    ex.view.side.in_front = true;
     for (int i = 0; i < 15; i++) {
         assert_slider(&ex, sizes[i / 3][0], sizes[i / 3][1], sets[i % 3], tracks[i % 3]);
     }

@@ -95,7 +95,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     setenv("XDG_CONFIG_HOME", ".", 1);
     fuzz_open_lab(&ex);
 
-    for (int i = 0; i < MOST_PIECES && s.at < s.size && !ex.state.quit; i++) {
+    for (int i = 0; i < MOST_PIECES && s.at < s.size && !ex.input.quit; i++) {
         char piece[PIECE];
         make_piece(&s, piece);
         f = (fault){.code = STATUS_OK};

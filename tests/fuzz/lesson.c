@@ -78,14 +78,14 @@ static void play(const scenario *s)
     if (!fuzz_done(explorer_init(&ex, &own, HUGE_VAL, &f), &f)) {
         return;
     }
-    ex.state.size = (screen_size){100, 30};
+    ex.view.size = (screen_size){100, 30};
 
     const int steps =
         s->lesson.step_count < MOST_STEPS ? s->lesson.step_count : MOST_STEPS;
-    for (int i = 0; i < steps && !ex.state.quit; i++) {
+    for (int i = 0; i < steps && !ex.input.quit; i++) {
         const lesson_step *step = &s->lesson.steps[i];
         const int early = (int)(sizeof before / sizeof before[0]);
-        for (int k = 0; k < early + step->command_count && !ex.state.quit; k++) {
+        for (int k = 0; k < early + step->command_count && !ex.input.quit; k++) {
             const char *line = k < early ? before[k] : step->commands[k - early];
             if (is_harmless(line)) {
                 explorer_carry_out(&ex, line);

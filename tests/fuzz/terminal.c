@@ -41,7 +41,7 @@ static void step(explorer *ex, escape_sequence *sequence, uint8_t kind, uint8_t 
         }
         break;
     default:
-        ex->state.size = (screen_size){1 + which, 1 + kind / 5};
+        ex->view.size = (screen_size){1 + which, 1 + kind / 5};
         break;
     }
 }
@@ -53,7 +53,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     escape_sequence sequence = {.state = SEQUENCE_NONE};
     fuzz_open_lab(&ex);
 
-    for (size_t i = 0; i + 1 < size && i < 2 * MOST_STEPS && !ex.state.quit; i += 2) {
+    for (size_t i = 0; i + 1 < size && i < 2 * MOST_STEPS && !ex.input.quit; i += 2) {
         step(&ex, &sequence, data[i], data[i + 1]);
         fuzz_draw(&ex, &shown);
     }

@@ -41,7 +41,7 @@ static int run_script(explorer *ex, const char *path)
     // line by line until one fails or quits
     int code = EXIT_DONE;
     for (int number = 1;
-         code == EXIT_DONE && !ex->state.quit && fgets(line, sizeof line, stream);
+         code == EXIT_DONE && !ex->input.quit && fgets(line, sizeof line, stream);
          number++) {
         if (strchr(line, '\n') == NULL && !feof(stream)) {
             code = complain("%s:%d: no command, expected a text of less than %d bytes "
@@ -51,7 +51,7 @@ static int run_script(explorer *ex, const char *path)
         }
         line[strcspn(line, "\r\n")] = '\0';
         if (!explorer_carry_out(ex, line)) {
-            complain("%s:%d: %s", path, number, ex->state.message.text);
+            complain("%s:%d: %s", path, number, ex->input.message.text);
             code = EXIT_FAILED;
         }
     }
@@ -68,9 +68,9 @@ static int run_script(explorer *ex, const char *path)
 static void print_screen(explorer *ex)
 {
     screen s = {0};
-    screen_resize(&s, ex->state.size.width, ex->state.size.height);
+    screen_resize(&s, ex->view.size.width, ex->view.size.height);
     explorer_draw(ex, &s);
-    screen_dump(&s, ex->state.looks.glyphs, stdout);
+    screen_dump(&s, ex->view.looks.glyphs, stdout);
     screen_finish(&s);
 }
 
@@ -78,9 +78,9 @@ static int run_off_screen(explorer *ex, const arguments *a)
 {
     fault f = {0};
     if (a->size.width > 0) {
-        ex->state.size = (screen_size){a->size.width, a->size.height};
+        ex->view.size = (screen_size){a->size.width, a->size.height};
     } else {
-        ex->state.size = (screen_size){120, 40};
+        ex->view.size = (screen_size){120, 40};
     }
     int code = EXIT_DONE;
     if (a->script != NULL) {
@@ -114,7 +114,7 @@ static void take_input(explorer *ex, terminal_input in)
     } else if (in.kind == TERMINAL_POINTER) {
         explorer_point(ex, in.pointer);
     } else if (in.kind == TERMINAL_RESIZE) {
-        ex->state.looks.redraw = true;
+        ex->view.looks.redraw = true;
     }
 }
 
@@ -122,7 +122,7 @@ static void take_input(explorer *ex, terminal_input in)
 static void show(explorer *ex, screen *s, picture_layer *layer)
 {
     int width, height;
-    looks *l = &ex->state.looks;
+    looks *l = &ex->view.looks;
     terminal_size(&width, &height);
 
     // with pictures if the terminal draws them and they are wanted
@@ -161,7 +161,7 @@ static bool run_on_terminal(explorer *ex)
     bool dirty = true, leave = false, taken_any = false;
     double drawn = 0, pause = FRAME, last = clock_seconds(CLOCK_MONOTONIC);
 
-    while (!ex->state.quit && !leave) {
+    while (!ex->input.quit && !leave) {
         // draw, though not more often than frames
         double now = clock_seconds(CLOCK_MONOTONIC);
         if (dirty && now - drawn >= pause) {
@@ -175,7 +175,7 @@ static bool run_on_terminal(explorer *ex)
             // shown, as far as the rate that was asked for [kB/s] lets them
             const double took = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - spent;
             const double bytes = (double)(terminal_sent() - sent),
-                         rate = ex->state.looks.rate;
+                         rate = ex->view.looks.rate;
             pause = fmin(fmax(FRAME, 2 * took), LONGEST_PAUSE);
             if (rate > 0) {
                 pause = fmax(pause, bytes / (1e3 * rate));
@@ -192,8 +192,8 @@ static bool run_on_terminal(explorer *ex)
 
         // what was computed, and time going on
         dirty |= explorer_follow(ex);
-        if (ex->state.playback.playing) {
-            act_advance(&ex->state,
+        if (ex->view.playback.playing) {
+            act_advance(&ex->model, &ex->view, &ex->input,
                         now - last < LONGEST_FRAME ? now - last : LONGEST_FRAME);
             dirty = true;
         }
@@ -202,7 +202,7 @@ static bool run_on_terminal(explorer *ex)
         // of date
         last = now;
         taken_any = in.kind != TERMINAL_NONE;
-        for (int taken = 0; in.kind != TERMINAL_NONE && !ex->state.quit && !leave;
+        for (int taken = 0; in.kind != TERMINAL_NONE && !ex->input.quit && !leave;
              taken++) {
             dirty = true;
             leave = in.kind == TERMINAL_LEAVE;
@@ -212,10 +212,10 @@ static bool run_on_terminal(explorer *ex)
                 in = terminal_wait(0);
             }
         }
-        if (ex->state.copied != NULL) {
-            terminal_copy(ex->state.copied);
-            free(ex->state.copied);
-            ex->state.copied = NULL;
+        if (ex->input.copied != NULL) {
+            terminal_copy(ex->input.copied);
+            free(ex->input.copied);
+            ex->input.copied = NULL;
         }
     }
 
@@ -259,21 +259,21 @@ static int open_explorer(explorer *ex, const arguments *a)
 
     // the terminal's own looks, then those that were kept
     char line[LINE_TEXT];
-    ex->state.looks.glyphs = usual_glyphs();
+    ex->view.looks.glyphs = usual_glyphs();
     if (live) {
         if (terminal_is_light()) {
-            ex->state.looks.theme = COLOURS_LIGHT;
+            ex->view.looks.theme = COLOURS_LIGHT;
         } else {
-            ex->state.looks.theme = COLOURS_DARK;
+            ex->view.looks.theme = COLOURS_DARK;
         }
-        explorer_load_settings(ex);
+        explorer_load_settings(&ex->model, &ex->view, &ex->input);
         if (a->operand_count == 0) {
             explorer_welcome(ex);
         }
         const bool wide =
             wcwidth(L'\u28ff') == 1; // the locale is there and knows braille
         if (!wide) {
-            ex->state.looks.glyphs = GLYPHS_ASCII;
+            ex->view.looks.glyphs = GLYPHS_ASCII;
         }
     }
 
@@ -285,12 +285,13 @@ static int open_explorer(explorer *ex, const arguments *a)
         snprintf(line, sizeof line, "%s %s", settings[i][0],
                  settings[i][1] ? settings[i][1] : "");
         if (settings[i][1] != NULL && !explorer_carry_out(ex, line)) {
-            code = complain("--%s: %s", settings[i][0], ex->state.message.text);
+            code = complain("--%s: %s", settings[i][0], ex->input.message.text);
         }
     }
 
-    if (code == EXIT_DONE && is_session && !explorer_open_session(&ex->state, named)) {
-        code = complain("%s", ex->state.message.text);
+    if (code == EXIT_DONE && is_session &&
+        !explorer_open_session(&ex->model, &ex->view, &ex->input, named)) {
+        code = complain("%s", ex->input.message.text);
     }
     if (code != EXIT_DONE) {
         explorer_finish(ex);
@@ -322,12 +323,12 @@ static int explore(const arguments *a)
         code = complain_fault(&f);
     } else {
         // what is offered is not played over
-        ex.state.playback.playing = !recovery_begin(&ex);
+        ex.view.playback.playing = !recovery_begin(&ex);
         recovery_end(&ex, run_on_terminal(&ex));
         terminal_close();
 
         // what is left on the terminal
-        const session *e = &ex.state.session;
+        const session *e = &ex.model.session;
         say("%s, %d change%s, peak force %.4g N\n", e->base.name, e->input_count,
             e->input_count == 1 ? "" : "s", e->run.summary.peak_force_N);
     }

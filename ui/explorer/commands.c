@@ -2,6 +2,7 @@
 // the commands that give keys another meaning.
 #include "ui/explorer/explorer.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,16 +15,34 @@
 
 // --- lines -----------------------------------------------------------------------------
 
-static action_function *const functions[] = {
-#define COMMAND_FUNCTION(group, name, keys, argument, help) act_##name,
-#define COMMAND_NOW(group, name, keys, argument, help)      act_##name##_now,
-    COMMAND_LIST(COMMAND_FUNCTION, COMMAND_NOW)
-#undef COMMAND_FUNCTION
-#undef COMMAND_NOW
-};
+// Calls a command's action with the parts of the state that its row names.
+static bool call_action(explorer_model *model, explorer_view *view, explorer_input *input,
+                        int index, const char *argument)
+{
+    enum {
+#define COMMAND_INDEX(group, name, parts, keys, text, help)     COMMAND_##name,
+#define COMMAND_NOW_INDEX(group, name, parts, keys, text, help) COMMAND_##name##_now,
+        COMMAND_LIST(COMMAND_INDEX, COMMAND_NOW_INDEX)
+#undef COMMAND_INDEX
+#undef COMMAND_NOW_INDEX
+    };
+    switch (index) {
+#define COMMAND_CALL(group, name, parts, keys, text, help)                               \
+    case COMMAND_##name:                                                                 \
+        return act_##name parts;
+#define COMMAND_NOW_CALL(group, name, parts, keys, text, help)                           \
+    case COMMAND_##name##_now:                                                           \
+        return act_##name##_now parts;
+        COMMAND_LIST(COMMAND_CALL, COMMAND_NOW_CALL)
+#undef COMMAND_CALL
+#undef COMMAND_NOW_CALL
+    }
+    assert(false);
+    return false;
+}
 
 // The command of a line's first word.
-static bool find_command(explorer_state *st, const char *line, int *index)
+static bool find_command(explorer_input *input, const char *line, int *index)
 {
     char name[32];
     text_cut(line, " \t", name, sizeof name);
@@ -36,12 +55,14 @@ static bool find_command(explorer_state *st, const char *line, int *index)
         nearest_try(&near, explorer_command_table[i].name);
     }
     if (near.best == NULL) {
-        return act_refuse(st, "there is no command '%s' (? lists them)", name);
+        return act_refuse(input, "there is no command '%s' (? lists them)", name);
     }
-    return act_refuse(st, "there is no command '%s', did you mean %s?", name, near.best);
+    return act_refuse(input, "there is no command '%s', did you mean %s?", name,
+                      near.best);
 }
 
-bool explorer_execute(explorer_state *st, const char *line)
+bool explorer_execute(explorer_model *model, explorer_view *view, explorer_input *input,
+                      const char *line)
 {
     char text[LINE_TEXT];
     int begin = (int)strspn(line, " \t:"), index;
@@ -52,7 +73,7 @@ bool explorer_execute(explorer_state *st, const char *line)
 
     // without the blanks at its end
     if (snprintf(text, sizeof text, "%s", line) >= LINE_TEXT) {
-        return act_refuse(st, "the line is too long");
+        return act_refuse(input, "the line is too long");
     }
     for (size_t n = strlen(text); n > 0 && isspace((unsigned char)text[n - 1]); n--) {
         text[n - 1] = '\0';
@@ -60,28 +81,20 @@ bool explorer_execute(explorer_state *st, const char *line)
 
     size_t length = strcspn(text, " \t");
     length += strspn(text + length, " \t");
-    if (!find_command(st, text, &index)) {
-        st->message.at = begin;
+    if (!find_command(input, text, &index)) {
+        input->message.at = begin;
         return false;
     }
-    st->message.at = 0;
-    const bool done = functions[index](st, text + length);
-    st->message.at += begin + (int)length;
-    return done;
-}
-
-bool explorer_carry_out(explorer *ex, const char *line)
-{
-    const bool done = explorer_execute(&ex->state, line);
-    act_follow_lesson(&ex->state);
-    act_tell_replay(&ex->state);
+    input->message.at = 0;
+    const bool done = call_action(model, view, input, index, text + length);
+    input->message.at += begin + (int)length;
     return done;
 }
 
 // --- keys ------------------------------------------------------------------------------
 
 // Reads the key that begins an argument, and where the rest of it does.
-static bool read_key(explorer_state *st, const char *argument, int *key,
+static bool read_key(explorer_input *input, const char *argument, int *key,
                      const char **rest)
 {
     int length = (int)strcspn(argument, " \t");
@@ -91,13 +104,14 @@ static bool read_key(explorer_state *st, const char *argument, int *key,
     // what cannot be bound
     if (length == 0) {
         return act_refuse(
-            st, "a key is a character or a name such as Space, PgUp, F1, S-Left or C-r");
+            input,
+            "a key is a character or a name such as Space, PgUp, F1, S-Left or C-r");
     }
     if (*key == 0) {
-        return act_refuse(st, "there is no key '%.*s'", length, argument);
+        return act_refuse(input, "there is no key '%.*s'", length, argument);
     }
     if (*key == ':' || *key == KEY_CODE_ESCAPE || *key == ('c' & 0x1f)) {
-        return act_refuse(st,
+        return act_refuse(input,
                           "%.*s keeps its meaning: the way to the prompt, back or out",
                           length, argument);
     }
@@ -105,77 +119,78 @@ static bool read_key(explorer_state *st, const char *argument, int *key,
 }
 
 // Gives a key a line, unless there is no room for another one.
-static bool bind_key(explorer_state *st, int key, const char *line)
+static bool bind_key(explorer_view *view, explorer_input *input, int key,
+                     const char *line)
 {
-    return key_bind(&st->keys, key, line) ||
-           act_refuse(st, "there are %d keys of your own already, no more fit",
+    return key_bind(&view->keys, key, line) ||
+           act_refuse(input, "there are %d keys of your own already, no more fit",
                       USER_KEYS);
 }
 
-bool act_key(explorer_state *st, const char *argument)
+bool act_key(explorer_view *view, explorer_input *input, const char *argument)
 {
     const char *line;
     char name[KEY_NAME], before[LINE_TEXT] = "";
     int key;
-    if (!read_key(st, argument, &key, &line)) {
+    if (!read_key(input, argument, &key, &line)) {
         return false;
     }
 
     // without a command it is asked what the key does
     key_name(key, name, sizeof name);
-    const char *old = key_line(&st->keys, key);
+    const char *old = key_line(&view->keys, key);
     if (line[0] == '\0') {
         if (old == NULL) {
-            return act_tell(st, "%s does nothing", name);
+            return act_tell(input, "%s does nothing", name);
         }
-        return act_tell(st, "%s does '%s'", name, old);
+        return act_tell(input, "%s does '%s'", name, old);
     }
 
     // a copy of the old meaning: its place gets the new one
     int index;
     snprintf(before, sizeof before, "%s", old ? old : "");
-    if (!find_command(st, line, &index) || !bind_key(st, key, line)) {
-        st->message.at = (int)(line - argument);
+    if (!find_command(input, line, &index) || !bind_key(view, input, key, line)) {
+        input->message.at = (int)(line - argument);
         return false;
     }
     if (before[0] != '\0' && strcmp(before, line) != 0) {
-        return act_tell(st, "%s does '%s' now, no longer '%s'", name, line, before);
+        return act_tell(input, "%s does '%s' now, no longer '%s'", name, line, before);
     }
-    return act_tell(st, "%s does '%s' now", name, line);
+    return act_tell(input, "%s does '%s' now", name, line);
 }
 
-bool act_unkey(explorer_state *st, const char *argument)
+bool act_unkey(explorer_view *view, explorer_input *input, const char *argument)
 {
     const char *rest;
     char name[KEY_NAME];
     int key;
-    if (!read_key(st, argument, &key, &rest)) {
+    if (!read_key(input, argument, &key, &rest)) {
         return false;
     }
     if (rest[0] != '\0') {
-        st->message.at = (int)(rest - argument);
-        return act_refuse(st, "unkey takes one key, what is '%s' for?", rest);
+        input->message.at = (int)(rest - argument);
+        return act_refuse(input, "unkey takes one key, what is '%s' for?", rest);
     }
 
     // the user's key goes, the explorer's own comes back
     key_name(key, name, sizeof name);
     const char *built_in = key_built_in_line(key);
-    const int own = key_own(&st->keys, key);
+    const int own = key_own(&view->keys, key);
     if (own >= 0) {
-        st->keys.own[own] = st->keys.own[--st->keys.count];
+        view->keys.own[own] = view->keys.own[--view->keys.count];
         if (built_in == NULL) {
-            return act_tell(st, "%s does nothing now", name);
+            return act_tell(input, "%s does nothing now", name);
         }
-        return act_tell(st, "%s does '%s' again", name, built_in);
+        return act_tell(input, "%s does '%s' again", name, built_in);
     }
 
     // one of the explorer's own does nothing then
     if (built_in == NULL) {
-        return act_refuse(st, "%s does nothing as it is", name);
+        return act_refuse(input, "%s does nothing as it is", name);
     }
-    return bind_key(st, key, "") &&
+    return bind_key(view, input, key, "") &&
            act_tell(
-               st,
+               input,
                "%s does nothing now, no longer '%s' (unkey it again to have that back)",
                name, built_in);
 }
@@ -193,33 +208,37 @@ static bool begins_with_one(const char *line, const char *words)
 }
 
 // Carries out a line that says how runs are looked at, and none that does anything else.
-static bool carry_out_look(explorer_state *st, const char *line)
+static bool carry_out_look(explorer_model *model, explorer_view *view,
+                           explorer_input *input, const char *line)
 {
     if (begins_with_one(line,
                         " panes axis zoom mark trace phase spectrum signal lanes limit "
                         "residual band note colourby ")) {
-        return explorer_execute(st, line);
+        return explorer_execute(model, view, input, line);
     }
-    return act_refuse(st, "'%.60s' does not belong into a session", line);
+    return act_refuse(input, "'%.60s' does not belong into a session", line);
 }
 
-bool explorer_open_session(explorer_state *st, const char *path)
+bool explorer_open_session(explorer_model *model, explorer_view *view,
+                           explorer_input *input, const char *path)
 {
-    return explorer_resume_session(st, path, carry_out_look);
+    return explorer_resume_session(model, view, input, path, carry_out_look);
 }
 
-bool act_session(explorer_state *st, const char *argument)
+bool act_session(explorer_model *model, explorer_view *view, explorer_input *input,
+                 const char *argument)
 {
     char word[8];
     const char *path = text_cut(argument, " ", word, sizeof word);
     const bool saves = strcmp(word, "save") == 0;
     if (saves && path[0] == '\0') {
-        prompt_open(&st->prompt, st->session_path[0] ? st->session_path : "lab.session",
+        prompt_open(&input->prompt,
+                    model->session_path[0] ? model->session_path : "lab.session",
                     "session save ");
         return true;
     }
     if ((!saves && strcmp(word, "open") != 0) || path[0] == '\0') {
-        return act_refuse(st,
+        return act_refuse(input,
                           "session takes save or open, and a file such as lab.session");
     }
 
@@ -229,9 +248,9 @@ bool act_session(explorer_state *st, const char *argument)
     const int stem = (int)(there ? strlen(path) : text_stem(path, SESSION_ENDING));
     snprintf(whole, sizeof whole, "%.*s%s", stem, path, there ? "" : SESSION_ENDING);
     if (saves) {
-        return explorer_save_session(st, whole);
+        return explorer_save_session(model, view, input, whole);
     }
-    return explorer_open_session(st, whole);
+    return explorer_open_session(model, view, input, whole);
 }
 
 // --- settings --------------------------------------------------------------------------
@@ -243,30 +262,31 @@ bool act_session(explorer_state *st, const char *argument)
     "key unkey "
 
 // Executes a line of the file; errors are reported with line and column.
-static bool execute_line(explorer_state *st, const char *path, int number,
+static bool execute_line(explorer_model *model, explorer_view *view,
+                         explorer_input *input, const char *path, int number,
                          const char *line)
 {
     const int begin = (int)strspn(line, " \t");
 
     // only what :remember writes is taken from a file
-    st->message.at = begin;
+    input->message.at = begin;
     const bool taken =
         strchr("#", line[begin]) != NULL || begins_with_one(line + begin, REMEMBERED);
     bool done = false;
     if (taken) {
-        done = explorer_execute(st, line);
+        done = explorer_execute(model, view, input, line);
     } else {
-        act_refuse(st, "this is no setting");
+        act_refuse(input, "this is no setting");
     }
 
     // the place in the file comes before what is wrong
-    return done || act_refuse(st, "%s:%d:%d is ignored: %.200s", path, number,
-                              st->message.at + 1, st->message.text);
+    return done || act_refuse(input, "%s:%d:%d is ignored: %.200s", path, number,
+                              input->message.at + 1, input->message.text);
 }
 
-void explorer_load_settings(explorer *ex)
+void explorer_load_settings(explorer_model *model, explorer_view *view,
+                            explorer_input *input)
 {
-    explorer_state *st = &ex->state;
     char path[1024], *line = NULL;
     message_line first = {.text = ""};
     size_t room = 0;
@@ -279,8 +299,8 @@ void explorer_load_settings(explorer *ex)
     FILE *stream = fopen(path, "r");
     for (int number = 1; stream != NULL && getline(&line, &room, stream) >= 0; number++) {
         line[strcspn(line, "\r\n")] = '\0';
-        if (!execute_line(st, path, number, line) && faults++ == 0) {
-            first = st->message;
+        if (!execute_line(model, view, input, path, number, line) && faults++ == 0) {
+            first = input->message;
         }
     }
     free(line);
@@ -289,19 +309,19 @@ void explorer_load_settings(explorer *ex)
     }
 
     // the first fault, and the number of further ones
-    st->settings_broken = faults > 0;
-    st->message = first;
+    view->settings_broken = faults > 0;
+    input->message = first;
     if (faults > 1) {
-        act_warn(st, "%.900s (and %d more)", first.text, faults - 1);
+        act_warn(input, "%.900s (and %d more)", first.text, faults - 1);
     }
 }
 
 // The axes that are not as they are at first, and the user's keys.
-static void write_axes_and_keys(const explorer_state *st, FILE *stream)
+static void write_axes_and_keys(const explorer_view *view, FILE *stream)
 {
     // every pane but the user's own
     for (int i = 0; i < PANES_OF_TABLE; i++) {
-        const pane *p = &st->panes.pane[i];
+        const pane *p = &view->panes.pane[i];
         if (p->scaling == AXIS_FIXED) {
             fprintf(stream, "axis %.10g %.10g %d\n", p->fixed.low, p->fixed.high, i + 1);
         } else if (p->scaling != AXIS_AUTO) {
@@ -310,8 +330,8 @@ static void write_axes_and_keys(const explorer_state *st, FILE *stream)
     }
 
     // a key without a line is one that was taken away
-    for (int i = 0; i < st->keys.count; i++) {
-        const user_key *own = &st->keys.own[i];
+    for (int i = 0; i < view->keys.count; i++) {
+        const user_key *own = &view->keys.own[i];
         char name[KEY_NAME];
         key_name(own->key, name, sizeof name);
         if (own->line[0] != '\0') {
@@ -322,61 +342,46 @@ static void write_axes_and_keys(const explorer_state *st, FILE *stream)
     }
 }
 
-static void write_settings(const explorer_state *st, FILE *stream)
+static void write_settings(const explorer_view *view, FILE *stream)
 {
     fprintf(stream, "# settings of the terminal lab, written by :remember\n");
     for (const look_choice *c = look_choices; c->command != NULL; c++) {
-        fprintf(stream, "%s %s\n", c->command, look_word(&st->looks, c));
+        fprintf(stream, "%s %s\n", c->command, look_word(&view->looks, c));
     }
-    fprintf(stream, "bending %g\nrate %g\nspeed %g\nslow %g\n", st->looks.bending,
-            st->looks.rate, st->playback.speed, st->playback.slow);
+    fprintf(stream, "bending %g\nrate %g\nspeed %g\nslow %g\n", view->looks.bending,
+            view->looks.rate, view->playback.speed, view->playback.slow);
 
     // panes that the user did not choose are those that suit the scenario
-    if (st->panes.chosen) {
+    if (view->panes.chosen) {
         fprintf(stream, "panes ");
         for (int i = 0; i < PANES_OF_TABLE; i++) {
-            if (st->panes.pane[i].shown) {
+            if (view->panes.pane[i].shown) {
                 fprintf(stream, "%d", i + 1);
             }
         }
         fprintf(stream, "\n");
     }
-    write_axes_and_keys(st, stream);
+    write_axes_and_keys(view, stream);
 }
 
-bool act_remember(explorer_state *st, const char *argument)
+bool act_remember(const explorer_view *view, explorer_input *input)
 {
-    (void)argument;
     char path[1024];
     whole_file file;
     if (!user_file(USER_SETTINGS, "lab", path, sizeof path, true)) {
-        return act_refuse(st,
+        return act_refuse(input,
                           "there is no folder for settings (XDG_CONFIG_HOME or HOME)");
     }
-    if (st->settings_broken) {
-        return act_refuse(st, "%s has faults and is left alone: mend or remove it", path);
+    if (view->settings_broken) {
+        return act_refuse(input, "%s has faults and is left alone: mend or remove it",
+                          path);
     }
 
     // whole or not at all
-    if (!act_worked(st, whole_file_open(&file, path, &st->fault))) {
+    if (!act_worked(input, whole_file_open(&file, path, &input->fault))) {
         return false;
     }
-    write_settings(st, file.stream);
-    return act_worked(st, whole_file_commit(&file, &st->fault)) &&
-           act_tell(st, "settings kept in %s", path);
-}
-
-// --- the first visit -------------------------------------------------------------------
-
-void explorer_welcome(explorer *ex)
-{
-    char path[1024];
-    if (!user_file(USER_SETTINGS, "visited", path, sizeof path, true) ||
-        access(path, F_OK) == 0) {
-        return;
-    }
-    FILE *stream = fopen(path, "w");
-    if (stream != NULL && fclose(stream) == 0) {
-        ex->state.page = PANEL_WELCOME;
-    }
+    write_settings(view, file.stream);
+    return act_worked(input, whole_file_commit(&file, &input->fault)) &&
+           act_tell(input, "settings kept in %s", path);
 }

@@ -96,7 +96,8 @@ static bool is_of(const place *p, const char *name)
 }
 
 // Writes the i-th candidate for the word that is being typed; false beyond the last.
-static bool candidate(explorer_state *st, const place *p, int i, char *text)
+static bool candidate(explorer_model *model, const explorer_view *view, const place *p,
+                      int i, char *text)
 {
     const char *name = NULL;
 
@@ -136,7 +137,7 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
             name = NULL;
         }
     } else if (is_of(p, "MODE")) {
-        const law_modes *m = state_law_modes(st);
+        const law_modes *m = model_law_modes(model);
         if (i < m->count) {
             name = m->names[i];
         } else if (i == m->count) {
@@ -147,8 +148,8 @@ static bool candidate(explorer_state *st, const place *p, int i, char *text)
             name = NULL;
         }
     } else if (strcmp(p->command, "open") == 0) {
-        if (i < st->scenarios.count) {
-            name = st->scenarios.names[i];
+        if (i < view->scenarios.count) {
+            name = view->scenarios.names[i];
         } else {
             name = NULL;
         }
@@ -171,11 +172,12 @@ static bool fits(const char *name, const char *word)
 }
 
 // Collects the candidates that fit; returns how many.
-static int collect(explorer_state *st, const place *p, const char *word,
-                   char fitting[FITTING][CANDIDATE])
+static int collect(explorer_model *model, const explorer_view *view, const place *p,
+                   const char *word, char fitting[FITTING][CANDIDATE])
 {
     int count = 0;
-    for (int i = 0; count < FITTING && candidate(st, p, i, fitting[count]); i++) {
+    for (int i = 0; count < FITTING && candidate(model, view, p, i, fitting[count]);
+         i++) {
         count += fits(fitting[count], word);
     }
     return count;
@@ -190,10 +192,10 @@ static void put_word(prompt *p, const char *word, const char *after)
 }
 
 // As far as all candidates agree, and what they are.
-static bool complete_common(explorer_state *st, char fitting[FITTING][CANDIDATE],
+static bool complete_common(explorer_input *input, char fitting[FITTING][CANDIDATE],
                             int count)
 {
-    prompt *p = &st->prompt;
+    prompt *p = &input->prompt;
     char listed[512] = "", *common = fitting[0];
     for (int i = 0; i < count; i++) {
         text_add(listed, sizeof listed, "%s ", fitting[i]);
@@ -210,7 +212,7 @@ static bool complete_common(explorer_state *st, char fitting[FITTING][CANDIDATE]
     if (strlen(common) >= strlen(p->stem)) {
         put_word(p, common, count == 1 ? " " : "");
     }
-    return act_tell(st, "%s", count > 1 ? listed : "");
+    return act_tell(input, "%s", count > 1 ? listed : "");
 }
 
 // Where the last word begins: behind a blank, in an expression behind an operator, too.
@@ -227,10 +229,11 @@ static int word_begins(const char *text)
     return begin;
 }
 
-bool complete_prompt(explorer_state *st)
+bool complete_prompt(explorer_model *model, const explorer_view *view,
+                     explorer_input *input)
 {
     static char fitting[FITTING][CANDIDATE];
-    prompt *p = &st->prompt;
+    prompt *p = &input->prompt;
 
     // the first time what all agree in, then one after the other
     if (!p->cycling) {
@@ -239,12 +242,12 @@ bool complete_prompt(explorer_state *st)
         p->cycle = -1;
     }
     const place where = place_in(p->text, p->text + p->stem_at);
-    const int count = collect(st, &where, p->stem, fitting);
+    const int count = collect(model, view, &where, p->stem, fitting);
     if (p->cycling && count > 0) {
         p->cycle = (p->cycle + 1) % count;
         put_word(p, fitting[p->cycle], "");
         return true;
     }
     p->cycling = count > 1;
-    return count == 0 || complete_common(st, fitting, count);
+    return count == 0 || complete_common(input, fitting, count);
 }

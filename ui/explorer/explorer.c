@@ -1,6 +1,8 @@
 #include "ui/explorer/explorer.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "ui/explorer/panels/panel.h"
 #include "ui/explorer/state/user_files.h"
@@ -11,54 +13,73 @@ status explorer_init(explorer *ex, scenario *s, double patience, fault *f)
     if (consent_needed(s)) {
         s->parameters.code_allowed = consent_remembered(s);
     }
-    TRY(state_init(&ex->state, s, patience, f));
-    act_tell_failed_run(&ex->state);
+    TRY(state_init(&ex->model, &ex->view, s, patience, f));
+    act_tell_failed_run(&ex->model, &ex->input);
     return STATUS_OK;
 }
 
 void explorer_finish(explorer *ex)
 {
     if (ex != NULL) {
-        state_finish(&ex->state);
+        state_finish(&ex->model, &ex->view);
+        free(ex->input.copied);
         memset(ex, 0, sizeof *ex);
+    }
+}
+
+bool explorer_carry_out(explorer *ex, const char *line)
+{
+    const bool done = explorer_execute(&ex->model, &ex->view, &ex->input, line);
+    act_follow_lesson(&ex->model);
+    act_tell_replay(&ex->model, &ex->input);
+    return done;
+}
+
+void explorer_welcome(explorer *ex)
+{
+    char path[1024];
+    if (!user_file(USER_SETTINGS, "visited", path, sizeof path, true) ||
+        access(path, F_OK) == 0) {
+        return;
+    }
+    FILE *stream = fopen(path, "w");
+    if (stream != NULL && fclose(stream) == 0) {
+        ex->view.page = PANEL_WELCOME;
     }
 }
 
 bool explorer_follow(explorer *ex)
 {
-    explorer_state *st = &ex->state;
-
     // a run of a sweep, or more of the present one
-    const bool sweeps = !lab_sweep_is_done(&st->sweep);
+    const bool sweeps = !lab_sweep_is_done(&ex->model.sweep);
     if (sweeps) {
-        act_continue_sweep(st);
+        act_continue_sweep(&ex->model, &ex->input);
     }
-    const bool more = session_follow(&st->session);
-    if (!sweeps && more && st->session.computing == NULL) {
-        act_tell_failed_run(st);
-        act_tell_replay(st);
+    const bool more = session_follow(&ex->model.session);
+    if (!sweeps && more && ex->model.session.computing == NULL) {
+        act_tell_failed_run(&ex->model, &ex->input);
+        act_tell_replay(&ex->model, &ex->input);
     }
     return sweeps || more;
 }
 
 bool explorer_is_busy(const explorer *ex)
 {
-    return ex->state.playback.playing || ex->state.session.computing != NULL ||
-           !lab_sweep_is_done(&ex->state.sweep);
+    return ex->view.playback.playing || ex->model.session.computing != NULL ||
+           !lab_sweep_is_done(&ex->model.sweep);
 }
 
 void explorer_draw(explorer *ex, screen *s)
 {
-    explorer_state *st = &ex->state;
     const screen_size size = {s->width, s->height};
-    st->size = size;
+    ex->view.size = size;
 
     // the state first, so that drawing only reads it; what the picture decided comes back
     if (compose_fits(size)) {
-        act_follow_slider(st);
-        act_follow_lesson(st);
-        state_update(st);
+        act_follow_slider(&ex->model, &ex->view, &ex->input);
+        act_follow_lesson(&ex->model);
+        state_update(&ex->model, &ex->view);
     }
-    compose_screen(st, &ex->layout, s);
-    st->drawn = ex->layout.drawn;
+    compose_screen(&ex->model, &ex->view, &ex->input, &ex->layout, s);
+    ex->view.drawn = ex->layout.drawn;
 }

@@ -38,7 +38,9 @@ typedef struct recovery {
 } recovery;
 
 typedef struct explorer {
-    explorer_state state;
+    explorer_model model;
+    explorer_view view;
+    explorer_input input;
     layout layout; // of the picture drawn last
     pointer_grip grip;
     recovery recovery;
@@ -64,7 +66,8 @@ void explorer_draw(explorer *ex, screen *s);
 
 // Executes a line; an empty one or a comment does nothing. The result's `at` counts from
 // the beginning of the line.
-bool explorer_execute(explorer_state *st, const char *line);
+bool explorer_execute(explorer_model *model, explorer_view *view, explorer_input *input,
+                      const char *line);
 
 // The same, with the result's message shown on the message line. False if it failed.
 bool explorer_carry_out(explorer *ex, const char *line);
@@ -91,26 +94,33 @@ void explorer_point(explorer *ex, pointer_event e);
 
 // Completes the prompt's last word as far as all candidates agree and lists them if there
 // are several; called again it cycles through them.
-bool complete_prompt(explorer_state *st);
+bool complete_prompt(explorer_model *model, const explorer_view *view,
+                     explorer_input *input);
 
 // --- sessions --------------------------------------------------------------------------
 
 // Opens a session's file: its runs are pinned beside those there are. False, with the
 // message why, and nothing changed, if it cannot be.
-bool explorer_open_session(explorer_state *st, const char *path);
+bool explorer_open_session(explorer_model *model, explorer_view *view,
+                           explorer_input *input, const char *path);
 
 // The same with the function that carries out the lines on how the runs are looked at:
 // the table of commands, which knows the session's command, is above this.
-typedef bool line_function(explorer_state *st, const char *line);
-bool explorer_resume_session(explorer_state *st, const char *path, line_function *look);
+typedef bool line_function(explorer_model *model, explorer_view *view,
+                           explorer_input *input, const char *line);
+bool explorer_resume_session(explorer_model *model, explorer_view *view,
+                             explorer_input *input, const char *path,
+                             line_function *look);
 
 // Saves what there is as a session. False, with the message why, if the file is there
 // already and not this visit's own, the run is incomplete, or it cannot be written.
-bool explorer_save_session(explorer_state *st, const char *path);
+bool explorer_save_session(explorer_model *model, const explorer_view *view,
+                           explorer_input *input, const char *path);
 
 // Writes a session of what there is. Errors of writing stay in the stream;
 // STATUS_NO_MEMORY, or STATUS_CANNOT_WRITE for a pane that no line can say.
-status explorer_write_session(explorer_state *st, FILE *stream, fault *f);
+status explorer_write_session(const explorer_model *model, const explorer_view *view,
+                              FILE *stream, fault *f);
 
 // --- recovery --------------------------------------------------------------------------
 
@@ -136,4 +146,5 @@ void explorer_welcome(explorer *ex);
 
 // Executes the commands of the settings file, if there is one. Faulty lines are reported
 // on the message line and ignored.
-void explorer_load_settings(explorer *ex);
+void explorer_load_settings(explorer_model *model, explorer_view *view,
+                            explorer_input *input);

@@ -14,56 +14,56 @@
 #include "src/scenario/outside.h"
 #include "ui/explorer/panels/panel.h"
 
-static status write_figure(const explorer_state *st, const char *path, fault *f)
+static status write_figure(const explorer_model *model, const char *path, fault *f)
 {
-    const session *s = &st->session;
+    const session *s = &model->session;
     figure_mark notes[NOTES];
-    for (int i = 0; i < st->note_count; i++) {
-        notes[i] = (figure_mark){.x = st->notes[i].time, .label = st->notes[i].text};
+    for (int i = 0; i < model->note_count; i++) {
+        notes[i] =
+            (figure_mark){.x = model->notes[i].time, .label = model->notes[i].text};
     }
     return plot_run(&s->effective, &s->run, s->has_other ? &s->other : NULL, notes,
-                    st->note_count, path, f);
-}
-
-// The rows of the run.
-static void write_rows(explorer_state *st, FILE *stream)
-{
-    const session *s = &st->session;
-    export_csv(stream, &s->run.trace, s->effective.parameters.arm.links);
-}
-
-// A scenario that gives this run.
-static void write_scenario(explorer_state *st, FILE *stream)
-{
-    scenario_write(stream, &st->session.effective);
+                    model->note_count, path, f);
 }
 
 // The screen as text, drawn as large as it was last, without a place for the mouse.
-static void write_screen(explorer_state *st, FILE *stream)
+static void write_screen(explorer_model *model, explorer_view *view,
+                         const explorer_input *input, FILE *stream)
 {
     static layout unused;
     screen s = {0};
-    screen_resize(&s, st->size.width, st->size.height);
-    state_update(st);
-    compose_screen(st, &unused, &s);
-    screen_dump(&s, st->looks.glyphs, stream);
+    screen_resize(&s, view->size.width, view->size.height);
+    state_update(model, view);
+    compose_screen(model, view, input, &unused, &s);
+    screen_dump(&s, view->looks.glyphs, stream);
     screen_finish(&s);
 }
 
 // What a file holds, by its name's ending.
-static const struct {
-    const char *ending;
-    bool needs_whole_run;
-    void (*write)(explorer_state *st, FILE *stream); // NULL: a figure
-} kinds[] = {
-    {".png", true, NULL},
-    {".pdf", true, NULL},
-    {".svg", true, NULL},
-    {".csv", true, write_rows},
-    {".yaml", false, write_scenario},
-    {".txt", false, write_screen},
-};
-enum { KINDS = sizeof kinds / sizeof kinds[0] };
+typedef enum file_content {
+    FILE_FIGURE,
+    FILE_ROWS,
+    FILE_SCENARIO, // that gives this run
+    FILE_SCREEN,
+    FILE_UNKNOWN
+} file_content;
+
+static file_content content_of_name(const char *name)
+{
+    static const struct {
+        const char *ending;
+        file_content content;
+    } kinds[] = {
+        {".png", FILE_FIGURE}, {".pdf", FILE_FIGURE},    {".svg", FILE_FIGURE},
+        {".csv", FILE_ROWS},   {".yaml", FILE_SCENARIO}, {".txt", FILE_SCREEN},
+    };
+    for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+        if (name[text_stem(name, kinds[i].ending)] != '\0') {
+            return kinds[i].content;
+        }
+    }
+    return FILE_UNKNOWN;
+}
 
 // --- names of files --------------------------------------------------------------------
 
@@ -74,24 +74,25 @@ static bool exists(const char *path)
 
 // Says that a file was written, or is there already, by its whole path, or its name as
 // given if there is none.
-static bool tell_file(explorer_state *st, bool done, const char *name)
+static bool tell_file(explorer_input *input, bool done, const char *name)
 {
     char *found = realpath(name, NULL), path[MESSAGE_TEXT / 2];
     snprintf(path, sizeof path, "%s", found != NULL ? found : name);
     free(found);
     if (done) {
-        return act_tell(st, "saved %s", path);
+        return act_tell(input, "saved %s", path);
     }
-    return act_refuse(st,
+    return act_refuse(input,
                       "%s is there already: another name, or :save! %.100s replaces it",
                       path, name);
 }
 
 // Asks for a name and proposes one that no file has: the scenario's, what the last change
 // changed, and a number if need be.
-static void propose_name(explorer_state *st, const char *command, const char *ending)
+static void propose_name(const explorer_model *model, explorer_input *input,
+                         const char *command, const char *ending)
 {
-    const session *s = &st->session;
+    const session *s = &model->session;
     char stem[LINE_TEXT / 2] = "", name[LINE_TEXT / 2];
     text_add(stem, 59, "%s", scenario_leaf(s->base.name));
 
@@ -115,104 +116,116 @@ static void propose_name(explorer_state *st, const char *command, const char *en
     for (int i = 2; exists(name) && i < 10000; i++) {
         snprintf(name, sizeof name, "%s-%d%s", stem, i, ending);
     }
-    prompt_open(&st->prompt, name, "%s ", command);
+    prompt_open(&input->prompt, name, "%s ", command);
 }
 
 // --- the commands ----------------------------------------------------------------------
 
 // Whether the file is none that the run or the measured data were read from.
-static bool is_free(explorer_state *st, const char *name)
+static bool is_free(const explorer_model *model, explorer_input *input, const char *name)
 {
-    const session *s = &st->session;
-    const char *const read[] = {s->base.file,
-                                st->measured.row_count > 0 ? st->measured_file : NULL};
+    const session *s = &model->session;
+    const char *const read[] = {s->base.file, model->measured.row_count > 0
+                                                  ? model->measured_file
+                                                  : NULL};
     result_places_add(name);
-    bool kept = outside_keep(&s->effective.parameters, &st->fault) == STATUS_OK;
+    bool kept = outside_keep(&s->effective.parameters, &input->fault) == STATUS_OK;
     for (size_t i = 0; i < sizeof read / sizeof read[0]; i++) {
         kept = kept && (read[i] == NULL ||
-                        input_file_check_kept(read[i], &st->fault) == STATUS_OK);
+                        input_file_check_kept(read[i], &input->fault) == STATUS_OK);
     }
     result_places_forget();
     return kept ||
-           act_refuse(st, "%.200s is a file that this run reads: another name", name);
+           act_refuse(input, "%.200s is a file that this run reads: another name", name);
 }
 
 // Writes what the name's ending asks for; a file that is there is replaced.
-static bool save_over(explorer_state *st, const char *name)
+static bool save_over(explorer_model *model, explorer_view *view, explorer_input *input,
+                      const char *name)
 {
-    int kind = 0;
-    while (kind < KINDS && name[text_stem(name, kinds[kind].ending)] == '\0') {
-        kind++;
-    }
-    if (!((kind < KINDS && !kinds[kind].needs_whole_run) || act_need_whole_run(st))) {
+    // a scenario and a screen may be of a part of a run
+    const file_content content = content_of_name(name);
+    if (content != FILE_SCENARIO && content != FILE_SCREEN &&
+        !act_need_whole_run(model, input)) {
         return false;
     }
-    if (kind == KINDS) {
+    if (content == FILE_UNKNOWN) {
         return act_refuse(
-            st, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt");
+            input, "the file's name must end in .png, .pdf, .svg, .csv, .yaml or .txt");
     }
-    if (!is_free(st, name)) {
+    if (!is_free(model, input, name)) {
         return false;
     }
 
-    status code;
-    whole_file file;
-    if (kinds[kind].write == NULL) {
-        code = write_figure(st, name, &st->fault);
-    } else if ((code = whole_file_open(&file, name, &st->fault)) == STATUS_OK) {
-        kinds[kind].write(st, file.stream);
-        code = whole_file_commit(&file, &st->fault);
+    // a figure opens its file itself
+    if (content == FILE_FIGURE) {
+        return act_worked(input, write_figure(model, name, &input->fault)) &&
+               tell_file(input, true, name);
     }
-    if (!act_worked(st, code)) {
+    whole_file file;
+    if (!act_worked(input, whole_file_open(&file, name, &input->fault))) {
         return false;
     }
-    if (kinds[kind].write == write_scenario) {
-        st->saved_version = state_run_id(st);
+    const session *s = &model->session;
+    if (content == FILE_ROWS) {
+        export_csv(file.stream, &s->run.trace, s->effective.parameters.arm.links);
+    } else if (content == FILE_SCENARIO) {
+        scenario_write(file.stream, &s->effective);
+    } else {
+        write_screen(model, view, input, file.stream);
     }
-    return tell_file(st, true, name);
+    if (!act_worked(input, whole_file_commit(&file, &input->fault))) {
+        return false;
+    }
+    if (content == FILE_SCENARIO) {
+        model->saved_version = model_run_id(model);
+    }
+    return tell_file(input, true, name);
 }
 
-bool act_save(explorer_state *st, const char *argument)
+bool act_save(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument)
 {
     // without a name the prompt proposes one
     if (argument[0] == '\0') {
-        propose_name(st, "save", ".png");
+        propose_name(model, input, "save", ".png");
         return act_tell(
-            st, ".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
-                "gives this run; .txt: the screen");
+            input, ".png .pdf .svg: the figure; .csv: the rows; .yaml: a scenario that "
+                   "gives this run; .txt: the screen");
     }
     if (exists(argument)) {
-        return tell_file(st, false, argument);
+        return tell_file(input, false, argument);
     }
-    return save_over(st, argument);
+    return save_over(model, view, input, argument);
 }
 
-bool act_save_now(explorer_state *st, const char *argument)
+bool act_save_now(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const char *argument)
 {
     if (argument[0] == '\0') {
-        return act_refuse(st, "save! takes the file that it is to replace");
+        return act_refuse(input, "save! takes the file that it is to replace");
     }
-    return save_over(st, argument);
+    return save_over(model, view, input, argument);
 }
 
 // The arm in space at the cursor's instant.
-bool act_scene(explorer_state *st, const char *argument)
+bool act_scene(const explorer_model *model, explorer_input *input, const char *argument)
 {
-    const session *s = &st->session;
+    const session *s = &model->session;
     const scene_options options = {0};
 
     // without a name the prompt proposes one
     if (argument[0] == '\0') {
-        propose_name(st, "scene", "-arm.png");
+        propose_name(model, input, "scene", "-arm.png");
         return true;
     }
 
     // nothing is replaced, and nothing incomplete is drawn
     if (exists(argument)) {
-        return act_refuse(st, "%.200s is there already: give the scene another name",
+        return act_refuse(input, "%.200s is there already: give the scene another name",
                           argument);
     }
-    if (!act_need_whole_run(st)) {
+    if (!act_need_whole_run(model, input)) {
         return false;
     }
 
@@ -222,24 +235,24 @@ bool act_scene(explorer_state *st, const char *argument)
                                    .options = options,
                                    .times = &s->now,
                                    .count = 1};
-    return act_worked(st, scene_write(&picture, argument, &st->fault)) &&
-           tell_file(st, true, argument);
+    return act_worked(input, scene_write(&picture, argument, &input->fault)) &&
+           tell_file(input, true, argument);
 }
 
 // --- the clipboard ---------------------------------------------------------------------
 
 // The command that gives this run; where changes have instants or the scenario was
 // changed as it was opened no command does, and the scenario itself is written.
-static void write_command(explorer_state *st, FILE *stream)
+static void write_command(const explorer_model *model, FILE *stream)
 {
-    const session *s = &st->session;
+    const session *s = &model->session;
     char given[SCENARIO_CHANGES];
     bool plain = scenario_changes(&s->base, given)[0] == '\0';
     for (int i = 0; i < s->input_count; i++) {
         plain = plain && s->inputs[i].kind == SESSION_INPUT_START;
     }
     if (!plain) {
-        write_scenario(st, stream);
+        scenario_write(stream, &s->effective);
         return;
     }
     fprintf(stream, "impactlab run '%s'", s->base.name);
@@ -251,37 +264,47 @@ static void write_command(explorer_state *st, FILE *stream)
 }
 
 // The selected parameter and its value at the cursor.
-static void write_value(explorer_state *st, FILE *stream)
+static void write_value(const explorer_model *model, const explorer_view *view,
+                        FILE *stream)
 {
     char value[PARAMETER_TEXT_SIZE];
-    const int index = st->parameters.parameter;
-    const parameters now = state_parameters(st);
+    const int index = view->parameters.parameter;
+    const parameters now = model_parameters(model);
     parameter_format(&now, index, value, sizeof value);
     fprintf(stream, "%s=%s", parameter_table[index].path, value);
 }
 
-bool act_copy(explorer_state *st, const char *argument)
+bool act_copy(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument)
 {
-    static const struct {
-        const char *word;
-        void (*write)(explorer_state *st, FILE *stream);
-    } what[] = {{"value", write_value}, {"run", write_command}, {"screen", write_screen}};
-    size_t i = 0, size = 0;
-    while (i < 3 && strcmp(argument[0] != '\0' ? argument : "value", what[i].word) != 0) {
-        i++;
+    const char *what = argument;
+    if (argument[0] == '\0') {
+        what = "value";
     }
-    if (i == 3) {
-        return act_refuse(st, "copy takes value, run or screen");
+    const bool is_screen = strcmp(what, "screen") == 0;
+    const bool is_run = strcmp(what, "run") == 0;
+    if (!is_screen && !is_run && strcmp(what, "value") != 0) {
+        return act_refuse(input, "copy takes value, run or screen");
     }
-    free(st->copied);
-    st->copied = NULL;
-    FILE *stream = open_memstream(&st->copied, &size);
-    if (stream != NULL) {
-        what[i].write(st, stream);
+
+    // the text takes the place of what was copied before
+    free(input->copied);
+    input->copied = NULL;
+    size_t size = 0;
+    FILE *stream = open_memstream(&input->copied, &size);
+    if (stream == NULL) {
+        return act_worked(input, STATUS_NO_MEMORY);
     }
-    if (stream == NULL || fclose(stream) != 0) {
-        return act_worked(st, STATUS_NO_MEMORY);
+    if (is_screen) {
+        write_screen(model, view, input, stream);
+    } else if (is_run) {
+        write_command(model, stream);
+    } else {
+        write_value(model, view, stream);
     }
-    return act_tell(st, "%s is on the clipboard of a terminal that knows OSC 52",
-                    what[i].word);
+    if (fclose(stream) != 0) {
+        return act_worked(input, STATUS_NO_MEMORY);
+    }
+    return act_tell(input, "%s is on the clipboard of a terminal that knows OSC 52",
+                    what);
 }

@@ -60,18 +60,18 @@ static void end_writing(explorer *ex)
     if (r->code != STATUS_OK && !r->told) {
         const char *why = r->fault.text[0] != '\0' ? r->fault.text : status_text(r->code);
         r->told =
-            act_warn(&ex->state, "your changes would not outlive a crash: %.400s", why);
+            act_warn(&ex->input, "your changes would not outlive a crash: %.400s", why);
     }
 }
 
 static void begin_writing(explorer *ex)
 {
     recovery *r = &ex->recovery;
-    explorer_state *st = &ex->state;
     text_stream text;
     sigset_t before;
     r->changed = false;
-    if (st->session.input_count + st->pinned.count + st->note_count == 0) {
+    if (ex->model.session.input_count + ex->model.pinned.count + ex->model.note_count ==
+        0) {
         return;
     }
 
@@ -80,7 +80,8 @@ static void begin_writing(explorer *ex)
     r->code = STATUS_NO_MEMORY;
     r->done = false;
     if (text_stream_open(&text)) {
-        loss_unless(explorer_write_session(st, text.stream, &r->fault) == STATUS_OK);
+        loss_unless(explorer_write_session(&ex->model, &ex->view, text.stream,
+                                           &r->fault) == STATUS_OK);
         r->text = text_stream_close(&text, NULL);
     }
     if (r->text != NULL) {
@@ -187,7 +188,7 @@ bool recovery_begin(explorer *ex)
         return false;
     }
     strftime(name, sizeof name, "%e %b at %H:%M", localtime(&about.st_mtime));
-    return act_warn(&ex->state,
+    return act_warn(&ex->input,
                     "a lab ended on %s with work that was not saved: y goes on with it, "
                     "n keeps it as a file, after any other key the next start asks again",
                     name);
@@ -196,7 +197,6 @@ bool recovery_begin(explorer *ex)
 bool recovery_answer(explorer *ex, int key)
 {
     recovery *r = &ex->recovery;
-    explorer_state *st = &ex->state;
     char path[sizeof r->left], kept[sizeof r->left];
     if (r->left[0] == '\0') {
         return false;
@@ -205,16 +205,16 @@ bool recovery_answer(explorer *ex, int key)
     memcpy(kept, path, sizeof kept);
     memcpy(strrchr(kept, '/') + 1, declined, strlen(declined));
     r->left[0] = '\0';
-    if (key == 'y' && explorer_open_session(st, path)) {
+    if (key == 'y' && explorer_open_session(&ex->model, &ex->view, &ex->input, path)) {
         // its file is this lab's from here on, and nothing of it is saved
         memcpy(r->path, path, sizeof path);
         r->lock = r->left_lock;
-        st->session_path[0] = '\0';
-        st->saved_version = st->kept_pins = 0;
+        ex->model.session_path[0] = '\0';
+        ex->model.saved_version = ex->model.kept_pins = 0;
         return true;
     }
     if (key == 'n' && rename(path, kept) == 0) {
-        act_tell(st, "kept: :session open %.900s goes on with it", kept);
+        act_tell(&ex->input, "kept: :session open %.900s goes on with it", kept);
     }
     close(r->left_lock);
     return key == 'y' || key == 'n';

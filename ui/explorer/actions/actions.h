@@ -7,43 +7,181 @@
 #include "ui/explorer/state/command_list.h"
 #include "ui/explorer/state/state.h"
 
-// A command's function: takes its argument as text, "" if there is none.
-typedef bool action_function(explorer_state *st, const char *argument);
+// --- the commands ----------------------------------------------------------------------
+// One action for each command (command_list.h), which is given the parts of the state
+// that it changes, those that it reads as const, and the command's argument as text, ""
+// if there is none. Those that need the table of commands or the whole screen (keys,
+// settings, files) are in the folder above.
 
-// One for each command. Those that need the table of commands or the whole screen (keys,
-// settings, files) are in the folder above, all others in this one.
-#define ACTION_FUNCTION(group, name, keys, argument, help) action_function act_##name;
-#define ACTION_NOW(group, name, keys, argument, help)      action_function act_##name##_now;
-COMMAND_LIST(ACTION_FUNCTION, ACTION_NOW)
-#undef ACTION_FUNCTION
-#undef ACTION_NOW
+// time (time.c)
+bool act_play(explorer_model *model, explorer_view *view, explorer_input *input);
+bool act_step(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+bool act_event(explorer_model *model, explorer_view *view, explorer_input *input,
+               const char *argument);
+bool act_touch(explorer_model *model, explorer_view *view, explorer_input *input,
+               const char *argument);
+bool act_seek(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+bool act_speed(explorer_view *view, explorer_input *input, const char *argument);
+bool act_slow(explorer_view *view, explorer_input *input, const char *argument);
+bool act_restart(explorer_model *model, explorer_view *view, explorer_input *input);
+bool act_wait(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+
+// changing the run (changes.c)
+bool act_set(explorer_model *model, explorer_view *view, explorer_input *input,
+             const char *argument);
+bool act_edit(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+bool act_nudge(explorer_model *model, const explorer_view *view, explorer_input *input,
+               const char *argument);
+bool act_push(explorer_model *model, explorer_input *input, const char *argument);
+bool act_model(explorer_model *model, explorer_input *input);
+bool act_extend(explorer_model *model, explorer_input *input, const char *argument);
+bool act_change(explorer_model *model, explorer_view *view, explorer_input *input,
+                const char *argument);
+bool act_drop(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+bool act_undo(explorer_model *model, explorer_view *view, explorer_input *input);
+bool act_redo(explorer_model *model, explorer_view *view, explorer_input *input);
+
+// the control law (law.c)
+bool act_law(explorer_model *model, explorer_input *input, const char *argument);
+bool act_lock(explorer_model *model, explorer_input *input, const char *argument);
+
+// several runs (runs.c)
+bool act_branch(explorer_model *model, explorer_input *input);
+bool act_pin(explorer_model *model, explorer_input *input, const char *argument);
+bool act_take(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+bool act_hide(explorer_model *model, explorer_input *input, const char *argument);
+bool act_baseline(explorer_model *model, explorer_input *input, const char *argument);
+bool act_rename(explorer_model *model, explorer_input *input, const char *argument);
+bool act_unpin(explorer_model *model, explorer_input *input, const char *argument);
+bool act_forget(explorer_model *model, explorer_input *input);
+bool act_difference(explorer_model *model, const explorer_view *view,
+                    explorer_input *input, const char *argument);
+bool act_sweep(explorer_model *model, explorer_view *view, explorer_input *input,
+               const char *argument);
+bool act_solve(explorer_model *model, explorer_input *input, const char *argument);
+bool act_metric(explorer_model *model, explorer_input *input, const char *argument);
+
+// measured data (measured.c)
+bool act_data(explorer_model *model, explorer_input *input, const char *argument);
+bool act_identify(explorer_model *model, explorer_input *input, const char *argument);
+
+// axes (axes.c)
+bool act_zoom(const explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+bool act_pan(const explorer_model *model, explorer_view *view, explorer_input *input,
+             const char *argument);
+bool act_follow(explorer_view *view, explorer_input *input);
+bool act_axis(const explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+
+// panes of curves (panes.c)
+bool act_focus(explorer_view *view, explorer_input *input);
+bool act_alone(explorer_view *view);
+bool act_trace(explorer_model *model, explorer_view *view, explorer_input *input,
+               const char *argument);
+bool act_signal(explorer_view *view, explorer_input *input, const char *argument);
+bool act_limit(explorer_model *model, explorer_input *input, const char *argument);
+bool act_band(explorer_model *model, explorer_input *input, const char *argument);
+bool act_phase(explorer_model *model, explorer_view *view, explorer_input *input,
+               const char *argument);
+bool act_residual(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const char *argument);
+bool act_spectrum(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const char *argument);
+bool act_panes(explorer_view *view, explorer_input *input, const char *argument);
+
+// looking (view.c)
+bool act_select(explorer_model *model, explorer_view *view, const char *argument);
+bool act_fold(explorer_view *view, explorer_input *input, const char *argument);
+bool act_changes(const explorer_model *model, explorer_view *view);
+bool act_runs(explorer_view *view);
+bool act_compare(explorer_view *view);
+bool act_explain(explorer_view *view);
+bool act_why(const explorer_model *model, explorer_view *view, explorer_input *input);
+bool act_poles(explorer_view *view);
+bool act_mark(const explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+bool act_note(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+bool act_notes(explorer_view *view);
+bool act_side(const explorer_model *model, explorer_view *view);
+bool act_filter(const explorer_model *model, explorer_view *view, const char *argument);
+bool act_info(explorer_view *view);
+bool act_statistics(explorer_view *view);
+bool act_lanes(explorer_view *view, explorer_input *input, const char *argument);
+bool act_palette(explorer_view *view, explorer_input *input, const char *argument);
+bool act_glyphs(explorer_view *view, explorer_input *input, const char *argument);
+bool act_theme(explorer_view *view, explorer_input *input, const char *argument);
+bool act_colours(explorer_view *view, explorer_input *input, const char *argument);
+bool act_colourby(explorer_view *view, explorer_input *input, const char *argument);
+bool act_pixels(explorer_view *view, explorer_input *input, const char *argument);
+bool act_rate(explorer_view *view, explorer_input *input, const char *argument);
+bool act_closeup(explorer_view *view, explorer_input *input, const char *argument);
+bool act_bending(explorer_view *view, explorer_input *input, const char *argument);
+bool act_mouse(explorer_view *view, explorer_input *input, const char *argument);
+bool act_redraw(explorer_view *view);
+bool act_help(explorer_view *view);
+bool act_interrupt(explorer_model *model, explorer_input *input);
+bool act_quit(const explorer_model *model, explorer_input *input);
+bool act_quit_now(explorer_input *input);
+
+// scenarios and lessons (scenarios.c)
+bool act_stop(explorer_model *model, explorer_input *input);
+bool act_open(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+bool act_find(const explorer_model *model, explorer_view *view, const char *argument);
+bool act_allow(explorer_model *model, explorer_view *view, explorer_input *input);
+bool act_lesson(explorer_model *model, explorer_view *view, explorer_input *input,
+                const char *argument);
+bool act_answer(explorer_model *model, explorer_input *input, const char *argument);
+bool act_continue(explorer_model *model, explorer_input *input);
+
+// files, keys and settings (in the folder above)
+bool act_save(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+bool act_save_now(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const char *argument);
+bool act_copy(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument);
+bool act_scene(const explorer_model *model, explorer_input *input, const char *argument);
+bool act_session(explorer_model *model, explorer_view *view, explorer_input *input,
+                 const char *argument);
+bool act_key(explorer_view *view, explorer_input *input, const char *argument);
+bool act_unkey(explorer_view *view, explorer_input *input, const char *argument);
+bool act_remember(const explorer_view *view, explorer_input *input);
 
 // --- what is said ----------------------------------------------------------------------
 
 // Puts a sentence on the message line and returns `done`.
-bool act_say(explorer_state *st, bool warning, bool done, const char *format, ...)
+bool act_say(explorer_input *input, bool warning, bool done, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 // Done: with a message, with a warning, without any (the message line is cleared).
-#define act_tell(st, ...) act_say(st, false, true, __VA_ARGS__)
-#define act_warn(st, ...) act_say(st, true, true, __VA_ARGS__)
-bool act_hush(explorer_state *st);
+#define act_tell(input, ...) act_say(input, false, true, __VA_ARGS__)
+#define act_warn(input, ...) act_say(input, true, true, __VA_ARGS__)
+bool act_hush(explorer_input *input);
 // Not done: the argument is not what the action expects.
-#define act_refuse(st, ...) act_say(st, true, false, __VA_ARGS__)
+#define act_refuse(input, ...) act_say(input, true, false, __VA_ARGS__)
 // Whether a call that returned `code` worked; if not, the state's fault is the message.
-bool act_worked(explorer_state *st, status code);
+bool act_worked(explorer_input *input, status code);
 // --- what is read ----------------------------------------------------------------------
 
 // Reads a finite number.
-bool act_read_number(explorer_state *st, const char *text, double *value);
+bool act_read_number(explorer_input *input, const char *text, double *value);
 
 // The same for an argument that may be a word instead, such as "" or "off": then the
 // value stays.
-bool act_read_number_or(explorer_state *st, const char *text, const char *word,
+bool act_read_number_or(explorer_input *input, const char *text, const char *word,
                         double *value);
 
 // Reads the number of one of `count` things (`what`, in the plural; `lister` shows them),
 // from 1, and the blanks behind it off *text. Returns its index, -1 if it is refused.
-int act_read_index(explorer_state *st, const char **text, int count, const char *what,
+int act_read_index(explorer_input *input, const char **text, int count, const char *what,
                    const char *lister);
 
 // Cuts an argument into words at its blanks; returns how many there are, of which the
@@ -51,27 +189,30 @@ int act_read_index(explorer_state *st, const char **text, int count, const char 
 int act_split(const char *argument, char text[LINE_TEXT], char *words[4]);
 
 // Reads the pane of a word, a number from 1 or "all": *index -1.
-bool act_read_pane(explorer_state *st, const char *word, int *index);
+bool act_read_pane(const explorer_view *view, explorer_input *input, const char *word,
+                   int *index);
 
 // --- the run ---------------------------------------------------------------------------
 
 // Replaces the session by one of another scenario and plays it; if that fails the old one
 // stays.
-bool act_open_scenario(explorer_state *st, const char *name);
+bool act_open_scenario(explorer_model *model, explorer_view *view, explorer_input *input,
+                       const char *name);
 
 // Warns if the present run failed, or asks whether its program may run. True if there was
 // something to say.
-bool act_tell_failed_run(explorer_state *st);
+bool act_tell_failed_run(const explorer_model *model, explorer_input *input);
 
 // Adds to the message, once, that an external program had to repeat its earlier samples
 // for the present run, if it had to.
-void act_tell_replay(explorer_state *st);
+void act_tell_replay(explorer_model *model, explorer_input *input);
 
 // Refused while the run is being computed, for actions that need the complete run.
-bool act_need_whole_run(explorer_state *st);
+bool act_need_whole_run(const explorer_model *model, explorer_input *input);
 
 // Refused where so many runs take too long to be computed while the lab waits.
-bool act_need_short_runs(explorer_state *st, const char *command, int runs);
+bool act_need_short_runs(const explorer_model *model, explorer_input *input,
+                         const char *command, int runs);
 
 // PATH or PATH=VALUES with the whole path of a parameter that is named by its last part.
 // Returns text.
@@ -79,92 +220,122 @@ const char *act_whole_path(const char *word, char *text, size_t size);
 
 // Pins the present run with another value from the start; act_settle_baseline is to
 // follow.
-status act_pin_value(explorer_state *st, const sweep_axis *axis, double value,
+status act_pin_value(explorer_model *model, const sweep_axis *axis, double value,
                      const char *name, fault *f);
 // Compares the present run with the baseline of the pinned ones from now on.
-bool act_settle_baseline(explorer_state *st);
+bool act_settle_baseline(explorer_model *model, explorer_input *input);
 
 // --- time ------------------------------------------------------------------------------
 
 // Advances by wall-clock time [s]: moves the cursor during playback.
-bool act_advance(explorer_state *st, double seconds);
+bool act_advance(explorer_model *model, explorer_view *view, explorer_input *input,
+                 double seconds);
 
 // Stops playing and moves the cursor to an instant [s].
-void act_scrub(explorer_state *st, double time);
+void act_scrub(explorer_model *model, explorer_view *view, double time);
 
 // Makes the visible part of the run longer (factor above 1) or shorter about an instant,
 // or shifts it [s].
-void act_zoom_at(explorer_state *st, double factor, double time);
-void act_pan_by(explorer_state *st, double seconds);
+void act_zoom_at(const explorer_model *model, explorer_view *view, double factor,
+                 double time);
+void act_pan_by(const explorer_model *model, explorer_view *view, double seconds);
 // Makes the part between two instants visible [s].
-bool act_zoom_between(explorer_state *st, double from, double to);
+bool act_zoom_between(const explorer_model *model, explorer_view *view,
+                      explorer_input *input, double from, double to);
 
 // What the last input came to: that the run stops with it, that it has no effect, or its
 // news.
-bool act_tell_change(explorer_state *st);
+bool act_tell_change(const explorer_model *model, explorer_input *input);
 
 // Gives a parameter another value, from the cursor on or from the start.
-bool act_give(explorer_state *st, int parameter, const char *text);
+bool act_give(explorer_model *model, explorer_input *input, int parameter,
+              const char *text);
 
 // Says what happens at the cursor: an event of the run, else the controller's change of
 // mode.
-bool act_tell_event(explorer_state *st);
+bool act_tell_event(explorer_model *model, explorer_input *input);
 
 // --- pulling the tip -------------------------------------------------------------------
 
 // Grasps the tip with the pointer at a place [m], moves the pointer, and releases the
 // tip.
-bool act_hold_tip(explorer_state *st, plane_vector place);
-void act_move_pull(explorer_state *st, plane_vector place);
-bool act_drop_pull(explorer_state *st);
+bool act_hold_tip(explorer_model *model, explorer_view *view, explorer_input *input,
+                  plane_vector place);
+void act_move_pull(const explorer_model *model, explorer_view *view, plane_vector place);
+bool act_drop_pull(const explorer_model *model, explorer_view *view,
+                   explorer_input *input);
+
+// --- pinned runs, changes --------------------------------------------------------------
+// What the commands of a name that takes a number do, with an index.
+
+// Goes on with a pinned run; the present one is pinned.
+bool act_take_run(explorer_model *model, explorer_view *view, explorer_input *input,
+                  int index);
+// Hides a pinned run, or shows it.
+void act_hide_run(explorer_model *model, int index);
+// Makes a pinned run the baseline.
+bool act_compare_with(explorer_model *model, explorer_input *input, int index);
+// Opens the prompt for another name of a pinned run.
+void act_ask_run_name(const explorer_model *model, explorer_input *input, int index);
+bool act_drop_run(explorer_model *model, explorer_input *input, int index);
+
+// Opens the prompt for another value of a change; refused where there are no changes.
+bool act_edit_change(explorer_model *model, explorer_view *view, explorer_input *input,
+                     int index);
+bool act_drop_change(explorer_model *model, explorer_view *view, explorer_input *input,
+                     int index);
 
 // --- notes -----------------------------------------------------------------------------
 
 // Takes a note out.
-void act_drop_note(explorer_state *st, int index);
+void act_drop_note(explorer_model *model, explorer_view *view, int index);
 
 // --- filters ---------------------------------------------------------------------------
 
 // After a change of a panel's filter: scrolls to the top and selects an entry that passes
 // the filter.
-void act_settle_filter(explorer_state *st, panel_id panel);
+void act_settle_filter(const explorer_model *model, explorer_view *view, panel_id panel);
 
 // --- sweeps ----------------------------------------------------------------------------
 
 // Computes the next run of a sweep that is not complete.
-bool act_continue_sweep(explorer_state *st);
+bool act_continue_sweep(explorer_model *model, explorer_input *input);
 
 // Moves the selection among a sweep's runs.
-void act_select_swept(explorer_state *st, int direction);
+void act_select_swept(explorer_model *model, int direction);
 
 // --- lessons ---------------------------------------------------------------------------
 
 // Records that the present step of the lesson is done, if it is.
-void act_follow_lesson(explorer_state *st);
+void act_follow_lesson(explorer_model *model);
 
 // --- the palette -----------------------------------------------------------------------
 
 // Moves the selection up (-1) or down (1) within the list. Without words to search for it
 // may also move above the first entry.
-void act_move_in_palette(explorer_state *st, int direction);
+void act_move_in_palette(explorer_view *view, const explorer_input *input, int direction);
 
 // --- axes of values --------------------------------------------------------------------
 
 // Scales a pane's axis about a point, given as a share of its height from the top, or
 // shifts it up by a share of its height. The axis is fixed afterwards.
-void act_scale_axis(explorer_state *st, int index, double factor, double share);
-void act_shift_axis(explorer_state *st, int index, double share);
+void act_scale_axis(const explorer_model *model, explorer_view *view, int index,
+                    double factor, double share);
+void act_shift_axis(const explorer_model *model, explorer_view *view, int index,
+                    double share);
 
 // Hides the k-th signal of a pane, or shows it.
-bool act_toggle_signal(explorer_state *st, int index, int k);
+bool act_toggle_signal(explorer_view *view, explorer_input *input, int index, int k);
 
 // --- sliders ---------------------------------------------------------------------------
 
 // Starts dragging a parameter's slider or moves it to a share of its scale, 0 to 1; only
 // stores its position. It is some cells wide.
-void act_hold_slider(explorer_state *st, int parameter, double share, int cells);
+void act_hold_slider(const explorer_model *model, explorer_view *view, int parameter,
+                     double share, int cells);
 // Sets the parameter to the value of the slider; called once for each picture, however
 // often the mouse has moved.
-bool act_follow_slider(explorer_state *st);
+bool act_follow_slider(explorer_model *model, const explorer_view *view,
+                       explorer_input *input);
 // Ends dragging, with the last value set.
-bool act_drop_slider(explorer_state *st);
+bool act_drop_slider(explorer_model *model, explorer_view *view, explorer_input *input);

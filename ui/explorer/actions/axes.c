@@ -7,115 +7,122 @@
 
 // --- time ------------------------------------------------------------------------------
 
-void act_zoom_at(explorer_state *st, double factor, double time)
+void act_zoom_at(const explorer_model *model, explorer_view *view, double factor,
+                 double time)
 {
     double from, to;
-    state_window(st, &from, &to);
-    state_show_part(st, time + (from - time) * factor, time + (to - time) * factor);
+    view_window(model, view, &from, &to);
+    view_show_part(model, view, time + (from - time) * factor,
+                   time + (to - time) * factor);
 }
 
-void act_pan_by(explorer_state *st, double seconds)
+void act_pan_by(const explorer_model *model, explorer_view *view, double seconds)
 {
     double from, to;
-    state_window(st, &from, &to);
-    if (st->window.to > st->window.from) {
-        st->window.adrift = true;
-        state_show_part(st, from + seconds, to + seconds);
+    view_window(model, view, &from, &to);
+    if (view->window.to > view->window.from) {
+        view->window.adrift = true;
+        view_show_part(model, view, from + seconds, to + seconds);
     }
 }
 
-bool act_zoom_between(explorer_state *st, double from, double to)
+bool act_zoom_between(const explorer_model *model, explorer_view *view,
+                      explorer_input *input, double from, double to)
 {
-    st->window.adrift = true;
-    state_show_part(st, from, to);
-    return act_tell(st, "%.4g to %.4g s; 0 shows all of it, a all values", from, to);
+    view->window.adrift = true;
+    view_show_part(model, view, from, to);
+    return act_tell(input, "%.4g to %.4g s; 0 shows all of it, a all values", from, to);
 }
 
-bool act_zoom(explorer_state *st, const char *argument)
+bool act_zoom(const explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument)
 {
     double from, to;
     char rest;
-    state_window(st, &from, &to);
+    view_window(model, view, &from, &to);
 
     // all of it, nearer or further, or two instants
     if (strcmp(argument, "all") == 0) {
-        st->window = (time_window){0};
+        view->window = (time_window){0};
     } else if (strcmp(argument, "in") == 0 || strcmp(argument, "out") == 0) {
-        double about = st->session.now, factor = 2;
+        double about = model->session.now, factor = 2;
         if (!(about >= from && about <= to)) {
             about = (from + to) / 2;
         }
         if (argument[0] == 'i') {
             factor = 0.5;
         }
-        act_zoom_at(st, factor, about);
+        act_zoom_at(model, view, factor, about);
     } else if (sscanf(argument, "%lf %lf %c", &from, &to, &rest) == 2 && from < to &&
                isfinite(to - from)) {
-        st->window.adrift = true;
-        state_show_part(st, from, to);
+        view->window.adrift = true;
+        view_show_part(model, view, from, to);
     } else {
         return act_refuse(
-            st, "zoom takes in, out, all or two instants in seconds, such as 0.2 0.4");
+            input, "zoom takes in, out, all or two instants in seconds, such as 0.2 0.4");
     }
     return true;
 }
 
-bool act_pan(explorer_state *st, const char *argument)
+bool act_pan(const explorer_model *model, explorer_view *view, explorer_input *input,
+             const char *argument)
 {
     double from, to, seconds;
-    state_window(st, &from, &to);
+    view_window(model, view, &from, &to);
 
     // directions are a quarter of what is visible
     if (strcmp(argument, "left") == 0) {
         seconds = -(to - from) / 4;
     } else if (strcmp(argument, "right") == 0) {
         seconds = (to - from) / 4;
-    } else if (!act_read_number(st, argument, &seconds)) {
+    } else if (!act_read_number(input, argument, &seconds)) {
         return false;
     }
-    if (st->window.to <= st->window.from) {
-        return act_refuse(st, "the whole run is visible, z zooms in");
+    if (view->window.to <= view->window.from) {
+        return act_refuse(input, "the whole run is visible, z zooms in");
     }
-    act_pan_by(st, seconds);
-    state_window(st, &from, &to);
-    return act_tell(st, "%.4g to %.4g s, f follows the cursor again", from, to);
+    act_pan_by(model, view, seconds);
+    view_window(model, view, &from, &to);
+    return act_tell(input, "%.4g to %.4g s, f follows the cursor again", from, to);
 }
 
-bool act_follow(explorer_state *st, const char *argument)
+bool act_follow(explorer_view *view, explorer_input *input)
 {
-    (void)argument;
-    st->window.adrift = false;
-    return act_tell(st, "the curves follow the cursor");
+    view->window.adrift = false;
+    return act_tell(input, "the curves follow the cursor");
 }
 
 // --- values ----------------------------------------------------------------------------
 
-void act_scale_axis(explorer_state *st, int index, double factor, double share)
+void act_scale_axis(const explorer_model *model, explorer_view *view, int index,
+                    double factor, double share)
 {
     value_range now;
-    if (state_pane_axis(st, index, &now)) {
+    if (view_pane_axis(model, view, index, &now)) {
         double at = now.high + share * (now.low - now.high);
         value_range scaled = {at + (now.low - at) * factor,
                               at + (now.high - at) * factor};
-        pane_fix_axis(&st->panes.pane[index], scaled);
+        pane_fix_axis(&view->panes.pane[index], scaled);
     }
 }
 
-void act_shift_axis(explorer_state *st, int index, double share)
+void act_shift_axis(const explorer_model *model, explorer_view *view, int index,
+                    double share)
 {
     value_range now;
-    if (state_pane_axis(st, index, &now)) {
+    if (view_pane_axis(model, view, index, &now)) {
         double shift = share * (now.high - now.low);
-        pane_fix_axis(&st->panes.pane[index],
+        pane_fix_axis(&view->panes.pane[index],
                       (value_range){now.low + shift, now.high + shift});
     }
 }
 
-static void set_scaling(explorer_state *st, int index, axis_scaling scaling)
+static void set_scaling(const explorer_model *model, explorer_view *view, int index,
+                        axis_scaling scaling)
 {
-    pane *p = &st->panes.pane[index];
+    pane *p = &view->panes.pane[index];
     value_range now;
-    if (scaling == AXIS_FIXED && state_pane_axis(st, index, &now)) {
+    if (scaling == AXIS_FIXED && view_pane_axis(model, view, index, &now)) {
         pane_fix_axis(p, now);
     } else if (scaling != AXIS_FIXED) {
         p->grown = value_range_empty;
@@ -123,41 +130,42 @@ static void set_scaling(explorer_state *st, int index, axis_scaling scaling)
     }
 }
 
-static bool tell_axis(explorer_state *st, int index)
+static bool tell_axis(const explorer_view *view, explorer_input *input, int index)
 {
     static const char *const says[AXIS_SCALINGS] = {
         [AXIS_AUTO] = "the range of what is visible",
         [AXIS_GROW] = "the range of all that was seen, it only grows",
         [AXIS_CALM] = "the range of what is visible, but for spikes"};
-    const pane *p = &st->panes.pane[index];
+    const pane *p = &view->panes.pane[index];
     if (p->scaling == AXIS_FIXED) {
-        return act_tell(st, "pane %d: from %.4g to %.4g", index + 1, p->fixed.low,
+        return act_tell(input, "pane %d: from %.4g to %.4g", index + 1, p->fixed.low,
                         p->fixed.high);
     }
-    return act_tell(st, "pane %d: %s", index + 1, says[p->scaling]);
+    return act_tell(input, "pane %d: %s", index + 1, says[p->scaling]);
 }
 
 // Gives a pane's axis what the first `count` words say, one or two.
-static bool apply(explorer_state *st, int index, char *const words[4], int count)
+static bool apply(const explorer_model *model, explorer_view *view, explorer_input *input,
+                  int index, char *const words[4], int count)
 {
     const char *word = words[0];
     value_range limits;
     if (count == 2) {
-        if (!(act_read_number(st, word, &limits.low) &&
-              act_read_number(st, words[1], &limits.high))) {
+        if (!(act_read_number(input, word, &limits.low) &&
+              act_read_number(input, words[1], &limits.high))) {
             return false;
         }
         if (!(limits.low < limits.high)) {
             return act_refuse(
-                st, "an axis goes from a lower to a higher value, not from %g to %g",
+                input, "an axis goes from a lower to a higher value, not from %g to %g",
                 limits.low, limits.high);
         }
-        pane_fix_axis(&st->panes.pane[index], limits);
+        pane_fix_axis(&view->panes.pane[index], limits);
         return true;
     }
 
     // a kind of scaling by name, or the next one
-    const int present = (int)st->panes.pane[index].scaling;
+    const int present = (int)view->panes.pane[index].scaling;
     int scaling = -1;
     if (strcmp(word, "next") == 0) {
         scaling = (present + 1) % AXIS_SCALINGS;
@@ -170,29 +178,30 @@ static bool apply(explorer_state *st, int index, char *const words[4], int count
 
     // or the axis as it is now, changed
     if (scaling >= 0) {
-        set_scaling(st, index, (axis_scaling)scaling);
+        set_scaling(model, view, index, (axis_scaling)scaling);
     } else if (strcmp(word, "in") == 0) {
-        act_scale_axis(st, index, 0.5, 0.5);
+        act_scale_axis(model, view, index, 0.5, 0.5);
     } else if (strcmp(word, "out") == 0) {
-        act_scale_axis(st, index, 2, 0.5);
+        act_scale_axis(model, view, index, 2, 0.5);
     } else if (strcmp(word, "up") == 0) {
-        act_shift_axis(st, index, 0.25);
+        act_shift_axis(model, view, index, 0.25);
     } else if (strcmp(word, "down") == 0) {
-        act_shift_axis(st, index, -0.25);
+        act_shift_axis(model, view, index, -0.25);
     } else {
-        return act_refuse(st,
+        return act_refuse(input,
                           "axis takes auto, grow, calm, fixed, in, out, up, down or two "
                           "limits, then a pane (its number, or all)");
     }
     return true;
 }
 
-bool act_axis(explorer_state *st, const char *argument)
+bool act_axis(const explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument)
 {
     char text[LINE_TEXT], *words[4], *end;
-    int count = act_split(argument, text, words), index = panes_focused(&st->panes);
+    int count = act_split(argument, text, words), index = panes_focused(&view->panes);
     if (count == 0 || count > 3) {
-        return apply(st, 0, (char *[4]){(char[]){""}}, 1);
+        return apply(model, view, input, 0, (char *[4]){(char[]){""}}, 1);
     }
 
     // limits are two words, everything else is one; a pane may follow
@@ -202,24 +211,24 @@ bool act_axis(explorer_state *st, const char *argument)
         used = 2;
     }
     if (count < used) {
-        return act_refuse(st, "an axis has two limits, such as 0 2, and then a pane");
+        return act_refuse(input, "an axis has two limits, such as 0 2, and then a pane");
     }
     if (count > used + 1) {
-        return act_refuse(st, "what is '%s' for?", words[2]);
+        return act_refuse(input, "what is '%s' for?", words[2]);
     }
     if (count == used && index < 0) {
-        return act_refuse(st, "no pane of curves is shown");
+        return act_refuse(input, "no pane of curves is shown");
     }
-    if (count > used && !act_read_pane(st, words[used], &index)) {
+    if (count > used && !act_read_pane(view, input, words[used], &index)) {
         return false;
     }
 
     // that pane, or all of them
     for (int i = 0; i < PANES; i++) {
-        const bool meant = (i == index || index < 0) && st->panes.pane[i].count > 0;
-        if (meant && !apply(st, i, words, used)) {
+        const bool meant = (i == index || index < 0) && view->panes.pane[i].count > 0;
+        if (meant && !apply(model, view, input, i, words, used)) {
             return false;
         }
     }
-    return tell_axis(st, index < 0 ? 0 : index);
+    return tell_axis(view, input, index < 0 ? 0 : index);
 }

@@ -10,70 +10,72 @@
 
 // act_give with a number, in small steps: several at one instant are one change, and none
 // at all once the value is what it was.
-static bool act_adjust(explorer_state *st, int parameter, double value)
+static bool act_adjust(explorer_model *model, explorer_input *input, int parameter,
+                       double value)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    session *s = &st->session;
-    parameters p = state_parameters(st);
+    session *s = &model->session;
+    parameters p = model_parameters(model);
     char text[LINE_TEXT];
 
     // checked and rounded as the table has it
-    if (!act_worked(st, parameter_set_number(&p, parameter, value, &st->fault))) {
+    if (!act_worked(input, parameter_set_number(&p, parameter, value, &input->fault))) {
         return false;
     }
     parameter_format(&p, parameter, text, sizeof text);
 
     // a value that is as it was leaves no change
     const int changes = s->input_count;
-    if (!act_worked(st, session_adjust(s, parameter, text, &st->fault))) {
+    if (!act_worked(input, session_adjust(s, parameter, text, &input->fault))) {
         return false;
     }
     if (s->input_count < changes) {
-        return act_tell(st, "%s is %s %s again", parameter_table[parameter].path, text,
+        return act_tell(input, "%s is %s %s again", parameter_table[parameter].path, text,
                         parameter_table[parameter].unit);
     }
-    return act_tell_change(st);
+    return act_tell_change(model, input);
 }
 
 // The parameter of a path, of its last part or of a beginning of either.
-static bool find_parameter(explorer_state *st, const char *name, int *parameter)
+static bool find_parameter(explorer_input *input, const char *name, int *parameter)
 {
     *parameter = parameter_of_name(name);
     if (*parameter == -2) {
-        return act_refuse(st, "several parameters begin with '%s' (Tab lists them)",
+        return act_refuse(input, "several parameters begin with '%s' (Tab lists them)",
                           name);
     }
-    if (*parameter < 0 && parameter_look_up(name, &st->fault) < 0) {
-        return act_worked(st, STATUS_BAD_ARGUMENT);
+    if (*parameter < 0 && parameter_look_up(name, &input->fault) < 0) {
+        return act_worked(input, STATUS_BAD_ARGUMENT);
     }
     return true;
 }
 
-bool act_set(explorer_state *st, const char *argument)
+bool act_set(explorer_model *model, explorer_view *view, explorer_input *input,
+             const char *argument)
 {
     // the path, and the value after blanks or an equals sign
     char path[LINE_TEXT];
     int parameter;
     const char *value = text_cut(argument, " =", path, sizeof path);
     if (path[0] == '\0') {
-        return act_refuse(st, "set takes a parameter and a value, such as arm.k2 10");
+        return act_refuse(input, "set takes a parameter and a value, such as arm.k2 10");
     }
-    if (!find_parameter(st, path, &parameter)) {
+    if (!find_parameter(input, path, &parameter)) {
         return false;
     }
 
     // without a value it is only selected
-    parameter_list_select(&st->parameters, (parameter_line){parameter, false});
+    parameter_list_select(&view->parameters, (parameter_line){parameter, false});
     if (value[0] == '\0') {
         const parameter_info *info = &parameter_table[parameter];
-        const char *inert = state_inert_reason(st, parameter);
+        const char *inert = model_inert_reason(model, parameter);
         if (inert != NULL) {
-            return act_tell(st, "%s: %s; without effect, %s", info->path,
+            return act_tell(input, "%s: %s; without effect, %s", info->path,
                             info->description, inert);
         }
-        return act_tell(st, "%s: %s", info->path, info->description);
+        return act_tell(input, "%s: %s", info->path, info->description);
     }
-    return act_give(st, parameter, value);
+    return act_give(model, input, parameter, value);
 }
 
 // How far a nudge of a real parameter goes up from a value: a fixed step, or on a
@@ -116,28 +118,30 @@ static double nudged(int parameter, double value, int direction)
 
 // The next or the previous value of the selected parameter: a step more or less, another
 // choice.
-bool act_nudge(explorer_state *st, const char *argument)
+bool act_nudge(explorer_model *model, const explorer_view *view, explorer_input *input,
+               const char *argument)
 {
-    int direction = argument[0] == '-' ? -1 : 1, index = st->parameters.parameter;
-    if (st->side.panel == PANEL_SWEEP && lab_sweep_is_map(&st->sweep)) {
-        const int across = (int)st->sweep.axis.count,
-                  to = st->sweep.selected % across + direction;
+    int direction = argument[0] == '-' ? -1 : 1, index = view->parameters.parameter;
+    if (view->side.panel == PANEL_SWEEP && lab_sweep_is_map(&model->sweep)) {
+        const int across = (int)model->sweep.axis.count,
+                  to = model->sweep.selected % across + direction;
         if (to >= 0 && to < across) {
-            act_select_swept(st, direction);
+            act_select_swept(model, direction);
         }
         return true;
     }
     const parameter_info *info = &parameter_table[index];
-    if (st->parameters.on_heading) {
-        return act_refuse(st, "no parameter is selected (arrows up and down select one)");
+    if (view->parameters.on_heading) {
+        return act_refuse(input,
+                          "no parameter is selected (arrows up and down select one)");
     }
-    parameters p = state_parameters(st);
+    parameters p = model_parameters(model);
     double value = parameter_get(&p, index);
     if (strcmp(info->path, "control.lock") == 0) {
-        return act_lock(st, direction > 0 ? "next" : "previous");
+        return act_lock(model, input, direction > 0 ? "next" : "previous");
     }
     if (parameter_is_text(info)) {
-        return act_refuse(st, "%s is a %s: Enter edits it", info->path,
+        return act_refuse(input, "%s is a %s: Enter edits it", info->path,
                           info->type == PARAMETER_LIST ? "list" : "text");
     }
 
@@ -147,18 +151,19 @@ bool act_nudge(explorer_state *st, const char *argument)
     } else {
         value = value + direction;
     }
-    return act_adjust(st, index, fmax(info->minimum, fmin(info->maximum, value)));
+    return act_adjust(model, input, index,
+                      fmax(info->minimum, fmin(info->maximum, value)));
 }
 
 // Makes the run of the selected value the present run, by a change from the start.
-static bool take_swept(explorer_state *st)
+static bool take_swept(explorer_model *model, explorer_input *input)
 {
-    const lab_sweep *sweep = &st->sweep;
-    session *s = &st->session;
+    const lab_sweep *sweep = &model->sweep;
+    session *s = &model->session;
     char value[SWEEP_VALUE_TEXT];
     double values[2];
     if (sweep->selected >= sweep->count) {
-        return act_refuse(st, "the sweep has no run yet");
+        return act_refuse(input, "the sweep has no run yet");
     }
 
     // a change from the start, whatever is looked at
@@ -169,7 +174,7 @@ static bool take_swept(explorer_state *st)
     for (int i = 0; i <= lab_sweep_is_map(sweep) && changed; i++) {
         session_seek(s, 0);
         sweep_axis_format(axes[i], values[i], value, sizeof value);
-        changed = act_give(st, axes[i]->parameter, value);
+        changed = act_give(model, input, axes[i]->parameter, value);
     }
     const double seen = s->seen;
     session_seek(s, now);
@@ -177,126 +182,129 @@ static bool take_swept(explorer_state *st)
     return changed;
 }
 
-bool act_edit(explorer_state *st, const char *argument)
+bool act_edit(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument)
 {
     // a parameter by name is selected first
-    int index = st->parameters.parameter;
+    int index = view->parameters.parameter;
     if (argument[0] != '\0') {
-        if (!find_parameter(st, argument, &index)) {
+        if (!find_parameter(input, argument, &index)) {
             return false;
         }
-        parameter_list_select(&st->parameters, (parameter_line){index, false});
-    } else if (st->side.panel == PANEL_SWEEP) {
-        return take_swept(st);
+        parameter_list_select(&view->parameters, (parameter_line){index, false});
+    } else if (view->side.panel == PANEL_SWEEP) {
+        return take_swept(model, input);
     }
-    if (st->parameters.on_heading) {
-        parameter_list_fold(&st->parameters, index);
+    if (view->parameters.on_heading) {
+        parameter_list_fold(&view->parameters, index);
         return true;
     }
     char value[LINE_TEXT];
-    const parameters p = state_parameters(st);
+    const parameters p = model_parameters(model);
     const parameter_info *info = &parameter_table[index];
     parameter_format(&p, index, value, sizeof value);
     if (info->type == PARAMETER_REAL && value[0] != '\0') {
         snprintf(value, sizeof value, "%.15g", parameter_get(&p, index));
     }
-    prompt_open(&st->prompt, value, "set %s ", info->path);
+    prompt_open(&input->prompt, value, "set %s ", info->path);
 
     // what can be typed, or why it makes no difference
-    const char *inert = state_inert_reason(st, index), *about = info->description;
+    const char *inert = model_inert_reason(model, index), *about = info->description;
     if (inert != NULL) {
-        return act_warn(st, "%s has no effect: %s", info->path, inert);
+        return act_warn(input, "%s has no effect: %s", info->path, inert);
     }
     if (info->choices != NULL && info->type == PARAMETER_CHOICE) {
-        return act_tell(st, "%s: %s", about, info->choices);
+        return act_tell(input, "%s: %s", about, info->choices);
     }
     if (info->type != PARAMETER_TEXT && info->type != PARAMETER_BOOLEAN) {
-        return act_tell(st, "%s: %g to %g %s", about, info->minimum, info->maximum,
+        return act_tell(input, "%s: %g to %g %s", about, info->minimum, info->maximum,
                         info->unit);
     }
-    return act_tell(st, "%s", about);
+    return act_tell(input, "%s", about);
 }
 
-bool act_push(explorer_state *st, const char *argument)
+bool act_push(explorer_model *model, explorer_input *input, const char *argument)
 {
-    session_forget_ghost(&st->session);
+    session_forget_ghost(&model->session);
     double impulse = 0.01;
-    return act_read_number_or(st, argument, "", &impulse) &&
-           act_worked(st, session_push(&st->session, impulse, &st->fault)) &&
-           (act_tell_failed_run(st) ||
-            act_tell(st, "pushed with %g N s at %.4f s", impulse, st->session.now));
+    return act_read_number_or(input, argument, "", &impulse) &&
+           act_worked(input, session_push(&model->session, impulse, &input->fault)) &&
+           (act_tell_failed_run(model, input) ||
+            act_tell(input, "pushed with %g N s at %.4f s", impulse, model->session.now));
 }
 
 // Takes the last change back (direction -1) or puts it in again (1), and so with the
 // opening of a scenario, which is before the first change and after the last.
-static bool turn(explorer_state *st, int direction)
+static bool turn(explorer_model *model, explorer_view *view, explorer_input *input,
+                 int direction)
 {
-    session *s = &st->session;
+    session *s = &model->session;
     session_forget_ghost(s);
     const bool back = direction < 0;
     const int last = back ? 0 : s->input_total;
-    if (s->input_count == last && state_can_turn(st, direction)) {
-        if (!act_worked(st, state_turn(st, direction, &st->fault))) {
+    if (s->input_count == last && model_has_visit(model, direction)) {
+        if (!act_worked(input,
+                        state_change_visit(model, view, direction, &input->fault))) {
             return false;
         }
         if (back) {
-            return act_tell(st, "in %s again, U opens the one you left", s->base.name);
+            return act_tell(input, "in %s again, U opens the one you left", s->base.name);
         }
-        return act_tell(st, "in %s again, u goes back", s->base.name);
+        return act_tell(input, "in %s again, u goes back", s->base.name);
     }
 
     // a change
     if (back) {
-        return act_worked(st, session_undo(s, &st->fault)) &&
-               act_tell(st, "undone, U puts it in again");
+        return act_worked(input, session_undo(s, &input->fault)) &&
+               act_tell(input, "undone, U puts it in again");
     }
-    return act_worked(st, session_redo(s, &st->fault)) && act_tell(st, "put in again");
+    return act_worked(input, session_redo(s, &input->fault)) &&
+           act_tell(input, "put in again");
 }
 
-bool act_undo(explorer_state *st, const char *argument)
+bool act_undo(explorer_model *model, explorer_view *view, explorer_input *input)
 {
-    (void)argument;
-    return turn(st, -1);
+    return turn(model, view, input, -1);
 }
 
-bool act_redo(explorer_state *st, const char *argument)
+bool act_redo(explorer_model *model, explorer_view *view, explorer_input *input)
 {
-    (void)argument;
-    return turn(st, 1);
+    return turn(model, view, input, 1);
 }
 
-bool act_model(explorer_state *st, const char *argument)
+bool act_model(explorer_model *model, explorer_input *input)
 {
-    (void)argument;
-    bool printed = st->session.effective.parameters.arm.model == ARM_PRINTED;
-    return act_give(st, PARAMETER_INDEX(arm.model), printed ? "corrected" : "printed");
+    bool printed = model->session.effective.parameters.arm.model == ARM_PRINTED;
+    return act_give(model, input, PARAMETER_INDEX(arm.model),
+                    printed ? "corrected" : "printed");
 }
 
-bool act_extend(explorer_state *st, const char *argument)
+bool act_extend(explorer_model *model, explorer_input *input, const char *argument)
 {
     char text[NUMBER_TEXT];
-    double duration = st->session.effective.parameters.run.duration, more = duration;
-    if (!act_read_number_or(st, argument, "", &more)) {
+    double duration = model->session.effective.parameters.run.duration, more = duration;
+    if (!act_read_number_or(input, argument, "", &more)) {
         return false;
     }
 
     // what has been seen stays seen: only rows are added
-    const double seen = st->session.seen;
+    const double seen = model->session.seen;
     number_format(text, duration + more);
-    const bool longer = act_give(st, PARAMETER_INDEX(run.duration), text);
+    const bool longer = act_give(model, input, PARAMETER_INDEX(run.duration), text);
     if (longer) {
-        st->session.seen = seen;
+        model->session.seen = seen;
     }
     return longer;
 }
 
 // --- sliders ---------------------------------------------------------------------------
 
-void act_hold_slider(explorer_state *st, int parameter, double share, int cells)
+void act_hold_slider(const explorer_model *model, explorer_view *view, int parameter,
+                     double share, int cells)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    slider_grip *grip = &st->slider;
-    const parameters p = state_parameters(st);
+    slider_grip *grip = &view->slider;
+    const parameters p = model_parameters(model);
 
     // the scale stays as it was when the mouse took hold
     const bool begins = !grip->held || grip->parameter != parameter;
@@ -306,83 +314,113 @@ void act_hold_slider(explorer_state *st, int parameter, double share, int cells)
     }
     grip->held = true;
     grip->parameter = parameter;
-    parameter_list_select(&st->parameters, (parameter_line){parameter, false});
+    parameter_list_select(&view->parameters, (parameter_line){parameter, false});
     grip->value = slider_value(&grip->scale, parameter, share, cells);
 }
 
-bool act_follow_slider(explorer_state *st)
+bool act_follow_slider(explorer_model *model, const explorer_view *view,
+                       explorer_input *input)
 {
-    const slider_grip *grip = &st->slider;
-    const parameters p = state_parameters(st);
+    const slider_grip *grip = &view->slider;
+    const parameters p = model_parameters(model);
     return !grip->held || parameter_get(&p, grip->parameter) == grip->value ||
-           act_adjust(st, grip->parameter, grip->value);
+           act_adjust(model, input, grip->parameter, grip->value);
 }
 
-bool act_drop_slider(explorer_state *st)
+bool act_drop_slider(explorer_model *model, explorer_view *view, explorer_input *input)
 {
-    const bool followed = act_follow_slider(st);
-    st->slider.held = false;
+    const bool followed = act_follow_slider(model, view, input);
+    view->slider.held = false;
     return followed;
 }
 
 // --- the list of changes ---------------------------------------------------------------
 
-// Reads the number of a change off *text; -1 if it is refused.
-static int read_change(explorer_state *st, const char **text)
+// Refused where there are none.
+static bool need_changes(const explorer_model *model, explorer_input *input)
 {
-    const int count = st->session.input_count;
-    if (count == 0) {
-        act_refuse(st, "there are no changes");
+    return model->session.input_count > 0 || act_refuse(input, "there are no changes");
+}
+
+// Reads the number of a change off *text; -1 if it is refused.
+static int read_change(const explorer_model *model, explorer_input *input,
+                       const char **text)
+{
+    if (!need_changes(model, input)) {
         return -1;
     }
-    return act_read_index(st, text, count, "changes", ":changes");
+    return act_read_index(input, text, model->session.input_count, "changes", ":changes");
 }
 
-bool act_change(explorer_state *st, const char *argument)
+// Gives a change another value, which is the last change from then on.
+static bool change_value(explorer_model *model, explorer_view *view,
+                         explorer_input *input, int index, const char *value)
 {
-    const int index = read_change(st, &argument);
-    if (index < 0) {
+    if (!act_worked(input,
+                    session_change_input(&model->session, index, value, &input->fault))) {
         return false;
     }
     char text[LINE_TEXT];
-    const session_input *in = &st->session.inputs[index];
-
-    // without a value it is asked for
-    if (argument[0] == '\0' && in->kind != SESSION_INPUT_PUSH) {
-        prompt_open(&st->prompt, in->text, "change %d ", index + 1);
-        return act_tell(st, "%s", parameter_table[in->parameter].description);
-    }
-    if (!act_worked(st,
-                    session_change_input(&st->session, index, argument, &st->fault))) {
-        return false;
-    }
-    st->change = st->session.input_count - 1;
-    state_change_text(st, st->change, text, sizeof text);
-    return act_tell(st, "%s at the same instant, u takes it back", text);
+    view->change = model->session.input_count - 1;
+    model_change_text(model, view->change, text, sizeof text);
+    return act_tell(input, "%s at the same instant, u takes it back", text);
 }
 
-bool act_drop(explorer_state *st, const char *argument)
+bool act_edit_change(explorer_model *model, explorer_view *view, explorer_input *input,
+                     int index)
 {
-    char text[LINE_TEXT];
-    const int index = read_change(st, &argument);
+    if (!need_changes(model, input)) {
+        return false;
+    }
+    assert(index >= 0 && index < model->session.input_count);
+    const session_input *in = &model->session.inputs[index];
+
+    // a push has no value that could be asked for: what is said of that is said here
+    if (in->kind == SESSION_INPUT_PUSH) {
+        return change_value(model, view, input, index, "");
+    }
+    prompt_open(&input->prompt, in->text, "change %d ", index + 1);
+    return act_tell(input, "%s", parameter_table[in->parameter].description);
+}
+
+bool act_change(explorer_model *model, explorer_view *view, explorer_input *input,
+                const char *argument)
+{
+    const int index = read_change(model, input, &argument);
     if (index < 0) {
+        return false;
+    }
+    if (argument[0] == '\0') {
+        return act_edit_change(model, view, input, index);
+    }
+    return change_value(model, view, input, index, argument);
+}
+
+bool act_drop_change(explorer_model *model, explorer_view *view, explorer_input *input,
+                     int index)
+{
+    if (!need_changes(model, input)) {
         return false;
     }
 
     // the text first: the change is gone afterwards
-    state_change_text(st, index, text, sizeof text);
-    if (!act_worked(st, session_drop_input(&st->session, index, &st->fault))) {
+    char text[LINE_TEXT];
+    model_change_text(model, index, text, sizeof text);
+    if (!act_worked(input, session_drop_input(&model->session, index, &input->fault))) {
         return false;
     }
 
     // the selection stays within the list
-    const int last = st->session.input_count - 1;
-    if (st->change > last) {
-        if (last < 0) {
-            st->change = 0;
-        } else {
-            st->change = last;
-        }
+    const int last = model->session.input_count - 1;
+    if (view->change > last) {
+        view->change = last > 0 ? last : 0;
     }
-    return act_tell(st, "without %s; U puts it in again", text);
+    return act_tell(input, "without %s; U puts it in again", text);
+}
+
+bool act_drop(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument)
+{
+    const int index = read_change(model, input, &argument);
+    return index >= 0 && act_drop_change(model, view, input, index);
 }

@@ -11,7 +11,7 @@
 
 // Measured columns under the run, shifted as the file's name says, else to the run's
 // first touch.
-bool act_data(explorer_state *st, const char *argument)
+bool act_data(explorer_model *model, explorer_input *input, const char *argument)
 {
     trace fresh = {0};
     csv_table table = {0};
@@ -20,42 +20,42 @@ bool act_data(explorer_state *st, const char *argument)
     double shift = (double)NAN;
     if (argument[0] == '\0') {
         return act_refuse(
-            st, "data takes a table with a column time, such as bench.csv, or off");
+            input, "data takes a table with a column time, such as bench.csv, or off");
     }
     if (strcmp(argument, "off") == 0) {
-        trace_finish(&st->measured);
-        st->measured = (trace){0};
-        return act_tell(st, "no measured data");
+        trace_finish(&model->measured);
+        model->measured = (trace){0};
+        return act_tell(input, "no measured data");
     }
-    if (!act_need_whole_run(st)) {
+    if (!act_need_whole_run(model, input)) {
         return false;
     }
-    if (at != NULL && !act_read_number(st, at + 1, &shift)) {
+    if (at != NULL && !act_read_number(input, at + 1, &shift)) {
         return false;
     }
     snprintf(path, sizeof path, "%.*s",
              at != NULL ? (int)(at - argument) : (int)strlen(argument), argument);
     trace_init(&fresh, 1);
-    status code = csv_table_read(&table, path, 1, &st->fault);
+    status code = csv_table_read(&table, path, 1, &input->fault);
     if (code == STATUS_OK) {
-        code = measured_rows(&fresh, &table, NULL, -1, &st->fault);
+        code = measured_rows(&fresh, &table, NULL, -1, &input->fault);
     }
     csv_table_finish(&table);
     if (code != STATUS_OK) {
         trace_finish(&fresh);
-        return act_worked(st, code);
+        return act_worked(input, code);
     }
 
-    trace_finish(&st->measured);
-    st->measured = fresh;
-    st->measured_shift = 0;
-    st->measured_id++;
-    snprintf(st->measured_file, sizeof st->measured_file, "%s", path);
-    if (state_lay_data(st, shift)) {
-        return act_tell(st, "%zu rows, shifted by %.6g s; :data off takes them away",
-                        fresh.row_count, st->measured_shift);
+    trace_finish(&model->measured);
+    model->measured = fresh;
+    model->measured_shift = 0;
+    model->measured_id++;
+    snprintf(model->measured_file, sizeof model->measured_file, "%s", path);
+    if (model_lay_data(model, shift)) {
+        return act_tell(input, "%zu rows, shifted by %.6g s; :data off takes them away",
+                        fresh.row_count, model->measured_shift);
     }
-    return act_warn(st, "%zu rows, as they are: no force in both that shows a touch",
+    return act_warn(input, "%zu rows, as they are: no force in both that shows a touch",
                     fresh.row_count);
 }
 
@@ -64,7 +64,7 @@ bool act_data(explorer_state *st, const char *argument)
 enum { FIT_STARTS = 4, FIT_THREADS = 4, FIT_RUNS = 400 };
 
 // Says each value with its error, and what is not determined.
-static bool tell_fit(explorer_state *st, const identification *id)
+static bool tell_fit(explorer_input *input, const identification *id)
 {
     char text[MESSAGE_TEXT / 2] = "";
     double most;
@@ -88,19 +88,19 @@ static bool tell_fit(explorer_state *st, const identification *id)
 
     // what to think of the fit as a whole
     if (id->undetermined > 0) {
-        return act_tell(st, "%s: fit fewer, or record more", text);
+        return act_tell(input, "%s: fit fewer, or record more", text);
     }
     if (misfits) {
-        return act_tell(st, "%s; pinned, but far off the data", text);
+        return act_tell(input, "%s; pinned, but far off the data", text);
     }
     if (id->white) {
-        return act_tell(st, "%s; that run is pinned", text);
+        return act_tell(input, "%s; that run is pinned", text);
     }
-    return act_tell(st, "%s; pinned, but the data show more than the model has", text);
+    return act_tell(input, "%s; pinned, but the data show more than the model has", text);
 }
 
 // Pins the run that was compared with the data in the end, and lays these under it.
-static status pin_fitted(explorer_state *st, const identification *id, fault *f)
+static status pin_fitted(explorer_model *model, const identification *id, fault *f)
 {
     scenario fitted, copy;
     session other;
@@ -108,33 +108,34 @@ static status pin_fitted(explorer_state *st, const identification *id, fault *f)
     TRY(identify_scenario(id, 0, &fitted, f));
     TRY(scenario_copy(&copy, &fitted));
     TRY(session_open(&other, &copy, HUGE_VAL, f));
-    const status code = run_list_pin(&st->pinned, &other, "identified", f);
+    const status code = run_list_pin(&model->pinned, &other, "identified", f);
     session_finish(&other);
     if (code == STATUS_OK) {
-        state_lay_data(st, -(t->begin + t->own[OWN_SHIFT]));
+        model_lay_data(model, -(t->begin + t->own[OWN_SHIFT]));
     }
     return code;
 }
 
 // Fits parameters to the measured data and pins the run that they give.
-bool act_identify(explorer_state *st, const char *argument)
+bool act_identify(explorer_model *model, explorer_input *input, const char *argument)
 {
     char words[LINE_TEXT], *rest = words;
-    identification id = {.base = &st->session.effective,
+    identification id = {.base = &model->session.effective,
                          .starts = FIT_STARTS,
                          .jobs = FIT_THREADS};
     if (argument[0] == '\0') {
-        return act_refuse(st, "identify takes parameters, such as k2 stiction");
+        return act_refuse(input, "identify takes parameters, such as k2 stiction");
     }
-    if (st->measured.row_count == 0) {
-        return act_refuse(st, "there are no measured data: :data FILE.csv");
+    if (model->measured.row_count == 0) {
+        return act_refuse(input, "there are no measured data: :data FILE.csv");
     }
-    if (!(act_need_whole_run(st) && act_need_short_runs(st, "identify", FIT_RUNS))) {
+    if (!(act_need_whole_run(model, input) &&
+          act_need_short_runs(model, input, "identify", FIT_RUNS))) {
         return false;
     }
 
     // a parameter may be given by the last part of its path
-    fault *f = &st->fault;
+    fault *f = &input->fault;
     status code = identify_available(f);
     snprintf(words, sizeof words, "%s", argument);
     for (char *word; code == STATUS_OK && (word = strtok_r(rest, " ", &rest)) != NULL;) {
@@ -142,7 +143,7 @@ bool act_identify(explorer_state *st, const char *argument)
         code = identify_add_path(&id, act_whole_path(word, path, sizeof path), f);
     }
     if (code == STATUS_OK) {
-        code = identify_add_trace(&id, st->measured_file, NULL, 0, f);
+        code = identify_add_trace(&id, model->measured_file, NULL, 0, f);
     }
     if (code == STATUS_OK) {
         code = identify_fit(&id, f);
@@ -152,10 +153,10 @@ bool act_identify(explorer_state *st, const char *argument)
         determined = determined || id.fit[i].determined;
     }
     if (code == STATUS_OK && determined) {
-        code = pin_fitted(st, &id, f);
+        code = pin_fitted(model, &id, f);
     }
-    const bool done = act_worked(st, code) && tell_fit(st, &id),
+    const bool done = act_worked(input, code) && tell_fit(input, &id),
                all = id.undetermined == 0;
     identify_finish(&id);
-    return done && act_settle_baseline(st) && all;
+    return done && act_settle_baseline(model, input) && all;
 }

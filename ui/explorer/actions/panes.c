@@ -8,11 +8,11 @@
 // --- panes of one's own ----------------------------------------------------------------
 
 // A place for a derived signal that no pane has; -1 if there is none.
-static int free_place(const explorer_state *st, const pane *own)
+static int free_place(const explorer_view *view, const pane *own)
 {
     bool used[DERIVED_SIGNALS] = {false};
     for (int i = 0; i <= PANES; i++) {
-        const pane *p = i < PANES ? &st->panes.pane[i] : own;
+        const pane *p = i < PANES ? &view->panes.pane[i] : own;
         for (int k = 0; k < p->count; k++) {
             if (signal_is_derived(p->signals[k])) {
                 used[p->signals[k] - SIGNALS_AT_MOST] = true;
@@ -30,23 +30,24 @@ static int free_place(const explorer_state *st, const pane *own)
 }
 
 // Adds the signal of a name or an expression.
-static bool add_signal(explorer_state *st, const char *text, pane *own)
+static bool add_signal(explorer_model *model, const explorer_view *view,
+                       explorer_input *input, const char *text, pane *own)
 {
     int signal = signal_find_any(text);
     if (signal < 0 && text[strcspn(text, "+-*/(")] == '\0') {
-        return act_refuse(st, "there is no signal '%s' (Tab completes)", text);
+        return act_refuse(input, "there is no signal '%s' (Tab completes)", text);
     }
     if (signal < 0) {
-        const int place = free_place(st, own);
+        const int place = free_place(view, own);
         if (place < 0) {
-            return act_refuse(st, "%d expressions are shown already", DERIVED_SIGNALS);
+            return act_refuse(input, "%d expressions are shown already", DERIVED_SIGNALS);
         }
-        signal = signal_derive(place, text, &st->fault);
+        signal = signal_derive(place, text, &input->fault);
         if (signal < 0) {
-            return act_worked(st, st->fault.code);
+            return act_worked(input, input->fault.code);
         }
         for (int i = 0; i < SHOWN_RUNS; i++) {
-            extremes_forget(&st->extremes[i]);
+            extremes_forget(&model->extremes[i]);
         }
     }
     own->signals[own->count++] = signal;
@@ -55,7 +56,8 @@ static bool add_signal(explorer_state *st, const char *text, pane *own)
 
 // Fills a pane with the signals of an argument: commas outside brackets separate them,
 // and blanks where nothing is computed.
-static bool read_signals(explorer_state *st, const char *argument, pane *own)
+static bool read_signals(explorer_model *model, const explorer_view *view,
+                         explorer_input *input, const char *argument, pane *own)
 {
     const bool computes = argument[strcspn(argument, "+-*/(")] != '\0';
     char word[LINE_TEXT];
@@ -73,9 +75,9 @@ static bool read_signals(explorer_state *st, const char *argument, pane *own)
             word[length] = '\0';
             length = 0;
             if (own->count == PANE_SIGNALS) {
-                return act_refuse(st, "a pane has at most %d signals", PANE_SIGNALS);
+                return act_refuse(input, "a pane has at most %d signals", PANE_SIGNALS);
             }
-            if (!add_signal(st, word, own)) {
+            if (!add_signal(model, view, input, word, own)) {
                 return false;
             }
         }
@@ -87,119 +89,126 @@ static bool read_signals(explorer_state *st, const char *argument, pane *own)
 
 // Shows a pane of the user's beside those there are, of the signals of an argument;
 // `refusal` says how many it takes.
-static bool show_own(explorer_state *st, const char *argument, pane_view view, int least,
-                     int most, const char *refusal)
+static bool show_own(explorer_model *model, explorer_view *view, explorer_input *input,
+                     const char *argument, pane_view kind, int least, int most,
+                     const char *refusal)
 {
-    pane own = {.view = view};
-    if (!read_signals(st, argument, &own)) {
+    pane own = {.view = kind};
+    if (!read_signals(model, view, input, argument, &own)) {
         return false;
     }
     if (own.count < least || own.count > most) {
-        return act_refuse(st, "%s", refusal);
+        return act_refuse(input, "%s", refusal);
     }
-    const int index = panes_add(&st->panes, &own);
-    return act_tell(st, "pane %d: :trace %d hides it", index + 1, index + 1);
+    const int index = panes_add(&view->panes, &own);
+    return act_tell(input, "pane %d: :trace %d hides it", index + 1, index + 1);
 }
 
 // Shows or hides a pane by number, or makes one of signals by name.
-bool act_trace(explorer_state *st, const char *argument)
+bool act_trace(explorer_model *model, explorer_view *view, explorer_input *input,
+               const char *argument)
 {
     // a pane of the table
     if (argument[0] != '\0' && argument[strspn(argument, "0123456789")] == '\0') {
         const long number = strtol(argument, NULL, 10);
         if (number < 1 || number > PANES) {
-            return act_refuse(st, "panes are numbered from 1 to %d", PANES);
+            return act_refuse(input, "panes are numbered from 1 to %d", PANES);
         }
         const int index = (int)number - 1;
-        pane *p = &st->panes.pane[index];
+        pane *p = &view->panes.pane[index];
         if (p->count == 0) {
-            return act_refuse(st, "pane %s is empty, :trace SIGNAL... fills it",
+            return act_refuse(input, "pane %s is empty, :trace SIGNAL... fills it",
                               argument);
         }
         p->shown = !p->shown;
-        st->panes.chosen = true;
+        view->panes.chosen = true;
         if (p->shown) {
-            st->panes.focus = index;
+            view->panes.focus = index;
         }
         return true;
     }
 
-    return show_own(st, argument, VIEW_TIME, 1, PANE_SIGNALS,
+    return show_own(model, view, input, argument, VIEW_TIME, 1, PANE_SIGNALS,
                     "trace takes a number from 1 to 9 or names of signals");
 }
 
-bool act_residual(explorer_state *st, const char *argument)
+bool act_residual(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const char *argument)
 {
-    return show_own(st, argument, VIEW_RESIDUAL, 1, PANE_SIGNALS,
+    return show_own(model, view, input, argument, VIEW_RESIDUAL, 1, PANE_SIGNALS,
                     "residual takes signals that were measured");
 }
 
-bool act_phase(explorer_state *st, const char *argument)
+bool act_phase(explorer_model *model, explorer_view *view, explorer_input *input,
+               const char *argument)
 {
-    return show_own(st, argument, VIEW_PHASE, 2, 2,
+    return show_own(model, view, input, argument, VIEW_PHASE, 2, 2,
                     "phase takes two signals: what goes up, and what across");
 }
 
-bool act_spectrum(explorer_state *st, const char *argument)
+bool act_spectrum(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const char *argument)
 {
-    return show_own(st, argument, VIEW_SPECTRUM, 1, 1, "spectrum takes one signal");
+    return show_own(model, view, input, argument, VIEW_SPECTRUM, 1, 1,
+                    "spectrum takes one signal");
 }
 
 // Shows the panes of these numbers and no others.
-bool act_panes(explorer_state *st, const char *argument)
+bool act_panes(explorer_view *view, explorer_input *input, const char *argument)
 {
     if (argument[strspn(argument, "123456789")] != '\0') {
-        return act_refuse(st, "panes takes numbers from 1 to 9, such as 134");
+        return act_refuse(input, "panes takes numbers from 1 to 9, such as 134");
     }
     for (int i = 0; i < PANES; i++) {
-        pane *p = &st->panes.pane[i];
+        pane *p = &view->panes.pane[i];
         p->shown =
             i < PANES_OF_TABLE && p->count > 0 && strchr(argument, '1' + i) != NULL;
     }
-    st->panes.chosen = true;
+    view->panes.chosen = true;
     return true;
 }
 
 // --- what a pane shows -----------------------------------------------------------------
 
-bool act_focus(explorer_state *st, const char *argument)
+bool act_focus(explorer_view *view, explorer_input *input)
 {
-    (void)argument;
-    int focused = panes_focused(&st->panes);
+    int focused = panes_focused(&view->panes);
     if (focused < 0) {
-        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
+        return act_refuse(input, "no pane of curves is shown, 1 to 9 show them");
     }
-    st->panes.focus = (focused + 1) % PANES;
-    st->panes.focus = panes_focused(&st->panes);
+    view->panes.focus = (focused + 1) % PANES;
+    view->panes.focus = panes_focused(&view->panes);
     return true;
 }
 
-bool act_toggle_signal(explorer_state *st, int index, int k)
+bool act_toggle_signal(explorer_view *view, explorer_input *input, int index, int k)
 {
     assert(index >= 0 && index < PANES && k >= 0 && k < PANE_SIGNALS);
-    pane *p = &st->panes.pane[index];
+    pane *p = &view->panes.pane[index];
     p->hidden ^= 1u << k;
     p->grown = value_range_empty;
     const char *name = signal_table[p->signals[k]].name;
     if (p->hidden >> k & 1) {
-        return act_tell(st, "%s is hidden (K or a click on its legend shows it)", name);
+        return act_tell(input, "%s is hidden (K or a click on its legend shows it)",
+                        name);
     }
-    return act_tell(st, "%s is shown", name);
+    return act_tell(input, "%s is shown", name);
 }
 
 // One signal after the other is hidden, from the last to the first, then all are shown.
-bool act_signal(explorer_state *st, const char *argument)
+bool act_signal(explorer_view *view, explorer_input *input, const char *argument)
 {
     char text[LINE_TEXT], *words[4] = {argument[0] == '\0' ? text : NULL};
-    int index = panes_focused(&st->panes);
-    if (act_split(argument, text, words) == 2 && !act_read_pane(st, words[1], &index)) {
+    int index = panes_focused(&view->panes);
+    if (act_split(argument, text, words) == 2 &&
+        !act_read_pane(view, input, words[1], &index)) {
         return false;
     }
     const int signal = signal_find_any(words[0]);
     if (index < 0) {
-        return act_refuse(st, "no pane of curves is shown, 1 to 9 show them");
+        return act_refuse(input, "no pane of curves is shown, 1 to 9 show them");
     }
-    pane *p = &st->panes.pane[index];
+    pane *p = &view->panes.pane[index];
     if (strcmp(words[0], "all") == 0) {
         p->hidden = 0;
         return true;
@@ -208,11 +217,11 @@ bool act_signal(explorer_state *st, const char *argument)
     // by name
     for (int k = 0; k < p->count && argument[0] != '\0'; k++) {
         if (p->signals[k] == signal) {
-            return act_toggle_signal(st, index, k);
+            return act_toggle_signal(view, input, index, k);
         }
     }
     if (argument[0] != '\0') {
-        return act_refuse(st, "the pane in focus has no signal '%.60s' (w: next pane)",
+        return act_refuse(input, "the pane in focus has no signal '%.60s' (w: next pane)",
                           argument);
     }
 
@@ -225,13 +234,13 @@ bool act_signal(explorer_state *st, const char *argument)
     }
     p->hidden = 0;
     if (next >= 0 && p->count > 1) {
-        return act_toggle_signal(st, index, next);
+        return act_toggle_signal(view, input, index, next);
     }
-    return act_tell(st, "all signals of the pane are shown");
+    return act_tell(input, "all signals of the pane are shown");
 }
 
 // Reads a signal and a value, or off, into a bound unless they are refused.
-static bool read_bound(explorer_state *st, const char *argument, const char *command,
+static bool read_bound(explorer_input *input, const char *argument, const char *command,
                        solved_limit *bound)
 {
     char text[LINE_TEXT], *words[4];
@@ -244,57 +253,56 @@ static bool read_bound(explorer_state *st, const char *argument, const char *com
         read.signal = signal_find_any(words[0]);
     }
     if (read.signal < 0) {
-        return act_refuse(st, "%s takes a signal and a value, such as force 2, or off",
+        return act_refuse(input, "%s takes a signal and a value, such as force 2, or off",
                           command);
     }
-    if (!act_read_number(st, words[1], &read.bound)) {
+    if (!act_read_number(input, words[1], &read.bound)) {
         return false;
     }
     *bound = read;
     return true;
 }
 
-bool act_limit(explorer_state *st, const char *argument)
+bool act_limit(explorer_model *model, explorer_input *input, const char *argument)
 {
-    return read_bound(st, argument, "limit", &st->limit);
+    return read_bound(input, argument, "limit", &model->limit);
 }
 
-bool act_band(explorer_state *st, const char *argument)
+bool act_band(explorer_model *model, explorer_input *input, const char *argument)
 {
     solved_limit band;
-    if (!read_bound(st, argument, "band", &band)) {
+    if (!read_bound(input, argument, "band", &band)) {
         return false;
     }
     if (band.signal >= 0 && !(band.bound > 0)) {
-        return act_refuse(st, "a band has a tolerance above 0");
+        return act_refuse(input, "a band has a tolerance above 0");
     }
-    st->band = band;
+    model->band = band;
     if (band.signal < 0) {
-        return act_tell(st, "no band");
+        return act_tell(input, "no band");
     }
-    if (!st->session.has_other) {
-        return act_tell(st, "b pins the run that it is round");
+    if (!model->session.has_other) {
+        return act_tell(input, "b pins the run that it is round");
     }
-    const char *round = st->pinned.runs[st->pinned.baseline].name;
+    const char *round = model->pinned.runs[model->pinned.baseline].name;
     if (signal_is_derived(band.signal) || signal_is_state(band.signal)) {
-        return act_tell(st, "the band is round '%s'", round);
+        return act_tell(input, "the band is round '%s'", round);
     }
 
     // where the present run leaves it
-    const session *s = &st->session;
+    const session *s = &model->session;
     run_difference d = {.on = true};
     difference_update(&d, 1, &s->run.trace, &s->other.trace);
     const double first = difference_first_beyond(&d, band.signal, band.bound);
     difference_finish(&d);
     if (first < 0) {
-        return act_tell(st, "this run stays within the band round '%s'", round);
+        return act_tell(input, "this run stays within the band round '%s'", round);
     }
-    return act_tell(st, "this run leaves the band round '%s' at %.5f s", round, first);
+    return act_tell(input, "this run leaves the band round '%s' at %.5f s", round, first);
 }
 
-bool act_alone(explorer_state *st, const char *argument)
+bool act_alone(explorer_view *view)
 {
-    (void)argument;
-    st->panes.alone = !st->panes.alone;
+    view->panes.alone = !view->panes.alone;
     return true;
 }

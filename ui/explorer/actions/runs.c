@@ -1,6 +1,7 @@
 // Actions on several runs: pinning and taking them, what they are compared with, sweeps.
 #include "ui/explorer/actions/actions.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -12,198 +13,223 @@
 // --- pinned runs -----------------------------------------------------------------------
 
 // Makes the baseline the run for comparison with the present one.
-bool act_settle_baseline(explorer_state *st)
+bool act_settle_baseline(explorer_model *model, explorer_input *input)
 {
-    const run_list *list = &st->pinned;
+    const run_list *list = &model->pinned;
     if (list->baseline < 0) {
-        session_forget_other(&st->session);
+        session_forget_other(&model->session);
         return true;
     }
-    return act_worked(st,
-                      session_keep_beside(&st->session, &list->runs[list->baseline].run,
-                                          &st->fault));
+    return act_worked(input, session_keep_beside(&model->session,
+                                                 &list->runs[list->baseline].run,
+                                                 &input->fault));
 }
 
 // Pins the present run and makes it the baseline.
-static bool pin(explorer_state *st, const char *name)
+static bool pin(explorer_model *model, explorer_input *input, const char *name)
 {
-    session_forget_ghost(&st->session);
-    return act_need_whole_run(st) &&
-           act_worked(st, run_list_pin(&st->pinned, &st->session, name, &st->fault)) &&
-           act_settle_baseline(st);
+    session_forget_ghost(&model->session);
+    return act_need_whole_run(model, input) &&
+           act_worked(input, run_list_pin(&model->pinned, &model->session, name,
+                                          &input->fault)) &&
+           act_settle_baseline(model, input);
 }
 
-bool act_branch(explorer_state *st, const char *argument)
+bool act_branch(explorer_model *model, explorer_input *input)
 {
-    (void)argument;
-    return pin(st, "") &&
-           act_tell(st,
+    return pin(model, input, "") &&
+           act_tell(input,
                     "branched at %.4f s: change something, the old run stays beside "
                     "it (c compares, R lists all, B drops it)",
-                    st->session.now);
+                    model->session.now);
 }
 
-bool act_pin(explorer_state *st, const char *argument)
+bool act_pin(explorer_model *model, explorer_input *input, const char *argument)
 {
-    const run_list *list = &st->pinned;
-    return pin(st, argument) &&
-           act_tell(st, "pinned as '%s': the present run is compared with it",
+    const run_list *list = &model->pinned;
+    return pin(model, input, argument) &&
+           act_tell(input, "pinned as '%s': the present run is compared with it",
                     list->runs[list->baseline].name);
 }
 
-bool act_forget(explorer_state *st, const char *argument)
+bool act_forget(explorer_model *model, explorer_input *input)
 {
-    (void)argument;
-    session_forget_ghost(&st->session);
-    if (st->pinned.baseline >= 0) {
-        run_list_drop(&st->pinned, st->pinned.baseline);
+    session_forget_ghost(&model->session);
+    if (model->pinned.baseline >= 0) {
+        run_list_drop(&model->pinned, model->pinned.baseline);
     }
-    return act_settle_baseline(st);
+    return act_settle_baseline(model, input);
 }
 
 // The index of the pinned run whose number begins an argument, which moves behind it; -1
 // after a refusal.
-static int read_run(explorer_state *st, const char **argument)
+static int read_run(const explorer_model *model, explorer_input *input,
+                    const char **argument)
 {
-    const int count = st->pinned.count;
+    const int count = model->pinned.count;
     if (count == 0) {
-        act_refuse(st, "no run is pinned (b pins this one)");
+        act_refuse(input, "no run is pinned (b pins this one)");
         return -1;
     }
-    return act_read_index(st, argument, count, "pinned runs", "R");
+    return act_read_index(input, argument, count, "pinned runs", "R");
 }
 
-bool act_take(explorer_state *st, const char *argument)
+bool act_take_run(explorer_model *model, explorer_view *view, explorer_input *input,
+                  int index)
 {
-    const int index = read_run(st, &argument);
-    if (index < 0) {
-        return false;
-    }
-    run_list *list = &st->pinned;
-    if (run_origin_is_of(&list->runs[index].from, &st->session)) {
-        return act_tell(st, "this is that run");
+    assert(index >= 0 && index < model->pinned.count);
+    const run_list *list = &model->pinned;
+    if (run_origin_is_of(&list->runs[index].from, &model->session)) {
+        return act_tell(input, "this is that run");
     }
 
     // the present one must not be lost; pinning it moves none of the others
-    if (!pin(st, "")) {
+    if (!pin(model, input, "")) {
         return false;
     }
     const pinned_run *taken = &list->runs[index];
     const run_origin *from = &taken->from;
     session other;
     status code = STATUS_OK;
-    if (same_base(&from->base, &st->session.base)) {
-        code = session_take_inputs(&st->session, from->inputs, from->input_count,
-                                   &st->fault);
+    if (same_base(&from->base, &model->session.base)) {
+        code = session_take_inputs(&model->session, from->inputs, from->input_count,
+                                   &input->fault);
     } else {
-        code = session_reopen(&other, from, st->session.patience, &st->fault);
+        code = session_reopen(&other, from, model->session.patience, &input->fault);
         if (code != STATUS_OK) {
-            return act_worked(st, code);
+            return act_worked(input, code);
         }
-        code = state_take_session(st, &other, &st->fault);
+        code = state_take_session(model, view, &other, &input->fault);
         if (code != STATUS_OK) {
             session_finish(&other);
         }
     }
-    return act_worked(st, code) &&
-           act_tell(st, "'%s' goes on; the run before is compared with it", taken->name);
+    return act_worked(input, code) &&
+           act_tell(input, "'%s' goes on; the run before is compared with it",
+                    taken->name);
 }
 
-bool act_hide(explorer_state *st, const char *argument)
+bool act_take(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument)
 {
-    const int index = read_run(st, &argument);
+    const int index = read_run(model, input, &argument);
+    return index >= 0 && act_take_run(model, view, input, index);
+}
+
+void act_hide_run(explorer_model *model, int index)
+{
+    assert(index >= 0 && index < model->pinned.count);
+    model->pinned.runs[index].hidden = !model->pinned.runs[index].hidden;
+}
+
+bool act_hide(explorer_model *model, explorer_input *input, const char *argument)
+{
+    const int index = read_run(model, input, &argument);
     if (index < 0) {
         return false;
     }
-    st->pinned.runs[index].hidden = !st->pinned.runs[index].hidden;
+    act_hide_run(model, index);
     return true;
 }
 
-bool act_baseline(explorer_state *st, const char *argument)
+bool act_compare_with(explorer_model *model, explorer_input *input, int index)
 {
-    const int index = read_run(st, &argument);
-    if (index < 0) {
-        return false;
-    }
-    st->pinned.baseline = index;
-    return act_settle_baseline(st) &&
-           act_tell(st, "compared with '%s' from now on", st->pinned.runs[index].name);
+    assert(index >= 0 && index < model->pinned.count);
+    model->pinned.baseline = index;
+    return act_settle_baseline(model, input) &&
+           act_tell(input, "compared with '%s' from now on",
+                    model->pinned.runs[index].name);
 }
 
-bool act_rename(explorer_state *st, const char *argument)
+bool act_baseline(explorer_model *model, explorer_input *input, const char *argument)
 {
-    const int index = read_run(st, &argument);
+    const int index = read_run(model, input, &argument);
+    return index >= 0 && act_compare_with(model, input, index);
+}
+
+void act_ask_run_name(const explorer_model *model, explorer_input *input, int index)
+{
+    assert(index >= 0 && index < model->pinned.count);
+    prompt_open(&input->prompt, model->pinned.runs[index].name, "rename %d ", index + 1);
+}
+
+bool act_rename(explorer_model *model, explorer_input *input, const char *argument)
+{
+    const int index = read_run(model, input, &argument);
     if (index < 0) {
         return false;
     }
-    pinned_run *p = &st->pinned.runs[index];
-
-    // without a name it is asked for
     if (argument[0] != '\0') {
+        pinned_run *p = &model->pinned.runs[index];
         snprintf(p->name, sizeof p->name, "%s", argument);
     } else {
-        prompt_open(&st->prompt, p->name, "rename %d ", index + 1);
+        act_ask_run_name(model, input, index);
     }
     return true;
 }
 
-bool act_unpin(explorer_state *st, const char *argument)
+bool act_drop_run(explorer_model *model, explorer_input *input, int index)
 {
-    const int index = read_run(st, &argument);
-    if (index < 0) {
-        return false;
-    }
-    run_list_drop(&st->pinned, index);
-    return act_settle_baseline(st);
+    assert(index >= 0 && index < model->pinned.count);
+    run_list_drop(&model->pinned, index);
+    return act_settle_baseline(model, input);
 }
 
-bool act_difference(explorer_state *st, const char *argument)
+bool act_unpin(explorer_model *model, explorer_input *input, const char *argument)
 {
-    run_difference *d = &st->difference;
+    const int index = read_run(model, input, &argument);
+    return index >= 0 && act_drop_run(model, input, index);
+}
+
+bool act_difference(explorer_model *model, const explorer_view *view,
+                    explorer_input *input, const char *argument)
+{
+    run_difference *d = &model->difference;
     double tolerance = 0;
     if (strcmp(argument, "off") == 0 || (argument[0] == '\0' && d->on)) {
         d->on = false;
-        return act_tell(st, "the runs themselves");
+        return act_tell(input, "the runs themselves");
     }
-    if (!act_read_number_or(st, argument, "", &tolerance)) {
+    if (!act_read_number_or(input, argument, "", &tolerance)) {
         return false;
     }
-    if (!st->session.has_other) {
-        return act_refuse(st, "there is nothing to subtract: b pins this run first");
+    if (!model->session.has_other) {
+        return act_refuse(input, "there is nothing to subtract: b pins this run first");
     }
     if (tolerance < 0) {
-        return act_refuse(st, "a tolerance is not negative");
+        return act_refuse(input, "a tolerance is not negative");
     }
     d->on = true;
     d->tolerance = tolerance;
-    difference_update(d, state_run_id(st), &st->session.run.trace,
-                      &st->session.other.trace);
+    difference_update(d, model_run_id(model), &model->session.run.trace,
+                      &model->session.other.trace);
 
     // where the first signal of the pane in focus leaves the tolerance
-    const char *name = st->pinned.runs[st->pinned.baseline].name;
-    const int focused = panes_focused(&st->panes);
+    const char *name = model->pinned.runs[model->pinned.baseline].name;
+    const int focused = panes_focused(&view->panes);
     if (focused < 0) {
-        return act_tell(st, "minus '%s'; D shows the runs again", name);
+        return act_tell(input, "minus '%s'; D shows the runs again", name);
     }
-    const int signal = st->panes.pane[focused].signals[0];
+    const int signal = view->panes.pane[focused].signals[0];
     const signal_info *info = &signal_table[signal];
     if (signal_is_derived(signal)) {
         return act_tell(
-            st, "minus '%s', but an expression has no difference; D shows the runs",
+            input, "minus '%s', but an expression has no difference; D shows the runs",
             name);
     }
     if (signal_is_state(signal)) {
         return act_tell(
-            st, "minus '%s', but states such as %s are this run's; D shows the runs",
+            input, "minus '%s', but states such as %s are this run's; D shows the runs",
             name, info->name);
     }
     const double first = difference_first_beyond(d, signal, tolerance);
     if (first < 0) {
-        return act_tell(st, "minus '%s': %s never differs by more than %g %s", name,
+        return act_tell(input, "minus '%s': %s never differs by more than %g %s", name,
                         info->name, tolerance, info->unit);
     }
     return act_tell(
-        st, "minus '%s': %s differs by more than %g %s from %.5f s on; D shows the runs",
+        input,
+        "minus '%s': %s differs by more than %g %s from %.5f s on; D shows the runs",
         name, info->name, tolerance, info->unit, first);
 }
 
@@ -230,16 +256,16 @@ static int signal_of_quantity(int quantity)
     return found;
 }
 
-status act_pin_value(explorer_state *st, const sweep_axis *axis, double value,
+status act_pin_value(explorer_model *model, const sweep_axis *axis, double value,
                      const char *name, fault *f)
 {
-    parameters p = st->session.effective.parameters;
+    parameters p = model->session.effective.parameters;
     char text[PARAMETER_TEXT_SIZE];
     run_origin from;
     session other;
     TRY(sweep_axis_apply(axis, value, &p, f));
     parameter_format(&p, axis->parameter, text, sizeof text);
-    TRY(run_origin_take(&from, &st->session, f));
+    TRY(run_origin_take(&from, &model->session, f));
 
     // the present run's changes, and the value from the start
     status code = session_reopen(&other, &from, HUGE_VAL, f);
@@ -248,7 +274,7 @@ status act_pin_value(explorer_state *st, const sweep_axis *axis, double value,
     session_seek(&other, 0);
     code = session_change_from_start(&other, axis->parameter, text, f);
     if (code == STATUS_OK) {
-        code = run_list_pin(&st->pinned, &other, name, f);
+        code = run_list_pin(&model->pinned, &other, name, f);
     }
     session_finish(&other);
     return code;
@@ -265,11 +291,11 @@ const char *act_whole_path(const char *word, char *text, size_t size)
 }
 
 // The limit that is nearest to the value the run has.
-static int nearest_limit(const explorer_state *st, const sweep_axis *axis,
+static int nearest_limit(const explorer_model *model, const sweep_axis *axis,
                          const solution *found)
 {
     const double value =
-        parameter_get(&st->session.effective.parameters, axis->parameter);
+        parameter_get(&model->session.effective.parameters, axis->parameter);
     int nearest = 0;
     for (int i = 1; i < found->count && axis->element == 0; i++) {
         const double here = fabs(found->limits[i].value - value);
@@ -282,8 +308,9 @@ static int nearest_limit(const explorer_state *st, const sweep_axis *axis,
 
 // Says what was found: the limit that is pinned, and where others are; true if there is
 // one.
-static bool tell_limits(explorer_state *st, const sweep_axis *axis,
-                        const solve_condition *c, const solution *found)
+static bool tell_limits(const explorer_model *model, explorer_input *input,
+                        const sweep_axis *axis, const solve_condition *c,
+                        const solution *found)
 {
     const char *unit = sweep_axis_parameter(axis)->unit;
     const summary_info *quantity = &summary_table[c->quantity];
@@ -291,7 +318,7 @@ static bool tell_limits(explorer_state *st, const sweep_axis *axis,
     if (found->count == 0) {
         const double low = fmin(axis->low, axis->high),
                      high = fmax(axis->low, axis->high);
-        return act_refuse(st,
+        return act_refuse(input,
                           "no limit of %s from %g to %g %s: the %s is as asked in %d "
                           "runs, and not in %d%s%s",
                           axis->name, low, high, unit, quantity->label, found->holding,
@@ -299,7 +326,7 @@ static bool tell_limits(explorer_state *st, const sweep_axis *axis,
                           found->unknown > 0 ? "; first of the others: " : "",
                           found->reason);
     }
-    const int nearest = nearest_limit(st, axis, found);
+    const int nearest = nearest_limit(model, axis, found);
     for (int i = 0; i < found->count; i++) {
         if (i != nearest) {
             text_add(others, sizeof others, "%s%.5g",
@@ -308,26 +335,27 @@ static bool tell_limits(explorer_state *st, const sweep_axis *axis,
         }
     }
     const solve_limit *l = &found->limits[nearest];
-    return act_tell(st, "%s %s = %#.5g%s%s: %#.5g %s%s%s; that run is pinned",
+    return act_tell(input, "%s %s = %#.5g%s%s: %#.5g %s%s%s; that run is pinned",
                     l->holds_below ? "up to" : "from", axis->name, l->value,
                     unit[0] ? " " : "", unit, l->reached, quantity->unit,
                     l->jumps ? ", where it jumps" : "", others);
 }
 
-bool act_solve(explorer_state *st, const char *argument)
+bool act_solve(explorer_model *model, explorer_input *input, const char *argument)
 {
     sweep_axis axis = {0};
     solve_condition condition;
     static solution found;
     char path[LINE_TEXT];
     const char *rest = argument + strcspn(argument, " ");
-    fault *f = &st->fault;
+    fault *f = &input->fault;
     snprintf(path, sizeof path, "%.*s", (int)(rest - argument), argument);
     if (*rest == '\0') {
-        return act_refuse(st, "solve takes a parameter and a condition, such as "
-                              "motor.voltage peak_force_N<2");
+        return act_refuse(input, "solve takes a parameter and a condition, such as "
+                                 "motor.voltage peak_force_N<2");
     }
-    if (!(act_need_whole_run(st) && act_need_short_runs(st, "solve", 2 * SOLVE_POINTS))) {
+    if (!(act_need_whole_run(model, input) &&
+          act_need_short_runs(model, input, "solve", 2 * SOLVE_POINTS))) {
         return false;
     }
 
@@ -335,7 +363,7 @@ bool act_solve(explorer_state *st, const char *argument)
     char whole[2 * LINE_TEXT], name[RUN_NAME];
     act_whole_path(path, whole, sizeof whole);
     status code = solve_condition_read(rest, &condition, f);
-    const scenario *s = &st->session.effective;
+    const scenario *s = &model->session.effective;
     if (code == STATUS_OK) {
         code = solve_axis_read(&axis, whole, s, f);
     }
@@ -343,22 +371,23 @@ bool act_solve(explorer_state *st, const char *argument)
         code = solve(s, &axis, &condition, SOLVE_POINTS, SOLVE_THREADS, NULL, &found, f);
     }
     if (code == STATUS_OK && found.count > 0) {
-        st->limit =
+        model->limit =
             (solved_limit){signal_of_quantity(condition.quantity), condition.bound};
-        const double value = found.limits[nearest_limit(st, &axis, &found)].value;
+        const double value = found.limits[nearest_limit(model, &axis, &found)].value;
         snprintf(name, sizeof name, "%s %.5g", strchr(axis.name, '.') + 1, value);
-        code = act_pin_value(st, &axis, value, name, f);
+        code = act_pin_value(model, &axis, value, name, f);
     }
-    const bool done = act_worked(st, code) && tell_limits(st, &axis, &condition, &found);
+    const bool done =
+        act_worked(input, code) && tell_limits(model, input, &axis, &condition, &found);
     sweep_axis_finish(&axis);
-    return done && act_settle_baseline(st);
+    return done && act_settle_baseline(model, input);
 }
 
 // --- sweeps ----------------------------------------------------------------------------
 
-bool act_continue_sweep(explorer_state *st)
+bool act_continue_sweep(explorer_model *model, explorer_input *input)
 {
-    lab_sweep *sweep = &st->sweep;
+    lab_sweep *sweep = &model->sweep;
 
     // asked again and again: a finished sweep stays as it is
     if (lab_sweep_is_done(sweep)) {
@@ -369,8 +398,8 @@ bool act_continue_sweep(explorer_state *st)
     // in between
     const double begin = clock_seconds(CLOCK_MONOTONIC);
     do {
-        if (!act_worked(st, lab_sweep_compute_next(sweep, &st->session.effective,
-                                                   &st->fault))) {
+        if (!act_worked(input, lab_sweep_compute_next(sweep, &model->session.effective,
+                                                      &input->fault))) {
             return false;
         }
     } while (lab_sweep_is_map(sweep) && !lab_sweep_is_done(sweep) &&
@@ -382,17 +411,19 @@ bool act_continue_sweep(explorer_state *st)
     }
     const char *across = lab_sweep_is_map(sweep) ? " and < >" : "";
     return act_tell(
-        st, "%d runs: arrows%s choose one, Enter opens it, M another metric, Esc ends it",
+        input,
+        "%d runs: arrows%s choose one, Enter opens it, M another metric, Esc ends it",
         sweep->count, across);
 }
 
-bool act_sweep(explorer_state *st, const char *argument)
+bool act_sweep(explorer_model *model, explorer_view *view, explorer_input *input,
+               const char *argument)
 {
-    lab_sweep *sweep = &st->sweep;
+    lab_sweep *sweep = &model->sweep;
     if (strcmp(argument, "off") == 0) {
         lab_sweep_end(sweep);
-        if (st->side.panel == PANEL_SWEEP) {
-            st->side.panel = PANEL_PARAMETERS;
+        if (view->side.panel == PANEL_SWEEP) {
+            view->side.panel = PANEL_PARAMETERS;
         }
         return true;
     }
@@ -401,8 +432,8 @@ bool act_sweep(explorer_state *st, const char *argument)
     // positive
     if (argument[0] == '\0') {
         slider_scale scale = {0};
-        const int parameter = st->parameters.parameter;
-        const parameters p = state_parameters(st);
+        const int parameter = view->parameters.parameter;
+        const parameters p = model_parameters(model);
         const double value = parameter_get(&p, parameter);
         const bool number = slider_scale_of(parameter, value, &scale);
         const char *path = parameter_table[parameter].path, *spacing = "";
@@ -414,43 +445,44 @@ bool act_sweep(explorer_state *st, const char *argument)
             spacing = ":log";
         }
         if (number) {
-            prompt_open(&st->prompt, NULL, "sweep %s=%g:%g:8%s", path, scale.low,
+            prompt_open(&input->prompt, NULL, "sweep %s=%g:%g:8%s", path, scale.low,
                         scale.high, spacing);
         } else {
-            prompt_open(&st->prompt, NULL, "sweep %s=", path);
+            prompt_open(&input->prompt, NULL, "sweep %s=", path);
         }
-        return act_tell(st,
+        return act_tell(input,
                         "first value, last value, number of runs; or values with commas");
     }
 
     // each run is computed while the lab waits, so they must be short
-    if (!(act_need_whole_run(st) && act_need_short_runs(st, "sweep", SWEPT_RUNS) &&
-          act_worked(st, lab_sweep_begin(sweep, argument, &st->fault)))) {
+    if (!(act_need_whole_run(model, input) &&
+          act_need_short_runs(model, input, "sweep", SWEPT_RUNS) &&
+          act_worked(input, lab_sweep_begin(sweep, argument, &input->fault)))) {
         return false;
     }
-    st->side.panel = PANEL_SWEEP;
-    st->difference.on = false;
+    view->side.panel = PANEL_SWEEP;
+    model->difference.on = false;
 
     // with each picture a run, without pictures all
-    bool done = act_continue_sweep(st);
-    while (done && isinf(st->session.patience) && !lab_sweep_is_done(sweep)) {
-        done = act_continue_sweep(st);
+    bool done = act_continue_sweep(model, input);
+    while (done && isinf(model->session.patience) && !lab_sweep_is_done(sweep)) {
+        done = act_continue_sweep(model, input);
     }
     return done;
 }
 
-bool act_metric(explorer_state *st, const char *argument)
+bool act_metric(explorer_model *model, explorer_input *input, const char *argument)
 {
-    lab_sweep *sweep = &st->sweep;
+    lab_sweep *sweep = &model->sweep;
     int metric = summary_find(argument);
     if (argument[0] != '\0' && metric < 0) {
         const char *near = summary_suggest(argument);
         if (near == NULL) {
-            return act_refuse(st, "there is no number '%.60s' of a run's summary",
+            return act_refuse(input, "there is no number '%.60s' of a run's summary",
                               argument);
         }
         return act_refuse(
-            st, "there is no number '%.60s' of a run's summary, did you mean '%s'?",
+            input, "there is no number '%.60s' of a run's summary, did you mean '%s'?",
             argument, near);
     }
 
@@ -471,13 +503,13 @@ bool act_metric(explorer_state *st, const char *argument)
     if (metric >= 0) {
         sweep->metric = metric;
     }
-    return act_tell(st, "%s: %s", summary_table[sweep->metric].label,
+    return act_tell(input, "%s: %s", summary_table[sweep->metric].label,
                     summary_table[sweep->metric].description);
 }
 
-void act_select_swept(explorer_state *st, int direction)
+void act_select_swept(explorer_model *model, int direction)
 {
-    lab_sweep *sweep = &st->sweep;
+    lab_sweep *sweep = &model->sweep;
     const int last = sweep->count - 1, at = sweep->selected + direction;
 
     // the first and the last of a sweep are its ends; in a map there is nothing beyond an

@@ -10,79 +10,84 @@
 // --- pulling the tip -------------------------------------------------------------------
 
 // Brings the spring's force up to date with the tip at the cursor.
-static void follow_tip(explorer_state *st)
+static void follow_tip(const explorer_model *model, explorer_view *view)
 {
-    const session *s = &st->session;
+    const session *s = &model->session;
     plane_vector tip, across;
     recorded_tip(&s->run.trace, &s->effective.parameters.arm, s->row, &tip, &across);
-    st->pull.force = pull_force(&st->pull, tip, across);
+    view->pull.force = pull_force(&view->pull, tip, across);
 }
 
-bool act_hold_tip(explorer_state *st, plane_vector place)
+bool act_hold_tip(explorer_model *model, explorer_view *view, explorer_input *input,
+                  plane_vector place)
 {
-    const session *s = &st->session;
-    tip_pull *p = &st->pull;
+    const session *s = &model->session;
+    tip_pull *p = &view->pull;
     if (s->effective.parameters.arm.model == ARM_PRINTED) {
-        return act_refuse(st, "the printed model knows no pushes: nothing pulls its tip");
+        return act_refuse(input,
+                          "the printed model knows no pushes: nothing pulls its tip");
     }
     if (s->computing != NULL) {
-        return act_refuse(st, "the run is still being computed");
+        return act_refuse(input, "the run is still being computed");
     }
 
     // the run plays as long as the tip is held
-    session_forget_ghost(&st->session);
+    session_forget_ghost(&model->session);
     *p = (tip_pull){.held = true,
                     .x = place.x,
                     .y = place.y,
                     .next = s->now,
-                    .was_playing = st->playback.playing,
+                    .was_playing = view->playback.playing,
                     .gesture = session_new_gesture(s)};
-    st->playback.playing = true;
-    follow_tip(st);
-    return act_tell(st,
+    view->playback.playing = true;
+    follow_tip(model, view);
+    return act_tell(input,
                     "a spring of %g N/m from the tip to the pointer: the run plays while "
                     "it is held",
                     PULL_STIFFNESS);
 }
 
-void act_move_pull(explorer_state *st, plane_vector place)
+void act_move_pull(const explorer_model *model, explorer_view *view, plane_vector place)
 {
-    st->pull.x = place.x;
-    st->pull.y = place.y;
-    follow_tip(st);
+    view->pull.x = place.x;
+    view->pull.y = place.y;
+    follow_tip(model, view);
 }
 
 // Gives the run the pushes that are due until an instant [s], if the tip is held.
-static bool pull_until(explorer_state *st, double time)
+static bool pull_until(explorer_model *model, explorer_view *view, explorer_input *input,
+                       double time)
 {
-    session *s = &st->session;
-    tip_pull *p = &st->pull;
+    session *s = &model->session;
+    tip_pull *p = &view->pull;
     const double end = s->effective.parameters.run.duration;
 
     // a push for each step of the run, as large as the spring's force over it
     while (p->held && p->next <= time && p->next < end && s->computing == NULL) {
         session_seek(s, p->next);
-        follow_tip(st);
-        const status code = session_pull(s, p->force * PULL_STEP, p->gesture, &st->fault);
+        follow_tip(model, view);
+        const status code =
+            session_pull(s, p->force * PULL_STEP, p->gesture, &input->fault);
         if (code != STATUS_OK) {
             p->held = false;
-            return act_worked(st, code);
+            return act_worked(input, code);
         }
         p->next += PULL_STEP;
     }
-    follow_tip(st);
+    follow_tip(model, view);
     return true;
 }
 
-bool act_drop_pull(explorer_state *st)
+bool act_drop_pull(const explorer_model *model, explorer_view *view,
+                   explorer_input *input)
 {
-    tip_pull *p = &st->pull;
+    tip_pull *p = &view->pull;
     if (!p->held) {
         return true;
     }
     p->held = false;
-    st->playback.playing = p->was_playing;
-    return act_tell(st, "pulled until %.4f s, u takes it back", st->session.now);
+    view->playback.playing = p->was_playing;
+    return act_tell(input, "pulled until %.4f s, u takes it back", model->session.now);
 }
 
 // --- time ------------------------------------------------------------------------------
@@ -90,18 +95,19 @@ bool act_drop_pull(explorer_state *st)
 enum { MOST_SLOW = 100 }; // how much slower impacts can be shown
 #define NEW_SHARE 0.1     // of the last measurement in the mean speed
 
-void act_scrub(explorer_state *st, double time)
+void act_scrub(explorer_model *model, explorer_view *view, double time)
 {
     assert(isfinite(time));
-    st->playback.playing = false;
-    session_forget_ghost(&st->session);
-    session_seek(&st->session, time);
+    view->playback.playing = false;
+    session_forget_ghost(&model->session);
+    session_seek(&model->session, time);
 }
 
-bool act_advance(explorer_state *st, double seconds)
+bool act_advance(explorer_model *model, explorer_view *view, explorer_input *input,
+                 double seconds)
 {
-    session *s = &st->session;
-    playback *play = &st->playback;
+    session *s = &model->session;
+    playback *play = &view->playback;
     if (!play->playing || !(seconds > 0)) {
         play->measured = 0;
         return true;
@@ -111,7 +117,7 @@ bool act_advance(explorer_state *st, double seconds)
     const double before = s->now, duration = s->effective.parameters.run.duration;
     play->slowed = playback_slowness(play, &s->run.trace, duration, before);
     const double next = before + seconds * play->speed / play->slowed;
-    if (!pull_until(st, next)) {
+    if (!pull_until(model, view, input, next)) {
         return false;
     }
 
@@ -126,87 +132,89 @@ bool act_advance(explorer_state *st, double seconds)
     if (s->now < session_end(s) || s->computing != NULL) {
         return true;
     }
-    act_drop_pull(st);
+    act_drop_pull(model, view, input);
     play->playing = false;
-    return act_tell_failed_run(st) ||
-           act_tell(st, "end of the run: Space plays it again, x makes it longer, "
-                        "n and N visit its events");
+    return act_tell_failed_run(model, input) ||
+           act_tell(input, "end of the run: Space plays it again, x makes it longer, "
+                           "n and N visit its events");
 }
 
-bool act_play(explorer_state *st, const char *argument)
+bool act_play(explorer_model *model, explorer_view *view, explorer_input *input)
 {
-    (void)argument;
-    session *s = &st->session;
+    session *s = &model->session;
     session_forget_ghost(s);
-    st->playback.playing = !st->playback.playing;
-    const bool at_end = st->playback.playing && s->now >= session_end(s);
+    view->playback.playing = !view->playback.playing;
+    const bool at_end = view->playback.playing && s->now >= session_end(s);
 
     // a run that was stopped there is computed on, a complete one begins again
     if (at_end && session_go_on(s, NULL) != STATUS_OK && s->computing == NULL) {
         session_seek(s, 0);
     }
-    return act_hush(st);
+    return act_hush(input);
 }
 
-bool act_step(explorer_state *st, const char *argument)
+bool act_step(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument)
 {
     double rows = 1;
-    if (!act_read_number_or(st, argument, "", &rows)) {
+    if (!act_read_number_or(input, argument, "", &rows)) {
         return false;
     }
-    st->playback.playing = false;
-    session_step(&st->session, (long)fmax(-1e9, fmin(1e9, rows)));
+    view->playback.playing = false;
+    session_step(&model->session, (long)fmax(-1e9, fmin(1e9, rows)));
     return true;
 }
 
-bool act_tell_event(explorer_state *st)
+bool act_tell_event(explorer_model *model, explorer_input *input)
 {
-    const run_log *log = state_run_log(st);
-    const event *e = session_event(&st->session);
+    const run_log *log = model_run_log(model);
+    const event *e = session_event(&model->session);
 
     // an event with its numbers
     if (e != NULL) {
         const char *name = event_name(e->kind);
         if (e->kind == EVENT_IMPACT) {
-            return act_tell(st, "%s at %.6f s: %.4g N s at %.4g m/s, %.4g J lost", name,
-                            e->time, e->impulse, e->speed, e->loss);
+            return act_tell(input, "%s at %.6f s: %.4g N s at %.4g m/s, %.4g J lost",
+                            name, e->time, e->impulse, e->speed, e->loss);
         }
-        return act_tell(st, "%s at %.6f s", name, e->time);
+        return act_tell(input, "%s at %.6f s", name, e->time);
     }
 
     // else it may be the instant of another mode
     for (size_t i = log->count; i-- > 0;) {
         const log_entry *entry = &log->entries[i];
-        if (entry->event < 0 && entry->time == st->session.now) {
+        if (entry->event < 0 && entry->time == model->session.now) {
             char name[MODE_NAME_SIZE];
-            law_mode_name(state_law_modes(st), entry->mode, name, sizeof name);
-            return act_tell(st, "the controller goes into its mode '%s' at %.6f s", name,
-                            entry->time);
+            law_mode_name(model_law_modes(model), entry->mode, name, sizeof name);
+            return act_tell(input, "the controller goes into its mode '%s' at %.6f s",
+                            name, entry->time);
         }
     }
     return true;
 }
 
-bool act_event(explorer_state *st, const char *argument)
+bool act_event(explorer_model *model, explorer_view *view, explorer_input *input,
+               const char *argument)
 {
     bool back = argument[0] == '-';
-    double time = run_log_next(state_run_log(st), st->session.now, back ? -1 : 1);
-    st->playback.playing = false;
+    double time = run_log_next(model_run_log(model), model->session.now, back ? -1 : 1);
+    view->playback.playing = false;
     if (time < 0) {
-        return act_refuse(st, "no %s event", back ? "earlier" : "later");
+        return act_refuse(input, "no %s event", back ? "earlier" : "later");
     }
-    session_seek(&st->session, time);
-    return act_tell_event(st);
+    session_seek(&model->session, time);
+    return act_tell_event(model, input);
 }
 
 // To the last row before a touch, where a prediction can be compared with what comes.
-bool act_touch(explorer_state *st, const char *argument)
+bool act_touch(explorer_model *model, explorer_view *view, explorer_input *input,
+               const char *argument)
 {
     bool back = argument[0] == '-';
-    const session *s = &st->session;
+    const session *s = &model->session;
     const trace *t = &s->run.trace;
     size_t row = s->row, found = row;
-    st->playback.playing = false;
+    view->playback.playing = false;
 
     // the free row before each contact, the nearest one in the direction wanted
     for (size_t i = 0; i < t->event_count; i++) {
@@ -229,75 +237,77 @@ bool act_touch(explorer_state *st, const char *argument)
         }
     }
     if (found == row) {
-        return act_refuse(st, "no %s touch", back ? "earlier" : "later");
+        return act_refuse(input, "no %s touch", back ? "earlier" : "later");
     }
-    session_step(&st->session, (long)found - (long)row);
+    session_step(&model->session, (long)found - (long)row);
     return act_tell(
-        st, "just before a touch: what would come of it is predicted beside what came");
+        input,
+        "just before a touch: what would come of it is predicted beside what came");
 }
 
-bool act_seek(explorer_state *st, const char *argument)
+bool act_seek(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument)
 {
-    double time = session_end(&st->session);
-    if (!act_read_number_or(st, argument, "end", &time)) {
+    double time = session_end(&model->session);
+    if (!act_read_number_or(input, argument, "end", &time)) {
         return false;
     }
-    act_scrub(st, time);
-    return fabs(st->session.now - time) < 1e-9 ||
-           act_warn(st, "the run goes from 0 to %g s: :extend makes it longer",
-                    session_end(&st->session));
+    act_scrub(model, view, time);
+    return fabs(model->session.now - time) < 1e-9 ||
+           act_warn(input, "the run goes from 0 to %g s: :extend makes it longer",
+                    session_end(&model->session));
 }
 
-bool act_speed(explorer_state *st, const char *argument)
+bool act_speed(explorer_view *view, explorer_input *input, const char *argument)
 {
-    double wanted = st->playback.speed;
+    double wanted = view->playback.speed;
 
     // a step up or down, or the speed itself
     if (strcmp(argument, "up") == 0) {
-        wanted = playback_next_speed(&st->playback, 1);
+        wanted = playback_next_speed(&view->playback, 1);
     } else if (strcmp(argument, "down") == 0) {
-        wanted = playback_next_speed(&st->playback, -1);
-    } else if (!act_read_number(st, argument, &wanted)) {
+        wanted = playback_next_speed(&view->playback, -1);
+    } else if (!act_read_number(input, argument, &wanted)) {
         return false;
     }
 
     // written so that NAN is refused too
     if (!(wanted >= 1e-3 && wanted <= 1e4)) {
-        return act_refuse(st,
+        return act_refuse(input,
                           "the speed is a number from 0.001 to 10000, 1 is real time");
     }
-    st->playback.speed = wanted;
+    view->playback.speed = wanted;
     return true;
 }
 
-bool act_slow(explorer_state *st, const char *argument)
+bool act_slow(explorer_view *view, explorer_input *input, const char *argument)
 {
     double factor = 1;
-    if (!act_read_number_or(st, argument, "off", &factor)) {
+    if (!act_read_number_or(input, argument, "off", &factor)) {
         return false;
     }
     if (!(factor >= 1 && factor <= MOST_SLOW)) {
-        return act_refuse(st, "impacts are shown 1 to %d times slower", MOST_SLOW);
+        return act_refuse(input, "impacts are shown 1 to %d times slower", MOST_SLOW);
     }
-    st->playback.slow = factor;
+    view->playback.slow = factor;
     if (factor > 1) {
-        return act_tell(st, "impacts are shown %g times slower", factor);
+        return act_tell(input, "impacts are shown %g times slower", factor);
     }
-    return act_tell(st, "impacts are shown at the speed of the rest");
+    return act_tell(input, "impacts are shown at the speed of the rest");
 }
 
-bool act_restart(explorer_state *st, const char *argument)
+bool act_restart(explorer_model *model, explorer_view *view, explorer_input *input)
 {
-    (void)argument;
-    session_seek(&st->session, 0);
-    st->session.seen = 0;
-    st->playback.playing = true;
-    return act_hush(st);
+    session_seek(&model->session, 0);
+    model->session.seen = 0;
+    view->playback.playing = true;
+    return act_hush(input);
 }
 
-bool act_wait(explorer_state *st, const char *argument)
+bool act_wait(explorer_model *model, explorer_view *view, explorer_input *input,
+              const char *argument)
 {
     double seconds;
-    return act_read_number(st, argument, &seconds) &&
-           act_advance(st, fmax(0, fmin(3600, seconds)));
+    return act_read_number(input, argument, &seconds) &&
+           act_advance(model, view, input, fmax(0, fmin(3600, seconds)));
 }

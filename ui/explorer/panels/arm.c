@@ -21,17 +21,17 @@ typedef struct stage {
 } stage;
 
 // What the arm sweeps over in the whole run, remembered in *known.
-static void find_extent(const explorer_state *st, arm_extent *known)
+static void find_extent(const explorer_model *model, arm_extent *known)
 {
-    const session *s = &st->session;
+    const session *s = &model->session;
     const trace *t = &s->run.trace;
     const arm_parameters *beam = &s->effective.parameters.arm;
-    const unsigned long run = state_run_id(st);
+    const unsigned long run = model_run_id(model);
     const bool grows = s->computing != NULL;
 
     // what was known of another scenario is not valid
-    if (known->opened != st->opened) {
-        *known = (arm_extent){.opened = st->opened};
+    if (known->opened != model->opened) {
+        *known = (arm_extent){.opened = model->opened};
     }
     if (known->run == run && known->rows == t->row_count && known->whole == !grows) {
         return;
@@ -58,14 +58,14 @@ static void find_extent(const explorer_state *st, arm_extent *known)
             high = fmax(high, y);
         }
     }
-    *known = (arm_extent){st->opened, run, t->row_count, !grows, low, high, most};
+    *known = (arm_extent){model->opened, run, t->row_count, !grows, low, high, most};
 }
 
 // What shows all that the arm sweeps over on a stage of this size [dots or pixels].
-static plan_view whole_view(const explorer_state *st, const arm_extent *extent,
+static plan_view whole_view(const explorer_model *model, const arm_extent *extent,
                             double width, double height)
 {
-    const parameters *p = &st->session.effective.parameters;
+    const parameters *p = &model->session.effective.parameters;
     double length = p->arm.length;
     plan_view v = {.magnified = 1, .width = width, .height = height};
 
@@ -98,13 +98,14 @@ static plan_view whole_view(const explorer_state *st, const arm_extent *extent,
     return v;
 }
 
-int arm_rows(const explorer_state *st, layout *lay, screen_size room)
+int arm_rows(const explorer_model *model, layout *lay, screen_size room)
 {
     enum { LEAST = 14 };
-    find_extent(st, &lay->extent);
+    find_extent(model, &lay->extent);
 
     // what is drawn in true proportion takes its height, and the force an arrow
-    const plan_view v = whole_view(st, &lay->extent, 2.0 * room.width, 4.0 * room.height);
+    const plan_view v =
+        whole_view(model, &lay->extent, 2.0 * room.width, 4.0 * room.height);
     const double spread = (lay->extent.highest - lay->extent.lowest) * v.scale / 4;
     const int wanted = lay->extent.most_angle > 0.8 ? room.height : 6 + (int)spread;
     if (wanted < LEAST) {
@@ -123,9 +124,9 @@ static const trace *other_run(const session *e)
 }
 
 // Where the tip is at the cursor, as it was recorded [m].
-static plane_vector tip_of(const explorer_state *st)
+static plane_vector tip_of(const explorer_model *model)
 {
-    const session *e = &st->session;
+    const session *e = &model->session;
     plane_vector tip, across;
     recorded_tip(&e->run.trace, &e->effective.parameters.arm, e->row, &tip, &across);
     return tip;
@@ -134,13 +135,13 @@ static plane_vector tip_of(const explorer_state *st)
 // --- as dots ---------------------------------------------------------------------------
 
 // The links of a recorded row as a line of dots, or a line two dots thick.
-static void draw_links(const explorer_state *st, const stage *g, const trace *t,
-                       double time, ink in, bool dotted)
+static void draw_links(const explorer_model *model, const explorer_view *view,
+                       const stage *g, const trace *t, double time, ink in, bool dotted)
 {
-    const parameters *p = &st->session.effective.parameters;
+    const parameters *p = &model->session.effective.parameters;
     vector joints[PARAMETER_LINKS_MOST + 1];
     scene_joints(t, p, time, joints);
-    scene_exaggerate(joints, p->arm.links, st->looks.bending);
+    scene_exaggerate(joints, p->arm.links, view->looks.bending);
 
     // one link after the other
     for (int i = 0; i < p->arm.links; i++) {
@@ -226,40 +227,42 @@ static void draw_force(const stage *v, plane_vector tip, double force, double pe
 }
 
 // From the back to the front: wall, kept run, arm, force.
-static void draw_dots(const explorer_state *st, const stage *g)
+static void draw_dots(const explorer_model *model, const explorer_view *view,
+                      const stage *g)
 {
-    const session *e = &st->session;
+    const session *e = &model->session;
     const sample *row = session_sample(e);
     draw_wall(g, &e->effective.parameters, row);
     if (other_run(e) != NULL) {
-        draw_links(st, g, other_run(e), e->now, INK_OTHER, true);
+        draw_links(model, view, g, other_run(e), e->now, INK_OTHER, true);
     }
     draw_hub(g, row->hub_angle);
-    draw_links(st, g, &e->run.trace, e->now, INK_ARM, false);
-    const plane_vector tip = tip_of(st);
-    if (st->pull.held) {
-        draw_line(g, tip.x, tip.y, st->pull.x, st->pull.y, INK_FORCE);
+    draw_links(model, view, g, &e->run.trace, e->now, INK_ARM, false);
+    const plane_vector tip = tip_of(model);
+    if (view->pull.held) {
+        draw_line(g, tip.x, tip.y, view->pull.x, view->pull.y, INK_FORCE);
     }
     draw_force(g, tip, row->contact != 0 ? row->force : 0, e->run.summary.peak_force_N);
 }
 
 // --- as pixels -------------------------------------------------------------------------
 
-static void draw_pixels(const explorer_state *st, const stage *g)
+static void draw_pixels(const explorer_model *model, const explorer_view *view,
+                        const stage *g)
 {
-    const session *e = &st->session;
+    const session *e = &model->session;
     const screen *s = g->canvas.screen;
     const rgb ground = s->pictures->ground;
-    const colour_theme theme = st->looks.theme;
+    const colour_theme theme = view->looks.theme;
     const plan p = {.rows = &e->run.trace,
                     .parameters = &e->effective.parameters,
                     .time = e->now,
                     .other = other_run(e),
-                    .exaggerate = st->looks.bending,
+                    .exaggerate = view->looks.bending,
                     .peak = e->run.summary.peak_force_N,
-                    .pulled = st->pull.held,
-                    .pull_x = st->pull.x,
-                    .pull_y = st->pull.y,
+                    .pulled = view->pull.held,
+                    .pull_x = view->pull.x,
+                    .pull_y = view->pull.y,
                     .colours = {.ground = {ground.red / 255.0, ground.green / 255.0,
                                            ground.blue / 255.0},
                                 .arm = picture_colour(s, theme, INK_ARM),
@@ -284,35 +287,37 @@ static stage plan_stage(screen *s, area a)
 }
 
 // Draws on it, in pixels where the screen has any.
-static void draw_stage(const explorer_state *st, stage *g)
+static void draw_stage(const explorer_model *model, const explorer_view *view, stage *g)
 {
     const canvas *c = &g->canvas;
     g->picture = picture_begin(c->screen, c->x, c->y, c->width, c->height);
     if (g->picture != NULL) {
-        draw_pixels(st, g);
+        draw_pixels(model, view, g);
         picture_end(c->screen, g->picture);
     } else if (c->screen->pictures == NULL) {
-        draw_dots(st, g);
+        draw_dots(model, view, g);
     }
 }
 
 // The contact from near by, in a frame of its own.
-static void draw_close_up(const explorer_state *st, screen *s, area a)
+static void draw_close_up(const explorer_model *model, const explorer_view *view,
+                          screen *s, area a)
 {
     char title[LINE_TEXT];
     stage g = plan_stage(s, a);
     g.view =
-        plan_close_up(&st->session.effective.parameters, g.view.width, g.view.height);
+        plan_close_up(&model->session.effective.parameters, g.view.width, g.view.height);
     snprintf(title, sizeof title, "tip, %.3g mm", 1e3 * g.view.width / g.view.scale);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
-    draw_stage(st, &g);
+    draw_stage(model, view, &g);
 }
 
 // Texts about the arm: the force next to the tip, and the state of the hub.
-static void draw_words(const explorer_state *st, const stage *g, area a)
+static void draw_words(const explorer_model *model, const explorer_view *view,
+                       const stage *g, area a)
 {
-    const sample *row = session_sample(&st->session);
-    const plane_vector tip = tip_of(st);
+    const sample *row = session_sample(&model->session);
+    const plane_vector tip = tip_of(model);
     screen *s = g->canvas.screen;
     const double across = g->view.width / g->canvas.width,
                  down = g->view.height / g->canvas.height;
@@ -321,25 +326,26 @@ static void draw_words(const explorer_state *st, const stage *g, area a)
     if (row->contact != 0 && row->force > 0 && y > a.y) {
         screen_print(s, x - 11, y, 9, INK_FORCE, "%7.3f N", row->force);
     }
-    if (st->session.effective.parameters.wall.kind != WALL_NONE && s->pictures == NULL &&
-        a.height >= 9 && a.width >= 40) {
+    if (model->session.effective.parameters.wall.kind != WALL_NONE &&
+        s->pictures == NULL && a.height >= 9 && a.width >= 40) {
         screen_text(s, a.x + a.width - 18, a.y + a.height - 2, 17, INK_WALL,
                     "\u25c6 contact point");
     }
-    if (st->pull.held) {
+    if (view->pull.held) {
         screen_print(s, a.x + 14, a.y + a.height - 2, a.width - 34, INK_FORCE,
-                     "pulled with %.3g N", st->pull.force);
+                     "pulled with %.3g N", view->pull.force);
     }
     if (row->sticking != 0) {
         screen_text(s, a.x + 2, a.y + a.height - 2, 12, INK_DIM, "hub sticks");
     }
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area a)
 {
-    const parameters *p = &st->session.effective.parameters;
+    const parameters *p = &model->session.effective.parameters;
     char title[LINE_TEXT] = "arm";
-    find_extent(st, &lay->extent);
+    find_extent(model, &lay->extent);
 
     // a frame without room for anything in it
     if (a.width < LEAST_FRAME || a.height < LEAST_FRAME) {
@@ -347,26 +353,26 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     }
 
     // the contact from near by takes a third
-    const bool wanted = st->looks.close_up == CLOSE_UP_ON ||
-                        (st->looks.close_up == CLOSE_UP_AUTO && s->pictures != NULL);
+    const bool wanted = view->looks.close_up == CLOSE_UP_ON ||
+                        (view->looks.close_up == CLOSE_UP_AUTO && s->pictures != NULL);
     if (wanted && a.width >= CLOSE_UP_FROM && p->wall.kind != WALL_NONE) {
         const int width = a.width / 3;
         a.width -= width;
-        draw_close_up(st, s, (area){a.x + a.width, a.y, width, a.height});
+        draw_close_up(model, view, s, (area){a.x + a.width, a.y, width, a.height});
     }
 
     // the title says how it is drawn
     stage g = plan_stage(s, a);
-    g.view = whole_view(st, &lay->extent, g.view.width, g.view.height);
+    g.view = whole_view(model, &lay->extent, g.view.width, g.view.height);
     if (g.view.magnified != 1) {
         text_add(title, sizeof title, ", drawn %g times as high", g.view.magnified);
     }
-    if (st->looks.bending != 1) {
-        text_add(title, sizeof title, ", bent %g times", st->looks.bending);
+    if (view->looks.bending != 1) {
+        text_add(title, sizeof title, ", bent %g times", view->looks.bending);
     }
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
-    draw_stage(st, &g);
-    draw_words(st, &g, a);
+    draw_stage(model, view, &g);
+    draw_words(model, view, &g, a);
 
     // for the mouse
     const canvas *c = &g.canvas;
@@ -386,24 +392,25 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 // --- the mouse -------------------------------------------------------------------------
 
 // A press near the tip takes hold of it.
-static bool point(explorer_state *st, const panel_gesture *g)
+static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const panel_gesture *g)
 {
     enum { NEAR_ACROSS = 4, NEAR_DOWN = 2 }; // [cells]
     int x, y;
-    const arm_stage *drawn = &st->drawn.stage;
+    const arm_stage *drawn = &view->drawn.stage;
     const pointer_event e = g->event;
     if (drawn->width < 1 || drawn->height < 1 || pointer_wheel(e) != 0) {
         return false;
     }
     const plane_vector place = stage_place(drawn, e.x, e.y);
-    stage_cell(drawn, tip_of(st), &x, &y);
+    stage_cell(drawn, tip_of(model), &x, &y);
     const bool near = abs(x - e.x) <= NEAR_ACROSS && abs(y - e.y) <= NEAR_DOWN;
     if (e.kind == POINTER_PRESS && near) {
-        act_hold_tip(st, place);
-    } else if (e.kind == POINTER_DRAG && st->pull.held) {
-        act_move_pull(st, place);
+        act_hold_tip(model, view, input, place);
+    } else if (e.kind == POINTER_DRAG && view->pull.held) {
+        act_move_pull(model, view, place);
     } else if (e.kind == POINTER_RELEASE) {
-        act_drop_pull(st);
+        act_drop_pull(model, view, input);
     }
     return true;
 }

@@ -16,38 +16,41 @@ const panel *panel_of(panel_id id)
     return panels[id];
 }
 
-void panel_draw(panel_id id, const explorer_state *st, layout *lay, screen *s, area a)
+void panel_draw(panel_id id, const explorer_model *model, const explorer_view *view,
+                layout *lay, screen *s, area a)
 {
     const panel *p = panel_of(id);
     if (p->list != NULL) {
-        list_draw(p->list, st, lay, s, a);
+        list_draw(p->list, model, view, lay, s, a);
     } else {
-        p->draw(st, lay, s, a);
+        p->draw(model, view, lay, s, a);
     }
 }
 
-bool panel_key(explorer_state *st, int key)
+bool panel_key(explorer_model *model, explorer_view *view, explorer_input *input, int key)
 {
-    const panel *p = panel_of(st->page);
+    const panel *p = panel_of(view->page);
     if (p->list != NULL) {
-        return list_key_pressed(p->list, st, key);
+        return list_key_pressed(p->list, model, view, input, key);
     }
-    return p->key(st, key);
+    return p->key(model, view, input, key);
 }
 
 // A step of the wheel on a page presses its keys for up and down.
-static void turn_page(explorer_state *st, int wheel)
+static void turn_page(explorer_model *model, explorer_view *view, explorer_input *input,
+                      int wheel)
 {
     int key = KEY_CODE_DOWN;
     if (wheel < 0) {
         key = KEY_CODE_UP;
     }
-    for (int i = 0; i < WHEEL_LINES && st->page != PANEL_NONE; i++) {
-        panel_key(st, key);
+    for (int i = 0; i < WHEEL_LINES && view->page != PANEL_NONE; i++) {
+        panel_key(model, view, input, key);
     }
 }
 
-bool panel_point(explorer_state *st, const panel_gesture *g)
+bool panel_point(explorer_model *model, explorer_view *view, explorer_input *input,
+                 const panel_gesture *g)
 {
     const panel_id id = g->hit.panel;
     if (id == PANEL_NONE) {
@@ -58,17 +61,17 @@ bool panel_point(explorer_state *st, const panel_gesture *g)
     const panel *p = panel_of(id);
     const int wheel = pointer_wheel(g->event);
     if (wheel != 0 && p->wheel != 0) {
-        st->drawn.scroll[id] += p->wheel * wheel;
+        view->drawn.scroll[id] += p->wheel * wheel;
         return true;
     }
     if (wheel != 0 && panel_place_of(id) == PLACE_PAGE) {
-        turn_page(st, wheel);
+        turn_page(model, view, input, wheel);
         return true;
     }
 
     // all else is the panel's
     if (p->list != NULL) {
-        return list_point(p->list, st, g);
+        return list_point(p->list, model, view, g);
     }
-    return p->point != NULL && p->point(st, g);
+    return p->point != NULL && p->point(model, view, input, g);
 }

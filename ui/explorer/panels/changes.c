@@ -2,10 +2,10 @@
 // instant.
 #include "ui/explorer/panels/panel.h"
 
-static void draw_change(const explorer_state *st, screen *s, area a, int index)
+static void draw_change(const explorer_model *model, screen *s, area a, int index)
 {
-    const session_input *in = &st->session.inputs[index];
-    const bool later = in->kind != SESSION_INPUT_START && in->time > st->session.now;
+    const session_input *in = &model->session.inputs[index];
+    const bool later = in->kind != SESSION_INPUT_START && in->time > model->session.now;
     const ink colour = later ? INK_DIM : INK_TEXT;
     char text[LINE_TEXT], when[32] = "from the start";
 
@@ -15,27 +15,60 @@ static void draw_change(const explorer_state *st, screen *s, area a, int index)
     }
 
     // what is still to come is hollow and dim
-    state_change_text(st, index, text, sizeof text);
+    model_change_text(model, index, text, sizeof text);
     screen_print(s, a.x, a.y, 5, INK_DIM, "%3d %s", index + 1,
                  later ? "\u25cb" : "\u25cf");
     screen_text(s, a.x + 6, a.y, 15, colour, when);
     screen_text(s, a.x + 22, a.y, a.width - 22, colour, text);
 }
 
-static void draw_rest(const explorer_state *st, screen *s, area a)
+static void draw_rest(const explorer_model *model, screen *s, area a)
 {
     screen_text(s, a.x, a.y + a.height - 1, a.width, INK_DIM,
-                st->session.input_count > 0
+                model->session.input_count > 0
                     ? "\u25cb takes effect after the cursor"
                     : "none yet: Enter changes a value, p pushes");
 }
 
-static bool go_there(explorer_state *st, const char *number)
+static int count(const explorer_model *model)
 {
-    (void)number;
-    if (st->change < st->session.input_count) {
-        act_scrub(st, st->session.inputs[st->change].time);
+    return model->session.input_count;
+}
+
+static int selected(const explorer_model *model, const explorer_view *view)
+{
+    (void)model;
+    return view->change;
+}
+
+static void select_change(explorer_model *model, explorer_view *view, int index)
+{
+    (void)model;
+    view->change = index;
+}
+
+static bool press_key(explorer_model *model, explorer_view *view, explorer_input *input,
+                      int key, int index)
+{
+    switch (key) {
+    case KEY_CODE_ENTER:
+        return act_edit_change(model, view, input, index);
+    case 'd':
+    case 'x':
+    case KEY_CODE_DELETE:
+        return act_drop_change(model, view, input, index);
+    case 'u':
+        return act_undo(model, view, input);
+    case 'U':
+    case 'r' & 0x1f:
+        return act_redo(model, view, input);
+    case 'g':
+        if (index < model->session.input_count) {
+            act_scrub(model, view, model->session.inputs[index].time);
+        }
+        break;
     }
+    view->page = PANEL_NONE;
     return true;
 }
 
@@ -45,17 +78,11 @@ static const page_list list = {
     .width = 76,
     .foot = 1,
     .least = 1,
-    .count = offsetof(explorer_state, session.input_count),
-    .selected = offsetof(explorer_state, change),
+    .count = count,
+    .selected = selected,
+    .select = select_change,
     .draw_line = draw_change,
     .draw_rest = draw_rest,
-    .keys = {{KEY_CODE_ENTER, act_change},
-             {'d', act_drop},
-             {'x', act_drop},
-             {KEY_CODE_DELETE, act_drop},
-             {'u', act_undo},
-             {'U', act_redo},
-             {'r' & 0x1f, act_redo},
-             {'g', go_there, true}}};
+    .key = press_key};
 
 const panel changes_panel = {.name = "changes", .list = &list};

@@ -7,9 +7,9 @@
 
 // --- the lines above and below the panels ----------------------------------------------
 
-static void draw_title(const explorer_state *st, screen *s)
+static void draw_title(const explorer_model *model, screen *s)
 {
-    const session *e = &st->session;
+    const session *e = &model->session;
     char changes[64] = "";
 
     // how many changes, and those that are to come
@@ -83,9 +83,10 @@ static void draw_bar(screen *s, int y, int room, int always, ink colour,
 }
 
 // Fills the items from left to right; returns how many.
-static int write_status(const explorer_state *st, bar_item items[BAR_ITEMS])
+static int write_status(const explorer_model *model, const explorer_view *view,
+                        bar_item items[BAR_ITEMS])
 {
-    const session *e = &st->session;
+    const session *e = &model->session;
     const sample *row = session_sample(e);
     const parameters *p = &e->effective.parameters;
     const status ended = e->run.summary.status;
@@ -101,7 +102,7 @@ static int write_status(const explorer_state *st, bar_item items[BAR_ITEMS])
         }
     }
     const char *state;
-    if (st->playback.playing) {
+    if (view->playback.playing) {
         if (old) {
             state = "replaying";
         } else {
@@ -113,13 +114,13 @@ static int write_status(const explorer_state *st, bar_item items[BAR_ITEMS])
         state = "paused";
     }
     const bool has_law = p->control.law != LAW_NONE;
-    char model[64], speed[32] = "";
+    char equations[64], speed[32] = "";
     int n = 0;
-    parameter_format(p, PARAMETER_INDEX(arm.model), model, sizeof model);
-    if (st->playback.playing) {
-        const bool slowed = st->playback.slowed > 1.05;
+    parameter_format(p, PARAMETER_INDEX(arm.model), equations, sizeof equations);
+    if (view->playback.playing) {
+        const bool slowed = view->playback.slowed > 1.05;
         snprintf(speed, sizeof speed, slowed ? " slow motion (%.2g)" : " (%.3g)",
-                 st->playback.measured);
+                 view->playback.measured);
     }
 
     // each part with what it is worth where not all fit
@@ -129,7 +130,7 @@ static int write_status(const explorer_state *st, bar_item items[BAR_ITEMS])
         snprintf(items[n].text, sizeof items[n].text, __VA_ARGS__);                      \
         n++;                                                                             \
     } while (0)
-    ITEM(0, "%s %-9s", st->playback.playing ? "\u25b6" : "\u2016", state);
+    ITEM(0, "%s %-9s", view->playback.playing ? "\u25b6" : "\u2016", state);
     if (e->computing != NULL) {
         ITEM(2, "computing %.1f of %g s (Esc stops)", session_end(e), p->run.duration);
     }
@@ -138,42 +139,43 @@ static int write_status(const explorer_state *st, bar_item items[BAR_ITEMS])
     }
     ITEM(1, "t %.5f s", e->now);
     ITEM(5, "row %zu/%zu", e->row + 1, e->run.trace.row_count);
-    ITEM(3, "\u00d7%g%s", st->playback.speed, speed);
-    ITEM(4, "%.40s%s%.38s", model, has_law ? ", " : "",
+    ITEM(3, "\u00d7%g%s", view->playback.speed, speed);
+    ITEM(4, "%.40s%s%.38s", equations, has_law ? ", " : "",
          has_law ? control_law_table[p->control.law].word : "");
     ITEM(2, "%s%s", row->contact != 0 ? "in contact" : "free flight",
          row->sticking != 0 ? ", hub sticks" : "");
-    if (st->mark.set) {
-        ITEM(3, "from mark %.5g s", e->now - st->mark.time);
+    if (view->mark.set) {
+        ITEM(3, "from mark %.5g s", e->now - view->mark.time);
     }
 #undef ITEM
     return n;
 }
 
-static void draw_status(const explorer_state *st, screen *s, int y)
+static void draw_status(const explorer_model *model, const explorer_view *view, screen *s,
+                        int y)
 {
     bar_item items[BAR_ITEMS];
-    const int count = write_status(st, items);
+    const int count = write_status(model, view, items);
     draw_bar(s, y, s->width, 2, INK_TEXT, items, count);
 
     // what went wrong colours the bar
-    const summary *m = &st->session.run.summary;
+    const summary *m = &model->session.run.summary;
     bool failed = m->status != STATUS_OK || m->inaccurate;
     screen_tint(s, 0, y, s->width, 1,
-                failed && !st->playback.playing ? INK_WARNING : INK_SELECTED);
+                failed && !view->playback.playing ? INK_WARNING : INK_SELECTED);
 }
 
 // --- the bottom ------------------------------------------------------------------------
 
 // The message in as many rows above `below` as it takes, a few at most; returns how many.
-static int draw_message(const explorer_state *st, screen *s, int below, ink shade)
+static int draw_message(const explorer_input *input, screen *s, int below, ink shade)
 {
     enum { MOST = 3 };
     text_line lines[MOST];
-    const int count = text_wrap(st->message.text, s->width - 2, lines, MOST, NULL);
+    const int count = text_wrap(input->message.text, s->width - 2, lines, MOST, NULL);
     for (int i = 0, y = below - count; i < count; i++, y++) {
         blank_row(s, y);
-        if (i == MOST - 1 && !st->prompt.open) {
+        if (i == MOST - 1 && !input->prompt.open) {
             screen_words(s, 1, y, s->width - 2, shade, lines[i].start);
         } else {
             screen_print(s, 1, y, s->width - 2, shade, "%.*s", lines[i].bytes,
@@ -184,10 +186,10 @@ static int draw_message(const explorer_state *st, screen *s, int below, ink shad
 }
 
 // The end of the prompt if it is wider than the screen, and what was said about it.
-static int draw_prompt(const explorer_state *st, screen *s)
+static int draw_prompt(const explorer_input *input, screen *s)
 {
-    const prompt *p = &st->prompt;
-    const char *text = p->text, *said = st->message.text;
+    const prompt *p = &input->prompt;
+    const char *text = p->text, *said = input->message.text;
     int y = s->height - 1, room = s->width - 2, over = text_cells(text) - (room - 1);
     for (int i = 0; i < over; i++) {
         glyph_decode(&text);
@@ -203,14 +205,14 @@ static int draw_prompt(const explorer_state *st, screen *s)
         screen_tint(s, x - value, y, value, 1, INK_SELECTED);
     }
     if (x + 4 + text_cells(said) > s->width) {
-        return 1 + draw_message(st, s, y, INK_DIM);
+        return 1 + draw_message(input, s, y, INK_DIM);
     }
     screen_text(s, x + 3, y, s->width - x - 3, INK_DIM, said);
     return 1;
 }
 
 // What the most wanted keys do, as many as there is room for; the last two always.
-static void draw_hints(const explorer_state *st, screen *s)
+static void draw_hints(const explorer_view *view, screen *s)
 {
     static const struct {
         const char *command, *does;
@@ -227,7 +229,7 @@ static void draw_hints(const explorer_state *st, screen *s)
     // the first key of each, and what it does
     for (int i = 0; i < HINTS; i++) {
         char keys[64];
-        key_names_of(&st->keys, hints[i].command, keys, sizeof keys);
+        key_names_of(&view->keys, hints[i].command, keys, sizeof keys);
         // as long as the key is the explorer's own there is a shorter way to say it
         const char *brief = "\u25c0 \u25b6";
         if (strncmp(keys, "Right l Left", 12) != 0) {
@@ -250,25 +252,25 @@ static void draw_hints(const explorer_state *st, screen *s)
 }
 
 // Draws the prompt, the message or hints in the last rows and returns how many it took.
-static int draw_bottom(const explorer_state *st, screen *s)
+static int draw_bottom(const explorer_view *view, const explorer_input *input, screen *s)
 {
     const int y = s->height - 1;
     int rows = 1;
-    if (st->prompt.open) {
-        rows = draw_prompt(st, s);
-    } else if (st->filters.typing != PANEL_NONE) {
+    if (input->prompt.open) {
+        rows = draw_prompt(input, s);
+    } else if (view->filters.typing != PANEL_NONE) {
         blank_row(s, y);
         int x = screen_print(s, 0, y, s->width - 2, INK_TITLE, "/%s",
-                             st->filters.text[st->filters.typing]);
+                             view->filters.text[view->filters.typing]);
         screen_put(s, x, y, ' ', INK_SELECTED);
         screen_text(s, x + 3, y, s->width - x - 3, INK_DIM,
                     "filters by words and their parts; Enter takes, Esc shows all");
-    } else if (st->message.text[0] == '\0') {
-        draw_hints(st, s);
+    } else if (input->message.text[0] == '\0') {
+        draw_hints(view, s);
     } else {
         // a long message covers some of the panels until the next key
-        rows =
-            draw_message(st, s, s->height, st->message.warning ? INK_WARNING : INK_TEXT);
+        rows = draw_message(input, s, s->height,
+                            input->message.warning ? INK_WARNING : INK_TEXT);
     }
     if (rows < 1) {
         return 1;
@@ -330,7 +332,7 @@ static int side_width(int screen_width)
 
 // Folds panels of the stack until the chosen one has enough of the rows, of which it has
 // `left`: first those without anything to show. Returns the rows that it has then.
-static int fold_stack(const explorer_state *st, layout *lay, int rows[PANEL_IDS],
+static int fold_stack(const explorer_model *model, layout *lay, int rows[PANEL_IDS],
                       int left)
 {
     enum {
@@ -343,7 +345,7 @@ static int fold_stack(const explorer_state *st, layout *lay, int rows[PANEL_IDS]
         rows_of_all += rows[id];
     }
     const int enough = rows_of_all < SHORT ? LITTLE : ENOUGH;
-    const bool log_is_empty = st->log.count == 0 || st->session.seen <= 0;
+    const bool log_is_empty = model->log.count == 0 || model->session.seen <= 0;
     const panel_id order[] = {log_is_empty ? PANEL_LOG : PANEL_NONE, PANEL_PREDICTORS,
                               PANEL_CONTROLLER, PANEL_LOG, PANEL_RUNS};
     for (size_t i = 0; i < sizeof order / sizeof order[0] && left < enough; i++) {
@@ -372,18 +374,20 @@ static void draw_tabs(const layout *lay, screen *s, area a)
 }
 
 // The right side: the selected panel, and below it all that have room.
-static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw_stack(const explorer_model *model, const explorer_view *view,
+                       layout *lay, screen *s, area a)
 {
     const screen_size body = {s->width, a.height};
     int rows[PANEL_IDS] = {0}, left = a.height;
 
     // the rows of those below; the chosen one gets what they leave, and of some all where
     // it has more to show than they have
-    const bool much = st->side.panel == PANEL_SWEEP || st->side.panel == PANEL_STATISTICS;
+    const bool much =
+        view->side.panel == PANEL_SWEEP || view->side.panel == PANEL_STATISTICS;
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         const panel *p = panel_of((panel_id)id);
-        if (panel_place_of((panel_id)id) == PLACE_STACK && id != (int)st->side.panel) {
-            rows[id] = p->rows(st, body);
+        if (panel_place_of((panel_id)id) == PLACE_STACK && id != (int)view->side.panel) {
+            rows[id] = p->rows(model, view, body);
             lay->drawn.folded[id] = rows[id] > 0 && much &&
                                     (id == PANEL_CONTROLLER || id == PANEL_PREDICTORS);
             if (lay->drawn.folded[id]) {
@@ -392,45 +396,46 @@ static void draw_stack(const explorer_state *st, layout *lay, screen *s, area a)
             left -= rows[id];
         }
     }
-    area at = {a.x, a.y, a.width, fold_stack(st, lay, rows, left)};
-    panel_draw(st->side.panel, st, lay, s, at);
+    area at = {a.x, a.y, a.width, fold_stack(model, lay, rows, left)};
+    panel_draw(view->side.panel, model, view, lay, s, at);
     draw_tabs(lay, s, at);
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         at.y += at.height;
         at.height = rows[id];
         if (rows[id] > 0) {
-            panel_draw((panel_id)id, st, lay, s, at);
+            panel_draw((panel_id)id, model, view, lay, s, at);
         }
     }
 }
 
-static void draw_panels(const explorer_state *st, layout *lay, screen *s, area body)
+static void draw_panels(const explorer_model *model, const explorer_view *view,
+                        layout *lay, screen *s, area body)
 {
     // the lesson takes its rows from all others
     const panel *strip = panel_of(PANEL_LESSON);
-    const int taken = strip->rows(st, (screen_size){s->width, body.height});
+    const int taken = strip->rows(model, view, (screen_size){s->width, body.height});
     if (taken > 0) {
-        panel_draw(PANEL_LESSON, st, lay, s, (area){0, body.y, s->width, taken});
+        panel_draw(PANEL_LESSON, model, view, lay, s, (area){0, body.y, s->width, taken});
         body.y += taken;
         body.height -= taken;
     }
     int right = side_width(s->width), left = s->width - right;
     int top = body.height >= 20 ? body.height * 2 / 5 : body.height / 2;
-    const int arm = arm_rows(st, lay, (screen_size){left, top});
+    const int arm = arm_rows(model, lay, (screen_size){left, top});
     if (top > arm) {
         top = arm;
     }
-    panel_draw(PANEL_ARM, st, lay, s, (area){body.x, body.y, left, top});
+    panel_draw(PANEL_ARM, model, view, lay, s, (area){body.x, body.y, left, top});
 
     // on a narrow screen the side takes the place of the curves
     area below = {body.x, body.y + top, left, body.height - top};
-    if (right == 0 && st->side.in_front) {
-        draw_stack(st, lay, s, below);
+    if (right == 0 && view->side.in_front) {
+        draw_stack(model, view, lay, s, below);
     } else {
-        panel_draw(PANEL_CURVES, st, lay, s, below);
+        panel_draw(PANEL_CURVES, model, view, lay, s, below);
     }
     if (right > 0) {
-        draw_stack(st, lay, s, (area){left, body.y, right, body.height});
+        draw_stack(model, view, lay, s, (area){left, body.y, right, body.height});
     }
 }
 
@@ -439,13 +444,14 @@ bool compose_fits(screen_size size)
     return size.width >= LEAST_WIDTH && size.height >= LEAST_HEIGHT;
 }
 
-void compose_screen(const explorer_state *st, layout *lay, screen *s)
+void compose_screen(const explorer_model *model, const explorer_view *view,
+                    const explorer_input *input, layout *lay, screen *s)
 {
     screen_clear(s);
     pictures_clear(s);
     lay->hit_count = 0;
     lay->plot = (area){0};
-    lay->drawn = st->drawn;
+    lay->drawn = view->drawn;
     lay->drawn.stage = (arm_stage){0};
     memset(lay->drawn.folded, 0, sizeof lay->drawn.folded);
     if (!compose_fits((screen_size){s->width, s->height})) {
@@ -455,15 +461,15 @@ void compose_screen(const explorer_state *st, layout *lay, screen *s)
 
     // title, panels, what has opened over them, prompt, status
     const area body = {0, 1, s->width, s->height - 3};
-    draw_title(st, s);
-    draw_panels(st, lay, s, body);
-    if (st->page != PANEL_NONE) {
-        panel_draw(st->page, st, lay, s, body);
+    draw_title(model, s);
+    draw_panels(model, view, lay, s, body);
+    if (view->page != PANEL_NONE) {
+        panel_draw(view->page, model, view, lay, s, body);
     }
-    int rows = draw_bottom(st, s);
-    draw_status(st, s, s->height - 1 - rows);
-    if (palette_shows(&st->prompt)) {
+    int rows = draw_bottom(view, input, s);
+    draw_status(model, view, s, s->height - 1 - rows);
+    if (palette_shows(&input->prompt)) {
         const area above = {0, 1, s->width, s->height - 2 - rows};
-        panel_draw(PANEL_PALETTE, st, lay, s, above);
+        draw_palette(view, &input->prompt, lay, s, above);
     }
 }

@@ -10,9 +10,9 @@ enum { TALL = 10, BRIEF = 7 }; // rows of the panel [cells]
 
 // The modes in a line, the present one in brackets; where not all fit, those up to the
 // present one.
-static void draw_modes(const explorer_state *st, screen *s, area a, double present)
+static void draw_modes(const explorer_model *model, screen *s, area a, double present)
 {
-    const law_modes *m = &st->modes;
+    const law_modes *m = &model->modes;
     int first = 0, width = -1,
         last = present >= 0 && present < m->count ? (int)present : 0;
 
@@ -37,18 +37,19 @@ static void draw_modes(const explorer_state *st, screen *s, area a, double prese
     }
 }
 
-static void draw_lock(const explorer_state *st, screen *s, area a)
+static void draw_lock(const explorer_model *model, const explorer_view *view, screen *s,
+                      area a)
 {
     char next[64], off[64];
-    parameters p = state_parameters(st);
+    parameters p = model_parameters(model);
 
     // the first key of each, where several do the same
-    key_names_of(&st->keys, "lock next", next, sizeof next);
-    key_names_of(&st->keys, "lock off", off, sizeof off);
+    key_names_of(&view->keys, "lock next", next, sizeof next);
+    key_names_of(&view->keys, "lock off", off, sizeof off);
     next[strcspn(next, " ")] = off[strcspn(off, " ")] = '\0';
 
     // what holds now, with the key that changes it
-    if (!st->modes.lockable) {
+    if (!model->modes.lockable) {
         screen_text(s, a.x, a.y, a.width, INK_DIM, "takes no lock on a mode");
     } else if (p.control.lock[0] == '\0' || strcmp(p.control.lock, "none") == 0) {
         screen_print(s, a.x, a.y, a.width, INK_DIM,
@@ -107,10 +108,10 @@ static void draw_brief(screen *s, area a, const sample *row, const parameters *p
 
 // Tall enough for its table, or brief, or not at all; before the predictors, which may
 // fold.
-static int rows(const explorer_state *st, screen_size body)
+static int rows(const explorer_model *model, const explorer_view *view, screen_size body)
 {
-    const int room = body.height - predictors_rows(st, body);
-    if (!state_has_law(st)) {
+    const int room = body.height - predictors_rows(model, view, body);
+    if (!model_has_law(model)) {
         return 0;
     }
     if (room >= 30) {
@@ -122,11 +123,12 @@ static int rows(const explorer_state *st, screen_size body)
     return 0;
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area a)
 {
     (void)lay;
-    const sample *row = session_sample(&st->session);
-    parameters p = state_parameters(st);
+    const sample *row = session_sample(&model->session);
+    parameters p = model_parameters(model);
     char title[128];
     snprintf(title, sizeof title, "%s, %g Hz", control_law_table[p.control.law].word,
              p.control.rate);
@@ -134,8 +136,8 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 
     // modes, lock and command always
     area line = {a.x + 2, a.y + 1, a.width - 4, 1};
-    draw_modes(st, s, line, row->controller_mode);
-    draw_lock(st, s, (area){line.x, line.y + 1, line.width, 1});
+    draw_modes(model, s, line, row->controller_mode);
+    draw_lock(model, view, s, (area){line.x, line.y + 1, line.width, 1});
     draw_command(s, (area){line.x, line.y + 2, line.width, 1}, &p, row->command);
     line.y += 3;
 

@@ -19,11 +19,11 @@ typedef struct pane_look {
 
 // Whether a slot's colour is that of one of the first curves of a pane, as the terminal
 // shows them.
-static bool colour_is_taken(const explorer_state *st, const pane_look *look, int curves,
+static bool colour_is_taken(const explorer_view *view, const pane_look *look, int curves,
                             int slot)
 {
     const ink wanted = (ink)(INK_SERIES_0 + slot);
-    const looks *l = &st->looks;
+    const looks *l = &view->looks;
     bool taken = false;
     for (int k = 0; k < curves; k++) {
         taken =
@@ -32,7 +32,7 @@ static bool colour_is_taken(const explorer_state *st, const pane_look *look, int
     return taken;
 }
 
-static pane_look pane_look_of(const explorer_state *st, const pane *p)
+static pane_look pane_look_of(const explorer_view *view, const pane *p)
 {
     enum { COLOURS = 8, STYLES = 4 };
     static const line_style plain_first[] = {LINE_SOLID, LINE_DASHED, LINE_DOTTED,
@@ -44,7 +44,7 @@ static pane_look pane_look_of(const explorer_state *st, const pane *p)
     for (int k = 0; k < p->count; k++) {
         const signal_info *info = &signal_table[p->signals[k]];
         int slot = info->colour, style = (int)info->style;
-        for (int i = 0; i < COLOURS && colour_is_taken(st, &look, k, slot); i++) {
+        for (int i = 0; i < COLOURS && colour_is_taken(view, &look, k, slot); i++) {
             slot = (info->colour + 1 + i) % COLOURS;
         }
         for (int i = 0; i < STYLES && style_taken[style]; i++) {
@@ -62,13 +62,15 @@ typedef enum legend { LEGEND_NAMES, LEGEND_SYMBOLS, LEGEND_TIGHT, LEGEND_BARE } 
 
 // What a legend says of a signal's value: a mode by its name where the law is one of
 // ours, else a number; short ones have up to three digits.
-static void format_value(const explorer_state *st, const pane *p, int signal,
+static void format_value(const explorer_model *model, const pane *p, int signal,
                          bool briefly, char *text, size_t size)
 {
     shown_run runs[SHOWN_RUNS];
-    const trace *t = (state_runs(st, p, runs) > 0 ? runs[0] : state_run(st, 0)).trace;
-    double value = signal_value(&t->rows[state_row(st, t)], signal);
-    const controller *law = controller_of(st->session.effective.parameters.control.law);
+    const trace *t =
+        (model_runs(model, p, runs) > 0 ? runs[0] : model_run(model, 0)).trace;
+    double value = signal_value(&t->rows[model_row(model, t)], signal);
+    const controller *law =
+        controller_of(model->session.effective.parameters.control.law);
     bool is_mode = strcmp(signal_table[signal].name, "controller_mode") == 0;
 
     // fewer digits where room is short
@@ -102,20 +104,21 @@ static const char *unit_of(const pane *p)
 
 // Writes a legend and returns the cells it takes; values are padded so that it stands
 // still.
-static int draw_legend(const explorer_state *st, layout *lay, screen *s, int index,
-                       legend how, int x, int y, int room)
+static int draw_legend(const explorer_model *model, const explorer_view *view,
+                       layout *lay, screen *s, int index, legend how, int x, int y,
+                       int room)
 {
     static const uint32_t lines[] = {0x2500, 0x254c, 0x2508,
                                      0x2574}; // by style, in one character
-    const pane *p = &st->panes.pane[index];
+    const pane *p = &view->panes.pane[index];
     int start = x, end = x + room;
-    const pane_look look = pane_look_of(st, p);
+    const pane_look look = pane_look_of(view, p);
 
     // each signal: its line, its name, its value at the cursor
     for (int k = 0; k < p->count; k++) {
         const signal_info *info = &signal_table[p->signals[k]];
         char value[48], text[128];
-        format_value(st, p, p->signals[k], how == LEGEND_TIGHT, value, sizeof value);
+        format_value(model, p, p->signals[k], how == LEGEND_TIGHT, value, sizeof value);
         if (unit_of(p)[0] == '\0' && info->unit[0] != '\0' && how < LEGEND_TIGHT) {
             text_add(value, sizeof value, " %s", info->unit);
         }
@@ -150,14 +153,14 @@ static int draw_legend(const explorer_state *st, layout *lay, screen *s, int ind
 
 // The pane's number, its unit, its signals with their values at the cursor as far as
 // there is room, and the mode of its axis, in the first row of the pane's area.
-static void draw_pane_title(const explorer_state *st, layout *lay, screen *s, int index,
-                            area a)
+static void draw_pane_title(const explorer_model *model, const explorer_view *view,
+                            layout *lay, screen *s, int index, area a)
 {
-    const pane *p = &st->panes.pane[index];
+    const pane *p = &view->panes.pane[index];
     static const char *const axes[] = {"", "grows", "fixed", "calm"};
     const bool residual = p->view == VIEW_RESIDUAL;
-    const bool difference = !residual && state_subtracts(st) && pane_has_amounts(p);
-    bool focused = index == panes_focused(&st->panes);
+    const bool difference = !residual && model_subtracts(model) && pane_has_amounts(p);
+    bool focused = index == panes_focused(&view->panes);
     int x = a.x + LABEL_WIDTH + 1, room = a.width - LABEL_WIDTH - 1;
 
     // number, unit, and what the axis does
@@ -185,31 +188,33 @@ static void draw_pane_title(const explorer_state *st, layout *lay, screen *s, in
 
     // as many words as fit
     legend how = LEGEND_NAMES;
-    while (how < LEGEND_BARE && draw_legend(st, lay, s, index, how, x, a.y, 0) > room) {
+    while (how < LEGEND_BARE &&
+           draw_legend(model, view, lay, s, index, how, x, a.y, 0) > room) {
         how++;
     }
     layout_add_hit(lay,
                    (hit_area){PANEL_CURVES, PART_VIEW, index, {a.x, a.y, a.width, 1}});
-    draw_legend(st, lay, s, index, how, x, a.y, room);
+    draw_legend(model, view, lay, s, index, how, x, a.y, room);
 }
 
 // --- the panes -------------------------------------------------------------------------
 // How a run's curves differ from those of others: the present one has the signals'
 // colours and lines, a single pinned one their lines in one colour, several have their
 // own lines.
-static void set_look(const explorer_state *st, plot_frame *f, const pane *p,
-                     const shown_run *run, const pane_look *look, int k)
+static void set_look(const explorer_model *model, const explorer_view *view,
+                     plot_frame *f, const pane *p, const shown_run *run,
+                     const pane_look *look, int k)
 {
     f->pattern = style_pattern(look->style[k]);
     f->colour = look->colour[k];
-    if (st->looks.by_run && (run->kind == SHOWN_PINNED || run->kind == SHOWN_PRESENT)) {
+    if (view->looks.by_run && (run->kind == SHOWN_PINNED || run->kind == SHOWN_PRESENT)) {
         f->colour = run_ink(run->kind == SHOWN_PINNED ? run->index : -1);
-    } else if (run->kind == SHOWN_PINNED && state_visible_pins(st) == 1) {
+    } else if (run->kind == SHOWN_PINNED && model_visible_pins(model) == 1) {
         f->colour = INK_OTHER;
     } else if (run->kind == SHOWN_PINNED) {
         f->pattern = run_pattern(run->index);
     } else if (run->kind == SHOWN_SWEPT) {
-        if (run->index == st->sweep.selected) {
+        if (run->index == model->sweep.selected) {
             f->colour = INK_OTHER;
         } else {
             f->colour = INK_FRAME;
@@ -222,47 +227,48 @@ static void set_look(const explorer_state *st, plot_frame *f, const pane *p,
 }
 
 // The curves of one run in a pane: 0 is the present one, as far as it was seen.
-static void draw_run(const explorer_state *st, plot_frame f, const pane *p, shown_run run,
-                     int number)
+static void draw_run(const explorer_model *model, const explorer_view *view, plot_frame f,
+                     const pane *p, shown_run run, int number)
 {
-    const pane_look look = pane_look_of(st, p);
+    const pane_look look = pane_look_of(view, p);
 
     // of a sweep of many runs a few curves, evenly spread, and the chosen one
     enum { FAN = 5 };
-    const int swept = st->sweep.count, stride = (swept + FAN - 2) / (FAN - 1);
-    if (run.kind == SHOWN_SWEPT && swept > FAN && run.index != st->sweep.selected &&
+    const int swept = model->sweep.count, stride = (swept + FAN - 2) / (FAN - 1);
+    if (run.kind == SHOWN_SWEPT && swept > FAN && run.index != model->sweep.selected &&
         run.index % stride != 0 && run.index != swept - 1) {
         return;
     }
 
     // of many runs a pane shows what it is about
     const bool first_only =
-        run.kind == SHOWN_SWEPT ||
-        (run.kind == SHOWN_PINNED && state_visible_pins(st) > 1 && !st->looks.by_run);
+        run.kind == SHOWN_SWEPT || (run.kind == SHOWN_PINNED &&
+                                    model_visible_pins(model) > 1 && !view->looks.by_run);
     const int count = first_only && p->count > 1 ? 1 : p->count;
     for (int k = 0; k < count; k++) {
         if (p->hidden >> k & 1) {
             continue;
         }
-        const double *pairs = extremes_pairs(&st->extremes[number], &run, p->signals[k]);
-        set_look(st, &f, p, &run, &look, k);
+        const double *pairs =
+            extremes_pairs(&model->extremes[number], &run, p->signals[k]);
+        set_look(model, view, &f, p, &run, &look, k);
 
         // while a value is adjusted the whole future is shown, and after a change dimly
         const bool hidden =
-            number == 0 && run.kind != SHOWN_MEASURED && !st->session.has_ghost;
-        if (hidden && st->session.input_count > 0) {
+            number == 0 && run.kind != SHOWN_MEASURED && !model->session.has_ghost;
+        if (hidden && model->session.input_count > 0) {
             const ink seen = f.colour;
             f.colour = INK_FRAME;
             plot_frame_signal(&f, run.trace, p->signals[k], f.to, pairs);
             f.colour = seen;
         }
-        plot_frame_signal(&f, run.trace, p->signals[k], hidden ? st->session.seen : f.to,
-                          pairs);
+        plot_frame_signal(&f, run.trace, p->signals[k],
+                          hidden ? model->session.seen : f.to, pairs);
     }
 }
 
 // The setpoints and limits of what a pane shows, as they are at the cursor.
-static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s,
+static void draw_levels(const explorer_model *model, const plot_frame *f, screen *s,
                         const pane *p)
 {
     const struct {
@@ -277,18 +283,18 @@ static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s
 
     // the bound that was asked for, of its signal
     for (int k = 0; k < p->count; k++) {
-        if (p->signals[k] == st->limit.signal) {
-            plot_frame_level(f, s, st->limit.bound, "limit");
+        if (p->signals[k] == model->limit.signal) {
+            plot_frame_level(f, s, model->limit.bound, "limit");
         }
     }
 
     // those that belong to a signal of the pane and have a value in the run
-    const parameters now = state_parameters(st);
+    const parameters now = model_parameters(model);
     for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
         const int parameter = levels[i].parameter;
         const char *name = strchr(parameter_table[parameter].path, '.') + 1;
         if (p->signals[0] == levels[i].signal &&
-            state_inert_reason(st, parameter) == NULL) {
+            model_inert_reason(model, parameter) == NULL) {
             const double value = parameter_get(&now, parameter);
             plot_frame_level(f, s, value, name);
             plot_frame_level(f, s, levels[i].both_ways ? -value : (double)NAN, name);
@@ -297,33 +303,33 @@ static void draw_levels(const explorer_state *st, const plot_frame *f, screen *s
 }
 
 // The tolerance on both sides of the baseline: its curve, shifted.
-static void draw_band(const explorer_state *st, const plot_frame *f, const pane *p)
+static void draw_band(const explorer_model *model, const plot_frame *f, const pane *p)
 {
     for (int k = 0; k < p->count; k++) {
-        if (p->signals[k] != st->band.signal || p->hidden >> k & 1) {
+        if (p->signals[k] != model->band.signal || p->hidden >> k & 1) {
             continue;
         }
         for (int side = -1; side <= 1; side += 2) {
             plot_frame shifted = *f;
-            const double by = side * st->band.bound;
+            const double by = side * model->band.bound;
             shifted.axis = (value_range){f->axis.low - by, f->axis.high - by};
             shifted.pixels.low -= by;
             shifted.pixels.high -= by;
             shifted.pattern = style_pattern(LINE_DOTTED);
             shifted.colour = INK_FRAME;
-            plot_frame_signal(&shifted, &st->session.other.trace, p->signals[k], f->to,
+            plot_frame_signal(&shifted, &model->session.other.trace, p->signals[k], f->to,
                               NULL);
         }
     }
 }
 
 // Why a pane shows no curve.
-static const char *reason_of_emptiness(const explorer_state *st, const pane *p)
+static const char *reason_of_emptiness(const explorer_model *model, const pane *p)
 {
     if (!pane_is_over_time(p)) {
         return "nothing to see yet";
     }
-    if (state_subtracts(st) && pane_is_derived(p)) {
+    if (model_subtracts(model) && pane_is_derived(p)) {
         return "an expression has no difference";
     }
     if (p->view == VIEW_RESIDUAL) {
@@ -332,16 +338,17 @@ static const char *reason_of_emptiness(const explorer_state *st, const pane *p)
     return "this run has no such values";
 }
 
-static void draw_pane(const explorer_state *st, layout *lay, screen *s, int index, area a)
+static void draw_pane(const explorer_model *model, const explorer_view *view, layout *lay,
+                      screen *s, int index, area a)
 {
-    const pane *shown = &st->panes.pane[index];
+    const pane *shown = &view->panes.pane[index];
     const area labels = {a.x, a.y + 1, LABEL_WIDTH + 1, a.height - 1};
     const area inside = {a.x + LABEL_WIDTH + 1, a.y + 1, a.width - LABEL_WIDTH - 1,
                          a.height - 1};
     plot_frame f = {.canvas = {s, inside.x, inside.y, inside.width, inside.height}};
     const bool over_time = pane_is_over_time(shown);
-    draw_pane_title(st, lay, s, index, a);
-    state_window(st, &f.from, &f.to);
+    draw_pane_title(model, view, lay, s, index, a);
+    view_window(model, view, &f.from, &f.to);
 
     // what there is to see, or why there is nothing
     if (!over_time) {
@@ -349,13 +356,13 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     }
     bool has_values;
     if (over_time) {
-        has_values = state_pane_axis(st, index, &f.axis);
+        has_values = view_pane_axis(model, view, index, &f.axis);
     } else {
-        has_values = draw_pane_view(st, s, shown, inside, &f.axis);
+        has_values = draw_pane_view(model, view, s, shown, inside, &f.axis);
     }
     if (!has_values) {
         screen_text(s, inside.x, inside.y, inside.width, INK_DIM,
-                    reason_of_emptiness(st, shown));
+                    reason_of_emptiness(model, shown));
         return;
     }
     draw_value_axis(s, labels, f.axis);
@@ -367,45 +374,46 @@ static void draw_pane(const explorer_state *st, layout *lay, screen *s, int inde
     lay->axes[index] = f.axis;
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_PANE, index, inside});
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LABELS, index, labels});
-    plot_frame_open(st, &f);
+    plot_frame_open(view, &f);
 
     // the present run over those for comparison, limits and cursors behind all curves
     shown_run runs[SHOWN_RUNS];
-    for (int run = state_runs(st, shown, runs); run-- > 0;) {
-        draw_run(st, f, shown, runs[run], run);
+    for (int run = model_runs(model, shown, runs); run-- > 0;) {
+        draw_run(model, view, f, shown, runs[run], run);
     }
-    if (shown->view == VIEW_TIME && !state_subtracts(st)) {
-        if (st->session.has_other) {
-            draw_band(st, &f, shown);
+    if (shown->view == VIEW_TIME && !model_subtracts(model)) {
+        if (model->session.has_other) {
+            draw_band(model, &f, shown);
         }
-        draw_levels(st, &f, s, shown);
-    } else if (shown->view == VIEW_TIME && st->difference.tolerance > 0 &&
+        draw_levels(model, &f, s, shown);
+    } else if (shown->view == VIEW_TIME && model->difference.tolerance > 0 &&
                pane_has_amounts(shown)) {
-        plot_frame_level(&f, s, st->difference.tolerance, "tolerance");
-        plot_frame_level(&f, s, -st->difference.tolerance, "tolerance");
+        plot_frame_level(&f, s, model->difference.tolerance, "tolerance");
+        plot_frame_level(&f, s, -model->difference.tolerance, "tolerance");
     }
-    if (st->mark.set) {
-        plot_frame_cursor(&f, s, st->mark.time);
+    if (view->mark.set) {
+        plot_frame_cursor(&f, s, view->mark.time);
     }
-    plot_frame_cursor(&f, s, st->session.now);
+    plot_frame_cursor(&f, s, model->session.now);
     if (f.picture != NULL) {
         picture_end(s, f.picture);
     }
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area a)
 {
     enum { LEAST_PANE = 3, AXIS = 2 };
     int shown = 0;
 
     // the lanes take the lowest rows
-    const int lanes = lanes_rows(st, &lay->lanes, a.height);
+    const int lanes = lanes_rows(model, view, &lay->lanes, a.height);
     a.height -= lanes;
     const area beneath = {a.x, a.y + a.height, a.width, lanes};
     for (int i = 0; i < PANES; i++) {
-        shown += st->panes.pane[i].shown;
+        shown += view->panes.pane[i].shown;
     }
-    int most = st->panes.alone ? 1 : (a.height - AXIS) / LEAST_PANE;
+    int most = view->panes.alone ? 1 : (a.height - AXIS) / LEAST_PANE;
     if (shown < 1 || most < 1 || a.width < LABEL_WIDTH + 10) {
         screen_text(s, a.x, a.y, a.width, INK_DIM, "1 to 9 show curves");
         return;
@@ -418,25 +426,25 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 
     // where not all have room, those from the focused one on, so that each can be reached
     int drawn = shown > most ? most : shown, top = a.y, left = drawn;
-    int first = drawn < shown ? panes_focused(&st->panes) : 0;
+    int first = drawn < shown ? panes_focused(&view->panes) : 0;
     for (int i = 0; i < PANES && left > 0; i++) {
         int index = (first + i) % PANES;
-        if (st->panes.pane[index].shown) {
+        if (view->panes.pane[index].shown) {
             int height = (a.y + a.height - AXIS - top + left - 1) / left;
-            draw_pane(st, lay, s, index, (area){a.x, top, a.width, height});
+            draw_pane(model, view, lay, s, index, (area){a.x, top, a.width, height});
             top += height;
             left--;
         }
     }
-    if (st->box.held) {
-        const zoom_box *b = &st->box;
+    if (view->box.held) {
+        const zoom_box *b = &view->box;
         screen_tint(s, b->x0 < b->x1 ? b->x0 : b->x1, b->y0 < b->y1 ? b->y0 : b->y1,
                     abs(b->x1 - b->x0) + 1, abs(b->y1 - b->y0) + 1, INK_SELECTED);
     }
     const area below = {a.x, a.y + a.height - AXIS, a.width, AXIS};
-    const area axis = draw_time_axis(st, s, below);
+    const area axis = draw_time_axis(model, view, s, below);
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_TIME_AXIS, 0, axis});
-    draw_lanes(st, lay, s, beneath);
+    draw_lanes(model, view, lay, s, beneath);
 }
 
 const panel curves_panel = {.name = "curves", .draw = draw, .point = curves_point};

@@ -39,16 +39,16 @@ typedef struct lane_band {
 // --- which lanes there are -------------------------------------------------------------
 
 // Examines the rows that a run has gained.
-static void survey(const explorer_state *st, lane_survey *known)
+static void survey(const explorer_model *model, lane_survey *known)
 {
-    const trace *t = &st->session.run.trace;
-    const unsigned long run = state_run_id(st);
+    const trace *t = &model->session.run.trace;
+    const unsigned long run = model_run_id(model);
 
     // a run that grew is looked at from where it ended
     if (known->run != run || known->rows > t->row_count) {
         *known = (lane_survey){.run = run};
     }
-    const double limit = st->session.effective.parameters.motor.voltage_limit;
+    const double limit = model->session.effective.parameters.motor.voltage_limit;
     for (; known->rows < t->row_count; known->rows++) {
         const sample *row = &t->rows[known->rows];
         known->sticks = known->sticks || row->sticking != 0;
@@ -56,37 +56,37 @@ static void survey(const explorer_state *st, lane_survey *known)
     }
 }
 
-static bool has_lock(const explorer_state *st)
+static bool has_lock(const explorer_model *model)
 {
-    const scenario *s = &st->session.effective;
+    const scenario *s = &model->session.effective;
     bool found = strcmp(s->parameters.control.lock, "none") != 0;
     for (int i = 0; i < s->action_count; i++) {
         found = found || (s->actions[i].kind == ACTION_SET &&
                           s->actions[i].parameter == PARAMETER_INDEX(control.lock));
     }
-    return found && state_has_law(st);
+    return found && model_has_law(model);
 }
 
 // The lanes of the runs that are shown, the ones that tell most first; returns how many.
-static int find_lanes(const explorer_state *st, const lane_survey *known,
+static int find_lanes(const explorer_model *model, const lane_survey *known,
                       lane lanes[MOST_LANES])
 {
     int count = 0;
     bool others = false;
-    const int runs = state_run_count(st);
+    const int runs = model_run_count(model);
     for (int run = 1; run < runs; run++) {
-        others = others || state_run_name(st, run)[0] != '\0';
+        others = others || model_run_name(model, run)[0] != '\0';
     }
 
     // the time axis shows this run's contact: a lane only beside those of others
     const bool there[LANE_KINDS] = {
-        others,           state_has_law(st), st->session.effective.action_count > 0,
-        known->saturates, has_lock(st),      known->sticks};
+        others,           model_has_law(model), model->session.effective.action_count > 0,
+        known->saturates, has_lock(model),      known->sticks};
     for (int kind = 0; kind < LANE_KINDS; kind++) {
         // contact of the other runs, to compare, before the least informative: its place
         // is left
         for (int run = 1; kind == LANE_STICKING && run < runs; run++) {
-            if (state_run_name(st, run)[0] != '\0' && count < MOST_LANES - 1) {
+            if (model_run_name(model, run)[0] != '\0' && count < MOST_LANES - 1) {
                 lanes[count++] = (lane){LANE_CONTACT, run};
             }
         }
@@ -98,18 +98,19 @@ static int find_lanes(const explorer_state *st, const lane_survey *known,
 }
 
 // Whether only a part of the run is visible.
-static bool has_map(const explorer_state *st)
+static bool has_map(const explorer_view *view)
 {
-    return st->window.to > st->window.from;
+    return view->window.to > view->window.from;
 }
 
-int lanes_rows(const explorer_state *st, lane_survey *known, int height)
+int lanes_rows(const explorer_model *model, const explorer_view *view, lane_survey *known,
+               int height)
 {
     lane lanes[MOST_LANES];
-    survey(st, known);
-    const int wanted = find_lanes(st, known, lanes) + has_map(st);
+    survey(model, known);
+    const int wanted = find_lanes(model, known, lanes) + has_map(view);
     int spare;
-    if (st->looks.lanes == LANES_ALL) {
+    if (view->looks.lanes == LANES_ALL) {
         spare = height - LEAST_CURVES;
     } else if (height > FEWEST_CURVES) {
         spare = (height - FEWEST_CURVES) / 2;
@@ -117,7 +118,7 @@ int lanes_rows(const explorer_state *st, lane_survey *known, int height)
         spare = 0;
     }
     int rows = 0;
-    if (st->looks.lanes != LANES_OFF) {
+    if (view->looks.lanes != LANES_OFF) {
         if (spare < wanted) {
             rows = spare;
         } else {
@@ -146,7 +147,7 @@ static bool any_row(const trace *t, double from, double to, int signal, double a
 }
 
 // What a lane of some rows holds between two instants [s].
-static lane_band band_between(const explorer_state *st, lane l, const trace *t,
+static lane_band band_between(const explorer_model *model, lane l, const trace *t,
                               double from, double to)
 {
     enum { COLOURS = 6 }; // of modes
@@ -162,12 +163,12 @@ static lane_band band_between(const explorer_state *st, lane l, const trace *t,
         if (mode >= 0) {
             band.value = (int)mode;
             band.colour = (ink)(INK_SERIES_0 + (int)mode % COLOURS);
-            law_mode_name(&st->modes, mode, band.name, sizeof band.name);
+            law_mode_name(&model->modes, mode, band.name, sizeof band.name);
         }
     } else if (l.kind == LANE_LOCK) {
-        const parameters p = session_parameters_at(&st->session, to);
-        for (int i = 0; i < st->modes.count; i++) {
-            if (strcmp(st->modes.names[i], p.control.lock) == 0) {
+        const parameters p = session_parameters_at(&model->session, to);
+        for (int i = 0; i < model->modes.count; i++) {
+            if (strcmp(model->modes.names[i], p.control.lock) == 0) {
                 band.value = i;
             }
         }
@@ -185,7 +186,7 @@ static lane_band band_between(const explorer_state *st, lane l, const trace *t,
         }
         const double above =
             l.kind == LANE_SATURATION
-                ? session_parameters_at(&st->session, to).motor.voltage_limit
+                ? session_parameters_at(&model->session, to).motor.voltage_limit
                 : 0;
         if (any_row(t, from, to, signal, above)) {
             band.value = 1;
@@ -208,22 +209,25 @@ static void name_band(screen *s, int start, int end, int y, const lane_band *ban
 }
 
 // A lane of bands, as far as the run has been seen.
-static void draw_bands(const explorer_state *st, screen *s, area line, lane l)
+static void draw_bands(const explorer_model *model, const explorer_view *view, screen *s,
+                       area line, lane l)
 {
     // what the run did, also where panes show a difference
-    const trace *t = l.run == 0 ? &st->session.run.trace : state_run(st, l.run).trace;
-    const bool future = st->session.has_ghost || l.run > 0;
+    const trace *t =
+        l.run == 0 ? &model->session.run.trace : model_run(model, l.run).trace;
+    const bool future = model->session.has_ghost || l.run > 0;
     lane_band before = {.value = -1};
     double left, right;
     int start = 0;
-    state_window(st, &left, &right);
+    view_window(model, view, &left, &right);
     for (int i = 0; i <= line.width; i++) {
         const double from = left + (right - left) * i / line.width;
         const double to = left + (right - left) * (i + 1) / line.width;
-        const bool known = i < line.width && (future || from <= st->session.seen);
+        const bool known = i < line.width && (future || from <= model->session.seen);
         lane_band band;
         if (known) {
-            band = band_between(st, l, t, from, future ? to : fmin(to, st->session.seen));
+            band = band_between(model, l, t, from,
+                                future ? to : fmin(to, model->session.seen));
         } else {
             band = (lane_band){.value = -1};
         }
@@ -243,19 +247,20 @@ static void draw_bands(const explorer_state *st, screen *s, area line, lane l)
 }
 
 // What was changed, at its instant, with as much of its text as there is room for.
-static void draw_changes(const explorer_state *st, screen *s, area line)
+static void draw_changes(const explorer_model *model, const explorer_view *view,
+                         screen *s, area line)
 {
-    const scenario *scripted = &st->session.effective;
+    const scenario *scripted = &model->session.effective;
     for (int i = 0; i < scripted->action_count; i++) {
         const action *c = &scripted->actions[i];
-        const int at = time_column(st, line, c->time);
+        const int at = time_column(model, view, line, c->time);
         char text[LINE_TEXT], value[PARAMETER_TEXT_SIZE];
         if (at < 0) {
             continue;
         }
 
         // as short as it may be: a parameter goes without its group
-        const bool seen = c->time <= st->session.now;
+        const bool seen = c->time <= model->session.now;
         if (c->kind == ACTION_PUSH) {
             snprintf(text, sizeof text, "push %g", c->value);
         } else {
@@ -273,13 +278,14 @@ static void draw_changes(const explorer_state *st, screen *s, area line)
 }
 
 // The whole run in a row: the visible part, impacts, the cursor.
-static void draw_map(const explorer_state *st, layout *lay, screen *s, area a, area line)
+static void draw_map(const explorer_model *model, const explorer_view *view, layout *lay,
+                     screen *s, area a, area line)
 {
-    const session *e = &st->session;
+    const session *e = &model->session;
     const trace *t = &e->run.trace;
     const double whole = e->effective.parameters.run.duration;
     double from, to;
-    state_window(st, &from, &to);
+    view_window(model, view, &from, &to);
     const int left = (int)(from / whole * line.width),
               right = (int)(to / whole * line.width);
     screen_text(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "whole run");
@@ -305,16 +311,17 @@ static void draw_map(const explorer_state *st, layout *lay, screen *s, area a, a
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_MAP, 0, line});
 }
 
-void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a)
+void draw_lanes(const explorer_model *model, const explorer_view *view, layout *lay,
+                screen *s, area a)
 {
     lane lanes[MOST_LANES];
-    const int count = find_lanes(st, &lay->lanes, lanes);
+    const int count = find_lanes(model, &lay->lanes, lanes);
     area line = {a.x + LABEL_WIDTH + 1, a.y, a.width - LABEL_WIDTH - 1, 1};
     int left = a.height;
 
     // the map first, then as many lanes as have a row
-    if (left > 0 && has_map(st)) {
-        draw_map(st, lay, s, a, line);
+    if (left > 0 && has_map(view)) {
+        draw_map(model, view, lay, s, a, line);
         left--;
         a.y++;
         line.y++;
@@ -324,11 +331,11 @@ void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a)
     for (int i = 0; i < count && left > 0; i++, left--, a.y++, line.y++) {
         const bool other = lanes[i].run > 0;
         screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, other ? "\u2592 %s" : "%s",
-                     other ? state_run_name(st, lanes[i].run) : labels[lanes[i].kind]);
+                     other ? model_run_name(model, lanes[i].run) : labels[lanes[i].kind]);
         if (lanes[i].kind == LANE_CHANGES) {
-            draw_changes(st, s, line);
+            draw_changes(model, view, s, line);
         } else {
-            draw_bands(st, s, line, lanes[i]);
+            draw_bands(model, view, s, line, lanes[i]);
         }
     }
 }

@@ -5,10 +5,10 @@ enum { MOST_LINES = 7 };
 
 // The step as text: its sentence, the answers to choose from, what it says when it is
 // done.
-static void write_step(const explorer_state *st, char *text, size_t size)
+static void write_step(const explorer_model *model, char *text, size_t size)
 {
-    const lesson_step *step = &st->session.base.lesson.steps[st->lesson.step];
-    if (st->lesson.passed) {
+    const lesson_step *step = &model->session.base.lesson.steps[model->lesson.step];
+    if (model->lesson.passed) {
         snprintf(text, size, "Right. %s", step->then);
         return;
     }
@@ -19,11 +19,11 @@ static void write_step(const explorer_state *st, char *text, size_t size)
 }
 
 // The key to press.
-static const char *wanted_key(const explorer_state *st)
+static const char *wanted_key(const explorer_model *model)
 {
-    const lesson_step *step = &st->session.base.lesson.steps[st->lesson.step];
+    const lesson_step *step = &model->session.base.lesson.steps[model->lesson.step];
     const bool answers = step->check == LESSON_NUMBER || step->check == LESSON_CHOICE;
-    if (st->lesson.passed || step->check == LESSON_READ) {
+    if (model->lesson.passed || step->check == LESSON_READ) {
         return "y goes on";
     }
     if (answers) {
@@ -32,36 +32,39 @@ static const char *wanted_key(const explorer_state *st)
     return "do it, y asks for a hint";
 }
 
-static int rows(const explorer_state *st, screen_size body)
+static int rows(const explorer_model *model, const explorer_view *view, screen_size body)
 {
+    (void)view;
     char text[1024];
     text_line lines[MOST_LINES];
-    if (!st->lesson.on) {
+    if (!model->lesson.on) {
         return 0;
     }
-    write_step(st, text, sizeof text);
+    write_step(model, text, sizeof text);
     const int count = text_wrap(text, body.width - 4, lines, MOST_LINES, NULL);
     return count + 2;
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area a)
 {
+    (void)view;
     (void)lay;
-    const lesson *l = &st->session.base.lesson;
+    const lesson *l = &model->session.base.lesson;
     char text[1024], title[LINE_TEXT];
     text_line lines[MOST_LINES];
 
     // the title shows the progress of the lesson and how to continue
-    write_step(st, text, sizeof text);
-    snprintf(title, sizeof title, "lesson, step %d of %d (%s)", st->lesson.step + 1,
-             l->step_count, wanted_key(st));
+    write_step(model, text, sizeof text);
+    snprintf(title, sizeof title, "lesson, step %d of %d (%s)", model->lesson.step + 1,
+             l->step_count, wanted_key(model));
     screen_frame(s, a.x, a.y, a.width, a.height, INK_EVENT, title);
 
     // as many lines as there is room for
     const int count = text_wrap(text, a.width - 4, lines, MOST_LINES, NULL);
     for (int i = 0; i < count && i < a.height - 2; i++) {
         screen_print(s, a.x + 2, a.y + 1 + i, a.width - 4,
-                     st->lesson.passed ? INK_TITLE : INK_TEXT, "%.*s", lines[i].bytes,
+                     model->lesson.passed ? INK_TITLE : INK_TEXT, "%.*s", lines[i].bytes,
                      lines[i].start);
     }
 }

@@ -5,10 +5,10 @@
 
 enum { MOST_LATER = 32 }; // changes to come that are listed
 
-static void draw_change(const explorer_state *st, screen *s, area a, const event *v)
+static void draw_change(const explorer_model *model, screen *s, area a, const event *v)
 {
     char value[128], text[384], room[ACTION_PATH];
-    const action *c = &st->session.effective.actions[v->index];
+    const action *c = &model->session.effective.actions[v->index];
     const char *path = action_path(c, room);
     action_format_value(c, value, sizeof value);
 
@@ -19,16 +19,16 @@ static void draw_change(const explorer_state *st, screen *s, area a, const event
     screen_text(s, a.x, a.y, a.width, INK_EVENT, text);
 }
 
-static void draw_entry(const explorer_state *st, screen *s, area a,
+static void draw_entry(const explorer_model *model, screen *s, area a,
                        const log_entry *entry)
 {
-    const trace *t = &st->session.run.trace;
+    const trace *t = &model->session.run.trace;
     char name[MODE_NAME_SIZE];
     area detail = {a.x + 20, a.y, a.width - 20, 1};
 
     // a change of mode
     if (entry->event < 0) {
-        law_mode_name(&st->modes, entry->mode, name, sizeof name);
+        law_mode_name(&model->modes, entry->mode, name, sizeof name);
         screen_print(s, a.x, a.y, a.width, INK_TEXT, "%9.5f s  mode", entry->time);
         screen_text(s, a.x + 18, a.y, a.width - 18, INK_EVENT, name);
         return;
@@ -41,16 +41,17 @@ static void draw_entry(const explorer_state *st, screen *s, area a,
     if (v->kind == EVENT_IMPACT || v->kind == EVENT_PUSH) {
         screen_print(s, detail.x, a.y, detail.width, INK_EVENT, "%.3g N s", v->impulse);
     } else if (v->kind == EVENT_CHANGE && v->index >= 0) {
-        draw_change(st, s, detail, v);
+        draw_change(model, s, detail, v);
     }
 }
 
 // Changes and pushes that are still to come after the first `seen` entries; returns how
 // many.
-static int find_later_inputs(const explorer_state *st, size_t seen, int later[MOST_LATER])
+static int find_later_inputs(const explorer_model *model, size_t seen,
+                             int later[MOST_LATER])
 {
-    const run_log *log = &st->log;
-    const trace *t = &st->session.run.trace;
+    const run_log *log = &model->log;
+    const trace *t = &model->session.run.trace;
     int count = 0;
     for (size_t i = seen; i < log->count && count < MOST_LATER; i++) {
         const int index = log->entries[i].event;
@@ -62,19 +63,21 @@ static int find_later_inputs(const explorer_state *st, size_t seen, int later[MO
     return count;
 }
 
-static int rows(const explorer_state *st, screen_size body)
+static int rows(const explorer_model *model, const explorer_view *view, screen_size body)
 {
-    (void)st;
+    (void)model;
+    (void)view;
     if (body.width >= SIDE_WIDTH && body.height >= 26) {
         return body.height / 4;
     }
     return 0;
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area a)
 {
-    const session *e = &st->session;
-    const run_log *log = &st->log;
+    const session *e = &model->session;
+    const run_log *log = &model->log;
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "events (n, N)");
 
     // past entries up to the cursor, and the task
@@ -86,11 +89,11 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         }
         seen++;
     }
-    const int count = (int)seen + find_later_inputs(st, seen, later);
+    const int count = (int)seen + find_later_inputs(model, seen, later);
 
     // that one in the middle, or the last ones; scrolling counts from there
     const int still = draw_first_line(current, count, height), last = count - height;
-    const int wanted = still + st->drawn.scroll[PANEL_LOG],
+    const int wanted = still + view->drawn.scroll[PANEL_LOG],
               least = wanted > last ? last : wanted;
     const int first = least < 0 ? 0 : least;
     lay->drawn.scroll[PANEL_LOG] = first - still;
@@ -99,7 +102,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     for (int i = first; i < count && i < first + height; i++) {
         const log_entry *entry = &log->entries[i < (int)seen ? i : later[i - (int)seen]];
         int y = lines.y + i - first;
-        draw_entry(st, s, (area){a.x + 2, y, a.width - 4, 1}, entry);
+        draw_entry(model, s, (area){a.x + 2, y, a.width - 4, 1}, entry);
         if (entry->time > e->seen) {
             screen_tint(s, lines.x, y, lines.width, 1, INK_DIM);
         }
@@ -110,14 +113,17 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 }
 
 // A click goes to the instant of a line, the wheel scrolls.
-static bool point(explorer_state *st, const panel_gesture *g)
+static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const panel_gesture *g)
 {
-    const run_log *log = state_run_log(st);
+    (void)input;
+    const run_log *log = model_run_log(model);
     const size_t index = (size_t)(g->hit.index + g->event.y - g->hit.area.y);
     const bool pressed = g->event.kind == POINTER_PRESS;
-    if (pressed && index < log->count && log->entries[index].time <= st->session.seen) {
-        act_scrub(st, log->entries[index].time);
-        st->drawn.scroll[PANEL_LOG] = 0;
+    if (pressed && index < log->count &&
+        log->entries[index].time <= model->session.seen) {
+        act_scrub(model, view, log->entries[index].time);
+        view->drawn.scroll[PANEL_LOG] = 0;
     }
     return pressed;
 }

@@ -195,11 +195,11 @@ static page begin_page(area body, int width)
 
 // Draws one that is written, as high as its lines and `below` rows for what comes under
 // them, or scrolled; returns its area.
-static area draw_page(const explorer_state *st, layout *lay, screen *s, area body,
+static area draw_page(const explorer_view *view, layout *lay, screen *s, area body,
                       const page *p, const char *title, int below)
 {
     const area a = page_area(body, p->width + 4, p->count + 2 + below);
-    const int scroll = page_scroll(lay, st->page, a, p->count, 2);
+    const int scroll = page_scroll(lay, view->page, a, p->count, 2);
     const int left = p->count - scroll, rows = left < a.height - 2 ? left : a.height - 2;
     draw_page_frame(s, a, title, scroll + rows, p->count);
     for (int i = 0; i < rows; i++) {
@@ -211,17 +211,19 @@ static area draw_page(const explorer_state *st, layout *lay, screen *s, area bod
     return a;
 }
 
-static void draw_help(const explorer_state *st, layout *lay, screen *s, area body)
+static void draw_help(const explorer_model *model, const explorer_view *view, layout *lay,
+                      screen *s, area body)
 {
-    const char *filter = st->filters.text[PANEL_HELP];
+    (void)model;
+    const char *filter = view->filters.text[PANEL_HELP];
     char title[LINE_TEXT] = "keys and commands (/ filters, Esc closes)";
     page p = begin_page(body, 114);
-    p.count = help_write(&st->keys, p.width, p.lines, p.most);
+    p.count = help_write(&view->keys, p.width, p.lines, p.most);
     if (filter[0] != '\0') {
         snprintf(title, sizeof title, "keys and commands /%.200s", filter);
         p.count = keep_matching(p.lines, p.count, filter);
     }
-    draw_page(st, lay, s, body, &p, title, 0);
+    draw_page(view, lay, s, body, &p, title, 0);
 }
 
 const panel help_panel = {.name = "help", .draw = draw_help, .key = page_key};
@@ -229,11 +231,12 @@ const panel help_panel = {.name = "help", .draw = draw_help, .key = page_key};
 // --- the scenario ----------------------------------------------------------------------
 
 // The title, the description and the script.
-static void draw_info(const explorer_state *st, layout *lay, screen *s, area body)
+static void draw_info(const explorer_model *model, const explorer_view *view, layout *lay,
+                      screen *s, area body)
 {
     page p = begin_page(body, TEXT_WIDTH);
     char title[LINE_TEXT];
-    const scenario *base = &st->session.base;
+    const scenario *base = &model->session.base;
     add_column(&p, 0, base->title != NULL ? base->title : "", NULL);
     p.lines[0].keys = text_cells(p.lines[0].text); // in their colour
     if (p.count > 0) {
@@ -258,7 +261,7 @@ static void draw_info(const explorer_state *st, layout *lay, screen *s, area bod
     }
     p.count -= p.count > 0 && p.lines[p.count - 1].text[0] == '\0';
     snprintf(title, sizeof title, "%.180s (Esc closes)", base->name);
-    draw_page(st, lay, s, body, &p, title, 0);
+    draw_page(view, lay, s, body, &p, title, 0);
 }
 
 const panel info_panel = {.name = "info", .draw = draw_info, .key = page_key};
@@ -266,11 +269,12 @@ const panel info_panel = {.name = "info", .draw = draw_info, .key = page_key};
 // --- what one stands on ----------------------------------------------------------------
 
 // The selected parameter: what it is, in which range, why it has no effect.
-static void explain_parameter(const explorer_state *st, page *p)
+static void explain_parameter(const explorer_model *model, const explorer_view *view,
+                              page *p)
 {
-    const int index = st->parameters.parameter;
+    const int index = view->parameters.parameter;
     const parameter_info *info = &parameter_table[index];
-    const char *inert = state_inert_reason(st, index);
+    const char *inert = model_inert_reason(model, index);
     add_heading(p, info->path);
     if (info->choices != NULL) {
         add_text(p, "%s. One of %s.", info->description, info->choices);
@@ -300,16 +304,17 @@ static void explain_predictors(page *p)
         p, "\"would not hold\": the touch would throw the tip off. What came: the run.");
 }
 
-static void draw_explain(const explorer_state *st, layout *lay, screen *s, area body)
+static void draw_explain(const explorer_model *model, const explorer_view *view,
+                         layout *lay, screen *s, area body)
 {
     page p = begin_page(body, TEXT_WIDTH);
-    const int focused = panes_focused(&st->panes);
-    const event *e = session_event(&st->session);
-    explain_parameter(st, &p);
+    const int focused = panes_focused(&view->panes);
+    const event *e = session_event(&model->session);
+    explain_parameter(model, view, &p);
 
     // the signals in focus, their symbols spelled out, then the event at the cursor
-    for (int k = 0; focused >= 0 && k < st->panes.pane[focused].count; k++) {
-        const signal_info *info = &signal_table[st->panes.pane[focused].signals[k]];
+    for (int k = 0; focused >= 0 && k < view->panes.pane[focused].count; k++) {
+        const signal_info *info = &signal_table[view->panes.pane[focused].signals[k]];
         if (k == 0) {
             add_heading(&p, "signals of the pane in focus (w: next pane)");
         }
@@ -321,15 +326,17 @@ static void draw_explain(const explorer_state *st, layout *lay, screen *s, area 
         add_text(&p, "%s: %s.", event_name(e->kind), event_description((int)e->kind));
     }
     explain_predictors(&p);
-    draw_page(st, lay, s, body, &p,
+    draw_page(view, lay, s, body, &p,
               "what is here (? lists keys and commands, Esc closes)", 0);
 }
 
 const panel explain_panel = {.name = "explain", .draw = draw_explain, .key = page_key};
 
 // The page of a first visit: what is behind it goes on, the first key closes it and acts.
-static void draw_welcome(const explorer_state *st, layout *lay, screen *s, area body)
+static void draw_welcome(const explorer_model *model, const explorer_view *view,
+                         layout *lay, screen *s, area body)
 {
+    (void)model;
     static const char *const steps[] = {
         "The arm hits the wall by itself. Space stops it, I goes back to just before.",
         "b keeps this run; Enter, 0.5, Enter halves the voltage: both are compared.",
@@ -339,22 +346,24 @@ static void draw_welcome(const explorer_state *st, layout *lay, screen *s, area 
     for (int i = 0; i < 3; i++) {
         add_entry(&p, (char[]){(char)('1' + i), '\0'}, steps[i]);
     }
-    draw_page(st, lay, s, body, &p, "a first visit (any key goes on)", 0);
+    draw_page(view, lay, s, body, &p, "a first visit (any key goes on)", 0);
 }
 
 const panel welcome_panel = {.name = "welcome", .draw = draw_welcome, .key = page_key};
 
 // --- the account of the run ------------------------------------------------------------
 
-static void draw_why(const explorer_state *st, layout *lay, screen *s, area body)
+static void draw_why(const explorer_model *model, const explorer_view *view, layout *lay,
+                     screen *s, area body)
 {
     char sentences[ACCOUNT_SENTENCES][ACCOUNT_SENTENCE];
     page p = begin_page(body, TEXT_WIDTH);
-    const int count = run_account(&st->session.effective, &st->session.run, sentences);
+    const int count =
+        run_account(&model->session.effective, &model->session.run, sentences);
     for (int i = 0; i < count; i++) {
         add_text(&p, "%s", sentences[i]);
     }
-    draw_page(st, lay, s, body, &p, "why (Esc closes)", 0);
+    draw_page(view, lay, s, body, &p, "why (Esc closes)", 0);
 }
 
 const panel why_panel = {.name = "why", .draw = draw_why, .key = page_key};
@@ -446,12 +455,13 @@ static void draw_shapes(screen *s, area a, const parameters *values)
     free(shapes);
 }
 
-static void draw_poles(const explorer_state *st, layout *lay, screen *s, area body)
+static void draw_poles(const explorer_model *model, const explorer_view *view,
+                       layout *lay, screen *s, area body)
 {
     static help_line lines[MOST_LINES];
     static parameters shown;
     static page p;
-    const parameters now = state_parameters(st);
+    const parameters now = model_parameters(model);
     const int width = begin_page(body, 64).width;
 
     // computed anew where a parameter has changed: many links take a while
@@ -468,7 +478,7 @@ static void draw_poles(const explorer_state *st, layout *lay, screen *s, area bo
     const bool shows =
         p.count + 2 + SHAPE_ROWS <= body.height && now.arm.links <= MOST_SHAPED;
     const int below = shows ? SHAPE_ROWS : 0;
-    const area a = draw_page(st, lay, s, body, &p, "poles (Esc closes)", below);
+    const area a = draw_page(view, lay, s, body, &p, "poles (Esc closes)", below);
     if (shows) {
         draw_shapes(s, (area){a.x + 2, a.y + a.height - 1 - below, a.width - 4, below},
                     &now);

@@ -60,14 +60,14 @@ static void draw_path(const plane *p, const trace *t, const pane *of, double fro
 }
 
 // The path of the visible part, that of the baseline behind it, the cursor on it.
-static bool draw_phase(const explorer_state *st, screen *s, const pane *of, area a,
-                       value_range *axis)
+static bool draw_phase(const explorer_model *model, const explorer_view *view, screen *s,
+                       const pane *of, area a, value_range *axis)
 {
-    const session *e = &st->session;
-    const trace *t = state_run(st, 0).trace;
+    const session *e = &model->session;
+    const trace *t = model_run(model, 0).trace;
     value_range x = value_range_empty, y = value_range_empty;
     double from, to;
-    state_window(st, &from, &to);
+    view_window(model, view, &from, &to);
     widen_by(&x, t, of->signals[1], from, to);
     widen_by(&y, t, of->signals[0], from, to);
     if (!(x.high >= x.low) || !(y.high >= y.low)) {
@@ -77,14 +77,14 @@ static bool draw_phase(const explorer_state *st, screen *s, const pane *of, area
                      value_range_opened(x),
                      value_range_opened(y)};
     *axis = p.y;
-    if (e->has_other && !st->difference.on) {
+    if (e->has_other && !model->difference.on) {
         draw_path(&p, &e->other.trace, of, from, to, INK_OTHER);
     }
     draw_path(&p, t, of, from, fmin(to, e->seen), INK_SERIES_0);
 
     // where the cursor is, and the ends of the axis
     draw_ends(s, a, p.x, signal_table[of->signals[1]].name);
-    const sample *row = &t->rows[state_row(st, t)];
+    const sample *row = &t->rows[model_row(model, t)];
     const double at_x = dot_x(&p, signal_value(row, of->signals[1])) / 2;
     const double at_y = dot_y(&p, signal_value(row, of->signals[0])) / 4;
     if (at_x >= 0 && at_x < a.width && at_y >= 0 && at_y < a.height) {
@@ -147,16 +147,16 @@ static int lines_that_matter(const double *amplitude)
 
 // The amplitudes of the visible part, as far as it has been seen, up to where there is
 // anything.
-static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, area a,
-                          value_range *axis)
+static bool draw_spectrum(const explorer_model *model, const explorer_view *view,
+                          screen *s, const pane *of, area a, value_range *axis)
 {
     static double series[SERIES], scratch[2 * SERIES], amplitude[SERIES / 2];
-    const trace *t = state_run(st, 0).trace;
+    const trace *t = model_run(model, 0).trace;
     char name[64];
     double from, to, highest = 0, largest = 0;
     int peak = 0;
-    state_window(st, &from, &to);
-    to = fmin(to, st->session.seen);
+    view_window(model, view, &from, &to);
+    to = fmin(to, model->session.seen);
     if (!(to > from)) {
         return false;
     }
@@ -192,12 +192,12 @@ static bool draw_spectrum(const explorer_state *st, screen *s, const pane *of, a
     return true;
 }
 
-bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a,
-                    value_range *axis)
+bool draw_pane_view(const explorer_model *model, const explorer_view *view, screen *s,
+                    const pane *p, area a, value_range *axis)
 {
     assert(p->view != VIEW_TIME);
     if (p->view == VIEW_PHASE) {
-        return draw_phase(st, s, p, a, axis);
+        return draw_phase(model, view, s, p, a, axis);
     }
-    return draw_spectrum(st, s, p, a, axis);
+    return draw_spectrum(model, view, s, p, a, axis);
 }

@@ -93,10 +93,11 @@ int draw_first_line(int selected, int count, int height)
     return first;
 }
 
-int time_column(const explorer_state *st, area line, double time)
+int time_column(const explorer_model *model, const explorer_view *view, area line,
+                double time)
 {
     double from, to;
-    state_window(st, &from, &to);
+    view_window(model, view, &from, &to);
     const double at = (time - from) / (to - from) * line.width;
     if (at >= 0 && at < line.width) {
         return line.x + (int)at;
@@ -153,11 +154,12 @@ int layout_keep_scroll(layout *lay, panel_id id, int last)
 
 // --- pages -----------------------------------------------------------------------------
 
-bool page_key(explorer_state *st, int key)
+bool page_key(explorer_model *model, explorer_view *view, explorer_input *input, int key)
 {
-    assert(st->page != PANEL_NONE);
-    int *scroll = &st->drawn.scroll[st->page];
-    const int lines = st->drawn.page_lines;
+    (void)input;
+    assert(view->page != PANEL_NONE);
+    int *scroll = &view->drawn.scroll[view->page];
+    const int lines = view->drawn.page_lines;
 
     // drawing keeps it within the page
     if (key == KEY_CODE_DOWN || key == 'j' || key == KEY_CODE_PAGE_DOWN || key == ' ') {
@@ -177,12 +179,12 @@ bool page_key(explorer_state *st, int key)
         *scroll = INT_MAX / 2;
     } else if (key == KEY_CODE_HOME || key == 'g') {
         *scroll = 0;
-    } else if (key == '/' && st->page == PANEL_HELP) {
-        return act_filter(st, "");
-    } else if (key == KEY_CODE_ESCAPE && st->filters.text[st->page][0] != '\0') {
-        st->filters.text[st->page][0] = '\0';
+    } else if (key == '/' && view->page == PANEL_HELP) {
+        return act_filter(model, view, "");
+    } else if (key == KEY_CODE_ESCAPE && view->filters.text[view->page][0] != '\0') {
+        view->filters.text[view->page][0] = '\0';
     } else {
-        st->page = PANEL_NONE;
+        view->page = PANEL_NONE;
     }
     return true;
 }
@@ -201,16 +203,10 @@ int page_scroll(layout *lay, panel_id id, area a, int lines, int head)
 
 // --- lists -----------------------------------------------------------------------------
 
-static int *list_number(explorer_state *st, size_t place)
+void list_draw(const page_list *list, const explorer_model *model,
+               const explorer_view *view, layout *lay, screen *s, area body)
 {
-    return (int *)((char *)st + place);
-}
-
-void list_draw(const page_list *list, const explorer_state *st, layout *lay, screen *s,
-               area body)
-{
-    const int count = *(const int *)((const char *)st + list->count);
-    const int selected = *(const int *)((const char *)st + list->selected);
+    const int count = list->count(model), selected = list->selected(model, view);
     const int edges = 2 + list->head + list->foot;
     const area a =
         page_area(body, list->width, edges + (count > 0 ? count : list->least));
@@ -223,35 +219,35 @@ void list_draw(const page_list *list, const explorer_state *st, layout *lay, scr
         title = list->narrow;
     }
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR, title);
-    list->draw_rest(st, s, (area){a.x + 2, a.y + 1, a.width - 4, a.height - 2});
+    list->draw_rest(model, s, (area){a.x + 2, a.y + 1, a.width - 4, a.height - 2});
 
     // the lines lie over the page, so a click meets them first
-    layout_add_hit(lay, (hit_area){st->page, PART_BODY, 0, a});
-    layout_add_hit(lay, (hit_area){st->page, PART_LINES, first, lines});
+    layout_add_hit(lay, (hit_area){view->page, PART_BODY, 0, a});
+    layout_add_hit(lay, (hit_area){view->page, PART_LINES, first, lines});
     for (int i = first; i < count && i - first < lines.height; i++) {
         const area line = {lines.x + 1, lines.y + i - first, lines.width - 2, 1};
-        list->draw_line(st, s, line, i);
+        list->draw_line(model, s, line, i);
         if (i == selected) {
             screen_tint(s, lines.x, line.y, lines.width, 1, INK_SELECTED);
         }
     }
 }
 
-bool list_point(const page_list *list, explorer_state *st, const panel_gesture *g)
+bool list_point(const page_list *list, explorer_model *model, explorer_view *view,
+                const panel_gesture *g)
 {
     const int index = g->hit.index + g->event.y - g->hit.area.y;
     const bool pressed = g->event.kind == POINTER_PRESS && g->hit.part == PART_LINES;
-    if (pressed && index < *list_number(st, list->count)) {
-        *list_number(st, list->selected) = index;
+    if (pressed && index < list->count(model)) {
+        list->select(model, view, index);
     }
     return pressed;
 }
 
-bool list_key_pressed(const page_list *list, explorer_state *st, int key)
+bool list_key_pressed(const page_list *list, explorer_model *model, explorer_view *view,
+                      explorer_input *input, int key)
 {
-    const int *count = list_number(st, list->count);
-    int *selected = list_number(st, list->selected);
-    char number[16];
+    const int count = list->count(model), selected = list->selected(model, view);
 
     // up and down
     int by = 0;
@@ -261,20 +257,16 @@ bool list_key_pressed(const page_list *list, explorer_state *st, int key)
         by = 1;
     }
     if (by != 0) {
-        if (*selected + by >= 0 && *selected + by < *count) {
-            *selected += by;
+        if (selected + by >= 0 && selected + by < count) {
+            list->select(model, view, selected + by);
         }
         return true;
     }
 
-    // what the list has a key for, else the page closes
-    const list_key *k = list->keys;
-    while (k->key != 0 && (k->key != key || (*count == 0 && list->needs_lines))) {
-        k++;
+    // all others are the list's, unless they need a line and there is none
+    if (count == 0 && list->needs_lines) {
+        view->page = PANEL_NONE;
+        return true;
     }
-    if (k->key == 0 || k->closes) {
-        st->page = PANEL_NONE;
-    }
-    snprintf(number, sizeof number, "%d", *selected + 1);
-    return k->key == 0 || k->does(st, number);
+    return list->key(model, view, input, key, selected);
 }

@@ -124,7 +124,8 @@ number_text draw_number(double value);
 int draw_first_line(int selected, int count, int height);
 
 // The column of a time axis at which an instant [s] is, -1 if it is not visible.
-int time_column(const explorer_state *st, area line, double time);
+int time_column(const explorer_model *model, const explorer_view *view, area line,
+                double time);
 
 // The area of a page of at most this size, centred in the area of the panels.
 area page_area(area body, int width, int height);
@@ -147,18 +148,21 @@ typedef struct panel {
 
     // The number of rows in a stack in `body`, 0 if it has nothing to show or there is no
     // room. Stacked panels only.
-    int (*rows)(const explorer_state *st, screen_size body);
+    int (*rows)(const explorer_model *model, const explorer_view *view, screen_size body);
 
     // Draws it into an area of the screen; pages are centred in the area of all panels.
-    void (*draw)(const explorer_state *st, layout *lay, screen *s, area a);
+    void (*draw)(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area a);
 
     int wheel; // lines that a step of the wheel scrolls it, 0 where `point` has the wheel
 
     // Handles the mouse; false if the gesture does nothing. May be NULL.
-    bool (*point)(explorer_state *st, const panel_gesture *g);
+    bool (*point)(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const panel_gesture *g);
 
     // Handles a key while the page is open. Pages only.
-    bool (*key)(explorer_state *st, int key);
+    bool (*key)(explorer_model *model, explorer_view *view, explorer_input *input,
+                int key);
 
     // Of a page that is a list, in the place of its draw, point and key; else NULL.
     const struct page_list *list;
@@ -175,20 +179,23 @@ PANEL_LIST(PANEL_DECLARATION)
 const panel *panel_of(panel_id id);
 
 // Draws a panel into an area of the screen, a page that is a list included.
-void panel_draw(panel_id id, const explorer_state *st, layout *lay, screen *s, area a);
+void panel_draw(panel_id id, const explorer_model *model, const explorer_view *view,
+                layout *lay, screen *s, area a);
 
 // Passes a gesture of the mouse to the panel of its hit area; false if it has no effect.
 // The wheel scrolls the panel, or presses a page's keys for up and down.
-bool panel_point(explorer_state *st, const panel_gesture *g);
+bool panel_point(explorer_model *model, explorer_view *view, explorer_input *input,
+                 const panel_gesture *g);
 
 // Passes a key to the page that is open; false if it was refused.
-bool panel_key(explorer_state *st, int key);
+bool panel_key(explorer_model *model, explorer_view *view, explorer_input *input,
+               int key);
 
 // --- pages -----------------------------------------------------------------------------
 // Keys and mouse in pages that are scrolled line by line.
 
 // Scrolls the page that is open; any other key closes it.
-bool page_key(explorer_state *st, int key);
+bool page_key(explorer_model *model, explorer_view *view, explorer_input *input, int key);
 
 // What a page of `lines` lines in an area stores for keys and the mouse, `head` rows of
 // which are not lines; returns how far it is scrolled.
@@ -197,43 +204,51 @@ int page_scroll(layout *lay, panel_id id, area a, int lines, int head);
 // The frame of a page, which says how many of its lines are shown down to its end.
 void draw_page_frame(screen *s, area a, const char *title, int last, int count);
 
-// A key of a page that is a list: what it does with the number of the selected line, from
-// 1, as its argument.
-typedef struct list_key {
-    int key;
-    action_function *does;
-    bool closes; // the page before that
-} list_key;
-
 // A page of lines of which one is selected. Keys for up and down and a press of the mouse
-// select another one, keys that the list does not name close it.
+// select another one.
 typedef struct page_list {
     const char *title, *narrow,
         *empty;                   // of a narrow page and without lines, NULL: as ever
     int width, head, foot, least; // most cells across; rows over, below, and of no lines
     bool needs_lines;             // without any every key closes it
-    size_t count, selected;       // where the state has them, an int each
-    void (*draw_line)(const explorer_state *st, screen *s, area a, int index);
-    void (*draw_rest)(const explorer_state *st, screen *s,
+    int (*count)(const explorer_model *model); // of its lines
+    int (*selected)(const explorer_model *model, const explorer_view *view);
+    void (*select)(explorer_model *model, explorer_view *view, int index);
+    void (*draw_line)(const explorer_model *model, screen *s, area a, int index);
+    void (*draw_rest)(const explorer_model *model, screen *s,
                       area a); // head and foot of the page's area
-    list_key keys[12];         // then one with key 0
+
+    // Handles a key but those for up and down, for the selected line; those without a
+    // meaning close the page.
+    bool (*key)(explorer_model *model, explorer_view *view, explorer_input *input,
+                int key, int index);
 } page_list;
 
 // Draws the list that is open, handles a press of the mouse on it, and a key.
-void list_draw(const page_list *list, const explorer_state *st, layout *lay, screen *s,
-               area body);
-bool list_point(const page_list *list, explorer_state *st, const panel_gesture *g);
-bool list_key_pressed(const page_list *list, explorer_state *st, int key);
+void list_draw(const page_list *list, const explorer_model *model,
+               const explorer_view *view, layout *lay, screen *s, area body);
+bool list_point(const page_list *list, explorer_model *model, explorer_view *view,
+                const panel_gesture *g);
+bool list_key_pressed(const page_list *list, explorer_model *model, explorer_view *view,
+                      explorer_input *input, int key);
+
+// --- the palette -----------------------------------------------------------------------
+
+// Draws it into the rows above the prompt, at the bottom of the area. It is the one panel
+// that sees the prompt, so it has no `draw`.
+void draw_palette(const explorer_view *view, const prompt *p, layout *lay, screen *s,
+                  area a);
 
 // --- the predictors --------------------------------------------------------------------
 
 // The rows that their panel takes of a stack, which the controller's leaves to it.
-int predictors_rows(const explorer_state *st, screen_size body);
+int predictors_rows(const explorer_model *model, const explorer_view *view,
+                    screen_size body);
 
 // --- the arm ---------------------------------------------------------------------------
 
 // The rows that the arm's panel makes use of where there is plenty of room.
-int arm_rows(const explorer_state *st, layout *lay, screen_size room);
+int arm_rows(const explorer_model *model, layout *lay, screen_size room);
 
 // --- the help --------------------------------------------------------------------------
 // The text of the help page, made from the tables of keys and commands.
@@ -253,8 +268,8 @@ int help_write(const key_bindings *b, int width, help_line *lines, int most);
 
 // Draws a pane's inside; its signals are those of a view that is not over time. *axis is
 // the range of its axis of values. False, with nothing drawn, if there are no values.
-bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a,
-                    value_range *axis);
+bool draw_pane_view(const explorer_model *model, const explorer_view *view, screen *s,
+                    const pane *p, area a, value_range *axis);
 
 // --- lanes -----------------------------------------------------------------------------
 // The lanes below the curves, on the same time axis: contact of each run, the
@@ -264,11 +279,13 @@ bool draw_pane_view(const explorer_state *st, screen *s, const pane *p, area a,
 
 // The number of rows of the lanes below curves of a given height. Examines the rows that
 // the run has gained since the last picture, so that empty lanes are omitted.
-int lanes_rows(const explorer_state *st, lane_survey *known, int height);
+int lanes_rows(const explorer_model *model, const explorer_view *view, lane_survey *known,
+               int height);
 
 // Draws the lanes in the number of rows given by lanes_rows; the area has the same
 // columns as the curves and their labels.
-void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a);
+void draw_lanes(const explorer_model *model, const explorer_view *view, layout *lay,
+                screen *s, area a);
 
 // The whole screen of the explorer: title, panels, page, status and prompt.
 
@@ -276,4 +293,5 @@ void draw_lanes(const explorer_state *st, layout *lay, screen *s, area a);
 bool compose_fits(screen_size size);
 
 // Draws everything from an up-to-date state; the layout depends on the screen's size.
-void compose_screen(const explorer_state *st, layout *lay, screen *s);
+void compose_screen(const explorer_model *model, const explorer_view *view,
+                    const explorer_input *input, layout *lay, screen *s);

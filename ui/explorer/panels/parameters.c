@@ -21,9 +21,9 @@ typedef struct track {
 } track;
 
 // Fills in scale and value of the slider of track's parameter; false if it has none.
-static bool find_track(const explorer_state *st, const parameters *p, track *k)
+static bool find_track(const explorer_view *view, const parameters *p, track *k)
 {
-    const slider_grip *grip = &st->slider;
+    const slider_grip *grip = &view->slider;
     const bool held = grip->held && grip->parameter == k->parameter;
     if (held) {
         k->value = grip->value;
@@ -72,13 +72,13 @@ static int fit_value(char *shown, size_t size, int most, const char *value,
 }
 
 // Name, value and unit in a line, with a slider behind them where there is room.
-static void draw_line(const explorer_state *st, layout *lay, screen *s, area a,
-                      const parameters *p, int parameter)
+static void draw_line(const explorer_model *model, const explorer_view *view, layout *lay,
+                      screen *s, area a, const parameters *p, int parameter)
 {
     const parameter_info *info = &parameter_table[parameter];
     char value[PARAMETER_TEXT_SIZE], shown[PARAMETER_TEXT_SIZE + 32];
-    const bool inert = state_inert_reason(st, parameter) != NULL;
-    const bool held = st->slider.held && st->slider.parameter == parameter;
+    const bool inert = model_inert_reason(model, parameter) != NULL;
+    const bool held = view->slider.held && view->slider.parameter == parameter;
     track k = {.parameter = parameter};
     if (inert) {
         k.knob = INK_FRAME;
@@ -89,7 +89,7 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a,
     } else {
         k.knob = INK_DIM;
     }
-    const bool has_slider = find_track(st, p, &k);
+    const bool has_slider = find_track(view, p, &k);
     parameter_format(p, parameter, value, sizeof value);
     if (info->type == PARAMETER_REAL || held) {
         snprintf(value, sizeof value, "%.6g", k.value);
@@ -101,7 +101,7 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a,
         }
         room -= slider + 1;
     }
-    bool given = st->session.effective.parameters.set[parameter] != 0;
+    bool given = model->session.effective.parameters.set[parameter] != 0;
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_LINES, parameter, a});
 
     // the heading has the group
@@ -123,12 +123,12 @@ static void draw_line(const explorer_state *st, layout *lay, screen *s, area a,
 }
 
 // The heading of a group: its name, and how many parameters it hides.
-static void draw_heading(const explorer_state *st, layout *lay, screen *s, area a,
+static void draw_heading(const explorer_view *view, layout *lay, screen *s, area a,
                          int parameter)
 {
     char name[PARAMETER_NAME];
-    const bool filtered = st->filters.text[PANEL_PARAMETERS][0] != '\0';
-    const bool folded = st->parameters.folded[parameter] && !filtered;
+    const bool filtered = view->filters.text[PANEL_PARAMETERS][0] != '\0';
+    const bool folded = view->parameters.folded[parameter] && !filtered;
     parameter_group_name(parameter, name, sizeof name);
 
     // its name, and how many parameters are folded away
@@ -147,10 +147,10 @@ static void draw_heading(const explorer_state *st, layout *lay, screen *s, area 
 
 // The line below the selected parameter: its slider between the ends of its range, or the
 // reason why it has no effect.
-static void draw_below(const explorer_state *st, layout *lay, screen *s, area a,
+static void draw_below(const explorer_model *model, layout *lay, screen *s, area a,
                        const track *k)
 {
-    const char *inert = state_inert_reason(st, k->parameter);
+    const char *inert = model_inert_reason(model, k->parameter);
     if (inert != NULL) {
         screen_text(s, a.x + 1, a.y, a.width - 1, INK_WARNING, inert);
         return;
@@ -162,17 +162,18 @@ static void draw_below(const explorer_state *st, layout *lay, screen *s, area a,
     draw_track(lay, s, (area){a.x + before + 1, a.y, a.width - before - after - 2, 1}, k);
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area a)
 {
-    parameters p = state_parameters(st);
+    parameters p = model_parameters(model);
     parameter_line lines[PARAMETER_LINES];
-    const parameter_list *list = &st->parameters;
-    const char *filter = st->filters.text[PANEL_PARAMETERS];
+    const parameter_list *list = &view->parameters;
+    const char *filter = view->filters.text[PANEL_PARAMETERS];
     char title[LINE_TEXT + 32] = "parameters (Tab: values, / filters)";
     int line = 0, height = a.height - 2;
     track wide = {.parameter = list->parameter,
-                  .knob = st->slider.held ? INK_EVENT : INK_CURSOR};
-    const bool number = find_track(st, &p, &wide);
+                  .knob = view->slider.held ? INK_EVENT : INK_CURSOR};
+    const bool number = find_track(view, &p, &wide);
     if (filter[0] != '\0') {
         snprintf(title, sizeof title, "parameters /%s", filter);
     } else if (a.width < 46) {
@@ -182,11 +183,11 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 
     // a number that is selected takes a second line, and so does what has no effect
     int selected;
-    const int count = state_parameter_lines(st, lines, &selected);
+    const int count = view_parameter_lines(view, lines, &selected);
     const bool shows_parameter = count > 0 && !lines[selected].heading &&
                                  lines[selected].parameter == list->parameter;
     const bool expands = shows_parameter && height >= 2 &&
-                         (number || state_inert_reason(st, list->parameter) != NULL);
+                         (number || model_inert_reason(model, list->parameter) != NULL);
     if (count == 0) {
         screen_text(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "none has these words");
     }
@@ -195,9 +196,9 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     for (int i = 0; i < count && line - first < height; i++) {
         area at = {a.x + 2, a.y + 1 + line++ - first, a.width - 4, 1};
         if (at.y > a.y && lines[i].heading) {
-            draw_heading(st, lay, s, at, lines[i].parameter);
+            draw_heading(view, lay, s, at, lines[i].parameter);
         } else if (at.y > a.y) {
-            draw_line(st, lay, s, at, &p, lines[i].parameter);
+            draw_line(model, view, lay, s, at, &p, lines[i].parameter);
         }
         if (i != selected) {
             continue;
@@ -205,41 +206,43 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
         screen_tint(s, a.x + 1, at.y, a.width - 2, 1, INK_SELECTED);
         if (expands && line - first < height) {
             at.y = a.y + 1 + line++ - first;
-            draw_below(st, lay, s, at, &wide);
+            draw_below(model, lay, s, at, &wide);
         }
     }
 }
 
 // The mouse on a slider: takes hold, drags, nudges with the wheel.
-static bool point_at_slider(explorer_state *st, const panel_gesture *g)
+static bool point_at_slider(explorer_model *model, explorer_view *view,
+                            explorer_input *input, const panel_gesture *g)
 {
     const hit_area *h = &g->hit;
     const int cells = h->area.width, wheel = pointer_wheel(g->event);
     const double share = cells > 1 ? (double)(g->event.x - h->area.x) / (cells - 1) : 0;
     if (wheel != 0) {
-        parameter_list_select(&st->parameters, (parameter_line){h->index, false});
-        act_nudge(st, wheel < 0 ? "" : "-1");
+        parameter_list_select(&view->parameters, (parameter_line){h->index, false});
+        act_nudge(model, view, input, wheel < 0 ? "" : "-1");
     } else if (g->event.kind == POINTER_RELEASE) {
-        act_drop_slider(st);
+        act_drop_slider(model, view, input);
     } else {
-        act_hold_slider(st, h->index, share, cells);
+        act_hold_slider(model, view, h->index, share, cells);
     }
     return true;
 }
 
 // A click selects a line; a slider takes the mouse in its own way.
-static bool point(explorer_state *st, const panel_gesture *g)
+static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const panel_gesture *g)
 {
     const bool pressed = g->event.kind == POINTER_PRESS;
     if (g->hit.part == PART_SLIDER) {
-        return point_at_slider(st, g);
+        return point_at_slider(model, view, input, g);
     }
 
     // a press folds the group of a heading and selects any other line
     if (pressed && g->hit.part == PART_HEADING) {
-        parameter_list_fold(&st->parameters, g->hit.index);
+        parameter_list_fold(&view->parameters, g->hit.index);
     } else if (pressed) {
-        parameter_list_select(&st->parameters, (parameter_line){g->hit.index, false});
+        parameter_list_select(&view->parameters, (parameter_line){g->hit.index, false});
     }
     return pressed;
 }

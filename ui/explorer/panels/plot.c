@@ -11,7 +11,7 @@
 
 enum { LARGE_CELL = 24 }; // height of a cell from which on lines are thicker [pixels]
 
-void plot_frame_open(const explorer_state *st, plot_frame *f)
+void plot_frame_open(const explorer_view *view, plot_frame *f)
 {
     const canvas *c = &f->canvas;
     const picture_layer *pixels = c->screen->pictures;
@@ -19,7 +19,7 @@ void plot_frame_open(const explorer_state *st, plot_frame *f)
     if (f->picture == NULL) {
         return;
     }
-    f->theme = st->looks.theme;
+    f->theme = view->looks.theme;
     f->pixels = (pane_frame){.from = f->from,
                              .to = f->to,
                              .low = f->axis.low,
@@ -295,12 +295,13 @@ static void draw_instants(screen *s, area a, double from, double to)
     }
 }
 
-area draw_time_axis(const explorer_state *st, screen *s, area a)
+area draw_time_axis(const explorer_model *model, const explorer_view *view, screen *s,
+                    area a)
 {
-    const session *e = &st->session;
+    const session *e = &model->session;
     const trace *t = &e->run.trace;
     double from, to;
-    state_window(st, &from, &to);
+    view_window(model, view, &from, &to);
     area line = {a.x + LABEL_WIDTH + 1, a.y, a.width - LABEL_WIDTH - 1, 1};
 
     // contact as a bar
@@ -314,7 +315,7 @@ area draw_time_axis(const explorer_state *st, screen *s, area a)
     // a touch that is shorter than a column
     for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
         if (t->events[i].kind == EVENT_CONTACT) {
-            screen_put(s, time_column(st, line, t->events[i].time), a.y, 0x2592,
+            screen_put(s, time_column(model, view, line, t->events[i].time), a.y, 0x2592,
                        INK_FORCE);
         }
     }
@@ -335,14 +336,15 @@ area draw_time_axis(const explorer_state *st, screen *s, area a)
             }
         }
         if (impact || input) {
-            screen_put(s, time_column(st, line, v->time), a.y, mark,
+            screen_put(s, time_column(model, view, line, v->time), a.y, mark,
                        seen ? INK_EVENT : INK_DIM);
         }
     }
 
     // notes
-    for (int i = 0; i < st->note_count; i++) {
-        screen_put(s, time_column(st, line, st->notes[i].time), a.y, '!', INK_TITLE);
+    for (int i = 0; i < model->note_count; i++) {
+        screen_put(s, time_column(model, view, line, model->notes[i].time), a.y, '!',
+                   INK_TITLE);
     }
 
     // the meaning of the marks, next to them

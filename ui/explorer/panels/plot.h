@@ -26,7 +26,7 @@ typedef struct plot_frame {
 } plot_frame;
 
 // Begins a picture of the pane if the screen has pixels; it is to be ended.
-void plot_frame_open(const explorer_state *st, plot_frame *f);
+void plot_frame_open(const explorer_view *view, plot_frame *f);
 
 // Draws one signal of a run up to the instant `until` [s] with the frame's pattern and
 // colour: every row if there are few, otherwise the smallest and largest value of each
@@ -49,9 +49,11 @@ void draw_value_axis(screen *s, area a, value_range axis);
 
 // The time axis below the curves: contact as a bar, impacts and changes as marks,
 // seconds. Returns the area of its line and numbers.
-area draw_time_axis(const explorer_state *st, screen *s, area a);
+area draw_time_axis(const explorer_model *model, const explorer_view *view, screen *s,
+                    area a);
 
 // --- the mouse -------------------------------------------------------------------------
 
 // Handles the mouse on a part of the panel of curves.
-bool curves_point(explorer_state *st, const panel_gesture *g);
+bool curves_point(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const panel_gesture *g);

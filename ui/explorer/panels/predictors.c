@@ -13,15 +13,15 @@ enum { ROWS = 6 };            // of the panel [cells]
 // What a predictor says of the state in a row. The linearised arm is asked once for each
 // row: with more links than two it takes milliseconds, too long for every frame of a run
 // that plays.
-static prediction_answer ask(const explorer_state *st, layout *lay, predictor which,
-                             size_t r)
+static prediction_answer ask(const explorer_model *model, const explorer_view *view,
+                             layout *lay, predictor which, size_t r)
 {
-    const trace *t = &st->session.run.trace;
+    const trace *t = &model->session.run.trace;
     const sample *row = &t->rows[r];
     const size_t state = r * (size_t)t->angle_count;
     // under a control law the voltage is the law's, and the amplifier gets no more than
     // its limit
-    parameters p = session_parameters_at(&st->session, row->time);
+    parameters p = session_parameters_at(&model->session, row->time);
     p.motor.voltage = row->voltage;
     const prediction_question question = {
         .parameters = &p,
@@ -35,9 +35,9 @@ static prediction_answer ask(const explorer_state *st, layout *lay, predictor wh
     }
 
     linearised_answer *known = &lay->linearised;
-    const unsigned long run = state_run_id(st);
+    const unsigned long run = model_run_id(model);
     if (known->run != run || known->row != r) {
-        const bool waits = st->playback.playing && p.arm.links > 2;
+        const bool waits = view->playback.playing && p.arm.links > 2;
         if (waits || p.arm.links > MOST_PREDICTED) {
             return (prediction_answer){.short_label = "linearised",
                                        .outcome = PREDICTION_LINKS_UNKNOWN};
@@ -133,18 +133,21 @@ static void predictor_line(screen *s, area a, int line, const char *label,
     }
 }
 
-int predictors_rows(const explorer_state *st, screen_size body)
+int predictors_rows(const explorer_model *model, const explorer_view *view,
+                    screen_size body)
 {
-    (void)st;
+    (void)model;
+    (void)view;
     if (body.width >= SIDE_WIDTH && body.height >= 15) {
         return ROWS;
     }
     return 0;
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area a)
 {
-    const session *e = &st->session;
+    const session *e = &model->session;
     size_t r = free_row(e);
     bool touches = session_sample(e)->contact != 0;
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
@@ -160,7 +163,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     static const predictor asked[] = {PREDICTOR_ENERGY, PREDICTOR_IMPACT_DYNAMICS,
                                       PREDICTOR_LINEARISED};
     for (int i = 0; i < 3; i++) {
-        const prediction_answer answer = ask(st, lay, asked[i], r);
+        const prediction_answer answer = ask(model, view, lay, asked[i], r);
         predictor_line(s, a, i, answer.short_label, &answer.prediction,
                        prediction_known(&answer) ? NULL : reason_of(&answer, a));
     }

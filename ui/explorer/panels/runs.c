@@ -9,11 +9,12 @@
 
 enum { SAMPLE = 4, PEAK = 10 };
 
-static int rows(const explorer_state *st, screen_size body)
+static int rows(const explorer_model *model, const explorer_view *view, screen_size body)
 {
+    (void)view;
     const bool fits = body.width >= SIDE_WIDTH && body.height >= 12;
-    if (fits && st->pinned.count > 0) {
-        return st->pinned.count + 3;
+    if (fits && model->pinned.count > 0) {
+        return model->pinned.count + 3;
     }
     return 0;
 }
@@ -28,18 +29,19 @@ static void draw_run(screen *s, area a, const char *name, double peak, unsigned 
                  draw_number(peak).text);
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area a)
 {
-    const run_list *list = &st->pinned;
+    const run_list *list = &model->pinned;
     area line = {a.x + 2, a.y + 1, a.width - 4, 1};
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "runs, peaks (R: list)");
-    const bool by_run = st->looks.by_run != 0;
-    draw_run(s, line, "now", st->session.run.summary.peak_force_N,
+    const bool by_run = view->looks.by_run != 0;
+    draw_run(s, line, "now", model->session.run.summary.peak_force_N,
              style_pattern(LINE_SOLID), by_run ? run_ink(-1) : INK_TEXT);
     line.y++;
 
     // the baseline with a mark, hidden ones without a line
-    const bool single = state_visible_pins(st) == 1;
+    const bool single = model_visible_pins(model) == 1;
     for (int i = 0; i < list->count && line.y < a.y + a.height - 1; i++, line.y++) {
         const pinned_run *p = &list->runs[i];
         unsigned pattern = 0;
@@ -67,10 +69,13 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
 }
 
 // A click hides a run or shows it.
-static bool point(explorer_state *st, const panel_gesture *g)
+static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const panel_gesture *g)
 {
+    (void)input;
+    (void)view;
     const bool pressed = g->event.kind == POINTER_PRESS;
-    st->pinned.runs[g->hit.index].hidden ^= pressed;
+    model->pinned.runs[g->hit.index].hidden ^= pressed;
     return pressed;
 }
 
@@ -82,16 +87,16 @@ const panel runs_panel = {.name = "runs", .rows = rows, .draw = draw, .point = p
 enum { NAME_WIDTH = 30, NUMBER = 10 };
 
 // A pinned run: its line, name, peak, and what differs from the present one.
-static void draw_pinned(const explorer_state *st, screen *s, area a, int index)
+static void draw_pinned(const explorer_model *model, screen *s, area a, int index)
 {
-    const pinned_run *p = &st->pinned.runs[index];
+    const pinned_run *p = &model->pinned.runs[index];
     char differs[LINE_TEXT];
     const int name = a.width >= 80 ? NAME_WIDTH : 20;
-    run_list_differences(p, &st->session, differs, sizeof differs);
+    run_list_differences(p, &model->session, differs, sizeof differs);
 
     // number, line, name, peak, difference
     screen_print(s, a.x, a.y, 3, INK_DIM, "%s%d",
-                 index == st->pinned.baseline ? "\u25b8" : " ", index + 1);
+                 index == model->pinned.baseline ? "\u25b8" : " ", index + 1);
     draw_line_sample(s, a.x + 3, a.y, SAMPLE, p->hidden ? 0 : run_pattern(index),
                      INK_TEXT);
     screen_words(s, a.x + 8, a.y, name - 1, p->hidden ? INK_DIM : INK_TITLE, p->name);
@@ -102,21 +107,60 @@ static void draw_pinned(const explorer_state *st, screen *s, area a, int index)
 }
 
 // What they stand beside, and the keys.
-static void draw_rest(const explorer_state *st, screen *s, area a)
+static void draw_rest(const explorer_model *model, screen *s, area a)
 {
     screen_print(s, a.x, a.y, a.width, INK_DIM, "this run peaks at %.4g N; beside it:",
-                 st->session.run.summary.peak_force_N);
+                 model->session.run.summary.peak_force_N);
     screen_text(
         s, a.x, a.y + a.height - 1, a.width, INK_DIM,
-        st->pinned.count > 0
+        model->pinned.count > 0
             ? "Enter takes it, Space hides, = compares, r renames, d drops, D subtracts"
             : "none yet: b pins the run there is, then change something");
 }
 
-static bool subtract(explorer_state *st, const char *number)
+static int count(const explorer_model *model)
 {
-    (void)number;
-    return act_difference(st, "");
+    return model->pinned.count;
+}
+
+static int selected(const explorer_model *model, const explorer_view *view)
+{
+    (void)view;
+    return model->pinned.selected;
+}
+
+static void select_run(explorer_model *model, explorer_view *view, int index)
+{
+    (void)view;
+    model->pinned.selected = index;
+}
+
+static bool press_key(explorer_model *model, explorer_view *view, explorer_input *input,
+                      int key, int index)
+{
+    switch (key) {
+    case ' ':
+        act_hide_run(model, index);
+        return true;
+    case '=':
+        return act_compare_with(model, input, index);
+    case 'r':
+        act_ask_run_name(model, input, index);
+        return true;
+    case 'd':
+    case 'x':
+    case KEY_CODE_DELETE:
+        return act_drop_run(model, input, index);
+    case KEY_CODE_ENTER:
+        view->page = PANEL_NONE;
+        return act_take_run(model, view, input, index);
+    case 'D':
+        view->page = PANEL_NONE;
+        return act_difference(model, view, input, "");
+    default:
+        view->page = PANEL_NONE;
+        return true;
+    }
 }
 
 static const page_list list = {.title = "pinned runs (Esc closes)",
@@ -124,18 +168,12 @@ static const page_list list = {.title = "pinned runs (Esc closes)",
                                .head = 1,
                                .foot = 2,
                                .needs_lines = true,
-                               .count = offsetof(explorer_state, pinned.count),
-                               .selected = offsetof(explorer_state, pinned.selected),
+                               .count = count,
+                               .selected = selected,
+                               .select = select_run,
                                .draw_line = draw_pinned,
                                .draw_rest = draw_rest,
-                               .keys = {{KEY_CODE_ENTER, act_take, true},
-                                        {' ', act_hide},
-                                        {'=', act_baseline},
-                                        {'r', act_rename},
-                                        {'d', act_unpin},
-                                        {'x', act_unpin},
-                                        {KEY_CODE_DELETE, act_unpin},
-                                        {'D', subtract, true}}};
+                               .key = press_key};
 
 const panel run_list_panel = {.name = "run list", .list = &list};
 
@@ -168,10 +206,12 @@ static bool compare_quantity(const session *e, int index, int width, char *colum
     return !summary_table[index].timing && !(isnan(value) && isnan(other));
 }
 
-static void draw_comparison(const explorer_state *st, layout *lay, screen *s, area body)
+static void draw_comparison(const explorer_model *model, const explorer_view *view,
+                            layout *lay, screen *s, area body)
 {
+    (void)view;
     enum { NAMES = 30, WIDE = 12, NARROW = 11 };
-    const session *e = &st->session;
+    const session *e = &model->session;
     char columns[128];
     bool differs;
     int count = 0, line = 0;
@@ -197,7 +237,7 @@ static void draw_comparison(const explorer_state *st, layout *lay, screen *s, ar
         // under the name that the legend has
         const int at = a.x + 3 + names + width;
         screen_words(s, at, a.y + 1, width - 1, INK_DIM,
-                     st->pinned.runs[st->pinned.baseline].name);
+                     model->pinned.runs[model->pinned.baseline].name);
         screen_print(s, at + width - 1, a.y + 1, width, INK_DIM, "%*s", width, "change");
     }
 

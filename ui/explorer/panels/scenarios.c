@@ -65,14 +65,16 @@ static void draw_preview(const scenario_menu *menu, screen *s, area a)
     }
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area body)
+static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area body)
 {
-    const scenario_menu *menu = &st->scenarios;
+    (void)model;
+    const scenario_menu *menu = &view->scenarios;
     const int preview = s->height >= TALL_SCREEN ? PREVIEW : 0;
     area a = page_area(body, 96, menu->count + 4 + preview);
     int height = a.height - 4 - preview, selected;
     const int count = scenario_menu_lines(menu, &selected);
-    const int first = first_line(selected, count, st->drawn.first_scenario, height);
+    const int first = first_line(selected, count, view->drawn.first_scenario, height);
     screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
                  "scenarios (Enter opens, / filters, Esc closes)");
     screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "/ filter: %s%s",
@@ -99,19 +101,21 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area body)
     }
 }
 
-static bool open_selected(explorer_state *st)
+static bool open_selected(explorer_model *model, explorer_view *view,
+                          explorer_input *input)
 {
-    const scenario_menu *menu = &st->scenarios;
+    const scenario_menu *menu = &view->scenarios;
     int at;
-    st->page = PANEL_NONE;
+    view->page = PANEL_NONE;
     scenario_menu_lines(menu, &at);
-    return at < 0 || act_open_scenario(st, menu->names[menu->selected]);
+    return at < 0 || act_open_scenario(model, view, input, menu->names[menu->selected]);
 }
 
 // Keys go to the filter until it is closed; Enter opens what is selected.
-static bool filter_key(explorer_state *st, int key)
+static bool filter_key(explorer_model *model, explorer_view *view, explorer_input *input,
+                       int key)
 {
-    scenario_menu *menu = &st->scenarios;
+    scenario_menu *menu = &view->scenarios;
     const bool opens = key == KEY_CODE_ENTER;
     if (opens || key == KEY_CODE_ESCAPE) {
         menu->filtering = false;
@@ -121,16 +125,17 @@ static bool filter_key(explorer_state *st, int key)
         text_type(menu->filter, key);
     }
     scenario_menu_move(menu, 0);
-    return !opens || open_selected(st);
+    return !opens || open_selected(model, view, input);
 }
 
-static bool menu_key(explorer_state *st, int key)
+static bool menu_key(explorer_model *model, explorer_view *view, explorer_input *input,
+                     int key)
 {
-    scenario_menu *menu = &st->scenarios;
+    scenario_menu *menu = &view->scenarios;
 
     // the filter takes all keys while it is typed
     if (menu->filtering) {
-        return filter_key(st, key);
+        return filter_key(model, view, input, key);
     }
     const bool up = key == KEY_CODE_UP || key == 'k' || key == KEY_CODE_PAGE_UP;
     const bool down = key == KEY_CODE_DOWN || key == 'j' || key == KEY_CODE_PAGE_DOWN;
@@ -141,17 +146,18 @@ static bool menu_key(explorer_state *st, int key)
         menu->filtering = true;
         menu->filter[0] = '\0';
     } else if (key == KEY_CODE_ENTER) {
-        return open_selected(st);
+        return open_selected(model, view, input);
     } else if (key == KEY_CODE_ESCAPE || key == 'q' || key == 'o') {
-        st->page = PANEL_NONE;
+        view->page = PANEL_NONE;
     }
     return true;
 }
 
 // The first click selects a line, another one on it opens it.
-static bool point(explorer_state *st, const panel_gesture *g)
+static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const panel_gesture *g)
 {
-    scenario_menu *menu = &st->scenarios;
+    scenario_menu *menu = &view->scenarios;
 
     if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
         return false;
@@ -161,7 +167,7 @@ static bool point(explorer_state *st, const panel_gesture *g)
     int selected, line = g->hit.index + g->event.y - g->hit.area.y;
     if (line < scenario_menu_lines(menu, &selected) && line == selected) {
         menu->filtering = false;
-        open_selected(st);
+        open_selected(model, view, input);
     } else if (line < scenario_menu_lines(menu, &selected)) {
         menu->selected = menu->shown[line];
     }

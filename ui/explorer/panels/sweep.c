@@ -57,9 +57,9 @@ static void draw_ends(screen *s, area a, const lab_sweep *sweep)
 }
 
 // The metric over the parameter, points joined, the selected one marked.
-static void draw_chart(const explorer_state *st, screen *s, area a)
+static void draw_chart(const explorer_model *model, screen *s, area a)
 {
-    const lab_sweep *sweep = &st->sweep;
+    const lab_sweep *sweep = &model->sweep;
     value_range range;
     if (!range_of_metric(sweep, &range)) {
         screen_text(s, a.x, a.y, a.width, INK_DIM, "no run has this number");
@@ -95,9 +95,9 @@ static void draw_chart(const explorer_state *st, screen *s, area a)
 }
 
 // The runs: value and metric, from the one on that lets the selected one be seen.
-static void draw_runs(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw_runs(const explorer_model *model, layout *lay, screen *s, area a)
 {
-    const lab_sweep *sweep = &st->sweep;
+    const lab_sweep *sweep = &model->sweep;
     const int first = draw_first_line(sweep->selected, sweep->count, a.height);
     layout_add_hit(lay, (hit_area){PANEL_SWEEP, PART_LINES, first, a});
 
@@ -169,10 +169,10 @@ static void draw_values(screen *s, area a, const lab_sweep *sweep, bool ends)
 }
 
 // The first parameter across, the second up; below it the axes and the selected cell.
-static void draw_map(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw_map(const explorer_model *model, layout *lay, screen *s, area a)
 {
     enum { BELOW = 4, TALL = 3 };
-    const lab_sweep *sweep = &st->sweep;
+    const lab_sweep *sweep = &model->sweep;
     const int across = (int)sweep->axis.count, up = (int)sweep->second.count;
     const int wide = a.width / across, most = (a.height - BELOW) / up,
               tall = most < TALL ? most : TALL;
@@ -226,9 +226,11 @@ static void write_title(char *title, size_t size, const lab_sweep *sweep, int mo
     }
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area a)
 {
-    const lab_sweep *sweep = &st->sweep;
+    (void)view;
+    const lab_sweep *sweep = &model->sweep;
     char title[LINE_TEXT];
     if (!lab_sweep_is_on(sweep)) {
         screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
@@ -241,28 +243,31 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
                  summary_table[sweep->metric].label);
 
     if (lab_sweep_is_map(sweep)) {
-        draw_map(st, lay, s, (area){a.x + 2, a.y + 2, a.width - 4, a.height - 3});
+        draw_map(model, lay, s, (area){a.x + 2, a.y + 2, a.width - 4, a.height - 3});
         return;
     }
 
     // the chart, if there is room for it and a few runs
     const int inner = a.height - 3, chart = inner / 2 >= LEAST_CHART ? inner / 2 : 0;
     if (chart > 0 && sweep->count > 0) {
-        draw_chart(st, s, (area){a.x + 2, a.y + 2, a.width - 4, chart});
+        draw_chart(model, s, (area){a.x + 2, a.y + 2, a.width - 4, chart});
     }
     if (inner - chart > 0) {
-        draw_runs(st, lay, s,
+        draw_runs(model, lay, s,
                   (area){a.x + 2, a.y + 2 + chart, a.width - 4, inner - chart});
     }
 }
 
 // A click selects a run, the wheel goes through them.
-static bool point(explorer_state *st, const panel_gesture *g)
+static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
+                  const panel_gesture *g)
 {
+    (void)input;
+    (void)view;
     const area a = g->hit.area;
-    const int wheel = pointer_wheel(g->event), across = (int)st->sweep.axis.count;
+    const int wheel = pointer_wheel(g->event), across = (int)model->sweep.axis.count;
     const bool pressed = g->event.kind == POINTER_PRESS;
-    int to = st->sweep.selected + wheel;
+    int to = model->sweep.selected + wheel;
     if (pressed && g->hit.part == PART_CELLS) {
         to = (a.y + a.height - 1 - g->event.y) / g->hit.index * across +
              (g->event.x - a.x) / (a.width / across);
@@ -270,7 +275,7 @@ static bool point(explorer_state *st, const panel_gesture *g)
         to = g->hit.index + g->event.y - a.y;
     }
     if (pressed || wheel != 0) {
-        act_select_swept(st, to - st->sweep.selected);
+        act_select_swept(model, to - model->sweep.selected);
     }
     return pressed || wheel != 0;
 }

@@ -13,23 +13,24 @@ enum { NAME = 19, NUMBER = 10, UNIT = 6 }; // columns [cells]
 
 // Whether a signal is in the list: the filter lets it through, and it is not of a sensor
 // that is not fitted, which has no value.
-static bool is_listed(const explorer_state *st, const sample *row, int signal)
+static bool is_listed(const explorer_view *view, const sample *row, int signal)
 {
     return !(signal_table[signal].optional && isnan(signal_value(row, signal))) &&
-           filter_passes(st->filters.text[PANEL_VALUES], signal_table[signal].name);
+           filter_passes(view->filters.text[PANEL_VALUES], signal_table[signal].name);
 }
 
-static void draw(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
+                 screen *s, area a)
 {
-    const session *e = &st->session;
+    const session *e = &model->session;
     const sample *row = session_sample(e), *beside = NULL;
     sample between;
-    const char *against = "", *filter = st->filters.text[PANEL_VALUES];
+    const char *against = "", *filter = view->filters.text[PANEL_VALUES];
 
     // beside the values at the mark, or else those of the kept run
-    if (st->mark.set) {
+    if (view->mark.set) {
         const trace *t = &e->run.trace;
-        beside = &t->rows[trace_row_on_side(t, st->mark.time, st->mark.side)];
+        beside = &t->rows[trace_row_on_side(t, view->mark.time, view->mark.side)];
         against = ", minus mark";
     } else if (e->has_other) {
         between = trace_sample_at(&e->other.trace, row->time,
@@ -41,7 +42,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     // as many as there is room for, from the line that it is scrolled to
     int height = a.height - 2, shown = 0, line = 0;
     for (int i = 0; i < signal_count; i++) {
-        shown += is_listed(st, row, i);
+        shown += is_listed(view, row, i);
     }
     int first =
         layout_keep_scroll(lay, PANEL_VALUES, shown > height ? shown - height : 0);
@@ -59,7 +60,7 @@ static void draw(const explorer_state *st, layout *lay, screen *s, area a)
     const bool wide = room >= NAME + numbers + UNIT;
     const int names = room - numbers - (wide || beside == NULL ? UNIT : 0);
     for (int i = 0; i < signal_count && line < first + height; i++) {
-        if (!is_listed(st, row, i) || line++ < first) {
+        if (!is_listed(view, row, i) || line++ < first) {
             continue;
         }
         const signal_info *info = &signal_table[i];
@@ -97,15 +98,16 @@ enum { LINES = 3 }; // of a signal
 
 // The signals of the panes that are shown, those of the pane in focus first, each once;
 // an expression has no difference.
-static int find_signals(const explorer_state *st, int signals[PANES * PANE_SIGNALS])
+static int find_signals(const explorer_model *model, const explorer_view *view,
+                        int signals[PANES * PANE_SIGNALS])
 {
     int count = 0;
-    const int focused = panes_focused(&st->panes);
-    const bool subtracts = state_subtracts(st);
+    const int focused = panes_focused(&view->panes);
+    const bool subtracts = model_subtracts(model);
 
     // from the pane in focus on and around, a signal of several panes once
     for (int i = 0; i < PANES && focused >= 0; i++) {
-        const pane *p = &st->panes.pane[(focused + i) % PANES];
+        const pane *p = &view->panes.pane[(focused + i) % PANES];
         for (int k = 0; p->shown && k < p->count; k++) {
             bool there = subtracts && signal_is_derived(p->signals[k]);
             for (int j = 0; j < count; j++) {
@@ -162,27 +164,28 @@ static void draw_signal(screen *s, area a, int signal, const signal_statistics *
     }
 }
 
-static void draw_statistics(const explorer_state *st, layout *lay, screen *s, area a)
+static void draw_statistics(const explorer_model *model, const explorer_view *view,
+                            layout *lay, screen *s, area a)
 {
     int signals[PANES * PANE_SIGNALS];
-    const trace *t = state_run(st, 0).trace;
-    const int count = find_signals(st, signals), fit = (a.height - 3) / LINES;
+    const trace *t = model_run(model, 0).trace;
+    const int count = find_signals(model, view, signals), fit = (a.height - 3) / LINES;
     const int first =
         layout_keep_scroll(lay, PANEL_STATISTICS, count > fit ? count - fit : 0);
     double from, to;
 
     // between both cursors, else what is visible
-    state_window(st, &from, &to);
-    if (st->mark.set) {
-        from = fmin(st->mark.time, st->session.now);
-        to = fmax(st->mark.time, st->session.now);
+    view_window(model, view, &from, &to);
+    if (view->mark.set) {
+        from = fmin(view->mark.time, model->session.now);
+        to = fmax(view->mark.time, model->session.now);
     }
     screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
                  "statistics (m sets the mark)");
     layout_add_hit(lay, (hit_area){.panel = PANEL_STATISTICS, .area = a});
     screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s%s %.5g to %.5g s",
-                 state_subtracts(st) ? "minus baseline, " : "",
-                 st->mark.set ? "mark and cursor," : "visible part,", from, to);
+                 model_subtracts(model) ? "minus baseline, " : "",
+                 view->mark.set ? "mark and cursor," : "visible part,", from, to);
     for (int i = first; i < count && i - first < fit; i++) {
         const signal_statistics x = trace_statistics(t, signals[i], from, to);
         const area lines = {a.x + 2, a.y + 2 + LINES * (i - first), a.width - 4, LINES};

@@ -16,25 +16,27 @@ static bool shows_all(const time_window *w)
     return w->to <= w->from;
 }
 
-void state_window(const explorer_state *st, double *from, double *to)
+void view_window(const explorer_model *model, const explorer_view *view, double *from,
+                 double *to)
 {
-    const time_window *w = &st->window;
+    const time_window *w = &view->window;
     if (shows_all(w)) {
         *from = 0;
     } else {
         *from = w->from;
     }
     if (shows_all(w)) {
-        *to = st->session.effective.parameters.run.duration;
+        *to = model->session.effective.parameters.run.duration;
     } else {
         *to = w->to;
     }
 }
 
-void state_show_part(explorer_state *st, double from, double to)
+void view_show_part(const explorer_model *model, explorer_view *view, double from,
+                    double to)
 {
-    time_window *w = &st->window;
-    const double duration = st->session.effective.parameters.run.duration;
+    time_window *w = &view->window;
+    const double duration = model->session.effective.parameters.run.duration;
     const double width = fmax(to - from, SHORTEST);
     assert(isfinite(duration));
     if (width >= duration) {
@@ -46,17 +48,17 @@ void state_show_part(explorer_state *st, double from, double to)
 }
 
 // Moves the visible part so that the cursor is in it, unless it is adrift.
-static void follow_cursor(explorer_state *st)
+static void follow_cursor(const explorer_model *model, explorer_view *view)
 {
-    const time_window *w = &st->window;
+    const time_window *w = &view->window;
     double from, to;
-    state_window(st, &from, &to);
-    const double now = st->session.now, width = to - from;
+    view_window(model, view, &from, &to);
+    const double now = model->session.now, width = to - from;
 
     // a shorter run may have ended before a part that was panned to
     if (shows_all(w) || w->adrift) {
-        if (w->to > st->session.effective.parameters.run.duration) {
-            state_show_part(st, from, to);
+        if (w->to > model->session.effective.parameters.run.duration) {
+            view_show_part(model, view, from, to);
         }
         return;
     }
@@ -67,7 +69,7 @@ static void follow_cursor(explorer_state *st)
     } else if (now < from + 0.1 * width) {
         from = now - 0.1 * width;
     }
-    state_show_part(st, from, from + width);
+    view_show_part(model, view, from, from + width);
 }
 
 // --- extremes --------------------------------------------------------------------------
@@ -176,11 +178,11 @@ static value_range calm_range(const trace *t, int signal, size_t first, size_t l
 
 // What a pane's signals do between two instants, in the first of the runs shown or in
 // all.
-static value_range range_between(const explorer_state *st, const pane *p, double from,
+static value_range range_between(const explorer_model *model, const pane *p, double from,
                                  double to, bool first_only)
 {
     shown_run runs[SHOWN_RUNS];
-    const int count = state_runs(st, p, runs);
+    const int count = model_runs(model, p, runs);
     value_range found = value_range_empty;
     for (int run = 0; run < (first_only ? 1 : count); run++) {
         const trace *t = runs[run].trace;
@@ -188,7 +190,7 @@ static value_range range_between(const explorer_state *st, const pane *p, double
         const size_t first = trace_row_at(t, from), last = trace_row_at(t, to) + 1;
         for (int k = 0; k < p->count; k++) {
             const double *pairs =
-                extremes_pairs(&st->extremes[run], &runs[run], p->signals[k]);
+                extremes_pairs(&model->extremes[run], &runs[run], p->signals[k]);
             value_range seen;
             if (p->hidden >> k & 1) {
                 seen = value_range_empty;
@@ -203,17 +205,18 @@ static value_range range_between(const explorer_state *st, const pane *p, double
     return found;
 }
 
-bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
+bool view_pane_axis(const explorer_model *model, const explorer_view *view, int index,
+                    value_range *axis)
 {
     assert(index >= 0 && index < PANES);
-    const pane *p = &st->panes.pane[index];
-    const bool subtracts = state_subtracts(st) || p->view == VIEW_RESIDUAL;
+    const pane *p = &view->panes.pane[index];
+    const bool subtracts = model_subtracts(model) || p->view == VIEW_RESIDUAL;
     double from, to;
     if (!pane_is_over_time(p) || (subtracts && pane_is_derived(p))) {
         return false;
     }
-    state_window(st, &from, &to);
-    const value_range seen = range_between(st, p, from, to, false);
+    view_window(model, view, &from, &to);
+    const value_range seen = range_between(model, p, from, to, false);
     if (!(seen.high >= seen.low)) {
         return false;
     }
@@ -228,27 +231,27 @@ bool state_pane_axis(const explorer_state *st, int index, value_range *axis)
     return true;
 }
 
-void state_update_axes(explorer_state *st)
+void state_update_axes(explorer_model *model, explorer_view *view)
 {
     // the blocks of all signals that are shown
     shown_run runs[SHOWN_RUNS];
-    const int count = state_runs(st, NULL, runs);
+    const int count = model_runs(model, NULL, runs);
     for (int run = 0; run < count; run++) {
         for (int i = 0; i < PANES; i++) {
-            const pane *p = &st->panes.pane[i];
+            const pane *p = &view->panes.pane[i];
             for (int k = 0; p->shown && k < p->count; k++) {
-                update_extremes(&st->extremes[run], &runs[run], p->signals[k]);
+                update_extremes(&model->extremes[run], &runs[run], p->signals[k]);
             }
         }
     }
 
     // what has been seen, into the axes that grow
     for (int i = 0; i < PANES; i++) {
-        pane *p = &st->panes.pane[i];
+        pane *p = &view->panes.pane[i];
         if (p->scaling == AXIS_GROW && p->shown && pane_is_over_time(p)) {
-            value_range_widen(&p->grown, range_between(st, p, 0, st->session.seen,
+            value_range_widen(&p->grown, range_between(model, p, 0, model->session.seen,
                                                        p->view == VIEW_TIME));
         }
     }
-    follow_cursor(st);
+    follow_cursor(model, view);
 }

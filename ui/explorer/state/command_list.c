@@ -28,9 +28,9 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
 }
 
 const explorer_command explorer_command_table[] = {
-#define COMMAND_INFO(group, name, keys, argument, help)                                  \
+#define COMMAND_INFO(group, name, parts, keys, argument, help)                           \
     {group, #name, keys, argument, help},
-#define COMMAND_NOW(group, name, keys, argument, help)                                   \
+#define COMMAND_NOW(group, name, parts, keys, argument, help)                            \
     {group, #name "!", keys, argument, help},
     COMMAND_LIST(COMMAND_INFO, COMMAND_NOW)
 #undef COMMAND_INFO

@@ -4,48 +4,48 @@
 
 #include <assert.h>
 
-unsigned long state_run_id(const explorer_state *st)
+unsigned long model_run_id(const explorer_model *model)
 {
-    return ((unsigned long)st->opened << 32) | st->session.version;
+    return ((unsigned long)model->opened << 32) | model->session.version;
 }
 
-bool state_subtracts(const explorer_state *st)
+bool model_subtracts(const explorer_model *model)
 {
-    return st->difference.on && st->session.has_other;
+    return model->difference.on && model->session.has_other;
 }
 
-int state_visible_pins(const explorer_state *st)
+int model_visible_pins(const explorer_model *model)
 {
     int count = 0;
-    for (int i = 0; i < st->pinned.count; i++) {
-        if (!st->pinned.runs[i].hidden) {
+    for (int i = 0; i < model->pinned.count; i++) {
+        if (!model->pinned.runs[i].hidden) {
             count++;
         }
     }
     return count;
 }
 
-int state_runs(const explorer_state *st, const pane *p, shown_run runs[SHOWN_RUNS])
+int model_runs(const explorer_model *model, const pane *p, shown_run runs[SHOWN_RUNS])
 {
-    const session *s = &st->session;
-    const run_list *pins = &st->pinned;
+    const session *s = &model->session;
+    const run_list *pins = &model->pinned;
     const unsigned long pinned_id = 1ul << 62, swept_id = 1ul << 63;
     int count = 0;
 
     // data minus the run, or the run minus the baseline, alone
     if (p != NULL && p->view == VIEW_RESIDUAL) {
-        runs[0] = (shown_run){SHOWN_MEASURED, 0, &st->residual.trace,
-                              3ul << 61 | st->residual.built};
-        return st->residual.trace.row_count > 0;
+        runs[0] = (shown_run){SHOWN_MEASURED, 0, &model->residual.trace,
+                              3ul << 61 | model->residual.built};
+        return model->residual.trace.row_count > 0;
     }
-    if (state_subtracts(st)) {
-        runs[0] = (shown_run){SHOWN_DIFFERENCE, 0, &st->difference.trace,
-                              pinned_id | swept_id | st->difference.built};
+    if (model_subtracts(model)) {
+        runs[0] = (shown_run){SHOWN_DIFFERENCE, 0, &model->difference.trace,
+                              pinned_id | swept_id | model->difference.built};
         return 1;
     }
 
     // the present one, the pinned ones, the sweep's, the one before, what was measured
-    runs[count++] = (shown_run){SHOWN_PRESENT, 0, &s->run.trace, state_run_id(st)};
+    runs[count++] = (shown_run){SHOWN_PRESENT, 0, &s->run.trace, model_run_id(model)};
     for (int i = 0; i < pins->count; i++) {
         const pinned_run *r = &pins->runs[i];
         if (!r->hidden) {
@@ -53,45 +53,46 @@ int state_runs(const explorer_state *st, const pane *p, shown_run runs[SHOWN_RUN
                 (shown_run){SHOWN_PINNED, i, &r->run.trace, pinned_id | r->id};
         }
     }
-    for (int i = 0; i < lab_sweep_curves(&st->sweep); i++) {
-        const swept_run *r = &st->sweep.runs[i];
+    for (int i = 0; i < lab_sweep_curves(&model->sweep); i++) {
+        const swept_run *r = &model->sweep.runs[i];
         runs[count++] = (shown_run){SHOWN_SWEPT, i, &r->run.trace, swept_id | r->id};
     }
     if (s->has_ghost) {
-        runs[count++] = (shown_run){SHOWN_BEFORE, 0, &s->ghost.trace, state_run_id(st)};
+        runs[count++] =
+            (shown_run){SHOWN_BEFORE, 0, &s->ghost.trace, model_run_id(model)};
     }
-    if (st->measured.row_count > 0) {
-        runs[count++] = (shown_run){SHOWN_MEASURED, 0, &st->measured,
-                                    pinned_id >> 1 | st->measured_id};
+    if (model->measured.row_count > 0) {
+        runs[count++] = (shown_run){SHOWN_MEASURED, 0, &model->measured,
+                                    pinned_id >> 1 | model->measured_id};
     }
     return count;
 }
 
-int state_run_count(const explorer_state *st)
+int model_run_count(const explorer_model *model)
 {
     shown_run runs[SHOWN_RUNS];
-    return state_runs(st, NULL, runs);
+    return model_runs(model, NULL, runs);
 }
 
-shown_run state_run(const explorer_state *st, int index)
+shown_run model_run(const explorer_model *model, int index)
 {
     shown_run runs[SHOWN_RUNS];
-    const int count = state_runs(st, NULL, runs);
+    const int count = model_runs(model, NULL, runs);
     assert(index >= 0 && index < count);
     return runs[index];
 }
 
-size_t state_row(const explorer_state *st, const trace *t)
+size_t model_row(const explorer_model *model, const trace *t)
 {
-    const session *s = &st->session;
+    const session *s = &model->session;
     return trace_row_on_side(t, s->now, trace_side(&s->run.trace, s->row));
 }
 
-const char *state_run_name(const explorer_state *st, int index)
+const char *model_run_name(const explorer_model *model, int index)
 {
-    const shown_run r = state_run(st, index);
+    const shown_run r = model_run(model, index);
     if (r.kind == SHOWN_PINNED) {
-        return st->pinned.runs[r.index].name;
+        return model->pinned.runs[r.index].name;
     }
     return "";
 }

@@ -12,23 +12,24 @@
 // --- opening and closing ---------------------------------------------------------------
 
 // Fills the panes for the present run on the present screen.
-static void define_panes(explorer_state *st)
+static void define_panes(const explorer_model *model, explorer_view *view)
 {
     enum { FEWEST = 3, ROWS = 6, HEAD = 8 };
-    const scenario *base = &st->session.base;
-    const int room = (st->size.height - HEAD) * 3 / 5 / ROWS;
+    const scenario *base = &model->session.base;
+    const int room = (view->size.height - HEAD) * 3 / 5 / ROWS;
 
     // a lesson leaves little room next to its own panes
-    const int least = st->lesson.on ? 2 : FEWEST;
-    const pane_wishes wishes = {state_has_law(st), base->panes, base->pane_count,
-                                st->lesson.on, room < least ? least : room};
-    panes_define(&st->panes, &wishes);
+    const int least = model->lesson.on ? 2 : FEWEST;
+    const pane_wishes wishes = {model_has_law(model), base->panes, base->pane_count,
+                                model->lesson.on, room < least ? least : room};
+    panes_define(&view->panes, &wishes);
 }
 
 // The parameter that a run is about: what its law presses with, or the voltage.
-static int main_parameter(const explorer_state *st)
+static int main_parameter(const explorer_model *model)
 {
-    const controller *law = controller_of(st->session.effective.parameters.control.law);
+    const controller *law =
+        controller_of(model->session.effective.parameters.control.law);
     const int force = PARAMETER_INDEX(control.force);
     int found = -1;
 
@@ -44,182 +45,189 @@ static int main_parameter(const explorer_state *st)
     if (found >= 0) {
         return found;
     }
-    if (state_has_law(st)) {
+    if (model_has_law(model)) {
         return PARAMETER_INDEX(control.rate);
     }
     return PARAMETER_INDEX(motor.voltage);
 }
 
 // Begins the scenario's lesson, if it has one, with the parameters that matter to it.
-static void begin_lesson(explorer_state *st)
+static void begin_lesson(explorer_model *model, explorer_view *view)
 {
-    const lesson *l = &st->session.base.lesson;
-    st->lesson = (lesson_progress){.on = l->step_count > 0};
+    const lesson *l = &model->session.base.lesson;
+    model->lesson = (lesson_progress){.on = l->step_count > 0};
     for (int i = 0; l->parameter_count > 0 && i < parameter_count; i++) {
-        st->parameters.folded[i] = true;
+        view->parameters.folded[i] = true;
     }
     for (int i = l->parameter_count; i-- > 0;) {
-        parameter_list_select(&st->parameters, (parameter_line){l->parameters[i], false});
+        parameter_list_select(&view->parameters,
+                              (parameter_line){l->parameters[i], false});
     }
 }
 
 // How a session is shown at first.
-static void show_anew(explorer_state *st)
+static void show_anew(explorer_model *model, explorer_view *view)
 {
-    st->opened++;
-    if (st->side.panel == PANEL_SWEEP) {
-        st->side.panel = PANEL_PARAMETERS;
+    model->opened++;
+    if (view->side.panel == PANEL_SWEEP) {
+        view->side.panel = PANEL_PARAMETERS;
     }
-    parameter_list_arrange(&st->parameters, &st->session.effective, main_parameter(st));
-    st->mark.set = false;
-    begin_lesson(st);
-    st->window = (time_window){0};
+    parameter_list_arrange(&view->parameters, &model->session.effective,
+                           main_parameter(model));
+    view->mark.set = false;
+    begin_lesson(model, view);
+    view->window = (time_window){0};
     for (int i = 0; i < PANES_OF_TABLE; i++) {
-        st->panes.pane[i].hidden = 0;
+        view->panes.pane[i].hidden = 0;
     }
-    define_panes(st);
+    define_panes(model, view);
 }
 
-status state_init(explorer_state *st, scenario *s, double patience, fault *f)
+status state_init(explorer_model *model, explorer_view *view, scenario *s,
+                  double patience, fault *f)
 {
-    memset(st, 0, sizeof *st);
-    TRY(session_open(&st->session, s, patience, f));
+    memset(model, 0, sizeof *model);
+    memset(view, 0, sizeof *view);
+    TRY(session_open(&model->session, s, patience, f));
 
-    st->visit_count = 1;
-    st->limit.signal = st->band.signal = -1;
-    st->pinned.baseline = -1;
-    st->sweep.metric = SUMMARY_INDEX(peak_force_N);
-    st->playback.speed = 0.2;
-    st->looks.mouse = true;
-    st->looks.pixels = true;
-    st->looks.bending = 1;
-    st->playback.slow = USUAL_SLOW;
-    st->side.panel = PANEL_PARAMETERS;
-    scenario_menu_read(&st->scenarios);
-    show_anew(st);
+    model->visit_count = 1;
+    model->limit.signal = model->band.signal = -1;
+    model->pinned.baseline = -1;
+    model->sweep.metric = SUMMARY_INDEX(peak_force_N);
+    view->playback.speed = 0.2;
+    view->looks.mouse = true;
+    view->looks.pixels = true;
+    view->looks.bending = 1;
+    view->playback.slow = USUAL_SLOW;
+    view->side.panel = PANEL_PARAMETERS;
+    scenario_menu_read(&view->scenarios);
+    show_anew(model, view);
     return STATUS_OK;
 }
 
-void state_finish(explorer_state *st)
+void state_finish(explorer_model *model, explorer_view *view)
 {
     // what was found out about the runs goes before them
     for (int i = 0; i < SHOWN_RUNS; i++) {
-        extremes_forget(&st->extremes[i]);
+        extremes_forget(&model->extremes[i]);
     }
-    run_log_forget(&st->log);
-    scenario_menu_finish(&st->scenarios);
-    difference_finish(&st->difference);
-    difference_finish(&st->residual);
-    trace_finish(&st->measured);
-    free(st->copied);
-    lab_sweep_end(&st->sweep);
-    while (st->pinned.count > 0) {
-        run_list_drop(&st->pinned, st->pinned.count - 1);
+    run_log_forget(&model->log);
+    scenario_menu_finish(&view->scenarios);
+    difference_finish(&model->difference);
+    difference_finish(&model->residual);
+    trace_finish(&model->measured);
+    lab_sweep_end(&model->sweep);
+    while (model->pinned.count > 0) {
+        run_list_drop(&model->pinned, model->pinned.count - 1);
     }
-    for (int i = 0; i < st->visit_count; i++) {
-        run_origin_finish(&st->visits[i].from);
+    for (int i = 0; i < model->visit_count; i++) {
+        run_origin_finish(&model->visits[i].from);
     }
-    session_finish(&st->session);
+    session_finish(&model->session);
 }
 
 // Puts a session in the place of the present one, which is compared with what that was.
-static void replace_session(explorer_state *st, session *fresh)
+static void replace_session(explorer_model *model, explorer_view *view, session *fresh)
 {
-    const run_list *list = &st->pinned;
-    difference_finish(&st->difference);
-    lab_sweep_end(&st->sweep);
-    session_finish(&st->session);
-    st->session = *fresh;
+    const run_list *list = &model->pinned;
+    difference_finish(&model->difference);
+    lab_sweep_end(&model->sweep);
+    session_finish(&model->session);
+    model->session = *fresh;
     if (list->baseline >= 0) {
-        loss_unless(session_keep_beside(&st->session, &list->runs[list->baseline].run,
+        loss_unless(session_keep_beside(&model->session, &list->runs[list->baseline].run,
                                         NULL) == STATUS_OK);
     }
-    run_list_name_strangers(&st->pinned, &st->session);
-    show_anew(st);
+    run_list_name_strangers(&model->pinned, &model->session);
+    show_anew(model, view);
 }
 
-status state_take_session(explorer_state *st, session *fresh, fault *f)
+status state_take_session(explorer_model *model, explorer_view *view, session *fresh,
+                          fault *f)
 {
     // what there is, to be returned to
-    visit left = {.lesson = st->lesson};
-    TRY(run_origin_take(&left.from, &st->session, f));
+    visit left = {.lesson = model->lesson};
+    TRY(run_origin_take(&left.from, &model->session, f));
 
     // what undoing had left is given up, and the oldest where there is no room
-    for (int i = st->present_visit + 1; i < st->visit_count; i++) {
-        run_origin_finish(&st->visits[i].from);
+    for (int i = model->present_visit + 1; i < model->visit_count; i++) {
+        run_origin_finish(&model->visits[i].from);
     }
-    st->visits[st->present_visit] = left;
-    if (st->present_visit == VISITS - 1) {
-        run_origin_finish(&st->visits[0].from);
-        memmove(&st->visits[0], &st->visits[1], (VISITS - 1) * sizeof st->visits[0]);
-        st->present_visit--;
+    model->visits[model->present_visit] = left;
+    if (model->present_visit == VISITS - 1) {
+        run_origin_finish(&model->visits[0].from);
+        memmove(&model->visits[0], &model->visits[1],
+                (VISITS - 1) * sizeof model->visits[0]);
+        model->present_visit--;
     }
-    st->visits[++st->present_visit] = (visit){0};
-    st->visit_count = st->present_visit + 1;
-    replace_session(st, fresh);
+    model->visits[++model->present_visit] = (visit){0};
+    model->visit_count = model->present_visit + 1;
+    replace_session(model, view, fresh);
     return STATUS_OK;
 }
 
-bool state_can_turn(const explorer_state *st, int direction)
+bool model_has_visit(const explorer_model *model, int direction)
 {
     assert(direction == 1 || direction == -1);
-    const int to = st->present_visit + direction;
-    return to >= 0 && to < st->visit_count;
+    const int to = model->present_visit + direction;
+    return to >= 0 && to < model->visit_count;
 }
 
-status state_turn(explorer_state *st, int direction, fault *f)
+status state_change_visit(explorer_model *model, explorer_view *view, int direction,
+                          fault *f)
 {
-    assert(state_can_turn(st, direction));
-    visit left = {.lesson = st->lesson}, *to = &st->visits[st->present_visit + direction];
+    assert(model_has_visit(model, direction));
+    visit left = {.lesson = model->lesson},
+          *to = &model->visits[model->present_visit + direction];
     session fresh;
-    TRY(run_origin_take(&left.from, &st->session, f));
-    const status code = session_reopen(&fresh, &to->from, st->session.patience, f);
+    TRY(run_origin_take(&left.from, &model->session, f));
+    const status code = session_reopen(&fresh, &to->from, model->session.patience, f);
     if (code != STATUS_OK) {
         run_origin_finish(&left.from);
         return code;
     }
-    replace_session(st, &fresh);
-    st->lesson = to->lesson;
-    st->visits[st->present_visit] = left;
-    st->present_visit += direction;
+    replace_session(model, view, &fresh);
+    model->lesson = to->lesson;
+    model->visits[model->present_visit] = left;
+    model->present_visit += direction;
     run_origin_finish(&to->from);
     return STATUS_OK;
 }
 
 // --- the runs --------------------------------------------------------------------------
 
-parameters state_parameters(const explorer_state *st)
+parameters model_parameters(const explorer_model *model)
 {
-    return session_parameters_at(&st->session, st->session.now);
+    return session_parameters_at(&model->session, model->session.now);
 }
 
-bool state_has_law(const explorer_state *st)
+bool model_has_law(const explorer_model *model)
 {
-    return st->session.effective.parameters.control.law != LAW_NONE;
+    return model->session.effective.parameters.control.law != LAW_NONE;
 }
 
-const law_modes *state_law_modes(explorer_state *st)
+const law_modes *model_law_modes(explorer_model *model)
 {
-    law_modes *m = &st->modes;
-    if (m->run != state_run_id(st)) {
-        const parameters *p = &st->session.effective.parameters;
-        m->run = state_run_id(st);
+    law_modes *m = &model->modes;
+    if (m->run != model_run_id(model)) {
+        const parameters *p = &model->session.effective.parameters;
+        m->run = model_run_id(model);
         m->count = rig_mode_names(p, m->names, LAW_MODES, &m->lockable);
     }
     return m;
 }
 
-const run_log *state_run_log(explorer_state *st)
+const run_log *model_run_log(explorer_model *model)
 {
-    const session *s = &st->session;
-    run_log_update(&st->log, state_run_id(st), &s->run.trace, s->computing == NULL);
-    return &st->log;
+    const session *s = &model->session;
+    run_log_update(&model->log, model_run_id(model), &s->run.trace, s->computing == NULL);
+    return &model->log;
 }
 
-void state_change_text(const explorer_state *st, int index, char *text, size_t size)
+void model_change_text(const explorer_model *model, int index, char *text, size_t size)
 {
-    assert(index >= 0 && index < st->session.input_count);
-    const session_input *in = &st->session.inputs[index];
+    assert(index >= 0 && index < model->session.input_count);
+    const session_input *in = &model->session.inputs[index];
     if (in->kind == SESSION_INPUT_PUSH) {
         snprintf(text, size, "push %g N s", in->value);
         return;
@@ -231,16 +239,16 @@ void state_change_text(const explorer_state *st, int index, char *text, size_t s
              info->unit);
 }
 
-int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES],
-                          int *selected)
+int view_parameter_lines(const explorer_view *view, parameter_line lines[PARAMETER_LINES],
+                         int *selected)
 {
-    return parameter_list_lines(&st->parameters, st->filters.text[PANEL_PARAMETERS],
+    return parameter_list_lines(&view->parameters, view->filters.text[PANEL_PARAMETERS],
                                 lines, selected);
 }
 
-const char *state_inert_reason(const explorer_state *st, int parameter)
+const char *model_inert_reason(const explorer_model *model, int parameter)
 {
-    return effect_none(&st->session.effective, parameter);
+    return effect_none(&model->session.effective, parameter);
 }
 
 // --- up to date ------------------------------------------------------------------------
@@ -272,74 +280,74 @@ static double first_above(const trace *t, int signal, double level)
     return (double)NAN;
 }
 
-bool state_lay_data(explorer_state *st, double shift)
+bool model_lay_data(explorer_model *model, double shift)
 {
-    const trace *run = &st->session.run.trace, *data = &st->measured;
+    const trace *run = &model->session.run.trace, *data = &model->measured;
     const int force = common_force(data, run);
-    st->measured_aligned = isnan(shift);
-    st->measured_run = state_run_id(st);
+    model->measured_aligned = isnan(shift);
+    model->measured_run = model_run_id(model);
 
     // a tenth of the measured largest force marks the touch in both
     if (isnan(shift) && force >= 0) {
         const double first = data->rows[0].time,
                      last = data->rows[data->row_count - 1].time;
         const double level = trace_statistics(data, force, first, last).maximum / 10;
-        shift = st->measured_shift + first_above(run, force, level) -
+        shift = model->measured_shift + first_above(run, force, level) -
                 first_above(data, force, level);
     }
     if (!isfinite(shift)) {
         return false;
     }
     for (size_t r = 0; r < data->row_count; r++) {
-        data->rows[r].time += shift - st->measured_shift;
+        data->rows[r].time += shift - model->measured_shift;
     }
-    st->measured_shift = shift;
-    st->measured_id++;
+    model->measured_shift = shift;
+    model->measured_id++;
     return true;
 }
 
 // The measured data minus the run, where a pane shows them.
-static void update_residual(explorer_state *st)
+static void update_residual(explorer_model *model, const explorer_view *view)
 {
-    run_difference *d = &st->residual;
+    run_difference *d = &model->residual;
     d->on = false;
     for (int i = 0; i < PANES; i++) {
-        const pane *p = &st->panes.pane[i];
+        const pane *p = &view->panes.pane[i];
         d->on = d->on || (p->shown && p->view == VIEW_RESIDUAL);
     }
-    if (!d->on || st->measured.row_count == 0) {
+    if (!d->on || model->measured.row_count == 0) {
         difference_finish(d);
         return;
     }
 
     // a run that grows has more to compare with: all of it anew
-    const trace *t = &st->session.run.trace;
+    const trace *t = &model->session.run.trace;
     const unsigned long both =
-        state_run_id(st) * 1000003 + st->measured_id * 997 + t->row_count;
-    difference_update(d, both, &st->measured, t);
+        model_run_id(model) * 1000003 + model->measured_id * 997 + t->row_count;
+    difference_update(d, both, &model->measured, t);
 }
 
-void state_update(explorer_state *st)
+void state_update(explorer_model *model, explorer_view *view)
 {
     // the panes depend on the law and on the room there is
-    const bool taller = st->size.height != st->panes_height;
-    if (state_has_law(st) != st->panes.controlled || taller) {
-        define_panes(st);
-        st->panes_height = st->size.height;
+    const bool taller = view->size.height != view->panes_height;
+    if (model_has_law(model) != view->panes.controlled || taller) {
+        define_panes(model, view);
+        view->panes_height = view->size.height;
     }
 
     // what follows the run and its instant
-    const session *s = &st->session;
-    const bool moved = s->computing == NULL && st->measured_run != state_run_id(st);
-    if (moved && st->measured_aligned && st->measured.row_count > 0) {
-        state_lay_data(st, (double)NAN);
+    const session *s = &model->session;
+    const bool moved = s->computing == NULL && model->measured_run != model_run_id(model);
+    if (moved && model->measured_aligned && model->measured.row_count > 0) {
+        model_lay_data(model, (double)NAN);
     }
     if (s->has_other) {
-        difference_update(&st->difference, state_run_id(st), &s->run.trace,
+        difference_update(&model->difference, model_run_id(model), &s->run.trace,
                           &s->other.trace);
     }
-    update_residual(st);
-    state_update_axes(st);
-    state_law_modes(st);
-    state_run_log(st);
+    update_residual(model, view);
+    state_update_axes(model, view);
+    model_law_modes(model);
+    model_run_log(model);
 }

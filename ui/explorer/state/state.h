@@ -1,6 +1,7 @@
-// The state of the explorer: the session shown, and how it is shown. Actions change it;
-// panels draw it without changing it. It does not depend on a terminal or on positions on
-// the screen.
+// The state of the explorer in three parts: the model of what was run, the view of it,
+// and the input. Actions change the parts they are given; panels draw parts without
+// changing them. The state does not depend on a terminal. The explorer itself alone
+// (explorer.h), which owns the loop, has all three together.
 #pragma once
 
 #include "ui/explorer/state/command_list.h"
@@ -71,9 +72,9 @@ typedef struct screen_size {
     int width, height; // [cells]
 } screen_size;
 
-typedef struct explorer_state {
-    // the runs
-    session session;
+// The model: the runs, what was done to them, and what follows from them.
+typedef struct explorer_model {
+    session session; // the present run, its changes and the cursor
     run_list pinned;
     lab_sweep sweep;
     run_difference difference;
@@ -81,7 +82,10 @@ typedef struct explorer_state {
     solved_limit band; // a tolerance on both sides of the baseline
     note notes[NOTES]; // in time
     int note_count;
-    int note;                // the selected one
+    lesson_progress lesson;
+    char last_law[LINE_TEXT]; // the law that was switched off last, "" for none
+
+    // measured data
     run_difference residual; // of the measured data from the run
     trace measured;          // data laid under the run, no rows: none
     char measured_file[LINE_TEXT];
@@ -89,16 +93,31 @@ typedef struct explorer_state {
     bool measured_aligned;      // they touch when the run does
     unsigned long measured_run; // the run they were last aligned to
     unsigned long measured_id;  // counts the files read, and how often one was shifted
-    unsigned opened;            // number of scenarios opened
-    visit visits[VISITS];       // [present_visit] is empty: it is the session
+
+    // the scenarios opened
+    unsigned opened;      // number of them
+    visit visits[VISITS]; // [present_visit] is empty: it is the session
     int visit_count, present_visit;
 
+    // what was saved of all this
+    unsigned long saved_version;  // the run last saved as a scenario, 0 for none
+    char session_path[LINE_TEXT]; // the session file of this visit, "" for none
+    unsigned long kept_pins; // runs ever pinned when they were last saved in a session
+
+    // results derived from the runs, kept until they change
+    law_modes modes;
+    run_log log;
+    extremes extremes[SHOWN_RUNS];
+} explorer_model;
+
+// The view: how the model is shown, what is selected in it, and what the user has set up.
+typedef struct explorer_view {
     // the instants of interest
     playback playback;
     time_window window;
     time_mark mark;
 
-    // what is displayed of them
+    // panes and panels
     pane_set panes;
     zoom_box box;
     int panes_height; // height of the screen for which they were filled [cells]
@@ -107,82 +126,82 @@ typedef struct explorer_state {
     filters filters;
     panel_id page; // over the panels, PANEL_NONE if there is none
     scenario_menu scenarios;
-    lesson_progress lesson;
+    palette_view palette;
     int change; // the selected change, index in session.inputs
+    int note;   // the selected note
     drawn_view drawn;
     slider_grip slider;
     tip_pull pull;
-    looks looks;
     screen_size size; // of the screen drawn last
 
-    // messages and input
-    fault fault; // of what an action called last, until act_worked has told it
-    message_line message;
-    prompt prompt;
-    palette_view palette;
+    // settings
+    looks looks;
     key_bindings keys;
-    char last_law[LINE_TEXT];     // the law that was switched off last, "" for none
-    bool settings_broken;         // the settings file contains errors
-    unsigned long saved_version;  // the run last saved as a scenario, 0 for none
-    char *copied;                 // for the terminal's clipboard, NULL: nothing
-    char session_path[LINE_TEXT]; // the session file of this visit, "" for none
-    unsigned long kept_pins; // runs ever pinned when they were last saved in a session
-    bool asked_to_quit;      // the last key asked to quit, and changes would be lost
-    bool quit;
+    bool settings_broken; // the settings file contains errors
+} explorer_view;
 
-    // results derived from the runs, kept until they change
-    law_modes modes;
-    run_log log;
-    extremes extremes[SHOWN_RUNS];
-} explorer_state;
+// The input: what is being typed, and what is answered to it.
+typedef struct explorer_input {
+    prompt prompt;
+    message_line message;
+    fault fault;        // of what an action called last, until act_worked has told it
+    char *copied;       // for the terminal's clipboard, NULL: nothing
+    bool asked_to_quit; // the last key asked to quit, and changes would be lost
+    bool quit;
+} explorer_input;
 
 // Opens the state with a scenario, which it owns from then on, also on failure. Waits for
 // runs at most `patience` [s].
-status state_init(explorer_state *st, scenario *s, double patience, fault *f);
-void state_finish(explorer_state *st);
+status state_init(explorer_model *model, explorer_view *view, scenario *s,
+                  double patience, fault *f);
+void state_finish(explorer_model *model, explorer_view *view);
 
 // Shows another session, which it owns from then on, as if newly opened; pinned runs
 // stay. What was there can be returned to. On failure nothing changes and the caller
 // keeps the session.
-status state_take_session(explorer_state *st, session *fresh, fault *f);
+status state_take_session(explorer_model *model, explorer_view *view, session *fresh,
+                          fault *f);
 // Returns to the scenario before (-1), or goes on to the one that this left (1).
-bool state_can_turn(const explorer_state *st, int direction);
-status state_turn(explorer_state *st, int direction, fault *f);
+bool model_has_visit(const explorer_model *model, int direction);
+status state_change_visit(explorer_model *model, explorer_view *view, int direction,
+                          fault *f);
 
 // Updates everything that drawing reads: panes, window, growing axes and results derived
 // from the runs.
-void state_update(explorer_state *st);
+void state_update(explorer_model *model, explorer_view *view);
 
 // Lays the measured data under the run, so much later than in their file [s]; NaN: they
 // touch when the run does, and go with it. False where no force in both shows that: they
 // stay as they are.
-bool state_lay_data(explorer_state *st, double shift);
+bool model_lay_data(explorer_model *model, double shift);
 
 // A number that identifies the present run among the runs of all sessions opened; never
 // 0.
-unsigned long state_run_id(const explorer_state *st);
+unsigned long model_run_id(const explorer_model *model);
 // Whether panes show the difference from the baseline in the place of the runs.
-bool state_subtracts(const explorer_state *st);
+bool model_subtracts(const explorer_model *model);
 // The runs whose curves a pane shows, or any that is not of residuals (NULL); returns how
 // many. 0 is the present one (or, alone, its difference from the baseline), the others
 // are for comparison.
-int state_runs(const explorer_state *st, const pane *p, shown_run runs[SHOWN_RUNS]);
-int state_run_count(const explorer_state *st);
-shown_run state_run(const explorer_state *st, int index);
+int model_runs(const explorer_model *model, const pane *p, shown_run runs[SHOWN_RUNS]);
+int model_run_count(const explorer_model *model);
+shown_run model_run(const explorer_model *model, int index);
 // The row of a run or a difference at the cursor, on the side of an event where that
 // stands.
-size_t state_row(const explorer_state *st, const trace *t);
+size_t model_row(const explorer_model *model, const trace *t);
 // The name of a run, "" for the present one and for runs without a name.
-const char *state_run_name(const explorer_state *st, int index);
+const char *model_run_name(const explorer_model *model, int index);
 // The number of pinned runs that are not hidden.
-int state_visible_pins(const explorer_state *st);
+int model_visible_pins(const explorer_model *model);
 // The parameters at the cursor.
-parameters state_parameters(const explorer_state *st);
+parameters model_parameters(const explorer_model *model);
 
 // The visible part of the run [s].
-void state_window(const explorer_state *st, double *from, double *to);
+void view_window(const explorer_model *model, const explorer_view *view, double *from,
+                 double *to);
 // Makes a part visible, limited to the run [s].
-void state_show_part(explorer_state *st, double from, double to);
+void view_show_part(const explorer_model *model, explorer_view *view, double from,
+                    double to);
 
 // Low and high of each block of a signal of a run, low above high in a block without a
 // finite value; NULL if they do not cover all rows of its trace.
@@ -190,22 +209,23 @@ const double *extremes_pairs(const extremes *e, const shown_run *run, int signal
 
 // The axis of a pane in the visible part of the run; false if no signal of it has a value
 // there.
-bool state_pane_axis(const explorer_state *st, int index, value_range *axis);
+bool view_pane_axis(const explorer_model *model, const explorer_view *view, int index,
+                    value_range *axis);
 
 // Brings extremes and growing axes up to date, and the visible part to the cursor, unless
 // that is adrift.
-void state_update_axes(explorer_state *st);
+void state_update_axes(explorer_model *model, explorer_view *view);
 
 // Whether there is a control law, and its modes.
-bool state_has_law(const explorer_state *st);
-const law_modes *state_law_modes(explorer_state *st);
+bool model_has_law(const explorer_model *model);
+const law_modes *model_law_modes(explorer_model *model);
 // The log of the present run.
-const run_log *state_run_log(explorer_state *st);
+const run_log *model_run_log(explorer_model *model);
 
 // The lines of the list of parameters that are shown, as of parameter_list_lines.
-int state_parameter_lines(const explorer_state *st, parameter_line lines[PARAMETER_LINES],
-                          int *selected);
+int view_parameter_lines(const explorer_view *view, parameter_line lines[PARAMETER_LINES],
+                         int *selected);
 // A change as a line of text: parameter and value, without its instant.
-void state_change_text(const explorer_state *st, int index, char *text, size_t size);
+void model_change_text(const explorer_model *model, int index, char *text, size_t size);
 // Why a parameter has no effect on the run, half a sentence; NULL if it has one.
-const char *state_inert_reason(const explorer_state *st, int parameter);
+const char *model_inert_reason(const explorer_model *model, int parameter);
