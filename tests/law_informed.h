@@ -19,7 +19,7 @@
 
 #include "src/arm/modes.h"
 #include "src/base/dense.h"
-#include "src/run/loop.h"
+#include "src/run/run_loop.h"
 #include "tests/law_cases.h"
 
 // Sizes: bodies; their angles, rates and a one; these and the torque; samples; parts of a

@@ -2,7 +2,7 @@
 // write.
 #pragma once
 
-#include "src/run/loop.h"
+#include "src/run/run_loop.h"
 #include "src/run/run.h"
 #include "src/study/store/sweep_store.h"
 #include "tests/check.h"

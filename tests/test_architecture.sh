@@ -93,6 +93,24 @@ if grep -rnE --include='*.[ch]' '(^|[^a-z_])explorer( \*| [a-z]+;)' ui | grep -v
     exit 1
 fi
 
+# parts of a run of the corrected arm are written by one file each (src/run/arm_run.h): no other has
+# a pointer to one that is not const, or assigns to its fields
+assigned='[a-z_.]* *([-+*/]?=[^=]|\+\+|--)'
+while read -r owner type part; do
+    if grep -nE "(^|[(, ])$type \\*|$part$assigned" src/run/*.c | grep -v "const $type \\*" |
+        grep -v "^src/run/$owner\.c:"; then
+        echo "$part of an arm_run is written by src/run/$owner.c alone"
+        exit 1
+    fi
+done <<'PARTS'
+arm_run run_segment run->segment
+arm_run step_under_way run->under_way
+arm_run zeno_monitor run->zeno
+arm_run_events contact_history state\.contact
+arm_run_rows row_record state\.rows
+arm_run_forces force_record state\.force
+PARTS
+
 # places that the manual names exist ("NAME" and "*" stand for something)
 lost=0
 while IFS=: read -r page place; do

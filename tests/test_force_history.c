@@ -2,7 +2,7 @@
 // form.
 #include "src/run/recording.h"
 #include "src/contact/contact_machine.h"
-#include "src/run/driver.h"
+#include "src/run/run_driver.h"
 #include "tests/force_means.h"
 #include "tests/rig_fixture.h"
 #include "tests/shipped_scenario.h"
@@ -431,7 +431,7 @@ TEST(a_mean_that_the_force_never_was_is_said)
         assert_int_equal(driver_open(&d, &s, &options, &r, &f), STATUS_OK);
 
         // into contact
-        motion *m = d.corrected.motion;
+        motion *m = d.run.corrected.motion;
         while (m->state[SLOT_FORCE] == 0 && !ended) {
             assert_int_equal(driver_advance(&d, driver_time(&d) + 1e-3, &ended, &f),
                              STATUS_OK);
@@ -439,9 +439,9 @@ TEST(a_mean_that_the_force_never_was_is_said)
         assert_false(ended);
 
         // the last step's own force, then with more or less in the integral
-        assert_int_equal(corrected_record_forces(&d.corrected), STATUS_OK);
+        assert_int_equal(arm_run_record_forces(&d.run.corrected), STATUS_OK);
         state_quadratures(m, m->state)[QUADRATURE_FORCE] += *off;
-        assert_int_equal(corrected_record_forces(&d.corrected), STATUS_IMPOSSIBLE_MEAN);
+        assert_int_equal(arm_run_record_forces(&d.run.corrected), STATUS_IMPOSSIBLE_MEAN);
         driver_close(&d, STATUS_IMPOSSIBLE_MEAN, &f);
     }
 }

@@ -3,7 +3,7 @@
 
 #include "src/api/impactlab/impactlab.h"
 #include "src/base/text_stream.h"
-#include "src/run/loop.h"
+#include "src/run/run_loop.h"
 #include "src/run/run.h"
 #include "src/study/sweep_axis.h"
 #include "src/tables/settings.h"

@@ -2,7 +2,7 @@
 // amplifier.
 //
 // The run's motion is the plant. It stops at rig_next_time or, in flight, is observed
-// there without stopping (src/run/corrected.h); at the time of a sample sensors are read
+// there without stopping (src/run/arm_run.h); at the time of a sample sensors are read
 // and the controller is called, and `delay` later its command takes effect and holds
 // (zero-order hold) until the next one does.
 #pragma once

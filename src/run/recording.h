@@ -10,25 +10,39 @@
 #define STEADY_WINDOW  0.1  // steady force: mean over the last of the run [s]
 #define SEPARATION_GAP 1e-6 // a smaller gap is no separation [m]
 
+// Contact so far, of the corrected model.
+typedef struct contact_history {
+    bool pulse_open;     // the first pulse has not ended
+    bool landing_open;   // nor that of the landing
+    landing landing;     // as far as it is known
+    double earlier_peak; // largest force before it, of an arm that starts on the wall;
+                         // else -1 [N]
+    double earlier_peak_time; // its instant [s]
+    long chatters;            // sequences of bounces that ended plastically
+    long touches_behind_link; // of a point by the line of the last link, behind its base
+} contact_history;
+
+// The contact force so far, of the corrected model.
+typedef struct force_record {
+    double last_jump;          // instant of the last event, action or start [s]
+    double integral_at_window; // where the steady force's window begins [N s]
+    force_bounds largest;      // of the largest force since first contact [N]
+    force_bounds in_window;    // of its integral since that window began [N s]
+} force_record;
+
+// Rows and ledger so far, of the corrected model.
+typedef struct row_record {
+    long next;            // number of the next row of the grid
+    bool separated;       // gap above SEPARATION_GAP in the present flight
+    double energy_put_in; // sum of what motor and actions did or took over each step [J]
+} row_record;
+
 // What a run remembers from step to step besides rows, forces and summary.
 typedef struct recording_state {
-    int next_action;   // of the script
-    long grid_row;     // number of the next row of the grid
-    bool separated;    // gap above SEPARATION_GAP in the present flight
-    bool pulse_open;   // the first pulse has not ended
-    bool landing_open; // nor that of the landing
-    landing landing;   // as far as it is known
-    double
-        earlier_peak; // largest force before it and its instant, of an arm that starts on
-    double earlier_peak_time; // the wall, else -1 [N], [s]
-    double energy_put_in; // sum of what motor and actions did or took over each step [J]
-    long chatters;        // sequences of bounces that ended plastically
-    long from_behind; // touches of a point by the line behind the last link, not the link
-    double last_jump; // instant of the last event, action or start [s]
-    double
-        integral_at_window; // of the force, where the steady force's window begins [N s]
-    force_bounds largest;   // of the largest force since first contact [N]
-    force_bounds in_window; // of the force's integral since that window began [N s]
+    int next_action; // of the script
+    contact_history contact;
+    force_record force;
+    row_record rows;
 } recording_state;
 
 // A controller's command in force.

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "src/base/numbers.h"
-#include "src/run/driver.h"
+#include "src/run/run_driver.h"
 #include "src/run/run_result.h"
 
 status run_scenario(const scenario *s, bool keep_trace, run_result *result)

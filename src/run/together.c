@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "src/base/clock.h"
-#include "src/run/corrected.h"
+#include "src/run/arm_run.h"
 #include "src/run/recording.h"
 #include "src/engines/motion_create.h"
 #include "src/run/run.h"
@@ -22,7 +22,7 @@ enum { SUMMARY_SHARE = 128 }; // of the summary, what steps add to [bytes]
 // One of the runs that go side by side.
 typedef struct side_run {
     recording recording;
-    corrected_run run;
+    arm_run run;
     fault fault;
     taylor_lane *lane; // its part in the series of the step it is to make
     int kind;          // that of its form
@@ -47,7 +47,7 @@ struct side_by_side {
 static void end_run(side_run *one, status failed)
 {
     shared_array *forces = &one->recording.result->history.forces;
-    motion *over = corrected_finish(&one->run, failed);
+    motion *over = arm_run_finish(&one->run, failed);
     if (over != NULL) {
         one->motion = over;
     }
@@ -70,7 +70,19 @@ static status begin_run(side_run *one, const scenario *s, const run_options *opt
     TRY(failed);
     motion *spare = one->motion;
     one->motion = NULL;
-    return corrected_open(&one->run, &one->recording, spare, &one->fault);
+    return arm_run_open(&one->run, &one->recording, spare, &one->fault);
+}
+
+// Whether the next step of a run is to be computed from a series, and prepares that.
+static bool needs_series(side_run *one)
+{
+    arm_run *run = &one->run;
+    one->lane = NULL;
+    if (!run->under_way.exists) {
+        const double remaining = run->segment.stop - run->motion->state[SLOT_TIME];
+        one->lane = taylor_prepare(&run->arm, run->motion, remaining);
+    }
+    return one->lane != NULL;
 }
 
 // Continues with a run, what came last having come to `failed`, until it waits for series
@@ -82,22 +94,15 @@ static bool go_on(side_by_side *group, int place, status failed)
 
     // steps that need no series are taken at once, one that does waits for company
     while (failed == STATUS_OK && !ended) {
-        failed = corrected_approach_step(&one->run, &ended, &one->fault);
+        failed = arm_run_prepare_step(&one->run, &ended, &one->fault);
         if (failed == STATUS_OK && !ended) {
-            corrected_run *run = &one->run;
-            const double remaining = run->stretch.stop - run->motion->state[SLOT_TIME];
-            if (run->stretch.open.goes_on) {
-                one->lane = NULL;
-            } else {
-                one->lane = taylor_prepare(&run->arm, run->motion, remaining);
-            }
-            if (one->lane != NULL) {
+            if (needs_series(one)) {
                 one->kind = taylor_kind(one->lane->form);
                 group->alike[one->kind]++;
                 group->waiting[group->waiting_count++] = place;
                 return true;
             }
-            failed = corrected_step(&one->run, HUGE_VAL, &one->fault);
+            failed = arm_run_step(&one->run, HUGE_VAL, &one->fault);
         }
     }
 
@@ -117,13 +122,13 @@ static inline void fetch(const void *from, size_t size)
 // place in the nearest cache.
 static void fetch_run(const side_run *one)
 {
-    const corrected_run *run = &one->run;
+    const arm_run *run = &one->run;
     const motion *m = run->motion;
     fetch(m, sizeof *m);
     fetch(m->state, (size_t)m->size * sizeof *m->state);
     fetch(m->trial, (size_t)m->size * sizeof *m->trial);
     fetch(one->lane, offsetof(taylor_lane, block[AT_ANGLE_0]));
-    fetch(run, offsetof(corrected_run, arm.modal_damping));
+    fetch(run, offsetof(arm_run, arm.modal_damping));
     fetch(&one->recording.state, sizeof one->recording.state);
     fetch(&one->recording.result->summary.first_contact_s, SUMMARY_SHARE);
     fetch(&one->recording.result->history.forces, sizeof(shared_array));
@@ -191,11 +196,10 @@ static void serve(side_by_side *group)
         fetch_run(&group->in_hand[chosen[i]]);
     }
     for (int i = 0; i < count; i++) {
-        corrected_run *run = &group->in_hand[chosen[i]].run;
-        corrected_begin_step(run);
+        arm_run *run = &group->in_hand[chosen[i]].run;
+        arm_run_begin_step(run);
         const double length = run->motion->step.coming.end.length;
-        const int pieces =
-            lanes[i]->form.contact ? corrected_force_pieces(run, length) : 0;
+        const int pieces = lanes[i]->form.contact ? arm_run_force_pieces(run, length) : 0;
         ends[i] = (taylor_end){length, pieces};
     }
     taylor_finish(&group->series, lanes, ends, count);
@@ -203,7 +207,7 @@ static void serve(side_by_side *group)
     // then each continues by itself or makes room
     for (int i = 0; i < count; i++) {
         side_run *one = &group->in_hand[chosen[i]];
-        if (!go_on(group, chosen[i], corrected_step(&one->run, HUGE_VAL, &one->fault))) {
+        if (!go_on(group, chosen[i], arm_run_step(&one->run, HUGE_VAL, &one->fault))) {
             begin_next(group, chosen[i]);
         }
     }

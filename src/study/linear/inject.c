@@ -7,7 +7,7 @@
 #include "src/base/plain_math.h"
 #include "src/base/sincos.h"
 #include "src/rig/controller_values.h"
-#include "src/run/loop.h"
+#include "src/run/run_loop.h"
 #include "src/study/linear/linear.h"
 
 // Frequencies of the first pass, and passes that halve the intervals with a crossing.

@@ -1,67 +1,90 @@
-// The rows of a run of the corrected arm, and the residual of its energy balance.
+// The rows of a run of the corrected arm, and its ledger of energy.
 #include <math.h>
 
 #include "src/base/extremes.h"
 #include "src/base/instant.h"
-#include "src/run/corrected.h"
+#include "src/run/arm_run.h"
 #include "src/run/recording.h"
 
-// --- rows ------------------------------------------------------------------------------
+// --- the ledger ------------------------------------------------------------------------
 
 #define TINY_ENERGY 1e-9 // below it nothing is called unstable [J]
 #define TINY_TURN   1e-2 // nor below what the motor does in this turn [rad]
 // share of the energy turned over that may not be unaccounted for
 #define WRONG_ENERGY 0.1
-// of a step: a row of the grid so near a step's end lies at it
-#define GRID_TOLERANCE 1e-9
 
-// corrected_audit for a state that holds that energy.
-static inline status audit(corrected_run *c, state_energy has)
+// arm_run_audit for a state that holds that energy.
+static inline status audit(arm_run *run, state_energy has)
 {
-    const motion *m = c->motion;
-    summary *s = &c->recording->result->summary;
-    const double held = motion_held_energy(&c->arm, m, m->state);
-    double residual = motion_unaccounted(m, m->state, has.kinetic + has.strain + held);
+    const motion *m = run->motion;
+    summary *s = &run->recording->result->summary;
+    const double held = motion_held_energy(&run->arm, m, m->state);
+    const double residual =
+        motion_unaccounted(m, m->state, has.kinetic + has.strain + held);
     s->energy_residual_J = larger(fabs(residual), s->energy_residual_J);
 
-    const double torque = c->arm.motor.torque + m->state[SLOT_MOTOR_TORQUE];
-    double turned_over = fabs(motion_motor_work(m, m->state)) +
-                         fabs(m->state[SLOT_EXTERNAL_WORK]) + fabs(held) +
-                         fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED]) +
-                         m->record.start_energy + fabs(torque) * TINY_TURN + TINY_ENERGY;
-    // steps that do not resolve the fastest modes damp them: there energy may vanish, not
-    // appear
-    double wrong = motion_unresolved(&c->arm, m) ? residual : fabs(residual);
+    // what it is measured by
+    const double torque = run->arm.motor.torque + m->state[SLOT_MOTOR_TORQUE];
+    const double turned_over =
+        fabs(motion_motor_work(m, m->state)) + fabs(m->state[SLOT_EXTERNAL_WORK]) +
+        fabs(held) + fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED]) +
+        m->record.start_energy + fabs(torque) * TINY_TURN + TINY_ENERGY;
     if (!isfinite(residual) || !isfinite(turned_over)) {
         return STATUS_NOT_FINITE;
     }
+
+    // steps that do not resolve the fastest modes damp them: there energy may vanish, not
+    // appear
+    const double wrong = motion_unresolved(&run->arm, m) ? residual : fabs(residual);
     if (wrong > WRONG_ENERGY * turned_over) {
         return STATUS_UNSTABLE;
     }
     return STATUS_OK;
 }
 
-status corrected_audit(corrected_run *c)
+status arm_run_audit(arm_run *run)
 {
-    return audit(c, motion_energy(&c->arm, c->motion, c->motion->state));
+    return audit(run, motion_energy(&run->arm, run->motion, run->motion->state));
 }
 
-// The row of a state that holds that energy.
-static sample row_of(const corrected_run *c, double *state, state_energy has,
-                     double impulse)
+// What the step just made put into the arm, or took from it [J].
+static double work_of_step(const arm_run *run)
 {
-    const arm *a = &c->arm;
-    const motion *m = c->motion;
+    const motion *m = run->motion;
+    const arm *a = &run->arm;
+    return fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial)) +
+           fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED] -
+                state_quadratures(m, m->trial)[QUADRATURE_PUSHED]) +
+           fabs(chain_weight_energy(a, state_angles(m, m->state)) -
+                chain_weight_energy(a, state_angles(m, m->trial)));
+}
+
+void arm_run_note_work(arm_run *run, double work)
+{
+    run->recording->state.rows.energy_put_in += fabs(work);
+}
+
+// --- rows ------------------------------------------------------------------------------
+
+// Of a step: a row of the grid so near a step's end lies at it.
+#define GRID_TOLERANCE 1e-9
+
+// The row of a state that holds that energy.
+static sample row_of(const arm_run *run, double *state, state_energy has, double impulse)
+{
+    const arm *a = &run->arm;
+    const motion *m = run->motion;
+    const double none = (double)NAN;
 
     // the state's parts, and the links that the signals name
     double *q = state_angles(m, state), *w = state_velocities(m, state);
     double *al = state_accelerations(m, state), *quadrature = state_quadratures(m, state);
-    const bool rigid = motion_wall_is_rigid(m);
+    const int first = a->first, last = a->dof - 1;
+
+    // every signal of the table that the corrected model has
     const value_and_slope gap = state_rest_gap(state);
     const double held = motion_held_energy(a, m, state);
-    int first = a->first, last = a->dof - 1;
     sample row = {
-        // every signal of the table that the corrected model has
         .time = state[SLOT_TIME],
         .hub_angle = q[0],
         .first_angle = q[first],
@@ -90,85 +113,119 @@ static sample row_of(const corrected_run *c, double *state, state_energy has,
         .damping_loss = quadrature[QUADRATURE_DAMPING],
         .impact_loss = state[SLOT_IMPACT_LOSS],
         .energy_residual = motion_unaccounted(m, state, has.kinetic + has.strain + held),
-        .wall_energy = rigid ? (double)NAN : motion_wall_energy(a, m, state),
-        .wall_loss = rigid ? (double)NAN : quadrature[QUADRATURE_WALL],
-        .wall_place = wall_moves(&a->wall)
-                          ? wall_motion_at(&a->wall.motion, state[SLOT_TIME]).place
-                          : (double)NAN,
-        .wall_work = wall_moves(&a->wall) ? quadrature[QUADRATURE_PUSHED] : (double)NAN,
-        .weight_energy = a->gravity != 0 ? chain_weight_energy(a, q) : (double)NAN,
-        .face_depth = rigid ? (double)NAN : state[SLOT_FACE],
+        .wall_energy = none,
+        .wall_loss = none,
+        .wall_place = none,
+        .wall_work = none,
+        .weight_energy = none,
+        .face_depth = none,
     };
 
-    recording_add_rig_signals(c->recording, &row);
+    // those of walls and weight, where there are such
+    if (!motion_wall_is_rigid(m)) {
+        row.wall_energy = motion_wall_energy(a, m, state);
+        row.wall_loss = quadrature[QUADRATURE_WALL];
+        row.face_depth = state[SLOT_FACE];
+    }
+    if (wall_moves(&a->wall)) {
+        row.wall_place = wall_motion_at(&a->wall.motion, state[SLOT_TIME]).place;
+        row.wall_work = quadrature[QUADRATURE_PUSHED];
+    }
+    if (a->gravity != 0) {
+        row.weight_energy = chain_weight_energy(a, q);
+    }
+    recording_add_rig_signals(run->recording, &row);
     return row;
 }
 
-double *corrected_present(const corrected_run *c)
+double *arm_run_present_state(const arm_run *run)
 {
-    motion *m = c->motion;
-    double *within = NULL;
-    if (c->stretch.open.goes_on) {
-        within = motion_between(&c->arm, m, c->stretch.open.now, STATE_WHOLE);
+    motion *m = run->motion;
+    if (run->under_way.exists) {
+        double *within = motion_between(&run->arm, m, run->under_way.time, STATE_WHOLE);
+        if (within != NULL) {
+            return within;
+        }
     }
-    return within != NULL ? within : m->state;
+    return m->state;
 }
 
-sample corrected_row(const corrected_run *c, double *state)
+sample arm_run_row(const arm_run *run, double *state)
 {
-    return row_of(c, state, motion_energy(&c->arm, c->motion, state), 0);
+    return row_of(run, state, motion_energy(&run->arm, run->motion, state), 0);
 }
 
-static status record_row_of(corrected_run *c, double *state, state_energy has,
-                            double impulse)
+static status record_row_of(arm_run *run, double *state, state_energy has, double impulse)
 {
-    const motion *m = c->motion;
-    const sample row = row_of(c, state, has, impulse);
-    return recording_add_row(c->recording, &row, state_angles(m, state),
+    const motion *m = run->motion;
+    const sample row = row_of(run, state, has, impulse);
+    return recording_add_row(run->recording, &row, state_angles(m, state),
                              state_velocities(m, state));
 }
 
-status corrected_record_row(corrected_run *c, double *state, double impulse)
+status arm_run_record_row(arm_run *run, double *state, double impulse)
 {
-    if (!c->recording->options->keep_trace) {
+    if (!run->recording->options->keep_trace) {
         return STATUS_OK;
     }
-    const state_energy has = motion_energy(&c->arm, c->motion, state);
-    return record_row_of(c, state, has, impulse);
+    const state_energy has = motion_energy(&run->arm, run->motion, state);
+    return record_row_of(run, state, has, impulse);
 }
 
 // Records rows within the step just made or under way, stepped to again from its start:
 // side by side if the engine can do that.
-static status record_within(corrected_run *c, const double *times, int count)
+static status record_within(arm_run *run, const double *times, int count)
 {
-    motion *m = c->motion;
+    motion *m = run->motion;
     state_energy has[MOTION_TOGETHER];
-    const bool together = count > 1 && motion_between_all(&c->arm, m, times, count, has);
+    const bool together =
+        count > 1 && motion_between_all(&run->arm, m, times, count, has);
     for (int i = 0; i < count; i++) {
         if (together) {
-            TRY(record_row_of(c, m->between + i * m->size, has[i], 0));
+            TRY(record_row_of(run, m->between + i * m->size, has[i], 0));
         } else {
-            double *state = motion_between(&c->arm, m, times[i], STATE_WHOLE);
-            if (state) {
-                TRY(corrected_record_row(c, state, 0));
-            } else {
-                TRY(STATUS_NOT_FINITE);
+            double *state = motion_between(&run->arm, m, times[i], STATE_WHOLE);
+            if (state == NULL) {
+                return STATUS_NOT_FINITE;
             }
+            TRY(arm_run_record_row(run, state, 0));
         }
-        if (recording_asked_to_stop(c->recording)) {
+        if (recording_asked_to_stop(run->recording)) {
             return STATUS_STOPPED;
         }
     }
     return STATUS_OK;
 }
 
+status arm_run_record_first_row(arm_run *run)
+{
+    run->recording->state.rows.next = 1;
+    return arm_run_record_row(run, run->motion->state, 0);
+}
+
+// The distance between two rows of the grid [s].
+static double grid_interval(const arm_run *run)
+{
+    return run->recording->scenario->parameters.method.step;
+}
+
+status arm_run_record_last_row(arm_run *run, double time)
+{
+    const double interval = grid_interval(run);
+    const double last_row = (double)(run->recording->state.rows.next - 1) * interval;
+    if (last_row < time - GRID_TOLERANCE * interval) {
+        return arm_run_record_row(run, run->motion->state, 0);
+    }
+    return STATUS_OK;
+}
+
 // Records the rows of the grid before an instant [s], which lie within the step just made
 // or under way.
-static status record_rows_before(corrected_run *c, double instant)
+static status record_rows_before(arm_run *run, double instant)
 {
-    recording *r = c->recording;
-    const double interval = r->scenario->parameters.method.step;
-    double time = (double)r->state.grid_row * interval;
+    row_record *rows = &run->recording->state.rows;
+    const double interval = grid_interval(run);
+    double time = (double)rows->next * interval;
 
     // some at a time
     while (time < instant) {
@@ -176,43 +233,43 @@ static status record_rows_before(corrected_run *c, double instant)
         int count = 0;
         for (; count < MOTION_TOGETHER && time < instant; count++) {
             times[count] = time;
-            time = (double)++r->state.grid_row * interval;
+            rows->next++;
+            time = (double)rows->next * interval;
         }
-        TRY(record_within(c, times, count));
+        TRY(record_within(run, times, count));
     }
     return STATUS_OK;
 }
 
-status corrected_record_rows_to(corrected_run *c, double time)
+status arm_run_record_rows_to(arm_run *run, double time)
 {
-    const double interval = c->recording->scenario->parameters.method.step;
-    const bool keeps = c->recording->options->keep_trace;
-    if (keeps) {
-        return record_rows_before(c, time + GRID_TOLERANCE * interval);
+    if (!run->recording->options->keep_trace) {
+        return STATUS_OK;
     }
-    return STATUS_OK;
+    return record_rows_before(run, time + GRID_TOLERANCE * grid_interval(run));
 }
 
 // Records the rows of the grid that lie within the step just made, and passes over one at
 // its end if an event is there.
-static status record_grid(corrected_run *c, bool at_event)
+static status record_grid(arm_run *run, bool at_event)
 {
-    recording *r = c->recording;
-    motion *m = c->motion;
-    const double interval = r->scenario->parameters.method.step,
-                 now = m->state[SLOT_TIME];
-    const double end = GRID_TOLERANCE * interval;
+    row_record *rows = &run->recording->state.rows;
+    motion *m = run->motion;
+    const double interval = grid_interval(run), now = m->state[SLOT_TIME];
+    const double tolerance = GRID_TOLERANCE * interval;
 
-    // those within it, then one at its end; an event records its own rows
-    TRY(record_rows_before(c, now - end));
-    if ((double)r->state.grid_row * interval > now + end) {
+    // those within it
+    TRY(record_rows_before(run, now - tolerance));
+    if ((double)rows->next * interval > now + tolerance) {
         return STATUS_OK;
     }
-    r->state.grid_row++;
+
+    // then one at its end; an event records its own rows
+    rows->next++;
     if (!at_event) {
-        TRY(corrected_record_row(c, m->state, 0));
+        TRY(arm_run_record_row(run, m->state, 0));
     }
-    if (recording_asked_to_stop(r)) {
+    if (recording_asked_to_stop(run->recording)) {
         return STATUS_STOPPED;
     }
     return STATUS_OK;
@@ -306,11 +363,10 @@ static double least_rate(const arm *a, motion *m, double from, double to, double
         if (!gap_within(a, m, early, &first) || !gap_within(a, m, late, &second)) {
             break;
         }
-        if (!(first.slope <= second.slope)) {
-            from = early;
-        }
         if (first.slope <= second.slope) {
             to = late;
+        } else {
+            from = early;
         }
         least = smaller(least, smaller(first.slope, second.slope));
     }
@@ -329,11 +385,11 @@ static double flight_closing_speed(const arm *a, motion *m)
     }
 
     // the piece of the step at whose end the tip is fastest
-    const double pieces =
-        engine_is_dense(m->engine) ? length * a->highest_frequency / RATE_REACH : 1;
-    const int count =
-        pieces < MOST_FLIGHT_PIECES ? (int)larger(ceil(pieces), 1) : MOST_FLIGHT_PIECES;
-    int fastest = 0;
+    int count = 1, fastest = 0;
+    if (engine_is_dense(m->engine)) {
+        const double pieces = length * a->highest_frequency / RATE_REACH;
+        count = (int)smaller(larger(ceil(pieces), 1), MOST_FLIGHT_PIECES);
+    }
     rates_of(a, m, count, rate);
     for (int i = 1; i <= count; i++) {
         if (rate[i] < rate[fastest]) {
@@ -347,53 +403,56 @@ static double flight_closing_speed(const arm *a, motion *m)
     if (!falls || !grows) {
         return -rate[fastest];
     }
-    const double before = from + length * (fastest > 0 ? fastest - 1 : 0) / count;
-    const double after = from + length * (fastest < count ? fastest + 1 : count) / count;
-    return -least_rate(a, m, before, after, rate[fastest]);
+    const int before = fastest > 0 ? fastest - 1 : 0;
+    const int after = fastest < count ? fastest + 1 : count;
+    return -least_rate(a, m, from + length * before / count,
+                       from + length * after / count, rate[fastest]);
+}
+
+bool arm_run_end_flight(arm_run *run)
+{
+    row_record *rows = &run->recording->state.rows;
+    const bool separated = rows->separated;
+    rows->separated = false;
+    return separated;
 }
 
 // --- a step ----------------------------------------------------------------------------
 
-status corrected_record_step(corrected_run *c, bool at_event)
+status arm_run_record_step(arm_run *run, bool at_event)
 {
-    recording *r = c->recording;
-    motion *m = c->motion;
+    recording *r = run->recording;
+    motion *m = run->motion;
+    summary *s = &r->result->summary;
 
-    // how far the arm has gone from the wall
-    if (!isnan(r->result->summary.first_contact_s) && !r->state.separated) {
-        r->state.separated = flight_separated(&c->arm, m);
+    // how far the arm has gone from the wall, and what was put into it
+    if (!isnan(s->first_contact_s) && !r->state.rows.separated &&
+        flight_separated(&run->arm, m)) {
+        r->state.rows.separated = true;
     }
-    const arm *a = &c->arm;
-    r->state.energy_put_in +=
-        fabs(motion_motor_work(m, m->state) - motion_motor_work(m, m->trial)) +
-        fabs(state_quadratures(m, m->state)[QUADRATURE_PUSHED] -
-             state_quadratures(m, m->trial)[QUADRATURE_PUSHED]) +
-        fabs(chain_weight_energy(a, state_angles(m, m->state)) -
-             chain_weight_energy(a, state_angles(m, m->trial)));
+    arm_run_note_work(run, work_of_step(run));
 
     // an arm held still has the energy it had
-    const bool known = m->step.energy.kinetic >= 0;
-    status s = STATUS_OK;
-    if (!motion_held_still(m)) {
-        if (known) {
-            s = audit(c, m->step.energy);
-        } else {
-            s = corrected_audit(c);
-        }
+    status balance = STATUS_OK;
+    if (!motion_held_still(m) && m->step.energy.kinetic >= 0) {
+        balance = audit(run, m->step.energy);
+    } else if (!motion_held_still(m)) {
+        balance = arm_run_audit(run);
     }
 
     // how fast the tip came towards the wall on its own
     if (r->rig != NULL && m->trial[SLOT_CONTACT] == 0) {
-        summary *all = &r->result->summary;
-        double *most = isnan(all->first_contact_s) ? &all->approach_speed_m_s
-                                                   : &all->return_speed_m_s;
-        *most = larger(flight_closing_speed(&c->arm, m), *most);
+        double *most = &s->return_speed_m_s;
+        if (isnan(s->first_contact_s)) {
+            most = &s->approach_speed_m_s;
+        }
+        *most = larger(flight_closing_speed(&run->arm, m), *most);
     }
 
-    TRY(s);
-    TRY(corrected_record_forces(c));
-    if (r->options->keep_trace) {
-        return record_grid(c, at_event);
+    TRY(balance);
+    TRY(arm_run_record_forces(run));
+    if (!r->options->keep_trace) {
+        return STATUS_OK;
     }
-    return STATUS_OK;
+    return record_grid(run, at_event);
 }

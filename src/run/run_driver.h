@@ -3,18 +3,17 @@
 //     driver_open -> driver_advance, to one instant after the other -> driver_close
 #pragma once
 
-#include "src/run/corrected.h"
-#include "src/run/printed.h"
+#include "src/run/arm_run.h"
+#include "src/run/printed_run.h"
+#include "src/run/run_model.h"
 
 typedef struct run_driver {
     recording recording;
-    bool opened;     // it has begun
-    bool is_printed; // the printed arm's, whose steps end at the times of its rows
-    double duration; // [s]
+    const run_model *model; // of its arm; NULL: it has not begun
     union {
-        corrected_run corrected;
+        arm_run corrected;
         printed_run printed;
-    };
+    } run; // the model's
 } run_driver;
 
 // Begins a run of the scenario into result. Whatever it returns, with f saying why,
@@ -34,9 +33,10 @@ void driver_close(run_driver *d, status failed, const fault *f);
 status driver_advance(run_driver *d, double until, bool *ended, fault *f);
 
 // The first of the phases alone: *ended is true if the run is complete.
-status driver_approach(run_driver *d, bool *ended, fault *f);
+status driver_prepare_step(run_driver *d, bool *ended, fault *f);
 
-// Carries out now an action that belongs to no script; of the printed arm no push.
+// Carries out now an action that belongs to no script; a push only of a model that takes
+// them.
 status driver_act(run_driver *d, const action *todo, fault *f);
 
 // The summary as if the run ended here; `failed` and f say why it did not come to its

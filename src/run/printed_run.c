@@ -1,7 +1,10 @@
-#include "src/run/printed.h"
+// The run of the printed arm: what a row records, script and rig between rows, the
+// summary.
+#include "src/run/printed_run.h"
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #include "src/run/recording.h"
 
@@ -38,8 +41,7 @@ static status note_contact(printed_run *p, const printed_row *row)
 {
     recording *r = p->recording;
     summary *s = &r->result->summary;
-    recording_state *state = &r->state;
-    const bool was_in_contact = state->pulse_open;
+    const bool was_in_contact = p->in_contact;
 
     // the first row in contact: pulse and peaks count from here
     s->max_penetration_m = fmax(s->max_penetration_m, -row->gap);
@@ -52,12 +54,14 @@ static status note_contact(printed_run *p, const printed_row *row)
         return STATUS_OK; // the wall is still to be met
     }
 
-    // contact begins anew, or ends
+    // contact begins again, or ends
     note_peaks(p, row);
     if (row->contact && !was_in_contact) {
         s->impacts++;
-        s->separations += state->separated;
-        state->separated = false;
+        if (p->separated) {
+            s->separations++;
+        }
+        p->separated = false;
         TRY(record_event(r, row->time, EVENT_CONTACT, -1));
     } else if (was_in_contact && !row->contact) {
         if (isnan(s->first_pulse_s)) {
@@ -66,8 +70,8 @@ static status note_contact(printed_run *p, const printed_row *row)
         TRY(record_event(r, row->time, EVENT_RELEASE, -1));
     }
 
-    state->pulse_open = row->contact;
-    state->separated |= row->gap > SEPARATION_GAP;
+    p->in_contact = row->contact;
+    p->separated = p->separated || row->gap > SEPARATION_GAP;
     return STATUS_OK;
 }
 
@@ -76,8 +80,9 @@ static status note_contact(printed_run *p, const printed_row *row)
 static const sample nothing = {SIGNALS(NONE)};
 #undef NONE
 
-sample printed_sample(const printed_run *p)
+static sample present_row(const void *run)
 {
+    const printed_run *p = run;
     const printed_row *row = &p->motion.row;
     const motor_model *motor = &p->motion.arm.motor;
 
@@ -118,7 +123,7 @@ static status keep_row(const printed_run *p)
     if (!p->recording->options->keep_trace) {
         return STATUS_OK;
     }
-    const sample sampled = printed_sample(p);
+    const sample sampled = present_row(p);
     const printed_row *row = &p->motion.row;
     return recording_add_row(p->recording, &sampled, row->angle, row->velocity);
 }
@@ -131,17 +136,21 @@ static status record_row(printed_run *p, fault *f)
     const printed_row *row = &p->motion.row;
     status failed = note_contact(p, row);
 
-    // the force over the step, which the row of time 0 has none of
-    const double before = p->begun ? p->last.last : 0,
-                 start = p->begun ? p->last.end : row->time;
-    const force_step step = {start, row->time, before, row->force,
-                             (before + row->force) / 2};
+    // the step to it, which the row of time 0 has none of
+    const sensed_motion now = sensed_at(row);
+    force_step step = {.start = row->time, .end = row->time, .last = row->force};
+    sensed_motion before = now;
+    if (p->begun) {
+        step.start = p->last.end;
+        step.first = p->last.last;
+        before = p->sensed;
+    }
+    step.mean = (step.first + step.last) / 2;
 
     // what the sensors felt of it
-    const sensed_motion now = sensed_at(row);
     if (r->rig != NULL) {
-        sensors_follow(&r->rig->sensors, row->time - start, p->begun ? &p->sensed : &now,
-                       &now, step.mean);
+        sensors_follow(&r->rig->sensors, row->time - step.start, &before, &now,
+                       step.mean);
     }
 
     // the mean force of the end
@@ -167,7 +176,9 @@ static status record_row(printed_run *p, fault *f)
 
 // --- between steps ---------------------------------------------------------------------
 
-status printed_act(printed_run *p, const action *todo, int index, fault *f)
+// Sets a parameter now and records that as action `index` of the script (-1: of no
+// script); it takes effect with the coming step.
+static status set_parameter(printed_run *p, const action *todo, int index, fault *f)
 {
     assert(todo->kind == ACTION_SET);
     recording *r = p->recording;
@@ -218,33 +229,41 @@ static status run_rig(printed_run *p, fault *f)
     return STATUS_OK;
 }
 
-status printed_approach_step(printed_run *p, bool *ended, fault *f)
+// Carries out what is due of script and rig, once for each row.
+static status prepare_step(void *run, bool *ended, fault *f)
 {
+    printed_run *p = run;
     *ended = printed_motion_ended(&p->motion);
     if (*ended || p->ready) {
         return STATUS_OK;
     }
+
+    // what jumps at the last row
     const scenario *s = p->recording->scenario;
     int *next = &p->recording->state.next_action;
     for (; *next < s->action_count && s->actions[*next].time <= p->motion.row.time;
          ++*next) {
-        TRY(printed_act(p, &s->actions[*next], *next, f));
+        TRY(set_parameter(p, &s->actions[*next], *next, f));
     }
     TRY(run_rig(p, f));
     p->ready = true;
     return STATUS_OK;
 }
 
-status printed_step(printed_run *p, fault *f)
+// A step cannot be cut: it ends at its row.
+static status step(void *run, double until, fault *f)
 {
+    printed_run *p = run;
+    (void)until;
     TRY(printed_motion_step(&p->motion, f));
     return record_row(p, f);
 }
 
 // --- the summary -----------------------------------------------------------------------
 
-void printed_sum_up(printed_run *p, status failed)
+static void sum_up(void *run, status failed)
 {
+    printed_run *p = run;
     assert(p->begun);
     recording *r = p->recording;
     summary *s = &r->result->summary;
@@ -252,8 +271,11 @@ void printed_sum_up(printed_run *p, status failed)
     s->steps = (double)p->motion.steps;
     s->motor_work_J = s->energy_residual_J =
         (double)NAN; // (2.16) as printed conserves no energy
-    s->separations += r->state.separated;
+    if (p->separated) {
+        s->separations++;
+    }
 
+    // what contact there was
     if (!isnan(s->first_contact_s)) {
         s->sensor_1ms_peak_N = force_largest_sensed(r->result, 1e-3, HUGE_VAL);
         r->result->landing = (landing){s->first_contact_s,
@@ -265,17 +287,29 @@ void printed_sum_up(printed_run *p, status failed)
 
     // what only a whole run has
     if (failed == STATUS_OK) {
-        const double mean = p->steady_rows > 0 ? p->steady_sum / p->steady_rows : 0;
-        recording_finish_summary(r, mean * fmin(STEADY_WINDOW,
-                                                r->scenario->parameters.run.duration));
+        const double duration = r->scenario->parameters.run.duration;
+        double mean = 0;
+        if (p->steady_rows > 0) {
+            mean = p->steady_sum / p->steady_rows;
+        }
+        recording_finish_summary(r, mean * fmin(STEADY_WINDOW, duration));
         recording_finish_rig_summary(r, p->sensed.angle);
+    }
+}
+
+static void finish(void *run, status failed)
+{
+    const printed_run *p = run;
+    if (p->begun) {
+        sum_up(run, failed);
     }
 }
 
 // --- the beginning ---------------------------------------------------------------------
 
-status printed_open(printed_run *p, recording *r, fault *f)
+static status open_run(void *run, recording *r, fault *f)
 {
+    printed_run *p = run;
     assert(r->scenario->parameters.arm.model == ARM_PRINTED);
     *p = (printed_run){.recording = r};
     TRY(recording_open_trace(r, 3, f));
@@ -295,3 +329,74 @@ status printed_open(printed_run *p, recording *r, fault *f)
     }
     return record_row(p, f);
 }
+
+// --- at present ------------------------------------------------------------------------
+
+static status act(void *run, const action *todo, fault *f)
+{
+    return set_parameter(run, todo, -1, f);
+}
+
+static double present_time(const void *run)
+{
+    const printed_run *p = run;
+    return p->motion.row.time;
+}
+
+static bool has_ended(const void *run)
+{
+    const printed_run *p = run;
+    return printed_motion_ended(&p->motion);
+}
+
+static sensed_motion present_sensed(const void *run)
+{
+    const printed_run *p = run;
+    return p->sensed;
+}
+
+static const double *present_state(const void *run, int *angle_count)
+{
+    const printed_run *p = run;
+    *angle_count = 3;
+    return p->motion.row.angle; // velocities stand behind them
+}
+
+// --- the state as bytes ----------------------------------------------------------------
+
+static size_t saved_size(const void *run)
+{
+    (void)run;
+    return sizeof(printed_run);
+}
+
+static void save(const void *run, void *bytes)
+{
+    printed_run saved = *(const printed_run *)run;
+    saved.recording = NULL; // where that lies is no part of a state
+    memcpy(bytes, &saved, sizeof saved);
+}
+
+static void restore(void *run, const void *bytes)
+{
+    printed_run *p = run;
+    recording *own = p->recording;
+    memcpy(p, bytes, sizeof *p);
+    p->recording = own;
+}
+
+const run_model printed_model = {.stops_at_rows = true,
+                                 .open = open_run,
+                                 .prepare_step = prepare_step,
+                                 .step = step,
+                                 .act = act,
+                                 .sum_up = sum_up,
+                                 .finish = finish,
+                                 .time = present_time,
+                                 .has_ended = has_ended,
+                                 .sensed = present_sensed,
+                                 .row = present_row,
+                                 .state = present_state,
+                                 .saved_size = saved_size,
+                                 .save = save,
+                                 .restore = restore};

@@ -1,55 +1,48 @@
-#include "src/run/driver.h"
+#include "src/run/run_driver.h"
 
+#include <assert.h>
 #include <string.h>
 
 #include "src/base/instant.h"
-#include "src/engines/motion_create.h"
 
 status driver_open(run_driver *d, const scenario *s, const run_options *options,
                    run_result *result, fault *f)
 {
-    recording *r = &d->recording;
-    const status code = recording_begin(r, s, options, result, f);
-    d->is_printed = s->parameters.arm.model == ARM_PRINTED;
-    d->duration = s->parameters.run.duration;
-    d->opened = code == STATUS_OK;
-    if (code != STATUS_OK) {
-        return code;
+    d->model = NULL;
+    TRY(recording_begin(&d->recording, s, options, result, f));
+    if (s->parameters.arm.model == ARM_PRINTED) {
+        d->model = &printed_model;
+    } else {
+        d->model = &corrected_model;
     }
-    if (d->is_printed) {
-        return printed_open(&d->printed, r, f);
-    }
-    return corrected_open(&d->corrected, r, NULL, f);
+    return d->model->open(&d->run, &d->recording, f);
 }
 
 void driver_close(run_driver *d, status failed, const fault *f)
 {
-    if (d->opened && !d->is_printed) {
-        motion_destroy(corrected_finish(&d->corrected, failed));
-    } else if (d->opened && d->printed.begun) {
-        printed_sum_up(&d->printed, failed);
+    if (d->model != NULL) {
+        d->model->finish(&d->run, failed);
     }
     recording_end(&d->recording, failed, f);
 }
 
 summary driver_summary(run_driver *d, status failed, const fault *f)
 {
-    // summed up as if it ended here, and gone on with as it was
     recording *r = &d->recording;
     summary *now = &r->result->summary;
-    const summary kept = *now;
-    const recording_state state = r->state;
-    const recorded_command command = r->command;
-    if (d->is_printed) {
-        printed_sum_up(&d->printed, failed);
-    } else {
-        corrected_sum_up(&d->corrected, failed);
-    }
+
+    // summed up as if it ended here
+    const summary summary_before = *now;
+    const recording_state state_before = r->state;
+    const recorded_command command_before = r->command;
+    d->model->sum_up(&d->run, failed);
     recording_tell_fault(now, failed, f);
     const summary all = *now;
-    *now = kept;
-    r->state = state;
-    r->command = command;
+
+    // and continued as it was
+    *now = summary_before;
+    r->state = state_before;
+    r->command = command_before;
     return all;
 }
 
@@ -58,17 +51,14 @@ summary driver_summary(run_driver *d, status failed, const fault *f)
 // Whether an instant is still to be gone to; the end is, until it is known to be one.
 static bool lies_ahead(const run_driver *d, double time)
 {
-    const bool at_end = d->is_printed ? printed_motion_ended(&d->printed.motion)
-                                      : !(corrected_now(&d->corrected) < d->duration);
-    return instant_after(time, driver_time(d)) || time >= d->duration || at_end;
+    const double duration = d->recording.scenario->parameters.run.duration;
+    return instant_after(time, driver_time(d)) || time >= duration ||
+           d->model->has_ended(&d->run);
 }
 
-status driver_approach(run_driver *d, bool *ended, fault *f)
+status driver_prepare_step(run_driver *d, bool *ended, fault *f)
 {
-    if (d->is_printed) {
-        return printed_approach_step(&d->printed, ended, f);
-    }
-    return corrected_approach_step(&d->corrected, ended, f);
+    return d->model->prepare_step(&d->run, ended, f);
 }
 
 status driver_advance(run_driver *d, double until, bool *ended, fault *f)
@@ -78,13 +68,9 @@ status driver_advance(run_driver *d, double until, bool *ended, fault *f)
         if (r->options->stepped && stop_requested(&r->stop)) {
             return STATUS_STOPPED;
         }
-        TRY(driver_approach(d, ended, f));
+        TRY(driver_prepare_step(d, ended, f));
         if (!*ended) {
-            if (d->is_printed) {
-                TRY(printed_step(&d->printed, f));
-            } else {
-                TRY(corrected_step(&d->corrected, until, f));
-            }
+            TRY(d->model->step(&d->run, until, f));
         }
     }
     return STATUS_OK;
@@ -92,48 +78,30 @@ status driver_advance(run_driver *d, double until, bool *ended, fault *f)
 
 status driver_act(run_driver *d, const action *todo, fault *f)
 {
-    if (d->is_printed) {
-        return printed_act(&d->printed, todo, -1, f);
-    }
-    return corrected_act_now(&d->corrected, todo, f);
+    assert(todo->kind == ACTION_SET || d->model->takes_pushes);
+    return d->model->act(&d->run, todo, f);
 }
 
 // --- at present ------------------------------------------------------------------------
 
 double driver_time(const run_driver *d)
 {
-    if (d->is_printed) {
-        return d->printed.motion.row.time;
-    }
-    return corrected_now(&d->corrected);
+    return d->model->time(&d->run);
 }
 
 sensed_motion driver_sensed(run_driver *d)
 {
-    if (d->is_printed) {
-        return d->printed.sensed;
-    }
-    return corrected_sensed_now(&d->corrected);
+    return d->model->sensed(&d->run);
 }
 
 sample driver_row(const run_driver *d)
 {
-    const corrected_run *c = &d->corrected;
-    if (d->is_printed) {
-        return printed_sample(&d->printed);
-    }
-    return corrected_row(c, corrected_present(c));
+    return d->model->row(&d->run);
 }
 
 const double *driver_state(const run_driver *d, int *angle_count)
 {
-    if (d->is_printed) {
-        *angle_count = 3;
-        return d->printed.motion.row.angle; // velocities stand behind them
-    }
-    const motion *m = d->corrected.motion;
-    *angle_count = m->dof;
-    return state_angles(m, corrected_present(&d->corrected));
+    return d->model->state(&d->run, angle_count);
 }
 
 // --- the state as bytes ----------------------------------------------------------------
@@ -149,14 +117,6 @@ typedef struct saved_run {
     rig rig;
 } saved_run;
 
-static size_t model_size(const run_driver *d)
-{
-    if (d->is_printed) {
-        return sizeof d->printed;
-    }
-    return corrected_saved_size(&d->corrected);
-}
-
 static size_t values_size(const rig *r)
 {
     return (size_t)r->law->parameter_count * sizeof *r->values;
@@ -165,8 +125,11 @@ static size_t values_size(const rig *r)
 size_t driver_saved_size(const run_driver *d)
 {
     const rig *r = d->recording.rig;
-    return sizeof(saved_run) + model_size(d) +
-           (r != NULL ? r->law->memory_size + values_size(r) : 0);
+    const size_t size = sizeof(saved_run) + d->model->saved_size(&d->run);
+    if (r == NULL) {
+        return size;
+    }
+    return size + r->law->memory_size + values_size(r);
 }
 
 // Gives a rig the addresses of another.
@@ -197,20 +160,16 @@ void driver_save(const run_driver *d, void *bytes)
     head.now = r->now;
 
     // where things lie is their run's own, and no part of a state
-    char *at = (char *)bytes + sizeof head;
     if (r->rig != NULL) {
         head.rig = *r->rig;
         keep_places(&head.rig, &(rig){.law = NULL});
     }
     memcpy(bytes, &head, sizeof head);
-    if (d->is_printed) {
-        printed_run saved = d->printed;
-        saved.recording = NULL;
-        memcpy(at, &saved, sizeof saved);
-    } else {
-        corrected_save(&d->corrected, at);
-    }
-    at += model_size(d);
+
+    // the model, then the law's memory and values
+    char *at = (char *)bytes + sizeof head;
+    d->model->save(&d->run, at);
+    at += d->model->saved_size(&d->run);
     if (r->rig != NULL) {
         memcpy(at, r->rig->memory, r->rig->law->memory_size);
         if (r->rig->given.law != NULL) {
@@ -235,7 +194,7 @@ static void restore_rig(rig *r, const rig *saved, const char *at)
 
 static void keep_at_most(size_t *count, size_t most)
 {
-    if (!(*count < most)) {
+    if (*count > most) {
         *count = most;
     }
 }
@@ -260,12 +219,7 @@ void driver_restore(run_driver *d, const void *bytes)
     // the rig first: the run's arm has its voltage
     const char *at = (const char *)bytes + sizeof head;
     if (r->rig != NULL) {
-        restore_rig(r->rig, &head.rig, at + model_size(d));
+        restore_rig(r->rig, &head.rig, at + d->model->saved_size(&d->run));
     }
-    if (d->is_printed) {
-        memcpy(&d->printed, at, sizeof d->printed);
-        d->printed.recording = r;
-    } else {
-        corrected_restore(&d->corrected, at);
-    }
+    d->model->restore(&d->run, at);
 }

@@ -1,4 +1,4 @@
-#include "src/run/loop.h"
+#include "src/run/run_loop.h"
 
 #include <assert.h>
 #include <math.h>
@@ -7,7 +7,7 @@
 
 #include "src/base/shipped.h"
 #include "src/rig/controller_values.h"
-#include "src/run/driver.h"
+#include "src/run/run_driver.h"
 
 #define GRID_TOLERANCE 1e-9 // of a step: a row of the grid so near is the present one
 
@@ -182,12 +182,11 @@ status loop_step(run_loop *l, fault *f)
     // the next multiple of the step, or what the rig does now and then its next sample
     double next = (floor(loop_time(l) / interval + GRID_TOLERANCE) + 1) * interval;
     if (on != NULL && l->failed == STATUS_OK && !l->ended) {
-        l->failed = driver_approach(&l->driver, &l->ended, &l->fault);
-        if (l->driver.is_printed) {
-            next = fmax(next, on->sample_time);
-        } else {
+        l->failed = driver_prepare_step(&l->driver, &l->ended, &l->fault);
+        if (!l->driver.model->stops_at_rows) {
             next = on->sample_time;
         }
+        next = fmax(next, on->sample_time);
     }
     return loop_until(l, next, f);
 }
@@ -205,8 +204,8 @@ static status act(run_loop *l, const action *todo, fault *f)
     if (l->failed != STATUS_OK) {
         return stay_failed(l, f);
     }
-    FAULT_IF(todo->kind == ACTION_PUSH && l->driver.is_printed, f, STATUS_BAD_ARGUMENT,
-             "the printed model takes no pushes");
+    FAULT_IF(todo->kind == ACTION_PUSH && !l->driver.model->takes_pushes, f,
+             STATUS_BAD_ARGUMENT, "the printed model takes no pushes");
     if (todo->kind == ACTION_SET &&
         !rig_can_change(&l->driver.recording.now, todo->parameter)) {
         const char *path = parameter_table[todo->parameter].path;

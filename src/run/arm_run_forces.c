@@ -1,0 +1,492 @@
+// The steps of the corrected model in pieces that are short enough for its force to be a
+// parabola: for the means of the force, and for sensors that follow it.
+#include <math.h>
+
+#include "src/base/extremes.h"
+#include "src/base/instant.h"
+#include "src/run/arm_run.h"
+#include "src/run/recording.h"
+
+#define SHORTEST_MEAN 1e-9 // a step shorter than this has the mean of its ends [s]
+
+// By how much a mean may leave the range of its force: a share of it, and of the integral
+// so far.
+#define BEYOND_RANGE    1e-6
+#define INTEGRAL_DIGITS 1e-14
+
+// Largest (fastest rate) x (time) of a piece: over it a parabola is exact to 1e-4 of the
+// fastest mode's force, and to 1e-6 for sensors with a lag.
+#define FORCE_REACH  0.25
+#define SENSOR_REACH 0.05
+
+// A slope at the start that predicts this many times the change found over a piece
+// belongs to a decay.
+#define FALLS_AT_ONCE 4
+
+enum { MOST_PIECES = 320 }; // that sensors follow a step in
+
+sensed_motion arm_run_sensed_motion(const arm_run *run, double *state)
+{
+    const motion *m = run->motion;
+    const double *q = state_angles(m, state), *w = state_velocities(m, state);
+    int first = run->arm.first, last = run->arm.dof - 1;
+    return (sensed_motion){.angle = q[0],
+                           .velocity = w[0],
+                           .acceleration = state_accelerations(m, state)[0],
+                           .bending = q[last] - q[first],
+                           .bending_rate = w[last] - w[first],
+                           .force = state[SLOT_FORCE]};
+}
+
+static shared_array *forces_of(const arm_run *run)
+{
+    return &run->recording->result->history.forces;
+}
+
+// The force over the step just made.
+static force_step force_over_step(const motion *m)
+{
+    const double *start = m->trial; // where the step left its beginning
+    force_step whole = {.start = start[SLOT_TIME],
+                        .end = m->state[SLOT_TIME],
+                        .first = start[SLOT_FORCE],
+                        .last = m->state[SLOT_FORCE]};
+
+    // between stops that differ by rounding only, the integral's difference is all
+    // rounding
+    const double length = whole.end - whole.start;
+    if (length > SHORTEST_MEAN) {
+        const double integral = state_quadratures(m, m->state)[QUADRATURE_FORCE] -
+                                state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+        whole.mean = integral / length;
+    } else {
+        whole.mean = (whole.first + whole.last) / 2;
+    }
+    return whole;
+}
+
+// Whether the mean over the step just made lies within what the force is in it: from zero
+// to the bound that a dense engine has of it.
+static bool mean_is_possible(const motion *m, const force_step *force)
+{
+    if (!engine_is_dense(m->engine)) {
+        return true;
+    }
+    const double total = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+    const double most = larger(larger(force->first, force->last), m->most_force);
+    const double slack =
+        BEYOND_RANGE * (1 + most) +
+        INTEGRAL_DIGITS * total / larger(force->end - force->start, SHORTEST_MEAN);
+    return force->mean >= -slack && force->mean <= most + slack;
+}
+
+// How many pieces of that reach a step has at most.
+static int most_pieces(double reach)
+{
+    return (int)(MOST_PIECES * SENSOR_REACH / reach);
+}
+
+// Number of pieces for a step of large (fastest rate) x (length), so that a parabola is
+// accurate in each. Only dense engines make such steps.
+static int pieces_of_step(const arm_run *run, double length, double reach)
+{
+    motion *m = run->motion;
+    if (!engine_is_dense(m->engine)) {
+        return 1;
+    }
+
+    // by the fastest vibration, but no more than the engine itself follows
+    double pieces = length * motion_vibration(&run->arm, m, m->trial) / reach;
+    const double whole = state_kept(m, m->trial)[KEPT_LENGTH];
+    if (m->engine->parabolas > 0 && whole > 0) {
+        pieces = smaller(pieces,
+                         m->engine->parabolas * FORCE_REACH / reach * (length / whole));
+    }
+    if (!(pieces > 1) || motion_held_still(m)) {
+        return 1;
+    }
+    return (int)ceil(smaller(pieces, most_pieces(reach)));
+}
+
+// Whether the decays that an event excites are faster than the arm's vibrations.
+static bool decays_outrun(const arm *a)
+{
+    return a->fastest_decay > a->highest_frequency;
+}
+
+// Where the next piece of a step ends that goes from `time` to `end` and is taken in
+// parabolas [s], as long as what the last event set going decays faster than the arm
+// vibrates. False where equal pieces do for the rest.
+static bool next_decay_piece(const arm_run *run, double time, double end, double reach,
+                             double *next)
+{
+    const arm *a = &run->arm;
+    if (!decays_outrun(a) || !engine_is_dense(run->motion->engine) ||
+        motion_held_still(run->motion)) {
+        return false;
+    }
+
+    // as long as a piece that the decay allows is shorter than an equal one
+    const double since = time - run->recording->state.force.last_jump;
+    const double length =
+        larger(motion_decay_length(a, reach, since), instant_tolerance(time));
+    const double vibration = motion_vibration(a, run->motion, run->motion->trial);
+    const double equal = larger(reach / vibration, (end - time) / most_pieces(reach));
+    *next = time + length;
+    return length < equal && *next < end;
+}
+
+int arm_run_force_pieces(const arm_run *run, double length)
+{
+    const double now = run->motion->state[SLOT_TIME];
+    double next;
+    if (next_decay_piece(run, now, now + length, FORCE_REACH, &next)) {
+        return 0;
+    }
+    return pieces_of_step(run, length, FORCE_REACH);
+}
+
+sample_point arm_run_sample_point(const arm_run *run, double *state)
+{
+    return (sample_point){state[SLOT_TIME], arm_run_sensed_motion(run, state),
+                          state_quadratures(run->motion, state)[QUADRATURE_FORCE]};
+}
+
+// Continues to an instant within the step. False if the state there cannot be had.
+static bool move_to(const arm_run *run, sample_point *point, double time)
+{
+    double *state = motion_between(&run->arm, run->motion, time, STATE_SENSED);
+    if (state == NULL) {
+        return false;
+    }
+    *point = arm_run_sample_point(run, state);
+    return true;
+}
+
+// Takes a piece of the step just made, over which the force has that mean [N].
+typedef status (*piece_taker)(arm_run *run, const sample_point *from,
+                              const sample_point *to, double mean);
+
+// Continues to an instant within the step, over this length [s], and hands that piece
+// over.
+static status take_piece(arm_run *run, sample_point *point, double time, double length,
+                         piece_taker take)
+{
+    const sample_point from = *point;
+    if (!move_to(run, point, time)) {
+        return STATUS_NOT_FINITE;
+    }
+    return take(run, &from, point, (point->integral - from.integral) / length);
+}
+
+// Follows, piece by piece, the fast decay that an event has excited, up to where equal
+// pieces are enough for the rest of the step, which ends at `end` [s].
+static status follow_decay(arm_run *run, sample_point *point, double end, double reach,
+                           piece_taker take)
+{
+    double next;
+    while (next_decay_piece(run, point->time, end, reach, &next)) {
+        TRY(take_piece(run, point, next, next - point->time, take));
+    }
+    return STATUS_OK;
+}
+
+// Whether a force begins with a decay that is over at once: it shows in the slope at the
+// start only, which then says nothing about the mean.
+static bool falls_at_once(value_and_slope first, value_and_slope last, double width)
+{
+    const double shown = fabs(last.value - first.value) + fabs(last.slope) * width;
+    return fabs(first.slope) * width > FALLS_AT_ONCE * shown;
+}
+
+// Cuts the force over the rest of the step just made into equal pieces, `before` being
+// its integral up to there: each has the mean of the cubic through both ends' values and
+// slopes. A step may begin with a decay that is over at once, which only the motion's own
+// integral knows.
+static status cut_equally(const arm_run *run, const force_step *rest, double before,
+                          int count, force_step *kept)
+{
+    motion *m = run->motion;
+    value_and_slope at[MOST_PIECES + 1];
+
+    // the force at the start and at the ends of all pieces
+    const double since = rest->start - m->trial[SLOT_TIME],
+                 width = (m->step.last - since) / count;
+    m->engine->dense_output(&run->arm, m, OUTPUT_FORCE, since, m->step.last, count, at);
+
+    // the mean of each by its ends
+    const double slope_share = width / 12;
+    double start = rest->start;
+    value_and_slope first = at[0];
+    for (int i = 0; i < count; i++) {
+        const value_and_slope last = at[i + 1];
+        const double end = rest->start + (i + 1) * width;
+        const double mean =
+            (first.value + last.value) / 2 + slope_share * (first.slope - last.slope);
+        kept[i] = (force_step){start, end, first.value, last.value, mean};
+        start = end;
+        first = last;
+    }
+    kept[count - 1].end = rest->end;
+
+    // of the first by the motion's integral where its slope is that of a decay
+    if (falls_at_once(at[0], at[1], width)) {
+        sample_point end;
+        if (!move_to(run, &end, kept[0].end)) {
+            return STATUS_NOT_FINITE;
+        }
+        kept[0].mean = (end.integral - before) / width;
+    }
+    return STATUS_OK;
+}
+
+// Keeps the force over equal pieces of the rest of the step just made.
+static status record_equal_pieces(arm_run *run, const force_step *rest, double before,
+                                  int count)
+{
+    force_step *kept = force_history_extend(forces_of(run), (size_t)count);
+    if (kept == NULL) {
+        return STATUS_NO_MEMORY;
+    }
+    return cut_equally(run, rest, before, count, kept);
+}
+
+// Keeps the force over a piece of the step.
+static status keep_force(arm_run *run, const sample_point *from, const sample_point *to,
+                         double mean)
+{
+    const force_step piece = {from->time, to->time, from->at.force, to->at.force, mean};
+    return force_history_add(forces_of(run), piece);
+}
+
+// Keeps the force over the step just made, in pieces over which it is nearly a parabola:
+// this many where nothing decays.
+static status record_force(arm_run *run, const force_step *whole, int pieces)
+{
+    const motion *m = run->motion;
+    if (m->trial[SLOT_CONTACT] == 0) {
+        return force_history_add(forces_of(run), *whole);
+    }
+
+    // what an event set going and decays at once, its integral being that of the motion
+    force_step rest = *whole;
+    double before = state_quadratures(m, m->trial)[QUADRATURE_FORCE];
+    if (decays_outrun(&run->arm)) {
+        sample_point point = arm_run_sample_point(run, m->trial);
+        TRY(follow_decay(run, &point, whole->end, FORCE_REACH, keep_force));
+        rest.start = point.time;
+        rest.first = point.at.force;
+        before = point.integral;
+    }
+
+    // what vibrates
+    if (rest.start > whole->start) {
+        const double length = whole->end - rest.start;
+        pieces = pieces_of_step(run, length, FORCE_REACH);
+        rest.mean = (state_quadratures(m, m->state)[QUADRATURE_FORCE] - before) / length;
+    }
+    if (pieces > 1) {
+        return record_equal_pieces(run, &rest, before, pieces);
+    }
+    return force_history_add(forces_of(run), rest);
+}
+
+// --- sensors ---------------------------------------------------------------------------
+
+// Lets the sensors follow the arm over a piece of the step.
+static status sense(arm_run *run, const sample_point *from, const sample_point *to,
+                    double mean)
+{
+    sensors_follow(&run->recording->rig->sensors, to->time - from->time, &from->at,
+                   &to->at, mean);
+    return STATUS_OK;
+}
+
+// Lets sensors of nothing but the force follow it over equal pieces of the rest of the
+// step.
+static status follow_force(arm_run *run, const sample_point *from,
+                           const sample_point *last, int count)
+{
+    const force_step rest = {from->time, last->time, from->at.force, last->at.force, 0};
+    force_step cut[MOST_PIECES];
+    TRY(cut_equally(run, &rest, from->integral, count, cut));
+    for (int i = 0; i < count; i++) {
+        const sensed_motion first = {.force = cut[i].first}, end = {.force = cut[i].last};
+        sensors_follow(&run->recording->rig->sensors, cut[i].end - cut[i].start, &first,
+                       &end, cut[i].mean);
+    }
+    return STATUS_OK;
+}
+
+// Lets the sensors follow the arm from a point to `last`, the force having that mean [N].
+static status follow_to(arm_run *run, sample_point point, const sample_point *last,
+                        double mean)
+{
+    const sensor_parameters *fitted = &run->recording->rig->sensors.p;
+    const bool force_only = !fitted->film && !fitted->accelerometer;
+    if (force_only && run->motion->trial[SLOT_CONTACT] == 0) {
+        return sense(run, &point, last, mean);
+    }
+
+    // what an event set going
+    const double begin = point.time;
+    TRY(follow_decay(run, &point, last->time, SENSOR_REACH, sense));
+
+    // the rest from piece to piece
+    const double start = point.time, length = last->time - start;
+    const int pieces = pieces_of_step(run, length, SENSOR_REACH);
+    if (force_only && pieces > 1) {
+        return follow_force(run, &point, last, pieces);
+    }
+    for (int i = 1; i < pieces; i++) {
+        TRY(take_piece(run, &point, start + length * i / pieces, length / pieces, sense));
+    }
+
+    // the last piece ends where the way does
+    if (point.time > begin) {
+        mean = (last->integral - point.integral) / (length / pieces);
+    }
+    return sense(run, &point, last, mean);
+}
+
+status arm_run_follow_flight(arm_run *run, const sample_point *to)
+{
+    if (sensors_at_rest(&run->recording->rig->sensors)) {
+        return STATUS_OK;
+    }
+    return follow_to(run, run->under_way.followed, to, 0);
+}
+
+// Lets the sensors follow the arm over the step just made, or over what is left of it.
+static status follow_with_sensors(arm_run *run, const force_step *whole)
+{
+    const motion *m = run->motion;
+    const bool pressed = whole->first != 0 || whole->last != 0 || whole->mean != 0;
+    if (!pressed && sensors_at_rest(&run->recording->rig->sensors)) {
+        return STATUS_OK;
+    }
+
+    // in flight they may have come some way already
+    const sample_point last = arm_run_sample_point(run, m->state);
+    if (run->under_way.exists && run->under_way.followed.time > whole->start) {
+        return follow_to(run, run->under_way.followed, &last, 0);
+    }
+    return follow_to(run, arm_run_sample_point(run, m->trial), &last, whole->mean);
+}
+
+// --- bounds of a force that is not determined ------------------------------------------
+
+// The weight of a point of Simpson's rule over an even number of intervals, by thirds of
+// an interval's length.
+static int simpson_weight(int i, int intervals)
+{
+    if (i == 0 || i == intervals) {
+        return 1;
+    }
+    if (i % 2 != 0) {
+        return 4;
+    }
+    return 2;
+}
+
+// The state at a point of the step just made that is cut into equal intervals; NULL if it
+// cannot be had.
+static double *state_at(const arm_run *run, int i, int intervals)
+{
+    motion *m = run->motion;
+    if (i == 0) {
+        return m->trial;
+    }
+    if (i == intervals) {
+        return m->state;
+    }
+    const double start = m->trial[SLOT_TIME], length = m->state[SLOT_TIME] - start;
+    return motion_between(&run->arm, m, start + i * length / intervals, STATE_WHOLE);
+}
+
+// Follows the bounds of a force that is not determined, over the step just made:
+// Simpson's rule over its pieces.
+static status follow_bounds(arm_run *run, const force_step *whole)
+{
+    motion *m = run->motion;
+    force_record *record = &run->recording->state.force;
+    const bool single = m->dof == 1 && motion_wall_is_rigid(m);
+    if (!single || motion_force_bounds(&run->arm, m, m->trial).high == 0) {
+        return STATUS_OK;
+    }
+
+    const double length = whole->end - whole->start;
+    const int intervals = 2 * pieces_of_step(run, length, FORCE_REACH / 4);
+    for (int i = 0; i <= intervals; i++) {
+        double *state = state_at(run, i, intervals);
+        if (state == NULL) {
+            return STATUS_NOT_FINITE;
+        }
+
+        // into the integral, and the largest so far
+        const double share = simpson_weight(i, intervals) * length / (3 * intervals);
+        const force_bounds at = motion_force_bounds(&run->arm, m, state);
+        record->in_window.low += share * at.low;
+        record->in_window.high += share * at.high;
+        record->largest.low = larger(at.low, record->largest.low);
+        record->largest.high = larger(at.high, record->largest.high);
+    }
+    return STATUS_OK;
+}
+
+void arm_run_begin_window(arm_run *run)
+{
+    const motion *m = run->motion;
+    force_record *record = &run->recording->state.force;
+    record->integral_at_window = state_quadratures(m, m->state)[QUADRATURE_FORCE];
+    record->in_window = (force_bounds){0};
+}
+
+void arm_run_begin_bounds(arm_run *run)
+{
+    run->recording->state.force.largest = (force_bounds){0};
+}
+
+void arm_run_write_bounds(force_bounds bounds, double *low, double *high)
+{
+    if (bounds.high > bounds.low) {
+        *low = bounds.low;
+        *high = bounds.high;
+    }
+}
+
+// --- a step ----------------------------------------------------------------------------
+
+void arm_run_note_jump(arm_run *run)
+{
+    run->recording->state.force.last_jump = run->motion->state[SLOT_TIME];
+}
+
+status arm_run_record_forces(arm_run *run)
+{
+    const motion *m = run->motion;
+    const force_step force = force_over_step(m);
+    if (!mean_is_possible(m, &force)) {
+        return STATUS_IMPOSSIBLE_MEAN;
+    }
+
+    // a force that acts is kept in pieces
+    int pieces = 0;
+    if (m->trial[SLOT_CONTACT] != 0) {
+        pieces = pieces_of_step(run, m->step.last, FORCE_REACH);
+    }
+    const bool one_piece = pieces == 1 && !decays_outrun(&run->arm);
+
+    // sensors, bounds and the record
+    if (run->recording->rig != NULL) {
+        TRY(follow_with_sensors(run, &force));
+    }
+    if (!(force.end > force.start)) {
+        return STATUS_OK;
+    }
+    TRY(follow_bounds(run, &force));
+    if (one_piece) {
+        return force_history_add(forces_of(run), force);
+    }
+    return record_force(run, &force, pieces);
+}
