@@ -1,73 +1,9 @@
-// The catalogue of figures: this file alone knows all of them, and how each is opened.
+// Figures of the catalogue: how they are opened, described and written.
 #include "render/figures/figures.h"
 
 #include <assert.h>
 #include <math.h>
 #include <string.h>
-
-// Panels that several figures have.
-#define FORCE              .signals = {"force"}, .with_zero = true, .inset = true, .weight = 1.6
-#define VELOCITY(body)     .signals = {body "_velocity"}
-#define ANGLE(body)        .signals = {body "_angle"}, .wall = true
-#define ACCELERATION(body) .signals = {body "_acceleration"}
-#define ENCODER(other)                                                                   \
-    .label = "Hub angle", .signals = {"encoder", other}, .wall = true, .weight = 1.2
-#define TACHOMETER(other)                                                                \
-    .label = "Hub velocity", .signals = {"tachometer", other}, .weight = 1.2
-#define CONTACT(reading)                                                                 \
-    .label = "Contact force", .signals = {reading, "force"}, .with_zero = true,          \
-    .weight = 1.4
-#define COMMAND                                                                          \
-    .label = "Command <i>u</i>", .signals = {"command"}, .with_zero = true, .weight = 1.2
-
-// A figure of chapter 3, and one of the virtual rig; each has a scenario of its own name.
-#define RUN(number, name)                                                                \
-    .id = number, .file = name, .scenario = "thesis/" name,                              \
-    .model = "printed; corrected dashed", .beside = "arm.model=corrected",               \
-    .names = {"printed", "corrected"}
-#define RIG(number, name)                                                                \
-    .id = number, .file = name, .scenario = "thesis/" name,                              \
-    .model = "corrected, on the rig"
-
-// The time axis of chapter 2 is that of the simulations in figures 3.2 to 3.11.
-#define BENCH(number, name) RIG(number, name), .from = 0, .to = 1
-// Chapter 5 shades one thing.
-#define CONTROL(number, name) RIG(number, name), .modes = true
-#define MANY_LINKS            .beside = "arm.links=8", .names = {"2 links", "8 links"}
-
-#define TRACED(...)           {__VA_ARGS__},
-#define DRAWN(function, ...)  {.open = function, __VA_ARGS__},
-static const thesis_figure thesis_figures[] = {
-#include "render/figures/catalogue.inc"
-};
-#undef TRACED
-#undef DRAWN
-enum { FIGURES = G_N_ELEMENTS(thesis_figures) };
-
-int thesis_figure_count(void)
-{
-    return FIGURES;
-}
-
-const thesis_figure *thesis_figure_at(int i)
-{
-    assert(i >= 0);
-    if (i < FIGURES) {
-        return &thesis_figures[i];
-    }
-    return NULL;
-}
-
-const thesis_figure *thesis_figure_find(const char *id)
-{
-    for (int i = 0; i < FIGURES; i++) {
-        if (g_ascii_strcasecmp(thesis_figures[i].id, id) == 0 ||
-            strcmp(thesis_figures[i].file, id) == 0) {
-            return &thesis_figures[i];
-        }
-    }
-    return NULL;
-}
 
 // ---- recorded signals of the catalogue
 
@@ -105,9 +41,9 @@ static void add_printed_peak(owned_figure *o, const summary *m,
                 1e3 * fabs(late), delay);
 }
 
-// What the catalogue adds to a figure of recorded signals.
-static void add_facts(owned_figure *drawn, const summary *m, const thesis_figure *which,
-                      const figure_options *o)
+// Appends to the caption of recorded signals what the catalogue says of them.
+static void add_caption(owned_figure *drawn, const summary *m, const thesis_figure *which,
+                        const figure_options *o)
 {
     figure *fig = &drawn->figure;
     GString *caption = g_string_new(fig->caption);
@@ -121,12 +57,43 @@ static void add_facts(owned_figure *drawn, const summary *m, const thesis_figure
         add_printed_peak(drawn, m, which, caption);
     }
     fig->caption = owned_figure_keep(drawn, g_string_free(caption, FALSE));
+}
 
-    // a stretch that was asked for on the command line comes first
+// The ends of the time axis: those of the command line, or else the catalogue's.
+static void choose_time_axis(owned_figure *drawn, const thesis_figure *which,
+                             const figure_options *o)
+{
+    figure *fig = &drawn->figure;
     if (which->from < which->to && !(o->from < o->to)) {
         fig->x.low = which->from;
         fig->x.high = which->to;
     }
+}
+
+// The panels of a row of the catalogue with its first run and its second one (NULL:
+// none).
+static owned_figure *draw_signals(const figure_order *order, const opened_run *first,
+                                  const opened_run *second, fault *f)
+{
+    const thesis_figure *which = order->which;
+    trace_run runs[2] = {{&first->scenario, &first->result, .steps = which->steps}};
+    int count = 1;
+    if (second != NULL) {
+        runs[0].name = which->second->names[0];
+        runs[count++] = (trace_run){&second->scenario, &second->result,
+                                    which->second->names[1], .brief = true};
+    }
+
+    // without panels of its own those that any run has
+    if (which->panels == NULL) {
+        return run_figure_create(order->title, NULL, 0, runs, count, order->options, f);
+    }
+    assert(which->panel_count <= THESIS_PANELS);
+    trace_panel panels[THESIS_PANELS];
+    memcpy(panels, which->panels, (size_t)which->panel_count * sizeof *panels);
+    panels[0].modes = which->modes;
+    return run_figure_create(order->title, panels, which->panel_count, runs, count,
+                             order->options, f);
 }
 
 // Opens it; *of (may be NULL) is the scenario, which the artwork owns.
@@ -134,42 +101,31 @@ static status open_signals(const figure_order *order, artwork *out, const scenar
                            fault *f)
 {
     const thesis_figure *which = order->which;
-    trace_run runs[2];
-    trace_panel panels[THESIS_PANELS];
-    opened_run *opened[2] = {
-        run_open_changed(which->scenario, NULL, 0, order->monitor, f)};
-    owned_figure *drawn = NULL;
 
     // the scenario, and again with the change of the second run
-    const int count = which->beside != NULL ? 2 : 1;
-    if (count == 2 && opened[0] != NULL) {
-        opened[1] = run_open(which->scenario, which->beside, f);
+    opened_run *first = run_open_changed(which->scenario, NULL, 0, order->monitor, f);
+    opened_run *second = NULL;
+    if (first != NULL && which->second != NULL) {
+        second = run_open(which->scenario, which->second->change, f);
     }
-
-    // the same panels for each
-    if (opened[count - 1] != NULL) {
-        for (int i = 0; i < count; i++) {
-            runs[i] =
-                (trace_run){&opened[i]->scenario, &opened[i]->result, which->names[i],
-                            .steps = which->steps && i == 0, .brief = i == 1};
-        }
-        memcpy(panels, which->panels, sizeof panels);
-        panels[0].modes = which->modes;
-        const trace_panel *shown = which->panel_count > 0 ? panels : NULL;
-        drawn = run_figure_create(order->title, shown, which->panel_count, runs, count,
-                                  order->options, f);
+    owned_figure *drawn = NULL;
+    if (first != NULL && (second != NULL || which->second == NULL)) {
+        drawn = draw_signals(order, first, second, f);
     }
     if (drawn == NULL) {
-        run_close(opened[0]);
-        run_close(opened[1]);
+        run_close(first);
+        run_close(second);
         return f->code;
     }
-    owned_figure_own(drawn, opened[0], run_close);
-    owned_figure_own(drawn, opened[1], run_close);
-    add_facts(drawn, &opened[0]->result.summary, which, order->options);
+
+    // the figure owns its runs
+    owned_figure_own(drawn, first, run_close);
+    owned_figure_own(drawn, second, run_close);
+    add_caption(drawn, &first->result.summary, which, order->options);
+    choose_time_axis(drawn, which, order->options);
     *out = artwork_of_owned(drawn);
     if (of != NULL) {
-        *of = &opened[0]->scenario;
+        *of = &first->scenario;
     }
     return STATUS_OK;
 }
@@ -216,8 +172,8 @@ status figure_draw(const char *id, const figure_options *o, const char *folder,
 {
     const thesis_figure *which = thesis_figure_find(id);
     FAULT_IF(which == NULL, f, STATUS_BAD_ARGUMENT,
-             "there is no figure '%s', expected %s to %s", id, thesis_figures[0].id,
-             thesis_figures[FIGURES - 1].id);
+             "there is no figure '%s', expected %s to %s", id, thesis_figure_at(0)->id,
+             thesis_figure_at(thesis_figure_count() - 1)->id);
 
     // every format is known before anything is computed
     g_auto(GStrv) list = g_strsplit(formats, ",", -1);

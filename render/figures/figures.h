@@ -7,32 +7,43 @@
 #include "render/plot/trace_plot.h"
 #include "src/study/thesis_tables.h"
 
-enum { THESIS_PANELS = 3 };
+enum { THESIS_PANELS = 3 }; // most panels of recorded signals
 
 typedef struct figure_order figure_order;
 
+// A function that opens a figure: it makes the runs it needs and fails as they do; the
+// title is copied.
+typedef status figure_opener(const figure_order *order, artwork *out, fault *f);
+
+// A second run of a figure's scenario, drawn dashed.
+typedef struct second_run {
+    const char *change;   // by which it differs, "arm.links=8"
+    const char *names[2]; // of the first run and of this one
+} second_run;
+
+// A row of the catalogue: drawn by a function (`open`), or recorded signals (`panels`).
 typedef struct thesis_figure {
     const char *id;       // "3.4", "T4.1", "beta-gamma"
     const char *file;     // name of its files without extension, "fig-3-4"
     const char *caption;  // plain, one line
     const char *scenario; // "thesis/fig-3-4"; NULL: it needs no run
     const char *model;    // plain, the model used: "printed; corrected dashed"
-    const char
-        *note; // markup, appended to the caption's description of the run; NULL for none
-    const char *
-        beside; // recorded signals: a second run with this change, "arm.links=8", or NULL
-    const char *names[2]; // of both runs
-    double from, to; // recorded signals: ends of the time axis [s]; from >= to: automatic
-    bool steps;      // a point at every step of the first run
-    bool modes;      // the controller's second mode is shaded instead of contact
-    bool slow;       // takes as long as all others, so it is started first
+    bool slow;            // takes as long as all others, so it is started first
+
+    // drawn by a function
+    figure_opener *open;
+    int variant; // of what one function opens in several ways
+
+    // recorded signals
+    const trace_panel *panels; // NULL: the usual ones of a run
+    int panel_count;
+    const second_run *second; // NULL: the run stands alone
+    double from, to;          // ends of the time axis [s]; from >= to: automatic
+    bool steps;               // a point at every step of the first run
+    bool modes;               // the controller's second mode is shaded instead of contact
     int printed_voltage; // the peak of Table 4.3 in this column as a point, 1 to 4; 0:
                          // none
-    // opens it; NULL for recorded signals in `panels`
-    status (*open)(const figure_order *order, artwork *out, fault *f);
-    int variant; // of what one function opens in several ways
-    trace_panel panels[THESIS_PANELS];
-    int panel_count;
+    const char *note;    // markup, appended to the caption; NULL for none
 } thesis_figure;
 
 // A figure that is to be opened.
@@ -43,14 +54,12 @@ struct figure_order {
     run_monitor *monitor; // of recorded signals: of the first run; NULL: nobody looks on
 };
 
-// The functions that open drawn figures: each makes the runs it needs and fails as they
-// do; the title is copied.
-#define TRACED(...)
-#define DRAWN(function, ...)                                                             \
-    status function(const figure_order *order, artwork *out, fault *f);
-#include "render/figures/catalogue.inc"
-#undef TRACED
-#undef DRAWN
+// The drawn figures, chapter by chapter.
+figure_opener diagram_sensor, diagram_links, diagram_free_bodies, table_motor;
+figure_opener diagram_contact, table_stability, table_algorithm;
+figure_opener stability_map, printed_stability_map;
+figure_opener diagram_springs, diagram_collision, figure_force_profile, assumed_motion,
+    diagram_deformation, table_predictions, printed_values_figure, table_errors;
 
 // The number of figures, and the i-th: NULL after the last.
 int thesis_figure_count(void);

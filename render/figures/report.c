@@ -196,22 +196,12 @@ static status write_pdf(const report_content *r, const char *path, fault *f)
 
 // ==== the web page
 
-// Style and script, line by line; the build makes these of report.css and report.js.
-static const char *const style[] = {
+// Style and script, report_css and report_js: made of the files of these names by
+// embed.py.
 #include "render/figures/report.css.inc"
-};
-static const char *const script[] = {
 #include "render/figures/report.js.inc"
-};
 
 #define SCREEN_DPI 130.0
-
-static void add_lines(GString *html, const char *const *lines, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        g_string_append(html, lines[i]);
-    }
-}
 
 static void add_head(const report_content *r, GString *html)
 {
@@ -221,7 +211,7 @@ static void add_head(const report_content *r, GString *html)
         "<meta name=\"viewport\" content=\"width=device-width\">\n<title>%s</title>\n"
         "<style>\n",
         r->heading);
-    add_lines(html, style, G_N_ELEMENTS(style));
+    g_string_append(html, report_css);
     text_append(html,
                 "</style>\n</head>\n<body>\n<h1>%s</h1>\n<p>%s <q>Printed</q> is the "
                 "thesis's model with "
@@ -381,7 +371,7 @@ static status write_html(const report_content *r, const char *path, fault *f)
         }
     }
     g_string_append(html, "<script>\n");
-    add_lines(html, script, G_N_ELEMENTS(script));
+    g_string_append(html, report_js);
     g_string_append(html, "</script>\n</body>\n</html>\n");
     TRY(whole_file_open(&file, path, f));
     fwrite(html->str, 1, html->len, file.stream);

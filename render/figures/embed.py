@@ -1,0 +1,14 @@
+#!/usr/bin/env python3
+"""Writes a text file as a C array, so that the program can hold it: embed.py INPUT OUTPUT
+
+report.css becomes report_css. Lines that are comments of a script are left out.
+"""
+import pathlib
+import sys
+
+source, output = map(pathlib.Path, sys.argv[1:])
+lines = source.read_text(encoding='ascii').splitlines(keepends=True)
+text = ''.join(line for line in lines if not line.lstrip().startswith('// '))
+codes = ', '.join(str(byte) for byte in text.encode())
+name = source.name.replace('.', '_')
+output.write_text(f'static const char {name}[] = {{{codes}, 0}};\n')
