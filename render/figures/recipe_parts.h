@@ -64,15 +64,16 @@ typedef struct recipe {
 bool recipe_read(recipe *r, const char *path, const char *text, size_t length,
                  fault_handler report, void *context);
 
-// --- reading: values, maps and lists, used by every section: recipe_sources.c
+// --- reading: values, maps and lists, used by every section: recipe_values.c
 
 typedef struct recipe_context {
     reader reader;
     recipe *recipe;
 } recipe_context;
 
-// Reads a value into the object to which the map belongs; and looks at one that was read.
-typedef void recipe_taker(recipe_context *c, const tree_node *node, void *into);
+// Reads a value into the object to which the map belongs; or completes one that was read
+// and looks whether its parts go together.
+typedef void recipe_value_reader(recipe_context *c, const tree_node *node, void *into);
 
 // The type of a key's value.
 typedef enum value_kind {
@@ -93,8 +94,8 @@ typedef struct recipe_key {
     value_kind kind;
     size_t offset; // of its field, or of the array of items, in the object of the map
     size_t second; // of a pair's second number, or of the number of items
-    recipe_taker *take;      // VALUE_OWN
-    const recipe_form *form; // VALUE_ITEMS, VALUE_MAP
+    recipe_value_reader *read; // VALUE_OWN
+    const recipe_form *form;   // VALUE_ITEMS, VALUE_MAP
     // of a number: its unit (NULL: none), and between what it must lie (NULL: anywhere)
     const char *unit, *expected;
     double low, high;
@@ -109,11 +110,11 @@ struct recipe_form {
     const char *what, *example;
     recipe_key keys[RECIPE_KEYS];
     // of the items of a list: "a figure" and its "panels", their size and most, and what
-    // looks at one as a whole (NULL: nothing)
+    // completes one that was read (NULL: nothing)
     const char *holder, *things;
     size_t size;
     int most;
-    recipe_taker *end;
+    recipe_value_reader *complete;
     const void *blank; // what an item is before it is read; NULL: zeros
 };
 
@@ -129,20 +130,15 @@ struct recipe_form {
     {                                                                                    \
         name, VALUE_ITEMS, offsetof(type, array), offsetof(type, count), .form = items   \
     }
-#define OWN_KEY(name, taker)                                                             \
-    {                                                                                    \
-        name, .take = taker                                                              \
-    }
-
-// A function that reads or looks at a value; its object gets a name for readability.
-#define TAKE(name, what)                                                                 \
-    static void name(recipe_context *c, const tree_node *node, void *into)
 
 // Keeps a text from g_malloc with the recipe, and returns it.
 const char *recipe_keep(recipe_context *c, char *text);
 
 // A text, kept by the recipe; NULL after a fault.
 const char *recipe_text(recipe_context *c, const tree_node *node, const char *what);
+
+// Whether a node is a list of two items.
+bool recipe_is_pair(const tree_node *node);
 
 // The first item of a list; NULL if there is none, or after a fault.
 const tree_node *recipe_first(recipe_context *c, const tree_node *list, const char *what);
@@ -154,6 +150,12 @@ void recipe_map(recipe_context *c, const tree_node *map, const recipe_form *form
 
 // The node under a key of a map, or NULL.
 const tree_node *recipe_child(const tree_node *map, const char *key);
+
+// --- small multiples: recipe_multiples.c
+
+// Reads `multiples` and repeats runs and panels for each of its values, after both are
+// read.
+recipe_value_reader recipe_read_multiples;
 
 // --- sources: recipe_sources.c
 
