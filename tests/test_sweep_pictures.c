@@ -1,7 +1,7 @@
 // Pictures of each kind of sweep.
 
 #include "render/page/text.h"
-#include "render/plot/figure.h"
+#include "render/plot/figure_description.h"
 #include "render/plot/study_plot.h"
 #include "tests/sweep_fixture.h"
 

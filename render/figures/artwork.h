@@ -5,7 +5,7 @@
 
 #include "render/page/picture_file.h"
 #include "render/page/table_page.h"
-#include "render/plot/figure.h"
+#include "render/plot/figure_description.h"
 
 // Options that apply to all pictures.
 typedef struct figure_options {

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "render/plot/figure.h"
+#include "render/plot/figure_description.h"
 #include "render/plot/ticks.h"
 
 // A scale's ends are coordinates: values, or their decimal logarithms.

@@ -5,7 +5,7 @@
 #include "render/page/page.h"
 #include "render/page/text.h"
 #include "render/plot/axis.h"
-#include "render/plot/figure.h"
+#include "render/plot/figure_description.h"
 
 // --- free places in a panel, by a grid of cells with the ink in each: placement.c
 

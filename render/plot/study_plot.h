@@ -1,7 +1,7 @@
 // Pictures of studies: of a sweep, and of the result of impactlab robust.
 #pragma once
 
-#include "render/plot/figure.h"
+#include "render/plot/figure_description.h"
 #include "src/study/identify.h"
 #include "src/study/linear/linear.h"
 #include "src/study/robust.h"

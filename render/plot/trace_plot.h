@@ -3,7 +3,7 @@
 
 #include <glib.h>
 
-#include "render/plot/figure.h"
+#include "render/plot/figure_description.h"
 #include "src/base/fault.h"
 #include "src/run/run.h"
 
