@@ -1,0 +1,294 @@
+#include "src/study/law_exam.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "src/tables/parameters.h"
+#include "src/study/batch.h"
+
+// The bounds, as shares of the command, in seconds and as a ratio.
+#define MOST_OVERSHOOT       30.0 // [%]
+#define MOST_SETTLING        0.3  // [s]
+#define MOST_SETTLING_LOSING 0.6  // of a run that lost contact [s]
+#define MOST_ERROR           5.0  // [%]
+#define MOST_LATENESS        1.5
+
+// A run of the exam: a law, or open-loop's for the time of first contact (law -1), in a
+// case at a force, with its push or without.
+typedef struct exam_run {
+    size_t of_case;
+    int law, force;
+    bool pushed;
+} exam_run;
+
+typedef struct exam_work {
+    law_exam *exam;
+    const exam_options *options;
+    action *actions; // of each run, room for those of the base and a push
+    exam_run *runs;
+    summary *summaries;
+} exam_work;
+
+static void exam_work_finish(exam_work *w)
+{
+    free(w->actions);
+    free(w->runs);
+    free(w->summaries);
+}
+
+static exam_verdict *verdict_at(const law_exam *e, int law, int force, size_t which)
+{
+    const exam_request *asked = &e->asked;
+    assert(law < asked->law_count && force < asked->force_count && which < asked->cases);
+    return &e->verdicts[((size_t)law * (size_t)asked->force_count + (size_t)force) *
+                            asked->cases +
+                        which];
+}
+
+const exam_verdict *law_exam_verdict(const law_exam *e, int law, int force, size_t which)
+{
+    return verdict_at(e, law, force, which);
+}
+
+void law_exam_finish(law_exam *e)
+{
+    free(e->cases);
+    free(e->verdicts);
+    *e = (law_exam){.runs = 0};
+}
+
+// --- the runs --------------------------------------------------------------------------
+
+// Lists them, case by case: open-loop's, then each law at each force as it is and, where
+// there is a push, without it. `runs` NULL counts them.
+static size_t list_runs(const law_exam *e, exam_run *runs)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < e->asked.cases; i++) {
+        const int kinds_of_run = e->cases[i].push != 0 ? 2 : 1;
+        if (runs != NULL) {
+            runs[count] = (exam_run){.of_case = i, .law = -1};
+        }
+        count++;
+        for (int law = 0; law < e->asked.law_count; law++) {
+            for (int k = 0; k < e->asked.force_count * kinds_of_run; k++) {
+                if (runs != NULL) {
+                    runs[count] = (exam_run){.of_case = i,
+                                             .law = law,
+                                             .force = k / kinds_of_run,
+                                             .pushed = k % kinds_of_run == 0};
+                }
+                count++;
+            }
+        }
+    }
+    return count;
+}
+
+// Gives a scenario a law, as its file would. A law that is not the scenario's own keeps
+// none of its settings.
+static status give_law(scenario *s, int law, double force, fault *f)
+{
+    control_parameters *control = &s->parameters.control;
+    if (control->law != law) {
+        control->settings[0] = '\0';
+    }
+    control->law = law;
+    s->parameters.set[PARAMETER_INDEX(control.law)] = 1;
+    control->force = force;
+    s->parameters.set[PARAMETER_INDEX(control.force)] = 1;
+    return parameters_resolve(&s->parameters, f);
+}
+
+static status make_run(void *context, size_t i, scenario *made, fault *f)
+{
+    const exam_work *w = context;
+    const exam_request *asked = &w->exam->asked;
+    const exam_run *run = &w->runs[i];
+    const size_t room = (size_t)asked->base->action_count + 1;
+
+    // the law first, since errors are refused that a law does not read
+    scenario base = *asked->base;
+    if (run->law < 0) {
+        TRY(give_law(&base, LAW_OPEN_LOOP, asked->forces[0], f));
+    } else {
+        TRY(give_law(&base, asked->laws[run->law], asked->forces[run->force], f));
+    }
+    return drawn_case_scenario(made, &base, &w->exam->cases[run->of_case], run->pushed,
+                               w->actions + i * room, f);
+}
+
+static status take_run(void *context, size_t i, const summary *s, fault *f)
+{
+    exam_work *w = context;
+    (void)f;
+    w->summaries[i] = *s;
+    w->exam->done++;
+    return STATUS_OK;
+}
+
+static status report_runs(void *context, bool over, fault *f)
+{
+    const exam_work *w = context;
+    (void)over, (void)f;
+    if (w->options->report != NULL) {
+        w->options->report(w->exam);
+    }
+    return STATUS_OK;
+}
+
+// --- judgement -------------------------------------------------------------------------
+
+// Of a run and the same without a push, where open-loop touches the wall at that time
+// [s].
+static exam_verdict judge_run(const drawn_case *c, double force, double open_loop,
+                              const summary *s, const summary *calm)
+{
+    // settling counts from the touch, or from a push after it
+    double from = s->first_contact_s;
+    if (c->push != 0) {
+        from = fmax(from, c->push_time);
+    }
+    const double settled = s->first_contact_s + s->settling_time_s;
+
+    exam_verdict v = {
+        .overshoot = 100 * calm->smoothed_over_command_N / force,
+        .settling = isnan(settled) ? settled : fmax(0, settled - from),
+        .error = 100 * s->steady_error_N / force,
+        .separations = s->separations,
+        .late = s->first_contact_s / open_loop,
+    };
+    const double most_settling = v.separations > 0 ? MOST_SETTLING_LOSING : MOST_SETTLING;
+
+    // what is not a number misses its bound, too
+    v.missed[EXAM_OVERSHOOT] = !(v.overshoot <= MOST_OVERSHOOT);
+    v.missed[EXAM_SETTLING] = !(v.settling <= most_settling);
+    v.missed[EXAM_ERROR] = !(fabs(v.error) <= MOST_ERROR);
+    v.missed[EXAM_LATENESS] = !(v.late <= MOST_LATENESS);
+    v.missed[EXAM_RUN] = s->status != STATUS_OK || s->inaccurate;
+    v.within = true;
+    for (int bound = 0; bound < EXAM_BOUNDS; bound++) {
+        v.within = v.within && !v.missed[bound];
+    }
+    return v;
+}
+
+// Judges all runs, in the order in which they are listed.
+static void judge_runs(exam_work *w, size_t runs)
+{
+    law_exam *e = w->exam;
+    double open_loop = (double)NAN;
+    for (size_t i = 0; i < runs; i++) {
+        const exam_run *run = &w->runs[i];
+        const drawn_case *c = &e->cases[run->of_case];
+        if (run->law < 0) {
+            open_loop = w->summaries[i].first_contact_s;
+        } else if (run->pushed) {
+            const summary *calm = &w->summaries[c->push != 0 ? i + 1 : i];
+            *verdict_at(e, run->law, run->force, run->of_case) =
+                judge_run(c, e->asked.forces[run->force], open_loop, &w->summaries[i],
+                          calm);
+        }
+    }
+}
+
+// --- all of it -------------------------------------------------------------------------
+
+// Tries every error around the scenario, so that one which does not go with it is told
+// before the first run.
+static status check_cases(const exam_work *w, size_t runs, fault *f)
+{
+    scenario made;
+    for (size_t i = 0; i < runs; i++) {
+        if (w->runs[i].law >= 0 && w->runs[i].force == 0) {
+            TRY(make_run((void *)w, i, &made, f));
+        }
+    }
+    return STATUS_OK;
+}
+
+status law_exam_run(law_exam *e, const exam_request *asked, const exam_options *options,
+                    fault *f)
+{
+    assert(asked->cases >= 1 && asked->cases <= EXAM_MOST_CASES);
+    assert(asked->law_count >= 1 && asked->law_count <= EXAM_MOST_LAWS);
+    assert(asked->force_count >= 1 && asked->force_count <= EXAM_MOST_FORCES);
+    const size_t judged =
+        (size_t)asked->law_count * (size_t)asked->force_count * asked->cases;
+    *e = (law_exam){.asked = *asked,
+                    .cases = calloc(asked->cases, sizeof *e->cases),
+                    .verdicts = calloc(judged, sizeof *e->verdicts)};
+    if (e->cases == NULL || e->verdicts == NULL) {
+        return fault_no_memory(f);
+    }
+    for (size_t i = 0; i < asked->cases; i++) {
+        e->cases[i] = drawn_case_of(&asked->base->parameters, asked->seed + i);
+    }
+
+    // what is to be run
+    const size_t runs = list_runs(e, NULL);
+    const size_t room = (size_t)asked->base->action_count + 1;
+    SCOPED(exam_work_finish)
+    exam_work w = {.exam = e,
+                   .options = options,
+                   .actions = calloc(runs * room, sizeof *w.actions),
+                   .runs = calloc(runs, sizeof *w.runs),
+                   .summaries = calloc(runs, sizeof *w.summaries)};
+    if (w.actions == NULL || w.runs == NULL || w.summaries == NULL) {
+        return fault_no_memory(f);
+    }
+    e->runs = list_runs(e, w.runs);
+    TRY(check_cases(&w, runs, f));
+
+    const batch b = {.context = &w,
+                     .count = runs,
+                     .make = make_run,
+                     .take = take_run,
+                     .tick = report_runs,
+                     .stop = options->stop,
+                     .abandon = options->abandon};
+    TRY(batch_run(&b, options->jobs, f));
+    if (e->done < runs) {
+        return fault_set(f, STATUS_STOPPED, "stopped: %zu of %zu runs were done", e->done,
+                         runs);
+    }
+    judge_runs(&w, runs);
+    return STATUS_OK;
+}
+
+// --- shares ----------------------------------------------------------------------------
+
+static bool has_error(const drawn_case *c, int kind)
+{
+    bool has = kind < 0;
+    for (int i = 0; i < c->error_count; i++) {
+        has = has || c->errors[i] == kind;
+    }
+    return has;
+}
+
+exam_share law_exam_share(const law_exam *e, int law, int force, int kind)
+{
+    exam_share s = {.share = (double)NAN, .low = (double)NAN, .high = (double)NAN};
+    for (size_t i = 0; i < e->asked.cases; i++) {
+        if (has_error(&e->cases[i], kind)) {
+            s.cases++;
+            s.within += law_exam_verdict(e, law, force, i)->within;
+        }
+    }
+    if (s.cases == 0) {
+        return s;
+    }
+
+    // Wilson's interval, which holds for shares near 0 and 1, too
+    const double z = 1.959963984540054, n = (double)s.cases;
+    s.share = (double)s.within / n;
+    const double middle = (s.share + z * z / (2 * n)) / (1 + z * z / n);
+    const double half =
+        z / (1 + z * z / n) * sqrt(s.share * (1 - s.share) / n + z * z / (4 * n * n));
+    s.low = middle - half;
+    s.high = middle + half;
+    return s;
+}

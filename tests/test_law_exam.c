@@ -1,0 +1,210 @@
+// The exam of control laws: cases that nobody chose, judged by bounds.
+#include "src/study/law_exam.h"
+
+#include "tests/shipped_scenario.h"
+
+enum { SEEDS = 400 };
+
+static law_exam examined(const scenario *s, size_t cases, uint64_t seed)
+{
+    law_exam e;
+    const exam_request asked = {.base = s,
+                                .laws = {s->parameters.control.law, LAW_FORCE_PD},
+                                .law_count = 2,
+                                .forces = {1, 3},
+                                .force_count = 2,
+                                .cases = cases,
+                                .seed = seed};
+    DONE(law_exam_run(&e, &asked, &(exam_options){.jobs = 2}, &f));
+    return e;
+}
+
+static bool same_path(const char *a, const char *b)
+{
+    const size_t length = strcspn(a, "=");
+    return length == strcspn(b, "=") && memcmp(a, b, length) == 0;
+}
+
+// Two or three errors, none of which sets what another one does, and a seed of its own.
+TEST(errors_of_a_case_exclude_one_another)
+{
+    KEPT_SCENARIO(s) = shipped("compare/observer");
+    int threes = 0;
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        const drawn_case c = drawn_case_of(&s.parameters, seed);
+        assert_in_range(c.error_count, 2, 3);
+        threes += c.error_count == 3;
+        for (int i = 0; i < c.setting_count; i++) {
+            for (int k = 0; k < i; k++) {
+                fail_if(same_path(c.settings[i], c.settings[k]), "seed %d: %s and %s",
+                        (int)seed, c.settings[k], c.settings[i]);
+            }
+        }
+    }
+
+    // one in two, within five deviations
+    check_close(threes, SEEDS / 2, 5 * sqrt(SEEDS) / 2);
+}
+
+// Every kind is drawn, and drawn around what the scenario has.
+TEST(errors_are_drawn_around_the_scenario)
+{
+    KEPT_SCENARIO(s) =
+        shipped_with("compare/observer", "arm.length=2 wall.angle=0.3 initial.angle=0");
+    bool drawn[LAW_ERRORS] = {false};
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        const drawn_case c = drawn_case_of(&s.parameters, seed);
+        scenario derived;
+        action room;
+        DONE(drawn_case_scenario(&derived, &s, &c, true, &room, &f));
+        for (int i = 0; i < c.error_count; i++) {
+            drawn[c.errors[i]] = true;
+        }
+        const double length = derived.parameters.arm.length;
+        assert_true(length >= 1.5 && length <= 2.5);
+        assert_true(derived.parameters.initial.angle < 0.3);
+        assert_int_equal(derived.action_count, c.push != 0 ? 1 : 0);
+    }
+    for (int kind = 0; kind < LAW_ERRORS; kind++) {
+        fail_if(!drawn[kind], "'%s' is never drawn", law_error_name(kind));
+    }
+}
+
+// A push comes among the actions of the scenario, in the order of time.
+TEST(pushes_keep_the_actions_of_the_scenario)
+{
+    KEPT_SCENARIO(s) = shipped("corrected/push-in-contact");
+    assert_true(s.action_count > 0);
+    const drawn_case c = {.push = 0.02, .push_time = 1e-3};
+    action *actions = calloc((size_t)s.action_count + 1, sizeof *actions);
+    scenario derived;
+    DONE(drawn_case_scenario(&derived, &s, &c, true, actions, &f));
+    assert_int_equal(derived.action_count, s.action_count + 1);
+    for (int i = 1; i < derived.action_count; i++) {
+        assert_true(actions[i - 1].time <= actions[i].time);
+    }
+    DONE(drawn_case_scenario(&derived, &s, &c, false, actions, &f));
+    assert_int_equal(derived.action_count, s.action_count);
+    free(actions);
+}
+
+// What the exam says of a case is what a run of that case gives.
+TEST(verdicts_are_those_of_single_runs)
+{
+    KEPT_SCENARIO(s) = shipped("compare/observer");
+    SCOPED(law_exam_finish) law_exam e = examined(&s, 12, 20000);
+    for (size_t i = 0; i < e.asked.cases; i++) {
+        const drawn_case *c = &e.cases[i];
+        scenario derived;
+        action room;
+        DONE(drawn_case_scenario(&derived, &s, c, true, &room, &f));
+        KEPT_RUN(run) = run_done(&derived, false);
+        const summary *r = &run.summary;
+        const exam_verdict *v = law_exam_verdict(&e, 0, 0, i);
+        check_close(v->error, 100 * r->steady_error_N, 1e-12);
+        check_close(v->separations, r->separations, 0);
+        const double end = r->first_contact_s + r->settling_time_s;
+        if (!isnan(v->settling) && c->push != 0) {
+            const double from = fmax(c->push_time, r->first_contact_s);
+            check_close(v->settling, fmax(0, end - from), 1e-12);
+        } else if (!isnan(v->settling)) {
+            check_close(v->settling, r->settling_time_s, 1e-12);
+        } else {
+            assert_true(isnan(r->settling_time_s));
+        }
+        if (c->push == 0) {
+            check_close(v->overshoot, 100 * r->smoothed_over_command_N, 1e-12);
+        }
+    }
+}
+
+// Shares of all cases and of those with a kind of error are counts, with an interval by
+// Wilson; 0 of n ends at z^2/(n + z^2).
+TEST(shares_count_cases)
+{
+    KEPT_SCENARIO(s) = shipped("compare/observer");
+    SCOPED(law_exam_finish) law_exam e = examined(&s, 20, 20000);
+    size_t of_kinds = 0, of_errors = 0;
+    for (int kind = 0; kind < LAW_ERRORS; kind++) {
+        of_kinds += law_exam_share(&e, 0, 0, kind).cases;
+    }
+    for (size_t i = 0; i < e.asked.cases; i++) {
+        of_errors += (size_t)e.cases[i].error_count;
+        for (int law = 0; law < 2; law++) {
+            e.verdicts[((size_t)law * 2) * e.asked.cases + i].within = false;
+        }
+    }
+    assert_int_equal(of_kinds, of_errors);
+    const exam_share none = law_exam_share(&e, 0, 0, -1);
+    assert_int_equal(none.within, 0);
+    check_close(none.low, 0, 1e-15);
+    const double z2 = 1.959963984540054 * 1.959963984540054;
+    check_close(none.high, z2 / (20 + z2), 1e-14);
+}
+
+static json_t *member_of_result(json_t *whole, size_t row, const char *key)
+{
+    json_t *results = json_object_get(whole, "results");
+    return json_object_get(json_array_get(results, row), key);
+}
+
+// Beside its own rows a law gains and loses nothing; beside another law what the marks
+// say. Rows of other cases are refused.
+TEST_IN_FOLDER(exams_are_compared_case_by_case)
+{
+    KEPT_SCENARIO(s) = shipped("compare/observer");
+    SCOPED(law_exam_finish) law_exam e = examined(&s, 10, 7);
+    json_t *first = law_exam_json(&e, NULL);
+    assert_int_equal(json_dump_file(first, "before.json", 0), 0);
+    exam_rows rows;
+    DONE(exam_rows_read(&rows, "before.json", &e, &f));
+    json_t *whole = law_exam_json(&e, &rows);
+    const json_t *own = json_array_get(member_of_result(whole, 0, "paired"), 0);
+    assert_int_equal(json_integer_value(json_object_get(own, "gained")), 0);
+    assert_int_equal(json_integer_value(json_object_get(own, "lost")), 0);
+    check_close(json_number_value(json_object_get(own, "low")), 0, 0);
+
+    // row 2 is the second law at the first force
+    const char *marks = json_string_value(member_of_result(whole, 0, "within_of_cases"));
+    const char *others = json_string_value(member_of_result(whole, 2, "within_of_cases"));
+    const json_t *pair = json_array_get(member_of_result(whole, 2, "paired"), 1);
+    int gained = 0, lost = 0;
+    for (size_t i = 0; i < e.asked.cases; i++) {
+        gained += others[i] > marks[i];
+        lost += others[i] < marks[i];
+    }
+    assert_int_equal(json_integer_value(json_object_get(pair, "gained")), gained);
+    assert_int_equal(json_integer_value(json_object_get(pair, "lost")), lost);
+    check_close(json_number_value(json_object_get(pair, "points")), 10 * (gained - lost),
+                1e-12);
+    json_decref(whole);
+    json_decref(first);
+    exam_rows_finish(&rows);
+
+    SCOPED(law_exam_finish) law_exam other = examined(&s, 10, 8);
+    REFUSED(STATUS_BAD_ARGUMENT, "10 cases from seed 7, expected 10 from 8",
+            exam_rows_read(&rows, "before.json", &other, &f));
+    put_file("none.json", "[1, 2");
+    REFUSED(STATUS_BAD_ARGUMENT,
+            "none.json:1:", exam_rows_read(&rows, "none.json", &other, &f));
+    put_file("none.json", "{\"cases\": 10}");
+    REFUSED(STATUS_BAD_ARGUMENT, "is no exam of control laws",
+            exam_rows_read(&rows, "none.json", &other, &f));
+}
+
+// An error that does not go with the scenario is refused before the first run.
+TEST(what_cannot_be_drawn_is_told)
+{
+    KEPT_SCENARIO(s) = shipped("compare/hybrid-printed-arm");
+    law_exam e;
+    const exam_request asked = {.base = &s,
+                                .laws = {s.parameters.control.law},
+                                .law_count = 1,
+                                .forces = {1},
+                                .force_count = 1,
+                                .cases = 60,
+                                .seed = 1};
+    REFUSED(STATUS_BAD_ARGUMENT, "cannot be drawn around compare/hybrid-printed-arm",
+            law_exam_run(&e, &asked, &(exam_options){.jobs = 1}, &f));
+    law_exam_finish(&e);
+}
