@@ -1,5 +1,4 @@
-// A program in the place of a control law: odd ways to answer, and states of a run that
-// it is led back to and on from.
+// A program in the place of a control law: odd ways to answer, and none to go back.
 
 #include "tests/rig_fixture.h"
 
@@ -52,64 +51,22 @@ TEST(programs_without_an_answer_are_said)
     }
 }
 
-// A state of the loop, to be freed.
-static void *kept(const run_loop *l)
-{
-    void *bytes = malloc(loop_saved_size(l));
-    assert_non_null(bytes);
-    loop_save(l, bytes);
-    return bytes;
-}
-
-static sample gone_to(run_loop *l, double time)
-{
-    DONE(loop_until(l, time, &f));
-    return loop_row(l);
-}
-
-// Led back the program is started anew, and led on from where it is on the way; the rows
-// are the same.
-TEST(a_program_is_led_back_and_on)
+// The program cannot be taken back to an earlier sample, and so neither can its loop,
+// which goes on where it is.
+TEST(a_program_cannot_go_back)
 {
     const scenario s = under(ANSWERS);
     const loop_options options = {.keep_trace = false};
     KEPT_LOOP(l);
     DONE(loop_create(&l, &s, &options, &f));
-    const size_t size = loop_saved_size(l);
-    (void)gone_to(l, 0.055);
-    SCOPED(free_kept) void *early = kept(l);
-    const sample middle = gone_to(l, 0.105);
-    SCOPED(free_kept) void *late = kept(l);
-    const sample end = gone_to(l, 0.155);
-
-    for (int i = 0; i < 2; i++) {
-        DONE(loop_restore(l, early, size, &f));
-        const sample again = gone_to(l, i == 0 ? 0.105 : 0.065);
-        assert_true(i == 1 || memcmp(&again, &middle, sizeof again) == 0);
-        DONE(loop_restore(l, late, size, &f));
-        const sample there = gone_to(l, 0.155);
-        assert_memory_equal(&there, &end, sizeof there);
-    }
-}
-
-// A program that answers otherwise when it is asked again cannot be led back. Its
-// answers, from its process number, are 1 to 2 V: enough to move the arm, whose stiffness
-// then shows in the readings.
-TEST(a_program_that_answers_otherwise_is_said)
-{
-    const scenario s =
-        under("n=$$; while read -r l; do echo \"{\\\"command\\\": 1.$n}\"; done");
-    const loop_options options = {.keep_trace = false};
-    KEPT_LOOP(l);
-    DONE(loop_create(&l, &s, &options, &f));
-    (void)gone_to(l, 0.055);
-    SCOPED(free_kept) void *early = kept(l);
-    (void)gone_to(l, 0.105);
-    DONE(loop_restore(l, early, loop_saved_size(l), &f));
-
-    // another command leads to other questions, for which the program is asked all again
-    DONE(loop_set_number(l, PARAMETER_INDEX(arm.k2), 7, &f));
-    REFUSED(STATUS_CONTROLLER_FAILED, "not", loop_until(l, 0.105, &f));
+    DONE(loop_until(l, 0.055, &f));
+    SCOPED(free_kept) void *bytes = malloc(loop_saved_size(l));
+    assert_non_null(bytes);
+    loop_save(l, bytes);
+    REFUSED(STATUS_BAD_ARGUMENT, "cannot go back",
+            loop_restore(l, bytes, loop_saved_size(l), &f));
+    DONE(loop_until(l, 0.105, &f));
+    check_close(loop_time(l), 0.105, 0);
 }
 
 ALL_IN_TWO_MINUTES

@@ -128,7 +128,7 @@ static status lead_by_program(scenario *s)
     return scenario_override_all(s, settings, 2, keep_nothing, NULL);
 }
 
-// That program is asked, and asked again after a change.
+// That program is asked, and another one after a change.
 static status ask_a_program(scenario *s, FILE *out)
 {
     scenario own;
@@ -149,7 +149,7 @@ static status ask_a_program(scenario *s, FILE *out)
                                                                   : code;
     }
 
-    // what is asked after the change follows what was asked before it
+    // the change's run asks from the beginning
     code = t.run.summary.status;
     session_seek(&t, 0.05);
     code = code == STATUS_OK ? session_change(&t, PARAMETER_INDEX(control.force), "2", &f)
@@ -159,8 +159,6 @@ static status ask_a_program(scenario *s, FILE *out)
         fprintf(out, "%a %a\n", t.run.trace.rows[i].force, t.run.trace.rows[i].hub_angle);
     }
     session_finish(&t);
-
-    // without a transcript the program cannot go on from the past
     return code == STATUS_CONTROLLER_FAILED && refused_at > 0 ? STATUS_NO_MEMORY : code;
 }
 

@@ -88,7 +88,7 @@ static status open_law(rig *r, const parameters *p, const rig_options *o, fault 
     r->law = controller_of(c->law);
     if (c->law == LAW_PLAYBACK) {
         r->given = (given_law){r->law, &r->played};
-        return playback_open(&r->played, c, f);
+        return played_command_open(&r->played, c, f);
     }
     if (r->law != NULL) {
         return STATUS_OK;
@@ -104,7 +104,7 @@ static status open_law(rig *r, const parameters *p, const rig_options *o, fault 
         r->law = r->plugin.law;
         return s;
     }
-    r->process = process_create(c, o->transcript, o->stop);
+    r->process = process_create(c, o->stop);
     r->law = &process_law;
     r->given = (given_law){r->law, r->process};
     if (r->process == NULL) {
@@ -181,7 +181,7 @@ void rig_destroy(rig *r)
         free(r->values);
         plugin_close(&r->plugin);
         process_destroy(r->process);
-        playback_close(&r->played);
+        played_command_close(&r->played);
         free(r);
     }
 }

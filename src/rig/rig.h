@@ -8,6 +8,8 @@
 #pragma once
 
 #include "src/rig/controller.h"
+#include "src/rig/external/played_command.h"
+#include "src/rig/external/plugin.h"
 #include "src/rig/external/process.h"
 #include "src/rig/sensors.h"
 #include "src/rig/estimation/touch_forecast.h"
@@ -22,9 +24,8 @@ typedef struct given_law {
 
 // What a run gives its rig besides parameters; all zero for none.
 typedef struct rig_options {
-    const given_law *law;           // in the place of control.law
-    process_transcript *transcript; // of a process, which must outlive the rig
-    stop_request *stop; // where a process is not waited for any more; NULL: it is
+    const given_law *law; // in the place of control.law
+    stop_request *stop;   // where a process is not waited for any more; NULL: it is
 } rig_options;
 
 typedef struct rig {

@@ -199,7 +199,7 @@ static status tell_controller(rig *r, const parameters *p, double time, fault *f
     // its parameters, and the nominal model
     TRY(controller_values(r->law, p, r->values, f));
     if (r->process != NULL) {
-        process_tell(r->memory, &p->control);
+        process_tell(r->process, &p->control);
     }
     const controller_setup setup = rig_nominal_setup(r, p);
     if (p->control.force_limit > 0) {

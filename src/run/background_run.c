@@ -37,7 +37,6 @@ background_run *background_run_start(const scenario *s, const background_options
     c->options = (run_options){.keep_trace = true,
                                .monitor = &c->monitor,
                                .rows_expected = how->rows_expected,
-                               .transcript = how->transcript,
                                .resume = begun != NULL};
     if (begun != NULL) {
         c->result = *begun;

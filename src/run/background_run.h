@@ -9,9 +9,7 @@ typedef struct background_run background_run;
 
 typedef struct background_options {
     size_t rows_expected;
-    struct process_transcript
-        *transcript; // of a process that is the controller, NULL: none
-    bool at_once;    // the run is over when background_run_start returns
+    bool at_once; // the run is over when background_run_start returns
 } background_options;
 
 // Starts the run of a scenario, whose actions and texts must outlive it; its rows never

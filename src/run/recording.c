@@ -27,7 +27,6 @@ static status start_rig(recording *r, fault *f)
     const run_options *o = r->options;
     const rig_options given = {
         .law = o->law,
-        .transcript = o->transcript,
         .stop = &r->stop,
     };
     TRY(rig_create(&r->rig, p, &given, f));

@@ -15,7 +15,6 @@ struct run_loop {
     scenario scenario; // a copy of one's own
     run_options options;
     given_law law;
-    process_transcript *transcript; // NULL unless control.law is a process
     run_result result;
     run_driver driver;
     double volts; // commanded [V]
@@ -101,18 +100,11 @@ status loop_create(run_loop **created, const scenario *s, const loop_options *op
     } else {
         l->law = options->law;
     }
-    const bool asks = l->law.law == NULL && s->parameters.control.law == LAW_PROCESS;
-    if (asks) {
-        l->transcript = process_transcript_create();
-    } else {
-        l->transcript = NULL;
-    }
     l->options = (run_options){.keep_trace = options->keep_trace,
                                .law = l->law.law != NULL ? &l->law : NULL,
                                .ask = options->ask,
                                .ask_context = options->ask_context,
-                               .stepped = true,
-                               .transcript = l->transcript};
+                               .stepped = true};
 
     // the run at its start
     const status code = driver_open(&l->driver, &l->scenario, &l->options, &l->result, f);
@@ -129,7 +121,6 @@ void loop_destroy(run_loop *l)
 {
     if (l != NULL) {
         driver_close(&l->driver, STATUS_STOPPED, &l->fault);
-        process_transcript_destroy(l->transcript);
         run_finish(&l->result);
         scenario_finish(&l->scenario);
         free(l);
@@ -359,6 +350,10 @@ void loop_save(const run_loop *l, void *bytes)
 
 status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f)
 {
+    const rig *on = l->driver.recording.rig;
+    FAULT_IF(on != NULL && on->process != NULL, f, STATUS_BAD_ARGUMENT,
+             "a program as the controller cannot go back to a saved state");
+
     saved_head head;
     FAULT_IF(size != loop_saved_size(l), f, STATUS_BAD_ARGUMENT,
              "a state of this loop has %zu bytes, but %zu were given", loop_saved_size(l),

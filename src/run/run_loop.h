@@ -80,6 +80,6 @@ size_t loop_saved_size(const run_loop *l);
 void loop_save(const run_loop *l, void *bytes);
 // Goes back (or forth) to such a state; rows that are later than it are dropped.
 // STATUS_BAD_ARGUMENT, and nothing is changed, if the bytes are damaged, of another
-// scenario or version, or of a plug-in's or process's loop that is not this one, whose
-// memory may hold addresses.
+// scenario or version, or of a plug-in's loop that is not this one, whose memory may hold
+// addresses; or if the controller is a process, which cannot go back.
 status loop_restore(run_loop *l, const void *bytes, size_t size, fault *f);

@@ -66,9 +66,7 @@ typedef struct run_options {
     size_t rows_expected; // if not 0, rows and events stay where they are and can be
                           // shared, and the result has a history; needs keep_trace
     const struct given_law
-        *law; // that a program gives in the place of control.law; NULL: none
-    struct process_transcript
-        *transcript;  // of a process that is the controller; NULL: none is kept
+        *law;         // that a program gives in the place of control.law; NULL: none
     bool resume;      // *result was prepared by run_resume: continue from there
     bool keep_forces; // result->history has the force over every step, without more of a
                       // history

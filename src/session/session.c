@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/rig/external/process_lines.h"
 #include "src/base/text_stream.h"
 #include "src/run/background_run.h"
 #include "src/run/resume.h"
@@ -166,7 +165,7 @@ static bool end_computing(session *s)
 }
 
 // Whether the files that parameters name, whose stamp is set, are those of the present
-// run. If they are others, what a program answered then says nothing of now.
+// run.
 static bool outside_is_same(session *s, const parameters *p, char stamp[SHA256_TEXT])
 {
     // before a consent no program is opened, but what is only read is looked at
@@ -175,12 +174,7 @@ static bool outside_is_same(session *s, const parameters *p, char stamp[SHA256_T
         looked_at = outside_files();
     }
     outside_stamp(looked_at, p, stamp);
-    if (strcmp(stamp, s->outside) == 0) {
-        return true;
-    }
-    process_transcript_destroy(s->transcript);
-    s->transcript = NULL;
-    return false;
+    return strcmp(stamp, s->outside) == 0;
 }
 
 // Computes the run of a scenario, and resumes the present one where it can. A run that is
@@ -204,13 +198,7 @@ static status start_run(session *s, const scenario *effective, fault *f)
     } else if (!same || reads != outside_read(&s->effective.parameters)) {
         outside_digest_all(p, digest);
     }
-    if (s->transcript == NULL && p->control.law == LAW_PROCESS) {
-        s->transcript =
-            process_transcript_create(); // without memory the program is always asked
-    }
-    const background_options how = {.rows_expected = rows,
-                                    .transcript = s->transcript,
-                                    .at_once = isinf(s->patience)};
+    const background_options how = {.rows_expected = rows, .at_once = isinf(s->patience)};
     background_run *c = background_run_start(effective, &how, resume ? &run : NULL);
     if (c == NULL) {
         run_finish(&run);
@@ -374,16 +362,6 @@ status session_allow_code(session *s, fault *f)
     return code;
 }
 
-process_replay session_take_replay(session *s)
-{
-    process_replay taken = {.restarted = false};
-    if (s->computing == NULL && s->transcript != NULL) {
-        taken = s->transcript->replay;
-        s->transcript->replay = (process_replay){.restarted = false};
-    }
-    return taken;
-}
-
 void session_forget_other(session *s)
 {
     if (s->has_other) {
@@ -422,7 +400,6 @@ void session_finish(session *s)
     session_forget_other(s);
     session_forget_ghost(s);
     run_finish(&s->run);
-    process_transcript_destroy(s->transcript);
     free(s->effective.actions);
     free(s->inputs);
     scenario_finish(&s->base);

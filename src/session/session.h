@@ -25,7 +25,6 @@
 #include "src/scenario/scenario.h"
 
 struct background_run;
-struct process_transcript;
 
 enum { SESSION_INPUT_TEXT = 160 };
 
@@ -64,11 +63,9 @@ typedef struct session {
     unsigned version;                 // counts the computed runs
     struct background_run *computing; // the run, if it is not complete
     double patience;                  // for how long a change waits for its run [s]
-    struct process_transcript
-        *transcript; // what a process was asked in all runs, NULL if there is none
-    char outside[SHA256_TEXT]; // stamp of what the runs could read from outside
-    char digest[SHA256_TEXT];  // outside_digest_all of what the run read
-    size_t surveyed;           // rows whose force is in the summary of an incomplete run
+    char outside[SHA256_TEXT];        // stamp of what the runs could read from outside
+    char digest[SHA256_TEXT];         // outside_digest_all of what the run read
+    size_t surveyed; // rows whose force is in the summary of an incomplete run
 } session;
 
 // Takes over the scenario (also on failure) and computes its run; waits no longer than
@@ -104,10 +101,6 @@ void session_forget_other(session *s);
 // Lets the scenario load its plug-in or start its program, and computes the run with it.
 // On failure nothing changes and f says why.
 status session_allow_code(session *s, fault *f);
-
-// What a process that is the controller went through again since this was asked last: all
-// zero if nothing, and while a run is being computed.
-struct process_replay session_take_replay(session *s);
 
 // Forgets the run before the value that was adjusted last.
 void session_forget_ghost(session *s);

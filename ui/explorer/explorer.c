@@ -31,7 +31,6 @@ bool explorer_carry_out(explorer *ex, const char *line)
 {
     const bool done = explorer_execute(&ex->model, &ex->view, &ex->input, line);
     act_follow_lesson(&ex->model);
-    act_tell_replay(&ex->model, &ex->input);
     return done;
 }
 
@@ -58,7 +57,6 @@ bool explorer_follow(explorer *ex)
     const bool more = session_follow(&ex->model.session);
     if (!sweeps && more && ex->model.session.computing == NULL) {
         act_tell_failed_run(&ex->model, &ex->input);
-        act_tell_replay(&ex->model, &ex->input);
     }
     return sweeps || more;
 }

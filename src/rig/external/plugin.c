@@ -1,6 +1,6 @@
 // Controllers in shared objects: one is loaded, checked, and asked as those of the lab
 // are.
-#include "src/rig/external/process.h"
+#include "src/rig/external/plugin.h"
 
 #include <dlfcn.h>
 #include <string.h>

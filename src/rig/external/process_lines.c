@@ -99,121 +99,39 @@ char *process_question(const controller_setup *setup, const control_parameters *
 
 // --- an answer -------------------------------------------------------------------------
 
-// The numbers of an answer.
-#define ANSWERED(field)                                                                  \
-    {                                                                                    \
-#field, offsetof(controller_output, field)                                       \
+// A number of an answer; NaN where it has none. False if something else stands there.
+static bool read_number(const json_t *answer, const char *name, double *value)
+{
+    const json_t *member = json_object_get(answer, name);
+    *value = (double)NAN;
+    if (member == NULL || json_is_null(member)) {
+        return true;
     }
-static const struct {
-    const char *name;
-    size_t offset;
-} answers[] = {ANSWERED(command), ANSWERED(desired_angle), ANSWERED(desired_velocity),
-               ANSWERED(calculated_force)};
-#undef ANSWERED
-enum { ANSWERS = sizeof answers / sizeof answers[0] };
+    if (json_is_number(member)) {
+        *value = json_number_value(member);
+    }
+    return json_is_number(member);
+}
 
 status process_read_answer(const char *line, size_t length, controller_output *out)
 {
     json_error_t ignored;
     errno = 0;
-    json_t *object = json_loadb(line, length, 0, &ignored);
+    json_t *answer = json_loadb(line, length, 0, &ignored);
 
     // jansson says of a line that it had no memory for what it says of a wrong one
-    if (object == NULL && errno == ENOMEM) {
+    if (answer == NULL && errno == ENOMEM) {
         return STATUS_NO_MEMORY;
     }
 
-    // what is there must be a number
-    bool whole = json_is_object(object);
-    for (int i = 0; i < ANSWERS && whole; i++) {
-        const json_t *member = json_object_get(object, answers[i].name);
-        double *value = (double *)((char *)out + answers[i].offset);
-        if (json_is_number(member)) {
-            *value = json_number_value(member);
-        } else {
-            *value = (double)NAN;
-        }
-        whole = member == NULL || json_is_null(member) || json_is_number(member);
+    const bool whole = json_is_object(answer) &&
+                       read_number(answer, "command", &out->command) &&
+                       read_number(answer, "desired_angle", &out->desired_angle) &&
+                       read_number(answer, "desired_velocity", &out->desired_velocity) &&
+                       read_number(answer, "calculated_force", &out->calculated_force);
+    json_decref(answer);
+    if (!whole || isnan(out->command)) {
+        return STATUS_CONTROLLER_FAILED;
     }
-    json_decref(object);
-    if (whole && !isnan(out->command)) {
-        return STATUS_OK;
-    }
-    return STATUS_CONTROLLER_FAILED;
-}
-
-bool process_same_answer(const controller_output *a, const controller_output *b)
-{
-    bool same = true;
-    for (int i = 0; i < ANSWERS; i++) {
-        const size_t at = answers[i].offset;
-        same = same &&
-               memcmp((const char *)a + at, (const char *)b + at, sizeof(double)) == 0;
-    }
-    return same;
-}
-
-// --- transcripts -----------------------------------------------------------------------
-
-static const size_t most_text = (size_t)64 << 20; // of all questions [bytes]
-
-transcript_node *process_transcript_find(const transcript_node *before,
-                                         const char *question)
-{
-    transcript_node *after = before != NULL ? before->first_after : NULL;
-    while (after != NULL && strcmp(after->question, question) != 0) {
-        after = after->next_beside;
-    }
-    return after;
-}
-
-// A new node of the tree; NULL without memory, or where the transcript is full.
-static transcript_node *new_node(process_transcript *t, const char *question)
-{
-    const size_t length = strlen(question);
-    transcript_node *node =
-        t->size + length <= most_text ? calloc(1, sizeof *node + length + 1) : NULL;
-    if (node != NULL) {
-        memcpy(node->question, question, length);
-        node->made_before = t->last;
-        t->last = node;
-        t->size += length;
-    }
-    return node;
-}
-
-process_transcript *process_transcript_create(void)
-{
-    process_transcript *t = calloc(1, sizeof *t);
-    if (t != NULL && (t->begin = new_node(t, "")) == NULL) {
-        free(t);
-        return NULL;
-    }
-    return t;
-}
-
-void process_transcript_destroy(process_transcript *t)
-{
-    while (t != NULL && t->last != NULL) {
-        transcript_node *node = t->last;
-        t->last = node->made_before;
-        free(node);
-    }
-    free(t);
-}
-
-transcript_node *process_transcript_add(process_transcript *t, transcript_node *before,
-                                        const char *question,
-                                        const controller_output *answer)
-{
-    transcript_node *node = before != NULL ? new_node(t, question) : NULL;
-    if (node != NULL) {
-        node->before = before;
-        node->answer = *answer;
-
-        // the newest is looked at first
-        node->next_beside = before->first_after;
-        before->first_after = node;
-    }
-    return node;
+    return STATUS_OK;
 }

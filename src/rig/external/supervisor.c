@@ -19,9 +19,10 @@ enum {
 
 // --- the supervisor: between fork and _exit nothing but system calls -------------------
 
+// Becomes the program, in a process group of its own and with the signals that a program
+// expects to find.
 static _Noreturn void run_program(const char *command)
 {
-    // as a program expects to find things
     setpgid(0, 0);
     for (int number = 1; number < NSIG; number++) {
         signal(number, SIG_DFL);
@@ -33,20 +34,25 @@ static _Noreturn void run_program(const char *command)
     _exit(127);
 }
 
-static _Noreturn void supervise(const int theirs[ENDS], const char *command)
+// Makes the program's ends the first descriptors, by way of higher ones so that none is
+// lost, and closes all others: ends of other programs are among them.
+static void keep_only_ends(const int theirs[ENDS])
 {
-    // the program's ends are the first descriptors; they go by way of higher ones, so
-    // that none is lost, and other programs' ends are above all
     int moved[ENDS];
     for (int i = 0; i < ENDS; i++) {
         moved[i] = fcntl(theirs[i], F_DUPFD, ENDS);
     }
     for (int i = 0; i < ENDS; i++) {
-        if (moved[i] < 0 || dup2(moved[i], i) < 0) {
+        if (dup2(moved[i], i) < 0) {
             _exit(127);
         }
     }
     closefrom(ENDS);
+}
+
+static _Noreturn void supervise(const int theirs[ENDS], const char *command)
+{
+    keep_only_ends(theirs);
 
     // what ends the lab or its terminal must not end the supervisor before its work is
     // done; the program's orphans become its children, so that it can wait for them
@@ -56,6 +62,9 @@ static _Noreturn void supervise(const int theirs[ENDS], const char *command)
     setsid();
     prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0);
     const pid_t program = fork();
+    if (program < 0) {
+        _exit(KILLED);
+    }
     if (program == 0) {
         run_program(command);
     }
@@ -67,9 +76,6 @@ static _Noreturn void supervise(const int theirs[ENDS], const char *command)
     close(STDERR_FILENO);
     while (poll(&(struct pollfd){.fd = STDIN_FILENO, .events = POLLRDHUP}, 1, -1) < 0) {
     }
-    if (program < 0) {
-        _exit(KILLED);
-    }
 
     // how the program ended, if it did by itself
     int how = 0;
@@ -78,17 +84,22 @@ static _Noreturn void supervise(const int theirs[ENDS], const char *command)
         poll(NULL, 0, LAST_WORDS_MS);
         ended = waitpid(program, &how, WNOHANG);
     }
+
+    // and all of its group with it
     kill(-program, SIGKILL);
     while (waitpid(-program, NULL, 0) > 0) {
     }
-    const int told = WIFSIGNALED(how) ? 128 + WTERMSIG(how) : WEXITSTATUS(how);
-    _exit(ended == program ? told : KILLED);
+    if (ended != program) {
+        _exit(KILLED);
+    }
+    _exit(WIFSIGNALED(how) ? 128 + WTERMSIG(how) : WEXITSTATUS(how));
 }
 
 // --- the lab's side --------------------------------------------------------------------
 
-static void close_ends(const int ends[ENDS])
+static void close_ends(int input, int output, int errors)
 {
+    const int ends[ENDS] = {input, output, errors};
     for (int i = 0; i < ENDS; i++) {
         if (ends[i] >= 0) {
             close(ends[i]);
@@ -98,6 +109,8 @@ static void close_ends(const int ends[ENDS])
 
 int supervised_program_start(supervised_program *program, const char *command)
 {
+    *program = (supervised_program){.supervisor = 0};
+
     // a socket is written to without a signal; errors go to a file in memory, which never
     // blocks
     int input[2] = {-1, -1}, output[2] = {-1, -1}, errors = -1;
@@ -107,17 +120,19 @@ int supervised_program_start(supervised_program *program, const char *command)
 
     // the supervisor gets one end of each
     const pid_t supervisor = made ? fork() : -1;
-    const int reason = supervisor < 0 ? errno : 0;
+    const int reason = errno;
     if (supervisor == 0) {
         supervise((const int[]){input[1], output[1], errors}, command);
     }
-    close_ends((const int[]){input[1], output[1], -1});
-    *program = (supervised_program){.supervisor = 0};
-    if (reason != 0) {
-        close_ends((const int[]){input[0], output[0], errors});
+    close_ends(input[1], output[1], -1);
+    if (supervisor < 0) {
+        close_ends(input[0], output[0], errors);
         return reason;
     }
+
+    // a reader does not wait, and what is written after the file was cut begins it again
     fcntl(output[0], F_SETFL, O_NONBLOCK);
+    fcntl(errors, F_SETFL, O_APPEND);
     *program = (supervised_program){supervisor, input[0], output[0], errors};
     return 0;
 }
@@ -127,7 +142,7 @@ int supervised_program_end(supervised_program *program)
     if (program->supervisor == 0) {
         return -1;
     }
-    close_ends((const int[]){program->input, program->output, program->errors});
+    close_ends(program->input, program->output, program->errors);
 
     int status = 0;
     pid_t ended;
@@ -135,9 +150,8 @@ int supervised_program_end(supervised_program *program)
         ended = waitpid(program->supervisor, &status, 0);
     } while (ended < 0 && errno == EINTR);
     *program = (supervised_program){0};
-    const bool told = ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) != KILLED;
-    if (told) {
-        return WEXITSTATUS(status);
+    if (ended < 0 || !WIFEXITED(status) || WEXITSTATUS(status) == KILLED) {
+        return -1;
     }
-    return -1;
+    return WEXITSTATUS(status);
 }

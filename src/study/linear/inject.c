@@ -296,6 +296,9 @@ status linear_contact_margin(const scenario *s, double *impulse, fault *f)
 {
     run_loop *l = NULL;
     *impulse = (double)NAN;
+    if (s->parameters.control.law == LAW_PROCESS) {
+        return STATUS_OK;
+    }
     status code = run_to_end(&l, s, &(loop_options){.keep_trace = false}, f);
     if (code == STATUS_OK && loop_row(l).force > 0) {
         void *kept = malloc(loop_saved_size(l));

@@ -161,8 +161,8 @@ status linear_inject(const scenario *s, linear_response *r, fault *f);
 
 // The least impulse at the tip [N s], across the last link and against the wall or away
 // from it, after which the arm of the scenario's run, pressing at its end, loses contact
-// (a gap above 1 um) within half a second; NaN if none of up to 10 N s does or the arm
-// does not press.
+// (a gap above 1 um) within half a second; NaN if none of up to 10 N s does, the arm does
+// not press, or its controller is a process, which cannot be taken back to before a push.
 status linear_contact_margin(const scenario *s, double *impulse, fault *f);
 
 // Where a loop is stable: by_runs, a run of the scenario settles, with friction and all

@@ -203,10 +203,6 @@ bool act_open_scenario(explorer_model *model, explorer_view *view, explorer_inpu
 // something to say.
 bool act_tell_failed_run(const explorer_model *model, explorer_input *input);
 
-// Adds to the message, once, that an external program had to repeat its earlier samples
-// for the present run, if it had to.
-void act_tell_replay(explorer_model *model, explorer_input *input);
-
 // Refused while the run is being computed, for actions that need the complete run.
 bool act_need_whole_run(const explorer_model *model, explorer_input *input);
 

@@ -3,7 +3,6 @@
 
 #include <string.h>
 
-#include "src/rig/external/process_lines.h"
 #include "ui/explorer/state/user_files.h"
 
 // --- scenarios -------------------------------------------------------------------------
@@ -128,19 +127,6 @@ bool act_allow(explorer_model *model, explorer_view *view, explorer_input *input
                         "allowed, and remembered for just this scenario and program");
     }
     return act_tell(input, "allowed for this visit");
-}
-
-void act_tell_replay(explorer_model *model, explorer_input *input)
-{
-    const process_replay again = session_take_replay(&model->session);
-    const message_line before = input->message;
-    if (again.restarted) {
-        act_tell(input,
-                 "%.600s%sthe program was started anew and went through its %d "
-                 "samples up to %.4g s once more",
-                 before.text, before.text[0] ? "; " : "", again.samples, again.time);
-        input->message.warning = before.text[0] != '\0' && before.warning;
-    }
 }
 
 // --- lessons ---------------------------------------------------------------------------

@@ -10,7 +10,6 @@
 
 #include "src/base/sha256.h"
 #include "src/base/text_stream.h"
-#include "src/base/whole_file.h"
 #include "src/base/words.h"
 #include "src/scenario/outside.h"
 #include "ui/explorer/state/command_list.h"
@@ -54,73 +53,65 @@ bool consent_needed(const scenario *s)
            !p->code_allowed;
 }
 
-// --- the digest ------------------------------------------------------------------------
-
-// The scenario as text.
+// Adds the scenario as text. False without memory.
 static bool add_scenario(sha256 *h, const scenario *s)
 {
     text_stream written;
     size_t size = 0;
-    char *text = NULL;
-    if (text_stream_open(&written)) {
-        scenario_write(written.stream, s);
-        text = text_stream_close(&written, &size);
+    if (!text_stream_open(&written)) {
+        return false;
     }
-
-    // one that is not whole is another one
-    if (text != NULL) {
-        sha256_add(h, text, size);
+    scenario_write(written.stream, s);
+    char *text = text_stream_close(&written, &size);
+    if (text == NULL) {
+        return false;
     }
+    sha256_add(h, text, size);
     free(text);
-    return text != NULL;
+    return true;
 }
 
 // The digest of a scenario, of what it reads from outside, and of the folder in which a
-// command starts. False where their content does not tell.
+// command starts. False where their content does not tell, or nothing is read.
 static bool digest_of(const scenario *s, char digest[SHA256_TEXT])
 {
     char folder[4096], content[SHA256_TEXT];
     sha256 h;
     sha256_init(&h);
-
-    // the scenario may read nothing that needs a consent
-    int named = 0;
-    bool told = add_scenario(&h, s);
-    for (int i = 0; i < outside_count && told; i++) {
+    bool reads = false;
+    if (!add_scenario(&h, s) || getcwd(folder, sizeof folder) == NULL) {
+        return false;
+    }
+    for (int i = 0; i < outside_count; i++) {
         const outside_source *source = &outside_table[i];
-        if (outside_is_read(source, &s->parameters)) {
-            told = outside_is_told(source, &s->parameters) &&
-                   outside_digest(source, &s->parameters, content, NULL) == STATUS_OK &&
-                   getcwd(folder, sizeof folder) != NULL;
-            sha256_add_text(&h, told ? content : "");
-            sha256_add_text(&h, told && source->kind == OUTSIDE_COMMAND ? folder : "");
-            named++;
+        if (!outside_is_read(source, &s->parameters)) {
+            continue;
         }
+        if (!outside_is_told(source, &s->parameters) ||
+            outside_digest(source, &s->parameters, content, NULL) != STATUS_OK) {
+            return false;
+        }
+        sha256_add_text(&h, content);
+        sha256_add_text(&h, source->kind == OUTSIDE_COMMAND ? folder : "");
+        reads = true;
     }
     sha256_finish(&h, digest);
-    return told && named > 0;
+    return reads;
 }
 
-// --- the file --------------------------------------------------------------------------
-
-// Whether a line of the file begins with the digest; copies the lines to `copy` (may be
-// NULL).
-static bool look_through(const char *path, const char *digest, FILE *copy)
+// Whether a line of the file begins with the digest.
+static bool has_digest(const char *path, const char *digest)
 {
     char *line = NULL;
     size_t room = 0;
     bool found = false;
-    FILE *stream = fopen(path, "r");
-    while (stream != NULL && getline(&line, &room, stream) >= 0) {
-        const bool same = strncmp(line, digest, SHA256_TEXT - 1) == 0;
-        found = found || (same && line[SHA256_TEXT - 1] == ' ');
-        if (copy != NULL) {
-            fputs(line, copy);
-        }
+    FILE *file = fopen(path, "r");
+    while (file != NULL && !found && getline(&line, &room, file) >= 0) {
+        found = strncmp(line, digest, SHA256_TEXT - 1) == 0;
     }
     free(line);
-    if (stream != NULL) {
-        fclose(stream);
+    if (file != NULL) {
+        fclose(file);
     }
     return found;
 }
@@ -131,30 +122,29 @@ bool consent_remembered(const scenario *s)
 
     // the program is read only if the user has allowed any
     return user_file(USER_SETTINGS, "allowed", path, sizeof path, false) &&
-           access(path, R_OK) == 0 && digest_of(s, digest) &&
-           look_through(path, digest, NULL);
+           access(path, R_OK) == 0 && digest_of(s, digest) && has_digest(path, digest);
 }
 
 status consent_remember(const scenario *s, bool *kept, fault *f)
 {
     char path[1024], digest[SHA256_TEXT], what[2 * PARAMETER_TEXT_SIZE];
-    *kept = false;
-    if (!digest_of(s, digest) ||
-        !user_file(USER_SETTINGS, "allowed", path, sizeof path, true)) {
+    *kept = digest_of(s, digest) &&
+            user_file(USER_SETTINGS, "allowed", path, sizeof path, true);
+    if (!*kept || has_digest(path, digest)) {
         return STATUS_OK;
     }
+    const control_parameters *c = &s->parameters.control;
+    snprintf(what, sizeof what, "%s: %s", s->name,
+             c->law == LAW_PROCESS ? c->command : c->plugin);
+    make_printable(what, 0);
 
-    // whole or not at all
-    whole_file file;
-    TRY(whole_file_open(&file, path, f));
-    if (!look_through(path, digest, file.stream)) {
-        const control_parameters *c = &s->parameters.control;
-        snprintf(what, sizeof what, "%s: %s", s->name,
-                 c->law == LAW_PROCESS ? c->command : c->plugin);
-        make_printable(what, 0);
-        fprintf(file.stream, "%s %s\n", digest, what);
+    // a line of its own at the end
+    FILE *file = fopen(path, "a");
+    if (file != NULL) {
+        fprintf(file, "%s %s\n", digest, what);
     }
-    TRY(whole_file_commit(&file, f));
-    *kept = true;
+    *kept = file != NULL && fclose(file) == 0;
+    FAULT_IF(!*kept, f, STATUS_CANNOT_WRITE, "'%s' cannot be written: %s", path,
+             strerror(errno));
     return STATUS_OK;
 }

@@ -1,6 +1,6 @@
 // A recorded command in the place of a control law: read from a CSV file, and given at
 // each sample by its time.
-#include "src/rig/external/process.h"
+#include "src/rig/external/played_command.h"
 
 #include <stdlib.h>
 
@@ -8,7 +8,7 @@
 #include "src/base/instant.h"
 #include "src/rig/controller_values.h"
 
-status playback_open(played_command *p, const control_parameters *control, fault *f)
+status played_command_open(played_command *p, const control_parameters *control, fault *f)
 {
     csv_table table;
     *p = (played_command){.shift = control->playback_shift,
@@ -29,7 +29,7 @@ status playback_open(played_command *p, const control_parameters *control, fault
 
     // a file with faults is a scenario with faults
     if (code != STATUS_OK) {
-        playback_close(p);
+        played_command_close(p);
     }
     if (f != NULL && code != STATUS_OK && code != STATUS_NO_MEMORY) {
         f->code = code = STATUS_BAD_SCENARIO;
@@ -38,7 +38,7 @@ status playback_open(played_command *p, const control_parameters *control, fault
     return code;
 }
 
-void playback_close(played_command *p)
+void played_command_close(played_command *p)
 {
     free(p->times);
     free(p->command);
@@ -46,7 +46,8 @@ void playback_close(played_command *p)
 }
 
 // Its memory is the command that it was given with.
-static void sample(void *memory, const controller_input *in, controller_output *out)
+static void playback_sample(void *memory, const controller_input *in,
+                            controller_output *out)
 {
     const played_command *p = *(played_command *const *)memory;
     const double then = in->time - p->shift;
@@ -55,5 +56,5 @@ static void sample(void *memory, const controller_input *in, controller_output *
 }
 
 const controller playback_law =
-    ONE_MODE_CONTROLLER("playback", "playback", sizeof(played_command *), sample,
+    ONE_MODE_CONTROLLER("playback", "playback", sizeof(played_command *), playback_sample,
                         .tune = controller_takes_anything);
