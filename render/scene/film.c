@@ -6,7 +6,7 @@
 
 #include "render/plot/trace_plot.h"
 
-static status check_options(const film_options *o, fault *f)
+static status check_film_options(const film_options *o, fault *f)
 {
     FAULT_IF(
         o->width < 320 || o->width > 4096 || o->height < 240 || o->height > 4096 ||
@@ -56,7 +56,7 @@ static status add_frames(film_painter *p, film_file *file, fault *f)
     return STATUS_OK;
 }
 
-static status record(film_painter *p, const char *path, fault *f)
+static status write_frames(film_painter *p, const char *path, fault *f)
 {
     // the same notes as a picture's, of the first run
     g_autofree char *values = parameters_line(p->runs[0].scenario);
@@ -92,7 +92,7 @@ status film_write(const film_run *runs, int run_count, const film_options *optio
     }
 
     // only a film that can be painted
-    TRY(check_options(&o, f));
+    TRY(check_film_options(&o, f));
     for (int i = 0; i < run_count; i++) {
         FAULT_IF(runs[i].result->trace.row_count == 0, f, STATUS_BAD_ARGUMENT,
                  "the run has no rows to draw");
@@ -100,5 +100,5 @@ status film_write(const film_run *runs, int run_count, const film_options *optio
 
     g_autoptr(film_painter) painter = NULL;
     TRY(film_painter_create(&painter, runs, run_count, &o, f));
-    return record(painter, path, f);
+    return write_frames(painter, path, f);
 }

@@ -28,8 +28,9 @@ static void add_impacts(film_clock *c, const trace *t)
 {
     double largest = 0;
     for (size_t i = 0; i < t->event_count; i++) {
-        largest =
-            fmax(largest, t->events[i].kind == EVENT_IMPACT ? t->events[i].impulse : 0);
+        if (t->events[i].kind == EVENT_IMPACT) {
+            largest = fmax(largest, t->events[i].impulse);
+        }
     }
 
     for (size_t i = 0; i < t->event_count && largest > 0; i++) {
@@ -103,7 +104,10 @@ double film_clock_slowness(const film_clock *c, double t)
 double film_clock_time(const film_clock *c, double film_time, double *speed)
 {
     assert(c->seconds > 0);
-    double span = c->end - c->start, cell = span / CLOCK_CELLS, total = 0, passed = 0;
+    const double cell = (c->end - c->start) / CLOCK_CELLS;
+
+    // the slownesses of all cells are the shares that they have of the film
+    double total = 0, passed = 0;
     for (int i = 0; i < CLOCK_CELLS; i++) {
         total += film_clock_slowness(c, c->start + (i + 0.5) * cell);
     }

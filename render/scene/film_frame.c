@@ -60,9 +60,10 @@ static owned_figure *describe_traces(const film_painter *p)
 
     for (int i = 0; i < p->run_count; i++) {
         runs[i] = (trace_run){p->runs[i].scenario, p->runs[i].result, p->runs[i].name,
-                              .rank = p->run_count > 1 ? i + 1 : 0};
+                              .rank = i + 1};
     }
     if (p->run_count == 1) {
+        runs[0].rank = 0;
         return trace_figure_create(NULL, one, (int)G_N_ELEMENTS(one), runs, 1);
     }
     return trace_figure_create(NULL, &several, 1, runs, p->run_count);
@@ -246,19 +247,34 @@ static void draw_traces(const film_painter *p, cairo_t *cr, double time)
     cairo_fill(cr);
 }
 
+// "8.0 times slower than real": the number is the one that is larger than one. Free with
+// g_free.
+static char *describe_speed(double speed)
+{
+    const double slower = 1 / speed;
+    if (!(speed < 1)) {
+        return text_printf("%.1f times faster than real", speed);
+    }
+    if (slower < 9.95) {
+        return text_printf("%.1f times slower than real", slower);
+    }
+    return text_printf("%.0f times slower than real", slower);
+}
+
 static void draw_speed(const film_painter *p, cairo_t *cr, double speed)
 {
-    const double scale = film_scale(p), times = 1 / speed;
-
-    // the number that is larger than one
-    g_autofree char *text = speed < 1 ? text_printf("%.*f times slower than real",
-                                                    times < 9.95 ? 1 : 0, times)
-                                      : text_printf("%.1f times faster than real", speed);
+    const double scale = film_scale(p);
+    g_autofree char *text = describe_speed(speed);
     const text_block t = {.markup = text, .size = LABELS_LEAST * scale};
+
     // with several arms there is a free corner next to the axis of the traces
-    const bool alone = p->run_count == 1;
-    text_put(cr, p->context, &t, 22 * scale,
-             alone ? 20 * scale : p->options.height - 6 * scale, (anchor){0, !alone},
+    double y = 20 * scale;
+    anchor from = {0, 0};
+    if (p->run_count > 1) {
+        y = p->options.height - 6 * scale;
+        from = (anchor){0, 1};
+    }
+    text_put(cr, p->context, &t, 22 * scale, y, from,
              palette_of(p->options.view.theme)->faint_text);
 }
 

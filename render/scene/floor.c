@@ -1,9 +1,9 @@
+// The floor: a pale plane with a grid that fades into the page, and soft shadows on it.
 #include "render/scene/scene_parts.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "render/page/picture_file.h"
@@ -79,8 +79,10 @@ typedef struct ray_field {
     vector first, right, down;
 } ray_field;
 
-// Where a pixel meets the floor, and how wide and deep it is there.
-static void paint_pixel(scene *sc, const ray_field *rays, vector ray, int column, int row)
+// Sets where the ray of a pixel meets the floor, and the colour it has there without a
+// shadow.
+static void set_floor_pixel(scene *sc, const ray_field *rays, vector ray, int column,
+                            int row)
 {
     // where the ray meets the floor
     scene_floor *floor = &sc->floor;
@@ -94,32 +96,27 @@ static void paint_pixel(scene *sc, const ray_field *rays, vector ray, int column
     // seen
     bool meets =
         ray.z < 0 && away_x * away_x + away_y * away_y < floor->reach * floor->reach;
-    if (meets) {
-        floor->x[at] = (float)x;
-    } else {
-        floor->x[at] = 1e30F;
+    if (!meets) {
+        floor->x[at] = floor->y[at] = 1e30F;
+        floor->ground[at] = rgb_of(sc->around->page, 0.5);
+        return;
     }
-    if (meets) {
-        floor->y[at] = (float)y;
-    } else {
-        floor->y[at] = 1e30F;
-    }
-    floor->ground[at] = rgb_of(sc->around->page, 0.5);
+    floor->x[at] = (float)x;
+    floor->y[at] = (float)y;
 
     // how far a pixel reaches on the floor along both directions
-    if (meets) {
-        double slope_x = ray.x / ray.z, slope_y = ray.y / ray.z;
-        const vector *r = &rays->right, *d = &rays->down;
-        double wide =
-            fabs(along * (r->x - slope_x * r->z)) + fabs(along * (d->x - slope_x * d->z));
-        double deep =
-            fabs(along * (r->y - slope_y * r->z)) + fabs(along * (d->y - slope_y * d->z));
-        floor->ground[at] =
-            rgb_of(floor_colour(sc, x, y, wide, deep), threshold_at(column, row));
-    }
+    double slope_x = ray.x / ray.z, slope_y = ray.y / ray.z;
+    const vector *r = &rays->right, *d = &rays->down;
+    double wide =
+        fabs(along * (r->x - slope_x * r->z)) + fabs(along * (d->x - slope_x * d->z));
+    double deep =
+        fabs(along * (r->y - slope_y * r->z)) + fabs(along * (d->y - slope_y * d->z));
+    floor->ground[at] =
+        rgb_of(floor_colour(sc, x, y, wide, deep), threshold_at(column, row));
 }
 
-static void paint_ground(scene *sc)
+// The floor without shadows, pixel by pixel.
+static void paint_floor_ground(scene *sc)
 {
     const camera *c = &sc->camera;
     ray_field rays = {.first = camera_ray(c, 0.5, 0.5)};
@@ -128,42 +125,39 @@ static void paint_ground(scene *sc)
     for (int row = 0; row < sc->options.height; row++) {
         vector start = vector_sum(rays.first, row, rays.down);
         for (int column = 0; column < sc->options.width; column++) {
-            paint_pixel(sc, &rays, vector_sum(start, column, rays.right), column, row);
+            set_floor_pixel(sc, &rays, vector_sum(start, column, rays.right), column,
+                            row);
         }
     }
 }
 
-status scene_floor_init(scene *sc, vector middle, double reach, fault *f)
+void scene_floor_init(scene *sc, vector middle, double reach)
 {
     assert(reach > 0);
-    size_t pixels = (size_t)sc->options.width * (size_t)sc->options.height;
+    const size_t pixels = (size_t)sc->options.width * (size_t)sc->options.height;
 
     // the map of the shadow covers all of the floor
     scene_floor *floor = &sc->floor;
     *floor = (scene_floor){.middle = middle,
                            .reach = reach,
-                           .ground = malloc(pixels * sizeof *floor->ground),
-                           .x = malloc(pixels * sizeof *floor->x),
-                           .y = malloc(pixels * sizeof *floor->y),
-                           .mask = malloc((size_t)MAP * MAP),
-                           .spare = malloc((size_t)MAP * MAP),
+                           .ground = g_new(unsigned, pixels),
+                           .x = g_new(float, pixels),
+                           .y = g_new(float, pixels),
+                           .mask = g_new(unsigned char, MAP *MAP),
+                           .spare = g_new(unsigned char, MAP *MAP),
                            .map_left = middle.x - reach,
                            .map_low = middle.y - reach,
                            .map_cell = 2 * reach / MAP};
-    FAULT_IF(!floor->ground || !floor->x || !floor->y || !floor->mask || !floor->spare, f,
-             STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels",
-             sc->options.width, sc->options.height);
-    paint_ground(sc);
-    return STATUS_OK;
+    paint_floor_ground(sc);
 }
 
 void scene_floor_finish(scene_floor *floor)
 {
-    free(floor->ground);
-    free(floor->x);
-    free(floor->y);
-    free(floor->mask);
-    free(floor->spare);
+    g_free(floor->ground);
+    g_free(floor->x);
+    g_free(floor->y);
+    g_free(floor->mask);
+    g_free(floor->spare);
     *floor = (scene_floor){0};
 }
 
@@ -207,14 +201,24 @@ static int within_map(double cell)
     return (int)cell;
 }
 
+// The cells of the map that sharp shadows and their soft edge may cover.
+static cell_box with_soft_edge(double left, double right, double low, double high)
+{
+    const int edge = BLUR * BLUR_PASSES + 1;
+    return (cell_box){within_map(left - edge), within_map(right + edge + 1),
+                      within_map(low - edge), within_map(high + edge + 1)};
+}
+
 // Draws the mesh's triangles, thrown onto the floor along the light, into the map.
 // *covered is what they and their soft edge may cover.
-static status cast_shadow(scene *sc, cell_box *covered, fault *f)
+static status cast_sharp_shadow(scene *sc, cell_box *covered, fault *f)
 {
     scene_floor *floor = &sc->floor;
     const mesh *m = &sc->mesh;
     const vector light = sc->light;
     double left = MAP, right = 0, low = MAP, high = 0;
+
+    // a map of opacities alone, in whole cells
     memset(floor->mask, 0, (size_t)MAP * MAP);
     cairo_surface_t *map =
         cairo_image_surface_create_for_data(floor->mask, CAIRO_FORMAT_A8, MAP, MAP, MAP);
@@ -244,20 +248,20 @@ static status cast_shadow(scene *sc, cell_box *covered, fault *f)
         cairo_fill(cr);
     }
 
-    status code = picture_end_drawing(cr, STATUS_OK, f);
+    const status code = picture_end_drawing(cr, STATUS_OK, f);
     cairo_surface_destroy(map);
+    *covered = with_soft_edge(left, right, low, high);
+    return code;
+}
 
-    // a soft edge, as of a wide lamp
-    const int edge = BLUR * BLUR_PASSES + 1;
-    const cell_box cells = {within_map(left - edge), within_map(right + edge + 1),
-                            within_map(low - edge), within_map(high + edge + 1)};
+// Gives the shadow on the map a soft edge, as of a wide lamp.
+static void soften_shadow(scene_floor *floor, cell_box cells)
+{
     const cell_box turned = {cells.low, cells.high, cells.left, cells.right};
     for (int pass = 0; pass < BLUR_PASSES; pass++) {
         blur_turned(floor->mask, floor->spare, cells);
         blur_turned(floor->spare, floor->mask, turned);
     }
-    *covered = cells;
-    return code;
 }
 
 // The shadow at a place of the floor, 0 to 255, between the map's cells.
@@ -283,11 +287,10 @@ static cell_box seen_box(const scene *sc, cell_box cells)
     const int width = sc->options.width, height = sc->options.height;
     double left = width, right = 0, top = height, bottom = 0;
     for (int i = 0; i < 4; i++) {
-        const vector corner = {floor->map_left +
-                                   (i & 1 ? cells.left : cells.right) * floor->map_cell,
-                               floor->map_low +
-                                   (i & 2 ? cells.low : cells.high) * floor->map_cell,
-                               floor_level(sc)};
+        const int across = i & 1 ? cells.left : cells.right;
+        const int up = i & 2 ? cells.low : cells.high;
+        const vector corner = {floor->map_left + across * floor->map_cell,
+                               floor->map_low + up * floor->map_cell, floor_level(sc)};
         const vector at = camera_project(&sc->camera, corner);
         if (at.z < sc->camera.nearest) {
             // it reaches behind the eye
@@ -316,7 +319,8 @@ static uint32_t darkened(uint32_t rgb, float shadow, uint32_t threshold)
 status scene_floor_paint(scene *sc, cairo_surface_t *onto, fault *f)
 {
     cell_box shade;
-    TRY(cast_shadow(sc, &shade, f));
+    TRY(cast_sharp_shadow(sc, &shade, f));
+    soften_shadow(&sc->floor, shade);
     const cell_box seen = seen_box(sc, shade);
     const scene_floor *floor = &sc->floor;
     const size_t width = (size_t)sc->options.width;

@@ -97,7 +97,10 @@ static void add_flat(mesh *m, const vector corners[4], vector normal, material o
 // Two unit vectors that make a right-handed frame with the axis.
 static void frame_of(vector axis, vector *across, vector *other)
 {
-    vector least = fabs(axis.z) < 0.9 ? (vector){0, 0, 1} : (vector){1, 0, 0};
+    vector least = {1, 0, 0};
+    if (fabs(axis.z) < 0.9) {
+        least = (vector){0, 0, 1};
+    }
     *across = vector_unit(vector_cross(least, axis));
     *other = vector_cross(axis, *across);
 }
@@ -208,9 +211,8 @@ static section broken_rectangle(double thickness, double height)
 // Direction of a polyline at a place, by its neighbours.
 static vector direction_at(const vector *places, int count, int i)
 {
-    const vector *before = &places[i > 0 ? i - 1 : i],
-                 *after = &places[i + 1 < count ? i + 1 : i];
-    return vector_unit(vector_sum(*after, -1, *before));
+    const int before = MAX(i - 1, 0), after = MIN(i + 1, count - 1);
+    return vector_unit(vector_sum(places[after], -1, places[before]));
 }
 
 static vector section_point(const section *s, int corner, vector place, vector across)
@@ -226,13 +228,20 @@ static void cap_ribbon(mesh *m, const section *s, vector place, vector along,
                        bool forward, material of)
 {
     static const int quads[3][4] = {{0, 1, 4, 5}, {1, 2, 3, 4}, {5, 6, 7, 0}};
-    vector across = {-along.y, along.x, 0};
+    const vector across = {-along.y, along.x, 0};
+    vector normal = along;
+    if (!forward) {
+        normal = vector_scaled(along, -1);
+    }
+
+    // corners run counterclockwise as seen from outside
     for (int q = 0; q < 3; q++) {
         vector corners[4];
         for (int i = 0; i < 4; i++) {
-            corners[i] = section_point(s, quads[q][forward ? i : 3 - i], place, across);
+            const int at = forward ? i : 3 - i;
+            corners[i] = section_point(s, quads[q][at], place, across);
         }
-        add_flat(m, corners, vector_scaled(along, forward ? 1 : -1), of);
+        add_flat(m, corners, normal, of);
     }
 }
 
@@ -367,36 +376,46 @@ camera camera_fit(camera_view view, double heading, const vector *points, int co
                   int width, int height, camera_window window)
 {
     assert(count > 0 && width > 0 && height > 0);
-    // three axes of the view; the half angle is that of the shorter edge
-    bool own = view.kind == CAMERA_FREE;
-    double azimuth =
-        heading + (own ? view.azimuth : kinds[view.kind].azimuth) * M_PI / 180;
-    double elevation = (own ? view.elevation : kinds[view.kind].elevation) * M_PI / 180;
+    if (view.kind != CAMERA_FREE) {
+        view.azimuth = kinds[view.kind].azimuth;
+        view.elevation = kinds[view.kind].elevation;
+    }
+
+    // three axes of the view
+    const double azimuth = heading + view.azimuth * M_PI / 180;
+    const double elevation = view.elevation * M_PI / 180;
     double c = cos(elevation), s = sin(elevation);
     camera out = {.right = {-sin(azimuth), cos(azimuth), 0},
                   .up = {-s * cos(azimuth), -s * sin(azimuth), c},
                   .back = {c * cos(azimuth), c * sin(azimuth), s},
                   .width = width,
                   .height = height};
+
+    // the half angle is that of the shorter edge
     double shorter = fmin(width, height);
     out.focal_x = shorter / width / tan(kinds[view.kind].half_view);
     out.focal_y = shorter / height / tan(kinds[view.kind].half_view);
 
-    // within the window the view is narrower, and its middle is not the picture's
-    double share_x = window.right - window.left, share_y = window.bottom - window.top;
+    // as near as the window, in which the view is narrower, lets all points be seen
+    const double share_x = window.right - window.left;
+    const double share_y = window.bottom - window.top;
+    double x, y;
+    const double far_x =
+        fit_axis(points, count, out.right, out.back, out.focal_x / share_x, &x);
+    const double far_y =
+        fit_axis(points, count, out.up, out.back, out.focal_y / share_y, &y);
+    const double distance = fmax(far_x, far_y);
 
-    double x, y,
-        far_x = fit_axis(points, count, out.right, out.back, out.focal_x / share_x, &x);
-    double far_y = fit_axis(points, count, out.up, out.back, out.focal_y / share_y, &y);
-    double distance = fmax(far_x, far_y), low = HUGE_VAL, high = -HUGE_VAL, middle;
-
-    // shift the eye so that the points' middle depth falls into the window's middle
+    // the depths between which the points lie
+    double low = HUGE_VAL, high = -HUGE_VAL;
     for (int i = 0; i < count; i++) {
         double depth = distance - vector_dot(points[i], out.back);
         low = fmin(low, depth);
         high = fmax(high, depth);
     }
-    middle = (low + high) / 2;
+
+    // the eye shifted so that their middle falls into the window's middle
+    const double middle = (low + high) / 2;
     x -= (window.left + window.right - 1) * middle / out.focal_x;
     y += (window.top + window.bottom - 1) * middle / out.focal_y;
     out.eye = vector_sum(vector_sum(vector_scaled(out.right, x), y, out.up), distance,

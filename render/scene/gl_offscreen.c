@@ -159,7 +159,10 @@ static void *egl_display(void *handle)
     setenv("EGL_LOG_LEVEL", "fatal", 0);
     // in software, as OSMesa is: pictures do not depend on a graphics card
     setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
-    void *opened = get ? get(EGL_PLATFORM_SURFACELESS, NULL, NULL) : NULL;
+    void *opened = NULL;
+    if (get != NULL) {
+        opened = get(EGL_PLATFORM_SURFACELESS, NULL, NULL);
+    }
     if (opened != NULL && initialise(opened, NULL, NULL)) {
         display = opened;
     }
@@ -237,7 +240,7 @@ static bool make_framebuffer(gl_offscreen *g)
     return g->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
-static status set_up(gl_offscreen *g, char name[RENDERER_NAME], fault *f)
+static status prepare_offscreen(gl_offscreen *g, char name[RENDERER_NAME], fault *f)
 {
     const char *library = g->library == RENDER_OSMESA ? "OSMesa" : "EGL";
 
@@ -273,7 +276,7 @@ status gl_offscreen_create(gl_offscreen **out, scene_renderer library, int width
     g->library = library;
     g->width = width;
     g->height = height;
-    TRY(set_up(g, name, f));
+    TRY(prepare_offscreen(g, name, f));
     *out = g_steal_pointer(&g);
     return STATUS_OK;
 }

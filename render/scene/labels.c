@@ -1,3 +1,4 @@
+// What is written on a picture of a scene: forces, flashes, title, facts, keys.
 #include "render/scene/scene_parts.h"
 
 #include <assert.h>
@@ -25,8 +26,8 @@ static text_block fact(const scene *sc, const char *markup)
     return (text_block){.markup = markup, .size = FACT_LETTERS * labels_scale(sc)};
 }
 
-static void draw_text(const scene *sc, cairo_t *cr, text_block t, double x, double y,
-                      colour ink)
+static void draw_label(const scene *sc, cairo_t *cr, text_block t, double x, double y,
+                       colour ink)
 {
     text_put(cr, sc->context, &t, x, y, (anchor){0, 0}, ink);
 }
@@ -59,22 +60,30 @@ void labels_flash(const scene *sc, cairo_t *cr, vector place, double radius,
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
     cairo_set_source_rgba(cr, 0.88, 0.5, 0.02, strength);
     for (int i = 0; i < RAYS; i++) {
-        double angle = 2 * M_PI * (i + 0.5) / RAYS, far = i % 2 ? 0.8 : 1.1;
+        const double angle = 2 * M_PI * (i + 0.5) / RAYS;
+        const double far = i % 2 == 0 ? 1.1 : 0.8;
         cairo_move_to(cr, at.x + 0.5 * r * cos(angle), at.y + 0.5 * r * sin(angle));
         cairo_line_to(cr, at.x + far * r * cos(angle), at.y + far * r * sin(angle));
     }
     cairo_stroke(cr);
 }
 
+// Decimals that show three digits of a force of 1 N to 1000 N.
+static int force_decimals(double force)
+{
+    if (force < 10) {
+        return 2;
+    }
+    if (force < 100) {
+        return 1;
+    }
+    return 0;
+}
+
 void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double force)
 {
-    static const colour light = {0.70, 0.28, 0}, dark = {1, 0.62, 0.30};
     // text and its size
-    g_autofree char *text = text_printf("%.*f\u2009N",
-                                        force < 10    ? 2
-                                        : force < 100 ? 1
-                                                      : 0,
-                                        force);
+    g_autofree char *text = text_printf("%.*f\u2009N", force_decimals(force), force);
     const double scale = labels_scale(sc);
     const text_block t = {.markup = text, .size = TITLE_LETTERS * scale, .bold = true};
     const text_size size = text_measure(sc->context, &t);
@@ -89,7 +98,11 @@ void labels_force(const scene *sc, cairo_t *cr, vector from, vector end, double 
     // inside the picture
     x = fmin(fmax(x, 4), sc->camera.width - size.width - 4);
     y = fmin(fmax(y, 4), sc->camera.height - size.height - 4);
-    draw_text(sc, cr, t, x, y, sc->options.theme == THEME_DARK ? dark : light);
+    colour ink = {0.70, 0.28, 0};
+    if (sc->options.theme == THEME_DARK) {
+        ink = (colour){1, 0.62, 0.30};
+    }
+    draw_label(sc, cr, t, x, y, ink);
 }
 
 void labels_caption(const scene *sc, cairo_t *cr, const char *title, const char *facts,
@@ -105,18 +118,18 @@ void labels_caption(const scene *sc, cairo_t *cr, const char *title, const char 
     text_block t = {.markup = escaped, .size = TITLE_LETTERS * scale, .bold = true};
     const double line = text_measure(sc->context, &t).height;
     t.width = width;
-    draw_text(sc, cr, t, left, top - (text_measure(sc->context, &t).height - line),
-              sc->around->strong);
-    draw_text(sc, cr, fact(sc, facts), left, bottom - FACT_LETTERS * 1.25 * scale,
-              sc->around->faint);
+    draw_label(sc, cr, t, left, top - (text_measure(sc->context, &t).height - line),
+               sc->around->strong);
+    draw_label(sc, cr, fact(sc, facts), left, bottom - FACT_LETTERS * 1.25 * scale,
+               sc->around->faint);
 }
 
 void labels_inset(const scene *sc, cairo_t *cr, double left, double bottom, double larger)
 {
     assert(larger > 0);
     g_autofree char *text = text_printf("contact, %.1f times", larger);
-    draw_text(sc, cr, fact(sc, text), left, bottom + 4 * labels_scale(sc),
-              sc->around->faint);
+    draw_label(sc, cr, fact(sc, text), left, bottom + 4 * labels_scale(sc),
+               sc->around->faint);
 }
 
 void labels_instants(const scene *sc, cairo_t *cr, const double *times,
@@ -140,7 +153,7 @@ void labels_instants(const scene *sc, cairo_t *cr, const double *times,
         g_autofree char *text = text_printf("%.1f\u2009ms", 1e3 * times[i]);
         const text_block t = fact(sc, text);
         const text_size own = text_measure(sc->context, &t);
-        draw_text(sc, cr, t, right - own.width, y, sc->around->faint);
+        draw_label(sc, cr, t, right - own.width, y, sc->around->faint);
         set_colour(cr, inks[i]);
         cairo_rectangle(cr, right - width - 10 * scale - swatch,
                         y + own.height / 2 - 2.5 * scale, swatch, 5 * scale);

@@ -1,3 +1,5 @@
+// Paints a mesh: lights its vertices, projects them, and has their triangles filled by
+// OpenGL or by hand.
 #include "render/scene/scene_parts.h"
 
 #include <assert.h>
@@ -34,12 +36,11 @@ status scene_painter_create(scene_painter **out, scene_renderer which, int width
         }
     }
 
-    // drawing by hand needs only memory
+    // drawing by hand is always possible
     if (which != RENDER_AUTO) {
         TRY(code);
     }
-    FAULT_IF(!samples_init(&p->samples, width, height, samples, p->gl == NULL), f,
-             STATUS_NO_MEMORY, "no memory for a scene of %d x %d pixels", width, height);
+    samples_init(&p->samples, width, height, samples, p->gl == NULL);
     *out = g_steal_pointer(&p);
     return STATUS_OK;
 }
@@ -104,7 +105,8 @@ static void light_vertex(const mesh_vertex *v, const camera *c, vector light,
 
 // Lights the vertices and finds their places: clip coordinates whose w is the depth.
 // Returns the pixels that they cover.
-static pixel_box project(scene_painter *p, const mesh *m, const camera *c, vector light)
+static pixel_box light_and_project(scene_painter *p, const mesh *m, const camera *c,
+                                   vector light)
 {
     double left = p->samples.width, right = 0, top = p->samples.height, bottom = 0;
     double span = c->farthest - c->nearest;
@@ -148,7 +150,7 @@ status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface
     }
 
     // only the part of the picture that holds something
-    pixel_box r = project(p, m, what->camera, what->light);
+    pixel_box r = light_and_project(p, m, what->camera, what->light);
     if (r.width <= 0 || r.height <= 0) {
         return STATUS_OK;
     }

@@ -1,3 +1,5 @@
+// The arm from above: wall, beam, hub, force, and a spring that pulls, as cairo draws
+// them.
 #include "render/scene/plan.h"
 
 #include <assert.h>
@@ -16,12 +18,12 @@
 #define COIL_TURNS  10
 
 // A plan in the making.
-typedef struct painter {
+typedef struct plan_painter {
     cairo_t *cr;
     const plan *plan;
     const plan_view *view;
     vector *joints, *curve;
-} painter;
+} plan_painter;
 
 double plan_x(const plan_view *v, double x)
 {
@@ -46,12 +48,12 @@ plan_view plan_close_up(const parameters *p, double width, double height)
 }
 
 // A length in beam lengths as pixels, not less than `least`.
-static double size_of(const painter *g, double lengths, double least)
+static double size_of(const plan_painter *g, double lengths, double least)
 {
     return fmax(least, lengths * g->plan->parameters->arm.length * g->view->scale);
 }
 
-static void pen(const painter *g, colour c, double width)
+static void pen(const plan_painter *g, colour c, double width)
 {
     set_colour(g->cr, c);
     cairo_set_dash(g->cr, NULL, 0, 0);
@@ -61,13 +63,13 @@ static void pen(const painter *g, colour c, double width)
 }
 
 // A colour on its way to the ground.
-static colour paler(const painter *g, colour c, double share)
+static colour paler(const plan_painter *g, colour c, double share)
 {
     return colour_between(c, g->plan->colours.ground, share);
 }
 
 // A disc with a rim of the present colour, paler inside.
-static void disc(const painter *g, double x, double y, double radius, colour c,
+static void disc(const plan_painter *g, double x, double y, double radius, colour c,
                  double share)
 {
     cairo_new_path(g->cr);
@@ -81,7 +83,7 @@ static void disc(const painter *g, double x, double y, double radius, colour c,
 // --- what stands still -----------------------------------------------------------------
 
 // Short strokes behind a line, from (x, y) on along (dx, dy) [pixels].
-static void hatch(const painter *g, double x, double y, double dx, double dy)
+static void hatch(const plan_painter *g, double x, double y, double dx, double dy)
 {
     const double length = hypot(dx, dy), step = 7, depth = 9;
     const double ux = dx / length, uy = dy / length;
@@ -95,7 +97,7 @@ static void hatch(const painter *g, double x, double y, double dx, double dy)
 
 // A flat wall lies along the arm, on the far side of it; any wall has the place where the
 // tip meets it.
-static void paint_wall(const painter *g)
+static void paint_wall(const plan_painter *g)
 {
     const parameters *p = g->plan->parameters;
     const sample row = scene_joints(g->plan->rows, p, g->plan->time, g->joints);
@@ -134,7 +136,7 @@ static void paint_wall(const painter *g)
 // --- the arm ---------------------------------------------------------------------------
 
 // The beam's curve at an instant of a run as cairo's path; returns the row there.
-static sample beam_path(const painter *g, const trace *rows)
+static sample beam_path(const plan_painter *g, const trace *rows)
 {
     const int links = g->plan->parameters->arm.links;
     const sample row = scene_joints(rows, g->plan->parameters, g->plan->time, g->joints);
@@ -150,16 +152,20 @@ static sample beam_path(const painter *g, const trace *rows)
 
 // The wall's force on the tip: an arrow that points at it, as long as its share of the
 // peak.
-static void paint_force(const painter *g, double x, double y, const sample *row)
+static void paint_force(const plan_painter *g, double x, double y, const sample *row)
 {
-    const double share =
-        row->contact > 0 && g->plan->peak > 0 ? row->force / g->plan->peak : 0;
+    double share = 0;
+    if (row->contact > 0 && g->plan->peak > 0) {
+        share = row->force / g->plan->peak;
+    }
     const double length = 0.42 * g->view->height * fmin(share, 1),
                  head = fmin(10, length);
     const double off = 0.5 * size_of(g, BEAM_WIDTH, 3) + 1;
     if (!(length > 1)) {
         return;
     }
+
+    // the shaft, and a head at the beam's edge
     pen(g, g->plan->colours.force, 3);
     cairo_set_line_cap(g->cr, CAIRO_LINE_CAP_BUTT);
     picture_line(g->cr, x, y - off - length, x, y - off - 0.8 * head);
@@ -171,7 +177,7 @@ static void paint_force(const painter *g, double x, double y, const sample *row)
 }
 
 // The spring that pulls at the tip: a zigzag between straight ends.
-static void paint_pull(const painter *g, double x, double y)
+static void paint_pull(const plan_painter *g, double x, double y)
 {
     const double to_x = plan_x(g->view, g->plan->pull_x),
                  to_y = plan_y(g->view, g->plan->pull_y);
@@ -181,17 +187,15 @@ static void paint_pull(const painter *g, double x, double y)
     }
     const double ux = (to_x - x) / length, uy = (to_y - y) / length,
                  wide = fmin(6, 0.2 * length);
+
+    // from the tip to the point that pulls
     pen(g, g->plan->colours.force, 1.5);
     cairo_move_to(g->cr, x, y);
     for (int i = 0; i <= COIL_TURNS; i++) {
         const double along = length * (0.1 + 0.8 * i / COIL_TURNS);
-        double across = 0;
-        if (!(i == 0 || i == COIL_TURNS)) {
-            if (i % 2) {
-                across = wide;
-            } else {
-                across = -wide;
-            }
+        double across = i % 2 == 1 ? wide : -wide;
+        if (i == 0 || i == COIL_TURNS) {
+            across = 0;
         }
         cairo_line_to(g->cr, x + along * ux - across * uy, y + along * uy + across * ux);
     }
@@ -201,7 +205,7 @@ static void paint_pull(const painter *g, double x, double y)
     cairo_fill(g->cr);
 }
 
-static void paint_all(const painter *g)
+static void paint_plan_parts(const plan_painter *g)
 {
     const plan *p = g->plan;
     const int links = p->parameters->arm.links;
@@ -253,6 +257,6 @@ void plan_paint(cairo_t *cr, const plan *p, const plan_view *v)
     cairo_clip(cr);
     set_colour(cr, p->colours.ground);
     cairo_paint(cr);
-    paint_all(&(painter){cr, p, v, joints, curve});
+    paint_plan_parts(&(plan_painter){cr, p, v, joints, curve});
     cairo_restore(cr);
 }

@@ -1,8 +1,9 @@
+// Triangles as samples of a picture: which they fill, by hand or where OpenGL has done
+// so, and the means that become its pixels.
 #include "render/scene/scene_parts.h"
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define FARTHEST 2.0F // deeper than everything
@@ -12,7 +13,7 @@ enum {
     FOUR = 4,                   // samples worked on at once
 };
 
-bool samples_init(sample_buffer *b, int width, int height, int samples, bool depths)
+void samples_init(sample_buffer *b, int width, int height, int samples, bool depths)
 {
     assert(width > 0 && height > 0);
     assert(samples > 0 && samples * SAMPLE_TILE <= ROW_MOST);
@@ -22,24 +23,21 @@ bool samples_init(sample_buffer *b, int width, int height, int samples, bool dep
 
     // with room for what fill_columns reads after the last
     const size_t count = (size_t)(samples * width) * (size_t)(samples * height) + FOUR;
-    b->pixels = calloc(count, sizeof *b->pixels);
-    b->touched = malloc((size_t)b->tiles_across * (size_t)b->tiles_down);
+    b->pixels = g_new0(uint32_t, count);
+    b->touched = g_new(unsigned char, b->tiles_across * b->tiles_down);
     if (depths) {
-        b->depths = malloc(count * sizeof *b->depths);
-    } else {
-        b->depths = NULL;
+        b->depths = g_new(float, count);
+        for (size_t i = 0; i < count; i++) {
+            b->depths[i] = FARTHEST;
+        }
     }
-    for (size_t i = 0; i < count && b->depths != NULL; i++) {
-        b->depths[i] = FARTHEST;
-    }
-    return b->pixels != NULL && b->touched != NULL && (b->depths != NULL || !depths);
 }
 
 void samples_finish(sample_buffer *b)
 {
-    free(b->pixels);
-    free(b->depths);
-    free(b->touched);
+    g_free(b->pixels);
+    g_free(b->depths);
+    g_free(b->touched);
     *b = (sample_buffer){0};
 }
 
@@ -147,7 +145,7 @@ static triangle_ramps ramps_of(const flat_triangle *t, const gl_vertex *const v[
 
 // Narrows the columns [*from, *to) of a row to those that may be inside the triangle,
 // some to spare.
-static void narrow(const triangle_ramps *r, float y, int *from, int *to)
+static void narrow_columns(const triangle_ramps *r, float y, int *from, int *to)
 {
     for (int k = 0; k < 3; k++) {
         const float right = r->share[k].right, value = ramp_at(r->share[k], 0.5F, y);
@@ -178,7 +176,7 @@ static inline four four_at(ramp r, four x, float y)
     return r.start + r.right * x + r.down * y;
 }
 
-static inline four_bits chosen(four_bits which, four_bits yes, four_bits no)
+static inline four_bits select_bits(four_bits which, four_bits yes, four_bits no)
 {
     return (which & yes) | (~which & no);
 }
@@ -188,7 +186,7 @@ static inline four_bits channels(four shade)
 {
     const four one = {1, 1, 1, 1};
     shade = (four)((shade > 0) & (four_bits)shade);
-    shade = (four)chosen(shade < 1, (four_bits)shade, (four_bits)one);
+    shade = (four)select_bits(shade < 1, (four_bits)shade, (four_bits)one);
     return __builtin_convertvector(shade * 255 + 0.5F, four_bits);
 }
 
@@ -215,8 +213,8 @@ static void fill_columns(uint32_t *pixels, float *depths, const triangle_ramps *
         four_bits rgb = opaque | channels(four_at(r->tint[0], x, y)) << 16 |
                         channels(four_at(r->tint[1], x, y)) << 8 |
                         channels(four_at(r->tint[2], x, y));
-        there = (four)chosen(seen, (four_bits)z, (four_bits)there);
-        before = chosen(seen, rgb, before);
+        there = (four)select_bits(seen, (four_bits)z, (four_bits)there);
+        before = select_bits(seen, rgb, before);
         memcpy(depths + column, &there, sizeof there);
         memcpy(pixels + column, &before, sizeof before);
     }
@@ -237,7 +235,7 @@ static void fill_triangle(sample_buffer *b, const flat_triangle *t,
     for (int row = top; row < bottom; row++) {
         float y = (float)row + 0.5F;
         int from = left, to = right;
-        narrow(&ramps, y, &from, &to);
+        narrow_columns(&ramps, y, &from, &to);
         fill_columns(b->pixels + (ptrdiff_t)row * width,
                      b->depths + (ptrdiff_t)row * width, &ramps, y, from, to);
     }

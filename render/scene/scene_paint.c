@@ -1,3 +1,5 @@
+// A scene: prepared for a run, painted at its instants with ghosts of earlier ones and
+// with labels, and written to a file.
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -31,7 +33,7 @@ static const surroundings dark_surroundings = {
     {0.14, 0.15, 0.165},  {0.94, 0.945, 0.955}, {0.72, 0.74, 0.77},
 };
 
-static status check_options(const scene *sc, fault *f)
+static status check_scene_options(const scene *sc, fault *f)
 {
     const scene_options *o = &sc->options;
     FAULT_IF(o->width < LEAST_PIXELS || o->width > MOST_PIXELS ||
@@ -54,25 +56,9 @@ void scene_options_scale(scene_options *o, const trace *t)
     }
 }
 
-static status prepare(scene *sc, fault *f)
+// The inset: a scene of its own, from near by.
+static status create_inset(scene *sc, fault *f)
 {
-    TRY(check_options(sc, f));
-
-    // room for one shape
-    sc->joints = g_new(vector, sc->links + 1);
-    sc->curve = g_new(vector, scene_curve_length(sc->links));
-    scene_options_scale(&sc->options, &sc->result->trace);
-    sc->context = text_context_create();
-    TRY(scene_set_view(sc, f));
-    TRY(scene_painter_create(&sc->painter, sc->options.renderer, sc->options.width,
-                             sc->options.height,
-                             sc->options.samples > 0 ? sc->options.samples : SAMPLES_FINE,
-                             f));
-    if (!sc->options.inset) {
-        return STATUS_OK;
-    }
-
-    // the inset: a scene of its own, from near by
     scene_options o = sc->options;
     o.camera = (camera_view){.kind = CAMERA_TIP};
     o.width = (int)(INSET_SHARE * o.width) / 2 * 2;
@@ -80,6 +66,41 @@ static status prepare(scene *sc, fault *f)
     o.plain = true;
     o.inset = o.transparent = false;
     return scene_create(&sc->tip, sc->scenario, sc->result, &o, f);
+}
+
+static status prepare_scene(scene *sc, fault *f)
+{
+    TRY(check_scene_options(sc, f));
+
+    // room for one shape
+    sc->joints = g_new(vector, sc->links + 1);
+    sc->curve = g_new(vector, scene_curve_length(sc->links));
+    scene_options_scale(&sc->options, &sc->result->trace);
+    sc->context = text_context_create();
+
+    // the viewpoint, and what paints from there
+    scene_set_view(sc);
+    TRY(scene_painter_create(&sc->painter, sc->options.renderer, sc->options.width,
+                             sc->options.height, sc->options.samples, f));
+    if (sc->options.inset) {
+        TRY(create_inset(sc, f));
+    }
+    return STATUS_OK;
+}
+
+// The distance of the floor's grid lines: the largest of 1, 2 or 5 times a power of ten
+// that is at most a tenth of a length.
+static double grid_of(double length)
+{
+    const double power = pow(10, floor(log10(length / 10 * 1.0001)));
+    const double share = length / 10 / power;
+    if (share >= 5) {
+        return 5 * power;
+    }
+    if (share >= 2) {
+        return 2 * power;
+    }
+    return 1 * power;
 }
 
 status scene_create(scene **out, const scenario *s, const run_result *result,
@@ -96,37 +117,37 @@ status scene_create(scene **out, const scenario *s, const run_result *result,
         sc->around = &light_surroundings;
     }
 
+    // what the options leave to us
     if (options->width == 0 && options->height == 0) {
         sc->options.width = 1280;
         sc->options.height = 720;
     }
+    if (!(options->samples > 0)) {
+        sc->options.samples = SAMPLES_FINE;
+    }
 
     sc->links = s->parameters.arm.links;
     sc->length = s->parameters.arm.length;
-
-    // the largest of 1, 2 or 5 times a power of ten that is at most a tenth of the length
-    double power = pow(10, floor(log10(sc->length / 10 * 1.0001)));
-    double share = sc->length / 10 / power;
-    sc->grid = (share >= 5 ? 5 : share >= 2 ? 2 : 1) * power;
-
-    TRY(prepare(sc, f));
+    sc->grid = grid_of(sc->length);
+    TRY(prepare_scene(sc, f));
     *out = g_steal_pointer(&sc);
     return STATUS_OK;
 }
 
 void scene_destroy(scene *sc)
 {
-    if (sc != NULL) {
-        scene_destroy(sc->tip);
-        scene_painter_destroy(sc->painter);
-        scene_floor_finish(&sc->floor);
-        mesh_finish(&sc->mesh);
-        mesh_finish(&sc->ghost);
-        g_clear_object(&sc->context);
-        g_free(sc->joints);
-        g_free(sc->curve);
-        g_free(sc);
+    if (sc == NULL) {
+        return;
     }
+    scene_destroy(sc->tip);
+    scene_painter_destroy(sc->painter);
+    scene_floor_finish(&sc->floor);
+    mesh_finish(&sc->mesh);
+    mesh_finish(&sc->ghost);
+    g_clear_object(&sc->context);
+    g_free(sc->joints);
+    g_free(sc->curve);
+    g_free(sc);
 }
 
 const char *scene_renderer_name(const scene *sc)
@@ -143,12 +164,49 @@ static void draw_flashes(scene *sc, cairo_t *cr, double time)
     for (size_t i = 0; i < t->event_count && t->events[i].time <= time; i++) {
         const event *e = &t->events[i];
         double strength = exp(-(time - e->time) / FLASH_FADE);
-        if (e->kind == EVENT_IMPACT && e->impulse > 0 && strength > 0.03) {
-            double size = FLASH_RADIUS * sqrt(e->impulse / sc->options.impulse);
-            const sample row =
-                scene_joints(t, &sc->scenario->parameters, e->time, sc->joints);
-            labels_flash(sc, cr, scene_contact(sc, &row), size * sc->length, strength);
+        if (e->kind != EVENT_IMPACT || !(e->impulse > 0) || !(strength > 0.03)) {
+            continue;
         }
+
+        // its area grows with the impulse
+        const double size = FLASH_RADIUS * sqrt(e->impulse / sc->options.impulse);
+        const sample row =
+            scene_joints(t, &sc->scenario->parameters, e->time, sc->joints);
+        labels_flash(sc, cr, scene_contact(sc, &row), size * sc->length, strength);
+    }
+}
+
+// The line of facts of a picture at an instant, as markup. Free with g_free.
+static char *line_of_facts(const scene *sc, double time)
+{
+    const double larger = sc->options.exaggerate;
+    char *facts = text_printf("<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m", 1e3 * time,
+                              sc->grid);
+    if (!(larger > 0) || larger == 1) {
+        return facts;
+    }
+
+    // what is not as it is has to be said
+    g_autofree char *plain = facts;
+    return text_printf("%s \u00b7 bending drawn %g times as large", plain, larger);
+}
+
+// The texts: the force at its arrow, title and facts, and the key of the instants.
+static void draw_texts(scene *sc, cairo_t *cr, const double *times, const colour *inks,
+                       int count)
+{
+    const double time = times[count - 1];
+    vector start, end;
+    const sample row = scene_shape(sc, time);
+    if (scene_force_arrow(sc, &row, &start, &end)) {
+        labels_force(sc, cr, start, end, row.force);
+    }
+
+    g_autofree char *facts = line_of_facts(sc, time);
+    g_autofree char *title = scenario_title(sc->scenario);
+    labels_caption(sc, cr, title, facts, TITLE_SHARE * sc->camera.width);
+    if (count > 1 && !sc->options.keyless) {
+        labels_instants(sc, cr, times, inks, count);
     }
 }
 
@@ -156,37 +214,15 @@ static status draw_labels(scene *sc, const double *times, const colour *inks, in
                           cairo_surface_t *onto, fault *f)
 {
     cairo_t *cr = cairo_create(onto);
-    double time = times[count - 1];
-    vector start, end;
-    draw_flashes(sc, cr, time);
-
-    // what a plain scene goes without
+    draw_flashes(sc, cr, times[count - 1]);
     if (!sc->options.plain) {
-        sample row = scene_shape(sc, time);
-        if (scene_force_arrow(sc, &row, &start, &end)) {
-            labels_force(sc, cr, start, end, row.force);
-        }
-
-        // what is not as it is has to be said
-        const double larger = sc->options.exaggerate;
-        g_autofree char *bending =
-            larger > 0 && larger != 1
-                ? text_printf(" \u00b7 bending drawn %g times as large", larger)
-                : g_strdup("");
-        g_autofree char *facts =
-            text_printf("<i>t</i> = %.1f\u2009ms \u00b7 grid %g\u2009m%s", 1e3 * time,
-                        sc->grid, bending);
-        g_autofree char *title = scenario_title(sc->scenario);
-        labels_caption(sc, cr, title, facts, TITLE_SHARE * sc->camera.width);
-        if (count > 1 && !sc->options.keyless) {
-            labels_instants(sc, cr, times, inks, count);
-        }
+        draw_texts(sc, cr, times, inks, count);
     }
     return picture_end_drawing(cr, STATUS_OK, f);
 }
 
 // The ground on which all else is painted, with the shadow of what does not hover.
-static status paint_ground(scene *sc, cairo_surface_t *onto, fault *f)
+static status paint_background(scene *sc, cairo_surface_t *onto, fault *f)
 {
     if (!sc->options.transparent) {
         return scene_floor_paint(sc, onto, f);
@@ -207,13 +243,9 @@ static status paint_inset(scene *sc, const double *times, int count,
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
     TRY(scene_paint(tip, times, count, view, f));
 
-    // its frame and how much larger it is than the picture, at the contact
+    // the view in its frame
     double margin = INSET_MARGIN * sc->options.width,
            left = sc->options.width - width - margin;
-    const sample row = scene_shape(sc, times[count - 1]);
-    const vector at = scene_contact(sc, &row);
-    const double larger =
-        labels_pixels(&tip->camera, at, 1) / labels_pixels(&sc->camera, at, 1);
     cairo_t *cr = cairo_create(onto);
     cairo_set_source_surface(cr, view, left, margin);
     cairo_paint(cr);
@@ -221,47 +253,60 @@ static status paint_inset(scene *sc, const double *times, int count,
     cairo_set_line_width(cr, fmax(1, labels_scale(sc)));
     cairo_rectangle(cr, left, margin, width, height);
     cairo_stroke(cr);
+
+    // how much larger it is than the picture, at the contact
+    const sample row = scene_shape(sc, times[count - 1]);
+    const vector at = scene_contact(sc, &row);
+    const double larger =
+        labels_pixels(&tip->camera, at, 1) / labels_pixels(&sc->camera, at, 1);
     if (!sc->options.plain) {
         labels_inset(sc, cr, left, margin + height, larger);
     }
     return picture_end_drawing(cr, STATUS_OK, f);
 }
 
+// Paints the arm at an earlier instant, with an opacity of 0 to 1.
+static status paint_ghost(scene *sc, double time, double opacity, cairo_surface_t *onto,
+                          fault *f)
+{
+    const painting ghost = {.mesh = &sc->ghost,
+                            .camera = &sc->camera,
+                            .light = sc->light,
+                            .opacity = opacity};
+    sc->ghost.vertex_count = sc->ghost.corner_count = 0;
+    scene_build_arm(sc, &sc->ghost, time);
+    return scene_painter_paint(sc->painter, &ghost, onto, f);
+}
+
 status scene_paint(scene *sc, const double *times, int count, cairo_surface_t *onto,
                    fault *f)
 {
-    assert(count > 0);
+    assert(count > 0 && count <= SCENE_INSTANTS);
     colour inks[SCENE_INSTANTS];
-    double now = times[count - 1];
-    painting full = {.mesh = &sc->mesh,
-                     .camera = &sc->camera,
-                     .light = sc->light,
-                     .opacity = 1};
+    const double now = times[count - 1];
 
     // what is there now, and its shadow
     sc->mesh.vertex_count = sc->mesh.corner_count = 0;
     scene_build_arm(sc, &sc->mesh, now);
-    sample last =
+    const sample last =
         scene_joints(&sc->result->trace, &sc->scenario->parameters, now, sc->joints);
     scene_build_hub(sc, last.hub_angle);
     scene_build_wall(sc, &last);
-    TRY(paint_ground(sc, onto, f));
+    TRY(paint_background(sc, onto, f));
 
     // ghosts of earlier instants behind it
-    for (int i = 0; i < count; i++) {
-        double pale = count > 1 ? PALEST * (count - 1 - i) / (count - 1) : 0;
+    for (int i = 0; i < count - 1; i++) {
+        const double pale = PALEST * (count - 1 - i) / (count - 1);
         inks[i] = scene_paler(sc, beam_steel, pale).colour;
-        if (i < count - 1) {
-            painting ghost = full;
-            ghost.mesh = &sc->ghost;
-            ghost.opacity = 1 - pale;
-            sc->ghost.vertex_count = sc->ghost.corner_count = 0;
-            scene_build_arm(sc, &sc->ghost, times[i]);
-            TRY(scene_painter_paint(sc->painter, &ghost, onto, f));
-        }
+        TRY(paint_ghost(sc, times[i], 1 - pale, onto, f));
     }
+    inks[count - 1] = scene_paler(sc, beam_steel, 0).colour;
 
     // the trail hovers and throws no shadow
+    const painting full = {.mesh = &sc->mesh,
+                           .camera = &sc->camera,
+                           .light = sc->light,
+                           .opacity = 1};
     scene_build_trail(sc, sc->result->trace.rows[0].time, now);
     TRY(scene_painter_paint(sc->painter, &full, onto, f));
     TRY(draw_labels(sc, times, inks, count, onto, f));
@@ -290,8 +335,11 @@ static status check_instants(const scene_picture *p, fault *f)
     FAULT_IF(p->count < 1 || p->count > SCENE_INSTANTS, f, STATUS_BAD_ARGUMENT,
              "a scene of %d instants, expected 1 to %d", p->count, SCENE_INSTANTS);
 
+    double end = 0;
+    if (t->row_count > 0) {
+        end = t->rows[t->row_count - 1].time;
+    }
     for (int i = 0; i < p->count; i++) {
-        double end = t->row_count > 0 ? t->rows[t->row_count - 1].time : 0;
         FAULT_IF(!(p->times[i] >= 0 && !instant_after(p->times[i], end)), f,
                  STATUS_BAD_ARGUMENT,
                  "a scene at %g s, expected an instant of the run, 0 to %g s",
@@ -307,10 +355,12 @@ status scene_write(const scene_picture *p, const char *path, fault *f)
     TRY(check_instants(p, f));
     TRY(scene_create(&sc, p->scenario, p->result, &p->options, f));
 
+    cairo_format_t format = CAIRO_FORMAT_RGB24;
+    if (p->options.transparent) {
+        format = CAIRO_FORMAT_ARGB32;
+    }
     g_autoptr(cairo_surface_t) surface =
-        cairo_image_surface_create(p->options.transparent ? CAIRO_FORMAT_ARGB32
-                                                          : CAIRO_FORMAT_RGB24,
-                                   sc->options.width, sc->options.height);
+        cairo_image_surface_create(format, sc->options.width, sc->options.height);
     TRY(scene_paint(sc, p->times, p->count, surface, f));
 
     // with what it was made from

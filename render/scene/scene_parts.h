@@ -22,9 +22,8 @@ typedef struct scene_floor {
     double map_left, map_low, map_cell; // corner of the map and size of its cells [m]
 } scene_floor;
 
-// Prepares the floor of a scene that has its camera and light. STATUS_NO_MEMORY if there
-// is no room.
-status scene_floor_init(scene *sc, vector middle, double reach, fault *f);
+// Prepares the floor of a scene that has its camera and light.
+void scene_floor_init(scene *sc, vector middle, double reach);
 void scene_floor_finish(scene_floor *floor);
 
 // Paints the floor with the shadow of the scene's mesh over the whole image surface
@@ -83,7 +82,7 @@ typedef struct painting {
 } painting;
 
 // Paints the mesh over the contents of the image surface (RGB24 or ARGB32, of the
-// painter's size). STATUS_NO_MEMORY or STATUS_CANNOT_WRITE on failure.
+// painter's size). STATUS_CANNOT_WRITE if OpenGL fails.
 status scene_painter_paint(scene_painter *p, const painting *what, cairo_surface_t *onto,
                            fault *f);
 
@@ -135,9 +134,8 @@ typedef struct sample_buffer {
     int tiles_across, tiles_down;
 } sample_buffer;
 
-// Empty samples, with depths if triangles are filled without OpenGL. False without
-// memory; samples_finish must be called in either case.
-bool samples_init(sample_buffer *b, int width, int height, int samples, bool depths);
+// Empty samples, with depths if triangles are filled without OpenGL.
+void samples_init(sample_buffer *b, int width, int height, int samples, bool depths);
 void samples_finish(sample_buffer *b);
 
 // Adds a new set of triangles, of closed solids: records the tiles that they touch and,
@@ -219,6 +217,9 @@ vector scene_contact(const scene *sc, const sample *row);
 // for sc->joints of that row. False if it is not visible.
 bool scene_force_arrow(const scene *sc, const sample *row, vector *start, vector *end);
 
+// The point at distance x along a direction [rad] in the plane, y across it, and z above.
+vector scene_at_angle(double angle, double x, double y, double z);
+
 // Adds to sc->mesh the motor with the hub at an angle [rad], the wall where a row has it,
 // and the tip's path from one instant [s] to another, paler for earlier times.
 void scene_build_hub(scene *sc, double angle);
@@ -228,6 +229,5 @@ void scene_build_trail(scene *sc, double from, double time);
 // Adds the arm at an instant [s] and the wall's force on it to a mesh of the scene.
 void scene_build_arm(scene *sc, mesh *into, double time);
 
-// Places camera, light and floor so that the whole run is visible. STATUS_NO_MEMORY if
-// there is no room for the floor.
-status scene_set_view(scene *sc, fault *f);
+// Places camera, light and floor so that the whole run is visible.
+void scene_set_view(scene *sc);
