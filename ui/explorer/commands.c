@@ -2,7 +2,6 @@
 // the commands that give keys another meaning.
 #include "ui/explorer/explorer.h"
 
-#include <assert.h>
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,30 +14,20 @@
 
 // --- lines -----------------------------------------------------------------------------
 
-// Calls a command's action with the parts of the state that its row names.
+// Calls the action of the index-th command with the parts of the state that its row
+// names.
 static bool call_action(explorer_model *model, explorer_view *view, explorer_input *input,
                         int index, const char *argument)
 {
-    enum {
-#define COMMAND_INDEX(group, name, parts, keys, text, help)     COMMAND_##name,
-#define COMMAND_NOW_INDEX(group, name, parts, keys, text, help) COMMAND_##name##_now,
-        COMMAND_LIST(COMMAND_INDEX, COMMAND_NOW_INDEX)
-#undef COMMAND_INDEX
-#undef COMMAND_NOW_INDEX
-    };
-    switch (index) {
-#define COMMAND_CALL(group, name, parts, keys, text, help)                               \
-    case COMMAND_##name:                                                                 \
-        return act_##name parts;
-#define COMMAND_NOW_CALL(group, name, parts, keys, text, help)                           \
-    case COMMAND_##name##_now:                                                           \
-        return act_##name##_now parts;
-        COMMAND_LIST(COMMAND_CALL, COMMAND_NOW_CALL)
-#undef COMMAND_CALL
-#undef COMMAND_NOW_CALL
+    bool done = false;
+    int row = 0;
+#define CALL_ROW(group, name, call, keys, words, help)                                   \
+    if (index == row++) {                                                                \
+        done = call;                                                                     \
     }
-    assert(false);
-    return false;
+    COMMAND_LIST(CALL_ROW)
+#undef CALL_ROW
+    return done;
 }
 
 // The command of a line's first word.

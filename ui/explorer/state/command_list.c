@@ -28,13 +28,10 @@ const char *text_cut(const char *text, const char *ends, char *word, size_t size
 }
 
 const explorer_command explorer_command_table[] = {
-#define COMMAND_INFO(group, name, parts, keys, argument, help)                           \
-    {group, #name, keys, argument, help},
-#define COMMAND_NOW(group, name, parts, keys, argument, help)                            \
-    {group, #name "!", keys, argument, help},
-    COMMAND_LIST(COMMAND_INFO, COMMAND_NOW)
+#define COMMAND_INFO(group, name, call, keys, argument, help)                            \
+    {group, name, keys, argument, help},
+    COMMAND_LIST(COMMAND_INFO)
 #undef COMMAND_INFO
-#undef COMMAND_NOW
 };
 const int explorer_command_count =
     sizeof explorer_command_table / sizeof explorer_command_table[0];

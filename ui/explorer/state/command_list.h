@@ -16,179 +16,192 @@ void text_add(char *text, size_t size, const char *format, ...)
 // the next word on.
 const char *text_cut(const char *text, const char *ends, char *word, size_t size);
 
-// X: group that begins with this command, or ""; name, also of the action that executes
-// it, act_NAME (declared in actions.h); what the action is given: the parts of the state
-// that it changes or reads, and its argument; its keys, each KEY or KEY:ARGUMENT (names
-// as in --keys without their brackets); argument as shown in the help; description. Y:
-// the same of NAME!, which asks no questions: act_NAME_now
-#define COMMAND_LIST(X, Y)                                                               \
-    X("Time", play, (model, view, input), "Space", "", "run or pause")                   \
-    X("", step, (model, view, input, argument),                                          \
+// Group that begins with this command, or ""; name, with ! for a command that asks no
+// questions; the call of its action, with the parts of the state that it changes or reads
+// and the command's argument; its keys, each KEY or KEY:ARGUMENT (names as in --keys
+// without their brackets); argument as shown in the help; description.
+#define COMMAND_LIST(X)                                                                  \
+    X("Time", "play", act_play(model, view, input), "Space", "", "run or pause")         \
+    X("", "step", act_step(model, view, input, argument),                                \
       "Right:1 l:1 Left:-1 h:-1 PgDn:20 PgUp:-20", "[N]",                                \
       "one row of the run on, or N (back if negative)")                                  \
-    X("", event, (model, view, input, argument), "n N:-1", "[-1]",                       \
+    X("", "event", act_event(model, view, input, argument), "n N:-1", "[-1]",            \
       "to the next event, or the one before")                                            \
-    X("", touch, (model, view, input, argument), "i I:-1", "[-1]",                       \
+    X("", "touch", act_touch(model, view, input, argument), "i I:-1", "[-1]",            \
       "just before the arm touches next, or did last")                                   \
-    X("", seek, (model, view, input, argument), "Home:0 g:0 End:end G:end", "TIME|end",  \
-      "to an instant [s]")                                                               \
-    X("", speed, (view, input, argument), "+:up =:up -:down", "up|down|X",               \
+    X("", "seek", act_seek(model, view, input, argument), "Home:0 g:0 End:end G:end",    \
+      "TIME|end", "to an instant [s]")                                                   \
+    X("", "speed", act_speed(view, input, argument), "+:up =:up -:down", "up|down|X",    \
       "simulated seconds a second, 1 is real time")                                      \
-    X("", slow, (view, input, argument), "", "FACTOR|off",                               \
+    X("", "slow", act_slow(view, input, argument), "", "FACTOR|off",                     \
       "playing is that many times slower round impacts")                                 \
-    X("", restart, (model, view, input), "Backspace r", "", "play from the start")       \
-    X("Changing the run", set, (model, view, input, argument), "", "PATH VALUE",         \
-      "another value, from now on or from the start")                                    \
-    X("", edit, (model, view, input, argument), "Enter", "[PATH]",                       \
+    X("", "restart", act_restart(model, view, input), "Backspace r", "",                 \
+      "play from the start")                                                             \
+    X("Changing the run", "set", act_set(model, view, input, argument), "",              \
+      "PATH VALUE", "another value, from now on or from the start")                      \
+    X("", "edit", act_edit(model, view, input, argument), "Enter", "[PATH]",             \
       "type a new value, of the selected parameter or another")                          \
-    X("", nudge, (model, view, input, argument), "> <:-1", "[-1]",                       \
+    X("", "nudge", act_nudge(model, view, input, argument), "> <:-1", "[-1]",            \
       "selected parameter a little up or down")                                          \
-    X("", select, (model, view, argument), "Down j Up:-1 k:-1", "[-1]",                  \
+    X("", "select", act_select(model, view, argument), "Down j Up:-1 k:-1", "[-1]",      \
       "next or previous parameter")                                                      \
-    X("", fold, (view, input, argument), "", "[GROUP|all|none]",                         \
+    X("", "fold", act_fold(view, input, argument), "", "[GROUP|all|none]",               \
       "fold a group of parameters, or show it")                                          \
-    X("", push, (model, input, argument), "p:0.01 P:-0.01", "[N s]",                     \
+    X("", "push", act_push(model, input, argument), "p:0.01 P:-0.01", "[N s]",           \
       "an impulse at the tip, 0.01 N s")                                                 \
-    X("", law, (model, input, argument), "C", "[NAME|off]",                              \
+    X("", "law", act_law(model, input, argument), "C", "[NAME|off]",                     \
       "another control law; alone: off or on again")                                     \
-    X("", lock, (model, input, argument), "L:next F:off", "MODE|next|off",               \
+    X("", "lock", act_lock(model, input, argument), "L:next F:off", "MODE|next|off",     \
       "hold the law in a mode, or let it choose")                                        \
-    X("", model, (model, input), "t", "", "corrected or printed equations")              \
-    X("", extend, (model, input, argument), "x", "[S]", "a longer run")                  \
-    X("", changes, (model, view), "H", "",                                               \
+    X("", "model", act_model(model, input), "t", "", "corrected or printed equations")   \
+    X("", "extend", act_extend(model, input, argument), "x", "[S]", "a longer run")      \
+    X("", "changes", act_changes(model, view), "H", "",                                  \
       "all changes: edit them, take single ones out")                                    \
-    X("", change, (model, view, input, argument), "", "N VALUE",                         \
+    X("", "change", act_change(model, view, input, argument), "", "N VALUE",             \
       "another value for the N-th change")                                               \
-    X("", drop, (model, view, input, argument), "", "N", "take the N-th change out")     \
-    X("Several runs, undo", branch, (model, input), "b", "",                             \
+    X("", "drop", act_drop(model, view, input, argument), "", "N",                       \
+      "take the N-th change out")                                                        \
+    X("Several runs, undo", "branch", act_branch(model, input), "b", "",                 \
       "pin this run and make another beside it")                                         \
-    X("", pin, (model, input, argument), "", "[NAME]",                                   \
+    X("", "pin", act_pin(model, input, argument), "", "[NAME]",                          \
       "the same under a name; up to seven runs are kept")                                \
-    X("", runs, (view), "R", "", "the pinned runs: open, hide, rename, drop, compare")   \
-    X("", take, (model, view, input, argument), "", "N",                                 \
+    X("", "runs", act_runs(view), "R", "",                                               \
+      "the pinned runs: open, hide, rename, drop, compare")                              \
+    X("", "take", act_take(model, view, input, argument), "", "N",                       \
       "go on with the N-th pinned run; this one is pinned")                              \
-    X("", hide, (model, input, argument), "", "N",                                       \
+    X("", "hide", act_hide(model, input, argument), "", "N",                             \
       "hide the N-th pinned run, or show it")                                            \
-    X("", baseline, (model, input, argument), "", "N",                                   \
+    X("", "baseline", act_baseline(model, input, argument), "", "N",                     \
       "compare with the N-th pinned run")                                                \
-    X("", rename, (model, input, argument), "", "N NAME", "another name for it")         \
-    X("", unpin, (model, input, argument), "", "N", "drop the N-th pinned run")          \
-    X("", forget, (model, input), "B", "", "drop the run that is compared with")         \
-    X("", difference, (model, view, input, argument), "D", "[TOLERANCE|off]",            \
-      "this run minus the baseline, in all panes")                                       \
-    X("", sweep, (model, view, input, argument), "", "[PATH=A:B:N [PATH=...]|off]",      \
+    X("", "rename", act_rename(model, input, argument), "", "N NAME",                    \
+      "another name for it")                                                             \
+    X("", "unpin", act_unpin(model, input, argument), "", "N",                           \
+      "drop the N-th pinned run")                                                        \
+    X("", "forget", act_forget(model, input), "B", "",                                   \
+      "drop the run that is compared with")                                              \
+    X("", "difference", act_difference(model, view, input, argument), "D",               \
+      "[TOLERANCE|off]", "this run minus the baseline, in all panes")                    \
+    X("", "sweep", act_sweep(model, view, input, argument), "",                          \
+      "[PATH=A:B:N [PATH=...]|off]",                                                     \
       "runs with other values: curves and a metric, of two parameters a map")            \
-    X("", solve, (model, input, argument), "", "PATH[=A:B] QUANTITY<VALUE",              \
+    X("", "solve", act_solve(model, input, argument), "", "PATH[=A:B] QUANTITY<VALUE",   \
       "limit of a value for a condition: it is pinned")                                  \
-    X("", metric, (model, input, argument), "M", "[QUANTITY]",                           \
+    X("", "metric", act_metric(model, input, argument), "M", "[QUANTITY]",               \
       "what the sweep compares by; alone: the next one")                                 \
-    X("", stop, (model, input), "", "", "compute no further; Space at its end goes on")  \
-    X("", compare, (view), "c", "", "both runs in numbers")                              \
-    X("", explain, (view), "F1", "", "what is selected, in focus and at the cursor")     \
-    X("", why, (model, view, input), "W", "",                                            \
+    X("", "stop", act_stop(model, input), "", "",                                        \
+      "compute no further; Space at its end goes on")                                    \
+    X("", "compare", act_compare(view), "c", "", "both runs in numbers")                 \
+    X("", "explain", act_explain(view), "F1", "",                                        \
+      "what is selected, in focus and at the cursor")                                    \
+    X("", "why", act_why(model, view, input), "W", "",                                   \
       "the run's course, from its events and energies")                                  \
-    X("", poles, (view), "", "",                                                         \
+    X("", "poles", act_poles(view), "", "",                                              \
       "natural frequencies and damping near rest, free and on the wall")                 \
-    X("", data, (model, input, argument), "", "FILE.csv[@SHIFT]|off",                    \
+    X("", "data", act_data(model, input, argument), "", "FILE.csv[@SHIFT]|off",          \
       "measured columns, aligned at the first contact")                                  \
-    X("", identify, (model, input, argument), "", "PATH...",                             \
+    X("", "identify", act_identify(model, input, argument), "", "PATH...",               \
       "fit parameters to the measured data: that run is pinned")                         \
-    X("", undo, (model, view, input), "u", "", "take the last change back")              \
-    X("", redo, (model, view, input), "U C-r", "", "put it in again")                    \
-    X("Looking", mark, (model, view, input, argument), "m", "[TIME]",                    \
+    X("", "undo", act_undo(model, view, input), "u", "", "take the last change back")    \
+    X("", "redo", act_redo(model, view, input), "U C-r", "", "put it in again")          \
+    X("Looking", "mark", act_mark(model, view, input, argument), "m", "[TIME]",          \
       "second cursor: differences to it")                                                \
-    X("", note, (model, view, input, argument), "", "[TEXT]",                            \
+    X("", "note", act_note(model, view, input, argument), "", "[TEXT]",                  \
       "a note at the cursor, without a text none; @TIME TEXT elsewhere")                 \
-    X("", notes, (view), "", "", "all notes: Enter goes there")                          \
-    X("", side, (model, view), "Tab", "", "parameters or values on the right")           \
-    X("", filter, (model, view, argument), "/", "[WORDS]",                               \
+    X("", "notes", act_notes(view), "", "", "all notes: Enter goes there")               \
+    X("", "side", act_side(model, view), "Tab", "", "parameters or values on the right") \
+    X("", "filter", act_filter(model, view, argument), "/", "[WORDS]",                   \
       "of parameters, values or help: those with all words")                             \
-    X("", info, (view), "d", "", "what the scenario is about")                           \
-    X("Curves and their axes", zoom, (model, view, input, argument), "z:in Z:out 0:all", \
-      "in|out|all|FROM TO", "time axis round the cursor")                                \
-    X("", pan, (model, view, input, argument),                                           \
+    X("", "info", act_info(view), "d", "", "what the scenario is about")                 \
+    X("Curves and their axes", "zoom", act_zoom(model, view, input, argument),           \
+      "z:in Z:out 0:all", "in|out|all|FROM TO", "time axis round the cursor")            \
+    X("", "pan", act_pan(model, view, input, argument),                                  \
       "(:left S-Left:left ):right S-Right:right", "left|right|SECONDS",                  \
       "time axis along the run")                                                         \
-    X("", follow, (view, input), "f", "", "curves follow the cursor (panning ends it)")  \
-    X("", focus, (view, input), "w", "", "next pane, for the keys of axes")              \
-    X("", alone, (view), "e", "", "that pane as large as all, or all again")             \
-    X("", axis, (model, view, input, argument), "a:next v:in V:out S-Up:up S-Down:down", \
-      "auto|grow|calm|LOW HIGH [PANE]", "range: visible, seen, without spikes, yours")   \
-    X("", trace, (model, view, input, argument), "1:1 2:2 3:3 4:4 5:5 6:6 7:7 8:8 9:9",  \
-      "1-9|SIGNAL...|EXPRESSION",                                                        \
+    X("", "follow", act_follow(view, input), "f", "",                                    \
+      "curves follow the cursor (panning ends it)")                                      \
+    X("", "focus", act_focus(view, input), "w", "", "next pane, for the keys of axes")   \
+    X("", "alone", act_alone(view), "e", "", "that pane as large as all, or all again")  \
+    X("", "axis", act_axis(model, view, input, argument),                                \
+      "a:next v:in V:out S-Up:up S-Down:down", "auto|grow|calm|LOW HIGH [PANE]",         \
+      "range: visible, seen, without spikes, yours")                                     \
+    X("", "trace", act_trace(model, view, input, argument),                              \
+      "1:1 2:2 3:3 4:4 5:5 6:6 7:7 8:8 9:9", "1-9|SIGNAL...|EXPRESSION",                 \
       "show or hide a pane of curves: trace force - force_reading")                      \
-    X("", signal, (view, input, argument), "K", "[SIGNAL|all] [PANE]",                   \
+    X("", "signal", act_signal(view, input, argument), "K", "[SIGNAL|all] [PANE]",       \
       "hide a signal of the pane in focus, or show it; alone: the next")                 \
-    X("", limit, (model, input, argument), "", "SIGNAL VALUE|off",                       \
+    X("", "limit", act_limit(model, input, argument), "", "SIGNAL VALUE|off",            \
       "a bound drawn across the panes of a signal")                                      \
-    X("", band, (model, input, argument), "", "SIGNAL TOLERANCE|off",                    \
+    X("", "band", act_band(model, input, argument), "", "SIGNAL TOLERANCE|off",          \
       "a band round the baseline's curve, and who leaves it")                            \
-    X("", phase, (model, view, input, argument), "", "SIGNAL SIGNAL",                    \
+    X("", "phase", act_phase(model, view, input, argument), "", "SIGNAL SIGNAL",         \
       "a pane of one signal over another: phase gap force")                              \
-    X("", residual, (model, view, input, argument), "", "SIGNAL...",                     \
+    X("", "residual", act_residual(model, view, input, argument), "", "SIGNAL...",       \
       "a pane of :data minus the run")                                                   \
-    X("", spectrum, (model, view, input, argument), "", "SIGNAL",                        \
+    X("", "spectrum", act_spectrum(model, view, input, argument), "", "SIGNAL",          \
       "a pane of its amplitudes in the visible part")                                    \
-    X("", statistics, (view), "X", "",                                                   \
+    X("", "statistics", act_statistics(view), "X", "",                                   \
       "min, max, mean, rms, integral from mark to cursor")                               \
-    X("", lanes, (view, input, argument), "T", "auto|all|off",                           \
+    X("", "lanes", act_lanes(view, input, argument), "T", "auto|all|off",                \
       "contact, modes, changes... below the curves; alone: next")                        \
-    X("Scenarios", open, (model, view, input, argument), "o ]:+1 [:-1", "[NAME|+1|-1]",  \
-      "another scenario, from a list")                                                   \
-    X("", find, (model, view, argument), "", "[TEXT]",                                   \
+    X("Scenarios", "open", act_open(model, view, input, argument), "o ]:+1 [:-1",        \
+      "[NAME|+1|-1]", "another scenario, from a list")                                   \
+    X("", "find", act_find(model, view, argument), "", "[TEXT]",                         \
       "the list, filtered by what is typed")                                             \
-    X("", allow, (model, view, input), "", "",                                           \
+    X("", "allow", act_allow(model, view, input), "", "",                                \
       "let the scenario run its program or plug-in")                                     \
-    X("Lessons", lesson, (model, view, input, argument), "", "[NAME|off]",               \
+    X("Lessons", "lesson", act_lesson(model, view, input, argument), "", "[NAME|off]",   \
       "experiments step by step; alone: a list of them")                                 \
-    X("", answer, (model, input, argument), "A", "[ANSWER]",                             \
+    X("", "answer", act_answer(model, input, argument), "A", "[ANSWER]",                 \
       "a step's question: a number, or that of a choice")                                \
-    X("", continue, (model, input), "y", "", "the next step; before it is done: a hint") \
-    X("Files", save, (model, view, input, argument), "s", "FILE",                        \
+    X("", "continue", act_continue(model, input), "y", "",                               \
+      "the next step; before it is done: a hint")                                        \
+    X("Files", "save", act_save(model, view, input, argument), "s", "FILE",              \
       ".png .pdf .svg .csv .yaml .txt")                                                  \
-    Y("", save, (model, view, input, argument), "", "FILE",                              \
+    X("", "save!", act_save_now(model, view, input, argument), "", "FILE",               \
       "the same over a file that is there")                                              \
-    X("", session, (model, view, input, argument), "", "save|open FILE",                 \
+    X("", "session", act_session(model, view, input, argument), "", "save|open FILE",    \
       "runs, changes, pins and panes, to go on with another day")                        \
-    X("", copy, (model, view, input, argument), "", "value|run|screen",                  \
+    X("", "copy", act_copy(model, view, input, argument), "", "value|run|screen",        \
       "to the terminal's clipboard: value, command line, screen")                        \
-    X("", scene, (model, input, argument), "S", "FILE.png",                              \
+    X("", "scene", act_scene(model, input, argument), "S", "FILE.png",                   \
       "picture of the arm at this instant")                                              \
-    X("The lab", palette, (view, input, argument), "C-p", "[WORDS]",                     \
+    X("The lab", "palette", act_palette(view, input, argument), "C-p", "[WORDS]",        \
       "find anything by words: commands, values, scenarios")                             \
-    X("", glyphs, (view, input, argument), "", "braille|blocks|ascii",                   \
+    X("", "glyphs", act_glyphs(view, input, argument), "", "braille|blocks|ascii",       \
       "characters to draw with")                                                         \
-    X("", theme, (view, input, argument), "", "dark|light|mono",                         \
+    X("", "theme", act_theme(view, input, argument), "", "dark|light|mono",              \
       "colours for that ground")                                                         \
-    X("", colours, (view, input, argument), "", "auto|true|256|16|mono",                 \
+    X("", "colours", act_colours(view, input, argument), "", "auto|true|256|16|mono",    \
       "how many the terminal has")                                                       \
-    X("", colourby, (view, input, argument), "", "signal|run",                           \
+    X("", "colourby", act_colourby(view, input, argument), "", "signal|run",             \
       "what has a colour of its own; alone: the other")                                  \
-    X("", pixels, (view, input, argument), "", "auto|off",                               \
+    X("", "pixels", act_pixels(view, input, argument), "", "auto|off",                   \
       "pictures where the terminal has them")                                            \
-    X("", rate, (view, input, argument), "", "KB|off",                                   \
+    X("", "rate", act_rate(view, input, argument), "", "KB|off",                         \
       "most that pictures may take, in kB a second: 200 over ssh")                       \
-    X("", closeup, (view, input, argument), "", "auto|on|off",                           \
+    X("", "closeup", act_closeup(view, input, argument), "", "auto|on|off",              \
       "the contact from near by; alone: next")                                           \
-    X("", bending, (view, input, argument), "", "[FACTOR]",                              \
+    X("", "bending", act_bending(view, input, argument), "", "[FACTOR]",                 \
       "drawn that many times as large; alone: as it is")                                 \
-    X("", mouse, (view, input, argument), "", "on|off",                                  \
+    X("", "mouse", act_mouse(view, input, argument), "", "on|off",                       \
       "off lets the terminal select text")                                               \
-    X("", panes, (view, input, argument), "", "134",                                     \
+    X("", "panes", act_panes(view, input, argument), "", "134",                          \
       "these panes of curves and no others")                                             \
-    X("", key, (view, input, argument), "", "KEY COMMAND",                               \
+    X("", "key", act_key(view, input, argument), "", "KEY COMMAND",                      \
       "a key of your own, such as :key x step 5")                                        \
-    X("", unkey, (view, input, argument), "", "KEY",                                     \
+    X("", "unkey", act_unkey(view, input, argument), "", "KEY",                          \
       "take it back; one of the lab's does nothing then")                                \
-    X("", remember, (view, input), "", "", "keep looks, speed, panes, axes and keys")    \
-    X("", redraw, (view), "C-l", "", "draw the whole screen anew")                       \
-    X("", wait, (model, view, input, argument), "", "SECONDS",                           \
+    X("", "remember", act_remember(view, input), "", "",                                 \
+      "keep looks, speed, panes, axes and keys")                                         \
+    X("", "redraw", act_redraw(view), "C-l", "", "draw the whole screen anew")           \
+    X("", "wait", act_wait(model, view, input, argument), "", "SECONDS",                 \
       "in a script: let time pass")                                                      \
-    X("", help, (view), "?", "", "this page")                                            \
-    X("", interrupt, (model, input), "C-c", "",                                          \
+    X("", "help", act_help(view), "?", "", "this page")                                  \
+    X("", "interrupt", act_interrupt(model, input), "C-c", "",                           \
       "stop what is being computed, else leave")                                         \
-    X("", quit, (model, input), "q", "", "leave the lab; asks if changes would be lost") \
-    Y("", quit, (input), "", "", "leave the lab, whatever is lost")
+    X("", "quit", act_quit(model, input), "q", "",                                       \
+      "leave the lab; asks if changes would be lost")                                    \
+    X("", "quit!", act_quit_now(input), "", "", "leave the lab, whatever is lost")
 
 // Description of a command.
 typedef struct explorer_command {
