@@ -83,7 +83,22 @@ static status add_input(session *s, const session_input *in, fault *f)
     return STATUS_OK;
 }
 
-status session_change(session *s, int parameter, const char *text, fault *f)
+// A value as a text that a person gave, or as a number (text NULL).
+typedef struct given_value {
+    const char *text;
+    double number;
+} given_value;
+
+// Sets a parameter of a copy, which checks the value.
+static status set_given(parameters *p, int parameter, given_value v, fault *f)
+{
+    if (v.text != NULL) {
+        return parameter_set_text(p, parameter, v.text, f);
+    }
+    return parameter_set_number(p, parameter, v.number, f);
+}
+
+static status change(session *s, int parameter, given_value v, fault *f)
 {
     assert(parameter >= 0 && parameter < parameter_count);
     session_input in = {.kind = SESSION_INPUT_START,
@@ -91,35 +106,42 @@ status session_change(session *s, int parameter, const char *text, fault *f)
                         .parameter = parameter};
     remember_cursor(s, &in);
     const parameter_info *info = &parameter_table[parameter];
-    FAULT_IF(strlen(text) >= sizeof in.text, f, STATUS_BAD_ARGUMENT,
+    FAULT_IF(v.text != NULL && strlen(v.text) >= sizeof in.text, f, STATUS_BAD_ARGUMENT,
              "the value of %s is too long", info->path);
-    snprintf(in.text, sizeof in.text, "%s", text);
 
-    // a copy of the parameters checks the value
+    // from the cursor on, if the parameter may change during a run
     parameters scratch = session_parameters_at(s, s->now);
     if (parameter_is_text(info)) {
         in.before = (double)NAN;
     } else {
         in.before = parameter_get(&scratch, parameter);
     }
-    const bool timed = rig_can_change(&s->effective.parameters, parameter) && s->now > 0;
-    status code = STATUS_OK;
-    if (timed) {
-        code = parameter_may_change(&scratch, parameter, f);
-    }
-    if (code == STATUS_OK) {
-        TRY(parameter_set_text(&scratch, parameter, text, f));
-    } else {
-        TRY(code);
-    }
-
-    in.value = parameter_get(&scratch, parameter);
-    if (timed) {
+    if (rig_can_change(&s->effective.parameters, parameter) && s->now > 0) {
+        TRY(parameter_may_change(&scratch, parameter, f));
         in.kind = SESSION_INPUT_TIMED;
     } else {
         in.time = s->now;
     }
+
+    // the value, and how it is written
+    TRY(set_given(&scratch, parameter, v, f));
+    in.value = parameter_get(&scratch, parameter);
+    if (v.text != NULL) {
+        snprintf(in.text, sizeof in.text, "%s", v.text);
+    } else {
+        parameter_format(&scratch, parameter, in.text, sizeof in.text);
+    }
     return add_input(s, &in, f);
+}
+
+status session_change(session *s, int parameter, const char *text, fault *f)
+{
+    return change(s, parameter, (given_value){.text = text}, f);
+}
+
+status session_change_number(session *s, int parameter, double value, fault *f)
+{
+    return change(s, parameter, (given_value){.number = value}, f);
 }
 
 status session_change_from_start(session *s, int parameter, const char *text, fault *f)
@@ -133,13 +155,13 @@ status session_change_from_start(session *s, int parameter, const char *text, fa
 }
 
 // The first of several small steps: the run before them is kept as their ghost.
-static status begin_adjusting(session *s, int parameter, const char *text, fault *f)
+static status begin_adjusting(session *s, int parameter, given_value v, fault *f)
 {
     run_result before;
     const bool kept = s->computing == NULL && run_share(&s->run, &before) == STATUS_OK;
 
     // the ghost takes over the run before, else it is given back
-    status code = session_change(s, parameter, text, f);
+    status code = change(s, parameter, v, f);
     if (kept && code == STATUS_OK) {
         session_forget_ghost(s);
         s->ghost = before;
@@ -150,36 +172,42 @@ static status begin_adjusting(session *s, int parameter, const char *text, fault
     return code;
 }
 
-status session_adjust(session *s, int parameter, const char *text, fault *f)
+// Whether the last input gave this parameter a value at the cursor's instant; of
+// control.settings (".NAME=VALUE") the same number.
+static bool continues_last(const session *s, int parameter, given_value v)
+{
+    if (s->input_count == 0) {
+        return false;
+    }
+    const session_input *last = &s->inputs[s->input_count - 1];
+    size_t name = 0;
+    if (v.text != NULL && v.text[0] == '.') {
+        name = strcspn(v.text, "=") + 1;
+    }
+    return last->kind != SESSION_INPUT_PUSH && last->parameter == parameter &&
+           (name == 0 || strncmp(last->text, v.text, name) == 0) && last->time == s->now;
+}
+
+static status adjust(session *s, int parameter, given_value v, fault *f)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    const session_input *last =
-        s->input_count > 0 ? &s->inputs[s->input_count - 1] : NULL;
-
-    // of control.settings the same number
-    size_t name = 0;
-    if (text[0] == '.') {
-        name = strcspn(text, "=") + 1;
-    }
-    if (last == NULL || last->kind == SESSION_INPUT_PUSH ||
-        last->parameter != parameter || strncmp(last->text, text, name) != 0 ||
-        last->time != s->now) {
-        return begin_adjusting(s, parameter, text, f);
+    if (!continues_last(s, parameter, v)) {
+        return begin_adjusting(s, parameter, v, f);
     }
 
     // back at what it was before there is no input
+    const session_input replaced = s->inputs[s->input_count - 1];
     parameters scratch = session_parameters_at(s, s->now);
-    if (parameter_set_text(&scratch, parameter, text, NULL) == STATUS_OK &&
-        parameter_get(&scratch, parameter) == last->before) {
+    if (set_given(&scratch, parameter, v, NULL) == STATUS_OK &&
+        parameter_get(&scratch, parameter) == replaced.before) {
         session_forget_ghost(s);
         return session_undo(s, f);
     }
 
     // its place is taken; undoing leads to where the cursor was before the first of them
-    const session_input replaced = *last;
     const int total = s->input_total;
     s->input_count--;
-    status code = session_change(s, parameter, text, f);
+    status code = change(s, parameter, v, f);
     if (code != STATUS_OK) {
         s->inputs[s->input_count++] = replaced;
         s->input_total = total;
@@ -191,6 +219,16 @@ status session_adjust(session *s, int parameter, const char *text, fault *f)
     now->seen_row = replaced.seen_row;
     now->before = replaced.before;
     return STATUS_OK;
+}
+
+status session_adjust(session *s, int parameter, const char *text, fault *f)
+{
+    return adjust(s, parameter, (given_value){.text = text}, f);
+}
+
+status session_adjust_number(session *s, int parameter, double value, fault *f)
+{
+    return adjust(s, parameter, (given_value){.number = value}, f);
 }
 
 unsigned session_new_gesture(const session *s)

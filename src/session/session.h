@@ -127,12 +127,14 @@ const event *session_event(const session *s);
 // and computes the run anew; what could be redone is forgotten. On failure nothing
 // changes and f says why.
 status session_change(session *s, int parameter, const char *text, fault *f);
+status session_change_number(session *s, int parameter, double value, fault *f);
 // The same from the start, wherever the cursor is, which stays.
 status session_change_from_start(session *s, int parameter, const char *text, fault *f);
 // The same as session_change, in the place of the last input if that gave this parameter
 // a value at this very instant: small steps to a value are one input (session.ghost is
 // the run before them), and none once they have led back to where they began.
 status session_adjust(session *s, int parameter, const char *text, fault *f);
+status session_adjust_number(session *s, int parameter, double value, fault *f);
 // The same as session_change for an impulse at the tip [N s].
 status session_push(session *s, double impulse, fault *f);
 

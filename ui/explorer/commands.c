@@ -367,10 +367,10 @@ bool act_remember(const explorer_view *view, explorer_input *input)
     }
 
     // whole or not at all
-    if (!act_worked(input, whole_file_open(&file, path, &input->fault))) {
+    if (!act_succeeded(input, whole_file_open(&file, path, &input->fault))) {
         return false;
     }
     write_settings(view, file.stream);
-    return act_worked(input, whole_file_commit(&file, &input->fault)) &&
+    return act_succeeded(input, whole_file_commit(&file, &input->fault)) &&
            act_tell(input, "settings kept in %s", path);
 }

@@ -74,7 +74,7 @@ void explorer_draw(explorer *ex, screen *s)
 
     // the state first, so that drawing only reads it; what the picture decided comes back
     if (compose_fits(size)) {
-        act_follow_slider(&ex->model, &ex->view, &ex->input);
+        act_apply_slider(&ex->model, &ex->view, &ex->input);
         act_follow_lesson(&ex->model);
         state_update(&ex->model, &ex->view);
     }

@@ -159,11 +159,11 @@ static bool save_over(explorer_model *model, explorer_view *view, explorer_input
 
     // a figure opens its file itself
     if (content == FILE_FIGURE) {
-        return act_worked(input, write_figure(model, name, &input->fault)) &&
+        return act_succeeded(input, write_figure(model, name, &input->fault)) &&
                tell_file(input, true, name);
     }
     whole_file file;
-    if (!act_worked(input, whole_file_open(&file, name, &input->fault))) {
+    if (!act_succeeded(input, whole_file_open(&file, name, &input->fault))) {
         return false;
     }
     const session *s = &model->session;
@@ -174,7 +174,7 @@ static bool save_over(explorer_model *model, explorer_view *view, explorer_input
     } else {
         write_screen(model, view, input, file.stream);
     }
-    if (!act_worked(input, whole_file_commit(&file, &input->fault))) {
+    if (!act_succeeded(input, whole_file_commit(&file, &input->fault))) {
         return false;
     }
     if (content == FILE_SCENARIO) {
@@ -235,7 +235,7 @@ bool act_scene(const explorer_model *model, explorer_input *input, const char *a
                                    .options = options,
                                    .times = &s->now,
                                    .count = 1};
-    return act_worked(input, scene_write(&picture, argument, &input->fault)) &&
+    return act_succeeded(input, scene_write(&picture, argument, &input->fault)) &&
            tell_file(input, true, argument);
 }
 
@@ -293,7 +293,7 @@ bool act_copy(explorer_model *model, explorer_view *view, explorer_input *input,
     size_t size = 0;
     FILE *stream = open_memstream(&input->copied, &size);
     if (stream == NULL) {
-        return act_worked(input, STATUS_NO_MEMORY);
+        return act_succeeded(input, STATUS_NO_MEMORY);
     }
     if (is_screen) {
         write_screen(model, view, input, stream);
@@ -303,7 +303,7 @@ bool act_copy(explorer_model *model, explorer_view *view, explorer_input *input,
         write_value(model, view, stream);
     }
     if (fclose(stream) != 0) {
-        return act_worked(input, STATUS_NO_MEMORY);
+        return act_succeeded(input, STATUS_NO_MEMORY);
     }
     return act_tell(input, "%s is on the clipboard of a terminal that knows OSC 52",
                     what);

@@ -51,7 +51,7 @@ static void enter_prompt(explorer *ex)
         palette_line(&ex->view.scenarios, &ex->view.keys, entries[at], line, &goes_on);
     }
     p->open = false;
-    act_hush(&ex->input);
+    act_clear_message(&ex->input);
     if (goes_on) {
         prompt_open(p, NULL, "%s", line);
         return;
@@ -94,7 +94,7 @@ static void key_in_prompt(explorer *ex, int key)
     }
     if (leaves(key)) {
         p->open = false;
-        act_hush(&ex->input);
+        act_clear_message(&ex->input);
     } else if (key == KEY_CODE_ENTER) {
         enter_prompt(ex);
     } else if (key == ('p' & 0x1f)) {
@@ -138,7 +138,7 @@ static void key_in_filter(explorer *ex, int key)
         explorer_carry_out(ex, "edit");
     } else if (!enters) {
         text_type(ex->view.filters.text[filtered], key);
-        act_settle_filter(&ex->model, &ex->view, filtered);
+        act_select_filtered(&ex->model, &ex->view, filtered);
     }
 }
 
@@ -163,7 +163,7 @@ static void escape(explorer *ex)
 
     // what was only shown for a moment goes with it
     session_forget_ghost(&ex->model.session);
-    act_hush(&ex->input);
+    act_clear_message(&ex->input);
 }
 
 static void key_by_table(explorer *ex, int key)
@@ -183,7 +183,7 @@ static void key_by_table(explorer *ex, int key)
         // a copy: the command may be one that binds keys
         char line[LINE_TEXT];
         snprintf(line, sizeof line, "%s", bound);
-        act_hush(&ex->input);
+        act_clear_message(&ex->input);
         explorer_carry_out(ex, line);
     } else if (key == KEY_CODE_ESCAPE) {
         escape(ex);
@@ -220,7 +220,7 @@ void explorer_key(explorer *ex, int key)
     } else if (key == ':') {
         prompt_open(&ex->input.prompt, NULL, "%s", "");
         ex->view.palette.selected = -1;
-        act_hush(&ex->input);
+        act_clear_message(&ex->input);
     } else if (ex->view.page != PANEL_NONE && !quits) {
         panel_key(&ex->model, &ex->view, &ex->input, key);
     } else {

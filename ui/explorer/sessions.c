@@ -151,7 +151,7 @@ bool explorer_save_session(explorer_model *model, const explorer_view *view,
                           path);
     }
     if (!(act_need_whole_run(model, input) &&
-          act_worked(input, write_session(model, view, path, &input->fault)))) {
+          act_succeeded(input, write_session(model, view, path, &input->fault)))) {
         return false;
     }
     snprintf(model->session_path, sizeof model->session_path, "%s", path);
@@ -191,8 +191,8 @@ static bool take_session(explorer_model *model, explorer_view *view,
             file->run_count - 1, before);
     }
     fault *f = &input->fault;
-    if (!act_worked(input, session_reopen(&fresh, &file->runs[0].from,
-                                          model->session.patience, f))) {
+    if (!act_succeeded(input, session_reopen(&fresh, &file->runs[0].from,
+                                             model->session.patience, f))) {
         return false;
     }
     status code = STATUS_OK;
@@ -216,7 +216,7 @@ static bool take_session(explorer_model *model, explorer_view *view,
         }
         model->pinned.baseline = baseline;
         session_finish(&fresh);
-        return act_worked(input, code);
+        return act_succeeded(input, code);
     }
     return true;
 }
@@ -225,7 +225,7 @@ bool explorer_resume_session(explorer_model *model, explorer_view *view,
                              explorer_input *input, const char *path, line_function *look)
 {
     static session_file file;
-    if (!act_worked(input, session_file_read(&file, path, &input->fault))) {
+    if (!act_succeeded(input, session_file_read(&file, path, &input->fault))) {
         return false;
     }
 
@@ -245,7 +245,7 @@ bool explorer_resume_session(explorer_model *model, explorer_view *view,
         snprintf(model->session_path, sizeof model->session_path, "%s", path);
         model->saved_version = model_run_id(model);
         model->kept_pins = model->pinned.pinned;
-        act_hush(input);
+        act_clear_message(input);
         if (said.text[0] != '\0') {
             done = act_warn(input, "%.200s: %.400s", path, said.text);
         } else {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool act_hush(explorer_input *input)
+bool act_clear_message(explorer_input *input)
 {
     input->message.text[0] = '\0';
     return true;
@@ -25,7 +25,7 @@ bool act_say(explorer_input *input, bool warning, bool done, const char *format,
     return done;
 }
 
-bool act_worked(explorer_input *input, status code)
+bool act_succeeded(explorer_input *input, status code)
 {
     const fault f = input->fault;
     input->fault = (fault){0};
@@ -193,12 +193,23 @@ bool act_tell_change(const explorer_model *model, explorer_input *input)
     return act_tell(input, "%s = %s%s%s %s", info->path, value, blank, info->unit, when);
 }
 
-bool act_give(explorer_model *model, explorer_input *input, int parameter,
-              const char *text)
+bool act_change_parameter(explorer_model *model, explorer_input *input, int parameter,
+                          const char *text)
 {
     assert(parameter >= 0 && parameter < parameter_count);
-    session_forget_ghost(&model->session);
-    return act_worked(input,
-                      session_change(&model->session, parameter, text, &input->fault)) &&
+    session *s = &model->session;
+    session_forget_ghost(s);
+    return act_succeeded(input, session_change(s, parameter, text, &input->fault)) &&
+           act_tell_change(model, input);
+}
+
+bool act_change_number(explorer_model *model, explorer_input *input, int parameter,
+                       double value)
+{
+    assert(parameter >= 0 && parameter < parameter_count);
+    session *s = &model->session;
+    session_forget_ghost(s);
+    return act_succeeded(input,
+                         session_change_number(s, parameter, value, &input->fault)) &&
            act_tell_change(model, input);
 }

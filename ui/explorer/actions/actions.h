@@ -164,11 +164,11 @@ bool act_say(explorer_input *input, bool warning, bool done, const char *format,
 // Done: with a message, with a warning, without any (the message line is cleared).
 #define act_tell(input, ...) act_say(input, false, true, __VA_ARGS__)
 #define act_warn(input, ...) act_say(input, true, true, __VA_ARGS__)
-bool act_hush(explorer_input *input);
+bool act_clear_message(explorer_input *input);
 // Not done: the argument is not what the action expects.
 #define act_refuse(input, ...) act_say(input, true, false, __VA_ARGS__)
 // Whether a call that returned `code` worked; if not, the state's fault is the message.
-bool act_worked(explorer_input *input, status code);
+bool act_succeeded(explorer_input *input, status code);
 // --- what is read ----------------------------------------------------------------------
 
 // Reads a finite number.
@@ -212,14 +212,14 @@ bool act_need_short_runs(const explorer_model *model, explorer_input *input,
 
 // PATH or PATH=VALUES with the whole path of a parameter that is named by its last part.
 // Returns text.
-const char *act_whole_path(const char *word, char *text, size_t size);
+const char *act_full_path(const char *word, char *text, size_t size);
 
-// Pins the present run with another value from the start; act_settle_baseline is to
+// Pins the present run with another value from the start; act_apply_baseline is to
 // follow.
 status act_pin_value(explorer_model *model, const sweep_axis *axis, double value,
                      const char *name, fault *f);
 // Compares the present run with the baseline of the pinned ones from now on.
-bool act_settle_baseline(explorer_model *model, explorer_input *input);
+bool act_apply_baseline(explorer_model *model, explorer_input *input);
 
 // --- time ------------------------------------------------------------------------------
 
@@ -243,9 +243,12 @@ bool act_zoom_between(const explorer_model *model, explorer_view *view,
 // news.
 bool act_tell_change(const explorer_model *model, explorer_input *input);
 
-// Gives a parameter another value, from the cursor on or from the start.
-bool act_give(explorer_model *model, explorer_input *input, int parameter,
-              const char *text);
+// Gives a parameter another value, from the cursor on or from the start: one that was
+// typed, or a number (of a choice the index).
+bool act_change_parameter(explorer_model *model, explorer_input *input, int parameter,
+                          const char *text);
+bool act_change_number(explorer_model *model, explorer_input *input, int parameter,
+                       double value);
 
 // Says what happens at the cursor: an event of the run, else the controller's change of
 // mode.
@@ -255,11 +258,11 @@ bool act_tell_event(explorer_model *model, explorer_input *input);
 
 // Grasps the tip with the pointer at a place [m], moves the pointer, and releases the
 // tip.
-bool act_hold_tip(explorer_model *model, explorer_view *view, explorer_input *input,
+bool act_pull_tip(explorer_model *model, explorer_view *view, explorer_input *input,
                   plane_vector place);
 void act_move_pull(const explorer_model *model, explorer_view *view, plane_vector place);
-bool act_drop_pull(const explorer_model *model, explorer_view *view,
-                   explorer_input *input);
+bool act_release_tip(const explorer_model *model, explorer_view *view,
+                     explorer_input *input);
 
 // --- pinned runs, changes --------------------------------------------------------------
 // What the commands of a name that takes a number do, with an index.
@@ -290,7 +293,8 @@ void act_drop_note(explorer_model *model, explorer_view *view, int index);
 
 // After a change of a panel's filter: scrolls to the top and selects an entry that passes
 // the filter.
-void act_settle_filter(const explorer_model *model, explorer_view *view, panel_id panel);
+void act_select_filtered(const explorer_model *model, explorer_view *view,
+                         panel_id panel);
 
 // --- sweeps ----------------------------------------------------------------------------
 
@@ -327,11 +331,12 @@ bool act_toggle_signal(explorer_view *view, explorer_input *input, int index, in
 
 // Starts dragging a parameter's slider or moves it to a share of its scale, 0 to 1; only
 // stores its position. It is some cells wide.
-void act_hold_slider(const explorer_model *model, explorer_view *view, int parameter,
+void act_drag_slider(const explorer_model *model, explorer_view *view, int parameter,
                      double share, int cells);
 // Sets the parameter to the value of the slider; called once for each picture, however
 // often the mouse has moved.
-bool act_follow_slider(explorer_model *model, const explorer_view *view,
-                       explorer_input *input);
+bool act_apply_slider(explorer_model *model, const explorer_view *view,
+                      explorer_input *input);
 // Ends dragging, with the last value set.
-bool act_drop_slider(explorer_model *model, explorer_view *view, explorer_input *input);
+bool act_release_slider(explorer_model *model, explorer_view *view,
+                        explorer_input *input);

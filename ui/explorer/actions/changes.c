@@ -8,32 +8,28 @@
 
 #include "src/base/numbers.h"
 
-// act_give with a number, in small steps: several at one instant are one change, and none
-// at all once the value is what it was.
+// Gives a parameter a number in small steps: several at one instant are one change, and
+// none at all once the value is what it was.
 static bool act_adjust(explorer_model *model, explorer_input *input, int parameter,
                        double value)
 {
     assert(parameter >= 0 && parameter < parameter_count);
     session *s = &model->session;
-    parameters p = model_parameters(model);
-    char text[LINE_TEXT];
-
-    // checked and rounded as the table has it
-    if (!act_worked(input, parameter_set_number(&p, parameter, value, &input->fault))) {
+    const int changes = s->input_count;
+    if (!act_succeeded(input,
+                       session_adjust_number(s, parameter, value, &input->fault))) {
         return false;
     }
-    parameter_format(&p, parameter, text, sizeof text);
+    if (s->input_count >= changes) {
+        return act_tell_change(model, input);
+    }
 
     // a value that is as it was leaves no change
-    const int changes = s->input_count;
-    if (!act_worked(input, session_adjust(s, parameter, text, &input->fault))) {
-        return false;
-    }
-    if (s->input_count < changes) {
-        return act_tell(input, "%s is %s %s again", parameter_table[parameter].path, text,
-                        parameter_table[parameter].unit);
-    }
-    return act_tell_change(model, input);
+    char text[LINE_TEXT];
+    const parameters p = model_parameters(model);
+    parameter_format(&p, parameter, text, sizeof text);
+    return act_tell(input, "%s is %s %s again", parameter_table[parameter].path, text,
+                    parameter_table[parameter].unit);
 }
 
 // The parameter of a path, of its last part or of a beginning of either.
@@ -45,7 +41,7 @@ static bool find_parameter(explorer_input *input, const char *name, int *paramet
                           name);
     }
     if (*parameter < 0 && parameter_look_up(name, &input->fault) < 0) {
-        return act_worked(input, STATUS_BAD_ARGUMENT);
+        return act_succeeded(input, STATUS_BAD_ARGUMENT);
     }
     return true;
 }
@@ -75,7 +71,7 @@ bool act_set(explorer_model *model, explorer_view *view, explorer_input *input,
         }
         return act_tell(input, "%s: %s", info->path, info->description);
     }
-    return act_give(model, input, parameter, value);
+    return act_change_parameter(model, input, parameter, value);
 }
 
 // How far a nudge of a real parameter goes up from a value: a fixed step, or on a
@@ -160,7 +156,6 @@ static bool take_swept(explorer_model *model, explorer_input *input)
 {
     const lab_sweep *sweep = &model->sweep;
     session *s = &model->session;
-    char value[SWEEP_VALUE_TEXT];
     double values[2];
     if (sweep->selected >= sweep->count) {
         return act_refuse(input, "the sweep has no run yet");
@@ -173,8 +168,7 @@ static bool take_swept(explorer_model *model, explorer_input *input)
     lab_sweep_values(sweep, sweep->selected, values);
     for (int i = 0; i <= lab_sweep_is_map(sweep) && changed; i++) {
         session_seek(s, 0);
-        sweep_axis_format(axes[i], values[i], value, sizeof value);
-        changed = act_give(model, input, axes[i]->parameter, value);
+        changed = act_change_number(model, input, axes[i]->parameter, values[i]);
     }
     const double seen = s->seen;
     session_seek(s, now);
@@ -228,7 +222,7 @@ bool act_push(explorer_model *model, explorer_input *input, const char *argument
     session_forget_ghost(&model->session);
     double impulse = 0.01;
     return act_read_number_or(input, argument, "", &impulse) &&
-           act_worked(input, session_push(&model->session, impulse, &input->fault)) &&
+           act_succeeded(input, session_push(&model->session, impulse, &input->fault)) &&
            (act_tell_failed_run(model, input) ||
             act_tell(input, "pushed with %g N s at %.4f s", impulse, model->session.now));
 }
@@ -243,8 +237,8 @@ static bool turn(explorer_model *model, explorer_view *view, explorer_input *inp
     const bool back = direction < 0;
     const int last = back ? 0 : s->input_total;
     if (s->input_count == last && model_has_visit(model, direction)) {
-        if (!act_worked(input,
-                        state_change_visit(model, view, direction, &input->fault))) {
+        if (!act_succeeded(input,
+                           state_change_visit(model, view, direction, &input->fault))) {
             return false;
         }
         if (back) {
@@ -255,10 +249,10 @@ static bool turn(explorer_model *model, explorer_view *view, explorer_input *inp
 
     // a change
     if (back) {
-        return act_worked(input, session_undo(s, &input->fault)) &&
+        return act_succeeded(input, session_undo(s, &input->fault)) &&
                act_tell(input, "undone, U puts it in again");
     }
-    return act_worked(input, session_redo(s, &input->fault)) &&
+    return act_succeeded(input, session_redo(s, &input->fault)) &&
            act_tell(input, "put in again");
 }
 
@@ -274,23 +268,25 @@ bool act_redo(explorer_model *model, explorer_view *view, explorer_input *input)
 
 bool act_model(explorer_model *model, explorer_input *input)
 {
-    bool printed = model->session.effective.parameters.arm.model == ARM_PRINTED;
-    return act_give(model, input, PARAMETER_INDEX(arm.model),
-                    printed ? "corrected" : "printed");
+    arm_model_kind other = ARM_PRINTED;
+    if (model->session.effective.parameters.arm.model == ARM_PRINTED) {
+        other = ARM_CORRECTED;
+    }
+    return act_change_number(model, input, PARAMETER_INDEX(arm.model), other);
 }
 
 bool act_extend(explorer_model *model, explorer_input *input, const char *argument)
 {
-    char text[NUMBER_TEXT];
-    double duration = model->session.effective.parameters.run.duration, more = duration;
+    const double duration = model->session.effective.parameters.run.duration;
+    double more = duration;
     if (!act_read_number_or(input, argument, "", &more)) {
         return false;
     }
 
     // what has been seen stays seen: only rows are added
     const double seen = model->session.seen;
-    number_format(text, duration + more);
-    const bool longer = act_give(model, input, PARAMETER_INDEX(run.duration), text);
+    const bool longer =
+        act_change_number(model, input, PARAMETER_INDEX(run.duration), duration + more);
     if (longer) {
         model->session.seen = seen;
     }
@@ -299,7 +295,7 @@ bool act_extend(explorer_model *model, explorer_input *input, const char *argume
 
 // --- sliders ---------------------------------------------------------------------------
 
-void act_hold_slider(const explorer_model *model, explorer_view *view, int parameter,
+void act_drag_slider(const explorer_model *model, explorer_view *view, int parameter,
                      double share, int cells)
 {
     assert(parameter >= 0 && parameter < parameter_count);
@@ -318,8 +314,8 @@ void act_hold_slider(const explorer_model *model, explorer_view *view, int param
     grip->value = slider_value(&grip->scale, parameter, share, cells);
 }
 
-bool act_follow_slider(explorer_model *model, const explorer_view *view,
-                       explorer_input *input)
+bool act_apply_slider(explorer_model *model, const explorer_view *view,
+                      explorer_input *input)
 {
     const slider_grip *grip = &view->slider;
     const parameters p = model_parameters(model);
@@ -327,9 +323,9 @@ bool act_follow_slider(explorer_model *model, const explorer_view *view,
            act_adjust(model, input, grip->parameter, grip->value);
 }
 
-bool act_drop_slider(explorer_model *model, explorer_view *view, explorer_input *input)
+bool act_release_slider(explorer_model *model, explorer_view *view, explorer_input *input)
 {
-    const bool followed = act_follow_slider(model, view, input);
+    const bool followed = act_apply_slider(model, view, input);
     view->slider.held = false;
     return followed;
 }
@@ -356,8 +352,8 @@ static int read_change(const explorer_model *model, explorer_input *input,
 static bool change_value(explorer_model *model, explorer_view *view,
                          explorer_input *input, int index, const char *value)
 {
-    if (!act_worked(input,
-                    session_change_input(&model->session, index, value, &input->fault))) {
+    if (!act_succeeded(input, session_change_input(&model->session, index, value,
+                                                   &input->fault))) {
         return false;
     }
     char text[LINE_TEXT];
@@ -406,7 +402,8 @@ bool act_drop_change(explorer_model *model, explorer_view *view, explorer_input 
     // the text first: the change is gone afterwards
     char text[LINE_TEXT];
     model_change_text(model, index, text, sizeof text);
-    if (!act_worked(input, session_drop_input(&model->session, index, &input->fault))) {
+    if (!act_succeeded(input,
+                       session_drop_input(&model->session, index, &input->fault))) {
         return false;
     }
 

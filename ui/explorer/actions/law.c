@@ -41,7 +41,7 @@ static bool refuse_law(explorer_input *input, const char *name)
 // do.
 static bool change_law(explorer_model *model, explorer_input *input, const char *name)
 {
-    return act_give(model, input, PARAMETER_INDEX(control.law), name) ||
+    return act_change_parameter(model, input, PARAMETER_INDEX(control.law), name) ||
            (lock_prevents(&model->session, name) &&
             act_refuse(input, "%.200s; undo the lock first", input->message.text));
 }
@@ -120,14 +120,14 @@ static bool lock(explorer_model *model, explorer_input *input, const char *wante
         replaces = last->kind == SESSION_INPUT_TIMED && last->time == s->now &&
                    last->parameter == parameter;
     }
-    if (replaces && !act_worked(input, session_undo(s, &input->fault))) {
+    if (replaces && !act_succeeded(input, session_undo(s, &input->fault))) {
         return false;
     }
 
     // a lock that is refused leaves the one before in effect
     const parameters p = model_parameters(model);
     const bool other = strcmp(p.control.lock, wanted) != 0;
-    if (other && !act_give(model, input, parameter, wanted)) {
+    if (other && !act_change_parameter(model, input, parameter, wanted)) {
         loss_unless(!replaces || session_redo(s, NULL) == STATUS_OK);
         return false;
     }

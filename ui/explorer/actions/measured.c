@@ -43,7 +43,7 @@ bool act_data(explorer_model *model, explorer_input *input, const char *argument
     csv_table_finish(&table);
     if (code != STATUS_OK) {
         trace_finish(&fresh);
-        return act_worked(input, code);
+        return act_succeeded(input, code);
     }
 
     trace_finish(&model->measured);
@@ -140,7 +140,7 @@ bool act_identify(explorer_model *model, explorer_input *input, const char *argu
     snprintf(words, sizeof words, "%s", argument);
     for (char *word; code == STATUS_OK && (word = strtok_r(rest, " ", &rest)) != NULL;) {
         char path[2 * LINE_TEXT];
-        code = identify_add_path(&id, act_whole_path(word, path, sizeof path), f);
+        code = identify_add_path(&id, act_full_path(word, path, sizeof path), f);
     }
     if (code == STATUS_OK) {
         code = identify_add_trace(&id, model->measured_file, NULL, 0, f);
@@ -155,8 +155,8 @@ bool act_identify(explorer_model *model, explorer_input *input, const char *argu
     if (code == STATUS_OK && determined) {
         code = pin_fitted(model, &id, f);
     }
-    const bool done = act_worked(input, code) && tell_fit(input, &id),
+    const bool done = act_succeeded(input, code) && tell_fit(input, &id),
                all = id.undetermined == 0;
     identify_finish(&id);
-    return done && act_settle_baseline(model, input) && all;
+    return done && act_apply_baseline(model, input) && all;
 }

@@ -44,7 +44,7 @@ static bool add_signal(explorer_model *model, const explorer_view *view,
         }
         signal = signal_derive(place, text, &input->fault);
         if (signal < 0) {
-            return act_worked(input, input->fault.code);
+            return act_succeeded(input, input->fault.code);
         }
         for (int i = 0; i < SHOWN_RUNS; i++) {
             extremes_forget(&model->extremes[i]);

@@ -13,16 +13,16 @@
 // --- pinned runs -----------------------------------------------------------------------
 
 // Makes the baseline the run for comparison with the present one.
-bool act_settle_baseline(explorer_model *model, explorer_input *input)
+bool act_apply_baseline(explorer_model *model, explorer_input *input)
 {
     const run_list *list = &model->pinned;
     if (list->baseline < 0) {
         session_forget_other(&model->session);
         return true;
     }
-    return act_worked(input, session_keep_beside(&model->session,
-                                                 &list->runs[list->baseline].run,
-                                                 &input->fault));
+    return act_succeeded(input, session_keep_beside(&model->session,
+                                                    &list->runs[list->baseline].run,
+                                                    &input->fault));
 }
 
 // Pins the present run and makes it the baseline.
@@ -30,9 +30,9 @@ static bool pin(explorer_model *model, explorer_input *input, const char *name)
 {
     session_forget_ghost(&model->session);
     return act_need_whole_run(model, input) &&
-           act_worked(input, run_list_pin(&model->pinned, &model->session, name,
-                                          &input->fault)) &&
-           act_settle_baseline(model, input);
+           act_succeeded(input, run_list_pin(&model->pinned, &model->session, name,
+                                             &input->fault)) &&
+           act_apply_baseline(model, input);
 }
 
 bool act_branch(explorer_model *model, explorer_input *input)
@@ -58,7 +58,7 @@ bool act_forget(explorer_model *model, explorer_input *input)
     if (model->pinned.baseline >= 0) {
         run_list_drop(&model->pinned, model->pinned.baseline);
     }
-    return act_settle_baseline(model, input);
+    return act_apply_baseline(model, input);
 }
 
 // The index of the pinned run whose number begins an argument, which moves behind it; -1
@@ -97,14 +97,14 @@ bool act_take_run(explorer_model *model, explorer_view *view, explorer_input *in
     } else {
         code = session_reopen(&other, from, model->session.patience, &input->fault);
         if (code != STATUS_OK) {
-            return act_worked(input, code);
+            return act_succeeded(input, code);
         }
         code = state_take_session(model, view, &other, &input->fault);
         if (code != STATUS_OK) {
             session_finish(&other);
         }
     }
-    return act_worked(input, code) &&
+    return act_succeeded(input, code) &&
            act_tell(input, "'%s' goes on; the run before is compared with it",
                     taken->name);
 }
@@ -136,7 +136,7 @@ bool act_compare_with(explorer_model *model, explorer_input *input, int index)
 {
     assert(index >= 0 && index < model->pinned.count);
     model->pinned.baseline = index;
-    return act_settle_baseline(model, input) &&
+    return act_apply_baseline(model, input) &&
            act_tell(input, "compared with '%s' from now on",
                     model->pinned.runs[index].name);
 }
@@ -172,7 +172,7 @@ bool act_drop_run(explorer_model *model, explorer_input *input, int index)
 {
     assert(index >= 0 && index < model->pinned.count);
     run_list_drop(&model->pinned, index);
-    return act_settle_baseline(model, input);
+    return act_apply_baseline(model, input);
 }
 
 bool act_unpin(explorer_model *model, explorer_input *input, const char *argument)
@@ -280,7 +280,7 @@ status act_pin_value(explorer_model *model, const sweep_axis *axis, double value
     return code;
 }
 
-const char *act_whole_path(const char *word, char *text, size_t size)
+const char *act_full_path(const char *word, char *text, size_t size)
 {
     char name[LINE_TEXT];
     text_cut(word, "=", name, sizeof name);
@@ -361,7 +361,7 @@ bool act_solve(explorer_model *model, explorer_input *input, const char *argumen
 
     // a parameter may be given by the last part of its path
     char whole[2 * LINE_TEXT], name[RUN_NAME];
-    act_whole_path(path, whole, sizeof whole);
+    act_full_path(path, whole, sizeof whole);
     status code = solve_condition_read(rest, &condition, f);
     const scenario *s = &model->session.effective;
     if (code == STATUS_OK) {
@@ -377,10 +377,10 @@ bool act_solve(explorer_model *model, explorer_input *input, const char *argumen
         snprintf(name, sizeof name, "%s %.5g", strchr(axis.name, '.') + 1, value);
         code = act_pin_value(model, &axis, value, name, f);
     }
-    const bool done =
-        act_worked(input, code) && tell_limits(model, input, &axis, &condition, &found);
+    const bool done = act_succeeded(input, code) &&
+                      tell_limits(model, input, &axis, &condition, &found);
     sweep_axis_finish(&axis);
-    return done && act_settle_baseline(model, input);
+    return done && act_apply_baseline(model, input);
 }
 
 // --- sweeps ----------------------------------------------------------------------------
@@ -398,8 +398,8 @@ bool act_continue_sweep(explorer_model *model, explorer_input *input)
     // in between
     const double begin = clock_seconds(CLOCK_MONOTONIC);
     do {
-        if (!act_worked(input, lab_sweep_compute_next(sweep, &model->session.effective,
-                                                      &input->fault))) {
+        if (!act_succeeded(input, lab_sweep_compute_next(sweep, &model->session.effective,
+                                                         &input->fault))) {
             return false;
         }
     } while (lab_sweep_is_map(sweep) && !lab_sweep_is_done(sweep) &&
@@ -457,7 +457,7 @@ bool act_sweep(explorer_model *model, explorer_view *view, explorer_input *input
     // each run is computed while the lab waits, so they must be short
     if (!(act_need_whole_run(model, input) &&
           act_need_short_runs(model, input, "sweep", SWEPT_RUNS) &&
-          act_worked(input, lab_sweep_begin(sweep, argument, &input->fault)))) {
+          act_succeeded(input, lab_sweep_begin(sweep, argument, &input->fault)))) {
         return false;
     }
     view->side.panel = PANEL_SWEEP;

@@ -18,7 +18,7 @@ bool act_open_scenario(explorer_model *model, explorer_view *view, explorer_inpu
         code = session_open(&fresh, &s, model->session.patience, &input->fault);
     }
     if (code != STATUS_OK) {
-        return act_worked(input, code);
+        return act_succeeded(input, code);
     }
 
     // the new session takes the old one's place, to which u returns
@@ -26,7 +26,7 @@ bool act_open_scenario(explorer_model *model, explorer_view *view, explorer_inpu
     code = state_take_session(model, view, &fresh, &input->fault);
     if (code != STATUS_OK) {
         session_finish(&fresh);
-        return act_worked(input, code);
+        return act_succeeded(input, code);
     }
     view->playback.playing = true;
     const char *title = model->session.base.title ? model->session.base.title : "";
@@ -111,10 +111,11 @@ bool act_allow(explorer_model *model, explorer_view *view, explorer_input *input
 
     // a visit's changes are the user's own: what is remembered is the scenario as it was
     // opened
-    if (!act_worked(input, session_allow_code(s, &input->fault))) {
+    if (!act_succeeded(input, session_allow_code(s, &input->fault))) {
         return false;
     }
-    const bool done = act_worked(input, consent_remember(&s->base, &kept, &input->fault));
+    const bool done =
+        act_succeeded(input, consent_remember(&s->base, &kept, &input->fault));
     view->playback.playing = true;
     if (act_tell_failed_run(model, input)) {
         return true;
@@ -178,7 +179,7 @@ bool act_lesson(explorer_model *model, explorer_view *view, explorer_input *inpu
         return act_refuse(input, "there is no lesson '%.60s' (:lesson lists them)",
                           argument);
     }
-    return act_open_scenario(model, view, input, name) && act_hush(input);
+    return act_open_scenario(model, view, input, name) && act_clear_message(input);
 }
 
 void act_follow_lesson(explorer_model *model)
@@ -217,7 +218,7 @@ bool act_answer(explorer_model *model, explorer_input *input, const char *argume
     model->lesson.answer = value;
     act_follow_lesson(model);
     if (model->lesson.passed) {
-        return act_hush(input);
+        return act_clear_message(input);
     }
     return act_warn(input, "not %g. %s", value, step->hint);
 }
@@ -242,5 +243,5 @@ bool act_continue(explorer_model *model, explorer_input *input)
     }
     // a step may ask for what the event at the cursor says
     model->lesson = (lesson_progress){.on = true, .step = model->lesson.step + 1};
-    return act_hush(input) && act_tell_event(model, input);
+    return act_clear_message(input) && act_tell_event(model, input);
 }

@@ -18,7 +18,7 @@ static void follow_tip(const explorer_model *model, explorer_view *view)
     view->pull.force = pull_force(&view->pull, tip, across);
 }
 
-bool act_hold_tip(explorer_model *model, explorer_view *view, explorer_input *input,
+bool act_pull_tip(explorer_model *model, explorer_view *view, explorer_input *input,
                   plane_vector place)
 {
     const session *s = &model->session;
@@ -70,7 +70,7 @@ static bool pull_until(explorer_model *model, explorer_view *view, explorer_inpu
             session_pull(s, p->force * PULL_STEP, p->gesture, &input->fault);
         if (code != STATUS_OK) {
             p->held = false;
-            return act_worked(input, code);
+            return act_succeeded(input, code);
         }
         p->next += PULL_STEP;
     }
@@ -78,8 +78,8 @@ static bool pull_until(explorer_model *model, explorer_view *view, explorer_inpu
     return true;
 }
 
-bool act_drop_pull(const explorer_model *model, explorer_view *view,
-                   explorer_input *input)
+bool act_release_tip(const explorer_model *model, explorer_view *view,
+                     explorer_input *input)
 {
     tip_pull *p = &view->pull;
     if (!p->held) {
@@ -132,7 +132,7 @@ bool act_advance(explorer_model *model, explorer_view *view, explorer_input *inp
     if (s->now < session_end(s) || s->computing != NULL) {
         return true;
     }
-    act_drop_pull(model, view, input);
+    act_release_tip(model, view, input);
     play->playing = false;
     return act_tell_failed_run(model, input) ||
            act_tell(input, "end of the run: Space plays it again, x makes it longer, "
@@ -150,7 +150,7 @@ bool act_play(explorer_model *model, explorer_view *view, explorer_input *input)
     if (at_end && session_go_on(s, NULL) != STATUS_OK && s->computing == NULL) {
         session_seek(s, 0);
     }
-    return act_hush(input);
+    return act_clear_message(input);
 }
 
 bool act_step(explorer_model *model, explorer_view *view, explorer_input *input,
@@ -301,7 +301,7 @@ bool act_restart(explorer_model *model, explorer_view *view, explorer_input *inp
     session_seek(&model->session, 0);
     model->session.seen = 0;
     view->playback.playing = true;
-    return act_hush(input);
+    return act_clear_message(input);
 }
 
 bool act_wait(explorer_model *model, explorer_view *view, explorer_input *input,

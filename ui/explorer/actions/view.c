@@ -74,11 +74,11 @@ bool act_filter(const explorer_model *model, explorer_view *view, const char *ar
     } else {
         view->filters.typing = PANEL_NONE;
     }
-    act_settle_filter(model, view, panel);
+    act_select_filtered(model, view, panel);
     return true;
 }
 
-void act_settle_filter(const explorer_model *model, explorer_view *view, panel_id panel)
+void act_select_filtered(const explorer_model *model, explorer_view *view, panel_id panel)
 {
     parameter_line lines[PARAMETER_LINES];
     view->drawn.scroll[panel] = 0;
@@ -446,7 +446,7 @@ bool act_palette(explorer_view *view, explorer_input *input, const char *argumen
     prompt_open(&input->prompt, NULL, "%s", argument);
     input->prompt.searches = true;
     view->palette = (palette_view){0};
-    return act_hush(input);
+    return act_clear_message(input);
 }
 
 void act_move_in_palette(explorer_view *view, const explorer_input *input, int direction)

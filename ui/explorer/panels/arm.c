@@ -406,11 +406,11 @@ static bool point(explorer_model *model, explorer_view *view, explorer_input *in
     stage_cell(drawn, tip_of(model), &x, &y);
     const bool near = abs(x - e.x) <= NEAR_ACROSS && abs(y - e.y) <= NEAR_DOWN;
     if (e.kind == POINTER_PRESS && near) {
-        act_hold_tip(model, view, input, place);
+        act_pull_tip(model, view, input, place);
     } else if (e.kind == POINTER_DRAG && view->pull.held) {
         act_move_pull(model, view, place);
     } else if (e.kind == POINTER_RELEASE) {
-        act_drop_pull(model, view, input);
+        act_release_tip(model, view, input);
     }
     return true;
 }

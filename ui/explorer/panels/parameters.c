@@ -222,9 +222,9 @@ static bool point_at_slider(explorer_model *model, explorer_view *view,
         parameter_list_select(&view->parameters, (parameter_line){h->index, false});
         act_nudge(model, view, input, wheel < 0 ? "" : "-1");
     } else if (g->event.kind == POINTER_RELEASE) {
-        act_drop_slider(model, view, input);
+        act_release_slider(model, view, input);
     } else {
-        act_hold_slider(model, view, h->index, share, cells);
+        act_drag_slider(model, view, h->index, share, cells);
     }
     return true;
 }
