@@ -13,7 +13,7 @@
 // if there is none. Those that need the table of commands or the whole screen (keys,
 // settings, files) are in the folder above.
 
-// time (time.c)
+// time (time_actions.c)
 bool act_play(explorer_model *model, explorer_view *view, explorer_input *input);
 bool act_step(explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument);
@@ -29,7 +29,7 @@ bool act_restart(explorer_model *model, explorer_view *view, explorer_input *inp
 bool act_wait(explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument);
 
-// changing the run (changes.c)
+// changing the run (change_actions.c)
 bool act_set(explorer_model *model, explorer_view *view, explorer_input *input,
              const char *argument);
 bool act_edit(explorer_model *model, explorer_view *view, explorer_input *input,
@@ -46,11 +46,11 @@ bool act_drop(explorer_model *model, explorer_view *view, explorer_input *input,
 bool act_undo(explorer_model *model, explorer_view *view, explorer_input *input);
 bool act_redo(explorer_model *model, explorer_view *view, explorer_input *input);
 
-// the control law (law.c)
+// the control law (law_actions.c)
 bool act_law(explorer_model *model, explorer_input *input, const char *argument);
 bool act_lock(explorer_model *model, explorer_input *input, const char *argument);
 
-// several runs (runs.c)
+// several runs (run_actions.c)
 bool act_branch(explorer_model *model, explorer_input *input);
 bool act_pin(explorer_model *model, explorer_input *input, const char *argument);
 bool act_take(explorer_model *model, explorer_view *view, explorer_input *input,
@@ -67,11 +67,11 @@ bool act_sweep(explorer_model *model, explorer_view *view, explorer_input *input
 bool act_solve(explorer_model *model, explorer_input *input, const char *argument);
 bool act_metric(explorer_model *model, explorer_input *input, const char *argument);
 
-// measured data (measured.c)
+// measured data (measured_actions.c)
 bool act_data(explorer_model *model, explorer_input *input, const char *argument);
 bool act_identify(explorer_model *model, explorer_input *input, const char *argument);
 
-// axes (axes.c)
+// axes (axis_actions.c)
 bool act_zoom(const explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument);
 bool act_pan(const explorer_model *model, explorer_view *view, explorer_input *input,
@@ -80,7 +80,7 @@ bool act_follow(explorer_view *view, explorer_input *input);
 bool act_axis(const explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument);
 
-// panes of curves (panes.c)
+// panes of curves (pane_actions.c)
 bool act_focus(explorer_view *view, explorer_input *input);
 bool act_alone(explorer_view *view);
 bool act_trace(explorer_model *model, explorer_view *view, explorer_input *input,
@@ -96,7 +96,7 @@ bool act_spectrum(explorer_model *model, explorer_view *view, explorer_input *in
                   const char *argument);
 bool act_panes(explorer_view *view, explorer_input *input, const char *argument);
 
-// looking (view.c)
+// looking (view_actions.c)
 bool act_select(explorer_model *model, explorer_view *view, const char *argument);
 bool act_fold(explorer_view *view, explorer_input *input, const char *argument);
 bool act_changes(const explorer_model *model, explorer_view *view);
@@ -131,7 +131,7 @@ bool act_interrupt(explorer_model *model, explorer_input *input);
 bool act_quit(const explorer_model *model, explorer_input *input);
 bool act_quit_now(explorer_input *input);
 
-// scenarios and lessons (scenarios.c)
+// scenarios and lessons (scenario_actions.c)
 bool act_stop(explorer_model *model, explorer_input *input);
 bool act_open(explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument);

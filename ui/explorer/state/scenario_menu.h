@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #include "src/session/session.h"
-#include "ui/explorer/state/runs.h"
+#include "ui/explorer/state/run_list.h"
 
 // What a scenario says of itself.
 typedef struct menu_text {

@@ -6,10 +6,10 @@
 
 #include "ui/explorer/state/command_list.h"
 #include "ui/explorer/state/panes.h"
-#include "ui/explorer/state/parameter_list.h"
-#include "ui/explorer/state/playback.h"
+#include "ui/explorer/state/shown_parameters.h"
+#include "ui/explorer/state/run_playback.h"
 #include "ui/explorer/state/prompt.h"
-#include "ui/explorer/state/runs.h"
+#include "ui/explorer/state/run_list.h"
 #include "ui/explorer/state/scenario_menu.h"
 #include "ui/explorer/state/view.h"
 

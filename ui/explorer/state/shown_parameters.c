@@ -1,4 +1,4 @@
-#include "ui/explorer/state/parameter_list.h"
+#include "ui/explorer/state/shown_parameters.h"
 
 #include <assert.h>
 #include <fnmatch.h>

@@ -1,4 +1,4 @@
-#include "ui/explorer/state/runs.h"
+#include "ui/explorer/state/run_list.h"
 
 #include <assert.h>
 #include <math.h>
@@ -8,7 +8,7 @@
 
 #include "src/base/text_stream.h"
 #include "src/run/resume.h"
-#include "ui/explorer/state/parameter_list.h"
+#include "ui/explorer/state/shown_parameters.h"
 
 // --- pinned runs -----------------------------------------------------------------------
 

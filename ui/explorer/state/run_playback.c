@@ -1,4 +1,4 @@
-#include "ui/explorer/state/playback.h"
+#include "ui/explorer/state/run_playback.h"
 
 #include <assert.h>
 #include <math.h>
