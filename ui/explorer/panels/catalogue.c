@@ -31,7 +31,7 @@ bool panel_key(explorer_model *model, explorer_view *view, explorer_input *input
 {
     const panel *p = panel_of(view->page);
     if (p->list != NULL) {
-        return list_key_pressed(p->list, model, view, input, key);
+        return list_press_key(p->list, model, view, input, key);
     }
     return p->key(model, view, input, key);
 }

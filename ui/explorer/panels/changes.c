@@ -2,53 +2,59 @@
 // instant.
 #include "ui/explorer/panels/panel.h"
 
-static void draw_change(const explorer_model *model, screen *s, area a, int index)
+static void draw_input(const explorer_model *model, screen *s, area a, int index)
 {
+    enum { WHEN_AT = 6, WHEN = 15, WHAT_AT = 22 }; // columns
     const session_input *in = &model->session.inputs[index];
-    const bool later = in->kind != SESSION_INPUT_START && in->time > model->session.now;
-    const ink colour = later ? INK_DIM : INK_TEXT;
-    char text[LINE_TEXT], when[32] = "from the start";
 
     // what is in force from the start has no instant
+    char text[LINE_TEXT], when[32] = "from the start";
     if (in->kind != SESSION_INPUT_START) {
         snprintf(when, sizeof when, "%9.5f s", in->time);
     }
 
     // what is still to come is hollow and dim
+    const char *sign = "\u25cf";
+    ink colour = INK_TEXT;
+    if (in->kind != SESSION_INPUT_START && in->time > model->session.now) {
+        sign = "\u25cb";
+        colour = INK_DIM;
+    }
     model_change_text(model, index, text, sizeof text);
-    screen_print(s, a.x, a.y, 5, INK_DIM, "%3d %s", index + 1,
-                 later ? "\u25cb" : "\u25cf");
-    screen_text(s, a.x + 6, a.y, 15, colour, when);
-    screen_text(s, a.x + 22, a.y, a.width - 22, colour, text);
+    screen_print(s, a.x, a.y, WHEN_AT - 1, INK_DIM, "%3d %s", index + 1, sign);
+    screen_text(s, a.x + WHEN_AT, a.y, WHEN, colour, when);
+    area_text(s, area_right(a, WHAT_AT), colour, text);
 }
 
-static void draw_rest(const explorer_model *model, screen *s, area a)
+static void draw_input_edges(const explorer_model *model, screen *s, area a)
 {
-    screen_text(s, a.x, a.y + a.height - 1, a.width, INK_DIM,
-                model->session.input_count > 0
-                    ? "\u25cb takes effect after the cursor"
-                    : "none yet: Enter changes a value, p pushes");
+    const area foot = area_row(a, a.height - 1);
+    if (model->session.input_count > 0) {
+        area_text(s, foot, INK_DIM, "\u25cb takes effect after the cursor");
+    } else {
+        area_text(s, foot, INK_DIM, "none yet: Enter changes a value, p pushes");
+    }
 }
 
-static int count(const explorer_model *model)
+static int input_count(const explorer_model *model)
 {
     return model->session.input_count;
 }
 
-static int selected(const explorer_model *model, const explorer_view *view)
+static int selected_input(const explorer_model *model, const explorer_view *view)
 {
     (void)model;
     return view->change;
 }
 
-static void select_change(explorer_model *model, explorer_view *view, int index)
+static void select_input(explorer_model *model, explorer_view *view, int index)
 {
     (void)model;
     view->change = index;
 }
 
-static bool press_key(explorer_model *model, explorer_view *view, explorer_input *input,
-                      int key, int index)
+static bool press_change_key(explorer_model *model, explorer_view *view,
+                             explorer_input *input, int key, int index)
 {
     switch (key) {
     case KEY_CODE_ENTER:
@@ -72,17 +78,17 @@ static bool press_key(explorer_model *model, explorer_view *view, explorer_input
     return true;
 }
 
-static const page_list list = {
+static const page_list change_list = {
     .title = "changes (Enter edits, d drops, g goes there, Esc closes)",
-    .narrow = "changes (d drops, Esc closes)",
-    .width = 76,
+    .narrow_title = "changes (d drops, Esc closes)",
+    .most_width = 76,
     .foot = 1,
-    .least = 1,
-    .count = count,
-    .selected = selected,
-    .select = select_change,
-    .draw_line = draw_change,
-    .draw_rest = draw_rest,
-    .key = press_key};
+    .least_lines = 1,
+    .count = input_count,
+    .selected = selected_input,
+    .select = select_input,
+    .draw_line = draw_input,
+    .draw_edges = draw_input_edges,
+    .press_key = press_change_key};
 
-const panel changes_panel = {.name = "changes", .list = &list};
+const panel changes_panel = {.name = "changes", .list = &change_list};

@@ -5,70 +5,94 @@
 #include <math.h>
 #include <string.h>
 
-enum { NUMBERS_AT = 16 };      // column of the numbers [cells]
-enum { TALL = 10, BRIEF = 7 }; // rows of the panel [cells]
+enum { NUMBERS_AT = 16, UNITS_AT = 25 }; // columns [cells]
+enum { TALL = 10, BRIEF = 7 };           // rows of the panel [cells]
 
-// The modes in a line, the present one in brackets; where not all fit, those up to the
-// present one.
-static void draw_modes(const explorer_model *model, screen *s, area a, double present)
+// The cells that a mode's name takes, the present one in brackets.
+static int mode_width(const law_modes *m, int index, bool present)
 {
-    const law_modes *m = &model->modes;
-    int first = 0, width = -1,
-        last = present >= 0 && present < m->count ? (int)present : 0;
+    const int length = (int)strlen(m->names[index]);
+    return present ? length + 2 : length;
+}
 
-    // how wide all modes are; the first ones go where that is too much
+// The first mode of a line: where not all have room, as many of the first ones are left
+// out as let the present one be seen.
+static int first_shown_mode(const law_modes *m, int present, int room)
+{
+    int width = -1;
     for (int i = 0; i < m->count; i++) {
-        width += (int)strlen(m->names[i]) + 1 + 2 * (i == last);
+        width += mode_width(m, i, i == present) + 1;
     }
-    for (; width > a.width && first < last; first++) {
-        width -= (int)strlen(m->names[first]) + 1;
+    int first = 0;
+    while (width > room && first < present) {
+        width -= mode_width(m, first, false) + 1;
+        first++;
     }
+    return first;
+}
 
-    // the present one in brackets, and no other one that has no room
-    const int end = a.x + a.width;
-    for (int i = first, x = a.x, length; i < m->count; i++, x += length + 1) {
-        const bool now = i == present;
-        length = (int)strlen(m->names[i]) + 2 * now;
-        if (x + length > end && !now) {
+// The modes in a line, the present one in brackets; those behind it as far as they have
+// room. -1 or a number that is no mode's: none is present.
+static void draw_modes(const law_modes *m, screen *s, area line, double mode)
+{
+    const bool known = mode >= 0 && mode < m->count;
+    const int shown_in_any_case = known ? (int)mode : 0;
+    for (int i = first_shown_mode(m, shown_in_any_case, line.width); i < m->count; i++) {
+        const bool present = i == mode;
+        const int width = mode_width(m, i, present);
+        if (width > line.width && !present) {
             break;
         }
-        screen_print(s, x, a.y, end - x, now ? INK_EVENT : INK_DIM, now ? "[%s]" : "%s",
-                     m->names[i]);
+        if (present) {
+            area_print(s, line, INK_EVENT, "[%s]", m->names[i]);
+        } else {
+            area_text(s, line, INK_DIM, m->names[i]);
+        }
+        line = area_right(line, width + 1);
     }
 }
 
+// The first of the keys that carry out a line, "" if there is none.
+static void first_key_of(const key_bindings *keys, const char *line, char name[64])
+{
+    key_names_of(keys, line, name, 64);
+    name[strcspn(name, " ")] = '\0';
+}
+
+// The lock on a mode that holds, with the key that changes it.
 static void draw_lock(const explorer_model *model, const explorer_view *view, screen *s,
                       area a)
 {
-    char next[64], off[64];
-    parameters p = model_parameters(model);
-
-    // the first key of each, where several do the same
-    key_names_of(&view->keys, "lock next", next, sizeof next);
-    key_names_of(&view->keys, "lock off", off, sizeof off);
-    next[strcspn(next, " ")] = off[strcspn(off, " ")] = '\0';
-
-    // what holds now, with the key that changes it
+    const parameters p = model_parameters(model);
+    const char *lock = p.control.lock;
+    char key[64];
     if (!model->modes.lockable) {
-        screen_text(s, a.x, a.y, a.width, INK_DIM, "takes no lock on a mode");
-    } else if (p.control.lock[0] == '\0' || strcmp(p.control.lock, "none") == 0) {
-        screen_print(s, a.x, a.y, a.width, INK_DIM,
-                     next[0] ? "not locked (%s locks)" : "not locked", next);
-    } else {
-        screen_print(s, a.x, a.y, a.width, INK_WARNING,
-                     off[0] ? "locked: %s (%s frees)" : "locked: %s", p.control.lock,
-                     off);
+        area_text(s, a, INK_DIM, "takes no lock on a mode");
+        return;
+    }
+    if (lock[0] == '\0' || strcmp(lock, "none") == 0) {
+        const int used = area_text(s, a, INK_DIM, "not locked");
+        first_key_of(&view->keys, "lock next", key);
+        if (key[0] != '\0') {
+            area_print(s, area_right(a, used), INK_DIM, " (%s locks)", key);
+        }
+        return;
+    }
+    const int used = area_print(s, a, INK_WARNING, "locked: %s", lock);
+    first_key_of(&view->keys, "lock off", key);
+    if (key[0] != '\0') {
+        area_print(s, area_right(a, used), INK_WARNING, " (%s frees)", key);
     }
 }
 
 static void draw_quantity(screen *s, area a, const char *name, double value,
                           const char *unit)
 {
-    screen_text(s, a.x, a.y, a.width, INK_TEXT, name);
-    screen_print(s, a.x + NUMBERS_AT, a.y, a.width - NUMBERS_AT, INK_TITLE, "%8s",
-                 draw_number(value).text);
-    screen_text(s, a.x + NUMBERS_AT + 9, a.y, a.width - NUMBERS_AT - 9, INK_DIM,
-                isfinite(value) ? unit : "");
+    area_text(s, a, INK_TEXT, name);
+    area_print(s, area_right(a, NUMBERS_AT), INK_TITLE, "%8s", draw_number(value).text);
+    if (isfinite(value)) {
+        area_text(s, area_right(a, UNITS_AT), INK_DIM, unit);
+    }
 }
 
 // The command, and whether the amplifier gets less than that.
@@ -77,18 +101,19 @@ static void draw_command(screen *s, area a, const parameters *p, double command)
     draw_quantity(s, a, "command", command, "V");
     if (fabs(command) >= p->motor.voltage_limit) {
         screen_text(s, a.x + 8, a.y, 9, INK_WARNING, "saturated");
-        screen_print(s, a.x + NUMBERS_AT + 11, a.y, a.width - NUMBERS_AT - 11,
-                     INK_WARNING, ">%g", p->motor.voltage_limit);
+        area_print(s, area_right(a, UNITS_AT + 2), INK_WARNING, ">%g",
+                   p->motor.voltage_limit);
     }
 }
 
-// A number in a few cells, "-" for none.
-static number_text brief(int decimals, double value)
+// A number with few decimals, from 10 on with as few digits; "-" for none.
+static number_text brief_number(int decimals, double value)
 {
     number_text n = {"-"};
-    if (isfinite(value)) {
-        snprintf(n.text, sizeof n.text, fabs(value) < 10 ? "%.*f" : "%.*g", decimals,
-                 value);
+    if (isfinite(value) && fabs(value) < 10) {
+        snprintf(n.text, sizeof n.text, "%.*f", decimals, value);
+    } else if (isfinite(value)) {
+        snprintf(n.text, sizeof n.text, "%.*g", decimals, value);
     }
     return n;
 }
@@ -97,24 +122,45 @@ static number_text brief(int decimals, double value)
 static void draw_brief(screen *s, area a, const sample *row, const parameters *p)
 {
     // not every law needs an angle
-    const bool angle = isfinite(row->desired_angle);
-    screen_print(s, a.x, a.y, a.width, angle ? INK_TEXT : INK_DIM,
-                 angle ? "wants %s rad, %s rad/s" : "wants no angle",
-                 brief(3, row->desired_angle).text, brief(2, row->desired_velocity).text);
-    screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, "force %s, calc. %s of %g N",
-                 brief(2, row->force_reading).text, brief(2, row->calculated_force).text,
-                 p->control.force);
+    if (isfinite(row->desired_angle)) {
+        area_print(s, a, INK_TEXT, "wants %s rad, %s rad/s",
+                   brief_number(3, row->desired_angle).text,
+                   brief_number(2, row->desired_velocity).text);
+    } else {
+        area_text(s, a, INK_DIM, "wants no angle");
+    }
+    area_print(s, area_row(a, 1), INK_TEXT, "force %s, calc. %s of %g N",
+               brief_number(2, row->force_reading).text,
+               brief_number(2, row->calculated_force).text, p->control.force);
+}
+
+// Setpoint and readings of the law, a line each.
+static void draw_readings(screen *s, area a, const sample *row, const parameters *p)
+{
+    const struct {
+        const char *name, *unit;
+        double value;
+    } quantities[] = {{"desired angle", "rad", row->desired_angle},
+                      {"desired velocity", "rad/s", row->desired_velocity},
+                      {"force reading", "N", row->force_reading},
+                      {"calculated force", "N", row->calculated_force},
+                      {"force commanded", "N", p->control.force}};
+    enum { QUANTITIES = sizeof quantities / sizeof quantities[0] };
+    for (int i = 0; i < QUANTITIES; i++) {
+        draw_quantity(s, area_row(a, i), quantities[i].name, quantities[i].value,
+                      quantities[i].unit);
+    }
 }
 
 // Tall enough for its table, or brief, or not at all; before the predictors, which may
 // fold.
-static int rows(const explorer_model *model, const explorer_view *view, screen_size body)
+static int controller_rows(const explorer_model *model, const explorer_view *view,
+                           screen_size body)
 {
-    const int room = body.height - predictors_rows(model, view, body);
     if (!model_has_law(model)) {
         return 0;
     }
-    if (room >= 30) {
+    if (body.height - predictors_rows(model, view, body) >= 30) {
         return TALL;
     }
     if (body.height >= 13) {
@@ -123,42 +169,31 @@ static int rows(const explorer_model *model, const explorer_view *view, screen_s
     return 0;
 }
 
-static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
-                 screen *s, area a)
+static void draw_controller(const explorer_model *model, const explorer_view *view,
+                            layout *lay, screen *s, area a)
 {
     (void)lay;
     const sample *row = session_sample(&model->session);
-    parameters p = model_parameters(model);
+    const parameters p = model_parameters(model);
     char title[128];
     snprintf(title, sizeof title, "%s, %g Hz", control_law_table[p.control.law].word,
              p.control.rate);
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
+    area_frame(s, a, INK_FRAME, title);
 
     // modes, lock and command always
-    area line = {a.x + 2, a.y + 1, a.width - 4, 1};
-    draw_modes(model, s, line, row->controller_mode);
-    draw_lock(model, view, s, (area){line.x, line.y + 1, line.width, 1});
-    draw_command(s, (area){line.x, line.y + 2, line.width, 1}, &p, row->command);
-    line.y += 3;
+    const area inside = area_inside(a), rest = area_below(inside, 3);
+    draw_modes(&model->modes, s, area_row(inside, 0), row->controller_mode);
+    draw_lock(model, view, s, area_row(inside, 1));
+    draw_command(s, area_row(inside, 2), &p, row->command);
 
     // the rest in brief where rows are few
     if (a.height < TALL) {
-        draw_brief(s, line, row, &p);
-        return;
-    }
-
-    // setpoint and readings of the law
-    const struct {
-        const char *name, *unit;
-        double value;
-    } lines[] = {{"desired angle", "rad", row->desired_angle},
-                 {"desired velocity", "rad/s", row->desired_velocity},
-                 {"force reading", "N", row->force_reading},
-                 {"calculated force", "N", row->calculated_force},
-                 {"force commanded", "N", p.control.force}};
-    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++, line.y++) {
-        draw_quantity(s, line, lines[i].name, lines[i].value, lines[i].unit);
+        draw_brief(s, rest, row, &p);
+    } else {
+        draw_readings(s, rest, row, &p);
     }
 }
 
-const panel controller_panel = {.name = "controller", .rows = rows, .draw = draw};
+const panel controller_panel = {.name = "controller",
+                                .rows = controller_rows,
+                                .draw = draw_controller};

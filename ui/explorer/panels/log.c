@@ -5,7 +5,8 @@
 
 enum { MOST_LATER = 32 }; // changes to come that are listed
 
-static void draw_change(const explorer_model *model, screen *s, area a, const event *v)
+static void draw_changed_value(const explorer_model *model, screen *s, area a,
+                               const event *v)
 {
     char value[128], text[384], room[ACTION_PATH];
     const action *c = &model->session.effective.actions[v->index];
@@ -13,57 +14,89 @@ static void draw_change(const explorer_model *model, screen *s, area a, const ev
     action_format_value(c, value, sizeof value);
 
     // the parameter's own name, without its group, where the whole has no room
-    if (snprintf(text, sizeof text, "%s = %s", path, value) > a.width) {
+    const int length = snprintf(text, sizeof text, "%s = %s", path, value);
+    if (length > a.width) {
         snprintf(text, sizeof text, "%s %s", strchr(path, '.') + 1, value);
     }
-    screen_text(s, a.x, a.y, a.width, INK_EVENT, text);
+    area_text(s, a, INK_EVENT, text);
 }
 
-static void draw_entry(const explorer_model *model, screen *s, area a,
-                       const log_entry *entry)
+static void draw_log_entry(const explorer_model *model, screen *s, area a,
+                           const log_entry *entry)
 {
-    const trace *t = &model->session.run.trace;
-    char name[MODE_NAME_SIZE];
-    area detail = {a.x + 20, a.y, a.width - 20, 1};
+    enum { MODE_AT = 18, DETAIL_AT = 20 }; // columns
 
     // a change of mode
     if (entry->event < 0) {
+        char name[MODE_NAME_SIZE];
         law_mode_name(&model->modes, entry->mode, name, sizeof name);
-        screen_print(s, a.x, a.y, a.width, INK_TEXT, "%9.5f s  mode", entry->time);
-        screen_text(s, a.x + 18, a.y, a.width - 18, INK_EVENT, name);
+        area_print(s, a, INK_TEXT, "%9.5f s  mode", entry->time);
+        area_text(s, area_right(a, MODE_AT), INK_EVENT, name);
         return;
     }
 
     // an event with its most informative number
-    const event *v = &t->events[entry->event];
-    screen_print(s, a.x, a.y, a.width, INK_TEXT, "%9.5f s  %s", v->time,
-                 event_name(v->kind));
+    const event *v = &model->session.run.trace.events[entry->event];
+    const area detail = area_right(a, DETAIL_AT);
+    area_print(s, a, INK_TEXT, "%9.5f s  %s", v->time, event_name(v->kind));
     if (v->kind == EVENT_IMPACT || v->kind == EVENT_PUSH) {
-        screen_print(s, detail.x, a.y, detail.width, INK_EVENT, "%.3g N s", v->impulse);
+        area_print(s, detail, INK_EVENT, "%.3g N s", v->impulse);
     } else if (v->kind == EVENT_CHANGE && v->index >= 0) {
-        draw_change(model, s, detail, v);
+        draw_changed_value(model, s, detail, v);
     }
 }
 
-// Changes and pushes that are still to come after the first `seen` entries; returns how
-// many.
-static int find_later_inputs(const explorer_model *model, size_t seen,
-                             int later[MOST_LATER])
+// What the panel lists: all that has been seen, then changes and pushes that are still to
+// come.
+typedef struct listed_entries {
+    size_t seen;
+    int later[MOST_LATER];
+    int count;   // of all
+    int current; // the last one up to the cursor
+} listed_entries;
+
+static bool is_input(const explorer_model *model, const log_entry *entry)
 {
+    if (entry->event < 0) {
+        return false;
+    }
+    const event_kind kind = model->session.run.trace.events[entry->event].kind;
+    return kind == EVENT_CHANGE || kind == EVENT_PUSH;
+}
+
+static listed_entries list_entries(const explorer_model *model)
+{
+    const session *e = &model->session;
     const run_log *log = &model->log;
-    const trace *t = &model->session.run.trace;
-    int count = 0;
-    for (size_t i = seen; i < log->count && count < MOST_LATER; i++) {
-        const int index = log->entries[i].event;
-        if (index >= 0 && (t->events[index].kind == EVENT_CHANGE ||
-                           t->events[index].kind == EVENT_PUSH)) {
-            later[count++] = (int)i;
+    listed_entries listed = {.seen = 0};
+    while (listed.seen < log->count && log->entries[listed.seen].time <= e->seen) {
+        if (log->entries[listed.seen].time <= e->now) {
+            listed.current = (int)listed.seen;
+        }
+        listed.seen++;
+    }
+
+    int later_count = 0;
+    for (size_t i = listed.seen; i < log->count && later_count < MOST_LATER; i++) {
+        if (is_input(model, &log->entries[i])) {
+            listed.later[later_count++] = (int)i;
         }
     }
-    return count;
+    listed.count = (int)listed.seen + later_count;
+    return listed;
 }
 
-static int rows(const explorer_model *model, const explorer_view *view, screen_size body)
+static const log_entry *listed_entry(const run_log *log, const listed_entries *listed,
+                                     int index)
+{
+    if (index < (int)listed->seen) {
+        return &log->entries[index];
+    }
+    return &log->entries[listed->later[index - (int)listed->seen]];
+}
+
+static int log_rows(const explorer_model *model, const explorer_view *view,
+                    screen_size body)
 {
     (void)model;
     (void)view;
@@ -73,60 +106,59 @@ static int rows(const explorer_model *model, const explorer_view *view, screen_s
     return 0;
 }
 
-static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
-                 screen *s, area a)
+static void draw_log(const explorer_model *model, const explorer_view *view, layout *lay,
+                     screen *s, area a)
 {
     const session *e = &model->session;
-    const run_log *log = &model->log;
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "events (n, N)");
+    const listed_entries listed = list_entries(model);
+    const area lines = {a.x + 1, a.y + 1, a.width - 2, a.height - 2};
+    area_frame(s, a, INK_FRAME, "events (n, N)");
 
-    // past entries up to the cursor, and the task
-    size_t seen = 0;
-    int current = 0, height = a.height - 2, later[MOST_LATER];
-    while (seen < log->count && log->entries[seen].time <= e->seen) {
-        if (log->entries[seen].time <= e->now) {
-            current = (int)seen;
-        }
-        seen++;
+    // the current one in the middle, or the last ones; scrolling counts from there
+    const int unscrolled = draw_first_line(listed.current, listed.count, lines.height);
+    int first = unscrolled + view->drawn.scroll[PANEL_LOG];
+    if (first > listed.count - lines.height) {
+        first = listed.count - lines.height;
     }
-    const int count = (int)seen + find_later_inputs(model, seen, later);
-
-    // that one in the middle, or the last ones; scrolling counts from there
-    const int still = draw_first_line(current, count, height), last = count - height;
-    const int wanted = still + view->drawn.scroll[PANEL_LOG],
-              least = wanted > last ? last : wanted;
-    const int first = least < 0 ? 0 : least;
-    lay->drawn.scroll[PANEL_LOG] = first - still;
-    const area lines = {a.x + 1, a.y + 1, a.width - 2, height};
+    if (first < 0) {
+        first = 0;
+    }
+    lay->drawn.scroll[PANEL_LOG] = first - unscrolled;
     layout_add_hit(lay, (hit_area){PANEL_LOG, PART_LINES, first, lines});
-    for (int i = first; i < count && i < first + height; i++) {
-        const log_entry *entry = &log->entries[i < (int)seen ? i : later[i - (int)seen]];
-        int y = lines.y + i - first;
-        draw_entry(model, s, (area){a.x + 2, y, a.width - 4, 1}, entry);
+
+    // what is to come dim, what is at the cursor selected
+    for (int i = first; i < listed.count && i < first + lines.height; i++) {
+        const log_entry *entry = listed_entry(&model->log, &listed, i);
+        const area line = area_row(lines, i - first);
+        draw_log_entry(model, s, (area){line.x + 1, line.y, line.width - 2, 1}, entry);
         if (entry->time > e->seen) {
-            screen_tint(s, lines.x, y, lines.width, 1, INK_DIM);
+            area_tint(s, line, INK_DIM);
         }
         if (entry->time == e->now) {
-            screen_tint(s, lines.x, y, lines.width, 1, INK_SELECTED);
+            area_tint(s, line, INK_SELECTED);
         }
     }
 }
 
 // A click goes to the instant of a line, the wheel scrolls.
-static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
-                  const panel_gesture *g)
+static bool point_at_log(explorer_model *model, explorer_view *view,
+                         explorer_input *input, const panel_gesture *g)
 {
     (void)input;
+    if (g->event.kind != POINTER_PRESS) {
+        return false;
+    }
     const run_log *log = model_run_log(model);
-    const size_t index = (size_t)(g->hit.index + g->event.y - g->hit.area.y);
-    const bool pressed = g->event.kind == POINTER_PRESS;
-    if (pressed && index < log->count &&
-        log->entries[index].time <= model->session.seen) {
+    const size_t index = (size_t)gesture_line(g);
+    if (index < log->count && log->entries[index].time <= model->session.seen) {
         act_scrub(model, view, log->entries[index].time);
         view->drawn.scroll[PANEL_LOG] = 0;
     }
-    return pressed;
+    return true;
 }
 
-const panel log_panel = {
-    .name = "log", .rows = rows, .draw = draw, .wheel = WHEEL_LINES, .point = point};
+const panel log_panel = {.name = "log",
+                         .rows = log_rows,
+                         .draw = draw_log,
+                         .wheel = WHEEL_LINES,
+                         .point = point_at_log};

@@ -1,25 +1,27 @@
 // The page of notes: what was said at which instant.
 #include "ui/explorer/panels/panel.h"
 
-static void draw_line(const explorer_model *model, screen *s, area a, int index)
+static void draw_note(const explorer_model *model, screen *s, area a, int index)
 {
-    screen_print(s, a.x, a.y, 11, INK_DIM, "%9.5f s", model->notes[index].time);
-    screen_words(s, a.x + 13, a.y, a.width - 13, INK_TEXT, model->notes[index].text);
+    enum { WHEN = 11, WHAT_AT = 13 }; // columns
+    const note *n = &model->notes[index];
+    screen_print(s, a.x, a.y, WHEN, INK_DIM, "%9.5f s", n->time);
+    area_words(s, area_right(a, WHAT_AT), INK_TEXT, n->text);
 }
 
-static void draw_rest(const explorer_model *model, screen *s, area a)
+static void draw_note_edges(const explorer_model *model, screen *s, area a)
 {
     if (model->note_count == 0) {
-        screen_text(s, a.x, a.y, a.width, INK_DIM, "none yet: :note TEXT at an instant");
+        area_text(s, a, INK_DIM, "none yet: :note TEXT at an instant");
     }
 }
 
-static int count(const explorer_model *model)
+static int note_count(const explorer_model *model)
 {
     return model->note_count;
 }
 
-static int selected(const explorer_model *model, const explorer_view *view)
+static int selected_note(const explorer_model *model, const explorer_view *view)
 {
     (void)model;
     return view->note;
@@ -31,8 +33,8 @@ static void select_note(explorer_model *model, explorer_view *view, int index)
     view->note = index;
 }
 
-static bool press_key(explorer_model *model, explorer_view *view, explorer_input *input,
-                      int key, int index)
+static bool press_note_key(explorer_model *model, explorer_view *view,
+                           explorer_input *input, int key, int index)
 {
     (void)input;
     if (key == 'd' || key == 'x' || key == KEY_CODE_DELETE) {
@@ -46,16 +48,17 @@ static bool press_key(explorer_model *model, explorer_view *view, explorer_input
     return true;
 }
 
-static const page_list list = {.title = "notes (Enter goes there, d drops, Esc closes)",
-                               .empty = "notes (Esc closes)",
-                               .width = 84,
-                               .least = 1,
-                               .needs_lines = true,
-                               .count = count,
-                               .selected = selected,
-                               .select = select_note,
-                               .draw_line = draw_line,
-                               .draw_rest = draw_rest,
-                               .key = press_key};
+static const page_list note_list = {
+    .title = "notes (Enter goes there, d drops, Esc closes)",
+    .empty_title = "notes (Esc closes)",
+    .most_width = 84,
+    .least_lines = 1,
+    .needs_lines = true,
+    .count = note_count,
+    .selected = selected_note,
+    .select = select_note,
+    .draw_line = draw_note,
+    .draw_edges = draw_note_edges,
+    .press_key = press_note_key};
 
-const panel notes_panel = {.name = "notes", .list = &list};
+const panel notes_panel = {.name = "notes", .list = &note_list};

@@ -1,85 +1,106 @@
 // The palette above the prompt: what fits to the words that are being typed.
 #include "ui/explorer/panels/panel.h"
 
-enum { MOST_ROWS = 12, WIDE = 110, KEYS = 16, KIND = 10 };
+enum { MOST_ENTRIES = 12, MOST_WIDTH = 110 };
 
-// Kind, name, keys and meaning of an entry in a line.
-static void draw_entry(const explorer_view *view, screen *s, area a, palette_entry entry)
+// Columns of a line [cells]: all four, or a name and its meaning.
+enum { WIDE = 70, KIND = 10, NAME = 30, KEYS = 16, NARROW_NAME = 26 };
+
+// An entry in a line: kind, name, keys and meaning, or only name and meaning.
+static void draw_palette_entry(const explorer_view *view, screen *s, area line,
+                               palette_entry entry)
 {
     const palette_text text = palette_describe(&view->scenarios, &view->keys, entry);
-    const bool wide = a.width >= 70;
-    const int name = wide ? 30 : 26;
-    int x = a.x;
+    const bool wide = line.width >= WIDE;
+    const int name_width = wide ? NAME : NARROW_NAME;
+    if (wide) {
+        screen_text(s, line.x, line.y, KIND, INK_FRAME, text.kind);
+        line = area_right(line, KIND);
+    }
 
-    // a narrow screen leaves the kind out
+    const char *colon = entry.kind == PALETTE_COMMAND ? ":" : "";
+    screen_print(s, line.x, line.y, name_width - 1, INK_TITLE, "%s%s", colon, text.name);
+    line = area_right(line, name_width);
     if (wide) {
-        screen_text(s, x, a.y, KIND, INK_FRAME, text.kind);
-        x += KIND;
+        screen_text(s, line.x, line.y, KEYS - 1, INK_EVENT, text.keys);
+        line = area_right(line, KEYS);
     }
-    const bool command = entry.kind == PALETTE_COMMAND;
-    screen_print(s, x, a.y, name - 1, INK_TITLE, "%s%s", command ? ":" : "", text.name);
-    x += name;
-    if (wide) {
-        screen_text(s, x, a.y, KEYS - 1, INK_EVENT, text.keys);
-        x += KEYS;
-    }
-    screen_text(s, x, a.y, a.x + a.width - x, INK_DIM, text.about);
+    area_text(s, line, INK_DIM, text.about);
 }
 
-// Draws the palette into the rows above the prompt, at the bottom of the area.
+// The lines of the palette, among which the selected one always is.
+static void draw_palette_lines(const explorer_view *view, layout *lay, screen *s,
+                               area lines, const palette_entry *entries, int count)
+{
+    const int rows = lines.height;
+    int selected = view->palette.selected, first = 0;
+    if (selected >= count) {
+        selected = count - 1;
+    }
+    if (selected >= rows) {
+        first = selected - rows + 1;
+    }
+    layout_add_hit(lay, (hit_area){PANEL_PALETTE, PART_LINES, first, lines});
+    for (int i = 0; i < rows; i++) {
+        const area row = area_row(lines, i);
+        draw_palette_entry(view, s, (area){row.x + 1, row.y, row.width - 2, 1},
+                           entries[first + i]);
+        if (first + i == selected) {
+            area_tint(s, row, INK_SELECTED);
+        }
+    }
+}
+
 void draw_palette(const explorer_view *view, const prompt *p, layout *lay, screen *s,
                   area a)
 {
     static palette_entry entries[PALETTE_ENTRIES];
     const int count = palette_find(&view->scenarios, &view->keys, p->text, entries);
-    const int most = a.height - 4 < MOST_ROWS ? a.height - 4 : MOST_ROWS;
-    const int rows = count < most ? count : most;
-    const int width = s->width < WIDE ? s->width : WIDE;
-    char title[64];
 
     // while only a first word is typed a list without entries would be in the way
+    int rows = count;
+    if (rows > MOST_ENTRIES) {
+        rows = MOST_ENTRIES;
+    }
+    if (rows > a.height - 4) {
+        rows = a.height - 4;
+    }
     if (rows < 1 && !p->searches) {
         return;
     }
-    const int height = (rows > 0 ? rows : 1) + 2;
-    const area box = {0, a.y + a.height - height, width, height};
+
+    // a frame at the bottom of the area, with a line for words where there is no entry
+    char title[64];
+    const int width = s->width < MOST_WIDTH ? s->width : MOST_WIDTH;
+    const int height = 2 + (rows > 0 ? rows : 1);
+    const area frame = {0, a.y + a.height - height, width, height};
     snprintf(title, sizeof title,
              "%d of all (\u2191 \u2193 choose, Enter takes, Esc closes)", count);
-    screen_frame(s, box.x, box.y, box.width, box.height, INK_CURSOR, title);
+    area_frame(s, frame, INK_CURSOR, title);
     if (rows < 1) {
-        screen_text(s, box.x + 2, box.y + 1, width - 4, INK_DIM,
-                    "nothing has these words");
+        area_text(s, area_inside(frame), INK_DIM, "nothing has these words");
     }
 
-    // the selected one is always among them
-    const int selected =
-        view->palette.selected < count ? view->palette.selected : count - 1;
-    const int first = selected >= rows ? selected - rows + 1 : 0;
-    const area lines = {box.x + 1, box.y + 1, width - 2, rows};
-    layout_add_hit(lay, (hit_area){PANEL_PALETTE, PART_BODY, 0, box});
-    layout_add_hit(lay, (hit_area){PANEL_PALETTE, PART_LINES, first, lines});
-    for (int i = 0; i < rows; i++) {
-        draw_entry(view, s, (area){lines.x + 1, lines.y + i, lines.width - 2, 1},
-                   entries[first + i]);
-        if (first + i == selected) {
-            screen_tint(s, lines.x, lines.y + i, lines.width, 1, INK_SELECTED);
-        }
-    }
+    // the lines lie over it, so a click meets them first
+    const area lines = {frame.x + 1, frame.y + 1, width - 2, rows};
+    layout_add_hit(lay, (hit_area){PANEL_PALETTE, PART_BODY, 0, frame});
+    draw_palette_lines(view, lay, s, lines, entries, count);
 }
 
 // A click takes an entry, the wheel moves the selection.
-static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
-                  const panel_gesture *g)
+static bool point_at_palette(explorer_model *model, explorer_view *view,
+                             explorer_input *input, const panel_gesture *g)
 {
     (void)model;
-    const bool picked = g->event.kind == POINTER_PRESS && g->hit.part == PART_LINES;
     const int wheel = pointer_wheel(g->event);
-    if (picked) {
-        view->palette = (palette_view){g->hit.index + g->event.y - g->hit.area.y, true};
-    } else if (wheel != 0) {
+    if (g->event.kind == POINTER_PRESS && g->hit.part == PART_LINES) {
+        view->palette = (palette_view){gesture_line(g), true};
+        return true;
+    }
+    if (wheel != 0) {
         act_move_in_palette(view, input, wheel);
     }
-    return picked || wheel != 0;
+    return wheel != 0;
 }
 
-const panel palette_panel = {.name = "palette", .point = point};
+const panel palette_panel = {.name = "palette", .point = point_at_palette};

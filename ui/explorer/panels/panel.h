@@ -27,6 +27,37 @@ bool line_has_dot(unsigned pattern, long across);
 // A short piece of a line for a legend, `cells` wide.
 void draw_line_sample(screen *s, int x, int y, int cells, unsigned pattern, ink colour);
 
+// --- areas -----------------------------------------------------------------------------
+
+typedef struct area {
+    int x, y, width, height; // [cells]
+} area;
+
+bool area_holds(area a, int x, int y);
+
+// What is inside the frame around an area, with a column of blanks on both sides.
+area area_inside(area a);
+// A row of an area, 0 the uppermost.
+area area_row(area a, int row);
+// What is right of some columns of an area, and what is below some of its rows.
+area area_right(area a, int columns);
+area area_below(area a, int rows);
+
+// A frame around an area, with a title.
+void area_frame(screen *s, area a, ink colour, const char *title);
+// Gives all cells of an area another ink.
+void area_tint(screen *s, area a, ink colour);
+
+// Write a text, as many of its words as there is room for, or a formatted text into the
+// first row of an area; return the cells they take.
+int area_text(screen *s, area a, ink colour, const char *text);
+int area_words(screen *s, area a, ink colour, const char *text);
+int area_print(screen *s, area a, ink colour, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+// Writes lines of a wrapped text, as many as the area has rows.
+void area_lines(screen *s, area a, ink colour, const text_line *lines, int count);
+
 // --- the layout ------------------------------------------------------------------------
 // What drawing stores besides the screen: the positions of parts, for the mouse; how far
 // panels can be scrolled; and what is kept from one picture to the next. Drawing does not
@@ -38,10 +69,6 @@ enum {
     LEAST_HEIGHT = 12
 }; // of a screen that shows the explorer [cells]
 enum { HIT_AREAS = 256 };
-
-typedef struct area {
-    int x, y, width, height; // [cells]
-} area;
 
 // The kinds of parts of a panel that the mouse distinguishes.
 typedef enum hit_part {
@@ -108,8 +135,6 @@ void layout_add_hit(layout *lay, hit_area hit);
 // The uppermost part at a cell; one of PANEL_NONE if there is none.
 hit_area layout_hit(const layout *lay, int x, int y);
 
-bool area_holds(area a, int x, int y);
-
 // Keeps a panel's scrolling from 0 to `last` lines; returns it.
 int layout_keep_scroll(layout *lay, panel_id id, int last);
 
@@ -142,6 +167,9 @@ typedef struct panel_gesture {
 
 // Which way the wheel turns: -1 up, 1 down; 0: another gesture.
 int pointer_wheel(pointer_event e);
+
+// The line under the mouse, of a part of lines whose index is that of its first one.
+int gesture_line(const panel_gesture *g);
 
 typedef struct panel {
     const char *name;
@@ -207,21 +235,22 @@ void draw_page_frame(screen *s, area a, const char *title, int last, int count);
 // A page of lines of which one is selected. Keys for up and down and a press of the mouse
 // select another one.
 typedef struct page_list {
-    const char *title, *narrow,
-        *empty;                   // of a narrow page and without lines, NULL: as ever
-    int width, head, foot, least; // most cells across; rows over, below, and of no lines
-    bool needs_lines;             // without any every key closes it
+    const char *title;
+    const char *narrow_title, *empty_title;    // NULL: the same
+    int most_width;                            // [cells]
+    int head, foot;                            // rows over and below the lines
+    int least_lines;                           // rows left for them where there are none
+    bool needs_lines;                          // without any every key closes it
     int (*count)(const explorer_model *model); // of its lines
     int (*selected)(const explorer_model *model, const explorer_view *view);
     void (*select)(explorer_model *model, explorer_view *view, int index);
     void (*draw_line)(const explorer_model *model, screen *s, area a, int index);
-    void (*draw_rest)(const explorer_model *model, screen *s,
-                      area a); // head and foot of the page's area
+    void (*draw_edges)(const explorer_model *model, screen *s, area a); // head and foot
 
     // Handles a key but those for up and down, for the selected line; those without a
     // meaning close the page.
-    bool (*key)(explorer_model *model, explorer_view *view, explorer_input *input,
-                int key, int index);
+    bool (*press_key)(explorer_model *model, explorer_view *view, explorer_input *input,
+                      int key, int index);
 } page_list;
 
 // Draws the list that is open, handles a press of the mouse on it, and a key.
@@ -229,8 +258,8 @@ void list_draw(const page_list *list, const explorer_model *model,
                const explorer_view *view, layout *lay, screen *s, area body);
 bool list_point(const page_list *list, explorer_model *model, explorer_view *view,
                 const panel_gesture *g);
-bool list_key_pressed(const page_list *list, explorer_model *model, explorer_view *view,
-                      explorer_input *input, int key);
+bool list_press_key(const page_list *list, explorer_model *model, explorer_view *view,
+                    explorer_input *input, int key);
 
 // --- the palette -----------------------------------------------------------------------
 
@@ -287,7 +316,8 @@ int lanes_rows(const explorer_model *model, const explorer_view *view, lane_surv
 void draw_lanes(const explorer_model *model, const explorer_view *view, layout *lay,
                 screen *s, area a);
 
-// The whole screen of the explorer: title, panels, page, status and prompt.
+// --- the whole screen ------------------------------------------------------------------
+// Title, panels, page, status and prompt.
 
 // Whether a screen has room for the explorer; on a smaller one only a message is drawn.
 bool compose_fits(screen_size size);

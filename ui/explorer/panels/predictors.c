@@ -9,16 +9,38 @@
 
 enum { MOST_PREDICTED = 32 }; // links: more would take seconds
 enum { ROWS = 6 };            // of the panel [cells]
+enum { ANSWERS_AT = 16 };     // column behind the labels [cells]
 
-// What a predictor says of the state in a row. The linearised arm is asked once for each
-// row: with more links than two it takes milliseconds, too long for every frame of a run
-// that plays.
-static prediction_answer ask(const explorer_model *model, const explorer_view *view,
-                             layout *lay, predictor which, size_t r)
+// What the linearised arm says of the state in a row. It is asked once for each row: with
+// more links than two it takes milliseconds, too long for every frame of a run that
+// plays.
+static prediction_answer ask_linearised(const explorer_model *model,
+                                        const explorer_view *view,
+                                        linearised_answer *known,
+                                        const prediction_question *question, size_t r)
+{
+    const unsigned long run = model_run_id(model);
+    const int links = question->parameters->arm.links;
+    if (known->run == run && known->row == r) {
+        return known->answer;
+    }
+    if (links > MOST_PREDICTED || (links > 2 && view->playback.playing)) {
+        return (prediction_answer){.short_label = "linearised",
+                                   .outcome = PREDICTION_LINKS_UNKNOWN};
+    }
+    *known = (linearised_answer){run, r, predict_with(PREDICTOR_LINEARISED, question)};
+    return known->answer;
+}
+
+// What a predictor says of the state in a row.
+static prediction_answer ask_predictor(const explorer_model *model,
+                                       const explorer_view *view, layout *lay,
+                                       predictor which, size_t r)
 {
     const trace *t = &model->session.run.trace;
     const sample *row = &t->rows[r];
-    const size_t state = r * (size_t)t->angle_count;
+    const size_t first_angle = r * (size_t)t->angle_count;
+
     // under a control law the voltage is the law's, and the amplifier gets no more than
     // its limit
     parameters p = session_parameters_at(&model->session, row->time);
@@ -27,24 +49,13 @@ static prediction_answer ask(const explorer_model *model, const explorer_view *v
         .parameters = &p,
         .bodies = {{row->hub_angle, row->first_angle, row->last_angle},
                    {row->hub_velocity, row->first_velocity, row->last_velocity}},
-        .angles = t->angles + state,
-        .velocities = t->velocities + state,
+        .angles = t->angles + first_angle,
+        .velocities = t->velocities + first_angle,
         .current = row_current(&p.motor, row)};
-    if (which != PREDICTOR_LINEARISED) {
-        return predict_with(which, &question);
+    if (which == PREDICTOR_LINEARISED) {
+        return ask_linearised(model, view, &lay->linearised, &question, r);
     }
-
-    linearised_answer *known = &lay->linearised;
-    const unsigned long run = model_run_id(model);
-    if (known->run != run || known->row != r) {
-        const bool waits = view->playback.playing && p.arm.links > 2;
-        if (waits || p.arm.links > MOST_PREDICTED) {
-            return (prediction_answer){.short_label = "linearised",
-                                       .outcome = PREDICTION_LINKS_UNKNOWN};
-        }
-        *known = (linearised_answer){run, r, predict_with(which, &question)};
-    }
-    return known->answer;
+    return predict_with(which, &question);
 }
 
 // The row of the predicted touch: the present one in free flight, otherwise the last free
@@ -52,50 +63,53 @@ static prediction_answer ask(const explorer_model *model, const explorer_view *v
 static size_t free_row(const session *s)
 {
     const trace *t = &s->run.trace;
-    size_t r = s->row;
+    if (t->rows[s->row].contact == 0) {
+        return s->row;
+    }
 
-    // in contact: back to the last touch, and on to where the arm was free
-    if (t->rows[r].contact != 0) {
-        for (size_t i = 0; i < t->event_count && t->events[i].time <= s->now; i++) {
-            bool touches =
-                t->events[i].kind == EVENT_IMPACT || t->events[i].kind == EVENT_CONTACT;
-            if (touches) {
-                r = trace_row_at(t, t->events[i].time);
-            }
+    // back to the last touch, and on to where the arm was free
+    size_t r = s->row;
+    for (size_t i = 0; i < t->event_count && t->events[i].time <= s->now; i++) {
+        const event *v = &t->events[i];
+        if (v->kind == EVENT_IMPACT || v->kind == EVENT_CONTACT) {
+            r = trace_row_at(t, v->time);
         }
-        while (r > 0 && t->rows[r].contact != 0) {
-            r--;
-        }
+    }
+    while (r > 0 && t->rows[r].contact != 0) {
+        r--;
     }
     return r;
 }
 
 // The largest force of the contact that begins after a row, as far as it has been seen.
-static prediction what_came(const session *s, size_t r)
+static prediction largest_force_after(const session *s, size_t free)
 {
     const trace *t = &s->run.trace;
-    prediction came = {.holds = true, .force = 0, .delay = 0};
-    double start = t->rows[r].time;
-    for (r++; r < t->row_count && t->rows[r].contact != 0 && t->rows[r].time <= s->seen;
-         r++) {
-        if (t->rows[r].force > came.force) {
-            came.force = t->rows[r].force;
-            came.delay = t->rows[r].time - start;
+    prediction largest = {.holds = true, .force = 0, .delay = 0};
+    for (size_t r = free + 1; r < t->row_count; r++) {
+        const sample *row = &t->rows[r];
+        if (row->contact == 0 || row->time > s->seen) {
+            break;
+        }
+        if (row->force > largest.force) {
+            largest.force = row->force;
+            largest.delay = row->time - t->rows[free].time;
         }
     }
-    return came;
+    return largest;
 }
 
-// The reason why a predictor has no answer, in as many words as fit. Links whose state is
-// not known are those of a run that plays: it will say something when that pauses.
-static const char *reason_of(const prediction_answer *answer, area a)
+// The reason why a predictor has no answer, in as many words as there is room for. Links
+// whose state is not known are those of a run that plays: it will say something when that
+// pauses.
+static const char *reason_of(const prediction_answer *answer, int room)
 {
     const char *reason = prediction_reason(answer);
     loss_unless(answer->fault.code != STATUS_NO_MEMORY);
     if (answer->outcome == PREDICTION_LINKS_UNKNOWN) {
         return "-";
     }
-    if (a.width - 20 >= (int)strlen(reason)) {
+    if ((int)strlen(reason) <= room) {
         return reason;
     }
     if (answer->outcome == PREDICTION_DOUBTFUL) {
@@ -107,29 +121,19 @@ static const char *reason_of(const prediction_answer *answer, area a)
     return "does not apply";
 }
 
-// A line of the panel; `unknown` is shown instead of a force that is not known, otherwise
-// NULL.
-static void predictor_line(screen *s, area a, int line, const char *label,
-                           const prediction *p, const char *unknown)
+// A force with its delay, as far as it is known and there is room.
+static void draw_prediction(screen *s, area a, const prediction *p)
 {
-    const int y = a.y + 1 + line, room = line < a.height - 2 ? a.width : 0;
-    screen_text(s, a.x + 2, y, room - 4, INK_TEXT, label);
-
-    // force and delay as far as they are known and there is room
-    if (unknown != NULL || !p->holds) {
-        screen_text(s, a.x + 18, y, room - 20, INK_DIM,
-                    unknown != NULL ? unknown : "would not hold");
+    enum { NARROW = 16 };                // cells
+    const double delay = 1e3 * p->delay; // [ms]
+    if (!p->holds) {
+        area_text(s, a, INK_DIM, "would not hold");
+    } else if (!isfinite(delay)) {
+        area_print(s, a, INK_FORCE, "%.3f N", p->force);
+    } else if (a.width < NARROW) {
+        area_print(s, a, INK_FORCE, "%.2f N, %.0f ms", p->force, delay);
     } else {
-        const double delay = 1e3 * p->delay; // [ms]
-        char text[64];
-        if (!isfinite(delay)) {
-            snprintf(text, sizeof text, "%.3f N", p->force);
-        } else if (a.width < 36) {
-            snprintf(text, sizeof text, "%.2f N, %.0f ms", p->force, delay);
-        } else {
-            snprintf(text, sizeof text, "%.3f N in %.0f ms", p->force, delay);
-        }
-        screen_text(s, a.x + 18, y, room - 20, INK_FORCE, text);
+        area_print(s, a, INK_FORCE, "%.3f N in %.0f ms", p->force, delay);
     }
 }
 
@@ -144,45 +148,71 @@ int predictors_rows(const explorer_model *model, const explorer_view *view,
     return 0;
 }
 
-static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
-                 screen *s, area a)
+// What the predictors say, a line each, and how many lines that are.
+static int draw_answers(const explorer_model *model, const explorer_view *view,
+                        layout *lay, screen *s, area a, size_t r)
 {
-    const session *e = &model->session;
-    size_t r = free_row(e);
-    bool touches = session_sample(e)->contact != 0;
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
-                 touches ? "when it touched: peak" : "if it touched now: peak");
-
-    // the thesis's two know no other number of links
-    if (session_parameters_at(e, e->now).arm.links != 2) {
-        screen_text(s, a.x + 2, a.y + a.height - 1, a.width - 4, INK_DIM,
-                    " the first two know two links ");
-    }
-
-    // what the predictors say
     static const predictor asked[] = {PREDICTOR_ENERGY, PREDICTOR_IMPACT_DYNAMICS,
                                       PREDICTOR_LINEARISED};
-    for (int i = 0; i < 3; i++) {
-        const prediction_answer answer = ask(model, view, lay, asked[i], r);
-        predictor_line(s, a, i, answer.short_label, &answer.prediction,
-                       prediction_known(&answer) ? NULL : reason_of(&answer, a));
+    enum { ASKED = sizeof asked / sizeof asked[0] };
+    for (int i = 0; i < ASKED && i < a.height; i++) {
+        const prediction_answer answer = ask_predictor(model, view, lay, asked[i], r);
+        const area line = area_row(a, i), beside = area_right(line, ANSWERS_AT);
+        area_text(s, line, INK_TEXT, answer.short_label);
+        if (prediction_known(&answer)) {
+            draw_prediction(s, beside, &answer.prediction);
+        } else {
+            area_text(s, beside, INK_DIM, reason_of(&answer, beside.width));
+        }
+    }
+    return ASKED;
+}
+
+// What came of the contact that there is, or else of the run's first one.
+static void draw_outcome(const session *e, screen *s, area line, bool touches, size_t r)
+{
+    const area beside = area_right(line, ANSWERS_AT);
+    if (touches) {
+        const prediction largest = largest_force_after(e, r);
+        area_text(s, line, INK_TEXT, "what came");
+        draw_prediction(s, beside, &largest);
+        return;
     }
 
-    // and beside it what came
-    prediction out;
-    if (touches) {
-        out = what_came(e, r);
-        predictor_line(s, a, 3, "what came", &out, NULL);
+    // not before it has been seen
+    const summary *m = &e->run.summary;
+    const prediction pulse = {.holds = true,
+                              .force = m->first_pulse_peak_N,
+                              .delay = m->first_pulse_time_to_peak_s};
+    area_text(s, line, INK_TEXT, "first pulse");
+    if (e->seen >= m->first_contact_s + m->first_pulse_time_to_peak_s) {
+        draw_prediction(s, beside, &pulse);
     } else {
-        const summary *m = &e->run.summary;
-        out = (prediction){.holds = true,
-                           .force = m->first_pulse_peak_N,
-                           .delay = m->first_pulse_time_to_peak_s};
-        bool seen = e->seen >= m->first_contact_s + m->first_pulse_time_to_peak_s;
-        predictor_line(s, a, 3, "first pulse", &out, seen ? NULL : "-");
+        area_text(s, beside, INK_DIM, "-");
+    }
+}
+
+static void draw_predictors(const explorer_model *model, const explorer_view *view,
+                            layout *lay, screen *s, area a)
+{
+    const session *e = &model->session;
+    const bool touches = session_sample(e)->contact != 0;
+    const size_t r = free_row(e);
+    area_frame(s, a, INK_FRAME,
+               touches ? "when it touched: peak" : "if it touched now: peak");
+
+    // the thesis's two know no other number of links
+    const area inside = area_inside(a);
+    if (session_parameters_at(e, e->now).arm.links != 2) {
+        area_text(s, area_row(inside, inside.height), INK_DIM,
+                  " the first two know two links ");
+    }
+    const int answers = draw_answers(model, view, lay, s, inside, r);
+    if (answers < inside.height) {
+        draw_outcome(e, s, area_row(inside, answers), touches, r);
     }
 }
 
 const panel predictors_panel = {.name = "predictors",
                                 .rows = predictors_rows,
-                                .draw = draw};
+                                .draw = draw_predictors};

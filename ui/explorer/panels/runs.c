@@ -7,9 +7,10 @@
 // --- the legend ------------------------------------------------------------------------
 // The legend of runs: the present one and those pinned, with their lines and peaks.
 
-enum { SAMPLE = 4, PEAK = 10 };
+enum { SAMPLE = 4, PEAK = 10 }; // columns of a line's sample and of a peak [cells]
 
-static int rows(const explorer_model *model, const explorer_view *view, screen_size body)
+static int runs_rows(const explorer_model *model, const explorer_view *view,
+                     screen_size body)
 {
     (void)view;
     const bool fits = body.width >= SIDE_WIDTH && body.height >= 12;
@@ -20,47 +21,57 @@ static int rows(const explorer_model *model, const explorer_view *view, screen_s
 }
 
 // A run in a line: how it is drawn, its name, its peak force.
-static void draw_run(screen *s, area a, const char *name, double peak, unsigned pattern,
-                     ink colour)
+static void draw_legend_line(screen *s, area line, const char *name, double peak,
+                             unsigned pattern, ink colour)
 {
-    draw_line_sample(s, a.x, a.y, SAMPLE, pattern, colour);
-    screen_words(s, a.x + SAMPLE + 1, a.y, a.width - SAMPLE - 1 - PEAK, INK_TEXT, name);
-    screen_print(s, a.x + a.width - PEAK, a.y, PEAK, INK_FORCE, "%8s N",
-                 draw_number(peak).text);
+    const area peak_area = area_right(line, line.width - PEAK);
+    const area name_area = {line.x + SAMPLE + 1, line.y, line.width - SAMPLE - 1 - PEAK,
+                            1};
+    draw_line_sample(s, line.x, line.y, SAMPLE, pattern, colour);
+    area_words(s, name_area, INK_TEXT, name);
+    area_print(s, peak_area, INK_FORCE, "%8s N", draw_number(peak).text);
 }
 
-static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
-                 screen *s, area a)
+// How the curves of a pinned run are drawn: hidden ones not, a single one in a colour of
+// its own, several by patterns unless runs have colours.
+static void pinned_look(const explorer_model *model, const explorer_view *view, int index,
+                        unsigned *pattern, ink *colour)
+{
+    const bool by_run = view->looks.by_run != 0;
+    const bool single = model_visible_pins(model) == 1;
+    *pattern = run_pattern(index);
+    *colour = INK_TEXT;
+    if (single) {
+        *pattern = style_pattern(LINE_SOLID);
+        *colour = INK_OTHER;
+    }
+    if (by_run) {
+        *pattern = style_pattern(LINE_SOLID);
+        *colour = run_ink(index);
+    }
+    if (model->pinned.runs[index].hidden) {
+        *pattern = 0;
+    }
+}
+
+static void draw_runs(const explorer_model *model, const explorer_view *view, layout *lay,
+                      screen *s, area a)
 {
     const run_list *list = &model->pinned;
-    area line = {a.x + 2, a.y + 1, a.width - 4, 1};
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, "runs, peaks (R: list)");
-    const bool by_run = view->looks.by_run != 0;
-    draw_run(s, line, "now", model->session.run.summary.peak_force_N,
-             style_pattern(LINE_SOLID), by_run ? run_ink(-1) : INK_TEXT);
-    line.y++;
+    const area inside = area_inside(a);
+    area_frame(s, a, INK_FRAME, "runs, peaks (R: list)");
+    draw_legend_line(s, area_row(inside, 0), "now",
+                     model->session.run.summary.peak_force_N, style_pattern(LINE_SOLID),
+                     view->looks.by_run ? run_ink(-1) : INK_TEXT);
 
-    // the baseline with a mark, hidden ones without a line
-    const bool single = model_visible_pins(model) == 1;
-    for (int i = 0; i < list->count && line.y < a.y + a.height - 1; i++, line.y++) {
+    // those that are pinned, the baseline with a mark
+    for (int i = 0; i < list->count && i + 1 < inside.height; i++) {
         const pinned_run *p = &list->runs[i];
-        unsigned pattern = 0;
-        if (!p->hidden) {
-            if (single || by_run) {
-                pattern = style_pattern(LINE_SOLID);
-            } else {
-                pattern = run_pattern(i);
-            }
-        }
+        const area line = area_row(inside, i + 1);
+        unsigned pattern;
         ink colour;
-        if (by_run) {
-            colour = run_ink(i);
-        } else if (single) {
-            colour = INK_OTHER;
-        } else {
-            colour = INK_TEXT;
-        }
-        draw_run(s, line, p->name, p->run.summary.peak_force_N, pattern, colour);
+        pinned_look(model, view, i, &pattern, &colour);
+        draw_legend_line(s, line, p->name, p->run.summary.peak_force_N, pattern, colour);
         if (i == list->baseline) {
             screen_put(s, a.x + 1, line.y, 0x25b8, INK_EVENT);
         }
@@ -69,61 +80,73 @@ static void draw(const explorer_model *model, const explorer_view *view, layout 
 }
 
 // A click hides a run or shows it.
-static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
-                  const panel_gesture *g)
+static bool point_at_runs(explorer_model *model, explorer_view *view,
+                          explorer_input *input, const panel_gesture *g)
 {
     (void)input;
     (void)view;
-    const bool pressed = g->event.kind == POINTER_PRESS;
-    model->pinned.runs[g->hit.index].hidden ^= pressed;
-    return pressed;
+    if (g->event.kind != POINTER_PRESS) {
+        return false;
+    }
+    pinned_run *p = &model->pinned.runs[g->hit.index];
+    p->hidden = !p->hidden;
+    return true;
 }
 
-const panel runs_panel = {.name = "runs", .rows = rows, .draw = draw, .point = point};
+const panel runs_panel = {.name = "runs",
+                          .rows = runs_rows,
+                          .draw = draw_runs,
+                          .point = point_at_runs};
 
 // --- the page --------------------------------------------------------------------------
 // The page of pinned runs: what differs, and what can be done with them.
 
-enum { NAME_WIDTH = 30, NUMBER = 10 };
+// Columns of a line [cells]: number, sample, name, peak, differences.
+enum { SAMPLE_AT = 3, NAME_AT = 8, NAME_WIDTH = 30, NARROW_NAME_WIDTH = 20 };
 
-// A pinned run: its line, name, peak, and what differs from the present one.
+// A pinned run: its number, line, name, peak, and what differs from the present one.
 static void draw_pinned(const explorer_model *model, screen *s, area a, int index)
 {
     const pinned_run *p = &model->pinned.runs[index];
-    char differs[LINE_TEXT];
-    const int name = a.width >= 80 ? NAME_WIDTH : 20;
-    run_list_differences(p, &model->session, differs, sizeof differs);
+    const int name_width = a.width >= 80 ? NAME_WIDTH : NARROW_NAME_WIDTH;
+    const char *mark = index == model->pinned.baseline ? "\u25b8" : " ";
+    unsigned pattern = 0;
+    ink name_ink = INK_DIM;
+    if (!p->hidden) {
+        pattern = run_pattern(index);
+        name_ink = INK_TITLE;
+    }
+    screen_print(s, a.x, a.y, SAMPLE_AT, INK_DIM, "%s%d", mark, index + 1);
+    draw_line_sample(s, a.x + SAMPLE_AT, a.y, SAMPLE, pattern, INK_TEXT);
+    screen_words(s, a.x + NAME_AT, a.y, name_width - 1, name_ink, p->name);
 
-    // number, line, name, peak, difference
-    screen_print(s, a.x, a.y, 3, INK_DIM, "%s%d",
-                 index == model->pinned.baseline ? "\u25b8" : " ", index + 1);
-    draw_line_sample(s, a.x + 3, a.y, SAMPLE, p->hidden ? 0 : run_pattern(index),
-                     INK_TEXT);
-    screen_words(s, a.x + 8, a.y, name - 1, p->hidden ? INK_DIM : INK_TITLE, p->name);
-    screen_print(s, a.x + 8 + name, a.y, NUMBER, INK_FORCE, "%7s N",
+    // behind the name
+    const area rest = area_right(a, NAME_AT + name_width);
+    char differences[LINE_TEXT];
+    run_list_differences(p, &model->session, differences, sizeof differences);
+    screen_print(s, rest.x, a.y, PEAK, INK_FORCE, "%7s N",
                  draw_number(p->run.summary.peak_force_N).text);
-    screen_words(s, a.x + 8 + name + NUMBER, a.y, a.width - 8 - name - NUMBER, INK_TEXT,
-                 differs);
+    area_words(s, area_right(rest, PEAK), INK_TEXT, differences);
 }
 
 // What they stand beside, and the keys.
-static void draw_rest(const explorer_model *model, screen *s, area a)
+static void draw_pinned_edges(const explorer_model *model, screen *s, area a)
 {
-    screen_print(s, a.x, a.y, a.width, INK_DIM, "this run peaks at %.4g N; beside it:",
-                 model->session.run.summary.peak_force_N);
-    screen_text(
-        s, a.x, a.y + a.height - 1, a.width, INK_DIM,
-        model->pinned.count > 0
-            ? "Enter takes it, Space hides, = compares, r renames, d drops, D subtracts"
-            : "none yet: b pins the run there is, then change something");
+    const char *keys = "none yet: b pins the run there is, then change something";
+    if (model->pinned.count > 0) {
+        keys = "Enter takes it, Space hides, = compares, r renames, d drops, D subtracts";
+    }
+    area_print(s, area_row(a, 0), INK_DIM, "this run peaks at %.4g N; beside it:",
+               model->session.run.summary.peak_force_N);
+    area_text(s, area_row(a, a.height - 1), INK_DIM, keys);
 }
 
-static int count(const explorer_model *model)
+static int pinned_count(const explorer_model *model)
 {
     return model->pinned.count;
 }
 
-static int selected(const explorer_model *model, const explorer_view *view)
+static int selected_run(const explorer_model *model, const explorer_view *view)
 {
     (void)view;
     return model->pinned.selected;
@@ -135,8 +158,8 @@ static void select_run(explorer_model *model, explorer_view *view, int index)
     model->pinned.selected = index;
 }
 
-static bool press_key(explorer_model *model, explorer_view *view, explorer_input *input,
-                      int key, int index)
+static bool press_pinned_key(explorer_model *model, explorer_view *view,
+                             explorer_input *input, int key, int index)
 {
     switch (key) {
     case ' ':
@@ -163,101 +186,157 @@ static bool press_key(explorer_model *model, explorer_view *view, explorer_input
     }
 }
 
-static const page_list list = {.title = "pinned runs (Esc closes)",
-                               .width = 100,
-                               .head = 1,
-                               .foot = 2,
-                               .needs_lines = true,
-                               .count = count,
-                               .selected = selected,
-                               .select = select_run,
-                               .draw_line = draw_pinned,
-                               .draw_rest = draw_rest,
-                               .key = press_key};
+static const page_list pinned_list = {.title = "pinned runs (Esc closes)",
+                                      .most_width = 100,
+                                      .head = 1,
+                                      .foot = 2,
+                                      .needs_lines = true,
+                                      .count = pinned_count,
+                                      .selected = selected_run,
+                                      .select = select_run,
+                                      .draw_line = draw_pinned,
+                                      .draw_edges = draw_pinned_edges,
+                                      .press_key = press_pinned_key};
 
-const panel run_list_panel = {.name = "run list", .list = &list};
+const panel run_list_panel = {.name = "run list", .list = &pinned_list};
 
 // --- the comparison --------------------------------------------------------------------
 
-// A quantity of the comparison as a name and as columns; returns whether it means
-// anything in either run.
-static bool compare_quantity(const session *e, int index, int width, char *columns,
-                             size_t size, bool *differs)
-{
-    // smaller differences are rounding, of numbers near zero too
-    const double relative = 1e-6, absolute = 1e-9;
-    const double value = summary_value(&e->run.summary, index);
-    const double other =
-        e->has_other ? summary_value(&e->other.summary, index) : (double)NAN;
-    *differs =
-        e->has_other && !(isnan(value) && isnan(other)) &&
-        !(fabs(value - other) <= absolute + relative * fmax(fabs(value), fabs(other)));
+// A quantity of the summary in this run and in the other one.
+typedef struct compared {
+    double value, other; // NaN without the other run
+    bool means_anything; // in either run
+    bool differs;
+} compared;
 
-    // a single run has no change
-    const number_text none = {""}, two = e->has_other ? draw_number(other) : none;
-    number_text change;
+static compared compare_quantity(const session *e, int index)
+{
+    compared c = {.value = summary_value(&e->run.summary, index), .other = (double)NAN};
     if (e->has_other) {
-        change = draw_number(*differs ? value - other : (double)NAN);
-    } else {
-        change = none;
+        c.other = summary_value(&e->other.summary, index);
     }
-    snprintf(columns, size, "%*s%*s%*s", width, draw_number(value).text, width, two.text,
-             width, change.text);
-    return !summary_table[index].timing && !(isnan(value) && isnan(other));
+    const bool has_value = !isnan(c.value) || !isnan(c.other);
+    c.means_anything = has_value && !summary_table[index].timing;
+
+    // smaller differences are rounding, of numbers near zero too
+    const double rounding = 1e-9 + 1e-6 * fmax(fabs(c.value), fabs(c.other));
+    const bool alike = fabs(c.value - c.other) <= rounding;
+    c.differs = e->has_other && has_value && !alike;
+    return c;
+}
+
+// How the comparison is laid out: a narrow screen has the name and the numbers below each
+// other.
+typedef struct comparison_layout {
+    int rows;    // of a quantity
+    int numbers; // column of the first number, behind the names or below them [cells]
+    int width;   // of a number [cells]
+} comparison_layout;
+
+static comparison_layout comparison_layout_for(int screen_width)
+{
+    enum { NAMES = 30, NUMBER = 12, NARROW_NUMBER = 11 };
+    if (screen_width - 6 < NAMES + 3 * NUMBER) {
+        return (comparison_layout){.rows = 2, .numbers = 0, .width = NARROW_NUMBER};
+    }
+    return (comparison_layout){.rows = 1, .numbers = NAMES, .width = NUMBER};
+}
+
+// The names of the columns.
+static void draw_comparison_head(const explorer_model *model, screen *s, area line,
+                                 const comparison_layout *form)
+{
+    const area now = area_right(line, form->numbers);
+    area_print(s, now, INK_DIM, "%*s", form->width, "now");
+    if (model->session.has_other) {
+        // under the name that the legend has
+        const area other = area_right(now, form->width + 1);
+        screen_words(s, other.x, other.y, form->width - 1, INK_DIM,
+                     model->pinned.runs[model->pinned.baseline].name);
+        screen_print(s, other.x + form->width - 1, other.y, form->width, INK_DIM, "%*s",
+                     form->width, "change");
+    }
+}
+
+// The numbers of a quantity; a single run has no change.
+static void draw_compared(const session *e, screen *s, area line, compared c, ink colour,
+                          int width)
+{
+    char columns[128];
+    snprintf(columns, sizeof columns, "%*s", width, draw_number(c.value).text);
+    if (e->has_other) {
+        const double change = c.differs ? c.value - c.other : (double)NAN;
+        text_add(columns, sizeof columns, "%*s%*s", width, draw_number(c.other).text,
+                 width, draw_number(change).text);
+    } else {
+        text_add(columns, sizeof columns, "%*s", 2 * width, "");
+    }
+    area_text(s, line, colour, columns);
+}
+
+static void draw_summary_name(screen *s, area line, const summary_info *info, ink colour)
+{
+    if (info->unit[0] != '\0') {
+        area_print(s, line, colour, "%s [%s]", info->label, info->unit);
+    } else {
+        area_text(s, line, colour, info->label);
+    }
+}
+
+// The quantities that mean anything, from the row on to which the page is scrolled.
+static void draw_quantities(const session *e, screen *s, area a,
+                            const comparison_layout *form, int scroll)
+{
+    int row = -scroll;
+    for (int i = 0; i < summary_count; i++) {
+        const compared c = compare_quantity(e, i);
+        if (!c.means_anything) {
+            continue;
+        }
+        const ink colour = c.differs || !e->has_other ? INK_TEXT : INK_DIM;
+        const int numbers_row = row + form->rows - 1;
+        if (row >= 0 && row < a.height) {
+            draw_summary_name(s, area_row(a, row), &summary_table[i], colour);
+        }
+        if (numbers_row >= 0 && numbers_row < a.height) {
+            const area line = area_right(area_row(a, numbers_row), form->numbers);
+            draw_compared(e, s, line, c, colour, form->width);
+        }
+        row += form->rows;
+    }
 }
 
 static void draw_comparison(const explorer_model *model, const explorer_view *view,
                             layout *lay, screen *s, area body)
 {
     (void)view;
-    enum { NAMES = 30, WIDE = 12, NARROW = 11 };
+    enum { EDGES = 3 }; // the frame, and the names of the columns
     const session *e = &model->session;
-    char columns[128];
-    bool differs;
-    int count = 0, line = 0;
-
-    // what means anything in either run
+    const comparison_layout form = comparison_layout_for(s->width);
+    int count = 0;
     for (int i = 0; i < summary_count; i++) {
-        count += compare_quantity(e, i, WIDE, columns, sizeof columns, &differs);
+        if (compare_quantity(e, i).means_anything) {
+            count++;
+        }
     }
 
-    // a narrow screen has the name and the numbers below each other
-    int rows = s->width - 6 < NAMES + 3 * WIDE ? 2 : 1, names = rows == 1 ? NAMES : 0;
-    int width = rows == 1 ? WIDE : NARROW;
-    area a = page_area(body, names + 3 * width + 4, rows * count + 3);
-    int room = a.width - 4, shown = a.height - 3;
-    int scroll = page_scroll(lay, PANEL_COMPARISON, a, rows * count, 3);
-    const int all = rows * count, last = scroll + shown;
-    draw_page_frame(s, a,
-                    e->has_other ? "two runs (Esc closes)"
-                                 : "this run (b branches, Esc closes)",
-                    (last < all ? last : all) / rows, count);
-    screen_print(s, a.x + 2 + names, a.y + 1, room - names, INK_DIM, "%*s", width, "now");
+    // the page, scrolled by rows
+    const int all = form.rows * count;
+    const area a = page_area(body, form.numbers + 3 * form.width + 4, all + EDGES);
+    const int scroll = page_scroll(lay, PANEL_COMPARISON, a, all, EDGES);
+    int end = scroll + a.height - EDGES;
+    if (end > all) {
+        end = all;
+    }
+    const char *title = "this run (b branches, Esc closes)";
     if (e->has_other) {
-        // under the name that the legend has
-        const int at = a.x + 3 + names + width;
-        screen_words(s, at, a.y + 1, width - 1, INK_DIM,
-                     model->pinned.runs[model->pinned.baseline].name);
-        screen_print(s, at + width - 1, a.y + 1, width, INK_DIM, "%*s", width, "change");
+        title = "two runs (Esc closes)";
     }
+    draw_page_frame(s, a, title, end / form.rows, count);
 
-    // the lines that it is scrolled to
-    for (int i = 0; i < summary_count; i++) {
-        if (!compare_quantity(e, i, width, columns, sizeof columns, &differs)) {
-            continue;
-        }
-        const ink colour = differs || !e->has_other ? INK_TEXT : INK_DIM;
-        const summary_info *info = &summary_table[i];
-        int y = rows * line++ - scroll, below = y + rows - 1;
-        if (y >= 0 && y < shown) {
-            screen_print(s, a.x + 2, a.y + 2 + y, room, colour, "%s%s%s%s", info->label,
-                         info->unit[0] ? " [" : "", info->unit, info->unit[0] ? "]" : "");
-        }
-        if (below >= 0 && below < shown) {
-            screen_text(s, a.x + 2 + names, a.y + 2 + below, room - names, colour,
-                        columns);
-        }
-    }
+    const area inside = area_inside(a);
+    draw_comparison_head(model, s, area_row(inside, 0), &form);
+    draw_quantities(e, s, area_below(inside, 1), &form, scroll);
 }
 
 const panel comparison_panel = {.name = "comparison",

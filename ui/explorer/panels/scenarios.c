@@ -1,14 +1,15 @@
 // The page that lists the scenarios, with a filter.
 #include "ui/explorer/panels/panel.h"
 
-enum {
-    PREVIEW = 6,
-    TALL_SCREEN = 22
-}; // rows of the preview, and of a screen that has room for it
+// Rows of the preview, and of a screen that has room for it.
+enum { PREVIEW = 6, TALL_SCREEN = 22 };
 
-// The first line to show. It moves only as far as it must, so that a second click meets
-// what the first one selected.
-static int first_line(int selected, int count, int first, int height)
+// Rows over the lines: frame, filter, a blank one; and all that are no lines.
+enum { HEAD = 3, EDGES = 4 };
+
+// The first line to show. It moves only as far as it must from the one that was the first
+// (-1: none yet), so that a second click meets what the first one selected.
+static int first_scenario(int selected, int count, int first, int height)
 {
     if (first < 0) {
         return draw_first_line(selected, count, height);
@@ -18,163 +19,194 @@ static int first_line(int selected, int count, int first, int height)
     } else if (selected >= first + height) {
         first = selected - height + 1;
     }
+
+    // no empty lines at the end
     if (first > count - height) {
         first = count - height;
     }
-    if (first < 0) {
-        return 0;
-    }
-    return first;
+    return first > 0 ? first : 0;
 }
 
 // A scenario's name, and as many whole words of its title as there is room for.
 static void draw_scenario(const scenario_menu *menu, int index, screen *s, area a)
 {
-    int used = screen_text(s, a.x, a.y, a.width, INK_TEXT, menu->names[index]);
-    int column = used + 2 > 30 ? used + 2 : 30, room = a.width - column;
-    text_line title;
-    if (room > 0 &&
-        text_wrap(scenario_menu_text(menu, index).title, room, &title, 1, NULL) > 0) {
-        screen_print(s, a.x + column, a.y, room, INK_DIM, "%.*s", title.bytes,
-                     title.start);
+    enum { TITLE_AT = 30 }; // column, where the name is not longer
+    const int used = 2 + area_text(s, a, INK_TEXT, menu->names[index]);
+    const area room = area_right(a, used > TITLE_AT ? used : TITLE_AT);
+    if (room.width > 0) {
+        text_line words;
+        const char *title = scenario_menu_text(menu, index).title;
+        const int count = text_wrap(title, room.width, &words, 1, NULL);
+        area_lines(s, room, INK_DIM, &words, count);
     }
     if (index == menu->selected) {
-        screen_tint(s, a.x - 1, a.y, a.width + 2, 1, INK_SELECTED);
+        area_tint(s, (area){a.x - 1, a.y, a.width + 2, 1}, INK_SELECTED);
     }
 }
 
 // What the selected scenario is about, below a line.
 static void draw_preview(const scenario_menu *menu, screen *s, area a)
 {
-    text_line lines[PREVIEW];
     for (int x = 0; x < a.width; x++) {
         screen_put(s, a.x + x, a.y, 0x2500, INK_FRAME);
     }
 
-    // as much of it as there is room for, unless the filter hides it
-    int at;
-    scenario_menu_lines(menu, &at);
-    if (at < 0) {
+    // nothing where the filter hides it
+    int selected;
+    scenario_menu_lines(menu, &selected);
+    if (selected < 0) {
         return;
     }
+
+    // as much of it as there is room for
+    text_line lines[PREVIEW];
+    const area room = area_below(a, 1);
     const char *text = scenario_menu_text(menu, menu->selected).description;
-    const int count = text_wrap(text, a.width, lines, a.height - 1, NULL);
-    for (int i = 0; i < count; i++) {
-        screen_print(s, a.x, a.y + 1 + i, a.width, INK_TEXT, "%.*s", lines[i].bytes,
-                     lines[i].start);
-    }
+    const int count = text_wrap(text, a.width, lines, room.height, NULL);
+    area_lines(s, room, INK_TEXT, lines, count);
 }
 
-static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
-                 screen *s, area body)
+static void draw_scenarios(const explorer_model *model, const explorer_view *view,
+                           layout *lay, screen *s, area body)
 {
     (void)model;
     const scenario_menu *menu = &view->scenarios;
     const int preview = s->height >= TALL_SCREEN ? PREVIEW : 0;
-    area a = page_area(body, 96, menu->count + 4 + preview);
-    int height = a.height - 4 - preview, selected;
-    const int count = scenario_menu_lines(menu, &selected);
-    const int first = first_line(selected, count, view->drawn.first_scenario, height);
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_CURSOR,
-                 "scenarios (Enter opens, / filters, Esc closes)");
-    screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "/ filter: %s%s",
-                 menu->filter, menu->filtering ? "_" : "");
+    const area a = page_area(body, 96, menu->count + EDGES + preview);
+    const area inside = area_inside(a);
+    area_frame(s, a, INK_CURSOR, "scenarios (Enter opens, / filters, Esc closes)");
+    area_print(s, inside, INK_DIM, "/ filter: %s%s", menu->filter,
+               menu->filtering ? "_" : "");
 
-    // the lines lie over the page, so a click meets them first
-    const area lines = {a.x + 1, a.y + 3, a.width - 2, height};
+    // where the lines are; they lie over the page, so a click meets them first
+    int selected;
+    const int height = a.height - EDGES - preview;
+    const area lines = {a.x + 1, a.y + HEAD, a.width - 2, height};
+    const int count = scenario_menu_lines(menu, &selected);
+    const int first = first_scenario(selected, count, view->drawn.first_scenario, height);
     lay->drawn.first_scenario = first;
-    if (height > 1) {
-        lay->drawn.page_lines = height - 1;
-    } else {
-        lay->drawn.page_lines = 1;
-    }
+    lay->drawn.page_lines = height > 1 ? height - 1 : 1;
     layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_BODY, 0, a});
     layout_add_hit(lay, (hit_area){PANEL_SCENARIOS, PART_LINES, first, lines});
 
     // entries that pass the filter, as far as there is room
     for (int i = first; i < count && i < first + height; i++) {
-        draw_scenario(menu, menu->shown[i], s,
-                      (area){a.x + 2, lines.y + i - first, a.width - 4, 1});
+        const area line = {inside.x, lines.y + i - first, inside.width, 1};
+        draw_scenario(menu, menu->shown[i], s, line);
     }
     if (preview > 0) {
-        draw_preview(menu, s, (area){a.x + 2, lines.y + height, a.width - 4, preview});
+        draw_preview(menu, s, (area){inside.x, lines.y + height, inside.width, preview});
     }
 }
 
-static bool open_selected(explorer_model *model, explorer_view *view,
-                          explorer_input *input)
+// Opens the selected scenario, unless the filter hides it, and closes the page.
+static bool open_selected_scenario(explorer_model *model, explorer_view *view,
+                                   explorer_input *input)
 {
     const scenario_menu *menu = &view->scenarios;
-    int at;
+    int selected;
     view->page = PANEL_NONE;
-    scenario_menu_lines(menu, &at);
-    return at < 0 || act_open_scenario(model, view, input, menu->names[menu->selected]);
+    scenario_menu_lines(menu, &selected);
+    if (selected < 0) {
+        return true;
+    }
+    return act_open_scenario(model, view, input, menu->names[menu->selected]);
 }
 
 // Keys go to the filter until it is closed; Enter opens what is selected.
-static bool filter_key(explorer_model *model, explorer_view *view, explorer_input *input,
-                       int key)
+static bool press_filter_key(explorer_model *model, explorer_view *view,
+                             explorer_input *input, int key)
 {
     scenario_menu *menu = &view->scenarios;
-    const bool opens = key == KEY_CODE_ENTER;
-    if (opens || key == KEY_CODE_ESCAPE) {
+    switch (key) {
+    case KEY_CODE_ENTER:
+    case KEY_CODE_ESCAPE:
         menu->filtering = false;
-    } else if (key == KEY_CODE_UP || key == KEY_CODE_DOWN) {
-        scenario_menu_move(menu, key == KEY_CODE_UP ? -1 : 1);
-    } else {
+        break;
+    case KEY_CODE_UP:
+        scenario_menu_move(menu, -1);
+        break;
+    case KEY_CODE_DOWN:
+        scenario_menu_move(menu, 1);
+        break;
+    default:
         text_type(menu->filter, key);
+        break;
     }
+
+    // the selection goes to what the filter lets through
     scenario_menu_move(menu, 0);
-    return !opens || open_selected(model, view, input);
+    if (key == KEY_CODE_ENTER) {
+        return open_selected_scenario(model, view, input);
+    }
+    return true;
 }
 
-static bool menu_key(explorer_model *model, explorer_view *view, explorer_input *input,
-                     int key)
+static bool press_scenarios_key(explorer_model *model, explorer_view *view,
+                                explorer_input *input, int key)
 {
+    enum { PAGE = 10 }; // lines
     scenario_menu *menu = &view->scenarios;
 
     // the filter takes all keys while it is typed
     if (menu->filtering) {
-        return filter_key(model, view, input, key);
+        return press_filter_key(model, view, input, key);
     }
-    const bool up = key == KEY_CODE_UP || key == 'k' || key == KEY_CODE_PAGE_UP;
-    const bool down = key == KEY_CODE_DOWN || key == 'j' || key == KEY_CODE_PAGE_DOWN;
-    const bool page = key == KEY_CODE_PAGE_UP || key == KEY_CODE_PAGE_DOWN;
-    if (up || down) {
-        scenario_menu_move(menu, (page ? 10 : 1) * (up ? -1 : 1));
-    } else if (key == '/') {
+    switch (key) {
+    case KEY_CODE_UP:
+    case 'k':
+        scenario_menu_move(menu, -1);
+        break;
+    case KEY_CODE_DOWN:
+    case 'j':
+        scenario_menu_move(menu, 1);
+        break;
+    case KEY_CODE_PAGE_UP:
+        scenario_menu_move(menu, -PAGE);
+        break;
+    case KEY_CODE_PAGE_DOWN:
+        scenario_menu_move(menu, PAGE);
+        break;
+    case '/':
         menu->filtering = true;
         menu->filter[0] = '\0';
-    } else if (key == KEY_CODE_ENTER) {
-        return open_selected(model, view, input);
-    } else if (key == KEY_CODE_ESCAPE || key == 'q' || key == 'o') {
+        break;
+    case KEY_CODE_ENTER:
+        return open_selected_scenario(model, view, input);
+    case KEY_CODE_ESCAPE:
+    case 'q':
+    case 'o':
         view->page = PANEL_NONE;
+        break;
     }
     return true;
 }
 
 // The first click selects a line, another one on it opens it.
-static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
-                  const panel_gesture *g)
+static bool point_at_scenarios(explorer_model *model, explorer_view *view,
+                               explorer_input *input, const panel_gesture *g)
 {
     scenario_menu *menu = &view->scenarios;
-
     if (g->event.kind != POINTER_PRESS || g->hit.part != PART_LINES) {
         return false;
     }
 
     // in a line without a scenario nothing happens
-    int selected, line = g->hit.index + g->event.y - g->hit.area.y;
-    if (line < scenario_menu_lines(menu, &selected) && line == selected) {
+    int selected;
+    const int line = gesture_line(g), count = scenario_menu_lines(menu, &selected);
+    if (line >= count) {
+        return true;
+    }
+    if (line == selected) {
         menu->filtering = false;
-        open_selected(model, view, input);
-    } else if (line < scenario_menu_lines(menu, &selected)) {
+        open_selected_scenario(model, view, input);
+    } else {
         menu->selected = menu->shown[line];
     }
     return true;
 }
 
 const panel scenarios_panel = {.name = "scenarios",
-                               .draw = draw,
-                               .point = point,
-                               .key = menu_key};
+                               .draw = draw_scenarios,
+                               .point = point_at_scenarios,
+                               .key = press_scenarios_key};
