@@ -48,17 +48,17 @@ static bool press_note_key(explorer_model *model, explorer_view *view,
     return true;
 }
 
-static const page_list note_list = {
-    .title = "notes (Enter goes there, d drops, Esc closes)",
-    .empty_title = "notes (Esc closes)",
-    .most_width = 84,
-    .least_lines = 1,
-    .needs_lines = true,
-    .count = note_count,
-    .selected = selected_note,
-    .select = select_note,
-    .draw_line = draw_note,
-    .draw_edges = draw_note_edges,
-    .press_key = press_note_key};
+static const page_list note_list = {.title =
+                                        "notes (Enter goes there, d drops, Esc closes)",
+                                    .empty_title = "notes (Esc closes)",
+                                    .most_width = 84,
+                                    .least_lines = 1,
+                                    .needs_lines = true,
+                                    .count = note_count,
+                                    .selected = selected_note,
+                                    .select = select_note,
+                                    .draw_line = draw_note,
+                                    .draw_edges = draw_note_edges,
+                                    .press_key = press_note_key};
 
 const panel notes_panel = {.name = "notes", .list = &note_list};
