@@ -27,7 +27,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "ui/commands/table.h"
+#include "ui/command_table.h"
 
 // --- who refuses -----------------------------------------------------------------------
 

@@ -11,7 +11,7 @@
 #include "src/base/text_stream.h"
 #include "src/base/whole_file.h"
 #include "src/base/shipped.h"
-#include "ui/commands/table.h"
+#include "ui/command_table.h"
 #include "ui/terminal/terminal.h"
 
 // Without a command: what there is to run, and how.

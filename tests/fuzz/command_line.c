@@ -8,7 +8,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "ui/commands/table.h"
+#include "ui/command_table.h"
 
 enum { MOST_LINES = 16, MOST_WORDS = 40, MOST_LETTERS = 24, DRAWN_OF = 16 };
 

@@ -1,6 +1,6 @@
 // The table of all commands: the one file that knows them all. Their list stands in
 // meson.build, from which command_names.h is written.
-#include "ui/commands/table.h"
+#include "ui/command_table.h"
 
 #include "ui/commands/command_names.h"
 
