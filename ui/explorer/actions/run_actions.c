@@ -74,11 +74,29 @@ static int read_run(const explorer_model *model, explorer_input *input,
     return act_read_index(input, argument, count, "pinned runs", "R");
 }
 
+// Puts a pinned run in the place of the present one: its inputs, where both are of one
+// scenario, else a session of its own.
+static status take_origin(explorer_model *model, explorer_view *view,
+                          const run_origin *from, fault *f)
+{
+    session *s = &model->session;
+    if (same_base(&from->base, &s->base)) {
+        return session_take_inputs(s, from->inputs, from->input_count, f);
+    }
+    session other;
+    TRY(session_reopen(&other, from, s->patience, f));
+    const status code = state_take_session(model, view, &other, f);
+    if (code != STATUS_OK) {
+        session_finish(&other);
+    }
+    return code;
+}
+
 bool act_take_run(explorer_model *model, explorer_view *view, explorer_input *input,
                   int index)
 {
-    assert(index >= 0 && index < model->pinned.count);
     const run_list *list = &model->pinned;
+    assert(index >= 0 && index < list->count);
     if (run_origin_is_of(&list->runs[index].from, &model->session)) {
         return act_tell(input, "this is that run");
     }
@@ -88,22 +106,7 @@ bool act_take_run(explorer_model *model, explorer_view *view, explorer_input *in
         return false;
     }
     const pinned_run *taken = &list->runs[index];
-    const run_origin *from = &taken->from;
-    session other;
-    status code = STATUS_OK;
-    if (same_base(&from->base, &model->session.base)) {
-        code = session_take_inputs(&model->session, from->inputs, from->input_count,
-                                   &input->fault);
-    } else {
-        code = session_reopen(&other, from, model->session.patience, &input->fault);
-        if (code != STATUS_OK) {
-            return act_succeeded(input, code);
-        }
-        code = state_take_session(model, view, &other, &input->fault);
-        if (code != STATUS_OK) {
-            session_finish(&other);
-        }
-    }
+    const status code = take_origin(model, view, &taken->from, &input->fault);
     return act_succeeded(input, code) &&
            act_tell(input, "'%s' goes on; the run before is compared with it",
                     taken->name);
@@ -181,35 +184,17 @@ bool act_unpin(explorer_model *model, explorer_input *input, const char *argumen
     return index >= 0 && act_drop_run(model, input, index);
 }
 
-bool act_difference(explorer_model *model, const explorer_view *view,
-                    explorer_input *input, const char *argument)
+// Says where the first signal of the pane in focus leaves the tolerance.
+static bool tell_difference(const explorer_model *model, const explorer_view *view,
+                            explorer_input *input)
 {
-    run_difference *d = &model->difference;
-    double tolerance = 0;
-    if (strcmp(argument, "off") == 0 || (argument[0] == '\0' && d->on)) {
-        d->on = false;
-        return act_tell(input, "the runs themselves");
-    }
-    if (!act_read_number_or(input, argument, "", &tolerance)) {
-        return false;
-    }
-    if (!model->session.has_other) {
-        return act_refuse(input, "there is nothing to subtract: b pins this run first");
-    }
-    if (tolerance < 0) {
-        return act_refuse(input, "a tolerance is not negative");
-    }
-    d->on = true;
-    d->tolerance = tolerance;
-    difference_update(d, model_run_id(model), &model->session.run.trace,
-                      &model->session.other.trace);
-
-    // where the first signal of the pane in focus leaves the tolerance
     const char *name = model->pinned.runs[model->pinned.baseline].name;
     const int focused = panes_focused(&view->panes);
     if (focused < 0) {
         return act_tell(input, "minus '%s'; D shows the runs again", name);
     }
+
+    // signals that are not subtracted
     const int signal = view->panes.pane[focused].signals[0];
     const signal_info *info = &signal_table[signal];
     if (signal_is_derived(signal)) {
@@ -222,7 +207,10 @@ bool act_difference(explorer_model *model, const explorer_view *view,
             input, "minus '%s', but states such as %s are this run's; D shows the runs",
             name, info->name);
     }
-    const double first = difference_first_beyond(d, signal, tolerance);
+
+    // the others
+    const double tolerance = model->difference.tolerance;
+    const double first = difference_first_beyond(&model->difference, signal, tolerance);
     if (first < 0) {
         return act_tell(input, "minus '%s': %s never differs by more than %g %s", name,
                         info->name, tolerance, info->unit);
@@ -231,6 +219,35 @@ bool act_difference(explorer_model *model, const explorer_view *view,
         input,
         "minus '%s': %s differs by more than %g %s from %.5f s on; D shows the runs",
         name, info->name, tolerance, info->unit, first);
+}
+
+bool act_difference(explorer_model *model, const explorer_view *view,
+                    explorer_input *input, const char *argument)
+{
+    run_difference *d = &model->difference;
+    if (strcmp(argument, "off") == 0 || (argument[0] == '\0' && d->on)) {
+        d->on = false;
+        return act_tell(input, "the runs themselves");
+    }
+
+    // a tolerance, and something to subtract
+    double tolerance = 0;
+    if (!act_read_number_or(input, argument, "", &tolerance)) {
+        return false;
+    }
+    if (!model->session.has_other) {
+        return act_refuse(input, "there is nothing to subtract: b pins this run first");
+    }
+    if (tolerance < 0) {
+        return act_refuse(input, "a tolerance is not negative");
+    }
+
+    // the differences, which are drawn from now on
+    d->on = true;
+    d->tolerance = tolerance;
+    difference_update(d, model_run_id(model), &model->session.run.trace,
+                      &model->session.other.trace);
+    return tell_difference(model, view, input);
 }
 
 // --- limits ----------------------------------------------------------------------------
@@ -247,13 +264,12 @@ static int signal_of_quantity(int quantity)
                  {SUMMARY_INDEX(steady_force_N), SIGNAL_INDEX(force)},
                  {SUMMARY_INDEX(largest_command_V), SIGNAL_INDEX(command)},
                  {SUMMARY_INDEX(approach_speed_m_s), SIGNAL_INDEX(gap_velocity)}};
-    int found = -1;
     for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
         if (pairs[i].quantity == quantity) {
-            found = pairs[i].signal;
+            return pairs[i].signal;
         }
     }
-    return found;
+    return -1;
 }
 
 status act_pin_value(explorer_model *model, const sweep_axis *axis, double value,
@@ -282,11 +298,15 @@ status act_pin_value(explorer_model *model, const sweep_axis *axis, double value
 
 const char *act_full_path(const char *word, char *text, size_t size)
 {
+    const char *values = word + strcspn(word, "=");
     char name[LINE_TEXT];
     text_cut(word, "=", name, sizeof name);
-    const int index = parameter_of_name(name);
-    snprintf(text, size, "%s%s", index >= 0 ? parameter_table[index].path : name,
-             word + strcspn(word, "="));
+    const int parameter = parameter_of_name(name);
+    if (parameter >= 0) {
+        snprintf(text, size, "%s%s", parameter_table[parameter].path, values);
+    } else {
+        snprintf(text, size, "%s%s", name, values);
+    }
     return text;
 }
 
@@ -306,77 +326,101 @@ static int nearest_limit(const explorer_model *model, const sweep_axis *axis,
     return nearest;
 }
 
+// Says that there is no limit in the range that was searched.
+static bool refuse_without_limit(explorer_input *input, const sweep_axis *axis,
+                                 const solve_condition *c, const solution *found)
+{
+    const double low = fmin(axis->low, axis->high), high = fmax(axis->low, axis->high);
+    char text[MESSAGE_TEXT / 2];
+    snprintf(text, sizeof text,
+             "no limit of %s from %g to %g %s: the %s is as asked in %d runs, and not in "
+             "%d",
+             axis->name, low, high, sweep_axis_parameter(axis)->unit,
+             summary_table[c->quantity].label, found->holding, found->failing);
+    if (found->unknown > 0) {
+        return act_refuse(input, "%s; first of the others: %s", text, found->reason);
+    }
+    return act_refuse(input, "%s%s", text, found->reason);
+}
+
 // Says what was found: the limit that is pinned, and where others are; true if there is
 // one.
 static bool tell_limits(const explorer_model *model, explorer_input *input,
                         const sweep_axis *axis, const solve_condition *c,
                         const solution *found)
 {
-    const char *unit = sweep_axis_parameter(axis)->unit;
-    const summary_info *quantity = &summary_table[c->quantity];
-    char others[160] = "";
     if (found->count == 0) {
-        const double low = fmin(axis->low, axis->high),
-                     high = fmax(axis->low, axis->high);
-        return act_refuse(input,
-                          "no limit of %s from %g to %g %s: the %s is as asked in %d "
-                          "runs, and not in %d%s%s",
-                          axis->name, low, high, unit, quantity->label, found->holding,
-                          found->failing,
-                          found->unknown > 0 ? "; first of the others: " : "",
-                          found->reason);
+        return refuse_without_limit(input, axis, c, found);
     }
+
+    // the others
     const int nearest = nearest_limit(model, axis, found);
+    char others[160] = "";
     for (int i = 0; i < found->count; i++) {
         if (i != nearest) {
-            text_add(others, sizeof others, "%s%.5g",
-                     others[0] == '\0' ? "; limits also at " : ", ",
-                     found->limits[i].value);
+            const char *before = others[0] == '\0' ? "; limits also at " : ", ";
+            text_add(others, sizeof others, "%s%.5g", before, found->limits[i].value);
         }
     }
+
+    // the nearest, with what the quantity is there
     const solve_limit *l = &found->limits[nearest];
-    return act_tell(input, "%s %s = %#.5g%s%s: %#.5g %s%s%s; that run is pinned",
-                    l->holds_below ? "up to" : "from", axis->name, l->value,
-                    unit[0] ? " " : "", unit, l->reached, quantity->unit,
-                    l->jumps ? ", where it jumps" : "", others);
+    const char *side = l->holds_below ? "up to" : "from";
+    const char *jump = l->jumps ? ", where it jumps" : "";
+    const char *unit = sweep_axis_parameter(axis)->unit, *blank = unit[0] ? " " : "";
+    return act_tell(input, "%s %s = %#.5g%s%s: %#.5g %s%s%s; that run is pinned", side,
+                    axis->name, l->value, blank, unit, l->reached,
+                    summary_table[c->quantity].unit, jump, others);
+}
+
+// Finds the limits of a parameter (PATH or PATH=A:B) for a condition, and pins the run at
+// the nearest.
+static status solve_and_pin(explorer_model *model, const char *parameter,
+                            const char *wanted, sweep_axis *axis,
+                            solve_condition *condition, solution *found, fault *f)
+{
+    const scenario *s = &model->session.effective;
+    TRY(solve_condition_read(wanted, condition, f));
+    TRY(solve_axis_read(axis, parameter, s, f));
+    TRY(solve(s, axis, condition, SOLVE_POINTS, SOLVE_THREADS, NULL, found, f));
+    if (found->count == 0) {
+        return STATUS_OK;
+    }
+
+    // the condition is drawn in the panes of its signal
+    model->limit =
+        (solved_limit){signal_of_quantity(condition->quantity), condition->bound};
+
+    // the run at the limit
+    const double value = found->limits[nearest_limit(model, axis, found)].value;
+    char name[RUN_NAME];
+    snprintf(name, sizeof name, "%s %.5g", strchr(axis->name, '.') + 1, value);
+    return act_pin_value(model, axis, value, name, f);
 }
 
 bool act_solve(explorer_model *model, explorer_input *input, const char *argument)
 {
-    sweep_axis axis = {0};
-    solve_condition condition;
-    static solution found;
-    char path[LINE_TEXT];
-    const char *rest = argument + strcspn(argument, " ");
-    fault *f = &input->fault;
-    snprintf(path, sizeof path, "%.*s", (int)(rest - argument), argument);
-    if (*rest == '\0') {
+    const char *condition_text = argument + strcspn(argument, " ");
+    if (*condition_text == '\0') {
         return act_refuse(input, "solve takes a parameter and a condition, such as "
                                  "motor.voltage peak_force_N<2");
     }
-    if (!(act_need_whole_run(model, input) &&
-          act_need_short_runs(model, input, "solve", 2 * SOLVE_POINTS))) {
+    if (!act_need_whole_run(model, input) ||
+        !act_need_short_runs(model, input, "solve", 2 * SOLVE_POINTS)) {
         return false;
     }
 
     // a parameter may be given by the last part of its path
-    char whole[2 * LINE_TEXT], name[RUN_NAME];
-    act_full_path(path, whole, sizeof whole);
-    status code = solve_condition_read(rest, &condition, f);
-    const scenario *s = &model->session.effective;
-    if (code == STATUS_OK) {
-        code = solve_axis_read(&axis, whole, s, f);
-    }
-    if (code == STATUS_OK) {
-        code = solve(s, &axis, &condition, SOLVE_POINTS, SOLVE_THREADS, NULL, &found, f);
-    }
-    if (code == STATUS_OK && found.count > 0) {
-        model->limit =
-            (solved_limit){signal_of_quantity(condition.quantity), condition.bound};
-        const double value = found.limits[nearest_limit(model, &axis, &found)].value;
-        snprintf(name, sizeof name, "%s %.5g", strchr(axis.name, '.') + 1, value);
-        code = act_pin_value(model, &axis, value, name, f);
-    }
+    char word[LINE_TEXT], parameter[2 * LINE_TEXT];
+    snprintf(word, sizeof word, "%.*s", (int)(condition_text - argument), argument);
+    act_full_path(word, parameter, sizeof parameter);
+
+    // the limit, and the run there as the new baseline
+    static solution found;
+    sweep_axis axis = {0};
+    solve_condition condition;
+    const status code = solve_and_pin(model, parameter, condition_text, &axis, &condition,
+                                      &found, &input->fault);
     const bool done = act_succeeded(input, code) &&
                       tell_limits(model, input, &axis, &condition, &found);
     sweep_axis_finish(&axis);
@@ -416,48 +460,57 @@ bool act_continue_sweep(explorer_model *model, explorer_input *input)
         sweep->count, across);
 }
 
+// Proposes a sweep of the selected parameter, about its value if that is positive.
+static bool propose_sweep(const explorer_model *model, const explorer_view *view,
+                          explorer_input *input)
+{
+    const int parameter = view->parameters.parameter;
+    const char *path = parameter_table[parameter].path;
+    const parameters p = model_parameters(model);
+    const double value = parameter_get(&p, parameter);
+
+    // from a quarter of the value to four times of it, within the slider's range
+    slider_scale scale;
+    if (slider_scale_of(parameter, value, &scale)) {
+        const char *spacing = "";
+        if (value > 0) {
+            scale.low = fmax(scale.low, value / 4);
+            scale.high = fmin(scale.high, value * 4);
+            spacing = scale.logarithmic ? ":log" : "";
+        }
+        prompt_open(&input->prompt, NULL, "sweep %s=%g:%g:8%s", path, scale.low,
+                    scale.high, spacing);
+    } else {
+        prompt_open(&input->prompt, NULL, "sweep %s=", path);
+    }
+    return act_tell(input,
+                    "first value, last value, number of runs; or values with commas");
+}
+
+static void end_sweep(explorer_model *model, explorer_view *view)
+{
+    lab_sweep_end(&model->sweep);
+    if (view->side.panel == PANEL_SWEEP) {
+        view->side.panel = PANEL_PARAMETERS;
+    }
+}
+
 bool act_sweep(explorer_model *model, explorer_view *view, explorer_input *input,
                const char *argument)
 {
     lab_sweep *sweep = &model->sweep;
     if (strcmp(argument, "off") == 0) {
-        lab_sweep_end(sweep);
-        if (view->side.panel == PANEL_SWEEP) {
-            view->side.panel = PANEL_PARAMETERS;
-        }
+        end_sweep(model, view);
         return true;
     }
-
-    // without an argument the selected parameter's is begun, about its value if that is
-    // positive
     if (argument[0] == '\0') {
-        slider_scale scale = {0};
-        const int parameter = view->parameters.parameter;
-        const parameters p = model_parameters(model);
-        const double value = parameter_get(&p, parameter);
-        const bool number = slider_scale_of(parameter, value, &scale);
-        const char *path = parameter_table[parameter].path, *spacing = "";
-        if (number && value > 0) {
-            scale.low = fmax(scale.low, value / 4);
-            scale.high = fmin(scale.high, value * 4);
-        }
-        if (value > 0 && scale.logarithmic) {
-            spacing = ":log";
-        }
-        if (number) {
-            prompt_open(&input->prompt, NULL, "sweep %s=%g:%g:8%s", path, scale.low,
-                        scale.high, spacing);
-        } else {
-            prompt_open(&input->prompt, NULL, "sweep %s=", path);
-        }
-        return act_tell(input,
-                        "first value, last value, number of runs; or values with commas");
+        return propose_sweep(model, view, input);
     }
 
     // each run is computed while the lab waits, so they must be short
-    if (!(act_need_whole_run(model, input) &&
-          act_need_short_runs(model, input, "sweep", SWEPT_RUNS) &&
-          act_succeeded(input, lab_sweep_begin(sweep, argument, &input->fault)))) {
+    if (!act_need_whole_run(model, input) ||
+        !act_need_short_runs(model, input, "sweep", SWEPT_RUNS) ||
+        !act_succeeded(input, lab_sweep_begin(sweep, argument, &input->fault))) {
         return false;
     }
     view->side.panel = PANEL_SWEEP;
@@ -471,40 +524,59 @@ bool act_sweep(explorer_model *model, explorer_view *view, explorer_input *input
     return done;
 }
 
+// Whether a metric is worth showing: it is no time of computing, and one of the runs has
+// it (or there is none yet).
+static bool is_shown_metric(const lab_sweep *sweep, int metric)
+{
+    if (summary_table[metric].timing) {
+        return false;
+    }
+    for (int i = 0; i < sweep->count; i++) {
+        if (isfinite(lab_sweep_metric(sweep, i, metric))) {
+            return true;
+        }
+    }
+    return sweep->count == 0;
+}
+
+// The metric after the present one.
+static int next_metric(const lab_sweep *sweep)
+{
+    for (int step = 1; step <= summary_count; step++) {
+        const int next = (sweep->metric + step) % summary_count;
+        if (is_shown_metric(sweep, next)) {
+            return next;
+        }
+    }
+    return sweep->metric;
+}
+
+static bool refuse_metric(explorer_input *input, const char *name)
+{
+    const char *near = summary_suggest(name);
+    if (near == NULL) {
+        return act_refuse(input, "there is no number '%.60s' of a run's summary", name);
+    }
+    return act_refuse(input,
+                      "there is no number '%.60s' of a run's summary, did you mean '%s'?",
+                      name, near);
+}
+
 bool act_metric(explorer_model *model, explorer_input *input, const char *argument)
 {
     lab_sweep *sweep = &model->sweep;
-    int metric = summary_find(argument);
-    if (argument[0] != '\0' && metric < 0) {
-        const char *near = summary_suggest(argument);
-        if (near == NULL) {
-            return act_refuse(input, "there is no number '%.60s' of a run's summary",
-                              argument);
-        }
-        return act_refuse(
-            input, "there is no number '%.60s' of a run's summary, did you mean '%s'?",
-            argument, near);
+    int metric;
+    if (argument[0] == '\0') {
+        metric = next_metric(sweep);
+    } else {
+        metric = summary_find(argument);
     }
-
-    // the next one that any of the runs has
-    for (int step = 1; argument[0] == '\0' && metric < 0 && step <= summary_count;
-         step++) {
-        const int next = (sweep->metric + step) % summary_count;
-        bool known = sweep->count == 0;
-        for (int i = 0; i < sweep->count; i++) {
-            known = known || isfinite(lab_sweep_metric(sweep, i, next));
-        }
-        if (known && !summary_table[next].timing) {
-            metric = next;
-        } else {
-            metric = -1;
-        }
+    if (metric < 0) {
+        return refuse_metric(input, argument);
     }
-    if (metric >= 0) {
-        sweep->metric = metric;
-    }
-    return act_tell(input, "%s: %s", summary_table[sweep->metric].label,
-                    summary_table[sweep->metric].description);
+    sweep->metric = metric;
+    return act_tell(input, "%s: %s", summary_table[metric].label,
+                    summary_table[metric].description);
 }
 
 void act_select_swept(explorer_model *model, int direction)
@@ -516,11 +588,11 @@ void act_select_swept(explorer_model *model, int direction)
     // edge
     if (at >= 0 && at <= last) {
         sweep->selected = at;
-    } else if (!lab_sweep_is_map(sweep)) {
-        if (at < 0 || last < 0) {
-            sweep->selected = 0;
-        } else {
-            sweep->selected = last;
-        }
+    } else if (lab_sweep_is_map(sweep)) {
+        return;
+    } else if (at < 0 || last < 0) {
+        sweep->selected = 0;
+    } else {
+        sweep->selected = last;
     }
 }

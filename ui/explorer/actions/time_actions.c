@@ -123,12 +123,16 @@ bool act_advance(explorer_model *model, explorer_view *view, explorer_input *inp
 
     // the cursor waits at the end of what has been computed
     session_seek(s, next);
+
+    // the mean speed of the last pictures
     const double factor = (s->now - before) / seconds;
     if (play->measured > 0) {
         play->measured = (1 - NEW_SHARE) * play->measured + NEW_SHARE * factor;
     } else {
         play->measured = factor;
     }
+
+    // at the end of the run playing ends
     if (s->now < session_end(s) || s->computing != NULL) {
         return true;
     }
@@ -196,9 +200,10 @@ bool act_tell_event(explorer_model *model, explorer_input *input)
 bool act_event(explorer_model *model, explorer_view *view, explorer_input *input,
                const char *argument)
 {
-    bool back = argument[0] == '-';
-    double time = run_log_next(model_run_log(model), model->session.now, back ? -1 : 1);
+    const bool back = argument[0] == '-';
     view->playback.playing = false;
+    const double time =
+        run_log_next(model_run_log(model), model->session.now, back ? -1 : 1);
     if (time < 0) {
         return act_refuse(input, "no %s event", back ? "earlier" : "later");
     }
@@ -206,40 +211,57 @@ bool act_event(explorer_model *model, explorer_view *view, explorer_input *input
     return act_tell_event(model, input);
 }
 
-// To the last row before a touch, where a prediction can be compared with what comes.
-bool act_touch(explorer_model *model, explorer_view *view, explorer_input *input,
-               const char *argument)
+// The last row before an event at which nothing touches, as far as there is one.
+static size_t free_row_before(const trace *t, double time)
 {
-    bool back = argument[0] == '-';
-    const session *s = &model->session;
-    const trace *t = &s->run.trace;
-    size_t row = s->row, found = row;
-    view->playback.playing = false;
+    size_t row = trace_row_at(t, time);
+    while (row > 0) {
+        const bool at_event = same_instant(t->rows[row - 1].time, time);
+        const bool touches = t->rows[row].contact != 0 && t->rows[row].time >= time;
+        if (!at_event && !touches) {
+            break;
+        }
+        row--;
+    }
+    return row;
+}
 
-    // the free row before each contact, the nearest one in the direction wanted
+// The free row before a touch that is nearest to a row, before or after it; the row
+// itself if there is none.
+static size_t nearest_touch(const trace *t, size_t row, bool back)
+{
+    size_t found = row;
     for (size_t i = 0; i < t->event_count; i++) {
         const event *e = &t->events[i];
         if (e->kind != EVENT_IMPACT && e->kind != EVENT_CONTACT) {
             continue;
         }
-        size_t before = trace_row_at(t, e->time);
-        while (before > 0 &&
-               (same_instant(t->rows[before - 1].time, e->time) ||
-                (t->rows[before].contact != 0 && t->rows[before].time >= e->time))) {
-            before--;
+        const size_t before = free_row_before(t, e->time);
+        if (t->rows[before].contact != 0) {
+            continue;
         }
-        const bool beyond = (back && before < row) || (!back && before > row);
-        if (t->rows[before].contact == 0 && beyond) {
+        if (!back && before > row) {
+            return before;
+        }
+        if (back && before < row) {
             found = before;
-            if (!back) {
-                break;
-            }
         }
     }
-    if (found == row) {
+    return found;
+}
+
+// To the last row before a touch, where a prediction can be compared with what comes.
+bool act_touch(explorer_model *model, explorer_view *view, explorer_input *input,
+               const char *argument)
+{
+    const bool back = argument[0] == '-';
+    const session *s = &model->session;
+    view->playback.playing = false;
+    const size_t found = nearest_touch(&s->run.trace, s->row, back);
+    if (found == s->row) {
         return act_refuse(input, "no %s touch", back ? "earlier" : "later");
     }
-    session_step(&model->session, (long)found - (long)row);
+    session_step(&model->session, (long)found - (long)s->row);
     return act_tell(
         input,
         "just before a touch: what would come of it is predicted beside what came");
@@ -253,9 +275,11 @@ bool act_seek(explorer_model *model, explorer_view *view, explorer_input *input,
         return false;
     }
     act_scrub(model, view, time);
-    return fabs(model->session.now - time) < 1e-9 ||
-           act_warn(input, "the run goes from 0 to %g s: :extend makes it longer",
-                    session_end(&model->session));
+    if (fabs(model->session.now - time) >= 1e-9) {
+        return act_warn(input, "the run goes from 0 to %g s: :extend makes it longer",
+                        session_end(&model->session));
+    }
+    return true;
 }
 
 bool act_speed(explorer_view *view, explorer_input *input, const char *argument)
