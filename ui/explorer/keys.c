@@ -131,8 +131,10 @@ static void key_in_filter(explorer *ex, int key)
     } else {
         ex->view.filters.typing = filtered;
     }
-    if (key == KEY_CODE_UP || key == KEY_CODE_DOWN) {
-        explorer_carry_out(ex, key == KEY_CODE_UP ? "select -1" : "select");
+    if (key == KEY_CODE_UP) {
+        act_select_line(&ex->model, &ex->view, -1);
+    } else if (key == KEY_CODE_DOWN) {
+        act_select_line(&ex->model, &ex->view, 1);
     } else if (enters && filtered == PANEL_PARAMETERS &&
                !ex->view.parameters.on_heading) {
         explorer_carry_out(ex, "edit");

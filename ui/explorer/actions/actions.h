@@ -289,6 +289,11 @@ bool act_drop_change(explorer_model *model, explorer_view *view, explorer_input 
 // Takes a note out.
 void act_drop_note(explorer_model *model, explorer_view *view, int index);
 
+// --- lists of the side panel -----------------------------------------------------------
+
+// Selects the line above (-1) or below (1) in the list of the side panel, or scrolls it.
+void act_select_line(explorer_model *model, explorer_view *view, int direction);
+
 // --- filters ---------------------------------------------------------------------------
 
 // After a change of a panel's filter: scrolls to the top and selects an entry that passes

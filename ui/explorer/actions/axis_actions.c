@@ -34,25 +34,31 @@ bool act_zoom_between(const explorer_model *model, explorer_view *view,
     return act_tell(input, "%.4g to %.4g s; 0 shows all of it, a all values", from, to);
 }
 
+// Zooms in or out about the cursor, or the middle of what is visible if the cursor is
+// outside.
+static void zoom_by(const explorer_model *model, explorer_view *view, double factor)
+{
+    double from, to, about = model->session.now;
+    view_window(model, view, &from, &to);
+    if (about < from || about > to) {
+        about = (from + to) / 2;
+    }
+    act_zoom_at(model, view, factor, about);
+}
+
 bool act_zoom(const explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument)
 {
     double from, to;
     char rest;
-    view_window(model, view, &from, &to);
 
     // all of it, nearer or further, or two instants
     if (strcmp(argument, "all") == 0) {
         view->window = (time_window){0};
-    } else if (strcmp(argument, "in") == 0 || strcmp(argument, "out") == 0) {
-        double about = model->session.now, factor = 2;
-        if (!(about >= from && about <= to)) {
-            about = (from + to) / 2;
-        }
-        if (argument[0] == 'i') {
-            factor = 0.5;
-        }
-        act_zoom_at(model, view, factor, about);
+    } else if (strcmp(argument, "in") == 0) {
+        zoom_by(model, view, 0.5);
+    } else if (strcmp(argument, "out") == 0) {
+        zoom_by(model, view, 2);
     } else if (sscanf(argument, "%lf %lf %c", &from, &to, &rest) == 2 && from < to &&
                isfinite(to - from)) {
         view->window.adrift = true;
@@ -117,6 +123,7 @@ void act_shift_axis(const explorer_model *model, explorer_view *view, int index,
     }
 }
 
+// Scales a pane's axis in another way; a fixed one keeps the present range.
 static void set_scaling(const explorer_model *model, explorer_view *view, int index,
                         axis_scaling scaling)
 {
@@ -130,6 +137,7 @@ static void set_scaling(const explorer_model *model, explorer_view *view, int in
     }
 }
 
+// Says how a pane's axis is scaled.
 static bool tell_axis(const explorer_view *view, explorer_input *input, int index)
 {
     static const char *const says[AXIS_SCALINGS] = {
@@ -144,39 +152,51 @@ static bool tell_axis(const explorer_view *view, explorer_input *input, int inde
     return act_tell(input, "pane %d: %s", index + 1, says[p->scaling]);
 }
 
-// Gives a pane's axis what the first `count` words say, one or two.
-static bool apply(const explorer_model *model, explorer_view *view, explorer_input *input,
-                  int index, char *const words[4], int count)
+static bool refuse_axis(explorer_input *input)
 {
-    const char *word = words[0];
-    value_range limits;
-    if (count == 2) {
-        if (!(act_read_number(input, word, &limits.low) &&
-              act_read_number(input, words[1], &limits.high))) {
-            return false;
-        }
-        if (!(limits.low < limits.high)) {
-            return act_refuse(
-                input, "an axis goes from a lower to a higher value, not from %g to %g",
-                limits.low, limits.high);
-        }
-        pane_fix_axis(&view->panes.pane[index], limits);
-        return true;
-    }
+    return act_refuse(input,
+                      "axis takes auto, grow, calm, fixed, in, out, up, down or two "
+                      "limits, then a pane (its number, or all)");
+}
 
-    // a kind of scaling by name, or the next one
-    const int present = (int)view->panes.pane[index].scaling;
-    int scaling = -1;
+// Gives a pane's axis two limits.
+static bool set_limits(explorer_view *view, explorer_input *input, int index,
+                       const char *low, const char *high)
+{
+    value_range limits;
+    if (!act_read_number(input, low, &limits.low) ||
+        !act_read_number(input, high, &limits.high)) {
+        return false;
+    }
+    if (!(limits.low < limits.high)) {
+        return act_refuse(
+            input, "an axis goes from a lower to a higher value, not from %g to %g",
+            limits.low, limits.high);
+    }
+    pane_fix_axis(&view->panes.pane[index], limits);
+    return true;
+}
+
+// The scaling of a word, where "next" is the one after a pane's present one; -1 if the
+// word is none.
+static int scaling_of_word(const char *word, axis_scaling present)
+{
     if (strcmp(word, "next") == 0) {
-        scaling = (present + 1) % AXIS_SCALINGS;
+        return ((int)present + 1) % AXIS_SCALINGS;
     }
     for (int i = 0; i < AXIS_SCALINGS; i++) {
         if (strcmp(word, axis_scaling_words[i]) == 0) {
-            scaling = i;
+            return i;
         }
     }
+    return -1;
+}
 
-    // or the axis as it is now, changed
+// Scales or shifts a pane's axis as a word says.
+static bool change_axis(const explorer_model *model, explorer_view *view,
+                        explorer_input *input, int index, const char *word)
+{
+    const int scaling = scaling_of_word(word, view->panes.pane[index].scaling);
     if (scaling >= 0) {
         set_scaling(model, view, index, (axis_scaling)scaling);
     } else if (strcmp(word, "in") == 0) {
@@ -188,9 +208,7 @@ static bool apply(const explorer_model *model, explorer_view *view, explorer_inp
     } else if (strcmp(word, "down") == 0) {
         act_shift_axis(model, view, index, -0.25);
     } else {
-        return act_refuse(input,
-                          "axis takes auto, grow, calm, fixed, in, out, up, down or two "
-                          "limits, then a pane (its number, or all)");
+        return refuse_axis(input);
     }
     return true;
 }
@@ -198,24 +216,26 @@ static bool apply(const explorer_model *model, explorer_view *view, explorer_inp
 bool act_axis(const explorer_model *model, explorer_view *view, explorer_input *input,
               const char *argument)
 {
-    char text[LINE_TEXT], *words[4], *end;
-    int count = act_split(argument, text, words), index = panes_focused(&view->panes);
+    char text[LINE_TEXT], *words[4];
+    const int count = act_split(argument, text, words);
     if (count == 0 || count > 3) {
-        return apply(model, view, input, 0, (char *[4]){(char[]){""}}, 1);
+        return refuse_axis(input);
     }
 
     // limits are two words, everything else is one; a pane may follow
-    int used = 1;
+    char *end;
     strtod(words[0], &end);
-    if (end != words[0]) {
-        used = 2;
-    }
+    const bool has_limits = end != words[0];
+    const int used = has_limits ? 2 : 1;
     if (count < used) {
         return act_refuse(input, "an axis has two limits, such as 0 2, and then a pane");
     }
     if (count > used + 1) {
         return act_refuse(input, "what is '%s' for?", words[2]);
     }
+
+    // the pane that is named, or the one in focus
+    int index = panes_focused(&view->panes);
     if (count == used && index < 0) {
         return act_refuse(input, "no pane of curves is shown");
     }
@@ -223,12 +243,23 @@ bool act_axis(const explorer_model *model, explorer_view *view, explorer_input *
         return false;
     }
 
-    // that pane, or all of them
+    // that one, or all of them
     for (int i = 0; i < PANES; i++) {
-        const bool meant = (i == index || index < 0) && view->panes.pane[i].count > 0;
-        if (meant && !apply(model, view, input, i, words, used)) {
+        if ((i != index && index >= 0) || view->panes.pane[i].count == 0) {
+            continue;
+        }
+        bool done;
+        if (has_limits) {
+            done = set_limits(view, input, i, words[0], words[1]);
+        } else {
+            done = change_axis(model, view, input, i, words[0]);
+        }
+        if (!done) {
             return false;
         }
     }
-    return tell_axis(view, input, index < 0 ? 0 : index);
+    if (index < 0) {
+        return tell_axis(view, input, 0);
+    }
+    return tell_axis(view, input, index);
 }

@@ -9,15 +9,34 @@
 
 // --- under the run ---------------------------------------------------------------------
 
-// Measured columns under the run, shifted as the file's name says, else to the run's
-// first touch.
-bool act_data(explorer_model *model, explorer_input *input, const char *argument)
+// Reads a table's columns and lays them under the run in the place of those there were,
+// not shifted yet.
+static status read_measured(explorer_model *model, const char *path, fault *f)
 {
     trace fresh = {0};
     csv_table table = {0};
-    char path[LINE_TEXT];
-    const char *at = strrchr(argument, '@');
-    double shift = (double)NAN;
+    trace_init(&fresh, 1);
+    status code = csv_table_read(&table, path, 1, f);
+    if (code == STATUS_OK) {
+        code = measured_rows(&fresh, &table, NULL, -1, f);
+    }
+    csv_table_finish(&table);
+    if (code != STATUS_OK) {
+        trace_finish(&fresh);
+        return code;
+    }
+    trace_finish(&model->measured);
+    model->measured = fresh;
+    model->measured_shift = 0;
+    model->measured_id++;
+    snprintf(model->measured_file, sizeof model->measured_file, "%s", path);
+    return STATUS_OK;
+}
+
+// Measured columns under the run, shifted as FILE@SHIFT says, else to the run's first
+// touch.
+bool act_data(explorer_model *model, explorer_input *input, const char *argument)
+{
     if (argument[0] == '\0') {
         return act_refuse(
             input, "data takes a table with a column time, such as bench.csv, or off");
@@ -30,67 +49,68 @@ bool act_data(explorer_model *model, explorer_input *input, const char *argument
     if (!act_need_whole_run(model, input)) {
         return false;
     }
-    if (at != NULL && !act_read_number(input, at + 1, &shift)) {
+
+    // the file, and by how much it is shifted
+    char path[LINE_TEXT];
+    double shift = (double)NAN;
+    snprintf(path, sizeof path, "%s", argument);
+    char *at = strrchr(path, '@');
+    if (at != NULL) {
+        if (!act_read_number(input, at + 1, &shift)) {
+            return false;
+        }
+        *at = '\0';
+    }
+    if (!act_succeeded(input, read_measured(model, path, &input->fault))) {
         return false;
     }
-    snprintf(path, sizeof path, "%.*s",
-             at != NULL ? (int)(at - argument) : (int)strlen(argument), argument);
-    trace_init(&fresh, 1);
-    status code = csv_table_read(&table, path, 1, &input->fault);
-    if (code == STATUS_OK) {
-        code = measured_rows(&fresh, &table, NULL, -1, &input->fault);
-    }
-    csv_table_finish(&table);
-    if (code != STATUS_OK) {
-        trace_finish(&fresh);
-        return act_succeeded(input, code);
-    }
 
-    trace_finish(&model->measured);
-    model->measured = fresh;
-    model->measured_shift = 0;
-    model->measured_id++;
-    snprintf(model->measured_file, sizeof model->measured_file, "%s", path);
+    const size_t rows = model->measured.row_count;
     if (model_lay_data(model, shift)) {
         return act_tell(input, "%zu rows, shifted by %.6g s; :data off takes them away",
-                        fresh.row_count, model->measured_shift);
+                        rows, model->measured_shift);
     }
     return act_warn(input, "%zu rows, as they are: no force in both that shows a touch",
-                    fresh.row_count);
+                    rows);
 }
 
 // --- identification --------------------------------------------------------------------
 
 enum { FIT_STARTS = 4, FIT_THREADS = 4, FIT_RUNS = 400 };
 
-// Says each value with its error, and what is not determined.
+// Writes a fitted value with its error, or that it is not determined.
+static void write_fit(const fitted_parameter *fit, char *text, size_t size)
+{
+    text_add(text, size, "%s", strchr(fit->axis.name, '.') + 1);
+    if (!fit->determined) {
+        text_add(text, size, " is not determined");
+    } else if (identify_at_end(fit)) {
+        text_add(text, size, " %.5g, at the end of its range", fit->value);
+    } else {
+        const char *unit = sweep_axis_parameter(&fit->axis)->unit;
+        const char *blank = unit[0] ? " " : "";
+        text_add(text, size, " %.5g +- %.2g%s%s", fit->value, fit->standard_error, blank,
+                 unit);
+    }
+}
+
+// Says what was found, and what to think of it.
 static bool tell_fit(explorer_input *input, const identification *id)
 {
     char text[MESSAGE_TEXT / 2] = "";
-    double most;
-    const bool misfits = identify_misfit(id, &most) > most;
     for (int i = 0; i < id->count; i++) {
-        const fitted_parameter *fit = &id->fit[i];
-        const char *unit = sweep_axis_parameter(&fit->axis)->unit;
         if (i > 0) {
             text_add(text, sizeof text, "; ");
         }
-        text_add(text, sizeof text, "%s", strchr(fit->axis.name, '.') + 1);
-        if (!fit->determined) {
-            text_add(text, sizeof text, " is not determined");
-        } else if (identify_at_end(fit)) {
-            text_add(text, sizeof text, " %.5g, at the end of its range", fit->value);
-        } else {
-            text_add(text, sizeof text, " %.5g +- %.2g%s%s", fit->value,
-                     fit->standard_error, unit[0] ? " " : "", unit);
-        }
+        write_fit(&id->fit[i], text, sizeof text);
     }
 
-    // what to think of the fit as a whole
+    // the fit as a whole
     if (id->undetermined > 0) {
         return act_tell(input, "%s: fit fewer, or record more", text);
     }
-    if (misfits) {
+    double most;
+    if (identify_misfit(id, &most) > most) {
         return act_tell(input, "%s; pinned, but far off the data", text);
     }
     if (id->white) {
@@ -116,47 +136,48 @@ static status pin_fitted(explorer_model *model, const identification *id, fault 
     return code;
 }
 
-// Fits parameters to the measured data and pins the run that they give.
+// Fits the parameters of a line to the measured data and pins the run that they give, if
+// any is determined.
+static status fit_and_pin(explorer_model *model, identification *id, const char *names,
+                          fault *f)
+{
+    TRY(identify_available(f));
+
+    // a parameter may be given by the last part of its path
+    char words[LINE_TEXT], *rest = words, *word;
+    snprintf(words, sizeof words, "%s", names);
+    while ((word = strtok_r(rest, " ", &rest)) != NULL) {
+        char path[2 * LINE_TEXT];
+        TRY(identify_add_path(id, act_full_path(word, path, sizeof path), f));
+    }
+    TRY(identify_add_trace(id, model->measured_file, NULL, 0, f));
+    TRY(identify_fit(id, f));
+    for (int i = 0; i < id->count; i++) {
+        if (id->fit[i].determined) {
+            return pin_fitted(model, id, f);
+        }
+    }
+    return STATUS_OK;
+}
+
 bool act_identify(explorer_model *model, explorer_input *input, const char *argument)
 {
-    char words[LINE_TEXT], *rest = words;
-    identification id = {.base = &model->session.effective,
-                         .starts = FIT_STARTS,
-                         .jobs = FIT_THREADS};
     if (argument[0] == '\0') {
         return act_refuse(input, "identify takes parameters, such as k2 stiction");
     }
     if (model->measured.row_count == 0) {
         return act_refuse(input, "there are no measured data: :data FILE.csv");
     }
-    if (!(act_need_whole_run(model, input) &&
-          act_need_short_runs(model, input, "identify", FIT_RUNS))) {
+    if (!act_need_whole_run(model, input) ||
+        !act_need_short_runs(model, input, "identify", FIT_RUNS)) {
         return false;
     }
-
-    // a parameter may be given by the last part of its path
-    fault *f = &input->fault;
-    status code = identify_available(f);
-    snprintf(words, sizeof words, "%s", argument);
-    for (char *word; code == STATUS_OK && (word = strtok_r(rest, " ", &rest)) != NULL;) {
-        char path[2 * LINE_TEXT];
-        code = identify_add_path(&id, act_full_path(word, path, sizeof path), f);
-    }
-    if (code == STATUS_OK) {
-        code = identify_add_trace(&id, model->measured_file, NULL, 0, f);
-    }
-    if (code == STATUS_OK) {
-        code = identify_fit(&id, f);
-    }
-    bool determined = false;
-    for (int i = 0; i < id.count; i++) {
-        determined = determined || id.fit[i].determined;
-    }
-    if (code == STATUS_OK && determined) {
-        code = pin_fitted(model, &id, f);
-    }
-    const bool done = act_succeeded(input, code) && tell_fit(input, &id),
-               all = id.undetermined == 0;
+    identification id = {.base = &model->session.effective,
+                         .starts = FIT_STARTS,
+                         .jobs = FIT_THREADS};
+    const status code = fit_and_pin(model, &id, argument, &input->fault);
+    const bool done = act_succeeded(input, code) && tell_fit(input, &id);
+    const bool all_determined = id.undetermined == 0;
     identify_finish(&id);
-    return done && act_apply_baseline(model, input) && all;
+    return done && act_apply_baseline(model, input) && all_determined;
 }

@@ -7,84 +7,123 @@
 
 // --- panes of one's own ----------------------------------------------------------------
 
-// A place for a derived signal that no pane has; -1 if there is none.
+// Marks the derived signals of a pane.
+static void mark_derived(const pane *p, bool used[DERIVED_SIGNALS])
+{
+    for (int k = 0; k < p->count; k++) {
+        if (signal_is_derived(p->signals[k])) {
+            used[p->signals[k] - SIGNALS_AT_MOST] = true;
+        }
+    }
+}
+
+// A place for a derived signal that neither a pane of the screen nor the one that is
+// being made has; -1 if there is none.
 static int free_place(const explorer_view *view, const pane *own)
 {
     bool used[DERIVED_SIGNALS] = {false};
-    for (int i = 0; i <= PANES; i++) {
-        const pane *p = i < PANES ? &view->panes.pane[i] : own;
-        for (int k = 0; k < p->count; k++) {
-            if (signal_is_derived(p->signals[k])) {
-                used[p->signals[k] - SIGNALS_AT_MOST] = true;
-            }
+    for (int i = 0; i < PANES; i++) {
+        mark_derived(&view->panes.pane[i], used);
+    }
+    mark_derived(own, used);
+    for (int place = 0; place < DERIVED_SIGNALS; place++) {
+        if (!used[place]) {
+            return place;
         }
     }
-    int place = 0;
-    while (place < DERIVED_SIGNALS && used[place]) {
-        place++;
-    }
-    if (place < DERIVED_SIGNALS) {
-        return place;
-    }
     return -1;
+}
+
+// Computes an expression as a signal of its own; -1 after a refusal.
+static int derive_signal(explorer_model *model, const explorer_view *view,
+                         explorer_input *input, const char *expression, const pane *own)
+{
+    const int place = free_place(view, own);
+    if (place < 0) {
+        act_refuse(input, "%d expressions are shown already", DERIVED_SIGNALS);
+        return -1;
+    }
+    const int signal = signal_derive(place, expression, &input->fault);
+    if (signal < 0) {
+        act_succeeded(input, input->fault.code);
+        return -1;
+    }
+
+    // the place may have had another expression
+    for (int i = 0; i < SHOWN_RUNS; i++) {
+        extremes_forget(&model->extremes[i]);
+    }
+    return signal;
 }
 
 // Adds the signal of a name or an expression.
 static bool add_signal(explorer_model *model, const explorer_view *view,
                        explorer_input *input, const char *text, pane *own)
 {
+    if (own->count == PANE_SIGNALS) {
+        return act_refuse(input, "a pane has at most %d signals", PANE_SIGNALS);
+    }
     int signal = signal_find_any(text);
     if (signal < 0 && text[strcspn(text, "+-*/(")] == '\0') {
         return act_refuse(input, "there is no signal '%s' (Tab completes)", text);
     }
     if (signal < 0) {
-        const int place = free_place(view, own);
-        if (place < 0) {
-            return act_refuse(input, "%d expressions are shown already", DERIVED_SIGNALS);
-        }
-        signal = signal_derive(place, text, &input->fault);
-        if (signal < 0) {
-            return act_succeeded(input, input->fault.code);
-        }
-        for (int i = 0; i < SHOWN_RUNS; i++) {
-            extremes_forget(&model->extremes[i]);
-        }
+        signal = derive_signal(model, view, input, text, own);
+    }
+    if (signal < 0) {
+        return false;
     }
     own->signals[own->count++] = signal;
     return true;
 }
 
-// Fills a pane with the signals of an argument: commas outside brackets separate them,
-// and blanks where nothing is computed.
+// The length of the first signal of a text: up to a comma outside brackets, or a blank
+// where nothing is computed.
+static size_t signal_length(const char *text, bool computes)
+{
+    int depth = 0;
+    size_t length = 0;
+    for (; text[length] != '\0'; length++) {
+        const char c = text[length];
+        if (c == '(') {
+            depth++;
+        } else if (c == ')') {
+            depth--;
+        }
+        if ((c == ',' && depth <= 0) || (c == ' ' && !computes)) {
+            break;
+        }
+    }
+    return length;
+}
+
+// Fills a pane with the signals of an argument.
 static bool read_signals(explorer_model *model, const explorer_view *view,
                          explorer_input *input, const char *argument, pane *own)
 {
     const bool computes = argument[strcspn(argument, "+-*/(")] != '\0';
-    char word[LINE_TEXT];
-    size_t length = 0;
-    int depth = 0;
-    for (const char *c = argument;; c++) {
-        if (*c == '(') {
-            depth++;
-        } else if (*c == ')') {
-            depth--;
-        }
-        if (*c != '\0' && *c != ' ' && (*c != ',' || depth > 0)) {
-            word[length++] = *c;
-        } else if (length > 0 && (*c != ' ' || !computes)) {
-            word[length] = '\0';
-            length = 0;
-            if (own->count == PANE_SIGNALS) {
-                return act_refuse(input, "a pane has at most %d signals", PANE_SIGNALS);
-            }
-            if (!add_signal(model, view, input, word, own)) {
-                return false;
+    while (*argument != '\0') {
+        // its blanks mean nothing
+        char word[LINE_TEXT];
+        const size_t length = signal_length(argument, computes);
+        size_t written = 0;
+        for (size_t i = 0; i < length; i++) {
+            if (argument[i] != ' ') {
+                word[written++] = argument[i];
             }
         }
-        if (*c == '\0') {
-            return true;
+        word[written] = '\0';
+        if (written > 0 && !add_signal(model, view, input, word, own)) {
+            return false;
+        }
+
+        // past the separator
+        argument += length;
+        if (*argument != '\0') {
+            argument++;
         }
     }
+    return true;
 }
 
 // Shows a pane of the user's beside those there are, of the signals of an argument;
@@ -108,7 +147,7 @@ static bool show_own(explorer_model *model, explorer_view *view, explorer_input 
 bool act_trace(explorer_model *model, explorer_view *view, explorer_input *input,
                const char *argument)
 {
-    // a pane of the table
+    // a pane that there is
     if (argument[0] != '\0' && argument[strspn(argument, "0123456789")] == '\0') {
         const long number = strtol(argument, NULL, 10);
         if (number < 1 || number > PANES) {
@@ -195,48 +234,59 @@ bool act_toggle_signal(explorer_view *view, explorer_input *input, int index, in
     return act_tell(input, "%s is shown", name);
 }
 
-// One signal after the other is hidden, from the last to the first, then all are shown.
-bool act_signal(explorer_view *view, explorer_input *input, const char *argument)
+// The signal to be hidden next: the one before that which is hidden, from the last to the
+// first; -1 when all are to be shown. One that is alone stays.
+static int next_hidden(const pane *p)
 {
-    char text[LINE_TEXT], *words[4] = {argument[0] == '\0' ? text : NULL};
-    int index = panes_focused(&view->panes);
-    if (act_split(argument, text, words) == 2 &&
-        !act_read_pane(view, input, words[1], &index)) {
-        return false;
+    if (p->count <= 1) {
+        return -1;
     }
-    const int signal = signal_find_any(words[0]);
-    if (index < 0) {
-        return act_refuse(input, "no pane of curves is shown, 1 to 9 show them");
-    }
-    pane *p = &view->panes.pane[index];
-    if (strcmp(words[0], "all") == 0) {
-        p->hidden = 0;
-        return true;
-    }
-
-    // by name
-    for (int k = 0; k < p->count && argument[0] != '\0'; k++) {
-        if (p->signals[k] == signal) {
-            return act_toggle_signal(view, input, index, k);
-        }
-    }
-    if (argument[0] != '\0') {
-        return act_refuse(input, "the pane in focus has no signal '%.60s' (w: next pane)",
-                          argument);
-    }
-
-    // the one before that which is hidden; one that is alone stays
     int next = p->count - 1;
     for (int k = 0; k < p->count; k++) {
         if (p->hidden >> k & 1) {
             next = k - 1;
         }
     }
-    p->hidden = 0;
-    if (next >= 0 && p->count > 1) {
+    return next;
+}
+
+bool act_signal(explorer_view *view, explorer_input *input, const char *argument)
+{
+    // the pane that is named, or the one in focus
+    char text[LINE_TEXT], *words[4] = {""};
+    int index = panes_focused(&view->panes);
+    if (act_split(argument, text, words) == 2 &&
+        !act_read_pane(view, input, words[1], &index)) {
+        return false;
+    }
+    if (index < 0) {
+        return act_refuse(input, "no pane of curves is shown, 1 to 9 show them");
+    }
+    pane *p = &view->panes.pane[index];
+
+    // one after the other
+    if (argument[0] == '\0') {
+        const int next = next_hidden(p);
+        p->hidden = 0;
+        if (next < 0) {
+            return act_tell(input, "all signals of the pane are shown");
+        }
         return act_toggle_signal(view, input, index, next);
     }
-    return act_tell(input, "all signals of the pane are shown");
+
+    // all of them, or one by name
+    if (strcmp(words[0], "all") == 0) {
+        p->hidden = 0;
+        return true;
+    }
+    const int signal = signal_find_any(words[0]);
+    for (int k = 0; k < p->count; k++) {
+        if (p->signals[k] == signal) {
+            return act_toggle_signal(view, input, index, k);
+        }
+    }
+    return act_refuse(input, "the pane in focus has no signal '%.60s' (w: next pane)",
+                      argument);
 }
 
 // Reads a signal and a value, or off, into a bound unless they are refused.
@@ -268,6 +318,30 @@ bool act_limit(explorer_model *model, explorer_input *input, const char *argumen
     return read_bound(input, argument, "limit", &model->limit);
 }
 
+// Says where the present run leaves the band round the baseline.
+static bool tell_band(const explorer_model *model, explorer_input *input)
+{
+    const solved_limit *band = &model->band;
+    const session *s = &model->session;
+    if (!s->has_other) {
+        return act_tell(input, "b pins the run that it is round");
+    }
+    const char *round = model->pinned.runs[model->pinned.baseline].name;
+    if (signal_is_derived(band->signal) || signal_is_state(band->signal)) {
+        return act_tell(input, "the band is round '%s'", round);
+    }
+
+    // the first instant beyond it
+    run_difference d = {.on = true};
+    difference_update(&d, 1, &s->run.trace, &s->other.trace);
+    const double first = difference_first_beyond(&d, band->signal, band->bound);
+    difference_finish(&d);
+    if (first < 0) {
+        return act_tell(input, "this run stays within the band round '%s'", round);
+    }
+    return act_tell(input, "this run leaves the band round '%s' at %.5f s", round, first);
+}
+
 bool act_band(explorer_model *model, explorer_input *input, const char *argument)
 {
     solved_limit band;
@@ -281,24 +355,7 @@ bool act_band(explorer_model *model, explorer_input *input, const char *argument
     if (band.signal < 0) {
         return act_tell(input, "no band");
     }
-    if (!model->session.has_other) {
-        return act_tell(input, "b pins the run that it is round");
-    }
-    const char *round = model->pinned.runs[model->pinned.baseline].name;
-    if (signal_is_derived(band.signal) || signal_is_state(band.signal)) {
-        return act_tell(input, "the band is round '%s'", round);
-    }
-
-    // where the present run leaves it
-    const session *s = &model->session;
-    run_difference d = {.on = true};
-    difference_update(&d, 1, &s->run.trace, &s->other.trace);
-    const double first = difference_first_beyond(&d, band.signal, band.bound);
-    difference_finish(&d);
-    if (first < 0) {
-        return act_tell(input, "this run stays within the band round '%s'", round);
-    }
-    return act_tell(input, "this run leaves the band round '%s' at %.5f s", round, first);
+    return tell_band(model, input);
 }
 
 bool act_alone(explorer_view *view)

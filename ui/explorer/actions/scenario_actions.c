@@ -7,32 +7,38 @@
 
 // --- scenarios -------------------------------------------------------------------------
 
+// Opens a scenario of a name as a session of its own.
+static status open_session(const explorer_model *model, const char *name, session *fresh,
+                           fault *f)
+{
+    scenario s;
+    TRY(scenario_open(&s, name, keep_first_fault, f));
+    s.parameters.code_allowed = consent_needed(&s) && consent_remembered(&s);
+    return session_open(fresh, &s, model->session.patience, f);
+}
+
 bool act_open_scenario(explorer_model *model, explorer_view *view, explorer_input *input,
                        const char *name)
 {
-    scenario s;
     session fresh;
-    status code = scenario_open(&s, name, keep_first_fault, &input->fault);
-    if (code == STATUS_OK) {
-        s.parameters.code_allowed = consent_needed(&s) && consent_remembered(&s);
-        code = session_open(&fresh, &s, model->session.patience, &input->fault);
-    }
-    if (code != STATUS_OK) {
-        return act_succeeded(input, code);
+    if (!act_succeeded(input, open_session(model, name, &fresh, &input->fault))) {
+        return false;
     }
 
     // the new session takes the old one's place, to which u returns
     const int changes = model->session.input_count;
-    code = state_take_session(model, view, &fresh, &input->fault);
+    const status code = state_take_session(model, view, &fresh, &input->fault);
     if (code != STATUS_OK) {
         session_finish(&fresh);
         return act_succeeded(input, code);
     }
     view->playback.playing = true;
-    const char *title = model->session.base.title ? model->session.base.title : "";
+
+    // its title, unless there is something to be said of its run
     if (act_tell_failed_run(model, input)) {
         return true;
     }
+    const char *title = model->session.base.title ? model->session.base.title : "";
     if (changes == 0) {
         return act_tell(input, "%s", title);
     }
@@ -44,16 +50,12 @@ bool act_open_scenario(explorer_model *model, explorer_view *view, explorer_inpu
 static void open_list(const explorer_model *model, explorer_view *view)
 {
     scenario_menu *menu = &view->scenarios;
-    int at = scenario_menu_find(menu, model->session.base.name);
-    view->page = PANEL_SCENARIOS;
-    if (at < 0) {
-        menu->selected = 0;
-    } else {
-        menu->selected = at;
-    }
-    view->drawn.first_scenario = -1;
+    const int present = scenario_menu_find(menu, model->session.base.name);
+    menu->selected = present > 0 ? present : 0;
     menu->filter[0] = '\0';
     scenario_menu_read_titles(menu);
+    view->page = PANEL_SCENARIOS;
+    view->drawn.first_scenario = -1;
 }
 
 bool act_open(explorer_model *model, explorer_view *view, explorer_input *input,
@@ -95,28 +97,33 @@ bool act_stop(explorer_model *model, explorer_input *input)
     if (s->computing == NULL) {
         return act_refuse(input, "nothing is being computed");
     }
-    return !session_stop(s) || act_tell(input,
-                                        "stopped at %.4g s: Space at its end goes on, u "
-                                        "takes the last change back",
-                                        session_end(s));
+    if (session_stop(s)) {
+        act_tell(input,
+                 "stopped at %.4g s: Space at its end goes on, u takes the last change "
+                 "back",
+                 session_end(s));
+    }
+    return true;
 }
 
 bool act_allow(explorer_model *model, explorer_view *view, explorer_input *input)
 {
     session *s = &model->session;
-    bool kept;
     if (s->run.summary.status != STATUS_NOT_ALLOWED) {
         return act_refuse(input, "the run asks for no permission");
+    }
+    if (!act_succeeded(input, session_allow_code(s, &input->fault))) {
+        return false;
     }
 
     // a visit's changes are the user's own: what is remembered is the scenario as it was
     // opened
-    if (!act_succeeded(input, session_allow_code(s, &input->fault))) {
-        return false;
-    }
+    bool kept;
     const bool done =
         act_succeeded(input, consent_remember(&s->base, &kept, &input->fault));
     view->playback.playing = true;
+
+    // a run that fails all the same is said first
     if (act_tell_failed_run(model, input)) {
         return true;
     }
@@ -142,7 +149,7 @@ static const lesson_step *present_step(const explorer_model *model)
     return NULL;
 }
 
-// The scenario of a lesson's name: the full name, or an ending that only one lesson has.
+// The scenario of a lesson's name, the whole one or its last part; NULL if there is none.
 static const char *lesson_named(explorer_view *view, const char *name)
 {
     const scenario_menu *menu = &view->scenarios;
@@ -184,17 +191,17 @@ bool act_lesson(explorer_model *model, explorer_view *view, explorer_input *inpu
 
 void act_follow_lesson(explorer_model *model)
 {
+    lesson_progress *progress = &model->lesson;
     const lesson_step *step = present_step(model);
-    model->lesson.passed =
-        model->lesson.passed ||
-        (step != NULL && step->check != LESSON_READ &&
-         lesson_step_is_done(step, &model->lesson, &model->session, &model->pinned));
+    if (step != NULL && step->check != LESSON_READ &&
+        lesson_step_is_done(step, progress, &model->session, &model->pinned)) {
+        progress->passed = true;
+    }
 }
 
 bool act_answer(explorer_model *model, explorer_input *input, const char *argument)
 {
     const lesson_step *step = present_step(model);
-    double value;
     if (step == NULL) {
         return act_refuse(input, "there is no lesson here (:lesson lists them)");
     }
@@ -202,6 +209,8 @@ bool act_answer(explorer_model *model, explorer_input *input, const char *argume
     if (step->check != LESSON_NUMBER && !choice) {
         return act_refuse(input, "this step wants no answer: do what it says");
     }
+
+    // without an answer it is asked for
     if (argument[0] == '\0') {
         prompt_open(&input->prompt, NULL, "answer ");
         if (choice) {
@@ -209,6 +218,7 @@ bool act_answer(explorer_model *model, explorer_input *input, const char *argume
         }
         return act_tell(input, "a number");
     }
+    double value;
     if (!act_read_number(input, argument, &value)) {
         return false;
     }
@@ -241,6 +251,7 @@ bool act_continue(explorer_model *model, explorer_input *input)
         return act_tell(input, "that was the lesson '%s'; :lesson lists the others",
                         model->session.base.title);
     }
+
     // a step may ask for what the event at the cursor says
     model->lesson = (lesson_progress){.on = true, .step = model->lesson.step + 1};
     return act_clear_message(input) && act_tell_event(model, input);

@@ -8,58 +8,85 @@
 
 #include "src/base/instant.h"
 
-bool act_select(explorer_model *model, explorer_view *view, const char *argument)
+void act_select_line(explorer_model *model, explorer_view *view, int direction)
 {
-    parameter_line lines[PARAMETER_LINES];
+    assert(direction == 1 || direction == -1);
     const lab_sweep *sweep = &model->sweep;
-    const int direction = argument[0] == '-' ? -1 : 1;
 
-    // the sweep selects among its runs, panels in which nothing is selected scroll
+    // the sweep selects among its runs, of a map the next row up or down
     if (view->side.panel == PANEL_SWEEP) {
         int by = direction;
         if (lab_sweep_is_map(sweep)) {
             by = -direction * (int)sweep->axis.count;
         }
         act_select_swept(model, by);
-    } else if (view->side.panel != PANEL_PARAMETERS) {
-        view->drawn.scroll[view->side.panel] += direction;
-    } else {
-        // the parameters end at both ends, without a way around
-        int next;
-        const int count = view_parameter_lines(view, lines, &next);
-        next += direction;
-        if (next >= 0 && next < count) {
-            parameter_list_select(&view->parameters, lines[next]);
-        }
+        return;
     }
+
+    // panels in which nothing is selected scroll
+    if (view->side.panel != PANEL_PARAMETERS) {
+        view->drawn.scroll[view->side.panel] += direction;
+        return;
+    }
+
+    // the list of parameters has two ends, without a way around
+    parameter_line lines[PARAMETER_LINES];
+    int selected;
+    const int count = view_parameter_lines(view, lines, &selected);
+    const int next = selected + direction;
+    if (next >= 0 && next < count) {
+        parameter_list_select(&view->parameters, lines[next]);
+    }
+}
+
+bool act_select(explorer_model *model, explorer_view *view, const char *argument)
+{
+    act_select_line(model, view, argument[0] == '-' ? -1 : 1);
     return true;
 }
 
-// The group of a name, that of the selected parameter without one, or all of them.
+// The group of a name; -1 if there is none.
+static int group_of_name(const char *wanted)
+{
+    for (int i = 0; i < parameter_count; i++) {
+        char name[PARAMETER_NAME];
+        parameter_group_name(i, name, sizeof name);
+        if (strcmp(name, wanted) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static void fold_all(parameter_list *list, bool folded)
+{
+    list->on_heading = folded;
+    for (int i = 0; i < parameter_count; i++) {
+        list->folded[i] = folded;
+    }
+}
+
 bool act_fold(explorer_view *view, explorer_input *input, const char *argument)
 {
     parameter_list *list = &view->parameters;
-
-    // all groups at once, the one of the selected parameter, or one by name
-    if (strcmp(argument, "all") == 0 || strcmp(argument, "none") == 0) {
-        list->on_heading = argument[0] == 'a';
-        for (int i = 0; i < parameter_count; i++) {
-            list->folded[i] = list->on_heading;
-        }
+    if (strcmp(argument, "all") == 0) {
+        fold_all(list, true);
         return true;
     }
-    int found = argument[0] == '\0' ? list->parameter : -1;
-    for (int i = 0; i < parameter_count && found < 0; i++) {
-        char name[PARAMETER_NAME];
-        parameter_group_name(i, name, sizeof name);
-        if (strcmp(name, argument) == 0) {
-            found = i;
-        }
+    if (strcmp(argument, "none") == 0) {
+        fold_all(list, false);
+        return true;
     }
-    if (found < 0) {
+
+    // one group by its name, or that of the selected parameter
+    int group = list->parameter;
+    if (argument[0] != '\0') {
+        group = group_of_name(argument);
+    }
+    if (group < 0) {
         return act_refuse(input, "there is no group '%s' of parameters", argument);
     }
-    parameter_list_fold(list, found);
+    parameter_list_fold(list, group);
     return true;
 }
 
@@ -78,32 +105,44 @@ bool act_filter(const explorer_model *model, explorer_view *view, const char *ar
     return true;
 }
 
+// The line to select in a filtered list: the first parameter that has an effect, else the
+// first parameter; -1 if there is none.
+static int first_useful_line(const explorer_model *model,
+                             const parameter_line lines[PARAMETER_LINES], int count)
+{
+    int first = -1;
+    for (int i = 0; i < count; i++) {
+        if (lines[i].heading) {
+            continue;
+        }
+        if (model_inert_reason(model, lines[i].parameter) == NULL) {
+            return i;
+        }
+        if (first < 0) {
+            first = i;
+        }
+    }
+    return first;
+}
+
 void act_select_filtered(const explorer_model *model, explorer_view *view, panel_id panel)
 {
-    parameter_line lines[PARAMETER_LINES];
     view->drawn.scroll[panel] = 0;
     if (panel != PANEL_PARAMETERS || view->filters.text[panel][0] == '\0') {
         return;
     }
 
-    // the selected parameter if it is still there, else the first that has an effect,
-    // else the first
+    // the selected parameter stays selected if it is among those that are shown
+    parameter_line lines[PARAMETER_LINES];
     int selected;
     const int count = view_parameter_lines(view, lines, &selected);
-    const parameter_list *list = &view->parameters;
-    const bool there = count > 0 && !lines[selected].heading &&
-                       lines[selected].parameter == list->parameter;
-    int best = -1;
-    bool best_acts = false;
-    for (int i = 0; i < count && !there && !best_acts; i++) {
-        best_acts =
-            !lines[i].heading && model_inert_reason(model, lines[i].parameter) == NULL;
-        if (best_acts || (best < 0 && !lines[i].heading)) {
-            best = i;
-        }
+    if (count > 0 && !lines[selected].heading &&
+        lines[selected].parameter == view->parameters.parameter) {
+        return;
     }
-    if (best >= 0) {
-        parameter_list_select(&view->parameters, lines[best]);
+    const int line = first_useful_line(model, lines, count);
+    if (line >= 0) {
+        parameter_list_select(&view->parameters, lines[line]);
     }
 }
 
@@ -111,6 +150,7 @@ bool act_mark(const explorer_model *model, explorer_view *view, explorer_input *
               const char *argument)
 {
     const session *s = &model->session;
+    const bool at_cursor = argument[0] == '\0';
     double time = s->now;
     if (!act_read_number_or(input, argument, "", &time)) {
         return false;
@@ -119,10 +159,15 @@ bool act_mark(const explorer_model *model, explorer_view *view, explorer_input *
     if (!(time >= 0 && time <= duration)) {
         return act_refuse(input, "the run goes from 0 to %g s", duration);
     }
-    const size_t side = argument[0] != '\0' ? 0 : trace_side(&s->run.trace, s->row);
-    view->mark = (time_mark){argument[0] != '\0' || !view->mark.set, time, side};
-    if (!view->mark.set) {
+
+    // at the cursor it is set and taken away in turn
+    if (at_cursor && view->mark.set) {
+        view->mark.set = false;
         return act_tell(input, "no mark");
+    }
+    view->mark = (time_mark){.set = true, .time = time};
+    if (at_cursor) {
+        view->mark.side = trace_side(&s->run.trace, s->row);
     }
     return act_tell(input, "mark set: values now show the difference to it, X statistics "
                            "from it to the cursor");
@@ -232,7 +277,30 @@ void act_drop_note(explorer_model *model, explorer_view *view, int index)
     model->note_count--;
     memmove(&model->notes[index], &model->notes[index + 1],
             (size_t)(model->note_count - index) * sizeof model->notes[0]);
-    view->note -= view->note > 0 && view->note >= model->note_count;
+
+    // the selection stays within the list
+    if (view->note > 0 && view->note >= model->note_count) {
+        view->note--;
+    }
+}
+
+// Puts a text at an instant, before the note that has `index`, or in its place if it is
+// of the same instant.
+static bool put_note(explorer_model *model, explorer_input *input, int index, bool there,
+                     double time, const char *text)
+{
+    if (!there && model->note_count == NOTES) {
+        return act_refuse(input, "%d notes are the most there can be (:notes drops some)",
+                          NOTES);
+    }
+    note *put = &model->notes[index];
+    if (!there) {
+        memmove(put + 1, put, (size_t)(model->note_count - index) * sizeof *put);
+        model->note_count++;
+    }
+    put->time = time;
+    snprintf(put->text, sizeof put->text, "%s", text);
+    return act_tell(input, "noted at %.5f s; :notes lists them, figures show them", time);
 }
 
 bool act_note(explorer_model *model, explorer_view *view, explorer_input *input,
@@ -251,32 +319,24 @@ bool act_note(explorer_model *model, explorer_view *view, explorer_input *input,
         text = end + strspn(end, " ");
     }
 
-    // in the order of instants; another text at one instant takes the place of the first
+    // its place in the order of instants
+    const note *notes = model->notes;
     int at = 0;
-    while (at < model->note_count && model->notes[at].time < time &&
-           !same_instant(model->notes[at].time, time)) {
+    while (at < model->note_count && notes[at].time < time &&
+           !same_instant(notes[at].time, time)) {
         at++;
     }
-    const bool there =
-        at < model->note_count && same_instant(model->notes[at].time, time);
-    if (*text == '\0') {
-        if (!there) {
-            return act_refuse(input, "note takes a text; there is none at %.5f s", time);
-        }
-        act_drop_note(model, view, at);
-        return act_tell(input, "no note at %.5f s", time);
+    const bool there = at < model->note_count && same_instant(notes[at].time, time);
+    if (*text != '\0') {
+        return put_note(model, input, at, there, time, text);
     }
-    if (!there && model->note_count == NOTES) {
-        return act_refuse(input, "%d notes are the most there can be (:notes drops some)",
-                          NOTES);
-    }
+
+    // without a text it is taken out
     if (!there) {
-        memmove(&model->notes[at + 1], &model->notes[at],
-                (size_t)(model->note_count++ - at) * sizeof model->notes[0]);
+        return act_refuse(input, "note takes a text; there is none at %.5f s", time);
     }
-    model->notes[at].time = time;
-    snprintf(model->notes[at].text, sizeof model->notes[at].text, "%s", text);
-    return act_tell(input, "noted at %.5f s; :notes lists them, figures show them", time);
+    act_drop_note(model, view, at);
+    return act_tell(input, "no note at %.5f s", time);
 }
 
 bool act_notes(explorer_view *view)
@@ -287,78 +347,83 @@ bool act_notes(explorer_view *view)
 
 bool act_changes(const explorer_model *model, explorer_view *view)
 {
-    if (model->session.input_count > 0) {
-        view->change = model->session.input_count - 1;
-    } else {
-        view->change = 0;
-    }
+    const int last = model->session.input_count - 1;
+    view->change = last > 0 ? last : 0;
     return toggle_page(view, PANEL_CHANGES);
 }
 
-// Goes on to the next value of a choice, or to the one that is named: the screen is drawn
-// anew.
-static bool choose(explorer_view *view, explorer_input *input, const look_choice *c,
+// Goes on to the next value of a choice, or to the one that is named.
+static bool choose(explorer_view *view, explorer_input *input, const char *command,
                    const char *argument)
 {
+    const look_choice *c = look_choice_of(command);
     char all[128] = "";
-    int *value = look_value(&view->looks, c), count = 0, found = -1;
+    int count = 0, named = -1;
     for (; c->words[count] != NULL; count++) {
-        text_add(all, sizeof all, "%s%s", count > 0 ? ", " : "", c->words[count]);
+        const char *separator = count > 0 ? ", " : "";
+        text_add(all, sizeof all, "%s%s", separator, c->words[count]);
         if (strcmp(argument, c->words[count]) == 0) {
-            found = count;
+            named = count;
         }
     }
-    if (found < 0 && (argument[0] != '\0' || !c->goes_round)) {
+
+    // the one that is named draws the whole screen again
+    int *value = look_value(&view->looks, c);
+    if (named >= 0) {
+        *value = named;
+        view->looks.redraw = true;
+    } else if (argument[0] == '\0' && c->goes_round) {
+        *value = (*value + 1) % count;
+    } else {
         return act_refuse(input, "'%s' is none of %s", argument, all);
     }
-    if (found >= 0) {
-        *value = found;
-    } else {
-        *value = (*value + 1) % count;
+
+    // what is said of this value, or of any
+    const char *says = c->says[0];
+    if (c->says[1] != NULL) {
+        says = c->says[*value];
     }
-    view->looks.redraw |= found >= 0;
-    const char *says = c->says[c->says[1] != NULL ? *value : 0];
     return says == NULL || act_tell(input, says, c->words[*value]);
 }
 
 bool act_theme(explorer_view *view, explorer_input *input, const char *argument)
 {
-    return choose(view, input, look_choice_of("theme"), argument);
+    return choose(view, input, "theme", argument);
 }
 
 bool act_glyphs(explorer_view *view, explorer_input *input, const char *argument)
 {
-    return choose(view, input, look_choice_of("glyphs"), argument);
+    return choose(view, input, "glyphs", argument);
 }
 
 bool act_colours(explorer_view *view, explorer_input *input, const char *argument)
 {
-    return choose(view, input, look_choice_of("colours"), argument);
+    return choose(view, input, "colours", argument);
 }
 
 bool act_pixels(explorer_view *view, explorer_input *input, const char *argument)
 {
-    return choose(view, input, look_choice_of("pixels"), argument);
+    return choose(view, input, "pixels", argument);
 }
 
 bool act_closeup(explorer_view *view, explorer_input *input, const char *argument)
 {
-    return choose(view, input, look_choice_of("closeup"), argument);
+    return choose(view, input, "closeup", argument);
 }
 
 bool act_mouse(explorer_view *view, explorer_input *input, const char *argument)
 {
-    return choose(view, input, look_choice_of("mouse"), argument);
+    return choose(view, input, "mouse", argument);
 }
 
 bool act_lanes(explorer_view *view, explorer_input *input, const char *argument)
 {
-    return choose(view, input, look_choice_of("lanes"), argument);
+    return choose(view, input, "lanes", argument);
 }
 
 bool act_colourby(explorer_view *view, explorer_input *input, const char *argument)
 {
-    return choose(view, input, look_choice_of("colourby"), argument);
+    return choose(view, input, "colourby", argument);
 }
 
 bool act_rate(explorer_view *view, explorer_input *input, const char *argument)
@@ -396,38 +461,61 @@ bool act_bending(explorer_view *view, explorer_input *input, const char *argumen
 
 bool act_redraw(explorer_view *view)
 {
-    return view->looks.redraw = true;
+    view->looks.redraw = true;
+    return true;
 }
 
 bool act_quit_now(explorer_input *input)
 {
-    return input->quit = true;
+    input->quit = true;
+    return true;
+}
+
+// The number of changes that no file has, of all scenarios visited.
+static int unsaved_changes(const explorer_model *model)
+{
+    int changes = 0;
+    if (model->saved_version != model_run_id(model)) {
+        changes = model->session.input_count;
+    }
+    for (int i = 0; i < model->visit_count; i++) {
+        changes += model->visits[i].from.input_count;
+    }
+    return changes;
+}
+
+// The number of pinned runs that no file has.
+static int unsaved_pins(const explorer_model *model)
+{
+    if (model->kept_pins == model->pinned.pinned) {
+        return 0;
+    }
+    return model->pinned.count;
 }
 
 bool act_quit(const explorer_model *model, explorer_input *input)
 {
-    const session *s = &model->session;
-    const int pins = model->kept_pins == model->pinned.pinned ? 0 : model->pinned.count;
-    int changes = model->saved_version == model_run_id(model) ? 0 : s->input_count;
-    for (int i = 0; i < model->visit_count; i++) {
-        changes += model->visits[i].from.input_count;
-    }
-
     // work is lost only if quitting is requested twice
+    const int changes = unsaved_changes(model), pins = unsaved_pins(model);
     if (changes + pins == 0 || input->asked_to_quit) {
         return act_quit_now(input);
     }
-    char lost[96] = "", pinned[48] = "";
+    input->asked_to_quit = true;
+
+    // what would be lost
+    char lost[LINE_TEXT] = "";
     if (changes > 0) {
-        snprintf(lost, sizeof lost, "%d change%s", changes, changes == 1 ? "" : "s");
+        text_add(lost, sizeof lost, "%d change%s", changes, changes == 1 ? "" : "s");
+    }
+    if (changes > 0 && pins > 0) {
+        text_add(lost, sizeof lost, " and ");
     }
     if (pins > 0) {
-        snprintf(pinned, sizeof pinned, "%d pinned run%s", pins, pins == 1 ? "" : "s");
+        text_add(lost, sizeof lost, "%d pinned run%s", pins, pins == 1 ? "" : "s");
     }
-    input->asked_to_quit = true;
     return act_warn(input,
-                    "%s%s%s would be lost: q leaves all the same, s keeps all, Esc stays",
-                    lost, changes > 0 && pins > 0 ? " and " : "", pinned);
+                    "%s would be lost: q leaves all the same, s keeps all, Esc stays",
+                    lost);
 }
 
 bool act_interrupt(explorer_model *model, explorer_input *input)
