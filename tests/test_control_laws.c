@@ -5,8 +5,6 @@
 #include "src/rig/rig.h"
 #include "tests/rig_fixture.h"
 
-static const char *manual; // path of docs/reference/laws.md
-
 TEST(every_word_chooses_the_controller_of_that_name)
 {
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
@@ -213,26 +211,4 @@ TEST(answers_are_numbers)
             assert_true(i == 0 ? isnan(out.desired_angle) : out.desired_angle == 2);
         }
     }
-}
-
-// --- the manual ------------------------------------------------------------------------
-
-TEST(manual_says_of_every_law_when_to_take_it)
-{
-    KEPT_TEXT(text) = file_text(manual);
-
-    char *end = strstr(text, "\n## ");
-    assert_non_null(end);
-    *end = '\0';
-    for (int law = LAW_NONE; law < LAW_COUNT; law++) {
-        const char *word = formatted("`%s`", control_law_table[law].word);
-        fail_if(strstr(text, word) == NULL, "the first table of %s has no %s", manual,
-                word);
-    }
-}
-
-int main(int count, char **arguments)
-{
-    manual = count > 1 ? arguments[1] : "docs/reference/laws.md";
-    return run_cases(NULL, NULL);
 }

@@ -6,7 +6,8 @@
 #                                carried out and must succeed ('# exit N' behind one: end with N);
 #   <!-- output of: COMMAND -->  the block below is what the command prints now, but for the time
 #                                that computing took and for rounding (below 1e-9), which differs
-#                                between processors.
+#                                between processors;
+#   <!-- table of: COMMAND -->   the table below is the one that the command prints.
 #
 # $1: the program, $2: the project's folder, $3: --write puts into the pages what is printed now
 # (ninja -C build pages)
@@ -50,13 +51,26 @@ comparable() {
         s/ +$//' "$1" | cat -s
 }
 
-# what is shown below the mark in line $1 is what the command $2 prints
+# the lines of the table that begins after line $1 of the page
+table_after() {
+    awk -v line="$1" 'NR > line && /^[|]/ { begun = 1; print; next } begun { exit }' "$page"
+}
+
+# puts the file printed in the place of that table
+replace_table_after() {
+    awk -v line="$1" '
+        NR > line && /^[|]/ && !over { if (!begun++) while ((getline text <"printed") > 0) print text; next }
+        { over = begun; print }' "$page" >renewed && cat renewed >"$page"
+}
+
+# what is shown below the mark in line $1, a block or a table, is what the command $2 prints
 check_output() {
-    block_after "$1" >shown
+    "$3_after" "$1" >shown
     eval "$2" >printed 2>&1 </dev/null || { fail "$1: $2"; cat printed; return; }
+    [ "$3" = block ] || sed -i '/^|/!d' printed
     diff <(comparable shown) <(comparable printed) >differences && return
     if [ "$write" = --write ]; then
-        replace_block_after "$1"
+        "replace_$3_after" "$1"
         moved=$((moved + $(wc -l <printed) - $(wc -l <shown)))
     else
         fail "$1: $2 (<: the page, >: the program)"
@@ -77,6 +91,7 @@ check_command() {
 things_to_do() {
     awk '
         /^<!-- output of: .* -->$/ { sub(/^<!-- output of: /, ""); sub(/ -->$/, ""); print NR " output " $0 }
+        /^<!-- table of: .* -->$/ { sub(/^<!-- table of: /, ""); sub(/ -->$/, ""); print NR " table " $0 }
         /^<!-- file: .* -->$/ { print NR " file " $3 }
         /^```/ { runs = !inside && $0 == "```sh"; inside = !inside }
         inside && runs && /^(\.\/lab|impactlab) +[^#]/ && !/^\.\/lab (test|build)/ { print NR " command " $0 }
@@ -93,7 +108,8 @@ check_page() {
         number=$((number + moved))
         case $kind in
         file) block_after "$number" >"$words" ;;
-        output) check_output "$number" "$words" ;;
+        output) check_output "$number" "$words" block ;;
+        table) check_output "$number" "$words" table ;;
         command) check_command "$number" "$words" ;;
         esac
         commands=$((commands + 1))
@@ -102,7 +118,7 @@ check_page() {
     rm -r "$folder/work"
 }
 
-for page in "$root"/README.md "$root"/docs/{start,faq,glossary}.md "$root"/docs/howto/*.md; do
+for page in "$root"/README.md "$root"/docs/{start,faq,glossary}.md "$root"/docs/howto/*.md "$root"/docs/reference/laws.md; do
     check_page
 done
 [ $commands -gt 50 ] || fail "1: only $commands commands and outputs were found on the pages"

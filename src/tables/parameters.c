@@ -122,13 +122,23 @@ const char *parameter_suggest(const char *path)
 }
 
 const control_law_info control_law_table[LAW_COUNT] = {
-    [LAW_NONE] = {"none", "no rig: the bare arm under motor.voltage", 0, 0, ""},
-    [LAW_PLUGIN] = {"plugin", "a controller of one's own", TOLD_MODEL, 0, ""},
-    [LAW_PROCESS] = {"process", "a program of one's own, in any language", TOLD_MODEL, 0,
-                     ""},
-    [LAW_PLAYBACK] = {"playback", "a recorded command, from a CSV file", 0, 0, ""},
-#define LAW(name, prefix, word, told, moving, ignored, description)                      \
-    [LAW_##name] = {word, description, told, moving, ignored},
+    [LAW_NONE] = {.word = "none",
+                  .description = "no rig: the bare arm under motor.voltage",
+                  .ignored = ""},
+    [LAW_PLUGIN] = {.word = "plugin",
+                    .description = "a controller of one's own",
+                    .told = TOLD_MODEL,
+                    .ignored = ""},
+    [LAW_PROCESS] = {.word = "process",
+                     .description = "a program of one's own, in any language",
+                     .told = TOLD_MODEL,
+                     .ignored = ""},
+    [LAW_PLAYBACK] = {.word = "playback",
+                      .description = "a recorded command, from a CSV file",
+                      .ignored = ""},
+#define LAW(name, prefix, word, told, moving, ignored, description, needs, sensors,      \
+            fails)                                                                       \
+    [LAW_##name] = {word, description, needs, sensors, fails, told, moving, ignored},
     CONTROL_LAWS(LAW)
 #undef LAW
 };

@@ -348,10 +348,25 @@ static void put_law_parameters(FILE *stream, const controller *c)
     }
 }
 
+// What speaks for and against each built-in law; the table of docs/reference/laws.md.
+static void put_law_comparison(FILE *stream)
+{
+    put(stream,
+        "\n| law | needs | sensors | memory [B] | fails |\n|---|---|---|---|---|\n");
+    for (int law = LAW_NONE; law < LAW_COUNT; law++) {
+        const control_law_info *info = &control_law_table[law];
+        if (info->needs != NULL) {
+            fprintf(stream, "| `%s` | %s | %s | %zu | %s |\n", info->word, info->needs,
+                    info->sensors, controller_of(law)->memory_size, info->fails);
+        }
+    }
+}
+
 static void write_laws(FILE *stream)
 {
     put(stream, "# Control laws and their parameters\n\nThe choices of "
                 "`control.law`, what each does, and the parameters that it reads.\n");
+    put_law_comparison(stream);
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
         put(stream, "\n## %s\n\n%t.\n\n", control_law_table[law].word,
             control_law_table[law].description);
