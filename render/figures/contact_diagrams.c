@@ -64,7 +64,7 @@ static void draw_wall(sketch *s, point at, double direction, const char *symbol,
     sketch_wall(s, shifted(wall, 16 * ux, 16 * uy), shifted(wall, -16 * ux, -16 * uy));
 
     point start = {at.x + (FORCE_LENGTH + 4) * nx, at.y + (FORCE_LENGTH + 4) * ny};
-    sketch_arrow(s, start, shifted(at, 4 * nx, 4 * ny), 5);
+    sketch_arrow(s, start, shifted(at, 4 * nx, 4 * ny), SLOT_VERMILLION);
     sketch_label(s, shifted(start, 4 * nx, 4 * ny), (anchor){0.5, 1}, "%s = %s", symbol,
                  quantity);
 }
@@ -93,7 +93,7 @@ static void draw_contact(sketch *s, const diagram *d)
 
     // both configurations, and the angles of the first
     draw_full_arm(s, one);
-    draw_dashed_arm(s, other, 0);
+    draw_dashed_arm(s, other, SLOT_BLUE);
     diagram_link_angle(s, one.hub, 84, direction_of(one.hub, one.joint),
                        "<i>θ</i><sub>2</sub>");
     diagram_link_angle(s, one.joint, 62, direction_of(one.joint, one.end),
@@ -114,7 +114,8 @@ static void draw_contact(sketch *s, const diagram *d)
     sketch_bar(s, (point){s->left + 4, key}, (point){s->left + 26, key}, 5);
     sketch_small(s, (point){s->left + 32, key}, (anchor){0, 0.5},
                  "<i>t</i> = %.2f\u2009s", of->one.time);
-    sketch_dashed(s, (point){s->left + 4, key + 14}, (point){s->left + 26, key + 14}, 0);
+    sketch_dashed(s, (point){s->left + 4, key + 14}, (point){s->left + 26, key + 14},
+                  SLOT_BLUE);
     sketch_small(s, (point){s->left + 32, key + 14}, (anchor){0, 0.5},
                  "the next step, <i>t</i> = %.2f\u2009s", of->other.time);
 }
@@ -197,7 +198,7 @@ static void draw_deformation(sketch *s, const diagram *d)
     // the line to the contact point, and the three shapes
     sketch_dashed(s, peak.hub, contact, SKETCH_FAINT);
     draw_dashed_arm(s, touch, SKETCH_FAINT);
-    draw_dashed_arm(s, assumed, 1);
+    draw_dashed_arm(s, assumed, SLOT_ORANGE);
     draw_full_arm(s, peak);
     sketch_label(s, shifted(contact, 8, 3), (anchor){0, 0}, "(<i>a</i>, <i>b</i>)");
     sketch_label(s, shifted(peak.hub, 0, 15), (anchor){0.5, 0}, "<i>O</i>");
@@ -360,9 +361,10 @@ static void draw_arm(sketch *s, const diagram *d)
     // velocities of the joint: before to the left of it, after to the right
     double y = joint_page.y - 6;
     sketch_arrow(s, (point){joint_page.x - 6, y},
-                 (point){joint_page.x - 6, y - SPEED_LENGTH * joint_before}, 2);
+                 (point){joint_page.x - 6, y - SPEED_LENGTH * joint_before}, SLOT_GREEN);
     sketch_dashed_arrow(s, (point){joint_page.x + 6, y},
-                        (point){joint_page.x + 6, y - SPEED_LENGTH * joint_after}, 1);
+                        (point){joint_page.x + 6, y - SPEED_LENGTH * joint_after},
+                        SLOT_ORANGE);
     sketch_small(s, (point){joint_page.x - 12, y - 4}, (anchor){1, 1},
                  "before\n%.3f\u2009m/s", joint_before);
     sketch_small(s, (point){joint_page.x + 12, y - 4}, (anchor){0, 1},
@@ -370,10 +372,10 @@ static void draw_arm(sketch *s, const diagram *d)
 
     // the tip arrives, and is stopped by the wall's impulse
     sketch_arrow(s, shifted(contact, -8, 6 + SPEED_LENGTH * tip_before),
-                 shifted(contact, -8, 6), 2);
+                 shifted(contact, -8, 6), SLOT_GREEN);
     sketch_small(s, shifted(contact, -14, 14), (anchor){1, 0},
                  "before\n%.3f\u2009m/s\nafter: at rest", tip_before);
-    sketch_arrow(s, shifted(contact, 0, -50), shifted(contact, 0, -6), 5);
+    sketch_arrow(s, shifted(contact, 0, -50), shifted(contact, 0, -6), SLOT_VERMILLION);
     sketch_small(s, shifted(contact, 0, -53), (anchor){0.5, 1}, "impulse %.4f\u2009N·s",
                  d->impulse);
 
@@ -409,16 +411,16 @@ static void draw_cut_body(sketch *s, const diagram *d)
     // impulses of wall and hinge: an arrow that points down ends at the body
     double wall = IMPULSE_LENGTH * fabs(b.wall_impulse);
     double pin = IMPULSE_LENGTH * b.hinge_impulse;
-    sketch_arrow(s, (point){hit.x, y - 6 - wall}, (point){hit.x, y - 6}, 5);
+    sketch_arrow(s, (point){hit.x, y - 6 - wall}, (point){hit.x, y - 6}, SLOT_VERMILLION);
     write_value(s, (point){hit.x, y - 14 - wall}, 0.5, "<i>F̂</i><sup>c</sup>",
                 b.wall_impulse, "N s");
     sketch_arrow(s, (point){hinge.x, y - 6 + fmin(0, pin)},
-                 (point){hinge.x, y - 6 - fmax(0, pin)}, 5);
+                 (point){hinge.x, y - 6 - fmax(0, pin)}, SLOT_VERMILLION);
     write_value(s, (point){hinge.x, y - 14 - fabs(pin)}, 0.5, "<i>X̂</i><sup>c</sup>",
                 b.hinge_impulse, "N s");
 
     // the hinge's torque about C, and how the body's motion jumps
-    sketch_arc(s, turning_arc(hinge, 18, 2.6, 3.7, b.hinge_torque), 0);
+    sketch_arc(s, turning_arc(hinge, 18, 2.6, 3.7, b.hinge_torque), SLOT_BLUE);
     write_value(s, (point){hinge.x - 4, y + 44}, 0.5, "<i>Ŷ</i><sup>c</sup>",
                 b.hinge_torque, "N m s");
     const double jump = SPEED_LENGTH * b.centre_jump;
@@ -426,10 +428,12 @@ static void draw_cut_body(sketch *s, const diagram *d)
     if (b.centre_jump < 0) {
         from = y + 7;
     }
-    sketch_dashed_arrow(s, (point){centre.x, from}, (point){centre.x, from - jump}, 1);
+    sketch_dashed_arrow(s, (point){centre.x, from}, (point){centre.x, from - jump},
+                        SLOT_ORANGE);
     write_value(s, (point){centre.x - 8, from - 0.7 * jump}, 1, "Δ<i>v</i><sub>C</sub>",
                 b.centre_jump, "m/s");
-    sketch_arc(s, turning_arc((point){centre.x, y}, 30, -1.6, -0.5, b.angular_jump), 1);
+    sketch_arc(s, turning_arc((point){centre.x, y}, 30, -1.6, -0.5, b.angular_jump),
+               SLOT_ORANGE);
     write_value(s, (point){centre.x + 30, y + 22}, 0, "Δ<i>ω</i>", b.angular_jump,
                 "rad/s");
 

@@ -55,8 +55,8 @@ static void draw_links(sketch *s, const diagram *d)
                SKETCH_INK);
     sketch_label(s, shifted(rim_page, 12, 6), (anchor){0, 0.5},
                  "<i>θ</i><sub>1</sub>, <i>I</i><sub>1</sub>");
-    sketch_spiral(s, hub_page, 13, 0);
-    sketch_spiral(s, joint_page, 11, 0);
+    sketch_spiral(s, hub_page, 13, SLOT_BLUE);
+    sketch_spiral(s, joint_page, 11, SLOT_BLUE);
     sketch_label(s, (point){hub_page.x - v.metre * radius - 4, hub_page.y},
                  (anchor){1, 0.5}, "<i>k</i><sub>1</sub>");
     sketch_label(s, shifted(joint_page, 0, 14), (anchor){0.5, 0}, "<i>k</i><sub>2</sub>");
@@ -106,7 +106,7 @@ status diagram_links(const figure_order *order, artwork *out, fault *f)
 // A turning arrow about a joint, between two directions [degrees].
 static void draw_torque(sketch *s, point joint, double from, double to)
 {
-    sketch_arc(s, (arc){joint, 17, from * DEGREE, to * DEGREE, true}, 0);
+    sketch_arc(s, (arc){joint, 17, from * DEGREE, to * DEGREE, true}, SLOT_BLUE);
 }
 
 static void draw_free_bodies(sketch *s, const diagram *d)
@@ -123,9 +123,9 @@ static void draw_free_bodies(sketch *s, const diagram *d)
 
     sketch_disc(s, h, 0.9 * metre * HUB_RADIUS, SKETCH_INK, false);
     sketch_disc(s, h, 2, SKETCH_INK, true);
-    sketch_arc(s, (arc){h, 11, 200 * DEGREE, 40 * DEGREE, true}, 0);
+    sketch_arc(s, (arc){h, 11, 200 * DEGREE, 40 * DEGREE, true}, SLOT_BLUE);
     sketch_label(s, shifted(h, 19, -14), (anchor){0, 1}, "\u2212<i>τ</i><sub>1</sub>");
-    sketch_arc(s, (arc){h, 30, -150 * DEGREE, -40 * DEGREE, true}, 2);
+    sketch_arc(s, (arc){h, 30, -150 * DEGREE, -40 * DEGREE, true}, SLOT_GREEN);
     sketch_small(s, shifted(h, 0, 36), (anchor){0.5, 0},
                  "motor <i>τ</i><sub>m</sub>, friction");
     sketch_small(s, shifted(h, 0, -40), (anchor){0.5, 1}, "body 1");
@@ -136,9 +136,9 @@ static void draw_free_bodies(sketch *s, const diagram *d)
     sketch_label(s, shifted(a, -10, -21), (anchor){0.5, 1}, "<i>τ</i><sub>1</sub>");
     draw_torque(s, b, -110, 60);
     sketch_label(s, shifted(b, 2, -16), (anchor){1, 1}, "<i>τ</i><sub>2</sub>");
-    sketch_arrow(s, a, shifted(a, 8, 36), 5);
+    sketch_arrow(s, a, shifted(a, 8, 36), SLOT_VERMILLION);
     sketch_label(s, shifted(a, 12, 37), (anchor){0, 0.5}, "<i>f</i><sub>1</sub>");
-    sketch_arrow(s, b, shifted(b, -8, 36), 5);
+    sketch_arrow(s, b, shifted(b, -8, 36), SLOT_VERMILLION);
     sketch_label(s, shifted(b, -12, 37), (anchor){1, 0.5}, "<i>f</i><sub>2</sub>");
     sketch_small(s, (point){(a.x + b.x) / 2, (a.y + b.y) / 2 + 9}, (anchor){0.5, 0},
                  "body 2");
@@ -147,12 +147,12 @@ static void draw_free_bodies(sketch *s, const diagram *d)
     sketch_mass_point(s, (point){(c.x + t.x) / 2, (c.y + t.y) / 2});
     draw_torque(s, c, 230, 110);
     sketch_label(s, shifted(c, 8, 18), (anchor){0.5, 0}, "\u2212<i>τ</i><sub>2</sub>");
-    sketch_arrow(s, c, shifted(c, 8, -36), 5);
+    sketch_arrow(s, c, shifted(c, 8, -36), SLOT_VERMILLION);
     sketch_label(s, shifted(c, 12, -37), (anchor){0, 0.5}, "\u2212<i>f</i><sub>2</sub>");
     // the wall pushes back, across the last link
     double away = 40;
     sketch_arrow(s, shifted(t, -away * sin(second), -away * cos(second)),
-                 shifted(t, 0, -4), 5);
+                 shifted(t, 0, -4), SLOT_VERMILLION);
     sketch_label(s, (point){t.x - away * sin(second) - 5, t.y - away * cos(second)},
                  (anchor){1, 0.5}, "<i>f</i>");
     sketch_small(s, (point){(c.x + t.x) / 2 + 8, (c.y + t.y) / 2 + 10}, (anchor){0, 0},
@@ -191,13 +191,13 @@ static void draw_springs(sketch *s, const diagram *d)
     cairo_stroke(s->cr);
 
     sketch_label(s, (point){mass, y}, (anchor){0.5, 0.5}, "<i>m</i><sub>c</sub>");
-    sketch_arrow(s, (point){mass - 14, y - 30}, (point){mass + 34, y - 30}, 2);
+    sketch_arrow(s, (point){mass - 14, y - 30}, (point){mass + 34, y - 30}, SLOT_GREEN);
     sketch_label(s, (point){mass + 38, y - 30}, (anchor){0, 0.5}, "<i>v</i><sub>0</sub>");
 
     // both springs in series, to the wall
     double middle = (mass + 26 + wall) / 2;
-    sketch_coil(s, (point){mass + 26, y}, (point){middle, y}, 5, 0);
-    sketch_coil(s, (point){middle, y}, (point){wall, y}, 9, 0);
+    sketch_coil(s, (point){mass + 26, y}, (point){middle, y}, 5, SLOT_BLUE);
+    sketch_coil(s, (point){middle, y}, (point){wall, y}, 9, SLOT_BLUE);
     sketch_disc(s, (point){middle, y}, 2, SKETCH_INK, true);
     sketch_wall(s, (point){wall, y + 34}, (point){wall, y - 34});
 
@@ -288,7 +288,7 @@ static void draw_divider(sketch *s, const sensor_parameters *p, double x, double
     // sensor, which the force presses
     sketch_resistor(s, (point){x, y + 18}, (point){x, y + 62});
     sketch_small(s, (point){x + 9, y + 40}, (anchor){0, 0.5}, "FSR");
-    sketch_arrow(s, (point){x - 34, y + 40}, (point){x - 8, y + 40}, 5);
+    sketch_arrow(s, (point){x - 34, y + 40}, (point){x - 8, y + 40}, SLOT_VERMILLION);
     sketch_label(s, (point){x - 38, y + 40}, (anchor){1, 0.5}, "<i>f</i>");
 
     // measuring resistor to ground; the divider's output between them
@@ -375,7 +375,7 @@ static void draw_sensor(sketch *s, const diagram *d)
                                  .y = &points[1].value,
                                  .count = CURVE_POINTS,
                                  .stride = 2 * sizeof *points,
-                                 .colour = 5};
+                                 .colour = SLOT_VERMILLION};
     const figure_panel panel = {.y = {.name = "output",
                                       .label = "Output <i>V</i><sub>out</sub>",
                                       .unit = "V",

@@ -166,7 +166,7 @@ static void add_assumption(impact_figure *fig, int panel, const assumption *a,
     // dashed, as it is no result of the run
     owned_figure_add(fig->plot, panel,
                      (figure_series){"assumed", label, .x = x, .y = y,
-                                     .count = ASSUMED_POINTS, .colour = 5,
+                                     .count = ASSUMED_POINTS, .colour = SLOT_VERMILLION,
                                      .style = LINE_DASHED});
 }
 
@@ -222,7 +222,7 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
             computed = "computed";
             approximation = approximations[of_angle];
         }
-        add_signal(&fig, i, name, computed)->colour = 0;
+        add_signal(&fig, i, name, computed)->colour = SLOT_BLUE;
         add_assumption(&fig, i, &a, approximation);
         most[i] = departure(&fig, name, &a);
         fig.plot->panels[i].y.label = labels[of_angle][i];

@@ -26,13 +26,13 @@ typedef struct printed_kind {
 } printed_kind;
 
 static const printed_quantity forces[] = {
-    {"max_force_energy", "energy principle", MARKER_CIRCLE, 0},
-    {"max_force_dynamics", "impact dynamics", MARKER_SQUARE, 5},
-    {"max_force_simulation", "simulation", MARKER_TRIANGLE, 2}};
+    {"max_force_energy", "energy principle", MARKER_CIRCLE, SLOT_BLUE},
+    {"max_force_dynamics", "impact dynamics", MARKER_SQUARE, SLOT_VERMILLION},
+    {"max_force_simulation", "simulation", MARKER_TRIANGLE, SLOT_GREEN}};
 static const printed_quantity delays[] = {{"delay_dynamics", "impact dynamics",
-                                           MARKER_SQUARE, 5},
+                                           MARKER_SQUARE, SLOT_VERMILLION},
                                           {"delay_simulation", "simulation",
-                                           MARKER_TRIANGLE, 2}};
+                                           MARKER_TRIANGLE, SLOT_GREEN}};
 static const printed_kind kinds[] = {{"force", "Peak force", "N", 1, forces, 3},
                                      {"delay", "Delay", "ms", 1e3, delays, 2}};
 

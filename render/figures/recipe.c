@@ -92,7 +92,8 @@ static const scenario *first_scenario(const recipe *r)
 // The colour of curve number `index` of a panel; the first ones differ most.
 static int colour_of(int index)
 {
-    static const int colours[] = {0, 5, 2, 4, 1, 3, 7};
+    static const int colours[] = {SLOT_BLUE,   SLOT_VERMILLION, SLOT_GREEN, SLOT_PURPLE,
+                                  SLOT_ORANGE, SLOT_SKY_BLUE,   SLOT_GREY};
     return colours[index % (int)G_N_ELEMENTS(colours)];
 }
 
@@ -187,7 +188,7 @@ static void add_signal(recipe *r, int panel, const recipe_source *s, int index,
     out->style = LINE_SOLID;
     out->colour = colour_of_run;
     if (data) {
-        out->colour = 6;
+        out->colour = SLOT_BLACK;
         out->no_line = true;
         out->marker = MARKER_CIRCLE;
     }
@@ -206,9 +207,9 @@ static void add_difference(recipe *r, int panel)
 
     // points where data are compared, else a line
     s->name = "difference";
-    s->colour = 7;
+    s->colour = SLOT_GREY;
     if (of->kind == SOURCE_DATA) {
-        s->colour = 6;
+        s->colour = SLOT_BLACK;
         s->no_line = true;
         s->marker = MARKER_CIRCLE;
     }

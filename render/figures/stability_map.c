@@ -103,9 +103,9 @@ static void compute(newmark_map *m)
     static const double thesis_x[] = {0.4}, thesis_y[] = {0.5};
 
     add_layer(m, (figure_series){"bounds", "Table 3.1", .x = bound_x, .y = bound_y,
-                                 .count = 5, .colour = 6, .rim = true});
+                                 .count = 5, .colour = SLOT_BLACK, .rim = true});
     add_layer(m, (figure_series){"contact", "<i>β</i> = ¼", .x = quarter_x,
-                                 .y = quarter_y, .count = 2, .colour = 6,
+                                 .y = quarter_y, .count = 2, .colour = SLOT_BLACK,
                                  .style = LINE_DASHED, .rim = true});
     add_layer(m, (figure_series){"thesis", "the thesis: 0.4, 0.5", .x = thesis_x,
                                  .y = thesis_y, .count = 1, .marker = MARKER_CROSS,

@@ -84,7 +84,20 @@ typedef struct palette {
 
 const palette *palette_of(figure_theme theme);
 
-// The colour of a slot, 0-7; in a mono figure by the series' place in its panel.
+// Slots for the colours of series, as they are on white.
+enum {
+    SLOT_BLUE,
+    SLOT_ORANGE,
+    SLOT_GREEN,
+    SLOT_SKY_BLUE,
+    SLOT_PURPLE,
+    SLOT_VERMILLION,
+    SLOT_BLACK,
+    SLOT_GREY,
+    PALETTE_SLOTS
+};
+
+// The colour of a slot; in a mono figure by the series' place in its panel.
 colour palette_series(figure_theme theme, int slot, int place);
 
 // The slots in the order in which they differ most, again from the eighth on.

@@ -8,11 +8,9 @@
         (r) / 255.0, (g) / 255.0, (b) / 255.0                                            \
     }
 
-enum { SLOTS = 8 };
-
 // Okabe and Ito 2008; their yellow is too faint for lines on white and gives way to a
 // grey.
-static const colour on_white[SLOTS] = {
+static const colour on_white[PALETTE_SLOTS] = {
     RGB(0, 114, 178),   // blue
     RGB(230, 159, 0),   // orange
     RGB(0, 158, 115),   // bluish green
@@ -22,7 +20,7 @@ static const colour on_white[SLOTS] = {
     RGB(30, 30, 30),    // black
     RGB(110, 110, 110), // grey
 };
-static const colour on_black[SLOTS] = {
+static const colour on_black[PALETTE_SLOTS] = {
     RGB(60, 160, 225),  RGB(240, 170, 10), RGB(0, 178, 130),   RGB(110, 210, 250),
     RGB(220, 140, 185), RGB(225, 95, 20),  RGB(225, 225, 225), RGB(145, 145, 145),
 };
@@ -51,7 +49,7 @@ colour palette_series(figure_theme theme, int slot, int place)
     if (theme == THEME_MONO) {
         return greys[place / 2 % 3];
     }
-    slot = (slot % SLOTS + SLOTS) % SLOTS;
+    slot = (slot % PALETTE_SLOTS + PALETTE_SLOTS) % PALETTE_SLOTS;
     if (theme == THEME_DARK) {
         return on_black[slot];
     }
@@ -60,9 +58,11 @@ colour palette_series(figure_theme theme, int slot, int place)
 
 int palette_slot(int index)
 {
-    static const int slots[] = {0, 5, 2, 4, 1, 3, 6, 7};
+    static const int slots[PALETTE_SLOTS] = {SLOT_BLUE,   SLOT_VERMILLION, SLOT_GREEN,
+                                             SLOT_PURPLE, SLOT_ORANGE,     SLOT_SKY_BLUE,
+                                             SLOT_BLACK,  SLOT_GREY};
     assert(index >= 0);
-    return slots[index % 8];
+    return slots[index % PALETTE_SLOTS];
 }
 
 colour palette_shade(figure_theme theme, double share)

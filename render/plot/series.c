@@ -69,9 +69,9 @@ double set_series(const drawing *d, const panel_layout *l, int index)
             second = second || l->busy[i];
         }
         if (d->style.theme == THEME_MONO && !s->secondary && second) {
-            ink = palette_series(THEME_MONO, 0, 0);
+            ink = palette_series(THEME_MONO, SLOT_BLUE, 0);
         } else if (d->style.theme == THEME_MONO && !s->secondary) {
-            ink = palette_series(THEME_MONO, 0, 4);
+            ink = palette_series(THEME_MONO, SLOT_BLUE, 4);
             width *= BUSY_WIDER;
         }
         style = LINE_SOLID;
@@ -425,7 +425,8 @@ void draw_impulses(drawing *d, const panel_layout *l)
         const figure_impulse *p = &panel->impulses[i];
         if (impulse_shows(d, p)) {
             double length = 4 + (STRIP_HEIGHT - 7) * fabs(p->size) / largest;
-            set_plain_line(d->cr, palette_series(d->style.theme, 4, 0), CURVE_WIDTH);
+            set_plain_line(d->cr, palette_series(d->style.theme, SLOT_PURPLE, 0),
+                           CURVE_WIDTH);
             draw_arrow(d->cr, plane_x(&l->plane, p->x), base, length);
         }
     }

@@ -223,11 +223,11 @@ owned_figure *nyquist_figure_create(const scenario *s, const linear_response *lo
     owned_figure_add(o, 0, (figure_series){"loop", "loop gain", x, y, n});
     owned_figure_add(o, 0,
                      (figure_series){"circle", "size 1", circle_x, circle_y, CIRCLE,
-                                     .colour = 6, .style = LINE_DASHED});
+                                     .colour = SLOT_BLACK, .style = LINE_DASHED});
     owned_figure_add(o, 0,
                      (figure_series){"critical", "−1", critical, critical + 1, 1,
-                                     .colour = 5, .marker = MARKER_CROSS, .radius = 3,
-                                     .no_line = true});
+                                     .colour = SLOT_VERMILLION, .marker = MARKER_CROSS,
+                                     .radius = 3, .no_line = true});
     o->panels[0].weight = 3.2;
     o->panels[0].y =
         (figure_axis){.name = "imaginary", .label = "Imaginary part", .room = 0.05};

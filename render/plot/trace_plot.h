@@ -97,7 +97,37 @@ status overlay_read_column(trace *t, const char *path, const char *column, doubl
                            const trace_panel *panels, int panel_count, char **name,
                            fault *f);
 
-// --- internal to these figures: labels, marks and events
+// --- internal to these figures: curves, labels, marks and events
+
+// A figure of runs while it is made.
+typedef struct trace_figure {
+    owned_figure *drawn;
+    const trace_panel *panels;
+    const trace_run *runs;
+    int run_count;
+} trace_figure;
+
+// Whether a run has a signal of a panel to show: not the first link's where it equals the
+// hub's, and of data only what was measured: trace_figure.c
+bool trace_shows(const trace_run *run, const trace_panel *panel, int index);
+
+// --- the key of runs side by side: trace_key.c
+
+enum { TRACE_KEY_ENTRIES = TRACE_RUNS + FIGURE_PANELS * TRACE_SIGNALS };
+
+// The legend of runs side by side: their colours, then the lines of signals, then data.
+typedef struct trace_key {
+    figure_panel panel;
+    figure_series series[TRACE_KEY_ENTRIES];
+    int signals[TRACE_KEY_ENTRIES]; // whose line it is; negative: a run's colour
+} trace_key;
+
+// Gives signals that stand in one panel different lines, and the figure one legend for
+// both runs and signals; empty where no run has a rank. Kept by the figure.
+const trace_key *trace_key_create(const trace_figure *from);
+
+// The line of a signal in all panels and runs.
+line_style trace_key_line(const trace_key *key, int index);
 
 // --- labels: trace_labels.c. Free the texts with g_free.
 
