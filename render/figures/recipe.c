@@ -7,6 +7,9 @@
 #include "render/plot/study_plot.h"
 #include "src/base/input_file.h"
 
+#define CURVES_ROOM 0.05 // of a table's values, free above and below its curve
+#define POINTS_ROOM 0.03 // of its other axis, free at both ends
+
 // ---- opening what the recipe names
 
 // A file as the recipe's folder sees it; a scenario's name stays.
@@ -19,12 +22,12 @@ static char *path_of(const char *recipe_path, const char *name)
     return g_build_filename(folder, name, NULL);
 }
 
-static status open_data(recipe *r, recipe_source *s, const char *path, fault *f)
+static status open_measured(recipe *r, recipe_source *s, const char *path, fault *f)
 {
     trace_panel shown[FIGURE_PANELS];
     int count = 0;
 
-    // the signals that a nameless column may lie over
+    // the signals that a column without a signal's name may lie over
     for (int i = 0; i < r->shown.panel_count; i++) {
         if (r->panels[i].signal_count > 0) {
             shown[count++] = (trace_panel){.signals = {r->panels[i].signals[0]}};
@@ -37,44 +40,49 @@ static status open_data(recipe *r, recipe_source *s, const char *path, fault *f)
                                count, &name, f);
 }
 
+// Runs the scenario of a file beside the recipe, or of a name.
+static status open_recipe_run(recipe *r, recipe_source *s, const char *path, fault *f)
+{
+    const char *name = s->scenario;
+    if (g_file_test(path, G_FILE_TEST_IS_REGULAR)) {
+        name = path;
+    }
+    opened_run *run = run_open_changed(name, s->change, s->change_count, NULL, f);
+    s->run = owned_figure_own(r->plot, run, run_close);
+    return f->code;
+}
+
+static status open_sweep_table(recipe *r, recipe_source *s, const char *path, fault *f)
+{
+    const char *const keys[] = {s->x, s->y, s->z};
+    const int columns = s->z != NULL ? 3 : 2;
+    const status code = sweep_table_read(path, keys, columns, s->columns, &s->count, f);
+    for (int i = 0; i < SWEEP_TABLE_COLUMNS; i++) {
+        owned_figure_own(r->plot, s->columns[i], free);
+    }
+    return code;
+}
+
 static status open_source(recipe *r, recipe_source *s, const char *recipe_path, fault *f)
 {
+    static status (*const open[])(recipe * r, recipe_source * s, const char *path,
+                                  fault *f) = {[SOURCE_RUN] = open_recipe_run,
+                                               [SOURCE_DATA] = open_measured,
+                                               [SOURCE_TABLE] = open_sweep_table};
     fault why = {0};
-    status code = STATUS_OK;
     g_autofree char *path = path_of(recipe_path, text_or(s->scenario, s->file));
-
-    if (s->kind == SOURCE_RUN) {
-        // a file beside the recipe, or a scenario's name
-        const char *name = s->scenario;
-        if (g_file_test(path, G_FILE_TEST_IS_REGULAR)) {
-            name = path;
-        }
-        opened_run *run = run_open_changed(name, s->change, s->change_count, NULL, &why);
-        s->run = owned_figure_own(r->plot, run, run_close);
-        code = why.code;
-    } else if (s->kind == SOURCE_DATA) {
-        code = open_data(r, s, path, &why);
-    } else {
-        const char *const keys[] = {s->x, s->y, s->z};
-        const int columns = s->z != NULL ? 3 : 2;
-        code = sweep_table_read(path, keys, columns, s->columns, &s->count, &why);
-        for (int i = 0; i < SWEEP_TABLE_COLUMNS; i++) {
-            owned_figure_own(r->plot, s->columns[i], free);
-        }
-    }
+    const status code = open[s->kind](r, s, path, &why);
 
     // the place in the recipe stands before what went wrong
-    if (code == STATUS_OK) {
-        return code;
-    }
-    return fault_set(f, code, "%s:%d:%d: %s", recipe_path, s->at.line, s->at.column,
-                     why.text);
+    FAULT_IF(code != STATUS_OK, f, code, "%s:%d:%d: %s", recipe_path, s->at.line,
+             s->at.column, why.text);
+    return STATUS_OK;
 }
 
 // ---- labels
 
 // The legend text of a source, markup.
-static const char *label_of(recipe *r, const recipe_source *s)
+static const char *source_label(recipe *r, const recipe_source *s)
 {
     return owned_figure_keep(r->plot, text_escape(text_or(s->label, s->name)));
 }
@@ -127,7 +135,7 @@ static void add_curve(recipe *r, int panel, const recipe_source *s)
 
     // points are marked while they are few enough to be told apart
     owned_figure_add(r->plot, panel,
-                     (figure_series){s->name, label_of(r, s), s->columns[0],
+                     (figure_series){s->name, source_label(r, s), s->columns[0],
                                      s->columns[1], s->count, .colour = colour_of(index),
                                      .marker = marker_of(s->count, (size_t)index)});
 }
@@ -151,10 +159,22 @@ static void add_map(recipe *r, int panel, const recipe_source *s)
                                      .marker = MARKER_CIRCLE, .radius = 2.4});
 }
 
+// The curve of a table, or its map where the panel shows nothing else.
+static void add_table(recipe *r, int panel, const recipe_source *s)
+{
+    const figure_panel *p = &r->plot->panels[panel];
+    const bool empty = p->map == NULL && p->series_count == 0;
+    if (s->z == NULL) {
+        add_curve(r, panel, s);
+    } else if (empty && s->count > 0) {
+        add_map(r, panel, s);
+    }
+}
+
 // ---- curves
 
-static void add_signal(recipe *r, int panel, const recipe_source *s, int index,
-                       int signals)
+static void add_recorded(recipe *r, int panel, const recipe_source *s, int index,
+                         int signals)
 {
     figure_panel *p = &r->plot->panels[panel];
     const bool data = s->kind == SOURCE_DATA;
@@ -170,10 +190,13 @@ static void add_signal(recipe *r, int panel, const recipe_source *s, int index,
     figure_series *out =
         owned_figure_add(r->plot, panel, trace_series(&run, index, r->plot));
 
-    // several signals of one run are told by their symbols, several runs by their labels
-    const char *label = label_of(r, s);
+    // several signals of one run are told apart by symbols, several runs by labels
+    const char *label = source_label(r, s);
     if (signals > 1) {
-        const scenario *bodies = data ? first_scenario(r) : run.scenario;
+        const scenario *bodies = run.scenario;
+        if (data) {
+            bodies = first_scenario(r);
+        }
         g_autofree char *symbol = trace_symbol(bodies, index);
         if (r->source_count > 1) {
             label = owned_figure_printf(r->plot, "%s %s", label, symbol);
@@ -191,6 +214,15 @@ static void add_signal(recipe *r, int panel, const recipe_source *s, int index,
         out->colour = SLOT_BLACK;
         out->no_line = true;
         out->marker = MARKER_CIRCLE;
+    }
+}
+
+// The signals of a panel, of a run or of data.
+static void add_signals(recipe *r, int panel, const recipe_source *s,
+                        const recipe_panel *from)
+{
+    for (int i = 0; i < from->signal_count; i++) {
+        add_recorded(r, panel, s, signal_index(from->signals[i]), from->signal_count);
     }
 }
 
@@ -217,83 +249,86 @@ static void add_difference(recipe *r, int panel)
 
 // ---- panels
 
-// "Contact force f (N)" of a signal, or the names of a table's columns, unless the recipe
-// has a word of its own.
-static void describe_axis(recipe *r, const recipe_panel *from, figure_axis *y)
+// The axis of a panel's signals: "Contact force f (N)" of a single one.
+static figure_axis signals_axis(recipe *r, const recipe_panel *from)
+{
+    const int index = signal_index(from->signals[0]);
+    const signal_info *signal = &signal_table[index];
+    g_autofree char *symbol = trace_symbol(first_scenario(r), index);
+    figure_axis y = {.name = signal->name, .unit = signal->unit};
+    if (from->signal_count > 1) {
+        y.label = signal->quantity;
+    } else if (from->compared) {
+        y.label = owned_figure_printf(r->plot, "Difference of %s", symbol);
+        y.symbol = owned_figure_printf(r->plot, "Δ%s", symbol);
+    } else {
+        y.label = owned_figure_printf(r->plot, "%s %s", signal->quantity, symbol);
+        y.symbol = owned_figure_keep(r->plot, g_steal_pointer(&symbol));
+    }
+    return y;
+}
+
+// The vertical axis of a panel; the recipe's own label comes first.
+static void describe_vertical(recipe *r, const recipe_panel *from, figure_axis *y)
 {
     figure_axis usual = {0};
     if (from->signal_count > 0) {
-        const int index = signal_index(from->signals[0]);
-        const signal_info *signal = &signal_table[index];
-        g_autofree char *symbol = trace_symbol(first_scenario(r), index);
-        usual.name = signal->name;
-        usual.unit = signal->unit;
-        if (from->compared) {
-            usual.label = owned_figure_printf(r->plot, "Difference of %s", symbol);
-        } else if (from->signal_count > 1) {
-            usual.label = signal->quantity;
-        } else {
-            usual.label = owned_figure_printf(r->plot, "%s %s", signal->quantity, symbol);
-        }
-        if (from->signal_count == 1) {
-            const char *delta = from->compared ? "Δ" : "";
-            y->symbol = owned_figure_printf(r->plot, "%s%s", delta, symbol);
-        }
+        usual = signals_axis(r, from);
     } else if (from->source_count > 0) {
+        // a map reaches to the edges
         const recipe_source *table = &r->sources[from->sources[0]];
         usual = column_axis(r, table->y);
-        if (table->z != NULL) {
-            y->room = 0;
-        } else {
-            y->room = 0.05;
+        if (table->z == NULL) {
+            usual.room = CURVES_ROOM;
         }
     }
 
-    // the recipe's own label comes first
     y->name = usual.name;
     y->unit = usual.unit;
+    y->room = usual.room;
+    y->symbol = usual.symbol;
     y->label = text_or(y->label, usual.label);
     if (from->logarithmic) {
         y->scale = SCALE_LOGARITHMIC;
-    } else {
-        y->scale = SCALE_LINEAR;
     }
 }
 
+// Whether two panels have curves of the same labels and colours.
+static bool have_one_legend(const figure_panel *a, const figure_panel *b)
+{
+    bool same = a->series_count == b->series_count;
+    for (int i = 0; i < a->series_count && same; i++) {
+        same = g_strcmp0(a->series[i].label, b->series[i].label) == 0 &&
+               a->series[i].colour == b->series[i].colour;
+    }
+    return same;
+}
+
 // Describes a panel with its curves.
-static void describe_panel(recipe *r, int panel)
+static void describe_recipe_panel(recipe *r, int panel)
 {
     const recipe_panel *from = &r->panels[panel];
     figure_panel *p = &r->plot->panels[panel];
     *p = from->shown;
     p->notes = from->notes;
     p->series = r->plot->series[panel];
-    describe_axis(r, from, &p->y);
+    describe_vertical(r, from, &p->y);
 
-    // curves
+    // its curves
     if (from->compared) {
         add_difference(r, panel);
     }
     for (int i = 0; i < from->source_count; i++) {
         const recipe_source *s = &r->sources[from->sources[i]];
-        const bool empty = p->map == NULL && p->series_count == 0;
-        if (s->kind == SOURCE_TABLE && s->z == NULL) {
-            add_curve(r, panel, s);
-        } else if (s->kind == SOURCE_TABLE && empty && s->count > 0) {
-            add_map(r, panel, s);
-        }
-        for (int k = 0; k < from->signal_count && s->kind != SOURCE_TABLE; k++) {
-            add_signal(r, panel, s, signal_index(from->signals[k]), from->signal_count);
+        if (s->kind == SOURCE_TABLE) {
+            add_table(r, panel, s);
+        } else {
+            add_signals(r, panel, s, from);
         }
     }
 
     // a panel with the first one's curves needs no legend of its own
-    const figure_panel *first = &r->plot->panels[0];
-    p->keyless = panel > 0 && p->series_count == first->series_count;
-    for (int i = 0; i < p->series_count && p->keyless; i++) {
-        p->keyless = g_strcmp0(p->series[i].label, first->series[i].label) == 0 &&
-                     p->series[i].colour == first->series[i].colour;
-    }
+    p->keyless = panel > 0 && have_one_legend(p, &r->plot->panels[0]);
 }
 
 // ---- the page
@@ -306,11 +341,9 @@ static void describe_horizontal(recipe *r, figure_axis *x)
     figure_axis usual = {.name = "time", .label = "Time <i>t</i>", .unit = "s"};
     if (first->kind == SOURCE_TABLE) {
         usual = column_axis(r, first->x);
-        if (first->z != NULL) {
-            x->room = 0;
-        } else {
-            x->room = 0.03;
-        }
+    }
+    if (first->kind == SOURCE_TABLE && first->z == NULL) {
+        x->room = POINTS_ROOM;
     }
 
     // the recipe's own label and unit come first
@@ -319,20 +352,20 @@ static void describe_horizontal(recipe *r, figure_axis *x)
     x->unit = text_or(x->unit, usual.unit);
     if (r->logarithmic) {
         x->scale = SCALE_LOGARITHMIC;
-    } else {
-        x->scale = SCALE_LINEAR;
     }
 }
 
-static void describe(recipe *r, const figure_options *o)
+// Fills in the figure that the recipe asks for.
+static void describe_recipe(recipe *r, const figure_options *o)
 {
+    // panels with one horizontal axis
     figure *shown = &r->plot->figure;
     *shown = r->shown;
     shown->panels = r->plot->panels;
     shown->columns = (int)r->columns;
     shown->marks = r->marks;
     for (int i = 0; i < shown->panel_count; i++) {
-        describe_panel(r, i);
+        describe_recipe_panel(r, i);
     }
     describe_horizontal(r, &shown->x);
 
@@ -382,7 +415,7 @@ status recipe_open(const char *path, const figure_options *o, fault_handler repo
     }
 
     // what it shows
-    describe(r, o);
+    describe_recipe(r, o);
     *out = artwork_of_owned(r->plot);
     return STATUS_OK;
 }

@@ -15,7 +15,18 @@
 #define MOST_TURNS    12   // of a line that is never busy
 #define BUSY_DISTANCE 16.0 // from turn to turn, some three dashes
 
+// Places in a panel for whose greys palette_series is asked.
+enum { DARKEST_GREY = 0, LIGHTEST_GREY = 4, GREYS = 3 };
+
 enum { STYLES = 4 };
+
+static double series_width(const figure_series *s)
+{
+    if (s->secondary) {
+        return SECONDARY_WIDTH;
+    }
+    return CURVE_WIDTH;
+}
 
 // The style of the series `index` among a panel's: its own, or the next that no earlier
 // one has.
@@ -27,12 +38,16 @@ static line_style free_style(const figure_series *series, int index)
 
     bool taken[STYLES] = {false};
     line_style style = LINE_SOLID;
+    if (series[index].secondary) {
+        return LINE_DASHED;
+    }
 
+    // each in its turn, from the panel's first to this one
     for (int i = 0; i <= index; i++) {
-        style = series[i].style;
         if (series[i].secondary) {
             continue;
         }
+        style = series[i].style;
         for (int k = 0; k < STYLES && taken[style]; k++) {
             if (!taken[others[k]]) {
                 style = others[k];
@@ -40,48 +55,77 @@ static line_style free_style(const figure_series *series, int index)
         }
         taken[style] = true;
     }
-
-    if (series[index].secondary) {
-        return LINE_DASHED;
-    }
     return style;
+}
+
+// How a series is drawn.
+typedef struct series_pen {
+    colour ink;
+    line_style style;
+    double width; // [pt]
+} series_pen;
+
+// Of several runs: its style is the signal's and its colour the run's. Without colours
+// there are three greys, and further runs have wider lines.
+static series_pen run_pen(const drawing *d, const figure_series *s)
+{
+    const int rank = s->run - 1;
+    series_pen pen = {palette_series(d->style.theme, s->colour, 2 * rank), s->style,
+                      series_width(s)};
+    if (d->style.theme == THEME_MONO) {
+        pen.width *= 1 + RUN_WIDER * (rank / GREYS);
+    }
+    return pen;
+}
+
+// Of a line in which no pattern shows; without colours the first such line of a panel is
+// lighter and wider.
+static series_pen busy_pen(const drawing *d, const panel_layout *l, int index)
+{
+    const figure_series *s = &l->panel->series[index];
+    series_pen pen = {palette_series(d->style.theme, s->colour, index), LINE_SOLID,
+                      series_width(s)};
+    if (d->style.theme != THEME_MONO || s->secondary) {
+        return pen;
+    }
+
+    bool first = true;
+    for (int i = 0; i < index; i++) {
+        first = first && !l->busy[i];
+    }
+    pen.ink = palette_series(THEME_MONO, SLOT_BLUE, DARKEST_GREY);
+    if (first) {
+        pen.ink = palette_series(THEME_MONO, SLOT_BLUE, LIGHTEST_GREY);
+        pen.width *= BUSY_WIDER;
+    }
+    return pen;
+}
+
+static series_pen pen_of(const drawing *d, const panel_layout *l, int index)
+{
+    const figure_series *s = &l->panel->series[index];
+    if (s->run > 0) {
+        return run_pen(d, s);
+    }
+    if (l->busy[index]) {
+        return busy_pen(d, l, index);
+    }
+
+    // a line over a map keeps the pattern it asks for
+    series_pen pen = {palette_series(d->style.theme, s->colour, index), s->style,
+                      series_width(s)};
+    if (!s->rim) {
+        pen.style = free_style(l->panel->series, index);
+    }
+    return pen;
 }
 
 double set_series(const drawing *d, const panel_layout *l, int index)
 {
-    const figure_series *s = &l->panel->series[index];
-    double width = s->secondary ? SECONDARY_WIDTH : CURVE_WIDTH;
-    colour ink = palette_series(d->style.theme, s->colour, index);
-    line_style style = s->style;
-
-    if (s->run > 0) {
-        // its style is the signal's and its colour the run's; there are three greys
-        const int rank = s->run - 1;
-        if (d->style.theme == THEME_MONO) {
-            width *= 1 + RUN_WIDER * (rank / 3);
-        }
-        ink = palette_series(d->style.theme, s->colour, 2 * rank);
-    } else if (l->busy[index]) {
-        // no pattern shows in it; without colours the first such line is lighter and
-        // wider
-        bool second = false;
-        for (int i = 0; i < index; i++) {
-            second = second || l->busy[i];
-        }
-        if (d->style.theme == THEME_MONO && !s->secondary && second) {
-            ink = palette_series(THEME_MONO, SLOT_BLUE, 0);
-        } else if (d->style.theme == THEME_MONO && !s->secondary) {
-            ink = palette_series(THEME_MONO, SLOT_BLUE, 4);
-            width *= BUSY_WIDER;
-        }
-        style = LINE_SOLID;
-    } else if (!s->rim) {
-        // a line over a map keeps the pattern it asks for
-        style = free_style(l->panel->series, index);
-    }
-    set_colour(d->cr, ink);
-    set_line_style(d->cr, style, width);
-    return width;
+    const series_pen pen = pen_of(d, l, index);
+    set_colour(d->cr, pen.ink);
+    set_line_style(d->cr, pen.style, pen.width);
+    return pen.width;
 }
 
 // ---- busy lines
@@ -127,39 +171,47 @@ bool series_is_busy(const plane *p, const figure_series *s)
 
 // ---- markers
 
+// The path of a marker at (x, y), of about one size in all kinds for one radius r: a
+// closed outline, or two lines that cross.
 static void add_marker(cairo_t *cr, marker_kind kind, double x, double y, double r)
 {
-    // closed outlines
     cairo_new_path(cr);
     switch (kind) {
     case MARKER_NONE:
-        return;
+        break;
+
     case MARKER_CIRCLE:
         cairo_arc(cr, x, y, r, 0, 2 * G_PI);
+        cairo_close_path(cr);
         break;
+
     case MARKER_SQUARE:
         cairo_rectangle(cr, x - 0.9 * r, y - 0.9 * r, 1.8 * r, 1.8 * r);
+        cairo_close_path(cr);
         break;
+
     case MARKER_TRIANGLE:
         cairo_move_to(cr, x, y - 1.2 * r);
         cairo_line_to(cr, x + 1.1 * r, y + 0.8 * r);
         cairo_line_to(cr, x - 1.1 * r, y + 0.8 * r);
+        cairo_close_path(cr);
         break;
+
     case MARKER_DIAMOND:
         cairo_move_to(cr, x, y - 1.25 * r);
         cairo_line_to(cr, x + 1.25 * r, y);
         cairo_line_to(cr, x, y + 1.25 * r);
         cairo_line_to(cr, x - 1.25 * r, y);
+        cairo_close_path(cr);
         break;
+
     case MARKER_CROSS:
         cairo_move_to(cr, x - r, y - r);
         cairo_line_to(cr, x + r, y + r);
         cairo_move_to(cr, x - r, y + r);
         cairo_line_to(cr, x + r, y - r);
-        return;
+        break;
     }
-
-    cairo_close_path(cr);
 }
 
 // A marker in the series' colour; one with a shade has that inside and an outline.
@@ -220,42 +272,58 @@ static void stroke(void *context, stroke_kind kind, double x, double y)
     }
 }
 
+// The line of a series, cut at the panel's edge.
+static void draw_line(const drawing *d, const panel_layout *l, const plane *p, int index)
+{
+    const figure_series *s = &l->panel->series[index];
+    const double width = set_series(d, l, index);
+    stroke_context context = {.cr = d->cr, .radius = 0.75 * width};
+
+    // a line along the upper or lower end keeps its width, none begins left of the axis
+    const figure_rect page = {p->box.x, p->box.y - 1, p->box.width, p->box.height + 2};
+    cairo_save(d->cr);
+    clip_to(d->cr, &page);
+
+    // a wider line below makes the rim
+    if (s->rim) {
+        set_plain_line(d->cr, palette_of(THEME_COLOUR)->page, width + 2 * RIM);
+        curve_trace(p, s, stroke, &context);
+        cairo_stroke(d->cr);
+        set_series(d, l, index);
+        set_colour(d->cr, palette_of(THEME_COLOUR)->text);
+    }
+
+    curve_trace(p, s, stroke, &context);
+    cairo_stroke(d->cr);
+    cairo_restore(d->cr);
+}
+
+// The markers of a series that lie in the panel, not cut at its edge.
+static void draw_markers(const drawing *d, const panel_layout *l, const plane *p,
+                         int index)
+{
+    const figure_series *s = &l->panel->series[index];
+    const figure_rect *box = &p->box;
+    set_series(d, l, index);
+    for (size_t k = 0; k < s->count; k++) {
+        double x = plane_x(p, series_x(s, k)), y = plane_y(p, series_y(s, k));
+        if (x >= box->x && x <= box->x + box->width && y >= box->y &&
+            y <= box->y + box->height) {
+            draw_marker(d, l, s, x, y, series_shade(s, k));
+        }
+    }
+}
+
 void draw_series(const drawing *d, const panel_layout *l, const plane *p)
 {
     cairo_save(d->cr);
-    // a line along the upper or lower end keeps its width, none begins left of the axis
-    const figure_rect page = {p->box.x, p->box.y - 1, p->box.width, p->box.height + 2};
     for (int i = 0; i < l->panel->series_count; i++) {
         const figure_series *s = &l->panel->series[i];
-        double width = set_series(d, l, i);
-        stroke_context context = {.cr = d->cr, .radius = 0.75 * width};
-        cairo_save(d->cr);
-        clip_to(d->cr, &page);
-
-        // a wider line below makes the rim
-        if (s->rim && !s->no_line) {
-            set_plain_line(d->cr, palette_of(THEME_COLOUR)->page, width + 2 * RIM);
-            curve_trace(p, s, stroke, &context);
-            cairo_stroke(d->cr);
-            set_series(d, l, i);
-            set_colour(d->cr, palette_of(THEME_COLOUR)->text);
-        }
-
         if (!s->no_line) {
-            curve_trace(p, s, stroke, &context);
-            cairo_stroke(d->cr);
+            draw_line(d, l, p, i);
         }
-
-        // markers on the panel are not cut at its edge
-        cairo_restore(d->cr);
-        set_series(d, l, i);
-        const figure_rect *box = &p->box;
-        for (size_t k = 0; s->marker != MARKER_NONE && k < s->count; k++) {
-            double x = plane_x(p, series_x(s, k)), y = plane_y(p, series_y(s, k));
-            if (x >= box->x && x <= box->x + box->width && y >= box->y &&
-                y <= box->y + box->height) {
-                draw_marker(d, l, s, x, y, series_shade(s, k));
-            }
+        if (s->marker != MARKER_NONE) {
+            draw_markers(d, l, p, i);
         }
     }
     cairo_restore(d->cr);
@@ -278,14 +346,19 @@ void draw_swatch(drawing *d, const panel_layout *l, int index, double x, double 
 // descenders.
 #define STRIP_LEADING 1.25
 
-// An arrow upwards.
-static void draw_arrow(cairo_t *cr, double x, double base, double length)
+// Lengths of arrows, of the smallest impulse and of the largest [pt].
+#define LEAST_ARROW   4.0
+#define LONGEST_ARROW (STRIP_HEIGHT - 3)
+
+// An arrow upwards; its line ends within its head.
+static void draw_upward_arrow(cairo_t *cr, double x, double base, double length)
 {
-    double head = fmin(4, length);
-    picture_line(cr, x, base, x, base - length + 0.7 * head);
-    cairo_move_to(cr, x, base - length);
-    cairo_line_to(cr, x - 0.36 * head, base - length + head);
-    cairo_line_to(cr, x + 0.36 * head, base - length + head);
+    const double head = fmin(LEAST_ARROW, length), half_width = 0.36 * head;
+    const double tip = base - length;
+    picture_line(cr, x, base, x, tip + 0.7 * head);
+    cairo_move_to(cr, x, tip);
+    cairo_line_to(cr, x - half_width, tip + head);
+    cairo_line_to(cr, x + half_width, tip + head);
     cairo_close_path(cr);
     cairo_fill(cr);
 }
@@ -318,6 +391,8 @@ char *impulse_strip_label(const figure_panel *panel)
     return text_printf("%s\n%s", panel->impulse_label, unit);
 }
 
+#define ARROW_SPACE 4.0 // from an arrow to its label [pt]
+
 enum { IMPULSES_LABELLED = 24 };
 
 // Whether a place for the label of an impulse is on the page, off the arrows of other
@@ -329,6 +404,8 @@ static bool strip_is_free(const drawing *d, const panel_layout *l,
     if (place->x < d->left || place->x + place->width > d->page.width - PAGE_MARGIN) {
         return false;
     }
+
+    // what crosses it from above
     for (int i = 0; i < l->panel->impulse_count; i++) {
         const double arrow = plane_x(&l->plane, l->panel->impulses[i].x);
         if (i != index && arrow >= left && arrow <= right) {
@@ -357,7 +434,7 @@ static void label_impulse(drawing *d, const panel_layout *l, int index, double b
     double x = plane_x(&l->plane, p->x);
 
     // at its right or at its left
-    const double lefts[] = {x + 4, x - 4 - width};
+    const double lefts[] = {x + ARROW_SPACE, x - ARROW_SPACE - width};
     for (int side = 0; side < 2 && *count < IMPULSES_LABELLED; side++) {
         figure_rect place = {lefts[side], base - STRIP_HEIGHT + 3, width, height};
         bool meets = false;
@@ -387,6 +464,8 @@ static int next_impulse(const drawing *d, const figure_panel *panel, int last)
     if (last >= 0) {
         most = fabs(all[last].size);
     }
+
+    // of those that are not larger the largest
     for (int i = 0; i < panel->impulse_count; i++) {
         const double size = fabs(all[i].size);
         const bool left = size < most || (size == most && i > last);
@@ -412,8 +491,9 @@ static void label_impulses(drawing *d, const panel_layout *l, double base)
 void draw_impulses(drawing *d, const panel_layout *l)
 {
     const figure_panel *panel = l->panel;
-    double base = l->strip_top + STRIP_HEIGHT - 1, largest = largest_impulse(panel);
-    double left = d->column[l->column].left, right = d->column[l->column].right;
+    const double base = l->strip_top + STRIP_HEIGHT - 1;
+    const double largest = largest_impulse(panel);
+    const double left = d->column[l->column].left, right = d->column[l->column].right;
     if (panel->impulse_count == 0) {
         return;
     }
@@ -424,10 +504,11 @@ void draw_impulses(drawing *d, const panel_layout *l)
     for (int i = 0; i < panel->impulse_count; i++) {
         const figure_impulse *p = &panel->impulses[i];
         if (impulse_shows(d, p)) {
-            double length = 4 + (STRIP_HEIGHT - 7) * fabs(p->size) / largest;
+            const double length =
+                LEAST_ARROW + (LONGEST_ARROW - LEAST_ARROW) * fabs(p->size) / largest;
             set_plain_line(d->cr, palette_series(d->style.theme, SLOT_PURPLE, 0),
                            CURVE_WIDTH);
-            draw_arrow(d->cr, plane_x(&l->plane, p->x), base, length);
+            draw_upward_arrow(d->cr, plane_x(&l->plane, p->x), base, length);
         }
     }
     label_impulses(d, l, base);

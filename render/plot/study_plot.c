@@ -32,7 +32,9 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
                          (figure_series){law->law, label, law->overshoots, share,
                                          law->runs, .colour = palette_slot(i)});
     }
-    o->panels[0].weight = 2.4;
+
+    // from none of the runs to all of them
+    o->panels[0].weight = PANEL_WEIGHT;
     o->panels[0].y = (figure_axis){"share", "Runs with at most this overshoot",
                                    .unit = "%", .low = 0, .high = 100};
 
@@ -53,23 +55,21 @@ owned_figure *robust_figure_create(const robust_table *t, const char *changes)
 owned_figure *tune_figure_create(const tuning *t, const char *changes)
 {
     owned_figure *o = owned_figure_create(1, "%s: tuned%s", t->asked.base->name, changes);
-    double *number = owned_figure_numbers(o, t->done),
-           *value = owned_figure_numbers(o, t->done);
+    double *number = owned_figure_numbers(o, t->done);
+    double *value = owned_figure_numbers(o, t->done);
     double *least = owned_figure_numbers(o, t->done);
+
+    // each evaluation's value, and the least up to it; one that was refused has none
+    double least_so_far = (double)NAN;
     for (size_t i = 0; i < t->done; i++) {
         number[i] = (double)i + 1;
+        value[i] = (double)NAN;
         if (t->ranks[i] < TUNE_REFUSED) {
             value[i] = t->ranks[i];
-        } else {
-            value[i] = (double)NAN;
         }
-        if (i > 0) {
-            least[i] = fmin(least[i - 1], value[i]);
-        } else {
-            least[i] = value[i];
-        }
+        least_so_far = fmin(least_so_far, value[i]);
+        least[i] = least_so_far;
     }
-
     owned_figure_add(o, 0,
                      (figure_series){"value", "an evaluation", number, value, t->done,
                                      .no_line = true, .marker = MARKER_CIRCLE,
@@ -78,11 +78,11 @@ owned_figure *tune_figure_create(const tuning *t, const char *changes)
     owned_figure_add(o, 0,
                      (figure_series){"least", "the least so far", number, least, t->done,
                                      .colour = palette_slot(1)});
+
+    // the page
+    char *minimised = owned_figure_keep(o, text_escape(t->asked.minimise));
     o->panels[0].weight = PANEL_WEIGHT;
-    o->panels[0].y =
-        (figure_axis){.name = "value",
-                      .label = owned_figure_keep(o, text_escape(t->asked.minimise)),
-                      .room = 0.05};
+    o->panels[0].y = (figure_axis){.name = "value", .label = minimised, .room = 0.05};
     o->figure.x =
         (figure_axis){.name = "evaluation", .label = "Evaluation", .room = 0.02};
     o->figure.caption = owned_figure_printf(o,
@@ -94,6 +94,30 @@ owned_figure *tune_figure_create(const tuning *t, const char *changes)
 
 // ==== identify: what the fit leaves of the readings
 
+// A channel's residuals in the panel of its trace, a dot for each reading that counts.
+// Returns the first residual of the next channel.
+static const double *add_channel(owned_figure *o, int panel, const recorded_trace *t,
+                                 int channel, const double *residual)
+{
+    const signal_info *signal = &signal_table[identify_signals[channel]];
+    double *x = owned_figure_numbers(o, t->rows);
+    double *y = owned_figure_numbers(o, t->rows);
+    size_t count = 0;
+    for (size_t i = 0; i < t->rows; i++) {
+        if (t->deviation[channel][i] > 0) {
+            x[count] = t->time[i];
+            y[count++] = *residual++;
+        }
+    }
+
+    owned_figure_add(o, panel,
+                     (figure_series){signal->name, signal->symbol, x, y, count,
+                                     .colour = palette_slot(channel),
+                                     .marker = MARKER_CIRCLE, .radius = 0.5,
+                                     .no_line = true});
+    return residual;
+}
+
 owned_figure *identify_figure_create(const identification *id)
 {
     assert(id->trace_count > 0 && id->trace_count <= FIGURE_PANELS);
@@ -101,32 +125,19 @@ owned_figure *identify_figure_create(const identification *id)
     owned_figure *o =
         owned_figure_create(id->trace_count, "%s: what the fit leaves of the readings%s",
                             id->base->name, scenario_changes(id->base, changes));
+
+    // a panel for each trace; residuals stand trace by trace, channel by channel
     const double *residual = id->residual;
     for (int k = 0; k < id->trace_count; k++) {
         const recorded_trace *t = &id->traces[k];
         figure_panel *panel = &o->panels[k];
-
-        // a dot for each reading that counts
         for (int c = 0; c < CHANNELS; c++) {
-            const signal_info *signal = &signal_table[identify_signals[c]];
-            if (t->reading[c] == NULL) {
-                continue;
+            if (t->reading[c] != NULL) {
+                residual = add_channel(o, k, t, c, residual);
             }
-            double *x = owned_figure_numbers(o, t->rows),
-                   *y = owned_figure_numbers(o, t->rows);
-            size_t count = 0;
-            for (size_t i = 0; i < t->rows; i++) {
-                if (t->deviation[c][i] > 0) {
-                    x[count] = t->time[i];
-                    y[count++] = *residual++;
-                }
-            }
-            owned_figure_add(o, k,
-                             (figure_series){signal->name, signal->symbol, x, y, count,
-                                             .colour = palette_slot(c),
-                                             .marker = MARKER_CIRCLE, .radius = 0.5,
-                                             .no_line = true});
         }
+
+        // behind a trace's channels stand those of its contacts, which are not drawn
         residual += t->contact_count;
         panel->heading = owned_figure_keep(o, g_markup_escape_text(t->file, -1));
         panel->y = (figure_axis){"residual", "Residual over its deviation",
@@ -143,91 +154,128 @@ owned_figure *identify_figure_create(const identification *id)
 #define PI  3.14159265358979323846
 #define FAR 3.0 // what is farther from the origin is not drawn in the plane
 
-enum { CIRCLE = 121 };
+enum { GAIN_PANEL, PHASE_PANEL, BODE_PANELS, CIRCLE_POINTS = 121 };
+
+// Frequencies of a response [Hz].
+static double *frequencies_of(owned_figure *o, const linear_response *r)
+{
+    double *frequency = owned_figure_numbers(o, (size_t)r->count);
+    for (int i = 0; i < r->count; i++) {
+        frequency[i] = r->frequency[i] / (2 * PI);
+    }
+    return frequency;
+}
+
+static double *decibels_of(owned_figure *o, const linear_response *r)
+{
+    double *gain = owned_figure_numbers(o, (size_t)r->count);
+    for (int i = 0; i < r->count; i++) {
+        gain[i] = 20 * plain_log(cabs(r->gain[i])) / plain_log(10);
+    }
+    return gain;
+}
+
+// Phases of a response [degrees], which go on where they turn beyond half a revolution;
+// NaN where there is no gain.
+static double *phases_of(owned_figure *o, const linear_response *r)
+{
+    double *phase = owned_figure_numbers(o, (size_t)r->count);
+    double turns = 0, before = 0;
+    for (int i = 0; i < r->count; i++) {
+        const double angle = carg(r->gain[i]);
+        if (i > 0 && angle - before > PI) {
+            turns -= 1;
+        } else if (i > 0 && angle - before < -PI) {
+            turns += 1;
+        }
+        before = angle;
+
+        phase[i] = angle * 180 / PI + 360 * turns;
+        if (r->gain[i] == 0) {
+            phase[i] = (double)NAN;
+        }
+    }
+    return phase;
+}
 
 owned_figure *bode_figure_create(const scenario *s, const linear_curve *curves, int count)
 {
     assert(count >= 1 && count <= FIGURE_PANELS);
     char changes[SCENARIO_CHANGES];
-    owned_figure *o = owned_figure_create(2, "%s: frequency response%s", s->name,
-                                          scenario_changes(s, changes));
+    owned_figure *o = owned_figure_create(BODE_PANELS, "%s: frequency response%s",
+                                          s->name, scenario_changes(s, changes));
+
+    // gain and phase of each response
     for (int k = 0; k < count; k++) {
         const linear_response *r = &curves[k].response;
-        const size_t n = (size_t)r->count;
-        double *x = owned_figure_numbers(o, n);
-        double *y[2] = {owned_figure_numbers(o, n),
-                        owned_figure_numbers(o, n)}; // gain, phase
-
-        // the phase goes on where it turns beyond half a revolution
-        double turns = 0, before = 0;
-        for (size_t i = 0; i < n; i++) {
-            const double at = carg(r->gain[i]);
-            if (i > 0 && at - before > PI) {
-                turns += -1;
-            } else if (i > 0 && at - before < -PI) {
-                turns += 1;
-            }
-            before = at;
-            x[i] = r->frequency[i] / (2 * PI);
-            y[0][i] = 20 * plain_log(cabs(r->gain[i])) / plain_log(10);
-            if (r->gain[i] != 0) {
-                y[1][i] = at * 180 / PI + 360 * turns;
-            } else {
-                y[1][i] = (double)NAN;
-            }
-        }
-        for (int panel = 0; panel < 2; panel++) {
+        const double *frequency = frequencies_of(o, r);
+        const double *y[BODE_PANELS] = {
+            [GAIN_PANEL] = decibels_of(o, r), [PHASE_PANEL] = phases_of(o, r)};
+        for (int panel = 0; panel < BODE_PANELS; panel++) {
             owned_figure_add(o, panel,
-                             (figure_series){curves[k].name, curves[k].name, x, y[panel],
-                                             n, .colour = palette_slot(k)});
+                             (figure_series){curves[k].name, curves[k].name, frequency,
+                                             y[panel], (size_t)r->count,
+                                             .colour = palette_slot(k)});
             o->panels[panel].weight = 1.2;
         }
     }
-    o->panels[0].y = (figure_axis){.name = "gain", .label = "Gain", .unit = "dB"};
-    o->panels[1].y = (figure_axis){.name = "phase", .label = "Phase", .unit = "°"};
-    o->panels[1].keyless = true;
+
+    // the axes; both panels have the same curves
+    o->panels[GAIN_PANEL].y =
+        (figure_axis){.name = "gain", .label = "Gain", .unit = "dB"};
+    o->panels[PHASE_PANEL].y =
+        (figure_axis){.name = "phase", .label = "Phase", .unit = "°"};
+    o->panels[PHASE_PANEL].keyless = true;
     o->figure.x =
         (figure_axis){"frequency", "Frequency", .unit = "Hz", .scale = SCALE_LOGARITHMIC};
     return o;
 }
 
+// The loop gain in the plane, as far as it is near the origin.
+static void add_loop_gain(owned_figure *o, const linear_response *loop)
+{
+    const size_t count = (size_t)loop->count;
+    double *x = owned_figure_numbers(o, count), *y = owned_figure_numbers(o, count);
+    for (size_t i = 0; i < count; i++) {
+        x[i] = y[i] = (double)NAN;
+        if (cabs(loop->gain[i]) < FAR) {
+            x[i] = creal(loop->gain[i]);
+            y[i] = cimag(loop->gain[i]);
+        }
+    }
+    owned_figure_add(o, 0, (figure_series){"loop", "loop gain", x, y, count});
+}
+
+// Where the size of a gain is one.
+static void add_unit_circle(owned_figure *o)
+{
+    double *x = owned_figure_numbers(o, CIRCLE_POINTS);
+    double *y = owned_figure_numbers(o, CIRCLE_POINTS);
+    for (int i = 0; i < CIRCLE_POINTS; i++) {
+        x[i] = cos(2 * PI * i / (CIRCLE_POINTS - 1));
+        y[i] = sin(2 * PI * i / (CIRCLE_POINTS - 1));
+    }
+    owned_figure_add(o, 0,
+                     (figure_series){"circle", "size 1", x, y, CIRCLE_POINTS,
+                                     .colour = SLOT_BLACK, .style = LINE_DASHED});
+}
+
 owned_figure *nyquist_figure_create(const scenario *s, const linear_response *loop)
 {
     static const double critical[] = {-1, 0};
-    const size_t n = (size_t)loop->count;
     char changes[SCENARIO_CHANGES];
     owned_figure *o = owned_figure_create(1, "%s: loop gain in the plane%s", s->name,
                                           scenario_changes(s, changes));
-    double *x = owned_figure_numbers(o, n), *y = owned_figure_numbers(o, n);
-    double *circle_x = owned_figure_numbers(o, CIRCLE),
-           *circle_y = owned_figure_numbers(o, CIRCLE);
-    for (size_t i = 0; i < n; i++) {
-        const bool near = cabs(loop->gain[i]) < FAR;
-        if (near) {
-            x[i] = creal(loop->gain[i]);
-        } else {
-            x[i] = (double)NAN;
-        }
-        if (near) {
-            y[i] = cimag(loop->gain[i]);
-        } else {
-            y[i] = (double)NAN;
-        }
-    }
-    for (int i = 0; i < CIRCLE; i++) {
-        circle_x[i] = cos(2 * PI * i / (CIRCLE - 1));
-        circle_y[i] = sin(2 * PI * i / (CIRCLE - 1));
-    }
 
-    // the loop gain, where its size is one, and the point that it keeps away from
-    owned_figure_add(o, 0, (figure_series){"loop", "loop gain", x, y, n});
-    owned_figure_add(o, 0,
-                     (figure_series){"circle", "size 1", circle_x, circle_y, CIRCLE,
-                                     .colour = SLOT_BLACK, .style = LINE_DASHED});
+    // the loop gain, and the point that it keeps away from
+    add_loop_gain(o, loop);
+    add_unit_circle(o);
     owned_figure_add(o, 0,
                      (figure_series){"critical", "−1", critical, critical + 1, 1,
                                      .colour = SLOT_VERMILLION, .marker = MARKER_CROSS,
                                      .radius = 3, .no_line = true});
+
+    // a page on which the circle is nearly round
     o->panels[0].weight = 3.2;
     o->panels[0].y =
         (figure_axis){.name = "imaginary", .label = "Imaginary part", .room = 0.05};

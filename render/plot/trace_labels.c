@@ -138,30 +138,30 @@ static void add_shading(GString *out, const trace_run *runs, int run_count,
                 name);
 }
 
-char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
+// The model and its arm; of the printed one the constants in which it departs from the
+// thesis's own numbers or from the beam's.
+static void add_arm(GString *out, const parameters *p)
 {
     static const char *const hub_texts[] = {
         [HUB_RIGID] = "rigid", [HUB_SPRING] = "spring", [HUB_BEAM] = "beam's"};
-    const trace_run *run = &runs[0];
-    const parameters *p = &run->scenario->parameters;
-
-    // the arm and what drives it
     const bool printed = p->arm.model == ARM_PRINTED;
+    const char *model = printed ? "Printed" : "Corrected";
     const char *links = p->arm.links == 1 ? "link" : "links";
-    GString *out = g_string_new(printed ? "Printed model" : "Corrected model");
-    text_append(out, ", %d %s, %s hub", p->arm.links, links, hub_texts[p->arm.hub_joint]);
+    text_append(out, "%s model, %d %s, %s hub", model, p->arm.links, links,
+                hub_texts[p->arm.hub_joint]);
     if (printed) {
-        // the constants in which it departs from the thesis's own numbers or from the
-        // beam's
         g_autofree char *inertia = text_number(p->arm.link_inertia, 3);
         text_append(
             out, ", <i>k</i><sub>1</sub> = %.6g\u2009N·m/rad, <i>I</i> = %s\u2009kg·m²",
             p->arm.k1, inertia);
     }
-    add_drive(out, p);
+}
 
-    // the method and its step, which for the event method is but the spacing of rows
-    const bool located = !printed && p->method.name == METHOD_EVENT;
+// The method of a run and its step.
+static void add_method(GString *out, const trace_run *run)
+{
+    const parameters *p = &run->scenario->parameters;
+    const bool printed = p->arm.model == ARM_PRINTED;
     if (printed || p->method.name == METHOD_NEWMARK) {
         text_append(out, "Newmark, <i>β</i> = %g, <i>γ</i> = %g", p->method.beta,
                     p->method.gamma);
@@ -171,12 +171,23 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
     } else {
         text_append(out, "%s engine, located events", run->result->summary.method);
     }
+
+    // the event method's step is but the spacing of rows
     g_autofree char *step = duration_text(p->method.step);
-    if (located) {
+    if (!printed && p->method.name == METHOD_EVENT) {
         text_append(out, ", a row every %s. ", step);
     } else {
         text_append(out, ", <i>h</i> = %s. ", step);
     }
+}
+
+char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
+{
+    const trace_run *run = &runs[0];
+    GString *out = g_string_new(NULL);
+    add_arm(out, &run->scenario->parameters);
+    add_drive(out, &run->scenario->parameters);
+    add_method(out, run);
     add_shading(out, runs, run_count, shaded);
     text_append(out, " impactlab %s.", lab_version());
 
@@ -185,7 +196,6 @@ char *trace_caption(const trace_run *runs, int run_count, const char *shaded)
         g_autofree char *why = text_escape(run->result->summary.message);
         text_append(out, " <b>The run failed:</b> %s", why);
     }
-
     return g_string_free(out, FALSE);
 }
 
