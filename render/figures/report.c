@@ -33,8 +33,8 @@ static report_item *report_item_at(const report_content *r, guint index)
 }
 
 // Appends what an item is made of, and the command for it in an element of its own.
-static void add_facts(GString *out, const report_item *item, const char *gap,
-                      const char *tag)
+static void add_origin(GString *out, const report_item *item, const char *gap,
+                       const char *tag)
 {
     text_append(out, "Model: %s.", item->model);
     if (item->scenario != NULL) {
@@ -64,6 +64,12 @@ static status item_done(const report_content *r, fault *f)
 #define FACTS_SPACE 14.0 // for the line under an item
 #define ITEM_SPACE  16.0
 
+// Of the title page [pt].
+#define HEADING_TOP  120.0
+#define PREFACE_TOP  160.0
+#define CONTENTS_TOP 212.0
+#define NUMBER_WIDTH 14.0 // room for the number of a page
+
 // Items from first to last, one below the other.
 typedef struct report_page {
     const report_content *report;
@@ -84,6 +90,7 @@ static double item_height(const report_item *item)
     return item->drawn.height * item_scale(item) + FACTS_SPACE;
 }
 
+// Puts a text at (x, y), wrapped at the page's right margin.
 static void put_text(cairo_t *cr, PangoContext *context, const char *markup, double size,
                      bool bold, double x, double y)
 {
@@ -93,59 +100,73 @@ static void put_text(cairo_t *cr, PangoContext *context, const char *markup, dou
 
 static void put_title_page(cairo_t *cr, PangoContext *context, const report_content *r)
 {
-    double y = 120;
-    put_text(cr, context, r->heading, 18, true, PAGE_MARGIN, y);
-    put_text(cr, context, r->preface, 9, false, PAGE_MARGIN, y + 40);
+    put_text(cr, context, r->heading, 18, true, PAGE_MARGIN, HEADING_TOP);
+    put_text(cr, context, r->preface, 9, false, PAGE_MARGIN, PREFACE_TOP);
 
-    // the items by title and page, each a link
-    y += 92;
-    double step = fmin(12, (PAGE_HEIGHT - PAGE_MARGIN - y) / r->items->len);
+    // the items by title and page, each a link; many of them stand closer
+    const double room = PAGE_HEIGHT - PAGE_MARGIN - CONTENTS_TOP;
+    const double step = fmin(12, room / r->items->len), letters = fmin(8, 0.7 * step);
+    double y = CONTENTS_TOP;
     for (guint i = 0; i < r->items->len; i++, y += step) {
         const report_item *item = report_item_at(r, i);
         g_autofree char *title = text_escape(item->drawn.title);
         g_autofree char *page = text_printf("%d", item->page);
         g_autofree char *target = text_printf("dest='item-%u'", i);
         cairo_tag_begin(cr, CAIRO_TAG_LINK, target);
-        put_text(cr, context, title, fmin(8, 0.7 * step), false, PAGE_MARGIN, y);
-        put_text(cr, context, page, fmin(8, 0.7 * step), false,
-                 PAGE_WIDTH - PAGE_MARGIN - 14, y);
+        put_text(cr, context, title, letters, false, PAGE_MARGIN, y);
+        put_text(cr, context, page, letters, false,
+                 PAGE_WIDTH - PAGE_MARGIN - NUMBER_WIDTH, y);
         cairo_tag_end(cr, CAIRO_TAG_LINK);
     }
+}
+
+// Marks the place of an item, to which the table of contents and the outline lead.
+static void mark_item(cairo_t *cr, const report_item *item, guint index)
+{
+    cairo_surface_t *surface = cairo_get_target(cr);
+    g_autofree char *place = text_printf("name='item-%u'", index);
+    g_autofree char *target = text_printf("dest='item-%u'", index);
+    cairo_tag_begin(cr, CAIRO_TAG_DEST, place);
+    cairo_tag_end(cr, CAIRO_TAG_DEST);
+    if (cairo_surface_get_type(surface) == CAIRO_SURFACE_TYPE_PDF) {
+        cairo_pdf_surface_add_outline(surface, CAIRO_PDF_OUTLINE_ROOT, item->drawn.title,
+                                      target, 0);
+    }
+}
+
+// Draws an item with its upper edge at y, and under it what it is made of.
+static status paint_item(cairo_t *cr, PangoContext *context, const report_item *item,
+                         double y, fault *f)
+{
+    const double scale = item_scale(item);
+    cairo_save(cr);
+    cairo_translate(cr, PAGE_MARGIN, y);
+    cairo_scale(cr, scale, scale);
+    TRY(artwork_paint(&item->drawn, cr, NULL, f));
+    cairo_restore(cr);
+
+    g_autoptr(GString) facts = g_string_new(NULL);
+    add_origin(facts, item, "  ", "b");
+    put_text(cr, context, facts->str, 7, false, PAGE_MARGIN + SKETCH_MARGIN,
+             y + item->drawn.height * scale + 2);
+    return STATUS_OK;
 }
 
 static status paint_page(cairo_t *cr, const void *what, fault *f)
 {
     const report_page *page = what;
     TRY(text_check_font(f));
-    double y = PAGE_MARGIN;
     g_autoptr(PangoContext) context = text_context_create();
     if (page->number == 0) {
         put_title_page(cr, context, page->report);
     }
 
+    // its items, one below the other
+    double y = PAGE_MARGIN;
     for (guint i = page->first; i < page->last; i++) {
         const report_item *item = report_item_at(page->report, i);
-        double scale = item_scale(item);
-
-        // the place that the table of contents and the outline lead to
-        cairo_surface_t *surface = cairo_get_target(cr);
-        g_autofree char *place = text_printf("name='item-%u'", i);
-        g_autofree char *target = text_printf("dest='item-%u'", i);
-        cairo_tag_begin(cr, CAIRO_TAG_DEST, place);
-        cairo_tag_end(cr, CAIRO_TAG_DEST);
-        if (cairo_surface_get_type(surface) == CAIRO_SURFACE_TYPE_PDF) {
-            cairo_pdf_surface_add_outline(surface, CAIRO_PDF_OUTLINE_ROOT,
-                                          item->drawn.title, target, 0);
-        }
-        cairo_save(cr);
-        cairo_translate(cr, PAGE_MARGIN, y);
-        cairo_scale(cr, scale, scale);
-        TRY(artwork_paint(&item->drawn, cr, NULL, f));
-        cairo_restore(cr);
-        g_autoptr(GString) facts = g_string_new(NULL);
-        add_facts(facts, item, "  ", "b");
-        put_text(cr, context, facts->str, 7, false, PAGE_MARGIN + SKETCH_MARGIN,
-                 y + item->drawn.height * scale + 2);
+        mark_item(cr, item, i);
+        TRY(paint_item(cr, context, item, y, f));
         y += item_height(item) + ITEM_SPACE;
     }
 
@@ -229,13 +250,14 @@ static status add_png(GString *html, const picture *p, const char *alternative, 
     text_stream stream;
     size_t length = 0;
     if (!text_stream_open(&stream)) {
-        return fault_no_memory(f);
+        g_error("out of memory");
     }
-    status code = picture_write_png(p, stream.stream, f);
+    const status code = picture_write_png(p, stream.stream, f);
     char *bytes = text_stream_close(&stream, &length);
-    if (code == STATUS_OK && bytes == NULL) {
-        code = fault_no_memory(f);
+    if (bytes == NULL) {
+        g_error("out of memory");
     }
+
     if (code == STATUS_OK) {
         g_autofree char *text = g_base64_encode((const guchar *)bytes, length);
         text_append(html, "<img alt=\"%s\" src=\"data:image/png;base64,%s\">\n",
@@ -271,27 +293,35 @@ static json_t *series_json(const figure_panel *panel)
     return all;
 }
 
+// Place, ranges and curves of a panel.
+static json_t *panel_json(const figure *fig, const figure_panel *panel,
+                          const figure_rect *box, const figure_range *range)
+{
+    const double place[] = {box->x, box->y, box->width, box->height};
+    const double x[] = {range->x_low, range->x_high};
+    const double y[] = {range->y_low, range->y_high};
+    return json_of("box:o x:o y:o xlog:b ylog:b xname:o unit:o series:o",
+                   json_numbers(place, 4), json_numbers(x, 2), json_numbers(y, 2),
+                   range->x_logarithmic, range->y_logarithmic, plain_json(fig->x.name),
+                   plain_json(panel->y.unit), series_json(panel));
+}
+
 // Places, ranges and curves of all panels as JSON in an attribute, for the script: to
 // turn a place into values.
 static void add_panels(GString *html, const figure *fig, const figure_report *seen)
 {
     json_t *all = json_array();
     for (int i = 0; i < seen->panel_count; i++) {
-        const figure_rect *box = &seen->panels[i];
-        const figure_range *range = &seen->ranges[i];
-        const double place[] = {box->x, box->y, box->width, box->height};
-        const double x[] = {range->x_low, range->x_high},
-                     y[] = {range->y_low, range->y_high};
         json_add(all,
-                 json_of("box:o x:o y:o xlog:b ylog:b xname:o unit:o series:o",
-                         json_numbers(place, 4), json_numbers(x, 2), json_numbers(y, 2),
-                         range->x_logarithmic, range->y_logarithmic,
-                         plain_json(fig->x.name), plain_json(fig->panels[i].y.unit),
-                         series_json(&fig->panels[i])));
+                 panel_json(fig, &fig->panels[i], &seen->panels[i], &seen->ranges[i]));
     }
+
+    // as one attribute
     char *json = json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(9));
-    loss_unless(json != NULL);
-    g_autofree char *escaped = g_markup_escape_text(text_or(json, ""), -1);
+    if (json == NULL) {
+        g_error("out of memory");
+    }
+    g_autofree char *escaped = g_markup_escape_text(json, -1);
     text_append(html, " data-panels=\"%s\"", escaped);
     free(json);
     json_decref(all);
@@ -309,6 +339,8 @@ static status add_figure(GString *html, const report_item *item, guint index,
     p.dpi = SCREEN_DPI; // of what has too many cells for paths
     g_autofree char *alternative = text_escape(p.alternative);
     text_append(html, "<figure role=\"img\" aria-label=\"%s\"", alternative);
+
+    // a map as pixels, anything else as paths
     if (drawn.plotted != NULL && drawn.plotted->panels[0].map != NULL) {
         g_string_append(html, ">\n");
         TRY(add_png(html, &p, alternative, f));
@@ -344,9 +376,20 @@ static status add_section(const report_content *r, guint index, GString *html,
 
     // what it is made of, and how
     g_string_append(html, "<p class=\"facts\">");
-    add_facts(html, item, " ", "code");
+    add_origin(html, item, " ", "code");
     g_string_append(html, "</p>\n</section>\n");
     return STATUS_OK;
+}
+
+// The items by title, each a link.
+static void add_contents(const report_content *r, GString *html)
+{
+    g_string_append(html, "<nav><ol>\n");
+    for (guint i = 0; i < r->items->len; i++) {
+        g_autofree char *title = text_escape(report_item_at(r, i)->drawn.title);
+        text_append(html, "<li><a href=\"#item-%u\">%s</a></li>\n", i, title);
+    }
+    g_string_append(html, "</ol></nav>\n");
 }
 
 static status write_html(const report_content *r, const char *path, fault *f)
@@ -358,12 +401,7 @@ static status write_html(const report_content *r, const char *path, fault *f)
 
     // the whole page first: nothing is written of one that fails
     add_head(r, html);
-    g_string_append(html, "<nav><ol>\n");
-    for (guint i = 0; i < r->items->len; i++) {
-        g_autofree char *title = text_escape(report_item_at(r, i)->drawn.title);
-        text_append(html, "<li><a href=\"#item-%u\">%s</a></li>\n", i, title);
-    }
-    g_string_append(html, "</ol></nav>\n");
+    add_contents(r, html);
     for (guint i = 0; i < r->items->len; i++) {
         TRY(add_section(r, i, html, letters, f));
         if (report_item_at(r, i)->command != NULL) {
@@ -373,6 +411,8 @@ static status write_html(const report_content *r, const char *path, fault *f)
     g_string_append(html, "<script>\n");
     g_string_append(html, report_js);
     g_string_append(html, "</script>\n</body>\n</html>\n");
+
+    // and the file
     TRY(whole_file_open(&file, path, f));
     fwrite(html->str, 1, html->len, file.stream);
     return whole_file_commit(&file, f);
@@ -380,7 +420,7 @@ static status write_html(const report_content *r, const char *path, fault *f)
 
 // ==== what it shows
 
-static status add_figures(report_content *r, fault *f)
+static status add_catalogue(report_content *r, fault *f)
 {
     const figure_options options = {0};
 
@@ -414,8 +454,8 @@ static void clear_item(gpointer data)
 
 // ---- scenarios and recipes of one's own
 
-static status open_scenario(report_item *item, const char *name, run_monitor *monitor,
-                            fault *f)
+static status open_scenario_item(report_item *item, const char *name,
+                                 run_monitor *monitor, fault *f)
 {
     const scenario *s;
     TRY(scenario_figure_open(name, monitor, &item->drawn, &s, f));
@@ -429,7 +469,7 @@ static status open_scenario(report_item *item, const char *name, run_monitor *mo
     return STATUS_OK;
 }
 
-static status open_recipe(report_item *item, const char *path, fault *f)
+static status open_recipe_item(report_item *item, const char *path, fault *f)
 {
     const figure_options options = {0};
     fault first = {0};
@@ -445,14 +485,14 @@ static status open_recipe(report_item *item, const char *path, fault *f)
     return STATUS_OK;
 }
 
-static status add_own(report_content *r, char *const *names, int count, fault *f)
+static status add_named(report_content *r, char *const *names, int count, fault *f)
 {
     for (int i = 0; i < count; i++) {
         report_item item = {0};
         if (recipe_is(names[i])) {
-            TRY(open_recipe(&item, names[i], f));
+            TRY(open_recipe_item(&item, names[i], f));
         } else {
-            TRY(open_scenario(&item, names[i], r->monitor, f));
+            TRY(open_scenario_item(&item, names[i], r->monitor, f));
         }
         g_array_append_val(r->items, item);
         TRY(item_done(r, f));
@@ -468,13 +508,13 @@ static status write_both(report_content *r, const char *folder, char *const *nam
 {
     // what was asked for, or all there is
     if (count > 0) {
-        TRY(add_own(r, names, count, f));
+        TRY(add_named(r, names, count, f));
     } else {
-        TRY(add_figures(r, f));
-    }
-    if (count == 0) {
+        TRY(add_catalogue(r, f));
         add_parameters(r);
     }
+
+    // both files
     g_autofree char *html = g_strconcat(folder, "/report.html", NULL);
     g_autofree char *pdf = g_strconcat(folder, "/report.pdf", NULL);
     TRY(make_folder(folder, f));
@@ -482,24 +522,30 @@ static status write_both(report_content *r, const char *folder, char *const *nam
     return write_pdf(r, pdf, f);
 }
 
+static const char preface_of_thesis[] =
+    "Every figure and table of the thesis on impact and force control of a flexible "
+    "arm, drawn by the lab from its own runs. Under each stand the scenario, the model "
+    "and the one command that makes it again.";
+static const char preface_of_names[] =
+    "Runs and recipes, drawn by the lab. Under each stand the scenario, the model and "
+    "the one command that makes it again.";
+
 status report_write(const char *folder, char *const *names, int count,
                     run_monitor *monitor, fault *f)
 {
     assert(names != NULL || count == 0);
     fault why = {0};
     g_autoptr(GArray) items = g_array_new(FALSE, TRUE, sizeof(report_item));
-    g_autofree char *heading = g_strconcat("impactlab ", lab_version(), ": report", NULL);
-    report_content r = {.monitor = monitor, .items = items, .heading = heading};
-    if (count > 0) {
-        r.preface = "Runs and recipes, drawn by the lab. Under each stand the scenario, "
-                    "the model and the one command that makes it again.";
-    } else {
-        r.preface = "Every figure and table of the thesis on impact and force control of "
-                    "a flexible arm, drawn by the lab from its own runs. Under each "
-                    "stand the scenario, the model and the one command that makes it "
-                    "again.";
-    }
     g_array_set_clear_func(items, clear_item);
+    g_autofree char *heading = g_strconcat("impactlab ", lab_version(), ": report", NULL);
+
+    report_content r = {.monitor = monitor,
+                        .items = items,
+                        .heading = heading,
+                        .preface = preface_of_thesis};
+    if (count > 0) {
+        r.preface = preface_of_names;
+    }
     const status code = write_both(&r, folder, names, count, &why);
     if (code == STATUS_OK) {
         return code;

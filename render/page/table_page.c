@@ -3,8 +3,11 @@
 #include <assert.h>
 #include <math.h>
 
-#define CELL_SPACE 3.0 // above and below a row's text, and left and right of a cell's
-#define CELL_SIZE  7.0
+#define CELL_SPACE     3.0 // above and below a row's text, and left and right of a cell's
+#define CELL_SIZE      7.0
+#define ROUNDING_SPACE 0.5 // so that no rounding breaks a word that just fits
+#define OUTER_RULE     0.9 // width of the lines above and below a table [pt]
+#define INNER_RULE     0.5 // below its heading
 
 table_page *table_create(const char *title, const table_column *columns, size_t count)
 {
@@ -97,23 +100,29 @@ static double widest_word(PangoContext *context, const sketch_frame *frame,
     return widest;
 }
 
+// The width that a column needs for its widest word.
+static double least_width(PangoContext *context, const table_page *t,
+                          const sketch_frame *frame, int column)
+{
+    double widest = 0;
+    for (int row = HEADING; row < row_count(t); row++) {
+        if (!table_row_is_group(t, row)) {
+            const char *text = cell_at(t, row, column);
+            widest = fmax(widest, widest_word(context, frame, text, row == HEADING));
+        }
+    }
+    return widest + 2 * CELL_SPACE + ROUNDING_SPACE;
+}
+
 // Widths of the columns: their shares, but none narrower than its widest word where the
 // others can spare the room.
 static void choose_columns(PangoContext *context, const table_page *t,
                            const sketch_frame *frame, double widths[TABLE_COLUMNS])
 {
-    double room = frame->design_width - 2 * SKETCH_MARGIN, least[TABLE_COLUMNS], sum = 0,
-           need = 0;
+    const double room = frame->design_width - 2 * SKETCH_MARGIN;
+    double least[TABLE_COLUMNS], sum = 0, need = 0;
     for (int i = 0; i < t->column_count; i++) {
-        least[i] = 0;
-        for (int row = HEADING; row < row_count(t); row++) {
-            if (!table_row_is_group(t, row)) {
-                const char *text = cell_at(t, row, i);
-                least[i] =
-                    fmax(least[i], widest_word(context, frame, text, row == HEADING));
-            }
-        }
-        least[i] += 2 * CELL_SPACE + 0.5;
+        least[i] = least_width(context, t, frame, i);
         sum += t->columns[i].share;
         need += least[i];
     }
@@ -171,11 +180,12 @@ static void lay_out(table_layout *l, const table_page *t, PangoContext *context)
 {
     // the frame is laid out at its own width: nothing is scaled
     *l = (table_layout){context, {t->title, t->caption, .look = t->look}};
+    l->frame.design_width = SKETCH_WIDTH;
     if (t->look.width > 0) {
         l->frame.design_width = t->look.width * 72 / 25.4;
-    } else {
-        l->frame.design_width = SKETCH_WIDTH;
     }
+
+    // columns, and as many rows as there are
     choose_columns(l->context, t, &l->frame, l->widths);
     l->frame.body_height = CELL_SPACE;
     for (int row = HEADING; row < row_count(t); row++) {
@@ -191,8 +201,8 @@ void table_size(const table_page *t, double *width, double *height)
     sketch_size(&l.frame, width, height);
 }
 
-static void draw_cells(sketch *s, const table_layout *l, const table_page *t, int row,
-                       double y)
+static void draw_row(sketch *s, const table_layout *l, const table_page *t, int row,
+                     double y)
 {
     double x = s->left;
     for (int i = 0; i < t->column_count; i++) {
@@ -206,6 +216,24 @@ static void draw_cells(sketch *s, const table_layout *l, const table_page *t, in
     }
 }
 
+// The heading of a group, on a shaded row.
+static void draw_group(sketch *s, const table_page *t, int row, double y, double height)
+{
+    const double width = s->right - s->left;
+    set_colour(s->cr, s->colours->shade);
+    cairo_rectangle(s->cr, s->left, y, width, height);
+    cairo_fill(s->cr);
+    sketch_wrapped(s, (point){s->left + CELL_SPACE, y + CELL_SPACE},
+                   &(text_block){cell_at(t, row, 0), CELL_SIZE, .bold = true,
+                                 .width = width - 2 * CELL_SPACE});
+}
+
+// A line across the table.
+static void draw_rule(const sketch *s, double y, double width)
+{
+    sketch_line(s, (point){s->left, y}, (point){s->right, y}, width, SKETCH_INK);
+}
+
 status table_paint(cairo_t *cr, const table_page *t, figure_report *report, fault *f)
 {
     sketch s;
@@ -214,28 +242,23 @@ status table_paint(cairo_t *cr, const table_page *t, figure_report *report, faul
     lay_out(&l, t, context);
     TRY(sketch_begin(&s, cr, &l.frame, report, f));
 
-    // a line above and below the heading, then the rows
+    // the heading between two lines, the rows, and a line below them
     double y = s.top;
-    sketch_line(&s, (point){s.left, y}, (point){s.right, y}, 0.9, SKETCH_INK);
+    draw_rule(&s, y, OUTER_RULE);
     for (int row = HEADING; row < row_count(t); row++) {
-        double height = row_height(&l, t, row);
+        const double height = row_height(&l, t, row);
         if (table_row_is_group(t, row)) {
-            set_colour(s.cr, s.colours->shade);
-            cairo_rectangle(s.cr, s.left, y, s.right - s.left, height);
-            cairo_fill(s.cr);
-            sketch_wrapped(&s, (point){s.left + CELL_SPACE, y + CELL_SPACE},
-                           &(text_block){cell_at(t, row, 0), CELL_SIZE, .bold = true,
-                                         .width = s.right - s.left - 2 * CELL_SPACE});
+            draw_group(&s, t, row, y, height);
         } else {
-            draw_cells(&s, &l, t, row, y + space_over(row));
+            draw_row(&s, &l, t, row, y + space_over(row));
         }
         y += height;
         if (row == HEADING) {
-            sketch_line(&s, (point){s.left, y}, (point){s.right, y}, 0.5, SKETCH_INK);
+            draw_rule(&s, y, INNER_RULE);
         }
     }
-    sketch_line(&s, (point){s.left, y + CELL_SPACE}, (point){s.right, y + CELL_SPACE},
-                0.9, SKETCH_INK);
+    draw_rule(&s, y + CELL_SPACE, OUTER_RULE);
+
     sketch_end(&s);
     return STATUS_OK;
 }
@@ -248,21 +271,32 @@ static void write_plain(csv_writer *csv, const char *markup)
     csv_text(csv, plain);
 }
 
+static bool has_groups(const table_page *t)
+{
+    for (int row = 0; row < row_count(t); row++) {
+        if (table_row_is_group(t, row)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void table_write_csv(const table_page *t, csv_writer *csv)
 {
-    // the group that a row stands under becomes its first field
-    bool grouped = false;
+    const bool grouped = has_groups(t);
     const char *group = "";
-    for (int row = 0; row < row_count(t); row++) {
-        grouped = grouped || table_row_is_group(t, row);
-    }
+
     for (int row = HEADING; row < row_count(t); row++) {
         if (table_row_is_group(t, row)) {
             group = cell_at(t, row, 0);
             continue;
         }
-        if (grouped) {
-            write_plain(csv, row == HEADING ? "group" : group);
+
+        // the group that a row stands under is its first field
+        if (grouped && row == HEADING) {
+            write_plain(csv, "group");
+        } else if (grouped) {
+            write_plain(csv, group);
         }
         for (int i = 0; i < t->column_count; i++) {
             write_plain(csv, cell_at(t, row, i));

@@ -13,14 +13,6 @@
 
 // ---- curves
 
-bool trace_shows(const trace_run *run, const trace_panel *panel, int index)
-{
-    bool twin = panel->signals[1] != NULL &&
-                signal_table[index].body == BODY_FIRST_LINK &&
-                trace_hub_is_first_link(run->scenario);
-    return !twin && !(run->points && !trace_has(&run->result->trace, index));
-}
-
 // Two readings of one quantity have one colour: the second becomes grey.
 static void separate_colours(const figure_panel *panel, figure_series *last)
 {

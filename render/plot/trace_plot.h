@@ -108,7 +108,7 @@ typedef struct trace_figure {
 } trace_figure;
 
 // Whether a run has a signal of a panel to show: not the first link's where it equals the
-// hub's, and of data only what was measured: trace_figure.c
+// hub's, and of data only what was measured: trace_series.c
 bool trace_shows(const trace_run *run, const trace_panel *panel, int index);
 
 // --- the key of runs side by side: trace_key.c

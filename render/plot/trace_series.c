@@ -158,6 +158,14 @@ figure_impulse *trace_impulses(const trace *rows, int *count, owned_figure *o)
 
 // ==== series
 
+bool trace_shows(const trace_run *run, const trace_panel *panel, int index)
+{
+    bool twin = panel->signals[1] != NULL &&
+                signal_table[index].body == BODY_FIRST_LINK &&
+                trace_hub_is_first_link(run->scenario);
+    return !twin && !(run->points && !trace_has(&run->result->trace, index));
+}
+
 // The force with its peaks, of the first pulse and of the whole run, among the rows that
 // they lie between, so that no mark stands above the curve.
 static void add_peaks(figure_series *s, const summary *m, owned_figure *o)
