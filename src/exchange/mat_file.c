@@ -28,7 +28,7 @@ static void put_tag(FILE *stream, int type, size_t size)
     write_word(stream, size);
 }
 
-static size_t rounded(size_t size)
+static size_t padded_to_eight(size_t size)
 {
     return (size + 7) / 8 * 8;
 }
@@ -49,16 +49,25 @@ static void begin_matrix(FILE *stream, const char *name, int rows, int columns,
     static const char zeros[8];
     const size_t length = strlen(name), count = (size_t)rows * (size_t)columns;
     assert(length > 0 && rows >= 0 && columns >= 0);
-    put_tag(stream, MATRIX, 16 + 16 + 8 + rounded(length) + parts * (8 + 8 * count));
+
+    // the whole matrix, and its flags
+    put_tag(stream, MATRIX,
+            16 + 16 + 8 + padded_to_eight(length) + parts * (8 + 8 * count));
     put_tag(stream, UINT32, 8);
-    write_word(stream, CLASS_DOUBLE | (parts > 1 ? COMPLEX : 0));
+    size_t class = CLASS_DOUBLE;
+    if (parts > 1) {
+        class |= COMPLEX;
+    }
+    write_word(stream, class);
     write_word(stream, 0);
+
+    // its dimensions and its name
     put_tag(stream, INT32, 8);
     write_word(stream, (size_t)rows);
     write_word(stream, (size_t)columns);
     put_tag(stream, INT8, length);
     fwrite(name, 1, length, stream);
-    fwrite(zeros, 1, rounded(length) - length, stream);
+    fwrite(zeros, 1, padded_to_eight(length) - length, stream);
 }
 
 void mat_file_matrix(FILE *stream, const char *name, int rows, int columns,

@@ -49,6 +49,27 @@ static void write_drive(const scenario *s, char *text, size_t size)
     snprintf(text, size, "the law '%s'", law);
 }
 
+// How near an arm comes to the wall that does not touch it.
+static void say_no_touch(account *a, const char *drive)
+{
+    const trace *t = &a->run->trace;
+    const double end = t->rows[t->row_count - 1].time;
+    double nearest = (double)INFINITY;
+    for (size_t r = 0; r < t->row_count; r++) {
+        nearest = fmin(nearest, t->rows[r].gap);
+    }
+    if (isfinite(nearest)) {
+        add_sentence(a,
+                     "Driven by %s the arm does not touch the wall in %.4g s: %.3g mm "
+                     "are left at its nearest.",
+                     drive, end, 1e3 * nearest);
+    } else {
+        add_sentence(a,
+                     "Driven by %s the arm moves for %.4g s, and nothing is in its way.",
+                     drive, end);
+    }
+}
+
 // How it comes to the wall; false if it does not.
 static bool say_approach(account *a)
 {
@@ -57,24 +78,11 @@ static bool say_approach(account *a)
     char drive[96];
     write_drive(a->scenario, drive, sizeof drive);
     if (isnan(touch)) {
-        double nearest = (double)INFINITY;
-        for (size_t r = 0; r < t->row_count; r++) {
-            nearest = fmin(nearest, t->rows[r].gap);
-        }
-        const double end = t->rows[t->row_count - 1].time;
-        if (isfinite(nearest)) {
-            add_sentence(
-                a,
-                "Driven by %s the arm does not touch the wall in %.4g s: %.3g mm are "
-                "left at its nearest.",
-                drive, end, 1e3 * nearest);
-        } else {
-            add_sentence(
-                a, "Driven by %s the arm moves for %.4g s, and nothing is in its way.",
-                drive, end);
-        }
+        say_no_touch(a, drive);
         return false;
     }
+
+    // with its speed and energy, as far as the model tells them
     const sample *before = row_entering(t, touch);
     if (before->contact != 0) {
         add_sentence(a, "Driven by %s the arm starts on the wall.", drive);
@@ -111,6 +119,26 @@ static void say_blow(account *a)
                  t->rows[trace_row_at(t, impact->time)].kinetic_energy);
 }
 
+// What the hub does first between the touch and the end of the pulse.
+static void write_turn(const trace *t, double touch, double end, char *text, size_t size)
+{
+    for (size_t i = 0; i < t->event_count; i++) {
+        const event *e = &t->events[i];
+        if (!(e->time > touch && e->time <= end)) {
+            continue;
+        }
+        if (e->kind == EVENT_REVERSAL) {
+            snprintf(text, size, "the hub reverses at %.4g s", e->time);
+            return;
+        }
+        if (e->kind == EVENT_STICK) {
+            snprintf(text, size, "the hub comes to rest at %.4g s", e->time);
+            return;
+        }
+    }
+    snprintf(text, size, "the hub goes on turning");
+}
+
 // The pulse: where its force comes from, and the hub's reversal in it.
 static void say_pulse(account *a, double touch, double end)
 {
@@ -121,15 +149,8 @@ static void say_pulse(account *a, double touch, double end)
     }
     const double peak = touch + m->first_pulse_time_to_peak_s;
     const sample *at_peak = &t->rows[trace_row_at(t, peak)];
-    char turn[96] = "the hub goes on turning";
-    for (size_t i = t->event_count; i-- > 0;) {
-        const event *e = &t->events[i];
-        if (e->time > touch && e->time <= end &&
-            (e->kind == EVENT_REVERSAL || e->kind == EVENT_STICK)) {
-            snprintf(turn, sizeof turn, "the hub %s at %.4g s",
-                     e->kind == EVENT_REVERSAL ? "reverses" : "comes to rest", e->time);
-        }
-    }
+    char turn[96];
+    write_turn(t, touch, end, turn, sizeof turn);
     add_sentence(a,
                  "The rest bends the arm against the wall: the force is largest at "
                  "%.4g s, %.4g N, when the springs hold %.3g J; %s.",
@@ -166,13 +187,15 @@ static void list_shares(const sample *from, const sample *to, double sign, char 
     const int count = sizeof energy_shares / sizeof *energy_shares;
     size_t used = 0;
     snprintf(text, size, "nothing");
+    const char *comma = "";
     for (int i = 0; i < count && used < size; i++) {
         const int signal = energy_shares[i].signal;
         const double fall = signal_value(from, signal) - signal_value(to, signal);
         const double share = sign * energy_shares[i].sign * fall;
         if (share > least) { // one that the scenario has not is NaN
-            used += (size_t)snprintf(text + used, size - used, "%s%s %.3g J",
-                                     used > 0 ? ", " : "", energy_shares[i].name, share);
+            used += (size_t)snprintf(text + used, size - used, "%s%s %.3g J", comma,
+                                     energy_shares[i].name, share);
+            comma = ", ";
         }
     }
 }
@@ -190,9 +213,13 @@ static void say_release(account *a, double touch)
         return;
     }
     const double end = touch + m->first_pulse_s;
-    const double delay =
-        isnan(m->first_pulse_time_to_peak_s) ? 0 : m->first_pulse_time_to_peak_s;
     const char *then = m->impacts > 1 ? ", and comes back" : "";
+
+    // a peak is found in a pulse that has one
+    double delay = m->first_pulse_time_to_peak_s;
+    if (isnan(delay)) {
+        delay = 0;
+    }
     const sample *at_peak = &t->rows[trace_row_at(t, touch + delay)];
     const sample *after = &t->rows[trace_row_at(t, end)];
     if (!(delay > 0) || after == at_peak) {
@@ -215,22 +242,23 @@ static void say_end(account *a)
     const trace *t = &a->run->trace;
     const summary *m = &a->run->summary;
     const sample *last = &t->rows[t->row_count - 1];
+    const bool sticks = last->sticking != 0;
     if (a->scenario->parameters.control.law != LAW_NONE) {
         char peak[64] = "";
         if (!isnan(m->force_over_command_N)) {
             snprintf(peak, sizeof peak, "; its peak is %.3g N above that",
                      m->force_over_command_N);
         }
+        const char *rest = sticks ? ", where the hub sticks" : "";
         add_sentence(a, "The law wants %.3g N and gets %.4g at the end%s%s.",
-                     m->force_command_N, m->steady_force_N,
-                     last->sticking != 0 ? ", where the hub sticks" : "", peak);
+                     m->force_command_N, m->steady_force_N, rest, peak);
     } else if (last->contact != 0) {
+        const char *held = sticks ? ", the hub held by friction" : "";
         add_sentence(
             a,
             "At the end the arm presses with %.3g N under %.3g N m of the motor%s; a "
             "controller would choose that force and damp the pulse (:law).",
-            last->force, last->motor_torque,
-            last->sticking != 0 ? ", the hub held by friction" : "");
+            last->force, last->motor_torque, held);
     } else {
         add_sentence(a,
                      "At the end the arm is off the wall by %.3g mm; a controller would "
@@ -244,22 +272,27 @@ int run_account(const scenario *s, const run_result *run,
 {
     assert(run->trace.row_count > 0);
     account a = {.scenario = s, .run = run, .sentences = sentences};
+    const double last = run->trace.rows[run->trace.row_count - 1].time;
     if (run->summary.status != STATUS_OK) {
-        add_sentence(&a, "The run stops at %.4g s: %.200s.",
-                     run->trace.rows[run->trace.row_count - 1].time,
-                     run->summary.message[0] ? run->summary.message
-                                             : status_text(run->summary.status));
+        const char *why = run->summary.message;
+        if (why[0] == '\0') {
+            why = status_text(run->summary.status);
+        }
+        add_sentence(&a, "The run stops at %.4g s: %.200s.", last, why);
         return a.count;
     }
     if (!say_approach(&a)) {
         return a.count;
     }
 
-    // the printed model has no energies in its rows: its account is shorter
+    // a pulse that does not end lasts as long as the run
     const double touch = run->summary.first_contact_s;
-    const double length = run->summary.first_pulse_s;
-    const double end =
-        isnan(length) ? run->trace.rows[run->trace.row_count - 1].time : touch + length;
+    double end = last;
+    if (!isnan(run->summary.first_pulse_s)) {
+        end = touch + run->summary.first_pulse_s;
+    }
+
+    // the printed model has no energies in its rows: its account is shorter
     if (s->parameters.arm.model == ARM_CORRECTED) {
         say_blow(&a);
         say_pulse(&a, touch, end);

@@ -45,9 +45,12 @@ static double effect_time(const session *s)
     // two rows at one instant: an event, and the one before it is shown
     for (size_t i = 0; i < t->event_count; i++) {
         const event_kind kind = t->events[i].kind;
-        if (same_instant(t->events[i].time, now) && kind != EVENT_CHANGE &&
-            kind != EVENT_PUSH) {
-            double before = s->row > 0 ? t->rows[s->row - 1].time : 0;
+        const bool of_motion = kind != EVENT_CHANGE && kind != EVENT_PUSH;
+        if (of_motion && same_instant(t->events[i].time, now)) {
+            double before = 0;
+            if (s->row > 0) {
+                before = t->rows[s->row - 1].time;
+            }
             return fmax(now - BEFORE_EVENT, (before + now) / 2);
         }
     }
@@ -270,12 +273,14 @@ static status move_inputs(session *s, int step, fault *f)
 {
     const session_input *in = s->inputs;
     const int before = s->input_count;
-    int n = before;
+
+    // until the inputs on both sides of the end are not of one gesture
+    int count = before;
     do {
-        n += step;
-    } while (n > 0 && n < s->input_total && in[n].gesture != 0 &&
-             in[n].gesture == in[n - 1].gesture);
-    s->input_count = n;
+        count += step;
+    } while (count > 0 && count < s->input_total && in[count].gesture != 0 &&
+             in[count].gesture == in[count - 1].gesture);
+    s->input_count = count;
     const status code = session_compute(s, f);
     if (code != STATUS_OK) {
         s->input_count = before;

@@ -51,9 +51,11 @@ void session_seek(session *s, double time)
 
     // an instant beside a row's by rounding is the row's: a change there cuts no step
     // anew
-    double near = s->run.trace.rows[s->row + (s->row + 1 < s->run.trace.row_count)].time;
-    if (near > s->now && same_instant(near, s->now)) {
-        session_seek(s, near);
+    if (s->row + 1 < s->run.trace.row_count) {
+        const double next = s->run.trace.rows[s->row + 1].time;
+        if (next > s->now && same_instant(next, s->now)) {
+            session_seek(s, next);
+        }
     }
     note_seen(s);
 }
@@ -87,10 +89,24 @@ const event *session_event(const session *s)
 
 #define MEMORY_BUDGET (512.0 * 1024 * 1024) // rows of one run [bytes]
 #define ROW_SPARE     1.5                   // rows of events beside those of the grid
-// for the first row of a run that takes long [s]
-#define SHORT_WAIT 0.001
+#define SHORT_WAIT    0.001 // for the first row of a run that takes long [s]
 
 enum { ROWS_SURVEYED = 50000 }; // at once, for the largest force of an incomplete run
+
+// An input during the run, as an action of a script.
+static action action_of_input(const session_input *in)
+{
+    action a = {.time = in->time,
+                .kind = ACTION_SET,
+                .parameter = in->parameter,
+                .value = in->value,
+                .added = true};
+    if (in->kind == SESSION_INPUT_PUSH) {
+        a.kind = ACTION_PUSH;
+    }
+    snprintf(a.text, sizeof a.text, "%.*s", PARAMETER_TEXT_SIZE - 1, in->text);
+    return a;
+}
 
 // The scenario with the inputs in effect. Its actions are the only thing it owns.
 static status build_effective(const session *s, scenario *to, fault *f)
@@ -115,14 +131,7 @@ static status build_effective(const session *s, scenario *to, fault *f)
         if (in->kind == SESSION_INPUT_START) {
             TRY(parameter_set_text(&to->parameters, in->parameter, in->text, f));
         } else {
-            const bool pushes = in->kind == SESSION_INPUT_PUSH;
-            action a = {.time = in->time,
-                        .kind = pushes ? ACTION_PUSH : ACTION_SET,
-                        .parameter = in->parameter,
-                        .value = in->value,
-                        .added = true};
-            snprintf(a.text, sizeof a.text, "%.*s", PARAMETER_TEXT_SIZE - 1, in->text);
-            scenario_insert_action(to, a);
+            scenario_insert_action(to, action_of_input(in));
         }
     }
     return parameters_resolve(&to->parameters, f);
@@ -177,57 +186,77 @@ static bool outside_is_same(session *s, const parameters *p, char stamp[SHA256_T
     return strcmp(stamp, s->outside) == 0;
 }
 
+// The digest of what a run is about to read from outside, which is the present run's
+// where that read the `same` files; empty where a consent is missing to read it.
+static void digest_of_outside(const session *s, const parameters *p, bool same,
+                              char digest[SHA256_TEXT])
+{
+    const unsigned reads = outside_read(p);
+    if (!p->code_allowed && (reads & ~outside_files()) != 0) {
+        digest[0] = '\0';
+    } else if (!same || reads != outside_read(&s->effective.parameters)) {
+        outside_digest_all(p, digest);
+    } else {
+        memcpy(digest, s->digest, SHA256_TEXT);
+    }
+}
+
+// Waits for a run as long as the session does, and then for its first row. *run is what
+// there is of it. Returns the run, or NULL if it is over.
+static background_run *wait_for_run(const session *s, background_run *c, run_result *run)
+{
+    bool over = background_run_wait(c, fmin(s->patience, 1e6));
+    while (!over && background_run_look(c, run) == 0) {
+        over = background_run_wait(c, SHORT_WAIT);
+    }
+    if (over) {
+        *run = background_run_finish(c);
+        return NULL;
+    }
+    summary_init(&run->summary);
+    run->history = (run_history){0};
+    return c;
+}
+
+// Why a run has not a single row.
+static status fault_of_empty_run(const run_result *run, fault *f)
+{
+    if (run->summary.status != STATUS_OK) {
+        return summary_fault(&run->summary, f);
+    }
+    return fault_no_memory(f);
+}
+
 // Computes the run of a scenario, and resumes the present one where it can. A run that is
 // not there within the session's patience is left to its thread. On failure the present
 // run stays.
 static status start_run(session *s, const scenario *effective, fault *f)
 {
-    run_result run = {.landing = {.time = 0}};
-    size_t rows = (size_t)expected_rows(&effective->parameters) + 1;
     const parameters *p = &effective->parameters;
+    const size_t rows = (size_t)expected_rows(p) + 1;
+
+    // what it reads from outside, and what it shares with the present one
     char stamp[SHA256_TEXT], digest[SHA256_TEXT];
     const bool same = outside_is_same(s, p, stamp);
-    bool resume = same && run_resume(&s->run, &s->effective, effective, rows, &run);
-
-    // of what it is about to read, unless that was read before; without a consent it
-    // reads nothing
-    const unsigned reads = outside_read(p);
-    memcpy(digest, s->digest, sizeof digest);
-    if (!p->code_allowed && (reads & ~outside_files()) != 0) {
-        digest[0] = '\0';
-    } else if (!same || reads != outside_read(&s->effective.parameters)) {
-        outside_digest_all(p, digest);
+    digest_of_outside(s, p, same, digest);
+    run_result run = {.landing = {.time = 0}}, *resumed = NULL;
+    if (same && run_resume(&s->run, &s->effective, effective, rows, &run)) {
+        resumed = &run;
     }
+
     const background_options how = {.rows_expected = rows, .at_once = isinf(s->patience)};
-    background_run *c = background_run_start(effective, &how, resume ? &run : NULL);
+    background_run *c = background_run_start(effective, &how, resumed);
     if (c == NULL) {
         run_finish(&run);
         return fault_no_memory(f);
     }
-
-    // wait as long as the session does, and then for the first row
-    bool over = background_run_wait(c, fmin(s->patience, 1e6));
-    while (!over && background_run_look(c, &run) == 0) {
-        over = background_run_wait(c, SHORT_WAIT);
-    }
-    if (over) {
-        run = background_run_finish(c);
-        c = NULL;
-    } else {
-        summary_init(&run.summary);
-        run.history = (run_history){0};
-    }
+    c = wait_for_run(s, c, &run);
 
     // a run that diverges is worth looking at; one without a single row is not, and one
     // that had no memory is not whole
     loss_unless(run.summary.status != STATUS_NO_MEMORY);
     if (run.trace.row_count == 0) {
-        status code;
-        if (run.summary.status != STATUS_OK) {
-            code = summary_fault(&run.summary, f);
-        } else {
-            code = fault_no_memory(f);
-        }
+        const status code = fault_of_empty_run(&run, f);
         run_finish(&run);
         return code;
     }
@@ -239,6 +268,16 @@ static status start_run(session *s, const scenario *effective, fault *f)
     s->computing = c;
     s->surveyed = 0;
     return STATUS_OK;
+}
+
+// Without a new run the present one stays, and is computed on if it was not finished.
+static void go_on_with_present_run(session *s, bool unfinished)
+{
+    if (unfinished && start_run(s, &s->effective, NULL) == STATUS_OK) {
+        s->version++;
+    }
+    session_follow(s);
+    session_seek(s, s->now);
 }
 
 status session_compute(session *s, fault *f)
@@ -256,17 +295,11 @@ status session_compute(session *s, fault *f)
         code = start_run(s, &effective, f);
     }
 
-    // without a new run the present one goes on, if there is one
     if (code != STATUS_OK) {
         free(effective.actions);
-        if (s->run.trace.row_count == 0) {
-            return code;
+        if (s->run.trace.row_count > 0) {
+            go_on_with_present_run(s, unfinished);
         }
-        if (unfinished && start_run(s, &s->effective, NULL) == STATUS_OK) {
-            s->version++;
-        }
-        session_follow(s);
-        session_seek(s, s->now);
         return code;
     }
 

@@ -21,17 +21,22 @@ enum { MOST_BYTES = 16 << 20, MOST_INPUTS = 20000 };
 static void write_base(FILE *stream, const scenario *s)
 {
     text_stream text;
-    char *whole = NULL, *rest;
+    char *whole = NULL;
     if (text_stream_open(&text)) {
         scenario_write(text.stream, s);
         whole = text_stream_close(&text, NULL);
     }
     loss_unless(whole != NULL);
     fprintf(stream, "scenario: %s\n", s->name);
-    rest = whole;
-    for (char *line;
-         rest != NULL && (line = strsep(&rest, "\n")) != NULL && rest != NULL;) {
+    if (whole == NULL) {
+        return;
+    }
+
+    // the text ends with a line's end, behind which there is no line
+    char *rest = whole, *line = strsep(&rest, "\n");
+    while (rest != NULL) {
         fprintf(stream, "| %s\n", line);
+        line = strsep(&rest, "\n");
     }
     free(whole);
 }
@@ -70,6 +75,23 @@ static parameters started_with(const run_origin *from)
     return p;
 }
 
+// The changes of a run, its cursor, and what else is to be kept of it.
+static void write_run(FILE *stream, const kept_run *r)
+{
+    for (int i = 0; i < r->from.input_count; i++) {
+        write_input(stream, &r->from.inputs[i]);
+    }
+    write_number(stream, "cursor: ", r->from.now);
+    write_number(stream, " ", r->from.seen);
+    fputc('\n', stream);
+    if (r->hidden) {
+        fputs("hidden:\n", stream);
+    }
+    if (r->from.outside[0] != '\0') {
+        fprintf(stream, "outside: %s\n", r->from.outside);
+    }
+}
+
 void session_file_write(FILE *stream, const session_file *file)
 {
     assert(file->run_count > 0);
@@ -86,16 +108,10 @@ void session_file_write(FILE *stream, const session_file *file)
         } else {
             fprintf(stream, "pinned: %s\n", r->name);
         }
-        for (int k = 0; k < r->from.input_count; k++) {
-            write_input(stream, &r->from.inputs[k]);
-        }
-        write_number(stream, "cursor: ", r->from.now);
-        write_number(stream, " ", r->from.seen);
-        fputs(r->hidden ? "\nhidden:\n" : "\n", stream);
-        if (r->from.outside[0] != '\0') {
-            fprintf(stream, "outside: %s\n", r->from.outside);
-        }
+        write_run(stream, r);
     }
+
+    // how they are looked at
     fprintf(stream, "baseline: %d\n", file->baseline + 1);
     for (int i = 0; i < file->line_count; i++) {
         fprintf(stream, "view: %s\n", file->lines[i]);
@@ -136,8 +152,11 @@ static status end_base(session_reader *r)
                                        keep_first_fault, &first);
     free(r->text);
     r->text = NULL;
+    if (code != STATUS_OK && first.text[0] == '\0') {
+        return refuse_line(r, status_text(code));
+    }
     if (code != STATUS_OK) {
-        return refuse_line(r, first.text[0] ? first.text : status_text(code));
+        return refuse_line(r, first.text);
     }
     scenario_finish(&r->base);
     r->base = fresh;
@@ -181,56 +200,68 @@ static status read_parameter_change(const session_reader *r, const run_origin *f
     if (in->parameter < 0 || strlen(text + length) >= sizeof in->text) {
         return refuse_line(r, "no change, expected an instant, a parameter and a value");
     }
-    snprintf(in->text, sizeof in->text, "%s", text + length + (text[length] == ' '));
+    const char *value = text + length;
+    if (*value == ' ') {
+        value++;
+    }
+    snprintf(in->text, sizeof in->text, "%s", value);
     const bool timed = in->kind == SESSION_INPUT_TIMED;
 
     // among the values that the changes before it give; values that others must go with
     // are checked with all of them, when the run is computed
     fault f = {0};
-    if ((timed && !rig_can_change(&scratch, in->parameter)) ||
-        parameter_set_text(&scratch, in->parameter, in->text, &f) != STATUS_OK) {
-        if (f.text[0] != '\0') {
-            return refuse_line(r, f.text);
-        }
+    if (timed && !rig_can_change(&scratch, in->parameter)) {
         return refuse_line(r, "a parameter that does not change during a run");
+    }
+    if (parameter_set_text(&scratch, in->parameter, in->text, &f) != STATUS_OK) {
+        return refuse_line(r, f.text);
     }
     in->value = parameter_get(&scratch, in->parameter);
     return STATUS_OK;
 }
 
+// The run that the lines belong to, NULL before the first.
+static kept_run *last_run(const session_reader *r)
+{
+    if (r->file->run_count == 0) {
+        return NULL;
+    }
+    return &r->file->runs[r->file->run_count - 1];
+}
+
+// What a change does, from the text behind its word.
+static status read_input(const session_reader *r, const run_origin *from,
+                         session_input *in, const char *text)
+{
+    const char *rest;
+    if (in->kind == SESSION_INPUT_PUSH) {
+        if (!read_two_numbers(text, &in->time, &in->value, &rest) || *rest != '\0' ||
+            from->base.parameters.arm.model == ARM_PRINTED) {
+            return refuse_line(r, "no push, expected an instant and an impulse");
+        }
+        return STATUS_OK;
+    }
+    if (!decimal_read(text, &in->time, &rest) || !(in->time >= 0) ||
+        !isfinite(in->time)) {
+        return refuse_line(r, "no change, expected an instant, a parameter and a value");
+    }
+    return read_parameter_change(r, from, in, rest);
+}
+
 static status append_input(session_reader *r, session_input_kind kind, const char *text)
 {
-    session_file *file = r->file;
-    session_input in = {.kind = kind, .parameter = -1, .before = (double)NAN};
-    const char *rest;
-    run_origin *from = file->run_count > 0 ? &file->runs[file->run_count - 1].from : NULL;
-    status code = STATUS_OK;
-    if (from == NULL) {
+    kept_run *run = last_run(r);
+    if (run == NULL) {
         return refuse_line(r, "a change, expected a run before it");
     }
+    run_origin *from = &run->from;
     if (from->input_count == MOST_INPUTS) {
         return refuse_line(r, "too many changes");
     }
-    if (kind == SESSION_INPUT_PUSH) {
-        const bool good = read_two_numbers(text, &in.time, &in.value, &rest) &&
-                          *rest == '\0' && from->base.parameters.arm.model != ARM_PRINTED;
-        if (good) {
-            code = STATUS_OK;
-        } else {
-            code = refuse_line(r, "no push, expected an instant and an impulse");
-        }
-    } else {
-        const bool good =
-            decimal_read(text, &in.time, &rest) && in.time >= 0 && isfinite(in.time);
-        if (good) {
-            code = read_parameter_change(r, from, &in, rest);
-        } else {
-            code =
-                refuse_line(r, "no change, expected an instant, a parameter and a value");
-        }
-    }
-    TRY(code);
+    session_input in = {.kind = kind, .parameter = -1, .before = (double)NAN};
+    TRY(read_input(r, from, &in, text));
     in.seen_at = in.time;
+
     session_input *more =
         realloc(from->inputs, ((size_t)from->input_count + 1) * sizeof *from->inputs);
     if (more == NULL) {
@@ -257,75 +288,153 @@ static status append_line(session_reader *r, const char *line)
     return STATUS_OK;
 }
 
-static status take_line(session_reader *r, char *line)
+// --- the kinds of lines, each read from what stands behind its word
+
+static status take_scenario(session_reader *r, const char *rest)
+{
+    free(r->text);
+    r->length = 0;
+    r->text = calloc(1, 2);
+    snprintf(r->name, sizeof r->name, "%s", rest);
+    if (r->text == NULL) {
+        return fault_no_memory(r->fault);
+    }
+    return STATUS_OK;
+}
+
+static status take_present(session_reader *r, const char *rest)
+{
+    if (r->file->run_count != 0) {
+        return refuse_line(r, "expected one present run, then pinned ones");
+    }
+    return begin_section(r, rest);
+}
+
+static status take_pinned(session_reader *r, const char *rest)
+{
+    if (r->file->run_count == 0) {
+        return refuse_line(r, "expected one present run, then pinned ones");
+    }
+    return begin_section(r, rest);
+}
+
+static status take_start(session_reader *r, const char *rest)
+{
+    return append_input(r, SESSION_INPUT_START, rest);
+}
+
+static status take_timed(session_reader *r, const char *rest)
+{
+    return append_input(r, SESSION_INPUT_TIMED, rest);
+}
+
+static status take_push(session_reader *r, const char *rest)
+{
+    return append_input(r, SESSION_INPUT_PUSH, rest);
+}
+
+static status take_cursor(session_reader *r, const char *rest)
+{
+    run_origin *from = &last_run(r)->from;
+    const char *end;
+    if (!read_two_numbers(rest, &from->now, &from->seen, &end)) {
+        return refuse_line(r, "no cursor, expected two instants");
+    }
+    return STATUS_OK;
+}
+
+static status take_hidden(session_reader *r, const char *rest)
+{
+    (void)rest;
+    last_run(r)->hidden = true;
+    return STATUS_OK;
+}
+
+static status take_outside(session_reader *r, const char *rest)
+{
+    run_origin *from = &last_run(r)->from;
+    snprintf(from->outside, sizeof from->outside, "%s", rest);
+    return STATUS_OK;
+}
+
+static status take_baseline(session_reader *r, const char *rest)
 {
     session_file *file = r->file;
-    kept_run *last = file->run_count > 0 ? &file->runs[file->run_count - 1] : NULL;
-    char *rest = strchr(line, ':');
-    const char *end;
+    file->baseline = atoi(rest) - 1;
+    if (file->baseline < -1 || file->baseline >= file->run_count - 1) {
+        return refuse_line(r, "no baseline, expected the number of a pinned run, or 0");
+    }
+    return STATUS_OK;
+}
+
+static status take_view(session_reader *r, const char *rest)
+{
+    session_file *file = r->file;
+    if (file->line_count == SESSION_FILE_LINES) {
+        return refuse_line(r, "a line that does not belong here");
+    }
+    file->lines[file->line_count] = strdup(rest);
+    if (file->lines[file->line_count] == NULL) {
+        return fault_no_memory(r->fault);
+    }
+    file->line_count++;
+    return STATUS_OK;
+}
+
+static const struct {
+    const char *word;
+    bool of_run; // belongs to the run before it
+    status (*take)(session_reader *r, const char *rest);
+} line_kinds[] = {
+    {"scenario", false, take_scenario}, {"present", false, take_present},
+    {"pinned", false, take_pinned},     {"start", false, take_start},
+    {"from", false, take_timed},        {"push", false, take_push},
+    {"cursor", true, take_cursor},      {"hidden", true, take_hidden},
+    {"outside", true, take_outside},    {"baseline", false, take_baseline},
+    {"view", false, take_view},
+};
+
+static status take_line(session_reader *r, char *line)
+{
     if (strncmp(line, "| ", 2) == 0) {
         return append_line(r, line + 2);
     }
+    char *rest = strchr(line, ':');
     if (rest == NULL) {
         return refuse_line(r, "no line of a session, expected 'word: rest'");
     }
     *rest++ = '\0';
-    rest += *rest == ' ';
+    if (*rest == ' ') {
+        rest++;
+    }
 
     // by its word
-    if (strcmp(line, "scenario") == 0) {
-        free(r->text);
-        r->length = 0;
-        r->text = calloc(1, 2);
-        snprintf(r->name, sizeof r->name, "%s", rest);
-        if (r->text == NULL) {
-            return fault_no_memory(r->fault);
+    for (size_t i = 0; i < sizeof line_kinds / sizeof *line_kinds; i++) {
+        const bool belongs = !line_kinds[i].of_run || last_run(r) != NULL;
+        if (belongs && strcmp(line, line_kinds[i].word) == 0) {
+            return line_kinds[i].take(r, rest);
         }
-        return STATUS_OK;
-    }
-    if (strcmp(line, "present") == 0 || strcmp(line, "pinned") == 0) {
-        if ((line[1] == 'r') == (file->run_count == 0)) {
-            return begin_section(r, rest);
-        }
-        return refuse_line(r, "expected one present run, then pinned ones");
-    }
-    if (strcmp(line, "start") == 0 || strcmp(line, "from") == 0 ||
-        strcmp(line, "push") == 0) {
-        return append_input(r,
-                            line[0] == 's'   ? SESSION_INPUT_START
-                            : line[0] == 'f' ? SESSION_INPUT_TIMED
-                                             : SESSION_INPUT_PUSH,
-                            rest);
-    }
-    if (strcmp(line, "cursor") == 0 && last != NULL) {
-        if (read_two_numbers(rest, &last->from.now, &last->from.seen, &end)) {
-            return STATUS_OK;
-        }
-        return refuse_line(r, "no cursor, expected two instants");
-    }
-    if (strcmp(line, "hidden") == 0 && last != NULL) {
-        last->hidden = true;
-        return STATUS_OK;
-    }
-    if (strcmp(line, "outside") == 0 && last != NULL) {
-        snprintf(last->from.outside, sizeof last->from.outside, "%s", rest);
-        return STATUS_OK;
-    }
-    if (strcmp(line, "baseline") == 0) {
-        file->baseline = atoi(rest) - 1;
-        if (file->baseline >= -1 && file->baseline < file->run_count - 1) {
-            return STATUS_OK;
-        }
-        return refuse_line(r, "no baseline, expected the number of a pinned run, or 0");
-    }
-    if (strcmp(line, "view") == 0 && file->line_count < SESSION_FILE_LINES) {
-        file->lines[file->line_count] = strdup(rest);
-        if (file->lines[file->line_count++] == NULL) {
-            return fault_no_memory(r->fault);
-        }
-        return STATUS_OK;
     }
     return refuse_line(r, "a line that does not belong here");
+}
+
+// Reads one line, without its end, of a file of so many bytes until then.
+static status read_session_line(session_reader *r, char *line, size_t bytes)
+{
+    r->line++;
+    if (bytes > MOST_BYTES) {
+        return refuse_line(r, "the file is too long");
+    }
+    if (r->line == 1) {
+        if (strcmp(line, head) != 0) {
+            return refuse_line(r, "this is no session");
+        }
+        return STATUS_OK;
+    }
+    if (line[0] == '\0') {
+        return STATUS_OK;
+    }
+    return take_line(r, line);
 }
 
 static status read_session_lines(session_reader *r, FILE *stream)
@@ -335,22 +444,21 @@ static status read_session_lines(session_reader *r, FILE *stream)
     status code = STATUS_OK;
     ssize_t length;
     while (code == STATUS_OK && (length = getline(&line, &room, stream)) >= 0) {
-        r->line++;
         bytes += (size_t)length;
         line[strcspn(line, "\r\n")] = '\0';
-        if (bytes > MOST_BYTES || (r->line == 1 && strcmp(line, head) != 0)) {
-            code = refuse_line(r, bytes > MOST_BYTES ? "the file is too long"
-                                                     : "this is no session");
-        } else if (r->line > 1 && line[0] != '\0') {
-            code = take_line(r, line);
-        }
+        code = read_session_line(r, line, bytes);
     }
     free(line);
-    if (code == STATUS_OK && (r->file->run_count == 0 || r->text != NULL)) {
-        code =
-            refuse_line(r, r->line == 0 ? "this is no session" : "the file ends early");
+    TRY(code);
+
+    // a session has a run, and each scenario one that follows it
+    if (r->line == 0) {
+        return refuse_line(r, "this is no session");
     }
-    return code;
+    if (r->file->run_count == 0 || r->text != NULL) {
+        return refuse_line(r, "the file ends early");
+    }
+    return STATUS_OK;
 }
 
 status session_file_read(session_file *file, const char *path, fault *f)

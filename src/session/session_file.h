@@ -4,8 +4,7 @@
 //
 // The scenarios' text stands in the file itself, so that reading it reads no other file,
 // and what a scenario would start needs a consent as ever. Lines are "word: rest"; those
-// of a scenario's text
-// begin with "| ".
+// of a scenario's text begin with "| ".
 #pragma once
 
 #include "src/session/session.h"
@@ -35,6 +34,6 @@ void session_file_write(FILE *stream, const session_file *file);
 status session_file_read(session_file *file, const char *path, fault *f);
 void session_file_finish(session_file *file);
 
-// Whether a program or a file that one of its runs reads is another one than the run
-// read, so that it may be another one, too.
+// Whether a program or a file that one of its runs reads is another one than it was when
+// the run was computed, so that the run may come out differently.
 bool session_file_is_outdated(const session_file *file);
