@@ -15,25 +15,22 @@ csv_writer csv_begin(FILE *stream)
 // '?'.
 static void write_quoted(FILE *stream, const char *text)
 {
-    const char *begin = text; // of what is written as it stands
     while (*text != '\0') {
-        const int length = *text == '\n' ? 1 : printable_length(text);
-        if (length > 0 && *text != '"') {
-            text += length;
+        int length = 1;
+        if (*text != '\n') {
+            length = printable_length(text);
+        }
+        if (length == 0) {
+            fputc('?', stream);
+            text++;
             continue;
         }
-
-        // a quote ends the piece and begins the next one, too
-        fwrite(begin, 1, (size_t)(text - begin), stream);
-        fputc(length > 0 ? '"' : '?', stream);
-        if (length > 0) {
-            begin = text;
-        } else {
-            begin = text + 1;
+        if (*text == '"') {
+            fputc('"', stream);
         }
-        text++;
+        fwrite(text, 1, (size_t)length, stream);
+        text += length;
     }
-    fwrite(begin, 1, (size_t)(text - begin), stream);
 }
 
 void csv_heading(csv_writer *w, const char *name, const char *unit)
@@ -44,7 +41,10 @@ void csv_heading(csv_writer *w, const char *name, const char *unit)
         (unit != NULL && strpbrk(unit, special) != NULL)) {
         quote = "\"";
     }
-    fprintf(w->stream, "%s%s", w->in_row ? "," : "", quote);
+    if (w->in_row) {
+        fputc(',', w->stream);
+    }
+    fputs(quote, w->stream);
     w->in_row = true;
 
     // name[unit]
@@ -59,14 +59,17 @@ void csv_heading(csv_writer *w, const char *name, const char *unit)
 
 void csv_number(csv_writer *w, double value)
 {
-    char text[1 + NUMBER_TEXT] = ",";
-    char *number = text + w->in_row;
-    *number = '\0';
-    if (!isnan(value)) {
-        number_format(number, value);
+    char text[NUMBER_TEXT];
+    if (w->in_row) {
+        fputc_unlocked(',', w->stream);
     }
     w->in_row = true;
-    fputs_unlocked(text, w->stream);
+
+    // what is missing is empty
+    if (!isnan(value)) {
+        number_format(text, value);
+        fputs_unlocked(text, w->stream);
+    }
 }
 
 void csv_end_row(csv_writer *w)

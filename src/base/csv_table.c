@@ -31,39 +31,66 @@ static status read_table_text(const char *path, char **text, fault *f)
     return STATUS_OK;
 }
 
+// Copies a field that is not quoted to `to`, up to what ends it; returns where that is.
+static char *copy_plain_field(char *from, char **to)
+{
+    while (*from != '\0' && *from != ',' && *from != '\n') {
+        *(*to)++ = *from++;
+    }
+    return from;
+}
+
+// The same of a quoted field, from behind its first quote on: two quotes are one of the
+// text, and what follows the last quote belongs to the field, too.
+static char *copy_quoted_field(char *from, char **to, int *line)
+{
+    while (*from != '\0' && !(from[0] == '"' && from[1] != '"')) {
+        if (*from == '"') {
+            from++;
+        }
+        if (*from == '\n') {
+            (*line)++;
+        }
+        *(*to)++ = *from++;
+    }
+
+    // what stands there, other quotes left out
+    while (*from != '\0' && *from != ',' && *from != '\n') {
+        if (*from != '"') {
+            *(*to)++ = *from;
+        }
+        from++;
+    }
+    return from;
+}
+
 // Takes a field off the text: without quotes and blanks at its ends, ended by a 0. *last:
 // it ends its row; *line counts line ends, *text is NULL behind the last row.
 static char *next_field(char **text, bool *last, int *line)
 {
-    char *from = *text, *to, *field;
+    char *from = *text;
     while (*from == ' ' || *from == '\t') {
         from++;
     }
-    field = to = from;
-    const bool quoted = *from == '"';
-    from += quoted;
-    for (bool inside = quoted;
-         *from != '\0' && (inside || (*from != ',' && *from != '\n'));) {
-        if (quoted && *from == '"') {
-            inside = inside && from[1] == '"';
-            from += inside;
-            if (!inside) {
-                from++;
-                continue;
-            }
-        }
-        *line += *from == '\n';
-        *to++ = *from++;
+    char *const field = from, *to = from;
+    if (*from == '"') {
+        from = copy_quoted_field(from + 1, &to, line);
+    } else {
+        from = copy_plain_field(from, &to);
     }
 
+    // what ends it, and where the next one begins
     const char end = *from;
     *last = end != ',';
-    *line += end == '\n';
-    if (end == '\0' || (*last && from[1] == '\0')) {
+    if (end == '\n') {
+        (*line)++;
+    }
+    if (end == '\0' || (end == '\n' && from[1] == '\0')) {
         *text = NULL;
     } else {
         *text = from + 1;
     }
+
     while (to > field && is_blank(to[-1])) {
         to--;
     }
@@ -71,78 +98,100 @@ static char *next_field(char **text, bool *last, int *line)
     return field;
 }
 
+// Takes a row off the text that has as many fields as there are headings; an empty line
+// is none.
+static status take_row(csv_table *t, char **text, int *line, fault *f)
+{
+    const int begin = *line;
+    char **row = t->fields + t->rows * (size_t)t->columns;
+    int columns = 0;
+    bool last = false;
+    while (*text != NULL && !last && columns < t->columns) {
+        row[columns++] = next_field(text, &last, line);
+    }
+    if (columns == 1 && row[0][0] == '\0' && last) {
+        return STATUS_OK;
+    }
+    if (columns < t->columns || !last) {
+        const char *how_many = last ? "fewer" : "more";
+        return fault_set_place(f, STATUS_BAD_ARGUMENT, begin, columns,
+                               "%.300s:%d:%d: the row has %s than %d fields, "
+                               "expected one for each heading",
+                               t->file, begin, columns, how_many, t->columns);
+    }
+    t->lines[t->rows++] = begin;
+    return STATUS_OK;
+}
+
 // Splits the text into headings and rows; there is room for all of them.
-static status split(csv_table *t, char *text, fault *f)
+static status split_table(csv_table *t, char *text, fault *f)
 {
     static const char mark[] = "\xEF\xBB\xBF"; // that some programs put before UTF-8
     if (strncmp(text, mark, strlen(mark)) == 0) {
         text += strlen(mark);
     }
+
+    // too many headings are no table
     int line = 1;
     bool last = false;
-    size_t count = 0;
     while (text != NULL && !last && t->columns < MOST_COLUMNS) {
         t->headings[t->columns++] = next_field(&text, &last, &line);
     }
-
-    // rows of as many fields; an empty line is none
     while (text != NULL && last) {
-        const int begin = line;
-        int columns = 0;
-        char **row = t->fields + count;
-        last = false;
-        while (text != NULL && !last && columns < t->columns) {
-            row[columns++] = next_field(&text, &last, &line);
-        }
-        if (columns == 1 && row[0][0] == '\0' && last) {
-            continue;
-        }
-        if (columns < t->columns || !last) {
-            return fault_set_place(f, STATUS_BAD_ARGUMENT, begin, columns,
-                                   "%.300s:%d:%d: the row has %s than %d fields, "
-                                   "expected one for each heading",
-                                   t->file, begin, columns, last ? "fewer" : "more",
-                                   t->columns);
-        }
-        t->lines[t->rows++] = begin;
-        count += (size_t)columns;
+        TRY(take_row(t, &text, &line, f));
     }
     return STATUS_OK;
+}
+
+// Room for the fields of the text: one for each comma and each line end.
+static status make_room(csv_table *t, fault *f)
+{
+    size_t commas = 0, line_ends = 0;
+    for (const char *c = t->text; *c != '\0'; c++) {
+        if (*c == '\n') {
+            line_ends++;
+        } else if (*c == ',') {
+            commas++;
+        }
+    }
+    t->headings = calloc(MOST_COLUMNS, sizeof *t->headings);
+    t->fields = calloc(line_ends + commas + 2, sizeof *t->fields);
+    t->lines = calloc(line_ends + 2, sizeof *t->lines);
+    if (t->headings == NULL || t->fields == NULL || t->lines == NULL) {
+        return fault_no_memory(f);
+    }
+    return STATUS_OK;
+}
+
+// The whole table into t, of which nothing but the name of its file is set.
+static status read_table(csv_table *t, size_t least, fault *f)
+{
+    if (t->file == NULL) {
+        return fault_no_memory(f);
+    }
+    TRY(read_table_text(t->file, &t->text, f));
+    TRY(make_room(t, f));
+    TRY(split_table(t, t->text, f));
+    if (t->rows >= least) {
+        return STATUS_OK;
+    }
+
+    // fewer rows than are needed
+    int line = 1;
+    if (t->rows > 0) {
+        line = t->lines[t->rows - 1];
+    }
+    const char *plural = t->rows == 1 ? "" : "s";
+    return fault_set_place(
+        f, STATUS_BAD_ARGUMENT, line, 1,
+        "%.300s:%d:1: %zu row%s below the headings, expected at least %zu", t->file, line,
+        t->rows, plural, least);
 }
 
 status csv_table_read(csv_table *t, const char *path, size_t least, fault *f)
 {
     *t = (csv_table){.file = strdup(path)};
-    status code;
-    if (t->file != NULL) {
-        code = read_table_text(path, &t->text, f);
-    } else {
-        code = fault_no_memory(f);
-    }
-    if (code == STATUS_OK) {
-        // a field for each comma and each line end
-        size_t fields = 2, lines = 2;
-        for (const char *c = t->text; *c != '\0'; c++) {
-            lines += *c == '\n';
-            fields += *c == '\n' || *c == ',';
-        }
-        t->headings = calloc(MOST_COLUMNS, sizeof *t->headings);
-        t->fields = calloc(fields, sizeof *t->fields);
-        t->lines = calloc(lines, sizeof *t->lines);
-        const bool room = t->headings != NULL && t->fields != NULL && t->lines != NULL;
-        if (room) {
-            code = split(t, t->text, f);
-        } else {
-            code = fault_no_memory(f);
-        }
-    }
-    if (code == STATUS_OK && t->rows < least) {
-        const int line = t->rows > 0 ? t->lines[t->rows - 1] : 1;
-        code = fault_set_place(
-            f, STATUS_BAD_ARGUMENT, line, 1,
-            "%.300s:%d:1: %zu row%s below the headings, expected at least %zu", path,
-            line, t->rows, t->rows == 1 ? "" : "s", least);
-    }
+    const status code = read_table(t, least, f);
     if (code != STATUS_OK) {
         csv_table_finish(t);
     }
@@ -151,14 +200,15 @@ status csv_table_read(csv_table *t, const char *path, size_t least, fault *f)
 
 void csv_table_finish(csv_table *t)
 {
-    if (t != NULL) {
-        free(t->file);
-        free(t->text);
-        free(t->headings);
-        free(t->fields);
-        free(t->lines);
-        *t = (csv_table){0};
+    if (t == NULL) {
+        return;
     }
+    free(t->file);
+    free(t->text);
+    free(t->headings);
+    free(t->fields);
+    free(t->lines);
+    *t = (csv_table){0};
 }
 
 // --- columns ---------------------------------------------------------------------------
@@ -241,13 +291,31 @@ static bool copy_unit(const char *heading, char unit[32])
 // The factor to the wanted unit, 0 for an unknown one.
 static double factor_to(const char *unit, const char *wanted)
 {
-    double factor = strcmp(unit, wanted) == 0;
+    if (strcmp(unit, wanted) == 0) {
+        return 1;
+    }
     for (size_t i = 0; i < sizeof units / sizeof units[0]; i++) {
         if (strcmp(units[i].unit, unit) == 0 && strcmp(units[i].wanted, wanted) == 0) {
-            factor = units[i].factor;
+            return units[i].factor;
         }
     }
-    return factor;
+    return 0;
+}
+
+static const char *field_at(const csv_table *t, size_t row, int column)
+{
+    return t->fields[row * (size_t)t->columns + (size_t)column];
+}
+
+// The finite number in a field; NaN in one that may be a gap and is. False for all else.
+static bool read_field(const char *field, bool gaps, double *number)
+{
+    const char *rest;
+    if (gaps && (field[0] == '\0' || strcasecmp(field, "nan") == 0)) {
+        *number = (double)NAN;
+        return true;
+    }
+    return decimal_read(field, number, &rest) && *rest == '\0' && isfinite(*number);
 }
 
 status csv_table_numbers(const csv_table *t, const char *heading, const char *unit,
@@ -284,13 +352,8 @@ status csv_table_numbers(const csv_table *t, const char *heading, const char *un
         return fault_no_memory(f);
     }
     for (size_t r = 0; r < t->rows; r++) {
-        const char *field = t->fields[r * (size_t)t->columns + (size_t)column], *rest;
-        if (gaps && (field[0] == '\0' || strcasecmp(field, "nan") == 0)) {
-            numbers[r] = (double)NAN;
-            continue;
-        }
-        if (!decimal_read(field, &numbers[r], &rest) || *rest != '\0' ||
-            !isfinite(numbers[r])) {
+        const char *field = field_at(t, r, column);
+        if (!read_field(field, gaps, &numbers[r])) {
             free(numbers);
             return fault_set_place(
                 f, STATUS_BAD_ARGUMENT, t->lines[r], column + 1,

@@ -92,8 +92,10 @@ void matrix_exponential(const double *matrix, int size, double h, double *result
     int octave;
     const double mantissa = frexp(norm, &octave);
     int squarings = 0;
-    if (norm > 0.5) {
-        squarings = mantissa > 0.5 ? octave + 1 : octave;
+    if (norm > 0.5 && mantissa > 0.5) {
+        squarings = octave + 1;
+    } else if (norm > 0.5) {
+        squarings = octave;
     }
     double scale = h / ldexp(1, squarings);
     memset(result, 0, bytes);

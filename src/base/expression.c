@@ -11,7 +11,7 @@
 enum { MOST_DEPTH = 100, KEY_TEXT = 128 };
 
 // An expression being read, from left to right by recursive descent.
-typedef struct reader {
+typedef struct expression_reader {
     expression *to;
     const char *text, *at;
     expression_find *find;
@@ -19,11 +19,11 @@ typedef struct reader {
     fault *fault;
     status code; // of the first fault; nothing is read after it
     int depth;
-} reader;
+} expression_reader;
 
 // What is wrong, at a place of the text.
 __attribute__((format(printf, 3, 4))) static void
-expression_refuse(reader *r, const char *at, const char *format, ...)
+expression_refuse(expression_reader *r, const char *at, const char *format, ...)
 {
     char why[400];
     va_list list;
@@ -37,7 +37,7 @@ expression_refuse(reader *r, const char *at, const char *format, ...)
     }
 }
 
-static void add_step(reader *r, expression_step step)
+static void add_step(expression_reader *r, expression_step step)
 {
     if (r->to->count == EXPRESSION_STEPS) {
         expression_refuse(r, r->at, "more than %d names, numbers and operations",
@@ -48,7 +48,7 @@ static void add_step(reader *r, expression_step step)
 }
 
 // Whether the next character is one of `set`, without blanks before it; it is not taken.
-static bool is_next(reader *r, const char *set)
+static bool is_next(expression_reader *r, const char *set)
 {
     while (is_blank(*r->at)) {
         r->at++;
@@ -56,7 +56,7 @@ static bool is_next(reader *r, const char *set)
     return *r->at != '\0' && strchr(set, *r->at) != NULL;
 }
 
-static void expect(reader *r, char c)
+static void expect(expression_reader *r, char c)
 {
     if (is_next(r, (char[]){c, '\0'})) {
         r->at++;
@@ -67,50 +67,62 @@ static void expect(reader *r, char c)
     }
 }
 
-static void read_sum(reader *r);
+static void read_sum(expression_reader *r);
+
+// The rest of max(a, b, ...), from its bracket on.
+static void read_maximum(expression_reader *r)
+{
+    expect(r, '(');
+    read_sum(r);
+    do {
+        expect(r, ',');
+        read_sum(r);
+        add_step(r, (expression_step){.what = EXPRESSION_MAX});
+    } while (r->code == STATUS_OK && is_next(r, ","));
+    expect(r, ')');
+}
+
+static void refuse_factor(expression_reader *r)
+{
+    static const char expected[] = "expected a name, a number, max or '('";
+    if (*r->at == '\0') {
+        expression_refuse(r, r->at, "%s at the end", expected);
+    } else {
+        expression_refuse(r, r->at, "%s, not '%.20s'", expected, r->at);
+    }
+}
 
 // A name, or max of two or more.
-static void read_word(reader *r)
+static void read_word(expression_reader *r)
 {
     static const char letters[] =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
     const char *start = r->at, *near = NULL;
     const size_t length = strspn(start, letters);
+    if (length == 0) {
+        refuse_factor(r);
+        return;
+    }
+
     char name[KEY_TEXT];
     snprintf(name, sizeof name, "%.*s", (int)length, start);
     r->at += length;
-
     if (strcmp(name, "max") == 0 && is_next(r, "(")) {
-        r->at++;
-        read_sum(r);
-        do {
-            expect(r, ',');
-            read_sum(r);
-            add_step(r, (expression_step){.what = EXPRESSION_MAX});
-        } while (r->code == STATUS_OK && is_next(r, ","));
-        expect(r, ')');
-        return;
-    }
-    if (length == 0) {
-        const char *expected = "expected a name, a number, max or '('";
-        if (*start == '\0') {
-            expression_refuse(r, start, "%s at the end", expected);
-        } else {
-            expression_refuse(r, start, "%s, not '%.20s'", expected, start);
-        }
+        read_maximum(r);
         return;
     }
     const int found = r->find(r->context, name, &near);
     if (found < 0) {
-        expression_refuse(r, start, "there is no quantity '%s'%s%s%s", name,
-                          DID_YOU_MEAN(near, ""));
+        char hint[HINT_TEXT];
+        expression_refuse(r, start, "there is no quantity '%s'%s", name,
+                          did_you_mean(hint, near, ""));
         return;
     }
     add_step(r, (expression_step){.what = EXPRESSION_NAME, .name = found});
 }
 
 // A number, a word or an expression in brackets, with its signs.
-static void read_factor(reader *r)
+static void read_factor(expression_reader *r)
 {
     double number;
     if (r->code != STATUS_OK || ++r->depth > MOST_DEPTH) {
@@ -136,7 +148,7 @@ static void read_factor(reader *r)
     r->depth--;
 }
 
-static void read_product(reader *r)
+static void read_product(expression_reader *r)
 {
     read_factor(r);
     while (r->code == STATUS_OK && is_next(r, "*/")) {
@@ -150,7 +162,7 @@ static void read_product(reader *r)
     }
 }
 
-static void read_sum(reader *r)
+static void read_sum(expression_reader *r)
 {
     read_product(r);
     while (r->code == STATUS_OK && is_next(r, "+-")) {
@@ -167,7 +179,7 @@ static void read_sum(reader *r)
 status expression_read(expression *e, const char *text, expression_find *find,
                        void *context, fault *f)
 {
-    reader r = {
+    expression_reader r = {
         .to = e, .text = text, .at = text, .find = find, .context = context, .fault = f};
     e->count = 0;
     read_sum(&r);

@@ -33,21 +33,22 @@ json_t *json_text(const char *text)
 {
     errno = 0;
     json_t *string = json_string(text);
-    char *copy = NULL;
-    if (string == NULL && errno != ENOMEM) {
-        copy = strdup(text);
+    if (string != NULL || errno == ENOMEM) {
+        return string;
     }
 
     // a file's name may be no UTF-8, which JSON cannot hold
-    for (char *c = copy; c != NULL && *c != '\0'; c++) {
-        if (!((unsigned char)*c < 0x80)) {
+    char *copy = strdup(text);
+    if (copy == NULL) {
+        return NULL;
+    }
+    for (char *c = copy; *c != '\0'; c++) {
+        if ((unsigned char)*c >= 0x80) {
             *c = '?';
         }
     }
-    if (copy != NULL) {
-        string = json_string(copy);
-        free(copy);
-    }
+    string = json_string(copy);
+    free(copy);
     return string;
 }
 
@@ -61,29 +62,35 @@ json_t *json_numbers(const double *values, int count)
     return array;
 }
 
+// The next of the values, of the type that a letter names.
+static json_t *next_value(char type, va_list *list)
+{
+    if (type == 'n') {
+        return json_number(va_arg(*list, double));
+    }
+    if (type == 'i') {
+        return json_integer(va_arg(*list, int));
+    }
+    if (type == 'b') {
+        return json_boolean(va_arg(*list, int));
+    }
+    if (type == 't') {
+        return json_text(va_arg(*list, const char *));
+    }
+    return va_arg(*list, json_t *);
+}
+
 json_t *json_members(json_t *object, const char *members, ...)
 {
     va_list list;
     va_start(list, members);
     while (*members != '\0') {
+        // key:t, where t is the type of its value
         char key[64];
         const int length = (int)strcspn(members, ":");
         assert(length < (int)sizeof key && members[length] == ':');
         snprintf(key, sizeof key, "%.*s", length, members);
-
-        const char type = members[length + 1];
-        json_t *value;
-        if (type == 'n') {
-            value = json_number(va_arg(list, double));
-        } else if (type == 'i') {
-            value = json_integer(va_arg(list, int));
-        } else if (type == 'b') {
-            value = json_boolean(va_arg(list, int));
-        } else if (type == 't') {
-            value = json_text(va_arg(list, const char *));
-        } else {
-            value = va_arg(list, json_t *);
-        }
+        json_t *value = next_value(members[length + 1], &list);
         json_put(object, key, value);
         members += length + 2;
         members += strspn(members, " ");
@@ -144,10 +151,12 @@ static void write_array(FILE *stream, const json_t *array, int depth)
         nested = json_is_object(element) || json_is_array(element);
 
         if (i > 0) {
-            fputs(nested ? "," : ", ", stream);
+            fputc(',', stream);
         }
         if (nested) {
             write_indent(stream, depth + 1);
+        } else if (i > 0) {
+            fputc(' ', stream);
         }
         write_indented(stream, element, depth + 1);
     }

@@ -13,14 +13,14 @@
 
 // Gives the calling thread the "C" locale; returns the one to go back to. The C library
 // keeps the "C" locale for good: it is neither allocated here nor freed.
-static locale_t enter_plain(void)
+static locale_t enter_c_locale(void)
 {
     return uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
 }
 
 int decimal_vprint(char *text, size_t size, const char *format, va_list list)
 {
-    locale_t before = enter_plain();
+    locale_t before = enter_c_locale();
     int length = vsnprintf(text, size, format, list);
     uselocale(before);
     return length;
@@ -38,7 +38,7 @@ int decimal_print(char *text, size_t size, const char *format, ...)
 char *decimal_vtext(const char *format, va_list list)
 {
     char *text;
-    locale_t before = enter_plain();
+    locale_t before = enter_c_locale();
     int length = vasprintf(&text, format, list);
     uselocale(before);
     if (length < 0) {
@@ -49,7 +49,7 @@ char *decimal_vtext(const char *format, va_list list)
 
 double decimal_parse(const char *text, char **end)
 {
-    locale_t before = enter_plain();
+    locale_t before = enter_c_locale();
     double value = strtod(text, end);
     uselocale(before);
     return value;
@@ -114,7 +114,10 @@ static wide make_power_of_ten(int k)
         high = high << 1 | rest >> 63;
         rest <<= 1;
     }
-    return high + ((rest | (uint64_t)low) != 0);
+    if ((rest | (uint64_t)low) != 0) {
+        high++;
+    }
+    return high;
 }
 
 // The same as high and low half g, made once: threads that make one at a time make the
@@ -148,7 +151,11 @@ static int floor_log2_power(int e)
 
 static int floor_log10_power(int q, bool closer_below)
 {
-    return (q * 1262611 - (closer_below ? 524031 : 0)) >> 22;
+    int product = q * 1262611;
+    if (closer_below) {
+        product -= 524031;
+    }
+    return product >> 22;
 }
 
 // g c / 2^128 rounded to odd: its last bit says that something was left over. With that
@@ -187,8 +194,11 @@ static decimal nearest_within(uint64_t lower, uint64_t value, uint64_t upper, in
     const uint64_t s = value / 4, tens = s / 10;
     if (s >= 10) {
         const bool down = lower <= 40 * tens, up = 40 * tens + 40 <= upper;
-        if (down != up) {
-            return (decimal){tens + up, k + 1};
+        if (down && !up) {
+            return (decimal){tens, k + 1};
+        }
+        if (up && !down) {
+            return (decimal){tens + 1, k + 1};
         }
     }
 
@@ -197,8 +207,10 @@ static decimal nearest_within(uint64_t lower, uint64_t value, uint64_t upper, in
     const bool down = lower <= 4 * s, up = 4 * s + 4 <= upper;
     const uint64_t middle = 4 * s + 2;
     const bool nearer_above = value > middle || (value == middle && s % 2 == 1);
-    const bool upper_one = down != up ? up : nearer_above;
-    return (decimal){s + upper_one, k};
+    if ((up && !down) || (up == down && nearer_above)) {
+        return (decimal){s + 1, k};
+    }
+    return (decimal){s, k};
 }
 
 // The shortest decimal number that reads back as a finite value above zero, of those the
@@ -329,8 +341,10 @@ static void write_digits(char *text, double value, int most_plain)
 
 void number_format(char *text, double value)
 {
-    // the sign of a zero says nothing to a reader
-    write_digits(text, value == 0 ? 0 : value, 15);
+    if (value == 0) {
+        value = 0; // the sign of a zero says nothing to a reader
+    }
+    write_digits(text, value, 15);
 }
 
 void number_format_short(char *text, double value)
@@ -341,7 +355,10 @@ void number_format_short(char *text, double value)
 bool decimal_read(const char *text, double *value, const char **rest)
 {
     // what strtod would take beyond a decimal number
-    const char *digits = text + (*text == '+' || *text == '-');
+    const char *digits = text;
+    if (*digits == '+' || *digits == '-') {
+        digits++;
+    }
     bool begins = isdigit((unsigned char)digits[0]) ||
                   (digits[0] == '.' && isdigit((unsigned char)digits[1]));
     if (!begins || (digits[0] == '0' && tolower((unsigned char)digits[1]) == 'x')) {
@@ -360,8 +377,11 @@ bool decimal_read(const char *text, double *value, const char **rest)
 int compare_numbers(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
-    if (isnan(x) || isnan(y)) {
-        return isnan(x) - isnan(y);
+    if (x < y || (isnan(y) && !isnan(x))) {
+        return -1;
     }
-    return (x > y) - (x < y);
+    if (x > y || (isnan(x) && !isnan(y))) {
+        return 1;
+    }
+    return 0;
 }

@@ -212,10 +212,13 @@ double plain_atan2(double y, double x)
     }
 
     // in the first quadrant, then mirrored
-    double angle =
-        across <= along
-            ? arctangent(across, along)
-            : 0x1.921fb54442d18p+0 - (arctangent(along, across) - 0x1.1a62633145c07p-54);
+    double angle;
+    if (across <= along) {
+        angle = arctangent(across, along);
+    } else {
+        angle =
+            0x1.921fb54442d18p+0 - (arctangent(along, across) - 0x1.1a62633145c07p-54);
+    }
     if (x < 0) {
         angle = 0x1.921fb54442d18p+1 - (angle - 0x1.1a62633145c07p-53);
     }

@@ -20,37 +20,50 @@ enum {
 // counts who has them.
 
 // Maps a chunk of its own at a place. False if there is no memory to be had.
-static bool map_chunk(void *at)
+static bool map_own_chunk(void *at)
 {
+    if (mmap(at, ARRAY_CHUNK, PROT_READ | PROT_WRITE,
+             MAP_SHARED | MAP_ANONYMOUS | MAP_FIXED, -1, 0) != at) {
+        return false;
+    }
+
     // memory is asked for here, where its want is an error and not a signal; an old
     // kernel cannot
-    return mmap(at, ARRAY_CHUNK, PROT_READ | PROT_WRITE,
-                MAP_SHARED | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == at &&
-           (madvise(at, ARRAY_CHUNK, MADV_POPULATE_WRITE) == 0 || errno == EINVAL);
+    return madvise(at, ARRAY_CHUNK, MADV_POPULATE_WRITE) == 0 || errno == EINVAL;
+}
+
+// Maps a chunk a second time at a place. False if that cannot be.
+static bool map_again(void *at, void *chunk)
+{
+    // memory of the size 0 that becomes larger is mapped a second time
+    if (mremap(chunk, 0, ARRAY_CHUNK, MREMAP_MAYMOVE | MREMAP_FIXED, at) != MAP_FAILED) {
+        return true;
+    }
+
+    // valgrind knows no such call and gets a copy
+    if (errno != EINVAL || !map_own_chunk(at)) {
+        return false;
+    }
+    memcpy(at, chunk, ARRAY_CHUNK);
+    return true;
 }
 
 // Puts a chunk behind the end of an array: memory of its own, or that of the same chunk
 // of `from`.
 static bool append_chunk(shared_array *a, const shared_array *from)
 {
-    char *at = (char *)a->base + a->mapped, *there = NULL;
-    if (from != NULL) {
-        there = from->base;
-    }
     if (a->mapped + ARRAY_CHUNK > a->reserved) {
         return false;
     }
-
-    // memory of the size 0 that becomes larger is mapped a second time; valgrind knows no
-    // such call and gets a copy
-    const bool shares =
-        from != NULL && mremap(there + a->mapped, 0, ARRAY_CHUNK,
-                               MREMAP_MAYMOVE | MREMAP_FIXED, at) != MAP_FAILED;
-    if (!shares && ((from != NULL && errno != EINVAL) || !map_chunk(at))) {
-        return false;
+    char *at = (char *)a->base + a->mapped;
+    bool mapped;
+    if (from == NULL) {
+        mapped = map_own_chunk(at);
+    } else {
+        mapped = map_again(at, (char *)from->base + a->mapped);
     }
-    if (!shares && from != NULL) {
-        memcpy(at, there + a->mapped, ARRAY_CHUNK);
+    if (!mapped) {
+        return false;
     }
     a->mapped += ARRAY_CHUNK;
     a->capacity = a->mapped / a->size;
@@ -74,9 +87,9 @@ bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t mos
     struct rlimit limit;
     if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur / PART / size < most) {
         most = limit.rlim_cur / PART / size;
-        if (most < least) {
-            most = least;
-        }
+    }
+    if (most < least) {
+        most = least;
     }
 
     // half as much where it has no room for the most
@@ -95,7 +108,10 @@ bool shared_array_reserve(shared_array *a, size_t size, size_t least, size_t mos
 
 static bool grow_plain(shared_array *a, size_t count)
 {
-    size_t capacity = a->capacity ? 2 * a->capacity : LEAST_ELEMENTS;
+    size_t capacity = 2 * a->capacity;
+    if (capacity < LEAST_ELEMENTS) {
+        capacity = LEAST_ELEMENTS;
+    }
     if (capacity < count) {
         capacity = count;
     }

@@ -6,9 +6,8 @@
 // everywhere.
 //
 // x is reduced by the nearest multiple n of pi/2, in three parts (Cody and Waite), and
-// the minimax
-// polynomials of Sun's fdlibm for |r| <= pi/4 are evaluated. Error below 2 ulp for |x| <
-// 1e5; larger arguments go to the C library.
+// the minimax polynomials of Sun's fdlibm for |r| <= pi/4 are evaluated. Error below 2
+// ulp for |x| < 1e5; larger arguments go to the C library.
 #pragma once
 
 #include <math.h>

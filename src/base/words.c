@@ -40,8 +40,14 @@ int edit_distance(const char *a, const char *b, int limit)
         row = oldest;
         row[0] = (int)i;
         for (size_t j = 1; j <= lb; j++) {
-            row[j] = smaller_count(last[j - 1] + (a[i - 1] != b[j - 1]),
-                                   smaller_count(last[j], row[j - 1]) + 1);
+            // a letter kept or replaced, or one inserted or deleted
+            int replaced = last[j - 1];
+            if (a[i - 1] != b[j - 1]) {
+                replaced++;
+            }
+            row[j] = smaller_count(replaced, smaller_count(last[j], row[j - 1]) + 1);
+
+            // or two neighbours swapped
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
                 row[j] = smaller_count(row[j], before[j - 2] + 1);
             }
@@ -52,8 +58,14 @@ int edit_distance(const char *a, const char *b, int limit)
 
 nearest_word nearest_begin(const char *word)
 {
-    size_t half = strlen(word) / 2;
-    return (nearest_word){.word = word, .distance = half < 4 ? (int)half + 1 : 5};
+    // the first distance that is too far
+    enum { MOST_DIFFERENT = 4 };
+    const size_t half = strlen(word) / 2;
+    nearest_word near = {.word = word, .distance = MOST_DIFFERENT + 1};
+    if (half < MOST_DIFFERENT) {
+        near.distance = (int)half + 1;
+    }
+    return near;
 }
 
 // The part of a name after its last '/' or '.'.
@@ -70,13 +82,23 @@ static const char *last_part(const char *name)
 
 void nearest_try(nearest_word *n, const char *candidate)
 {
-    int whole = edit_distance(n->word, candidate, n->distance);
-    int part = edit_distance(n->word, last_part(candidate), n->distance);
-    int distance = whole < part ? whole : part;
+    const int whole = edit_distance(n->word, candidate, n->distance);
+    const int part = edit_distance(n->word, last_part(candidate), n->distance);
+    const int distance = smaller_count(whole, part);
     if (distance < n->distance) {
         n->distance = distance;
         n->best = candidate;
     }
+}
+
+const char *did_you_mean(char hint[HINT_TEXT], const char *near, const char *otherwise)
+{
+    if (near == NULL) {
+        snprintf(hint, HINT_TEXT, "%s", otherwise);
+    } else {
+        snprintf(hint, HINT_TEXT, ", did you mean '%.160s'?", near);
+    }
+    return hint;
 }
 
 static const char *name_at(const void *table, size_t size, int index)
@@ -127,29 +149,38 @@ bool is_unprintable(uint32_t character)
     return control || separator || direction;
 }
 
+// Length in bytes of a character of UTF-8, as its first byte says; 0 if none begins so.
+static int length_by_first_byte(unsigned char first)
+{
+    if (first < 0x80) {
+        return 1;
+    }
+    if (first < 0xc2) {
+        return 0;
+    }
+    if (first < 0xe0) {
+        return 2;
+    }
+    if (first < 0xf0) {
+        return 3;
+    }
+    if (first < 0xf5) {
+        return 4;
+    }
+    return 0;
+}
+
 // Length in bytes of the whole character that begins at c, 0 if none does; its number.
 static int whole_character(const unsigned char *c, uint32_t *number)
 {
-    // the first byte says how many follow, each with six bits
-    int length = 1;
-    if (!(*c < 0x80)) {
-        if (*c >= 0xf5) {
-            length = 0;
-        } else if (*c >= 0xf0) {
-            length = 4;
-        } else if (*c >= 0xe0) {
-            length = 3;
-        } else if (*c >= 0xc2) {
-            length = 2;
-        } else {
-            length = 0;
-        }
-    }
+    const int length = length_by_first_byte(*c);
+    *number = *c;
     if (length <= 1) {
-        *number = *c;
-    } else {
-        *number = *c & (0x7fu >> length);
+        return length;
     }
+
+    // some bits in the first byte, and six in each that follows
+    *number = *c & (0x7fu >> length);
     for (int i = 1; i < length; i++) {
         if ((c[i] & 0xc0) != 0x80) {
             return 0;
@@ -182,15 +213,15 @@ void make_printable(char *text, char kept)
 {
     // the bytes after the first of a character that goes begin none, and go one by one
     while (*text != '\0') {
-        const int length = *text == kept ? 1 : printable_length(text);
-        if (!(length > 0)) {
+        int length = 1;
+        if (*text != kept) {
+            length = printable_length(text);
+        }
+        if (length == 0) {
             *text = '?';
+            length = 1;
         }
-        if (length > 0) {
-            text += length;
-        } else {
-            text += 1;
-        }
+        text += length;
     }
 }
 
@@ -202,16 +233,15 @@ void print_printable_list(FILE *stream, const char *format, va_list list)
 
     // most texts need no memory; a longer one is cut where there is none
     const int length = decimal_vprint(brief, sizeof brief, format, list);
+    loss_unless(length >= 0);
     if (length >= (int)sizeof brief) {
         char *whole = decimal_vtext(format, again);
+        loss_unless(whole != NULL);
         if (whole != NULL) {
             text = whole;
-        } else {
-            text = brief;
         }
     }
     va_end(again);
-    loss_unless(length >= 0 && (length < (int)sizeof brief || text != brief));
 
     make_printable(text, '\n');
     fputs(text, stream);

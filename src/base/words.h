@@ -25,11 +25,11 @@ nearest_word nearest_begin(const char *word);
 // the last '/' or '.' counts for the whole ("fig-3-4" finds "thesis/fig-3-4").
 void nearest_try(nearest_word *n, const char *candidate);
 
-// The three arguments of a "%s%s%s" behind a name that is not known: ", did you mean
-// 'NEAR'?", or what else to say where `near` is NULL.
-#define DID_YOU_MEAN(near, otherwise)                                                    \
-    (near) != NULL ? ", did you mean '" : (otherwise), (near) != NULL ? (near) : "",     \
-        (near) != NULL ? "'?" : ""
+enum { HINT_TEXT = 192 }; // room for a hint
+
+// What a sentence says behind a name that is not known: ", did you mean 'NEAR'?", or
+// `otherwise` where no name is near (NULL). Returns the hint.
+const char *did_you_mean(char hint[HINT_TEXT], const char *near, const char *otherwise);
 
 // Tables of `count` rows of `size` bytes, each of which begins with its name, a const
 // char *. The index of a name, -1 if there is none such; and the name that is nearest to

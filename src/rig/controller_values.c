@@ -71,10 +71,10 @@ static status read_setting(const controller *law, const setting *s, double *valu
     if (index < 0) {
         const char *near = name_nearest(law->parameters, sizeof *law->parameters,
                                         law->parameter_count, s->name);
-        return fault_set(
-            f, STATUS_BAD_SCENARIO,
-            "control.settings: the controller '%s' has no parameter '%s'%s%s%s",
-            law->name, s->name, DID_YOU_MEAN(near, ""));
+        char hint[HINT_TEXT];
+        return fault_set(f, STATUS_BAD_SCENARIO,
+                         "control.settings: the controller '%s' has no parameter '%s'%s",
+                         law->name, s->name, did_you_mean(hint, near, ""));
     }
 
     controller_parameter wanted = controller_parameter_at(law, index);

@@ -122,8 +122,9 @@ static void find_action_parts(reader *r, const tree_node *map, const tree_node *
         } else if (strcmp(key, "set") != 0 && strcmp(key, "push") != 0) {
             static const char *const words[] = {"at", "set", "push"};
             const char *near = name_nearest(words, sizeof *words, 3, key);
-            report_node(r, child->key, "unknown key '%.60s' in an action%s%s%s", key,
-                        DID_YOU_MEAN(near, ", expected at, set or push"));
+            char hint[HINT_TEXT];
+            report_node(r, child->key, "unknown key '%.60s' in an action%s", key,
+                        did_you_mean(hint, near, ", expected at, set or push"));
         } else if (*deed != NULL) {
             report_node(r, child->key,
                         "'%s' after '%s' in one action, expected one of them (begin a "
@@ -188,9 +189,10 @@ static int parse_quantity(reader *r, const tree_node *key)
         report_node(r, key, "%s depends on the computer, expected a quantity of the arm",
                     key->text);
     } else {
-        const char *near = summary_suggest(key->text);
-        report_node(r, key, "unknown quantity '%.60s'%s%s%s", key->text,
-                    DID_YOU_MEAN(near, ", expected a key of 'run --json'"));
+        char hint[HINT_TEXT];
+        report_node(r, key, "unknown quantity '%.60s'%s", key->text,
+                    did_you_mean(hint, summary_suggest(key->text),
+                                 ", expected a key of 'run --json'"));
     }
     return -1;
 }

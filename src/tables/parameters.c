@@ -102,9 +102,10 @@ int parameter_look_up(const char *path, fault *f)
 {
     int index = parameter_find(path);
     if (index < 0) {
-        const char *near = parameter_suggest(path);
-        fault_set(f, STATUS_BAD_ARGUMENT, "unknown parameter '%.60s'%s%s%s", path,
-                  DID_YOU_MEAN(near, ", expected one that 'show' lists"));
+        char hint[HINT_TEXT];
+        fault_set(f, STATUS_BAD_ARGUMENT, "unknown parameter '%.60s'%s", path,
+                  did_you_mean(hint, parameter_suggest(path),
+                               ", expected one that 'show' lists"));
     }
     return index;
 }
