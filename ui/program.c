@@ -12,6 +12,9 @@
 #include "src/base/whole_file.h"
 #include "src/base/shipped.h"
 #include "ui/command_table.h"
+#include "ui/commands/arguments.h"
+#include "ui/commands/help_pages.h"
+#include "ui/commands/results.h"
 #include "ui/terminal/terminal.h"
 
 // Without a command: what there is to run, and how.

@@ -9,6 +9,8 @@
 #include <unistd.h>
 
 #include "ui/command_table.h"
+#include "ui/commands/arguments.h"
+#include "ui/commands/results.h"
 
 enum { MOST_LINES = 16, MOST_WORDS = 40, MOST_LETTERS = 24, DRAWN_OF = 16 };
 

@@ -1,6 +1,7 @@
 // impactlab animate: films of one or more runs.
 #include "ui/commands/command.h"
 
+#include <stdio.h>
 #include <unistd.h>
 
 #include "render/scene/film.h"
@@ -10,8 +11,9 @@
 enum { BAR_LENGTH = 40 };
 
 // The progress bar: a line on the terminal that is written over.
-static void show_progress(void *context, int done, int total)
+static void show_frame_progress(void *context, int done, int total)
 {
+    (void)context;
     static const char full[BAR_LENGTH + 1] = "========================================";
     const int filled = BAR_LENGTH * done / total;
     fprintf(stderr, "\r[%.*s%*s] %3d %%  %d of %d frames", filled, full,
@@ -19,14 +21,15 @@ static void show_progress(void *context, int done, int total)
 }
 
 // The runs of a film with their scenarios.
-typedef struct filmed {
+typedef struct filmed_runs {
     scenario scenarios[FILM_RUNS];
     run_result results[FILM_RUNS];
     const char *names[FILM_RUNS];
-    int opened, run;
-} filmed;
+    int opened; // scenarios
+    int run;    // of them
+} filmed_runs;
 
-static void finish_filmed(filmed *m)
+static void filmed_runs_finish(filmed_runs *m)
 {
     for (int i = 0; i < m->run; i++) {
         run_finish(&m->results[i]);
@@ -36,60 +39,83 @@ static void finish_filmed(filmed *m)
     }
 }
 
-// Opens the scenarios, then the first one again with each --beside. Returns the exit
-// status.
-static int open_all(filmed *m, const arguments *a)
+// Opens one more scenario. Returns the exit status.
+static int open_filmed(filmed_runs *m, const arguments *a, const char *scenario_name)
 {
-    if (a->operand_count + a->besides.count > FILM_RUNS) {
-        return complain("%d runs in one film, expected at most %d",
-                        a->operand_count + a->besides.count, FILM_RUNS);
+    const int i = m->opened;
+    const int ended = command_scenario_open(&m->scenarios[i], scenario_name, a);
+    if (ended == EXIT_DONE) {
+        m->names[i] = m->scenarios[i].name;
+        m->opened++;
+    }
+    return ended;
+}
+
+// Opens the first scenario once more with the change of a --beside. Returns the exit
+// status.
+static int open_beside(filmed_runs *m, const arguments *a, char *change)
+{
+    const int i = m->opened;
+    const int ended = open_filmed(m, a, a->operands[0]);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
+    m->names[i] = change;
+    if (scenario_override_all(&m->scenarios[i], &change, 1, complain_sentence, NULL) !=
+        STATUS_OK) {
+        return EXIT_BAD_ARGUMENTS;
+    }
+    return EXIT_DONE;
+}
+
+// Opens the scenarios of the film. Returns the exit status.
+static int open_all_filmed(filmed_runs *m, const arguments *a)
+{
+    const int count = a->operand_count + a->besides.count;
+    if (count > FILM_RUNS) {
+        return complain("%d runs in one film, expected at most %d", count, FILM_RUNS);
     }
 
-    for (int i = 0; i < a->operand_count + a->besides.count; i++) {
-        bool beside = i >= a->operand_count;
-        scenario *s = &m->scenarios[i];
-        int ended = open_scenario(s, a->operands[beside ? 0 : i], a);
+    for (int i = 0; i < a->operand_count; i++) {
+        const int ended = open_filmed(m, a, a->operands[i]);
         if (ended != EXIT_DONE) {
             return ended;
         }
-        m->opened++;
-        m->names[i] = s->name;
-        if (beside) {
-            m->names[i] = a->besides.items[i - a->operand_count];
-            if (scenario_override_all(s, &a->besides.items[i - a->operand_count], 1,
-                                      complain_sentence, NULL) != STATUS_OK) {
-                return EXIT_BAD_ARGUMENTS;
-            }
+    }
+    for (int i = 0; i < a->besides.count; i++) {
+        const int ended = open_beside(m, a, a->besides.items[i]);
+        if (ended != EXIT_DONE) {
+            return ended;
         }
     }
     return EXIT_DONE;
 }
 
-// Runs all of them. Returns the exit status.
-static int run_all(const arguments *a, filmed *m)
+// Runs the i-th scenario. Returns the exit status.
+static int run_filmed(const arguments *a, filmed_runs *m, int i)
 {
-    for (; m->run < m->opened; m->run++) {
-        run_result *result = &m->results[m->run];
-        const scenario *s = &m->scenarios[m->run];
-        status code = run_with_progress(a, s, true, result);
-        if (code != STATUS_OK) {
-            // the run's own words say more than its status
-            const char *name = m->names[m->run++], *why = result->summary.message;
-            if (code == STATUS_STOPPED) {
-                return run_stopped(s, "no film is made");
-            }
-            return worse(EXIT_FAILED, complain("%s failed: %s", name,
-                                               why[0] ? why : status_text(code)));
-        }
+    run_result *result = &m->results[i];
+    const status code = run_with_progress(a, &m->scenarios[i], true, result);
+    m->run++;
+    if (code == STATUS_OK) {
+        return EXIT_DONE;
     }
-    return EXIT_DONE;
+    if (code == STATUS_STOPPED) {
+        return run_stopped(&m->scenarios[i], "no film is made");
+    }
+
+    // the run's own words say more than its status
+    const char *why = result->summary.message;
+    if (why[0] == '\0') {
+        why = status_text(code);
+    }
+    complain("%s failed: %s", m->names[i], why);
+    return EXIT_FAILED;
 }
 
-// Films the runs. An interrupt ends it in order: no half film stays behind.
-static int film_runs(const arguments *a, const filmed *m)
+// Films the runs. An interrupt leaves no part of a film. Returns the exit status.
+static int film_runs(const arguments *a, const filmed_runs *m)
 {
-    fault f = {0};
-    film_run runs[FILM_RUNS];
     const scene_options view = read_view(a);
     film_options o = {.view = view,
                       .ghosts = (int)a->ghosts,
@@ -99,21 +125,21 @@ static int film_runs(const arguments *a, const filmed *m)
                       .seconds = a->seconds,
                       .slow = a->slow,
                       .stop = &interrupted};
-    bool bar = isatty(STDERR_FILENO) && !a->quiet;
-    if (bar) {
-        o.progress = show_progress;
-    } else {
-        o.progress = NULL;
+    const bool shows_progress = isatty(STDERR_FILENO) && !a->quiet;
+    if (shows_progress) {
+        o.progress = show_frame_progress;
     }
+
+    film_run runs[FILM_RUNS];
     for (int i = 0; i < m->run; i++) {
         runs[i] = (film_run){&m->scenarios[i], &m->results[i], m->names[i]};
     }
 
-    status code = film_write(runs, m->run, &o, a->output, &f);
-    if (bar) {
+    fault f = {0};
+    const status code = film_write(runs, m->run, &o, a->output, &f);
+    if (shows_progress) {
         fprintf(stderr, "\r%78s\r", "");
     }
-
     if (code != STATUS_OK) {
         return complain_fault(&f);
     }
@@ -123,15 +149,14 @@ static int film_runs(const arguments *a, const filmed *m)
     return EXIT_DONE;
 }
 
-static int animate(const arguments *a)
+// Checks what is asked for, before anything is simulated. Returns the exit status.
+static int check_film_request(const arguments *a)
 {
     if (a->output == NULL) {
         return complain("animate needs a place for the film: -o FILE.mp4, FILE.webm, "
                         "FILE.gif, FILE.webp, or a folder for PNG frames");
     }
-
-    // errors of the request are reported before anything is simulated
-    int ended = check_view(a);
+    const int ended = check_view(a);
     if (ended != EXIT_DONE) {
         return ended;
     }
@@ -139,12 +164,21 @@ static int animate(const arguments *a)
     if (film_file_check(a->output, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-    SCOPED(finish_filmed) filmed m = {0};
-    ended = open_all(&m, a);
+    return EXIT_DONE;
+}
+
+static int animate(const arguments *a)
+{
+    int ended = check_film_request(a);
     if (ended != EXIT_DONE) {
         return ended;
     }
-    ended = run_all(a, &m);
+
+    SCOPED(filmed_runs_finish) filmed_runs m = {0};
+    ended = open_all_filmed(&m, a);
+    for (int i = 0; i < m.opened && ended == EXIT_DONE; i++) {
+        ended = run_filmed(a, &m, i);
+    }
     if (ended != EXIT_DONE) {
         return ended;
     }
@@ -170,8 +204,13 @@ static const option_row rows[] = {
 };
 
 const command animate_command = {
-    CALLED("animate", PICTURES, "Make a film of a run: the arm in space and its traces"),
-    SCENARIOS("SCENARIO...", 1, FILM_RUNS),
+    .name = "animate",
+    .group = GROUP_PICTURES,
+    .summary = "Make a film of a run: the arm in space and its traces",
+    .operands = "SCENARIO...",
+    .least = 1,
+    .most = FILM_RUNS,
+    .takes_scenarios = true,
     .help = "-o FILE.mp4, FILE.webm, FILE.gif or FILE.webp needs the program "
             "ffmpeg; any other name is that of a folder, to\nbe made, for PNG "
             "frames. Every impact is slowed down against the rest. Several "

@@ -7,6 +7,7 @@
 #include "src/base/words.h"
 #include "src/run/export.h"
 #include "src/scenario/effect.h"
+#include "ui/commands/results.h"
 
 // A file that is being checked, with the faults found in it.
 typedef struct checked_file {
@@ -80,15 +81,20 @@ static int check_files(const arguments *a)
     }
 
     if (a->json != NULL) {
-        return worse(result, write_json(a->json, files));
+        return worse(result, write_json_file(a->json, files));
     }
     json_decref(files);
     return result;
 }
 
 const command check_command = {
-    CALLED("check", ONE_RUN, "Validate scenario files"),
-    SCENARIOS("FILE...", 1, 1 << 20),
+    .name = "check",
+    .group = GROUP_ONE_RUN,
+    .summary = "Validate scenario files",
+    .operands = "FILE...",
+    .least = 1,
+    .most = 1 << 20,
+    .takes_scenarios = true,
     .help = "Every fault is printed as FILE:LINE:COLUMN: what is wrong and what "
             "was expected. A value that has\nno effect is warned of by "
             "FILE:LINE, and is no fault (exit status 0).\n",

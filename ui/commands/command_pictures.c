@@ -12,45 +12,66 @@
 
 #define SERIF "DejaVu Serif"
 
-// --theme, or its older spellings.
+// Reads --theme, or its other spellings --mono and --dark. Returns the exit status.
 static int read_theme(const arguments *a, figure_theme *theme)
 {
-    const char *word;
+    int spellings = 0;
+    *theme = THEME_COLOUR;
     if (a->theme != NULL) {
-        word = a->theme;
-    } else if (a->mono) {
-        word = "mono";
-    } else if (a->dark) {
-        word = "dark";
-    } else {
-        word = "light";
+        spellings++;
+        if (strcmp(a->theme, "mono") == 0) {
+            *theme = THEME_MONO;
+        } else if (strcmp(a->theme, "dark") == 0) {
+            *theme = THEME_DARK;
+        }
     }
-    if (a->mono + a->dark + (a->theme != NULL) > 1) {
+    if (a->mono) {
+        spellings++;
+        *theme = THEME_MONO;
+    }
+    if (a->dark) {
+        spellings++;
+        *theme = THEME_DARK;
+    }
+
+    if (spellings > 1) {
         return complain("--theme, --mono and --dark cannot go together");
     }
-    if (strcmp(word, "mono") == 0) {
-        *theme = THEME_MONO;
-    } else if (strcmp(word, "dark") == 0) {
-        *theme = THEME_DARK;
-    } else {
-        *theme = THEME_COLOUR;
+    return EXIT_DONE;
+}
+
+// The family of --font, NULL for the usual one, without serifs.
+static const char *read_font(const arguments *a)
+{
+    if (a->font == NULL || strcasecmp(a->font, "sans") == 0) {
+        return NULL;
     }
+    if (strcasecmp(a->font, "serif") == 0) {
+        return SERIF;
+    }
+    return a->font;
+}
+
+// Reads --from and --to. Returns the exit status.
+static int read_axis_range(const arguments *a, figure_options *o)
+{
+    if (isnan(a->from) && isnan(a->to)) {
+        return EXIT_DONE;
+    }
+    if (!(a->from < a->to)) { // one of them may be NaN
+        return complain("--from and --to go together, the first below the second");
+    }
+    o->from = a->from;
+    o->to = a->to;
     return EXIT_DONE;
 }
 
 int read_picture_options(const arguments *a, figure_options *o)
 {
-    const char *font = a->font; // NULL: the usual one, without serifs
-    if (font != NULL && strcasecmp(font, "sans") == 0) {
-        font = NULL;
-    } else if (font != NULL && strcasecmp(font, "serif") == 0) {
-        font = SERIF;
-    }
-    bool ranged = !isnan(a->from) || !isnan(a->to);
     *o = (figure_options){.look = {.width = a->width,
                                    .height = a->height,
                                    .dpi = a->dpi,
-                                   .font = font,
+                                   .font = read_font(a),
                                    .letters = a->font_size,
                                    .bare = a->bare,
                                    .transparent = a->transparent},
@@ -58,26 +79,23 @@ int read_picture_options(const arguments *a, figure_options *o)
                           .signals = a->signals,
                           .latex = a->latex,
                           .command = a->command_line};
-
     int ended = read_theme(a, &o->look.theme);
     if (ended != EXIT_DONE) {
         return ended;
     }
-    if (ranged && !(a->from < a->to)) {
-        return complain("--from and --to go together, the first below the second");
+    ended = read_axis_range(a, o);
+    if (ended != EXIT_DONE) {
+        return ended;
     }
-    if (ranged) {
-        o->from = a->from;
-        o->to = a->to;
-    }
+
     fault f = {0};
-    if (o->look.font != NULL) {
-        if (text_check_family(o->look.font, &f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
+    if (o->look.font != NULL && text_check_family(o->look.font, &f) != STATUS_OK) {
+        return complain_fault(&f);
     }
     return EXIT_DONE;
 }
+
+// --- figures ---------------------------------------------------------------------------
 
 static int publish_figure(const arguments *a, const figure *fig)
 {
@@ -86,10 +104,12 @@ static int publish_figure(const arguments *a, const figure *fig)
     if (ended != EXIT_DONE) {
         return ended;
     }
+
+    // its numbers stand beside it, unless another result is written there
     g_autofree char *csv = artwork_beside(a->plot, ".csv");
+    const bool with_csv = result_places_find(csv) == NULL;
     fault f = {0};
-    if (figure_publish(fig, &o, a->plot, result_places_find(csv) == NULL, &f) !=
-        STATUS_OK) {
+    if (figure_publish(fig, &o, a->plot, with_csv, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
     return EXIT_DONE;
@@ -119,9 +139,9 @@ int publish_study(const arguments *a, const scenario *s, const char *shows,
 
 int publish_owned(const arguments *a, owned_figure *o)
 {
-    const int code = publish_figure(a, &o->figure);
+    const int result = publish_figure(a, &o->figure);
     owned_figure_destroy(o);
-    return code;
+    return result;
 }
 
 int publish_runs(const arguments *a, const char *title, const trace_run *runs,
@@ -129,18 +149,17 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs,
 {
     assert(run_count > 0);
     figure_options o;
-    fault why = {0};
-    int ended = read_picture_options(a, &o);
+    const int ended = read_picture_options(a, &o);
     if (ended != EXIT_DONE) {
         return ended;
     }
-    owned_figure *r = run_figure_create(title, NULL, 0, runs, run_count, &o, &why);
-    if (r == NULL) {
-        return complain_fault(&why);
-    }
 
-    SCOPED(artwork_finish) artwork drawn = artwork_of_owned(r);
     fault f = {0};
+    owned_figure *created = run_figure_create(title, NULL, 0, runs, run_count, &o, &f);
+    if (created == NULL) {
+        return complain_fault(&f);
+    }
+    SCOPED(artwork_finish) artwork drawn = artwork_of_owned(created);
     if (artwork_publish(&drawn, &o, a->plot, false, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
@@ -157,16 +176,20 @@ scene_options read_view(const arguments *a)
                        .height = a->size.height,
                        .exaggerate = a->exaggerate,
                        .inset = a->inset,
-                       .transparent = a->transparent};
+                       .transparent = a->transparent,
+                       .theme = THEME_COLOUR};
     if (a->theme != NULL && strcmp(a->theme, "dark") == 0) {
         o.theme = THEME_DARK;
-    } else {
-        o.theme = THEME_COLOUR;
     }
 
-    // the words were checked before
-    bool known = (a->gl == NULL || scene_renderer_find(a->gl, &o.renderer)) &&
-                 (a->camera == NULL || camera_read(a->camera, &o.camera));
+    // both words were checked before
+    bool known = true;
+    if (a->gl != NULL) {
+        known = scene_renderer_find(a->gl, &o.renderer);
+    }
+    if (a->camera != NULL) {
+        known = camera_read(a->camera, &o.camera) && known;
+    }
     assert(known);
     (void)known;
     return o;
@@ -186,23 +209,18 @@ int check_view(const arguments *a)
 
 int check_scene(const arguments *a)
 {
-    int ended = check_view(a);
+    const int ended = check_view(a);
     if (ended != EXIT_DONE) {
         return ended;
     }
-
-    // there is a picture for each instant, and a limit to them
     if (a->instants.count > SCENE_INSTANTS) {
         return complain("--at was given %d times, expected at most %d", a->instants.count,
                         SCENE_INSTANTS);
     }
 
-    // before the run, which may take long
     fault f = {0};
-    if (a->scene != NULL) {
-        if (scene_check_path(a->scene, &f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
+    if (a->scene != NULL && scene_check_path(a->scene, &f) != STATUS_OK) {
+        return complain_fault(&f);
     }
     return EXIT_DONE;
 }
@@ -221,6 +239,7 @@ int write_scene(const arguments *a, const scenario *s, const run_result *result)
         count = DEFAULT_INSTANTS;
         scene_instants(result, times, count);
     }
+
     const scene_picture shown = {.scenario = s,
                                  .result = result,
                                  .options = read_view(a),

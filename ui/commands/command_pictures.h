@@ -39,7 +39,6 @@ int publish_runs(const arguments *a, const char *title, const trace_run *runs,
 #define PLOT_OPTION(what) OPTION(PICTURE, "plot", "FILE.{png,pdf,svg}", what, PLACE(plot))
 
 // --- the arm in space ------------------------------------------------------------------
-// Pictures of the arm requested on the command line.
 
 // The view set by --gl, --camera and --size.
 scene_options read_view(const arguments *a);
@@ -47,8 +46,8 @@ scene_options read_view(const arguments *a);
 // Checks --camera. Returns the exit status.
 int check_view(const arguments *a);
 
-// Checks that run --scene can write its file and that --at does not give too many
-// instants. Returns the exit status.
+// Checks, before the run, that run --scene can write its file and that --at does not give
+// too many instants. Returns the exit status.
 int check_scene(const arguments *a);
 
 // Writes the picture of run --scene. Returns the exit status.

@@ -109,7 +109,7 @@ static void figure_list_finish(figure_list *list)
 // --- drawing, on several threads -------------------------------------------------------
 
 // Draws the i-th figure to be begun; the result is its status.
-static void draw_piece(void *context, size_t i, void *scratch, void *result)
+static void draw_listed_figure(void *context, size_t i, void *scratch, void *result)
 {
     (void)scratch;
     const figure_list *list = context;
@@ -145,7 +145,7 @@ static void print_done_figures(figure_list *list)
 
 // Takes a figure that a thread is through with. A file that cannot be written keeps no
 // other figure from being drawn; every other fault ends the work.
-static status collect_piece(void *context, size_t i, const void *result, fault *f)
+static status collect_figure(void *context, size_t i, const void *result, fault *f)
 {
     figure_list *list = context;
     asked_figure *collected = &list->figures[list->order[i]];
@@ -186,8 +186,8 @@ static status draw_figures(figure_list *list, const arguments *a, fault *f)
     const pool_work work = {.context = list,
                             .count = list->count,
                             .result_size = sizeof(status),
-                            .compute = draw_piece,
-                            .collect = collect_piece,
+                            .compute = draw_listed_figure,
+                            .collect = collect_figure,
                             .stop = &interrupted};
     order_slow_first(list);
     TRY(pool_run(&work, many_runs_jobs(a), f));
@@ -218,7 +218,7 @@ static int report_figures(const figure_list *list, const arguments *a)
 {
     int result = EXIT_DONE;
     if (a->json != NULL) {
-        result = write_json(a->json, figures_json(list));
+        result = write_json_file(a->json, figures_json(list));
     }
     if (list->failed != NULL) {
         result = worse(result, complain_fault(list->failed));
@@ -277,8 +277,12 @@ static const option_row figures_rows[] = {
 };
 
 const command figures_command = {
-    CALLED("figures", THESIS, "Draw the figures and tables of the thesis"),
-    OPERANDS("[ID]...", 0, 1 << 20),
+    .name = "figures",
+    .group = GROUP_THESIS,
+    .summary = "Draw the figures and tables of the thesis",
+    .operands = "[ID]...",
+    .least = 0,
+    .most = 1 << 20,
     .help =
         "Without IDs all of them, into the folder 'figures' unless -o says otherwise; a "
         "CSV of "

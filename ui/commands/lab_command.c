@@ -1,8 +1,9 @@
-// The lab on the terminal, or its screen printed as text.
+// impactlab lab: the lab on the terminal, or its screen printed as text.
 #include "ui/commands/command.h"
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <wchar.h>
@@ -10,6 +11,7 @@
 #include "src/base/clock.h"
 #include "src/base/text_stream.h"
 #include "src/base/words.h"
+#include "ui/commands/results.h"
 #include "ui/explorer/explorer.h"
 #include "ui/terminal/pictures.h"
 #include "ui/terminal/terminal.h"
@@ -17,8 +19,7 @@
 #define FRAME         (1.0 / 60) // shortest time between two pictures [s]
 #define LONGEST_PAUSE 0.1        // between two pictures while something moves [s]
 #define PATIENCE      0.01       // a run that takes longer is computed meanwhile [s]
-// a longer pause (suspended, dragged about) counts as this [s]
-#define LONGEST_FRAME 0.25
+#define LONGEST_FRAME 0.25 // a longer one (suspended, dragged about) counts as this [s]
 
 enum { INPUTS_AT_ONCE = 32 }; // between two pictures, at most
 
@@ -26,10 +27,21 @@ static const char first_scenario[] = "corrected/first-impact";
 
 // --- without a terminal ----------------------------------------------------------------
 
-// Carries out a file of commands, one a line. Stops at the first that fails.
+// Carries out one line of a script. Returns the exit status.
+static int run_script_line(explorer *ex, const char *path, int number, char *line)
+{
+    line[strcspn(line, "\r\n")] = '\0';
+    if (!explorer_carry_out(ex, line)) {
+        complain("%s:%d: %s", path, number, ex->input.message.text);
+        return EXIT_FAILED;
+    }
+    return EXIT_DONE;
+}
+
+// Carries out a file of commands, one a line, until one fails or quits. Returns the exit
+// status.
 static int run_script(explorer *ex, const char *path)
 {
-    char line[LINE_TEXT];
     FILE *stream = stdin;
     if (strcmp(path, "-") != 0) {
         stream = fopen(path, "r");
@@ -38,31 +50,29 @@ static int run_script(explorer *ex, const char *path)
         return complain("%s cannot be read: %s", path, strerror(errno));
     }
 
-    // line by line until one fails or quits
-    int code = EXIT_DONE;
-    for (int number = 1;
-         code == EXIT_DONE && !ex->input.quit && fgets(line, sizeof line, stream);
-         number++) {
-        if (strchr(line, '\n') == NULL && !feof(stream)) {
-            code = complain("%s:%d: no command, expected a text of less than %d bytes "
-                            "and the end of the line",
-                            path, number, LINE_TEXT);
+    char line[LINE_TEXT];
+    int result = EXIT_DONE;
+    for (int number = 1; result == EXIT_DONE && !ex->input.quit; number++) {
+        if (fgets(line, sizeof line, stream) == NULL) {
             break;
         }
-        line[strcspn(line, "\r\n")] = '\0';
-        if (!explorer_carry_out(ex, line)) {
-            complain("%s:%d: %s", path, number, ex->input.message.text);
-            code = EXIT_FAILED;
+        const bool is_cut_off = strchr(line, '\n') == NULL && !feof(stream);
+        if (is_cut_off) {
+            result = complain("%s:%d: no command, expected a text of less than %d bytes "
+                              "and the end of the line",
+                              path, number, LINE_TEXT);
+        } else {
+            result = run_script_line(ex, path, number, line);
         }
     }
     if (ferror(stream)) {
-        code = complain("%s cannot be read: %s", path, strerror(errno));
+        result = complain("%s cannot be read: %s", path, strerror(errno));
     }
 
     if (stream != stdin) {
         fclose(stream);
     }
-    return code;
+    return result;
 }
 
 static void print_screen(explorer *ex)
@@ -74,71 +84,82 @@ static void print_screen(explorer *ex)
     screen_finish(&s);
 }
 
+// Carries out the script, presses the keys and prints the screen. Returns the exit
+// status.
 static int run_off_screen(explorer *ex, const arguments *a)
 {
     fault f = {0};
+    ex->view.size = (screen_size){120, 40};
     if (a->size.width > 0) {
         ex->view.size = (screen_size){a->size.width, a->size.height};
-    } else {
-        ex->view.size = (screen_size){120, 40};
     }
-    int code = EXIT_DONE;
+
+    int result = EXIT_DONE;
     if (a->script != NULL) {
-        code = run_script(ex, a->script);
+        result = run_script(ex, a->script);
     }
-    if (code == EXIT_DONE && a->keys != NULL && !explorer_keys(ex, a->keys, &f)) {
-        code = complain_fault(&f);
+    if (result == EXIT_DONE && a->keys != NULL && !explorer_keys(ex, a->keys, &f)) {
+        result = complain_fault(&f);
     }
-    if (code == EXIT_DONE && !a->quiet) {
+    if (result == EXIT_DONE && !a->quiet) {
         print_screen(ex);
     }
 
     // the keys went on, but what they were to do is not done
-    if (code == EXIT_DONE && ex->first_failure[0] != '\0') {
+    if (result == EXIT_DONE && ex->first_failure[0] != '\0') {
         complain("--keys: %s", ex->first_failure);
-        code = EXIT_FAILED;
+        result = EXIT_FAILED;
     }
-    return code;
+    return result;
 }
 
 // --- on a terminal ---------------------------------------------------------------------
 
-static void take_input(explorer *ex, terminal_input in)
+// The lab while it is shown live.
+typedef struct live_lab {
+    explorer *ex;
+    screen screen;
+    picture_layer pictures;
+    bool outdated;      // the terminal does not show what there is
+    bool left;          // the terminal went away
+    bool any_input;     // came since the last wait
+    double shown_at;    // when the terminal got its last picture [s]
+    double pause;       // until the next one, at least [s]
+    double advanced_to; // the instant until which playback went on [s]
+} live_lab;
+
+static double now_in_seconds(void)
 {
-    if (in.kind == TERMINAL_KEY) {
-        if (in.pasted) {
-            explorer_paste(ex, in.code);
-        } else {
-            explorer_key(ex, in.code);
-        }
-    } else if (in.kind == TERMINAL_POINTER) {
-        explorer_point(ex, in.pointer);
-    } else if (in.kind == TERMINAL_RESIZE) {
-        ex->view.looks.redraw = true;
+    return clock_seconds(CLOCK_MONOTONIC);
+}
+
+// Fits pictures between the characters to what the terminal says of itself.
+static void fit_pictures(live_lab *lab)
+{
+    const terminal_pixels known = terminal_pixels_known();
+    const looks *l = &lab->ex->view.looks;
+    picture_layer *layer = &lab->pictures;
+    lab->screen.pictures = NULL;
+    if (l->pixels && known.there) {
+        lab->screen.pictures = layer;
+    }
+    layer->cell_width = known.cell_width;
+    layer->cell_height = known.cell_height;
+    layer->ground = theme_grounds(l->theme)[0];
+    if (known.has_ground) {
+        layer->ground = known.ground;
     }
 }
 
-// Fits the grid to the terminal and shows it.
-static void show(explorer *ex, screen *s, picture_layer *layer)
+// Draws the lab and sends what changed to the terminal.
+static void show_lab(live_lab *lab)
 {
-    int width, height;
-    looks *l = &ex->view.looks;
-    terminal_size(&width, &height);
+    looks *l = &lab->ex->view.looks;
+    screen *s = &lab->screen;
+    fit_pictures(lab);
 
-    // with pictures if the terminal draws them and they are wanted
-    const terminal_pixels t = terminal_pixels_known();
-    if (l->pixels && t.there) {
-        s->pictures = layer;
-    } else {
-        s->pictures = NULL;
-    }
-    layer->cell_width = t.cell_width;
-    layer->cell_height = t.cell_height;
-    if (t.has_ground) {
-        layer->ground = t.ground;
-    } else {
-        layer->ground = theme_grounds(l->theme)[0];
-    }
+    int width, height;
+    terminal_size(&width, &height);
     if (width != s->width || height != s->height) {
         screen_resize(s, width, height);
     }
@@ -147,81 +168,137 @@ static void show(explorer *ex, screen *s, picture_layer *layer)
     if (l->depth == DEPTH_AUTO) {
         l->shown_depth = terminal_depth();
     }
-    explorer_draw(ex, s);
+    explorer_draw(lab->ex, s);
     terminal_show(s, l->glyphs, l->theme, l->depth, l->redraw);
     l->redraw = false;
     loss_forget(); // the next picture shows what this one lacks
 }
 
+// Shows the lab and chooses how long that picture stays at least. Half of the processor
+// is left to others, but ten pictures a second are shown, as far as the rate that was
+// asked for lets them.
+static void show_and_pace(live_lab *lab, double now)
+{
+    const double cpu_before = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
+    const size_t sent_before = terminal_sent();
+    show_lab(lab);
+    lab->shown_at = now;
+    lab->outdated = false;
+
+    const double cpu_time = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu_before;
+    lab->pause = fmin(fmax(FRAME, 2 * cpu_time), LONGEST_PAUSE);
+    const double rate = 1e3 * lab->ex->view.looks.rate; // [B/s]
+    if (rate > 0) {
+        lab->pause = fmax(lab->pause, (double)(terminal_sent() - sent_before) / rate);
+    }
+}
+
+// Waits for input, no longer than until there is something to show or to keep.
+static terminal_input wait_for_input(live_lab *lab, double now)
+{
+    double longest = recovery_keep(lab->ex, lab->any_input, now);
+    if (lab->outdated) {
+        // a picture that took longer than its pause leaves nothing to wait for
+        const double shown_for = now_in_seconds() - lab->shown_at;
+        longest = fmin(longest, fmax(0, lab->pause - shown_for));
+    } else if (explorer_is_busy(lab->ex)) {
+        longest = fmin(longest, lab->pause);
+    }
+
+    if (!isfinite(longest)) {
+        longest = -1; // without end
+    }
+    return terminal_wait(longest);
+}
+
+// Shows what was computed meanwhile, and plays on.
+static void follow_time(live_lab *lab, double now)
+{
+    explorer *ex = lab->ex;
+    if (explorer_follow(ex)) {
+        lab->outdated = true;
+    }
+    if (ex->view.playback.playing) {
+        act_advance(&ex->model, &ex->view, &ex->input,
+                    fmin(now - lab->advanced_to, LONGEST_FRAME));
+        lab->outdated = true;
+    }
+    lab->advanced_to = now;
+}
+
+static void take_input(live_lab *lab, terminal_input in)
+{
+    switch (in.kind) {
+    case TERMINAL_KEY:
+        if (in.pasted) {
+            explorer_paste(lab->ex, in.code);
+        } else {
+            explorer_key(lab->ex, in.code);
+        }
+        break;
+    case TERMINAL_POINTER:
+        explorer_point(lab->ex, in.pointer);
+        break;
+    case TERMINAL_RESIZE:
+        lab->ex->view.looks.redraw = true;
+        break;
+    case TERMINAL_LEAVE:
+        lab->left = true;
+        break;
+    default:
+        break;
+    }
+}
+
+// Takes all input that has arrived, so that keys never wait for pictures that are out of
+// date.
+static void take_all_input(live_lab *lab, terminal_input first)
+{
+    terminal_input in = first;
+    lab->any_input = in.kind != TERMINAL_NONE;
+    for (int taken = 0; in.kind != TERMINAL_NONE; taken++) {
+        take_input(lab, in);
+        lab->outdated = true;
+        if (lab->left || lab->ex->input.quit || taken == INPUTS_AT_ONCE) {
+            break;
+        }
+        in = terminal_wait(0);
+    }
+}
+
+// Gives the terminal what was copied.
+static void hand_out_copy(explorer_input *input)
+{
+    if (input->copied != NULL) {
+        terminal_copy(input->copied);
+        free(input->copied);
+        input->copied = NULL;
+    }
+}
+
 // Returns whether the user ended it.
 static bool run_on_terminal(explorer *ex)
 {
-    screen s = {0};
-    picture_layer layer = {0};
-    bool dirty = true, leave = false, taken_any = false;
-    double drawn = 0, pause = FRAME, last = clock_seconds(CLOCK_MONOTONIC);
-
-    while (!ex->input.quit && !leave) {
-        // draw, though not more often than frames
-        double now = clock_seconds(CLOCK_MONOTONIC);
-        if (dirty && now - drawn >= pause) {
-            const double spent = clock_seconds(CLOCK_PROCESS_CPUTIME_ID);
-            const size_t sent = terminal_sent();
-            show(ex, &s, &layer);
-            drawn = now;
-            dirty = false;
-
-            // half of the processor is left to others, but ten pictures a second are
-            // shown, as far as the rate that was asked for [kB/s] lets them
-            const double took = clock_seconds(CLOCK_PROCESS_CPUTIME_ID) - spent;
-            const double bytes = (double)(terminal_sent() - sent),
-                         rate = ex->view.looks.rate;
-            pause = fmin(fmax(FRAME, 2 * took), LONGEST_PAUSE);
-            if (rate > 0) {
-                pause = fmax(pause, bytes / (1e3 * rate));
-            }
+    live_lab lab = {.ex = ex,
+                    .outdated = true,
+                    .pause = FRAME,
+                    .advanced_to = now_in_seconds()};
+    while (!ex->input.quit && !lab.left) {
+        double now = now_in_seconds();
+        if (lab.outdated && now - lab.shown_at >= lab.pause) {
+            show_and_pace(&lab, now);
         }
 
-        bool waits = dirty || explorer_is_busy(ex);
-        // a picture that took longer than a frame leaves nothing to wait for
-        double left =
-            fmax(0, dirty ? pause - (clock_seconds(CLOCK_MONOTONIC) - drawn) : pause);
-        left = fmin(waits ? left : HUGE_VAL, recovery_keep(ex, taken_any, now));
-        terminal_input in = terminal_wait(isfinite(left) ? left : -1);
-        now = clock_seconds(CLOCK_MONOTONIC);
-
-        // what was computed, and time going on
-        dirty |= explorer_follow(ex);
-        if (ex->view.playback.playing) {
-            act_advance(&ex->model, &ex->view, &ex->input,
-                        now - last < LONGEST_FRAME ? now - last : LONGEST_FRAME);
-            dirty = true;
-        }
-
-        // all input that has arrived, so that keys never wait for pictures that are out
-        // of date
-        last = now;
-        taken_any = in.kind != TERMINAL_NONE;
-        for (int taken = 0; in.kind != TERMINAL_NONE && !ex->input.quit && !leave;
-             taken++) {
-            dirty = true;
-            leave = in.kind == TERMINAL_LEAVE;
-            take_input(ex, in);
-            in.kind = TERMINAL_NONE;
-            if (taken < INPUTS_AT_ONCE && !leave) {
-                in = terminal_wait(0);
-            }
-        }
-        if (ex->input.copied != NULL) {
-            terminal_copy(ex->input.copied);
-            free(ex->input.copied);
-            ex->input.copied = NULL;
-        }
+        const terminal_input in = wait_for_input(&lab, now);
+        now = now_in_seconds();
+        follow_time(&lab, now);
+        take_all_input(&lab, in);
+        hand_out_copy(&ex->input);
     }
 
-    screen_finish(&s);
-    pictures_finish(&layer);
-    return !leave;
+    screen_finish(&lab.screen);
+    pictures_finish(&lab.pictures);
+    return !lab.left;
 }
 
 // What the terminal can be expected to show: the console of Linux has no braille in its
@@ -238,106 +315,138 @@ static glyph_set usual_glyphs(void)
     return GLYPHS_BRAILLE;
 }
 
-static int open_explorer(explorer *ex, const arguments *a)
+// Whether the lab is shown live, not printed as text.
+static bool is_live(const arguments *a)
 {
-    scenario s;
-    int code = EXIT_DONE;
+    return a->keys == NULL && a->script == NULL && a->size.width == 0;
+}
 
-    // a session brings its own scenarios: the lab opens, and then it
-    const char *named = a->operand_count > 0 ? a->operands[0] : first_scenario;
-    const bool is_session = named[text_stem(named, ".session")] != '\0';
-    int ended = open_scenario(&s, is_session ? first_scenario : named, a);
-    if (ended != EXIT_DONE) {
-        return ended;
+// Gives the lab the terminal's own looks, then those that were kept.
+static void prepare_looks(explorer *ex, const arguments *a)
+{
+    looks *l = &ex->view.looks;
+    l->glyphs = usual_glyphs();
+    if (!is_live(a)) {
+        return;
     }
 
-    bool live = a->keys == NULL && a->script == NULL && a->size.width == 0;
+    l->theme = COLOURS_DARK;
+    if (terminal_is_light()) {
+        l->theme = COLOURS_LIGHT;
+    }
+    explorer_load_settings(&ex->model, &ex->view, &ex->input);
+    if (a->operand_count == 0) {
+        explorer_welcome(ex);
+    }
+
+    // without a locale that knows braille no character beyond ASCII has a width
+    if (wcwidth(L'\u28ff') != 1) {
+        l->glyphs = GLYPHS_ASCII;
+    }
+}
+
+// Carries out what the command line says of looks, as a command of the lab. Returns the
+// exit status.
+static int set_look_option(explorer *ex, const char *name, const char *value)
+{
+    if (value == NULL) {
+        return EXIT_DONE;
+    }
+    char line[LINE_TEXT];
+    snprintf(line, sizeof line, "%s %s", name, value);
+    if (!explorer_carry_out(ex, line)) {
+        return complain("--%s: %s", name, ex->input.message.text);
+    }
+    return EXIT_DONE;
+}
+
+// Sets the looks that the command line asks for. Returns the exit status.
+static int set_look_options(explorer *ex, const arguments *a)
+{
+    int result = set_look_option(ex, "glyphs", a->glyphs);
+    result = worse(result, set_look_option(ex, "theme", a->theme));
+    return worse(result, set_look_option(ex, "colours", a->colours));
+}
+
+// Opens the lab on the scenario or session that is named. Returns the exit status; unless
+// it is EXIT_DONE, nothing has to be closed.
+static int open_explorer(explorer *ex, const arguments *a)
+{
+    const char *named = first_scenario;
+    if (a->operand_count > 0) {
+        named = a->operands[0];
+    }
+
+    // a session brings its own scenarios: the lab opens, and then it
+    const bool is_session = named[text_stem(named, ".session")] != '\0';
+    scenario s;
+    int result = command_scenario_open(&s, is_session ? first_scenario : named, a);
+    if (result != EXIT_DONE) {
+        return result;
+    }
+
+    // off screen a run is waited for, however long it takes
+    const double patience = is_live(a) ? PATIENCE : HUGE_VAL;
     fault f = {0};
-    if (explorer_init(ex, &s, live ? PATIENCE : HUGE_VAL, &f) != STATUS_OK) {
+    if (explorer_init(ex, &s, patience, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    prepare_looks(ex, a);
+    result = set_look_options(ex, a);
+    if (result == EXIT_DONE && is_session &&
+        !explorer_open_session(&ex->model, &ex->view, &ex->input, named)) {
+        result = complain("%s", ex->input.message.text);
+    }
+    if (result != EXIT_DONE) {
+        explorer_finish(ex);
+    }
+    return result;
+}
+
+// Shows the lab until the user leaves. Returns the exit status.
+static int run_live(explorer *ex)
+{
+    fault f = {0};
+    if (terminal_open(&f) != STATUS_OK) {
         return complain_fault(&f);
     }
 
-    // the terminal's own looks, then those that were kept
-    char line[LINE_TEXT];
-    ex->view.looks.glyphs = usual_glyphs();
-    if (live) {
-        if (terminal_is_light()) {
-            ex->view.looks.theme = COLOURS_LIGHT;
-        } else {
-            ex->view.looks.theme = COLOURS_DARK;
-        }
-        explorer_load_settings(&ex->model, &ex->view, &ex->input);
-        if (a->operand_count == 0) {
-            explorer_welcome(ex);
-        }
-        const bool wide =
-            wcwidth(L'\u28ff') == 1; // the locale is there and knows braille
-        if (!wide) {
-            ex->view.looks.glyphs = GLYPHS_ASCII;
-        }
-    }
+    // while a recovered session is offered nothing is played
+    ex->view.playback.playing = !recovery_begin(ex);
+    recovery_end(ex, run_on_terminal(ex));
+    terminal_close();
 
-    // what the command line says comes last
-    const char *const settings[3][2] = {{"glyphs", a->glyphs},
-                                        {"theme", a->theme},
-                                        {"colours", a->colours}};
-    for (int i = 0; i < 3; i++) {
-        snprintf(line, sizeof line, "%s %s", settings[i][0],
-                 settings[i][1] ? settings[i][1] : "");
-        if (settings[i][1] != NULL && !explorer_carry_out(ex, line)) {
-            code = complain("--%s: %s", settings[i][0], ex->input.message.text);
-        }
-    }
-
-    if (code == EXIT_DONE && is_session &&
-        !explorer_open_session(&ex->model, &ex->view, &ex->input, named)) {
-        code = complain("%s", ex->input.message.text);
-    }
-    if (code != EXIT_DONE) {
-        explorer_finish(ex);
-    }
-    return code;
+    // what is left on the terminal
+    const session *e = &ex->model.session;
+    say("%s, %d change%s, peak force %.4g N\n", e->base.name, e->input_count,
+        plural_ending((size_t)e->input_count), e->run.summary.peak_force_N);
+    return EXIT_DONE;
 }
 
 // Opens the lab with the named scenario and runs it until the user leaves; with --keys,
-// --script or
-// --size it prints the screen instead. Returns the exit status.
+// --script or --size it prints the screen instead. Returns the exit status.
 static int explore(const arguments *a)
 {
     explorer ex;
     fault f = {0};
-
-    bool off_screen = a->keys != NULL || a->script != NULL || a->size.width > 0;
-    if (!off_screen && !terminal_usable(&f)) {
+    if (is_live(a) && !terminal_usable(&f)) {
         return complain_fault(&f);
     }
 
-    int ended = open_explorer(&ex, a);
-    if (ended != EXIT_DONE) {
-        return ended;
+    int result = open_explorer(&ex, a);
+    if (result != EXIT_DONE) {
+        return result;
     }
-    int code = EXIT_DONE;
-    if (off_screen) {
-        code = run_off_screen(&ex, a);
-    } else if (terminal_open(&f) != STATUS_OK) {
-        code = complain_fault(&f);
+    if (is_live(a)) {
+        result = run_live(&ex);
     } else {
-        // what is offered is not played over
-        ex.view.playback.playing = !recovery_begin(&ex);
-        recovery_end(&ex, run_on_terminal(&ex));
-        terminal_close();
-
-        // what is left on the terminal
-        const session *e = &ex.model.session;
-        say("%s, %d change%s, peak force %.4g N\n", e->base.name, e->input_count,
-            e->input_count == 1 ? "" : "s", e->run.summary.peak_force_N);
+        result = run_off_screen(&ex, a);
     }
-
     explorer_finish(&ex);
-    return code;
+    return result;
 }
 
-// --- the command
+// --- the command -----------------------------------------------------------------------
 
 static const option_row rows[] = {
     OPTION(TEXT, "keys", "KEYS",
@@ -356,8 +465,13 @@ static const option_row rows[] = {
 const option_table lab_options = OPTION_TABLE("Options", rows);
 
 const command lab_command = {
-    CALLED("lab", ONE_RUN, "Explore a run on the terminal"),
-    SCENARIOS("[SCENARIO|FILE.session]", 0, 1),
+    .name = "lab",
+    .group = GROUP_ONE_RUN,
+    .summary = "Explore a run on the terminal",
+    .operands = "[SCENARIO|FILE.session]",
+    .least = 0,
+    .most = 1,
+    .takes_scenarios = true,
     .help = "Opens corrected/first-impact if no scenario is named; ? lists the "
             "keys. With --keys, --script or\n--size nothing is shown live: the "
             "keys are pressed, then the script's screen is printed as text.\n",

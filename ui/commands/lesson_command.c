@@ -93,8 +93,12 @@ static int list_or_open_lesson(const arguments *a)
 }
 
 const command lesson_command = {
-    CALLED("lesson", ONE_RUN, "Experiments step by step, on the terminal"),
-    OPERANDS("[NAME]", 0, 1),
+    .name = "lesson",
+    .group = GROUP_ONE_RUN,
+    .summary = "Experiments step by step, on the terminal",
+    .operands = "[NAME]",
+    .least = 0,
+    .most = 1,
     .help = "Opens a lesson in the lab: steps with questions, checked by the run "
             "itself. Without a name it lists them.\nIn the lab y goes on and A "
             "answers; :lesson lists the lessons there.\n",

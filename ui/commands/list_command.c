@@ -61,8 +61,10 @@ static int list_scenarios(const arguments *a)
 }
 
 const command list_command = {
-    CALLED("list", ONE_RUN, "Name and title of every scenario"),
-    NO_OPERANDS,
+    .name = "list",
+    .group = GROUP_ONE_RUN,
+    .summary = "Name and title of every scenario",
+    .operands = "",
     .help = "",
     .options = {&json_options},
     .run = list_scenarios,

@@ -1,14 +1,13 @@
-// Complaints, and what commands print for people.
 #include "ui/commands/messages.h"
 
 #include <assert.h>
+#include <glib.h>
 #include <langinfo.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "src/base/text_stream.h"
 #include "src/base/words.h"
 
 int complain(const char *format, ...)
@@ -25,7 +24,11 @@ int complain(const char *format, ...)
 
 int complain_fault(const fault *f)
 {
-    complain("%s", f->text[0] ? f->text : status_text(f->code));
+    const char *sentence = f->text;
+    if (sentence[0] == '\0') {
+        sentence = status_text(f->code);
+    }
+    complain("%s", sentence);
 
     // what the user can mend, and what went wrong on the way
     switch (f->code) {
@@ -52,22 +55,19 @@ void report_first_fault(opening_faults *t)
     if (t->first != NULL) {
         report_to_stderr(NULL, t->first);
     }
-    free(t->first);
-    t->first = NULL;
+    g_clear_pointer(&t->first, g_free);
 }
 
 void report_opening_fault(void *context, const char *sentence)
 {
     opening_faults *t = context;
+    t->count++;
+    if (t->count == 1) {
+        t->first = g_strdup(sentence);
+        return;
+    }
     report_first_fault(t);
-    if (t->count++ == 0) {
-        t->first = strdup(sentence);
-    } else {
-        t->first = NULL;
-    }
-    if (t->first == NULL) {
-        report_to_stderr(NULL, sentence);
-    }
+    report_to_stderr(NULL, sentence);
 }
 
 int report_unopened(opening_faults *t, status code, const char *name_or_file)
@@ -76,11 +76,12 @@ int report_unopened(opening_faults *t, status code, const char *name_or_file)
     if (t->count == 0) {
         complain("'%s': %s", name_or_file, status_text(code));
     } else if (t->first != NULL && code == STATUS_BAD_ARGUMENT) {
+        // there is no such scenario
         complain("%s", t->first);
-        free(t->first);
-        t->first = NULL;
+        g_clear_pointer(&t->first, g_free);
     }
     report_first_fault(t);
+
     if (code == STATUS_NO_MEMORY) {
         return EXIT_FAILED;
     }
@@ -138,11 +139,12 @@ bool terminal_has_utf8(void)
         return true;
     }
 
-    // a locale that is not installed, or had no memory, tells by its name
-    static const char *const places[] = {"LC_ALL", "LC_CTYPE", "LANG"};
+    // a locale that is not installed says it by its name, in the first variable that is
+    // set
+    static const char *const variables[] = {"LC_ALL", "LC_CTYPE", "LANG"};
     const char *name = NULL;
     for (int i = 0; i < 3 && (name == NULL || *name == '\0'); i++) {
-        name = getenv(places[i]);
+        name = getenv(variables[i]);
     }
     return name != NULL &&
            (strcasestr(name, ".UTF-8") != NULL || strcasestr(name, ".utf8") != NULL);
@@ -150,27 +152,34 @@ bool terminal_has_utf8(void)
 
 // --- longer texts ----------------------------------------------------------------------
 
+// Characters of a word in UTF-8: its bytes but those that continue a character.
+static int characters_of(const char *word, int bytes)
+{
+    int count = 0;
+    for (int i = 0; i < bytes; i++) {
+        if (((unsigned char)word[i] & 0xC0) != 0x80) {
+            count++;
+        }
+    }
+    return count;
+}
+
 void print_indented(FILE *stream, const char *text, int bytes, int width, int indent)
 {
     const char *end = text + bytes;
     int column = 0;
     assert(bytes >= 0 && indent >= 0 && width > indent);
+
+    // word by word: what is between them stands for one blank
     while ((text += strspn(text, " \n")) < end) {
-        char word[256];
         int length = (int)strcspn(text, " \n");
-        if (!(length < end - text)) {
+        if (length > end - text) {
             length = (int)(end - text);
         }
-        snprintf(word, sizeof word, "%.*s", length, text);
+        const int characters = characters_of(text, length);
 
-        // a word goes to the next line if this one has no room for it
-        int wide = 0;
-        for (const char *c = word; *c != '\0'; c++) {
-            if (((unsigned char)*c & 0xC0) != 0x80) { // not a later byte of UTF-8
-                wide++;
-            }
-        }
-        if (column > 0 && column + 1 + wide <= width) {
+        // on this line if it has room, else on the next
+        if (column > 0 && column + 1 + characters <= width) {
             fputc(' ', stream);
             column++;
         } else {
@@ -181,7 +190,7 @@ void print_indented(FILE *stream, const char *text, int bytes, int width, int in
             column = indent;
         }
         print_printable(stream, "%.*s", length, text);
-        column += wide;
+        column += characters;
         text += length;
     }
     if (column > 0) {
@@ -201,7 +210,9 @@ bool next_paragraph(const char **text, paragraph *p)
     do {
         *text += strcspn(*text, "\n");
         p->bytes = (int)(*text - p->start);
-        *text += **text == '\n';
+        if (**text == '\n') {
+            (*text)++;
+        }
     } while (!p->literal && strchr("\n ", **text) == NULL);
     return true;
 }

@@ -22,7 +22,8 @@ void say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 // Prints a blank and a number (a printf conversion of a double) at the right of a column
 // of that width, "-" for NaN.
-void print_cell(int width, const char *conversion, double value);
+void print_cell(int width, const char *conversion, double value)
+    __attribute__((format(printf, 2, 0)));
 
 // What stands between a number and its unit: a blank, "" where the unit is "".
 const char *blank_before(const char *unit);
@@ -47,11 +48,11 @@ typedef struct opening_faults {
     char *first; // not printed yet, or NULL
 } opening_faults;
 
-// Takes one of them: a fault_handler whose context is the opening_faults.
+// Takes one of the faults: a fault_handler whose context is the opening_faults.
 void report_opening_fault(void *context, const char *sentence);
 
-// Prints the first one if it is still held back, for instance because the scenario could
-// be opened in spite of it.
+// Prints the first fault if it is still held back, for instance because the scenario
+// could be opened in spite of it.
 void report_first_fault(opening_faults *t);
 
 // Prints why a scenario could not be opened, after scenario_open returned `code`. A

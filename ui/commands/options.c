@@ -1,4 +1,3 @@
-// The options that several commands share, and where the values of options are stored.
 #include "ui/commands/options.h"
 
 #include <assert.h>

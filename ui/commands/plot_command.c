@@ -98,9 +98,12 @@ static const option_row plot_rows[] = {
 };
 
 const command plot_command = {
-    CALLED("plot", PICTURES,
-           "Draw a figure from a recipe: runs, data and tables in panels"),
-    OPERANDS("RECIPE.yaml", 1, 1),
+    .name = "plot",
+    .group = GROUP_PICTURES,
+    .summary = "Draw a figure from a recipe: runs, data and tables in panels",
+    .operands = "RECIPE.yaml",
+    .least = 1,
+    .most = 1,
     .help = "A recipe names runs with changed parameters, measured data and the "
             "databases of sweeps, and the\npanels that show them. A CSV of what "
             "is drawn stands beside the picture. Examples are "

@@ -4,12 +4,13 @@
 
 #include <math.h>
 
+#include "src/run/run.h"
 #include "src/study/sweep_run.h"
-#include "ui/commands/command.h"
 #include "ui/commands/interrupts.h"
+#include "ui/commands/messages.h"
+#include "ui/commands/results.h"
 
 // --- runs and pieces -------------------------------------------------------------------
-// Progress of long work on the terminal.
 
 // Work of `total` pieces ("runs", "presses") begins. The returned monitor is passed to
 // the runs and counts the pieces that are done (run_monitor_count). If standard error is
@@ -23,7 +24,7 @@ void work_end(void);
 // it found: those of a whole one, or, after an interrupt, those of what was done, and
 // says what these are. Returns the exit status.
 int work_finish(const arguments *a, status code, const fault *f, const command_results *r,
-                const scenario *s, const void *found);
+                const void *found);
 
 // As run_scenario_with, with progress shown. An interrupt ends the run: STATUS_STOPPED,
 // with what was computed until then.
@@ -34,8 +35,8 @@ status run_with_progress(const arguments *a, const scenario *s, bool keep_trace,
 // status.
 int run_stopped(const scenario *s, const char *what_became);
 
-// --- sweeps ----------------------------------------------------------------------------
-// Shared by the commands that make many runs: options, ^C and the progress line.
+// --- many runs -------------------------------------------------------------------------
+// Shared by the commands that make them: options, ^C and the progress line.
 
 // The number of threads: --jobs, or the number of processors.
 int many_runs_jobs(const arguments *a);

@@ -1,236 +1,68 @@
-// Pages from the tables of commands, options, parameters, signals and quantities: man
-// pages, and chapters of the manual.
-#include "ui/commands/command.h"
+#include "ui/commands/reference.h"
 
-#include <ctype.h>
+#include <glib.h>
 #include <math.h>
-#include <stdarg.h>
 #include <string.h>
 
+#include "render/page/text.h"
 #include "src/base/shipped.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
 #include "src/run/trace.h"
-#include "src/tables/parameters.h"
 #include "src/tables/signals.h"
 #include "src/tables/summary.h"
+#include "ui/commands/help_pages.h"
 
-// --- text in pages ---------------------------------------------------------------------
-
-// Text of a man page, in which troff finds no request and no escape of its own, or of a
-// table's cell or paragraph in which Markdown finds no marks of its own.
-static void put_escaped(FILE *stream, bool man, const char *text, int bytes)
+// Text of a cell or paragraph in which Markdown finds no marks of its own; to be freed
+// with g_free.
+static char *markdown_text(const char *text)
 {
-    for (int i = 0; i < bytes; i++) {
-        // a dot or quote at the start of a line would be a request
-        if (man && (i == 0 || text[i - 1] == '\n') && strchr(".'", text[i]) != NULL) {
-            fputs("\\&", stream);
+    GString *escaped = g_string_new(NULL);
+    for (const char *c = text; *c != '\0'; c++) {
+        if (strchr("|*_<\\", *c) != NULL) {
+            g_string_append_c(escaped, '\\');
         }
-        if (strchr(man ? "\\-" : "|*_<\\", text[i]) != NULL) {
-            fputc('\\', stream);
-        }
-        fputc(man && text[i] == '\\' ? 'e' : text[i], stream);
+        g_string_append_c(escaped, *c);
     }
+    return g_string_free(escaped, FALSE);
 }
 
-// Prints a page's text: %s a text as it is, %u in capital letters, %m for troff, %t for
-// Markdown, %g a number.
-static void put(FILE *stream, const char *format, ...)
+// What is said behind a description where a condition holds, else nothing.
+static const char *remark_if(bool holds, const char *remark)
 {
-    va_list list;
-    va_start(list, format);
-    for (; *format != '\0'; format++) {
-        const char kind = *format == '%' ? *++format : '\0';
-        const char *text = kind != '\0' && kind != 'g' ? va_arg(list, const char *) : "";
-        if (kind == '\0') {
-            fputc(*format, stream);
-        } else if (kind == 'g') {
-            fprintf(stream, "%g", va_arg(list, double));
-        } else if (kind == 's') {
-            fputs(text, stream);
-        } else if (kind == 'u') {
-            for (; *text != '\0'; text++) {
-                fputc(toupper((unsigned char)*text), stream);
-            }
-        } else {
-            put_escaped(stream, kind == 'm', text, (int)strlen(text));
-        }
+    if (holds) {
+        return remark;
     }
-    va_end(list);
+    return "";
 }
 
-// --- man pages -------------------------------------------------------------------------
-// One a command, and one of impactlab.
-
-static void put_paragraphs(FILE *stream, const char *text)
-{
-    paragraph p;
-    bool was_literal = false;
-
-    while (next_paragraph(&text, &p)) {
-        if (p.literal && !was_literal) {
-            put(stream, ".PP\n.nf\n");
-        } else if (!p.literal) {
-            put(stream, "%s.PP\n", was_literal ? ".fi\n" : "");
-        }
-        put_escaped(stream, true, p.start, p.bytes);
-        put(stream, "\n");
-        was_literal = p.literal;
-    }
-    put(stream, was_literal ? ".fi\n" : "");
-}
-
-// A list of terms, each with what it means; a row without a name ends it.
-typedef struct term {
-    const char *name, *meaning;
-} term;
-
-static void put_terms(FILE *stream, const char *title, const term *terms)
-{
-    put(stream, ".SH %u\n", title);
-    for (; terms->name != NULL; terms++) {
-        put(stream, ".TP\n\\fB%m\\fR\n%m\n", terms->name, terms->meaning);
-    }
-}
-
-static const term exit_status[] = {
-    {"0", "Done."},
-    {"1", "The run failed or is inaccurate, an expectation was not met, or a "
-          "file could not be written."},
-    {"2", "Bad arguments or a bad scenario."},
-    {"130", "Ended by ^C; what was computed is kept, and a second ^C ends at once."},
-    {NULL},
-};
-
-static const term environment[] = {
-    {"IMPACTLAB_SCENARIOS", "Folders with further scenarios, separated by colons; of two "
-                            "of one name theirs counts."},
-    {"NO_COLOR", "If not empty, the terminal lab shows no colours unless --colours or "
-                 "its settings ask for them."},
-    {"COLORTERM",
-     "If truecolor or 24bit, the terminal has colours by red, green and blue."},
-    {"XDG_CONFIG_HOME", "Where the terminal lab keeps its settings, in impactlab/lab; "
-                        "~/.config if not set."},
-    {"XDG_STATE_HOME",
-     "Where the terminal lab keeps what is not saved, in impactlab, until "
-     "it is left; ~/.local/state if not set."},
-    {NULL},
-};
-
-static const term examples[] = {
-    {"impactlab run corrected/first-impact --set motor.voltage=5",
-     "How hard does the arm hit at 5 V?"},
-    {"impactlab run corrected/first-impact --json - | jq .peak_force_N",
-     "The peak force alone."},
-    {NULL},
-};
-
-static void write_overview(FILE *stream, const command_list *all)
-{
-    put(stream,
-        ".SH NAME\nimpactlab \\- impact and force control of a flexible robot arm\n"
-        ".SH SYNOPSIS\n\\fBimpactlab\\fR [\\fICOMMAND\\fR [\\fIARGUMENT\\fR]...]\n"
-        ".SH DESCRIPTION\n");
-    put_paragraphs(stream, "impactlab simulates a robot arm, a hub turned by a motor "
-                           "with a beam of one or more links "
-                           "on it, that hits a rigid wall and goes on pressing against "
-                           "it. A SCENARIO is a name that "
-                           "impactlab list prints, or a file. Without a command the arm "
-                           "is explored on the terminal; "
-                           "where there is none, the scenarios are listed.\n\n"
-                           "Options may stand before or after the other arguments. Files "
-                           "are written whole or not at "
-                           "all. impactlab --version prints the version.");
-
-    put(stream, ".SH COMMANDS\n");
-    for (int i = 0; i < all->count; i++) {
-        const command *c = all->items[i];
-        put(stream, ".TP\n\\fBimpactlab\\-%s\\fR(1)\n%m.\n", c->name, c->summary);
-    }
-
-    put_terms(stream, "Environment", environment);
-    put_terms(stream, "Exit status", exit_status);
-    put_terms(stream, "Examples", examples);
-    put(stream,
-        ".SH SEE ALSO\n\\fBimpactlab\\-scenario\\fR(5), \\fBlibimpactlab\\fR(3)\n");
-}
-
-static void write_command(FILE *stream, const command *c)
-{
-    put(stream, ".SH NAME\nimpactlab\\-%s \\- %m\n", c->name, c->summary);
-    put(stream, ".SH SYNOPSIS\n\\fBimpactlab %s\\fR%s%m [\\fIOPTION\\fR]...\n", c->name,
-        c->operands[0] ? " " : "", c->operands);
-    put(stream, ".SH DESCRIPTION\n%m.\n", c->summary);
-    put_paragraphs(stream, c->help);
-
-    // its options, table by table
-    const option_table *t;
-    const char *title = "";
-    for (int i = 0; (t = command_options(c, i)) != NULL; i++) {
-        if (strcmp(t->title, title) != 0) {
-            put(stream, ".SH %u\n", t->title);
-        }
-        title = t->title;
-        for (const option_row *o = t->rows; o < t->rows + t->count; o++) {
-            const char letter[] = {o->letter, '\0'};
-            put(stream, o->letter != 0 ? ".TP\n\\fB\\-%s\\fR, \\fB" : ".TP\n\\fB",
-                letter);
-            put(stream, o->value != NULL ? "\\-\\-%m \\fI%m" : "\\-\\-%m", o->name,
-                o->value);
-            put(stream, "\\fR\n%m\n", o->help);
-        }
-    }
-    put_terms(stream, "Exit status", exit_status);
-    put(stream, ".SH SEE ALSO\n\\fBimpactlab\\fR(1)\n");
-}
-
-void write_man_page(FILE *stream, const command_list *all, const command *c)
-{
-    // a page of its own for each command, named as man looks it up
-    put(stream, c != NULL ? ".TH IMPACTLAB\\-%u" : ".TH IMPACTLAB",
-        c != NULL ? c->name : "");
-    put(stream, " 1 \"\" \"impactlab %s\"\n", lab_version());
-    if (c == NULL) {
-        write_overview(stream, all);
-    } else {
-        write_command(stream, c);
-    }
-}
-
-// --- chapters --------------------------------------------------------------------------
-// In Markdown; and the man page of scenario files.
-
-// What is said of a parameter.
-typedef struct parameter_words {
-    char range[RANGE_TEXT];
-    char initial[2 * PARAMETER_TEXT_SIZE +
-                 16]; // its default, also of the printed model if other
-} parameter_words;
+// --- what is said of a parameter -------------------------------------------------------
 
 const char *format_range(const parameter_info *info, const char *separator,
                          char text[RANGE_TEXT])
 {
-    const char *choices;
-    if (info->type == PARAMETER_CHOICE) {
-        choices = info->choices;
-    } else if (info->type == PARAMETER_BOOLEAN) {
-        choices = "true|false";
-    } else if (info->type == PARAMETER_TEXT) {
-        choices = "text";
-    } else {
-        choices = NULL;
-    }
-    if (choices == NULL) {
-        snprintf(text, RANGE_TEXT, "%s%g to %g",
-                 info->type == PARAMETER_LIST ? "list of " : "", info->minimum,
-                 info->maximum);
+    const char *words;
+    switch (info->type) {
+    case PARAMETER_CHOICE:
+        words = info->choices;
+        break;
+    case PARAMETER_BOOLEAN:
+        words = "true|false";
+        break;
+    case PARAMETER_TEXT:
+        words = "text";
+        break;
+    case PARAMETER_LIST:
+        snprintf(text, RANGE_TEXT, "list of %g to %g", info->minimum, info->maximum);
+        return text;
+    default:
+        snprintf(text, RANGE_TEXT, "%g to %g", info->minimum, info->maximum);
         return text;
     }
-    size_t length = 0;
-    for (const char *c = choices; *c != '\0' && length < RANGE_TEXT; c++) {
-        length += (size_t)snprintf(text + length, RANGE_TEXT - length, "%s",
-                                   *c == '|' ? separator : (char[]){*c, '\0'});
-    }
+
+    g_auto(GStrv) choices = g_strsplit(words, "|", -1);
+    g_autofree char *joined = g_strjoinv(separator, choices);
+    snprintf(text, RANGE_TEXT, "%s", joined);
     return text;
 }
 
@@ -248,111 +80,149 @@ static void format_default(int index, arm_model_kind model,
     }
 }
 
-static parameter_words words_of(int index)
+// The default, and that of the printed model if it is another; to be freed with g_free.
+static char *defaults_text(int index)
 {
     char corrected[PARAMETER_TEXT_SIZE], printed[PARAMETER_TEXT_SIZE];
-    parameter_words w;
-    format_range(&parameter_table[index], ", ", w.range);
     format_default(index, ARM_CORRECTED, corrected);
     format_default(index, ARM_PRINTED, printed);
-    snprintf(w.initial, sizeof w.initial,
-             strcmp(corrected, printed) != 0 ? "%s (printed: %s)" : "%s", corrected,
-             printed);
-    return w;
+    if (strcmp(corrected, printed) == 0) {
+        return g_strdup(corrected);
+    }
+    return text_printf("%s (printed: %s)", corrected, printed);
 }
 
-// The group "arm" of "arm.k2", if it begins with this parameter; else "".
-static const char *group_that_begins(int index, char group[32])
+// The group of a parameter, "arm" of "arm.k2"; to be freed with g_free.
+static char *group_of_parameter(int index)
 {
     const char *path = parameter_table[index].path;
-    const int length = (int)(strchr(path, '.') - path);
-    const bool begins = index == 0 || strncmp(path, parameter_table[index - 1].path,
-                                              (size_t)length + 1) != 0;
-    snprintf(group, 32, "%.*s", begins ? length : 0, path);
+    return g_strndup(path, strcspn(path, "."));
+}
+
+// The group that begins with a parameter, NULL if that is not the first of its group; to
+// be freed with g_free.
+static char *group_that_begins(int index)
+{
+    char *group = group_of_parameter(index);
+    if (index > 0) {
+        g_autofree char *before = group_of_parameter(index - 1);
+        if (strcmp(group, before) == 0) {
+            g_clear_pointer(&group, g_free);
+        }
+    }
     return group;
 }
 
-static void write_parameters(FILE *stream)
+// --- chapters in Markdown --------------------------------------------------------------
+
+static void write_parameters_chapter(FILE *stream)
 {
-    put(stream, "# Parameters\n\nEvery parameter of a scenario, by its path. A "
-                "default is \"derived\" if it follows from other parameters; *timed* "
-                "ones may change during a run.\n");
+    fprintf(stream, "# Parameters\n\nEvery parameter of a scenario, by its path. A "
+                    "default is \"derived\" if it follows from other parameters; *timed* "
+                    "ones may change during a run.\n");
     for (int i = 0; i < parameter_count; i++) {
-        const parameter_info *info = &parameter_table[i];
-        const parameter_words w = words_of(i);
-        char group[32];
-        if (group_that_begins(i, group)[0] != '\0') {
-            put(stream,
-                "\n## %s\n\n| path | default | unit | range | meaning "
-                "|\n|---|---|---|---|---|\n",
-                group);
+        // a table for each group
+        g_autofree char *group = group_that_begins(i);
+        if (group != NULL) {
+            fprintf(stream,
+                    "\n## %s\n\n| path | default | unit | range | meaning "
+                    "|\n|---|---|---|---|---|\n",
+                    group);
         }
-        put(stream, "| `%s` | %s | %s | %s | %t%s |\n", info->path, w.initial, info->unit,
-            w.range, info->description, info->timed ? "; *timed*" : "");
+
+        const parameter_info *info = &parameter_table[i];
+        char range[RANGE_TEXT];
+        g_autofree char *defaults = defaults_text(i);
+        g_autofree char *description = markdown_text(info->description);
+        fprintf(stream, "| `%s` | %s | %s | %s | %s%s |\n", info->path, defaults,
+                info->unit, format_range(info, ", ", range), description,
+                remark_if(info->timed, "; *timed*"));
     }
 }
 
-// ---- signals, quantities, events
-
-static void write_signals(FILE *stream)
+static void write_signals_chapter(FILE *stream)
 {
-    put(stream, "# Signals\n\nWhat a run records at every row: columns of `--csv`, "
-                "names for `--signals`, panes and recipes.\n\n| name | symbol | unit "
-                "| meaning |\n|---|---|---|---|\n");
-    for (const signal_info *s = signal_table; s < signal_table + signal_count; s++) {
-        put(stream, "| `%s` | %t | %s | %t%s |\n", s->name, s->ascii, s->unit,
-            s->description, s->optional ? "; only if recorded" : "");
+    fprintf(stream, "# Signals\n\nWhat a run records at every row: columns of `--csv`, "
+                    "names for `--signals`, panes and recipes.\n\n| name | symbol | unit "
+                    "| meaning |\n|---|---|---|---|\n");
+    for (int i = 0; i < signal_count; i++) {
+        const signal_info *signal = &signal_table[i];
+        g_autofree char *symbol = markdown_text(signal->ascii);
+        g_autofree char *description = markdown_text(signal->description);
+        fprintf(stream, "| `%s` | %s | %s | %s%s |\n", signal->name, symbol, signal->unit,
+                description, remark_if(signal->optional, "; only if recorded"));
     }
 }
 
-static void write_quantities(FILE *stream)
+static void write_quantities_chapter(FILE *stream)
 {
-    put(stream, "# Quantities\n\nThe numbers of a run: keys of `run --json`, `expect`, "
-                "sweeps and "
-                "comparisons. One that did not occur is null.\n\n"
-                "| key | unit | meaning |\n|---|---|---|\n");
-    for (const summary_info *s = summary_table; s < summary_table + summary_count; s++) {
-        put(stream, "| `%s` | %s | %t%s |\n", s->key, s->unit, s->description,
-            s->special ? "; only in some runs" : "");
+    fprintf(stream,
+            "# Quantities\n\nThe numbers of a run: keys of `run --json`, `expect`, "
+            "sweeps and "
+            "comparisons. One that did not occur is null.\n\n"
+            "| key | unit | meaning |\n|---|---|---|\n");
+    for (int i = 0; i < summary_count; i++) {
+        const summary_info *quantity = &summary_table[i];
+        g_autofree char *description = markdown_text(quantity->description);
+        fprintf(stream, "| `%s` | %s | %s%s |\n", quantity->key, quantity->unit,
+                description, remark_if(quantity->special, "; only in some runs"));
     }
 }
 
-static void write_events(FILE *stream)
+static void write_events_chapter(FILE *stream)
 {
-    put(stream, "# Events\n\nWhat happens between rows, located in time: `events` of "
-                "`run --json`.\n\n| kind | what happens |\n|---|---|\n");
+    fprintf(stream, "# Events\n\nWhat happens between rows, located in time: `events` of "
+                    "`run --json`.\n\n| kind | what happens |\n|---|---|\n");
     for (int i = 0; event_description(i) != NULL; i++) {
-        put(stream, "| `%s` | %t |\n", event_name((event_kind)i), event_description(i));
+        g_autofree char *description = markdown_text(event_description(i));
+        fprintf(stream, "| `%s` | %s |\n", event_name((event_kind)i), description);
     }
 }
 
-// ---- control laws
-
-// The parameters of a law: those of the scenario by path, its own with their meaning.
-static void put_law_parameters(FILE *stream, const controller *c)
+// A parameter of the scenario that a law reads.
+static void write_shared_number(FILE *stream, int index)
 {
-    for (int i = 0; i < c->parameter_count; i++) {
-        const controller_parameter p = controller_parameter_at(c, i);
-        char path[80];
+    g_autofree char *defaults = defaults_text(index);
+    g_autofree char *description = markdown_text(parameter_table[index].description);
+    fprintf(stream, "- `%s`, by default %s: %s\n", parameter_table[index].path, defaults,
+            description);
+}
 
-        snprintf(path, sizeof path, "control.%s", c->parameters[i].name);
-        const int known = parameter_find(path);
-        if (known >= 0 && c->parameters[i].description == NULL) {
-            put(stream, "- `%s`, by default %s: %t\n", path, words_of(known).initial,
-                parameter_table[known].description);
+// A number that is a law's own.
+static void write_own_number(FILE *stream, const controller_parameter *number)
+{
+    const char *unit = "";
+    if (number->unit != NULL) {
+        unit = number->unit;
+    }
+    g_autofree char *description = g_strdup("");
+    if (number->description != NULL) {
+        g_free(description);
+        description = markdown_text(number->description);
+    }
+    fprintf(stream, "- in `control.settings`: `%s`, %g %s (%g to %g), %s\n", number->name,
+            number->initial, unit, number->minimum, number->maximum, description);
+}
+
+static void write_law_numbers(FILE *stream, const controller *law)
+{
+    for (int i = 0; i < law->parameter_count; i++) {
+        const controller_parameter number = controller_parameter_at(law, i);
+        g_autofree char *path = text_printf("control.%s", law->parameters[i].name);
+        const int shared = parameter_find(path);
+        if (shared >= 0 && law->parameters[i].description == NULL) {
+            write_shared_number(stream, shared);
         } else {
-            put(stream, "- in `control.settings`: `%s`, %g %s (%g to %g), %t\n", p.name,
-                p.initial, p.unit != NULL ? p.unit : "", p.minimum, p.maximum,
-                p.description != NULL ? p.description : "");
+            write_own_number(stream, &number);
         }
     }
 }
 
 // What speaks for and against each built-in law; the table of docs/reference/laws.md.
-static void put_law_comparison(FILE *stream)
+static void write_law_comparison(FILE *stream)
 {
-    put(stream,
-        "\n| law | needs | sensors | memory [B] | fails |\n|---|---|---|---|---|\n");
+    fprintf(stream,
+            "\n| law | needs | sensors | memory [B] | fails |\n|---|---|---|---|---|\n");
     for (int law = LAW_NONE; law < LAW_COUNT; law++) {
         const control_law_info *info = &control_law_table[law];
         if (info->needs != NULL) {
@@ -362,57 +232,71 @@ static void put_law_comparison(FILE *stream)
     }
 }
 
-static void write_laws(FILE *stream)
+static void write_laws_chapter(FILE *stream)
 {
-    put(stream, "# Control laws and their parameters\n\nThe choices of "
-                "`control.law`, what each does, and the parameters that it reads.\n");
-    put_law_comparison(stream);
-    for (int law = LAW_NONE; law < LAW_COUNT; law++) {
-        put(stream, "\n## %s\n\n%t.\n\n", control_law_table[law].word,
-            control_law_table[law].description);
-        if (controller_of(law) != NULL) {
-            put_law_parameters(stream, controller_of(law));
+    fprintf(stream, "# Control laws and their parameters\n\nThe choices of "
+                    "`control.law`, what each does, and the parameters that it reads.\n");
+    write_law_comparison(stream);
+    for (int i = LAW_NONE; i < LAW_COUNT; i++) {
+        g_autofree char *description = markdown_text(control_law_table[i].description);
+        fprintf(stream, "\n## %s\n\n%s.\n\n", control_law_table[i].word, description);
+
+        const controller *law = controller_of(i);
+        if (law != NULL) {
+            write_law_numbers(stream, law);
         }
     }
 }
 
-// ---- the man page of scenario files
+// --- the man page of scenario files ----------------------------------------------------
 
-static void write_scenario_man(FILE *stream)
+static void write_man_parameter(FILE *stream, int index)
 {
-    put(stream,
-        ".TH IMPACTLAB\\-SCENARIO 5 \"\" \"impactlab %s\"\n"
-        ".SH NAME\nimpactlab\\-scenario \\- files that describe a run of impactlab\n"
-        ".SH SYNOPSIS\n.nf\n"
-        "title: A stiffer beam\n"
-        "arm: {k2: 49.2 N m/rad}\n"
-        "motor: {voltage: 1 V}\n"
-        "script:\n"
-        "  \\- {at: 0.5 s, set: {motor.voltage: 2 V}}\n"
-        "expect:\n"
-        "  impacts: {value: 3, tolerance: 2}\n.fi\n"
-        ".SH DESCRIPTION\n"
-        "A scenario is one YAML file. Every key may be left out. The path arm.k2 below "
-        "is the key "
-        "k2 in the group arm. A value may carry the unit that is given here; nothing is "
-        "converted.\n.PP\n"
-        "title, description, script, expect, panes and lesson stand beside the groups; "
-        "the manual "
-        "describes them under \\(lqScenario files\\(rq.\n",
-        lab_version());
-    for (int i = 0; i < parameter_count; i++) {
-        const parameter_info *info = &parameter_table[i];
-        const parameter_words w = words_of(i);
-        char group[32];
-        if (group_that_begins(i, group)[0] != '\0') {
-            put(stream, ".SH %u\n", group);
-        }
-        put(stream, ".TP\n\\fB%m\\fR%s%s\n%m.\nDefault: %s; range: %s%s.\n", info->path,
-            info->unit[0] != '\0' ? " in " : "", info->unit, info->description, w.initial,
-            w.range, info->timed ? "; may change during a run" : "");
+    const parameter_info *info = &parameter_table[index];
+    char range[RANGE_TEXT];
+    g_autofree char *path = troff_text(info->path);
+    g_autofree char *description = troff_text(info->description);
+    g_autofree char *defaults = defaults_text(index);
+
+    fprintf(stream, ".TP\n\\fB%s\\fR", path);
+    if (info->unit[0] != '\0') {
+        fprintf(stream, " in %s", info->unit);
     }
-    put(stream, ".SH SEE ALSO\n\\fBimpactlab\\fR(1), \\fBimpactlab\\-check\\fR(1), "
-                "\\fBlibimpactlab\\fR(3)\n");
+    fprintf(stream, "\n%s.\nDefault: %s; range: %s%s.\n", description, defaults,
+            format_range(info, ", ", range),
+            remark_if(info->timed, "; may change during a run"));
+}
+
+static void write_scenario_page(FILE *stream)
+{
+    fprintf(stream,
+            ".TH IMPACTLAB\\-SCENARIO 5 \"\" \"impactlab %s\"\n"
+            ".SH NAME\nimpactlab\\-scenario \\- files that describe a run of impactlab\n"
+            ".SH SYNOPSIS\n.nf\n"
+            "title: A stiffer beam\n"
+            "arm: {k2: 49.2 N m/rad}\n"
+            "motor: {voltage: 1 V}\n"
+            "script:\n"
+            "  \\- {at: 0.5 s, set: {motor.voltage: 2 V}}\n"
+            "expect:\n"
+            "  impacts: {value: 3, tolerance: 2}\n.fi\n"
+            ".SH DESCRIPTION\n"
+            "A scenario is one YAML file. Every key may be left out. The path arm.k2 "
+            "below is the key k2 in the group arm. A value may carry the unit that is "
+            "given here; nothing is converted.\n.PP\n"
+            "title, description, script, expect, panes and lesson stand beside the "
+            "groups; the manual describes them under \\(lqScenario files\\(rq.\n",
+            lab_version());
+    for (int i = 0; i < parameter_count; i++) {
+        g_autofree char *group = group_that_begins(i);
+        if (group != NULL) {
+            g_autofree char *capitals = g_ascii_strup(group, -1);
+            fprintf(stream, ".SH %s\n", capitals);
+        }
+        write_man_parameter(stream, i);
+    }
+    fprintf(stream, ".SH SEE ALSO\n\\fBimpactlab\\fR(1), \\fBimpactlab\\-check\\fR(1), "
+                    "\\fBlibimpactlab\\fR(3)\n");
 }
 
 void write_reference(FILE *stream, const char *page)
@@ -421,11 +305,10 @@ void write_reference(FILE *stream, const char *page)
         const char *page;
         void (*write)(FILE *stream);
     } pages[] = {
-        {"parameters", write_parameters}, {"signals", write_signals},
-        {"quantities", write_quantities}, {"laws", write_laws},
-        {"events", write_events},         {"scenario.5", write_scenario_man},
+        {"parameters", write_parameters_chapter}, {"signals", write_signals_chapter},
+        {"quantities", write_quantities_chapter}, {"laws", write_laws_chapter},
+        {"events", write_events_chapter},         {"scenario.5", write_scenario_page},
     };
-
     for (size_t i = 0; i < sizeof pages / sizeof pages[0]; i++) {
         if (strcmp(pages[i].page, page) == 0) {
             pages[i].write(stream);

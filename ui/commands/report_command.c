@@ -41,8 +41,13 @@ static const option_row report_rows[] = {
 };
 
 const command report_command = {
-    CALLED("report", THESIS, "Figures and tables as one web page and one PDF"),
-    SCENARIOS("[SCENARIO|RECIPE.yaml]...", 0, 64),
+    .name = "report",
+    .group = GROUP_THESIS,
+    .summary = "Figures and tables as one web page and one PDF",
+    .operands = "[SCENARIO|RECIPE.yaml]...",
+    .least = 0,
+    .most = 64,
+    .takes_scenarios = true,
     .help = "Of the scenarios and recipes named, or without any of the whole "
             "thesis. Into the folder 'report' unless -o says otherwise. The page "
             "needs no other file and no network. Under\neach item stand its "

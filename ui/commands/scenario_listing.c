@@ -24,7 +24,7 @@ int scenario_listing_close(scenario_listing *l, const arguments *a, int result)
     free(l->names);
 
     if (a->json != NULL) {
-        result = worse(result, write_json(a->json, l->entries));
+        result = worse(result, write_json_file(a->json, l->entries));
     }
     return result;
 }

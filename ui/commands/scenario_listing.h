@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ui/commands/command.h"
+#include "ui/commands/results.h"
 
 // All scenarios, by name.
 typedef struct scenario_listing {

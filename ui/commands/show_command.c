@@ -10,6 +10,9 @@
 #include "src/run/export.h"
 #include "src/tables/settings.h"
 #include "src/tables/summary.h"
+#include "ui/commands/answers.h"
+#include "ui/commands/reference.h"
+#include "ui/commands/results.h"
 
 enum { DESCRIPTION_WIDTH = 96 };
 
@@ -145,7 +148,7 @@ static json_t *scenario_json(const scenario *s)
 static int show_scenario(const arguments *a, scenario *s)
 {
     if (a->json != NULL) {
-        return write_json(a->json, scenario_json(s));
+        return write_json_file(a->json, scenario_json(s));
     }
 
     say_title(s);
@@ -173,9 +176,13 @@ static int show_or_explain(const arguments *a)
 }
 
 const command show_command = {
-    CALLED("show", ONE_RUN,
-           "The resolved parameters of a scenario, with units and ranges"),
-    ONE_SCENARIO,
+    .name = "show",
+    .group = GROUP_ONE_RUN,
+    .summary = "The resolved parameters of a scenario, with units and ranges",
+    .operands = "SCENARIO",
+    .least = 1,
+    .most = 1,
+    .takes_scenarios = true,
     .help = "A parameter marked with = was given by the scenario or by --set, "
             "the others have their defaults.\n",
     .options = {&set_options, &json_options},

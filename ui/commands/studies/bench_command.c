@@ -1,25 +1,41 @@
 // impactlab bench: how long runs and studies take, beside times measured before.
-#include "ui/commands/progress.h"
+#include "ui/commands/command.h"
 
+#include <stdio.h>
 #include <string.h>
 
-#include "src/study/bench.h"
 #include "src/base/words.h"
+#include "src/study/bench.h"
+#include "ui/commands/interrupts.h"
+#include "ui/commands/results.h"
+
+static void print_headings(bool with_baseline)
+{
+    printf("%-28s %10s %10s %10s  %-8s %8s", "", "median", "min", "max", "unit",
+           "wall/cpu");
+    if (with_baseline) {
+        printf("   baseline    times");
+    }
+    printf("\n");
+}
 
 // A line of the table, beside the median measured before if that is known (not 0).
-static void print_result(const benchmark *b, const bench_result *r, double before)
+static void print_benchmark(const benchmark *b, const bench_result *r, double before)
 {
     printf("%-28s %10.4g %10.4g %10.4g  %-8s %8.2f", b->name, r->median, r->min, r->max,
            b->unit, r->wall);
     if (before > 0) {
-        printf(" %10.4g %8.2f%s", before, bench_slowdown(b, r->median, before),
-               bench_is_slower(b, r, before) ? "  slower" : "");
+        printf(" %10.4g %8.2f", before, bench_slowdown(b, r->median, before));
+        if (bench_is_slower(b, r, before)) {
+            printf("  slower");
+        }
     }
     printf("\n");
     fflush(stdout); // the next one takes a while
 }
 
-static int complain_only(const char *name)
+// Reports that --only names no benchmark. Returns the exit status.
+static int complain_benchmark(const char *name)
 {
     nearest_word near = nearest_begin(name);
     for (int i = 0; i < BENCHMARKS; i++) {
@@ -32,54 +48,75 @@ static int complain_only(const char *name)
     return complain("there is no benchmark '%s' (see impactlab bench --help)", name);
 }
 
-RESULT_GIVEN(json_t *, results_json, bench_result, return bench_export(found))
-
-// Measures all benchmarks, or the one asked for.
-static int bench(const arguments *a)
+static bool is_asked_for(const arguments *a, const benchmark *b)
 {
-    bench_result results[BENCHMARKS] = {{0}};
+    return a->only == NULL || strcmp(a->only, b->name) == 0;
+}
+
+// Measures the benchmarks that are asked for. STATUS_STOPPED after an interrupt, with the
+// results of those that were measured.
+static status measure_benchmarks(const arguments *a, bench_result results[BENCHMARKS],
+                                 fault *f)
+{
     double before[BENCHMARKS] = {0};
-    int count = 0;
-    fault f = {0};
-    interrupts_catch();
-    status code = STATUS_OK;
     if (a->baseline != NULL) {
-        code = bench_read(a->baseline, before, &f);
+        TRY(bench_read(a->baseline, before, f));
     }
-    for (int i = 0; i < BENCHMARKS && code == STATUS_OK; i++) {
+
+    bool any_printed = false;
+    for (int i = 0; i < BENCHMARKS; i++) {
         const benchmark *b = &bench_table[i];
-        if (a->only != NULL && strcmp(a->only, b->name) != 0) {
+        if (!is_asked_for(a, b)) {
             continue;
         }
-        code = bench_run(b, &results[i], &f);
+        const status code = bench_run(b, &results[i], f);
         if (interrupted != 0) {
             results[i] = (bench_result){.median = 0}; // of work that was cut off
-            code = STATUS_STOPPED;
+            return STATUS_STOPPED;
         }
-        if (code == STATUS_OK && summary_wanted(a)) {
-            if (count == 0) {
-                printf("%-28s %10s %10s %10s  %-8s %8s%s\n", "", "median", "min", "max",
-                       "unit", "wall/cpu",
-                       a->baseline != NULL ? "   baseline    times" : "");
+        TRY(code);
+
+        if (summary_wanted(a)) {
+            if (!any_printed) {
+                print_headings(a->baseline != NULL);
             }
-            print_result(b, &results[i], before[i]);
+            print_benchmark(b, &results[i], before[i]);
+            any_printed = true;
         }
-        count++;
     }
-    const bool stopped = code == STATUS_STOPPED;
-    if (code != STATUS_OK && !stopped) {
+    return STATUS_OK;
+}
+
+static json_t *benchmarks_json(const void *found)
+{
+    return bench_export(found);
+}
+
+static int measure_and_report(const arguments *a)
+{
+    bool any = false;
+    for (int i = 0; i < BENCHMARKS; i++) {
+        any = any || is_asked_for(a, &bench_table[i]);
+    }
+    if (!any) {
+        return complain_benchmark(a->only);
+    }
+
+    static const command_results written = {.json = benchmarks_json};
+    bench_result results[BENCHMARKS] = {{0}};
+    fault f = {0};
+    interrupts_catch();
+    const status code = measure_benchmarks(a, results, &f);
+    if (code != STATUS_OK && code != STATUS_STOPPED) {
         return complain_fault(&f);
     }
-    if (count == 0) {
-        return complain_only(a->only);
+
+    int result = write_results(a, &written, results, code == STATUS_OK);
+    if (code == STATUS_STOPPED) {
+        complain("stopped: the results are those of the benchmarks that were measured");
+        result = worse(result, EXIT_FAILED);
     }
-    static const command_results r = {results_json};
-    const int result = write_results(a, &r, NULL, results, !stopped);
-    if (!stopped) {
-        return result;
-    }
-    complain("stopped: the results are those of the benchmarks that were measured");
-    return worse(result, EXIT_FAILED);
+    return result;
 }
 
 static const option_row rows[] = {
@@ -89,8 +126,10 @@ static const option_row rows[] = {
 };
 
 const command bench_command = {
-    CALLED("bench", PROGRAM, "How fast the lab computes on this machine"),
-    NO_OPERANDS,
+    .name = "bench",
+    .group = GROUP_PROGRAM,
+    .summary = "How fast the lab computes on this machine",
+    .operands = "",
     .help =
         "Medians of repeated measurements, in computing time of one processor\n(of the "
         "batch: by "
@@ -117,5 +156,5 @@ const command bench_command = {
         "marks as "
         "slower\nwhat takes 15 % longer than before and did so in every measurement.\n",
     .options = {&json_options, OWN_OPTIONS(rows), &quiet_options},
-    .run = bench,
+    .run = measure_and_report,
 };

@@ -1,16 +1,17 @@
 // impactlab compare: the numbers and curves of several runs side by side.
 #include "ui/commands/command.h"
 
-#include "ui/commands/command_pictures.h"
-
 #include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "render/page/text.h"
 #include "src/scenario/effect.h"
 #include "src/study/compare.h"
 #include "src/study/sweep.h"
+#include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
+#include "ui/commands/results.h"
 
 enum { MOST_SCENARIOS = 1000, MOST_ROWS = 100000 };
 _Static_assert((int)SWEEP_MOST_AXES <= (int)COMPARE_MOST_VARIED,
@@ -26,14 +27,14 @@ typedef struct comparison {
                   // varied
     int combinations;
     compare_row *rows;    // operands of each combination
-    compare_row *against; // one of each combination, in the same block
+    compare_row *against; // one of each combination
     compare_table table;  // of the rows that are computed, the first ones
     bool failed;
     bool drawn; // each scenario's run is kept, for --plot
     run_result kept[TRACE_RUNS];
 } comparison;
 
-static void finish(comparison *c)
+static void comparison_finish(comparison *c)
 {
     sweep_finish(&c->varied);
     for (int i = 0; i < c->opened; i++) {
@@ -42,12 +43,16 @@ static void finish(comparison *c)
     for (int i = 0; i < TRACE_RUNS; i++) {
         run_finish(&c->kept[i]);
     }
-    free(c->scenarios);
-    free(c->rows);
+    g_free(c->scenarios);
+    g_free(c->rows);
+    g_free(c->against);
 }
 
-// The grid of a scenario's combinations, each of which must go with it.
-static int open_sweep(comparison *c, const arguments *a, const scenario *s)
+// --- what is compared ------------------------------------------------------------------
+
+// Checks that the varied values go with a scenario; the grid of the first one is that of
+// all. Returns the exit status.
+static int open_combinations(comparison *c, const arguments *a, const scenario *s)
 {
     sweep own;
     const sweep_request request = {.vary = a->varies.items,
@@ -62,13 +67,27 @@ static int open_sweep(comparison *c, const arguments *a, const scenario *s)
         sweep_finish(&own);
     }
 
-    // too many rows are refused before anything runs
     const size_t rows = c->varied.run_count * (size_t)c->operands;
     if (rows > MOST_ROWS) {
         return complain("%zu rows are too many for a table, expected at most %d", rows,
                         MOST_ROWS);
     }
     c->combinations = (int)c->varied.run_count;
+    return EXIT_DONE;
+}
+
+// Opens one more scenario. Returns the exit status.
+static int open_compared(comparison *c, const arguments *a, const char *name)
+{
+    scenario *s = &c->scenarios[c->opened];
+    const int ended = command_scenario_open(s, name, a);
+    if (ended != EXIT_DONE) {
+        return ended;
+    }
+    c->opened++;
+    if (a->varies.count > 0) {
+        return open_combinations(c, a, s);
+    }
     return EXIT_DONE;
 }
 
@@ -84,25 +103,20 @@ static status check_effect(const comparison *c, int axis, fault *f)
     return code;
 }
 
-static int open_all(comparison *c, const arguments *a)
+// Opens all that is compared, and makes room for the rows. Returns the exit status.
+static int open_comparison(comparison *c, const arguments *a)
 {
-    const int count = a->operand_count + (a->against != NULL);
     c->operands = a->operand_count;
     c->combinations = 1;
-    c->scenarios = calloc((size_t)count, sizeof *c->scenarios);
-    if (c->scenarios == NULL) {
-        return worse(EXIT_FAILED, complain("out of memory"));
-    }
-
-    // the operands, then what they are compared against
-    for (int i = 0; i < count; i++) {
-        const char *name = i < a->operand_count ? a->operands[i] : a->against;
-        int ended = open_scenario(&c->scenarios[i], name, a);
+    c->scenarios = g_new0(scenario, (size_t)c->operands + 1);
+    for (int i = 0; i < c->operands; i++) {
+        const int ended = open_compared(c, a, a->operands[i]);
         if (ended != EXIT_DONE) {
             return ended;
         }
-        c->opened++;
-        ended = a->varies.count > 0 ? open_sweep(c, a, &c->scenarios[i]) : EXIT_DONE;
+    }
+    if (a->against != NULL) {
+        const int ended = open_compared(c, a, a->against);
         if (ended != EXIT_DONE) {
             return ended;
         }
@@ -114,36 +128,42 @@ static int open_all(comparison *c, const arguments *a)
             return complain_fault(&f);
         }
     }
-    c->rows =
-        calloc((size_t)c->combinations * (size_t)(c->operands + 1), sizeof *c->rows);
-    c->against = c->rows + c->combinations * c->operands;
-    if (c->rows != NULL) {
-        return EXIT_DONE;
-    }
-    return worse(EXIT_FAILED, complain("out of memory"));
+    c->rows = g_new0(compare_row, (size_t)c->combinations * (size_t)c->operands);
+    c->against = g_new0(compare_row, (size_t)c->combinations);
+    return EXIT_DONE;
 }
 
-// The row of scenario i under one combination. A run that fails keeps its row and is
-// complained about; one that is stopped has none, and then false is returned.
-static bool run_one(comparison *c, int i, int combination, run_monitor *monitor,
-                    compare_row *row)
+// --- runs ------------------------------------------------------------------------------
+
+// Scenario i with the values of a combination, which borrows from it; the values go into
+// the row.
+static scenario vary_scenario(comparison *c, int i, int combination, compare_row *row)
 {
-    const run_options options = {.keep_trace = c->drawn, .monitor = monitor};
-    run_result result;
-    fault f = {0};
     scenario s = c->scenarios[i];
-    double values[COMPARE_MOST_VARIED];
     const int varied = c->varied.axis_count;
     for (int k = 0; k < varied; k++) {
-        values[k] = sweep_value(&c->varied, (size_t)combination, k);
+        row->varied[k] = sweep_value(&c->varied, (size_t)combination, k);
     }
-    if (varied > 0 && sweep_axes_scenario(c->varied.axes, varied, values,
+
+    fault f = {0};
+    if (varied > 0 && sweep_axes_scenario(c->varied.axes, varied, row->varied,
                                           &c->scenarios[i], &s, &f) != STATUS_OK) {
         complain_fault(&f); // values that do not go together were refused before
         c->failed = true;
     }
+    return s;
+}
 
-    status code = run_scenario_with(&s, &options, &result);
+// Fills the row of scenario i under a combination. A run that fails keeps its row and is
+// complained about; one that is stopped has none, and then false is returned.
+static bool run_compared(comparison *c, int i, int combination, run_monitor *monitor,
+                         compare_row *row)
+{
+    const run_options options = {.keep_trace = c->drawn, .monitor = monitor};
+    compare_row values = {0};
+    const scenario s = vary_scenario(c, i, combination, &values);
+    run_result result;
+    const status code = run_scenario_with(&s, &options, &result);
     if (code == STATUS_STOPPED) {
         run_finish(&result);
         return false;
@@ -153,11 +173,13 @@ static bool run_one(comparison *c, int i, int combination, run_monitor *monitor,
         c->failed = true;
     }
 
+    // its numbers beside the varied values
     *row = compare_row_of(&s, &result);
-    memcpy(row->varied, values, (size_t)varied * sizeof *values);
-    for (int k = 0; k < varied; k++) {
+    memcpy(row->varied, values.varied, sizeof row->varied);
+    for (int k = 0; k < c->varied.axis_count; k++) {
         row->idle[k] = effect_none_from(&s, c->varied.axes[k].parameter, -1);
     }
+
     if (c->drawn) {
         c->kept[i] = result;
     } else {
@@ -169,15 +191,15 @@ static bool run_one(comparison *c, int i, int combination, run_monitor *monitor,
 
 // Combination by combination, what the rows are held against first. Once it was stopped
 // the table is that of the rows before.
-static status run_all(comparison *c, run_monitor *monitor)
+static status run_comparison(comparison *c, run_monitor *monitor)
 {
+    const bool has_against = c->opened > c->operands;
     for (int k = 0; k < c->combinations; k++) {
-        if (c->opened > c->operands &&
-            !run_one(c, c->operands, k, monitor, &c->against[k])) {
+        if (has_against && !run_compared(c, c->operands, k, monitor, &c->against[k])) {
             return STATUS_STOPPED;
         }
         for (int i = 0; i < c->operands; i++) {
-            if (!run_one(c, i, k, monitor, &c->rows[c->table.count])) {
+            if (!run_compared(c, i, k, monitor, &c->rows[c->table.count])) {
                 return STATUS_STOPPED;
             }
             c->table.count++;
@@ -186,52 +208,59 @@ static status run_all(comparison *c, run_monitor *monitor)
     return STATUS_OK;
 }
 
-RESULT_WRITER(write_csv, comparison, compare_csv(stream, &found->table))
-RESULT_WRITER(write_markdown, comparison, compare_text(stream, &found->table, true))
-RESULT_GIVEN(json_t *, table_json, comparison, return compare_json(&found->table))
+// --- the table -------------------------------------------------------------------------
 
-static void print_table(const scenario *s, const void *found)
+static json_t *comparison_json(const void *found)
 {
-    const compare_table *t = &((const comparison *)found)->table;
-    if (t->count > 0) {
-        compare_text(stdout, t, false);
+    const comparison *c = found;
+    return compare_json(&c->table);
+}
+
+static void write_comparison_csv(FILE *stream, const void *found)
+{
+    const comparison *c = found;
+    compare_csv(stream, &c->table);
+}
+
+static void write_comparison_markdown(FILE *stream, const void *found)
+{
+    const comparison *c = found;
+    compare_text(stream, &c->table, true);
+}
+
+static void print_comparison(const void *found)
+{
+    const comparison *c = found;
+    const compare_table *t = &c->table;
+    if (t->count == 0) {
+        return;
     }
-    if (t->count > 0 && t->against != NULL) {
+    compare_text(stdout, t, false);
+    if (t->against != NULL) {
         say("\n* differs from %s by more than %g %%\n", t->against->scenario,
             100 * t->tolerance);
     }
 }
 
-// What the runs are called: changes that all have stand in the title, else beside the
-// scenario's name. Each name is on the heap. False without memory.
-static bool name_runs(const comparison *c, char *names[TRACE_RUNS], char *title,
-                      size_t size)
-{
-    char all[SCENARIO_CHANGES], own[SCENARIO_CHANGES];
-    bool same = true, named = true;
-    scenario_changes(&c->scenarios[0], all);
-    for (int i = 1; i < c->opened; i++) {
-        same = same && strcmp(scenario_changes(&c->scenarios[i], own), all) == 0;
-    }
+// --- the picture -----------------------------------------------------------------------
 
-    for (int i = 0; i < c->opened; i++) {
-        const char *changes = same ? "" : scenario_changes(&c->scenarios[i], own);
-        if (asprintf(&names[i], "%s%s", c->scenarios[i].name, changes) < 0) {
-            names[i] = NULL;
-            named = false;
+// Whether all scenarios have the same changes; if so, these are in `changes`.
+static bool have_same_changes(const comparison *c, char changes[SCENARIO_CHANGES])
+{
+    scenario_changes(&c->scenarios[0], changes);
+    for (int i = 1; i < c->opened; i++) {
+        char others[SCENARIO_CHANGES];
+        if (strcmp(scenario_changes(&c->scenarios[i], others), changes) != 0) {
+            return false;
         }
     }
-    snprintf(title, size, "Runs compared%s", same ? all : "");
-    return named;
+    return true;
 }
 
 // The recorded signals of all scenarios in one figure, a colour each.
-static int plot_runs(const arguments *a, const scenario *s, const void *found)
+static int plot_comparison(const arguments *a, const void *found)
 {
     const comparison *c = found;
-    trace_run shown[TRACE_RUNS];
-    int count = 0;
-    char *names[TRACE_RUNS], title[64 + SCENARIO_CHANGES];
     if (c->varied.axis_count > 0) {
         return complain(
             "--plot shows the scenarios themselves, not --vary's combinations");
@@ -241,57 +270,71 @@ static int plot_runs(const arguments *a, const scenario *s, const void *found)
                         c->opened);
     }
 
+    // changes that all have stand in the title, else beside the scenario's name
+    char common[SCENARIO_CHANGES];
+    const bool same = have_same_changes(c, common);
+    if (!same) {
+        common[0] = '\0';
+    }
+    g_autofree char *title = text_printf("Runs compared%s", common);
+    g_auto(GStrv) names = g_new0(char *, TRACE_RUNS + 1);
+    for (int i = 0; i < c->opened; i++) {
+        char changes[SCENARIO_CHANGES] = "";
+        if (!same) {
+            scenario_changes(&c->scenarios[i], changes);
+        }
+        names[i] = g_strconcat(c->scenarios[i].name, changes, NULL);
+    }
+
     // one that failed shows what it has, one that was not begun nothing
-    const bool named = name_runs(c, names, title, sizeof title);
+    trace_run shown[TRACE_RUNS];
+    int count = 0;
     for (int i = 0; i < c->opened; i++) {
         if (c->kept[i].summary.steps > 0) {
             shown[count++] = (trace_run){&c->scenarios[i], &c->kept[i], .name = names[i],
                                          .rank = i + 1};
         }
     }
-    const int code = named ? publish_runs(a, title, shown, count)
-                           : worse(EXIT_FAILED, complain("out of memory"));
-    for (int i = 0; i < c->opened; i++) {
-        free(names[i]);
-    }
-    return code;
+    return publish_runs(a, title, shown, count);
 }
 
-static int compare(const arguments *a)
+// --- the command -----------------------------------------------------------------------
+
+static int compare_and_report(const arguments *a)
 {
-    static const command_results r = {table_json,
-                                      print_table,
-                                      plot_runs,
-                                      write_csv,
-                                      .markdown = write_markdown,
-                                      .draws_part = true,
-                                      .kept = "the results are those of these",
-                                      .none = "there is nothing to show"};
-    SCOPED(finish) comparison c = {.table.tolerance = a->tolerance / 100};
+    SCOPED(comparison_finish)
+    comparison c = {.table.tolerance = a->tolerance / 100};
     fault f = {0};
     if (a->columns != NULL && compare_choose(&c.table, a->columns, &f) != STATUS_OK) {
         return complain("--columns %s: %s", a->columns, f.text);
     }
-
-    int ended = open_all(&c, a);
+    const int ended = open_comparison(&c, a);
     if (ended != EXIT_DONE) {
         return ended;
     }
+
     c.table.rows = c.rows;
     c.table.group = c.operands;
     c.table.varied = c.varied.axes;
     c.table.varied_count = a->varies.count;
     if (a->against != NULL) {
         c.table.against = c.against;
-    } else {
-        c.table.against = NULL;
     }
     c.drawn = a->plot != NULL && c.varied.axis_count == 0 && c.opened <= TRACE_RUNS;
+
+    static const command_results results = {.json = comparison_json,
+                                            .text = print_comparison,
+                                            .plot = plot_comparison,
+                                            .csv = write_comparison_csv,
+                                            .markdown = write_comparison_markdown,
+                                            .draws_part = true,
+                                            .kept = "the results are those of these",
+                                            .none = "there is nothing to show"};
     run_monitor *monitor = work_begin(a, "runs", c.combinations * c.opened);
-    const status code = run_all(&c, monitor);
-    const int result = work_finish(a, code, &f, &r, NULL, &c);
+    const status code = run_comparison(&c, monitor);
+    int result = work_finish(a, code, &f, &results, &c);
     if (c.failed) {
-        return worse(result, EXIT_FAILED);
+        result = worse(result, EXIT_FAILED);
     }
     return result;
 }
@@ -310,8 +353,13 @@ static const option_row rows[] = {
 };
 
 const command compare_command = {
-    CALLED("compare", MANY_RUNS, "Several scenarios in one table"),
-    SCENARIOS("SCENARIO...", 1, MOST_SCENARIOS),
+    .name = "compare",
+    .group = GROUP_MANY_RUNS,
+    .summary = "Several scenarios in one table",
+    .operands = "SCENARIO...",
+    .least = 1,
+    .most = MOST_SCENARIOS,
+    .takes_scenarios = true,
     .help = "One row a run: peak force, its overshoot over the commanded force, "
             "settling time, impacts,\nseparations, steady error, largest command and "
             "electrical energy. Best peak and best time are\nwhat a controller could "
@@ -322,5 +370,5 @@ const command compare_command = {
             "of values. ^C ends it with the rows that are done (exit status 130).\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
                 &quiet_options, &page_options},
-    .run = compare,
+    .run = compare_and_report,
 };

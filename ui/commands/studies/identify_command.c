@@ -1,4 +1,7 @@
 // impactlab identify: fits parameters to measured data and says how far to trust them.
+#include "ui/commands/command.h"
+
+#include <math.h>
 
 #include "render/plot/study_plot.h"
 #include "src/base/json.h"
@@ -6,26 +9,45 @@
 #include "src/study/identify.h"
 #include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
+#include "ui/commands/results.h"
 
-enum { MOST_LINKS = 8 };
+enum { MOST_LINKS_COMPARED = 8, MOST_LINKS = 64 };
 
-// The fit, its validation, and what other numbers of links make of the same data.
-typedef struct outcome {
+// What other numbers of links make of the same data.
+typedef struct links_comparison {
+    int links[MOST_LINKS_COMPARED], count;
+    double aic[MOST_LINKS_COMPARED];
+    bool white[MOST_LINKS_COMPARED]; // residuals
+} links_comparison;
+
+// The fit, its validation, and the comparison of numbers of links.
+typedef struct fit_outcome {
+    const scenario *scenario;
     identification fit;
     identification validation; // no traces: none was asked for
-    scenario written;          // with the fitted values
-    int links[MOST_LINKS], link_count;
-    double aic[MOST_LINKS];
-    bool white[MOST_LINKS];
-} outcome;
+    scenario fitted;           // with the fitted values
+    links_comparison compared;
+} fit_outcome;
+
+static void fit_outcome_finish(fit_outcome *o)
+{
+    identify_finish(&o->fit);
+    identify_finish(&o->validation);
+}
+
+// --- the fits --------------------------------------------------------------------------
 
 // Reads what is fitted to what.
-static status set_up(const arguments *a, const scenario *s, identification *id, fault *f)
+static status read_fit(const arguments *a, const scenario *s, identification *id,
+                       fault *f)
 {
     *id = (identification){.base = s,
                            .jobs = many_runs_jobs(a),
                            .seed = a->seed,
-                           .starts = a->starts > 0 ? (int)a->starts : IDENTIFY_STARTS};
+                           .starts = IDENTIFY_STARTS};
+    if (a->starts > 0) {
+        id->starts = (int)a->starts;
+    }
     TRY(identify_available(f));
     for (int i = 0; i < a->fits.count; i++) {
         TRY(identify_add_path(id, a->fits.items[i], f));
@@ -38,9 +60,9 @@ static status set_up(const arguments *a, const scenario *s, identification *id, 
 }
 
 // Another trace under the fitted values: only what is its own is fitted.
-static status validate(const arguments *a, outcome *o, fault *f)
+static status validate_fit(const arguments *a, fit_outcome *o, fault *f)
 {
-    o->validation = (identification){.base = &o->written,
+    o->validation = (identification){.base = &o->fitted,
                                      .jobs = o->fit.jobs,
                                      .starts = 1,
                                      .monitor = o->fit.monitor};
@@ -48,137 +70,211 @@ static status validate(const arguments *a, outcome *o, fault *f)
                            a->headings.count, f));
     const status code = identify_fit(&o->validation, f);
     if (code == STATUS_STOPPED) {
+        // a part of it judges nothing
         identify_finish(&o->validation);
         o->validation = (identification){.count = 0};
     }
     return code;
 }
 
-// The numbers of --links.
-static status read_links(const char *text, outcome *o, fault *f)
+// Reads a number of links; *rest is what follows it.
+static bool read_number_of_links(const char *text, int *links, const char **rest)
 {
-    while (text != NULL && *text != '\0') {
-        double value;
-        const char *rest;
-        FAULT_IF(o->link_count == MOST_LINKS || !decimal_read(text, &value, &rest) ||
-                     (*rest != ',' && *rest != '\0') || value != floor(value) ||
-                     value < 1 || value > 64,
+    double value;
+    if (!decimal_read(text, &value, rest) || (**rest != ',' && **rest != '\0')) {
+        return false;
+    }
+    if (value != floor(value) || value < 1 || value > MOST_LINKS) {
+        return false;
+    }
+    *links = (int)value;
+    return true;
+}
+
+// Reads the numbers of --links.
+static status read_links(const char *text, links_comparison *c, fault *f)
+{
+    const char *rest = text;
+    while (rest != NULL && *rest != '\0') {
+        FAULT_IF(c->count == MOST_LINKS_COMPARED ||
+                     !read_number_of_links(rest, &c->links[c->count], &rest),
                  f, STATUS_BAD_ARGUMENT,
-                 "--links takes up to %d numbers of links from 1 to 64, such as 2,4,8",
-                 MOST_LINKS);
-        o->links[o->link_count++] = (int)value;
+                 "--links takes up to %d numbers of links from 1 to %d, such as 2,4,8",
+                 MOST_LINKS_COMPARED, MOST_LINKS);
+        c->count++;
         if (*rest == ',') {
-            text = rest + 1;
-        } else {
-            text = rest;
+            rest++;
         }
     }
     return STATUS_OK;
 }
 
-// The same data with other numbers of links, from the fitted values on.
-static status compare_links(const arguments *a, outcome *o, fault *f)
+// Fits the same data with other numbers of links, from the fitted values on.
+static status compare_links(const arguments *a, fit_outcome *o, fault *f)
 {
-    const int asked = o->link_count;
-    o->link_count = 0; // of those that are done
+    links_comparison *c = &o->compared;
+    const int asked = c->count;
+    c->count = 0; // of those that are done
     for (int i = 0; i < asked; i++) {
         scenario other;
-        const parameter_change links = {PARAMETER_INDEX(arm.links), o->links[i]};
-        TRY(scenario_with(&o->written, &links, 1, &other, f));
+        const parameter_change change = {PARAMETER_INDEX(arm.links), c->links[i]};
+        TRY(scenario_with(&o->fitted, &change, 1, &other, f));
+
         SCOPED(identify_finish) identification id = {0};
-        TRY(set_up(a, &other, &id, f));
+        TRY(read_fit(a, &other, &id, f));
         id.starts = 1;
         id.monitor = o->fit.monitor;
         TRY(identify_fit(&id, f));
-        o->aic[i] = id.aic;
-        o->white[i] = id.white;
-        o->link_count++;
+        c->aic[i] = id.aic;
+        c->white[i] = id.white;
+        c->count++;
     }
     return STATUS_OK;
 }
 
+// Fits the parameters, and judges them by what else is asked for.
+static status fit_and_judge(const arguments *a, fit_outcome *o, fault *f)
+{
+    TRY(identify_fit(&o->fit, f));
+
+    // the scenario with the values that are determined
+    parameters fitted;
+    TRY(identify_parameters(&o->fit, true, &fitted, f));
+    TRY(scenario_take_parameters(&o->fitted, &fitted, f));
+
+    if (a->validate != NULL) {
+        TRY(validate_fit(a, o, f));
+    }
+    return compare_links(a, o, f);
+}
+
 // --- results ---------------------------------------------------------------------------
 
-static json_t *answer(const scenario *s, const void *found)
+static json_t *fit_json(const void *found)
 {
-    const outcome *o = found;
+    const fit_outcome *o = found;
+    const links_comparison *c = &o->compared;
     json_t *object = identify_json(&o->fit), *links = json_array();
-    for (int i = 0; i < o->link_count; i++) {
+    for (int i = 0; i < c->count; i++) {
         json_add(links,
-                 json_of("links:i aic:n white:b", o->links[i], o->aic[i], o->white[i]));
+                 json_of("links:i aic:n white:b", c->links[i], c->aic[i], c->white[i]));
     }
     return json_members(object, "links:o validation:o", links,
                         identify_traces_json(&o->validation));
 }
 
-static void print_traces(const identification *id, const char *what)
+static void print_fitted_parameter(const fitted_parameter *fit, bool is_judged)
 {
-    for (int k = 0; k < id->trace_count; k++) {
-        const recorded_trace *t = &id->traces[k];
-        say("  %s %s: shifted by %.3g ms, encoder by %.3g rad;", what, t->file,
-            1e3 * t->own[OWN_SHIFT], t->own[OWN_OFFSET]);
-        for (int c = 0; c < CHANNELS; c++) {
-            if (!isnan(t->rms[c])) {
-                say(" %s %.3g", signal_table[identify_signals[c]].name, t->rms[c]);
-            }
-        }
-        say(" of their noise");
-        if (t->contact_count > 0) {
-            say("; %d contact%s within %.3g ms, largest force off by %.3g %%",
-                t->contact_count, t->contact_count == 1 ? "" : "s",
-                1e3 * t->contact_error, 100 * t->peak_error);
+    const char *name = fit->axis.name;
+    if (fit->determined) {
+        const char *unit = sweep_axis_parameter(&fit->axis)->unit;
+        say("  %-26s %12.6g %12.3g   %.6g to %.6g %s", name, fit->value,
+            fit->standard_error, fit->low, fit->high, unit);
+        if (identify_at_end(fit)) {
+            say(", at the end of its range");
         }
         say("\n");
+    } else if (is_judged) {
+        say("  %-26s %12s %12s   not determined\n", name, "-", "-");
+    } else {
+        say("  %-26s %12.6g %12s   not known yet\n", name, fit->value, "-");
     }
 }
 
-static void print_answer(const scenario *s, const void *found)
+// What a trace has of its own, and what its residuals are.
+static void print_recorded_trace(const recorded_trace *t, const char *what)
 {
-    const outcome *o = found;
-    const identification *id = &o->fit;
-    const bool judged = !isnan(id->aic);
-    say_title(s);
-    say("\n  %-26s %12s %12s   %s\n", "parameter", "value", "error", "95 % interval");
-    for (int i = 0; i < id->count; i++) {
-        const fitted_parameter *fit = &id->fit[i];
-        const char *unit = sweep_axis_parameter(&fit->axis)->unit;
-        if (fit->determined) {
-            say("  %-26s %12.6g %12.3g   %.6g to %.6g %s%s\n", fit->axis.name, fit->value,
-                fit->standard_error, fit->low, fit->high, unit,
-                identify_at_end(fit) ? ", at the end of its range" : "");
-        } else if (judged) {
-            say("  %-26s %12s %12s   not determined\n", fit->axis.name, "-", "-");
-        } else {
-            say("  %-26s %12.6g %12s   not known yet\n", fit->axis.name, fit->value, "-");
+    say("  %s %s: shifted by %.3g ms, encoder by %.3g rad;", what, t->file,
+        1e3 * t->own[OWN_SHIFT], t->own[OWN_OFFSET]);
+    for (int c = 0; c < CHANNELS; c++) {
+        if (!isnan(t->rms[c])) {
+            say(" %s %.3g", signal_table[identify_signals[c]].name, t->rms[c]);
         }
     }
-    if (!judged) {
-        say("\n  chi square %.4g\n", id->chi_square);
-        return;
+    say(" of their noise");
+    if (t->contact_count > 0) {
+        say("; %d contact%s within %.3g ms, largest force off by %.3g %%",
+            t->contact_count, plural_ending((size_t)t->contact_count),
+            1e3 * t->contact_error, 100 * t->peak_error);
     }
+    say("\n");
+}
+
+static void print_recorded_traces(const identification *id, const char *what)
+{
+    for (int k = 0; k < id->trace_count; k++) {
+        print_recorded_trace(&id->traces[k], what);
+    }
+}
+
+// How good the fit is: what it does not determine, and its residuals.
+static void print_judgement(const fit_outcome *o)
+{
+    const identification *id = &o->fit;
     for (int k = 0; k < id->undetermined; k++) {
         char words[1024];
         say("\n  not determined: %s\n", identify_words(id, k, words, sizeof words));
     }
+
+    const char *residuals = "correlated: the model lacks something that the data show";
+    if (id->white) {
+        residuals = "white";
+    }
     say("\n  %zu readings, chi square %.4g, AIC %.6g; the residuals are %s\n",
-        id->residuals - (size_t)id->count, id->chi_square, id->aic,
-        id->white ? "white" : "correlated: the model lacks something that the data show");
-    print_traces(id, "trace");
-    print_traces(&o->validation, "validation");
-    for (int i = 0; i < o->link_count; i++) {
-        say("  with %d links: AIC %.6g, residuals %s\n", o->links[i], o->aic[i],
-            o->white[i] ? "white" : "correlated");
+        id->residuals - (size_t)id->count, id->chi_square, id->aic, residuals);
+    print_recorded_traces(id, "trace");
+    print_recorded_traces(&o->validation, "validation");
+
+    const links_comparison *c = &o->compared;
+    for (int i = 0; i < c->count; i++) {
+        const char *of_links = c->white[i] ? "white" : "correlated";
+        say("  with %d links: AIC %.6g, residuals %s\n", c->links[i], c->aic[i],
+            of_links);
     }
 }
 
-RESULT_WRITER(write_fitted, outcome, scenario_write(stream, &found->written))
-RESULT_WRITER(write_cases, outcome, identify_write_set(stream, &found->fit))
+static void print_fit(const void *found)
+{
+    const fit_outcome *o = found;
+    const identification *id = &o->fit;
+    const bool is_judged = !isnan(id->aic);
+    say_title(o->scenario);
+    say("\n  %-26s %12s %12s   %s\n", "parameter", "value", "error", "95 % interval");
+    for (int i = 0; i < id->count; i++) {
+        print_fitted_parameter(&id->fit[i], is_judged);
+    }
 
-// Whether the values can be relied on; says where they are none.
+    if (is_judged) {
+        print_judgement(o);
+    } else {
+        say("\n  chi square %.4g\n", id->chi_square);
+    }
+}
+
+static void write_fitted_scenario(FILE *stream, const void *found)
+{
+    const fit_outcome *o = found;
+    scenario_write(stream, &o->fitted);
+}
+
+static void write_drawn_arms(FILE *stream, const void *found)
+{
+    const fit_outcome *o = found;
+    identify_write_set(stream, &o->fit);
+}
+
+static int plot_fit(const arguments *a, const void *found)
+{
+    const fit_outcome *o = found;
+    return publish_owned(a, identify_figure_create(&o->fit));
+}
+
+// --- the command -----------------------------------------------------------------------
+
+// Whether the values can be relied on; complains where they cannot.
 static bool is_reliable(const identification *id)
 {
     bool reliable = id->undetermined == 0;
-    double most;
     for (int i = 0; i < id->count; i++) {
         const fitted_parameter *fit = &id->fit[i];
         if (identify_at_end(fit)) {
@@ -188,6 +284,8 @@ static bool is_reliable(const identification *id)
             reliable = false;
         }
     }
+
+    double most;
     const double misfit = identify_misfit(id, &most);
     if (misfit > most) {
         complain("chi square is %.3g per reading, expected about 1 and at most %.3g: "
@@ -198,63 +296,57 @@ static bool is_reliable(const identification *id)
     return reliable && misfit <= most;
 }
 
-static int plot(const arguments *a, const scenario *s, const void *found)
+static const command_results fit_results = {.json = fit_json,
+                                            .text = print_fit,
+                                            .plot = plot_fit,
+                                            .output = write_fitted_scenario,
+                                            .cases = write_drawn_arms};
+
+// Writes what an interrupt leaves, and says what that is. Returns the exit status.
+static int report_stopped_fit(const arguments *a, const fit_outcome *o)
 {
-    return publish_owned(a, identify_figure_create(&((const outcome *)found)->fit));
+    const char *what_became = "nothing was tried yet";
+    int result = EXIT_FAILED;
+    if (o->fit.chi_square > 0) {
+        result = worse(result, write_results(a, &fit_results, o, false));
+        what_became = "the fit is whole, what compares it is missing";
+        if (isnan(o->fit.aic)) {
+            what_became = "the values are the best so far, not judged";
+        }
+    }
+    complain("stopped: %s", what_became);
+    return result;
 }
 
-static int identify_and_report(const arguments *a, scenario *s)
+static int fit_and_report(const arguments *a, scenario *s)
 {
-    static const command_results r = {answer, print_answer, plot, .output = write_fitted,
-                                      .cases = write_cases};
-    fault f = {0};
-    outcome o = {0};
     if (a->data.count == 0 || a->fits.count == 0) {
         return complain("identify needs a recorded trace, --data FILE.csv, and what is "
                         "to be found, --fit PATH");
     }
-    status code = read_links(a->links, &o, &f);
-    if (code == STATUS_OK) {
-        code = set_up(a, s, &o.fit, &f);
+    SCOPED(fit_outcome_finish) fit_outcome o = {.scenario = s, .fitted = *s};
+    fault f = {0};
+    if (read_links(a->links, &o.compared, &f) != STATUS_OK ||
+        read_fit(a, s, &o.fit, &f) != STATUS_OK) {
+        return complain_fault(&f);
     }
-    if (code == STATUS_OK) {
-        // the number of runs is not known before they are through
-        o.fit.monitor = work_begin(a, "runs", 1000);
-        code = identify_fit(&o.fit, &f);
-        parameters p;
-        o.written = *s;
-        if (code == STATUS_OK) {
-            code = identify_parameters(&o.fit, true, &p, &f);
-        }
-        if (code == STATUS_OK) {
-            code = scenario_take_parameters(&o.written, &p, &f);
-        }
-        if (code == STATUS_OK && a->validate != NULL) {
-            code = validate(a, &o, &f);
-        }
-        if (code == STATUS_OK) {
-            code = compare_links(a, &o, &f);
-        }
-        work_end();
+
+    // the number of runs is not known before they are through
+    o.fit.monitor = work_begin(a, "runs", 1000);
+    const status code = fit_and_judge(a, &o, &f);
+    work_end();
+
+    if (code == STATUS_STOPPED) {
+        return report_stopped_fit(a, &o);
     }
-    const bool stopped = code == STATUS_STOPPED, any = stopped && o.fit.chi_square > 0;
-    const bool reliable = code != STATUS_OK || is_reliable(&o.fit);
-    int written = EXIT_DONE;
-    if (code == STATUS_OK || any) {
-        written = write_results(a, &r, s, &o, !stopped);
-    } else if (!stopped) {
-        written = complain_fault(&f);
+    if (code != STATUS_OK) {
+        return complain_fault(&f);
     }
-    if (stopped) {
-        const char *fit = isnan(o.fit.aic)
-                              ? "the values are the best so far, not judged"
-                              : "the fit is whole, what compares it is missing";
-        complain("stopped: %s", any ? fit : "nothing was tried yet");
-        written = EXIT_FAILED;
+    const bool reliable = is_reliable(&o.fit);
+    const int result = write_results(a, &fit_results, &o, true);
+    if (!reliable) {
+        return worse(result, EXIT_FAILED);
     }
-    const int result = reliable ? written : worse(written, EXIT_FAILED);
-    identify_finish(&o.fit);
-    identify_finish(&o.validation);
     return result;
 }
 
@@ -281,9 +373,13 @@ static const option_row rows[] = {
 };
 
 const command identify_command = {
-    CALLED("identify", CONTROL,
-           "Find parameters of an arm, and their errors, from recorded traces"),
-    ONE_SCENARIO,
+    .name = "identify",
+    .group = GROUP_CONTROL,
+    .summary = "Find parameters of an arm, and their errors, from recorded traces",
+    .operands = "SCENARIO",
+    .least = 1,
+    .most = 1,
+    .takes_scenarios = true,
     .help = "identify compare/open-loop --data a.csv --data b.csv --fit arm.k2 --fit "
             "motor.stiction\n"
             "simulates each trace with the command that was recorded and fits the "
@@ -303,5 +399,5 @@ const command identify_command = {
             "to be.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &drawn_options,
                 &quiet_options, &page_options},
-    .use = identify_and_report,
+    .use = fit_and_report,
 };

@@ -3,8 +3,9 @@
 
 #include "src/base/json.h"
 #include "src/study/store/sweep_store.h"
+#include "ui/commands/results.h"
 
-static int merge(const arguments *a)
+static int merge_parts(const arguments *a)
 {
     sweep_merged merged;
     if (a->output == NULL) {
@@ -21,9 +22,10 @@ static int merge(const arguments *a)
             a->operand_count, plural_ending((size_t)a->operand_count));
     }
     if (a->json != NULL) {
-        return write_json(a->json, json_of("file:t runs:o runs_of_sweep:o", a->output,
-                                           json_integer((json_int_t)merged.runs),
-                                           json_integer((json_int_t)merged.total)));
+        return write_json_file(a->json,
+                               json_of("file:t runs:o runs_of_sweep:o", a->output,
+                                       json_integer((json_int_t)merged.runs),
+                                       json_integer((json_int_t)merged.total)));
     }
     return EXIT_DONE;
 }
@@ -34,13 +36,17 @@ static const option_row merge_rows[] = {
 };
 
 const command merge_command = {
-    CALLED("merge", MANY_RUNS, "The parts of a sweep in one database"),
-    OPERANDS("FILE...", 1, 1 << 20),
+    .name = "merge",
+    .group = GROUP_MANY_RUNS,
+    .summary = "The parts of a sweep in one database",
+    .operands = "FILE...",
+    .least = 1,
+    .most = 1 << 20,
     .help = "The files are databases of impactlab sweep --part K/N --db FILE, in "
             "any order. Parts of another sweep,\nand parts that hold the same "
             "run, are refused. impactlab sweep with the same scenario and "
             "--vary, and\n--db of the merged file, computes what may be missing "
             "and writes CSV and pictures.\n",
     .options = {&json_options, OWN_OPTIONS(merge_rows), &quiet_options},
-    .run = merge,
+    .run = merge_parts,
 };

@@ -2,11 +2,12 @@
 #include "ui/commands/command.h"
 
 #include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 
 #include "src/arm/modes.h"
 #include "src/base/json.h"
 #include "ui/commands/command_pictures.h"
+#include "ui/commands/results.h"
 
 #define TWO_PI (2 * 3.14159265358979323846)
 
@@ -25,6 +26,7 @@ static const struct {
 };
 enum { HOLDS = sizeof holds / sizeof holds[0] };
 
+// The modes of an arm that is held in one way.
 typedef struct mode_set {
     int count;
     double *frequencies; // [rad/s]
@@ -32,59 +34,89 @@ typedef struct mode_set {
 } mode_set;
 
 typedef struct arm_modes {
+    const scenario *scenario;
     arm arm;
     mode_set sets[HOLDS];
 } arm_modes;
 
-static json_t *modes_object(const scenario *s, const void *found)
+static void arm_modes_finish(arm_modes *m)
 {
-    const arm *a = &((const arm_modes *)found)->arm;
-    const mode_set *sets = ((const arm_modes *)found)->sets;
+    for (int i = 0; i < HOLDS; i++) {
+        g_free(m->sets[i].frequencies);
+        g_free(m->sets[i].shapes);
+    }
+}
+
+// --- numbers ---------------------------------------------------------------------------
+
+static json_t *modes_json(const void *found)
+{
+    const arm_modes *m = found;
+    const int dof = m->arm.dof;
     json_t *array = json_array();
     for (int i = 0; i < HOLDS; i++) {
+        const mode_set *set = &m->sets[i];
         json_t *shapes = json_array(), *frequencies = json_array();
-        for (int mode = 0; mode < sets[i].count; mode++) {
-            json_add(shapes, json_numbers(sets[i].shapes + mode * a->dof, a->dof));
-            json_add(frequencies, json_number(1 / TWO_PI * sets[i].frequencies[mode]));
+        for (int mode = 0; mode < set->count; mode++) {
+            json_add(shapes, json_numbers(set->shapes + mode * dof, dof));
+            json_add(frequencies, json_number(1 / TWO_PI * set->frequencies[mode]));
         }
         json_add(array, json_of("hub:t tip:t frequency_Hz:o shapes:o", holds[i].hub_name,
                                 holds[i].tip_name, frequencies, shapes));
     }
-    return json_of("scenario:t modes:o", s->name, array);
+    return json_of("scenario:t modes:o", m->scenario->name, array);
 }
 
-static void print_set(const arm *a, const mode_set *set, const char *hub, const char *tip)
+static void print_mode(const arm *a, const mode_set *set, int mode)
 {
-    int shown = set->count < MODES_SHOWN ? set->count : MODES_SHOWN;
-    int angles = a->dof < ANGLES_SHOWN ? a->dof : ANGLES_SHOWN;
-
-    printf("\nHub %s, tip %s\n", hub, tip);
-    printf("%s\n", shown > 0
-                       ? "  mode  frequency [Hz]   [rad/s]   angles, the largest is 1"
-                       : "  nothing can move");
-
-    for (int mode = 0; mode < shown; mode++) {
-        printf("  %4d  %14.5g  %8.5g  ", mode + 1, set->frequencies[mode] / TWO_PI,
-               set->frequencies[mode]);
-        for (int k = 0; k < angles; k++) {
-            double angle = set->shapes[mode * a->dof + k];
-            // no minus before a zero
-            printf(" %7.4f", fabs(angle) < 5e-5 ? 0 : angle);
+    const double frequency = set->frequencies[mode];
+    printf("  %4d  %14.5g  %8.5g  ", mode + 1, frequency / TWO_PI, frequency);
+    for (int k = 0; k < a->dof && k < ANGLES_SHOWN; k++) {
+        double angle = set->shapes[mode * a->dof + k];
+        if (fabs(angle) < 5e-5) {
+            angle = 0; // no minus before a zero
         }
-        printf("%s\n", angles < a->dof ? " ..." : "");
+        printf(" %7.4f", angle);
     }
+    if (a->dof > ANGLES_SHOWN) {
+        printf(" ...");
+    }
+    printf("\n");
+}
 
-    if (shown < set->count) {
-        printf("  ... and %d more (--json lists all)\n", set->count - shown);
+static void print_set(const arm *a, const mode_set *set)
+{
+    if (set->count == 0) {
+        printf("  nothing can move\n");
+        return;
+    }
+    printf("  mode  frequency [Hz]   [rad/s]   angles, the largest is 1\n");
+    for (int mode = 0; mode < set->count && mode < MODES_SHOWN; mode++) {
+        print_mode(a, set, mode);
+    }
+    if (set->count > MODES_SHOWN) {
+        printf("  ... and %d more (--json lists all)\n", set->count - MODES_SHOWN);
     }
 }
 
-// ---- the picture
+static void print_modes(const void *found)
+{
+    const arm_modes *m = found;
+    say_title(m->scenario);
+    printf("small vibrations of the straight arm, %d link%s, without damping\n",
+           m->arm.links, plural_ending((size_t)m->arm.links));
+    for (int i = 0; i < HOLDS; i++) {
+        printf("\nHub %s, tip %s\n", holds[i].hub_name, holds[i].tip_name);
+        print_set(&m->arm, &m->sets[i]);
+    }
+}
 
-enum { MODES_DRAWN = 3 };
+// --- the picture -----------------------------------------------------------------------
+
+enum { MODES_DRAWN = 3, LINKS_WITH_MARKERS = 40 };
 
 // Deflection at the joints of a mode's shape, from the hub to the tip, largest 1.
-static void deflections(const arm *a, const double *shape, double *x, double *y)
+static void compute_deflections(const arm *a, const double *shape, double *x, double *y)
 {
     // the hub's own angle moves nothing
     const double *links = shape + (a->dof - a->links);
@@ -105,49 +137,64 @@ static void deflections(const arm *a, const double *shape, double *x, double *y)
     }
 }
 
-static int plot_modes(const arguments *args, const scenario *s, const void *found)
+// One panel of the picture, with what its curves need.
+typedef struct modes_panel {
+    figure_series series[MODES_DRAWN];
+    char labels[MODES_DRAWN][48], heading[64];
+} modes_panel;
+
+// Fills a panel with the first modes of a set; `numbers` has room for the points of each.
+static figure_panel modes_panel_of(modes_panel *p, const arm *a, const mode_set *set,
+                                   double *numbers)
 {
-    const arm *a = &((const arm_modes *)found)->arm;
-    const mode_set *sets = ((const arm_modes *)found)->sets;
     static const int colours[MODES_DRAWN] = {0, 5, 2};
-    figure_series series[HOLDS][MODES_DRAWN] = {{{0}}};
-    figure_panel panels[HOLDS] = {{0}};
-    char headings[HOLDS][64], labels[HOLDS][MODES_DRAWN][48];
-    size_t points = (size_t)a->links + 1;
-    SCOPED(free_kept)
-    double *numbers = calloc((size_t)HOLDS * MODES_DRAWN * 2 * points, sizeof *numbers);
-    if (numbers == NULL) {
-        return worse(EXIT_FAILED, complain("out of memory"));
+    const size_t points = (size_t)a->links + 1;
+    int drawn = 0;
+    for (; drawn < set->count && drawn < MODES_DRAWN; drawn++) {
+        double *x = numbers + 2 * points * (size_t)drawn, *y = x + points;
+        compute_deflections(a, set->shapes + drawn * a->dof, x, y);
+
+        char *label = p->labels[drawn];
+        snprintf(label, sizeof p->labels[drawn], "%.3g\u2009Hz",
+                 set->frequencies[drawn] / TWO_PI);
+        figure_series *curve = &p->series[drawn];
+        *curve = curve_of(label, label, x, y, points, colours[drawn]);
+        curve->marker = MARKER_NONE;
+        if (a->links <= LINKS_WITH_MARKERS) {
+            curve->marker = MARKER_CIRCLE;
+        }
     }
 
-    // a panel for each way of holding the arm, a curve for each of its first modes
-    for (int i = 0; i < HOLDS; i++) {
-        int shown = sets[i].count < MODES_DRAWN ? sets[i].count : MODES_DRAWN;
-        for (int m = 0; m < shown; m++) {
-            double *x = numbers + (size_t)(i * MODES_DRAWN + m) * 2 * points,
-                   *y = x + points;
-            deflections(a, sets[i].shapes + m * a->dof, x, y);
-            snprintf(labels[i][m], sizeof labels[i][m], "%.3g\u2009Hz",
-                     sets[i].frequencies[m] / TWO_PI);
-            series[i][m] = curve_of(labels[i][m], labels[i][m], x, y, points, colours[m]);
-            if (a->links <= 40) {
-                series[i][m].marker = MARKER_CIRCLE;
-            } else {
-                series[i][m].marker = MARKER_NONE;
-            }
-        }
-        snprintf(headings[i], sizeof headings[i], "hub %s, tip %s", holds[i].hub_name,
-                 holds[i].tip_name);
-        panels[i] = (figure_panel){.heading = headings[i],
-                                   .remark = shown == 0 ? "nothing can move" : NULL,
-                                   .y = {.name = "deflection",
-                                         .label = "Deflection, largest 1",
-                                         .symbol = "Deflection",
-                                         .low = -1.15,
-                                         .high = 1.15},
-                                   .series = series[i],
-                                   .series_count = shown};
+    figure_panel panel = {.heading = p->heading,
+                          .y = {.name = "deflection",
+                                .label = "Deflection, largest 1",
+                                .symbol = "Deflection",
+                                .low = -1.15,
+                                .high = 1.15},
+                          .series = p->series,
+                          .series_count = drawn};
+    if (drawn == 0) {
+        panel.remark = "nothing can move";
     }
+    return panel;
+}
+
+static int plot_modes(const arguments *args, const void *found)
+{
+    const arm_modes *m = found;
+    const size_t numbers_of_panel = (size_t)MODES_DRAWN * 2 * ((size_t)m->arm.links + 1);
+    g_autofree double *numbers = g_new0(double, HOLDS *numbers_of_panel);
+
+    // a panel for each way of holding the arm, a curve for each of its first modes
+    modes_panel contents[HOLDS];
+    figure_panel panels[HOLDS];
+    for (int i = 0; i < HOLDS; i++) {
+        snprintf(contents[i].heading, sizeof contents[i].heading, "hub %s, tip %s",
+                 holds[i].hub_name, holds[i].tip_name);
+        panels[i] = modes_panel_of(&contents[i], &m->arm, &m->sets[i],
+                                   numbers + (size_t)i * numbers_of_panel);
+    }
+
     const figure fig = {.x = {.name = "position",
                               .label = "Position along the arm",
                               .unit = "m",
@@ -156,25 +203,27 @@ static int plot_modes(const arguments *args, const scenario *s, const void *foun
                         .panel_count = HOLDS,
                         .columns = 2,
                         .shared_y = true};
-    return publish_titled(args, s, "first modes of the arm", &fig);
+    return publish_titled(args, m->scenario, "first modes of the arm", &fig);
 }
 
-static void print_modes(const scenario *s, const void *found)
+// --- the command -----------------------------------------------------------------------
+
+static status compute_modes(arm_modes *m)
 {
-    const arm_modes *m = found;
-    say_title(s);
-    printf("small vibrations of the straight arm, %d link%s, without damping\n",
-           m->arm.links, m->arm.links == 1 ? "" : "s");
+    arm_init(&m->arm, &m->scenario->parameters);
+    const size_t n = (size_t)m->arm.dof;
     for (int i = 0; i < HOLDS; i++) {
-        print_set(&m->arm, &m->sets[i], holds[i].hub_name, holds[i].tip_name);
+        mode_set *set = &m->sets[i];
+        set->frequencies = g_new0(double, n);
+        set->shapes = g_new0(double, n *n);
+        TRY(modes_compute(&m->arm, holds[i].hub, holds[i].tip, &set->count,
+                          set->frequencies, set->shapes));
     }
+    return STATUS_OK;
 }
 
-static int modes(const arguments *args, scenario *s)
+static int compute_and_report_modes(const arguments *args, scenario *s)
 {
-    static const command_results r = {modes_object, print_modes, plot_modes};
-    arm_modes m = {0};
-    fault f = {.code = STATUS_OK};
     // errata B1: no natural frequencies without a symmetric stiffness
     if (s->parameters.arm.model == ARM_PRINTED) {
         return complain(
@@ -182,38 +231,31 @@ static int modes(const arguments *args, scenario *s)
             "frequencies, try --set arm.model=corrected");
     }
 
-    arm_init(&m.arm, &s->parameters);
-    const size_t n = (size_t)m.arm.dof;
-    for (int i = 0; i < HOLDS && f.code == STATUS_OK; i++) {
-        mode_set *set = &m.sets[i];
-        set->frequencies = calloc(n, sizeof *set->frequencies);
-        set->shapes = calloc(n * n, sizeof *set->shapes);
-        if (set->frequencies != NULL && set->shapes != NULL) {
-            f.code = modes_compute(&m.arm, holds[i].hub, holds[i].tip, &set->count,
-                                   set->frequencies, set->shapes);
-        } else {
-            f.code = STATUS_NO_MEMORY;
-        }
+    static const command_results results = {.json = modes_json,
+                                            .text = print_modes,
+                                            .plot = plot_modes};
+    SCOPED(arm_modes_finish) arm_modes m = {.scenario = s};
+    const status code = compute_modes(&m);
+    if (code != STATUS_OK) {
+        return complain_fault(&(fault){.code = code});
     }
-
-    int result =
-        f.code == STATUS_OK ? write_results(args, &r, s, &m, true) : complain_fault(&f);
-    for (int i = 0; i < HOLDS; i++) {
-        free(m.sets[i].frequencies);
-        free(m.sets[i].shapes);
-    }
-    return result;
+    return write_results(args, &results, &m, true);
 }
 
 static const option_row rows[] = {PLOT_OPTION("draw the first modes' shapes")};
 
 const command modes_command = {
-    CALLED("modes", ONE_RUN, "Natural frequencies and shapes of the arm"),
-    ONE_SCENARIO,
+    .name = "modes",
+    .group = GROUP_ONE_RUN,
+    .summary = "Natural frequencies and shapes of the arm",
+    .operands = "SCENARIO",
+    .least = 1,
+    .most = 1,
+    .takes_scenarios = true,
     .help = "Small vibrations about the straight arm without damping and "
             "friction, for a hub that is locked (held by\nthe controller) or "
             "free, and a tip that is free or pinned to the wall.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
-    .use = modes,
+    .use = compute_and_report_modes,
 };

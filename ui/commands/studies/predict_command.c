@@ -2,6 +2,7 @@
 #include "ui/commands/command.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "src/base/json.h"
 #include "src/base/numbers.h"
@@ -16,74 +17,129 @@ typedef struct voltage_commands {
     int count;
 } voltage_commands;
 
-// Reads "TIME:VOLTS,TIME:VOLTS", times since the touch in seconds, from 0 on and growing.
+// Whether a command may stand behind those of the list: its time is finite and grows.
+static bool is_next_command(const voltage_commands *list, double time, double volts)
+{
+    if (!isfinite(time) || !isfinite(volts) || time < 0) {
+        return false;
+    }
+    return list->count == 0 || time > list->times[list->count - 1];
+}
+
+// Reads "TIME:VOLTS,TIME:VOLTS", times since the touch in seconds, from 0 on and growing;
+// NULL: none. Complains and returns false if it is something else.
 static bool read_commands(const char *text, voltage_commands *list)
 {
     const char *rest = text;
     *list = (voltage_commands){0};
     while (rest != NULL && *rest != '\0') {
-        const int i = list->count;
         double time, volts;
-        bool read = i < MOST_COMMANDS && decimal_read(rest, &time, &rest) &&
-                    *rest == ':' && decimal_read(rest + 1, &volts, &rest) &&
-                    (*rest == ',' || *rest == '\0');
-        if (!read || !isfinite(time) || !isfinite(volts) || time < 0 ||
-            (i > 0 && !(time > list->times[i - 1]))) {
+        const bool is_read = list->count < MOST_COMMANDS &&
+                             decimal_read(rest, &time, &rest) && *rest == ':' &&
+                             decimal_read(rest + 1, &volts, &rest) &&
+                             (*rest == ',' || *rest == '\0');
+        if (!is_read || !is_next_command(list, time, volts)) {
             complain("--then %s: expected TIME:VOLTS,... such as 0:2,0.01:-3, at most %d "
                      "of them, times in seconds from the touch on and growing",
                      text, MOST_COMMANDS);
             return false;
         }
 
-        list->times[i] = time;
-        list->volts[i] = volts;
+        list->times[list->count] = time;
+        list->volts[list->count] = volts;
         list->count++;
-        rest += *rest == ',';
+        if (*rest == ',') {
+            rest++;
+        }
     }
     return true;
 }
 
 // What the predictors say of a run.
-typedef struct predicted {
+typedef struct predicted_contact {
+    const scenario *scenario;
     const run_result *result;
     const sample *row; // the last one before the contact
     prediction_answer answers[PREDICTOR_COUNT];
-} predicted;
+} predicted_contact;
 
-static json_t *predict_object(const scenario *s, const void *found)
+// --- numbers ---------------------------------------------------------------------------
+
+static json_t *answer_json(const prediction_answer *answer)
 {
-    const predicted *p = found;
-    const landing *came = &p->result->landing;
-    json_t *array = json_array();
-
-    // one entry each, even where a predictor has no answer
-    for (int i = 0; i < PREDICTOR_COUNT; i++) {
-        const prediction_answer *answer = &p->answers[i];
-        const prediction *said = &answer->prediction;
-        const bool known = prediction_known(answer);
-        json_add(
-            array,
-            json_of("method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
-                    "equivalent_restitution:n inductance_changes_peak_N:n",
-                    answer->name, known ? answer->note : prediction_reason(answer),
-                    known ? json_boolean(said->holds) : json_null(), said->force,
-                    said->delay, said->impulse, said->restitution, said->inductance));
+    const prediction *p = &answer->prediction;
+    const char *message;
+    json_t *holds;
+    if (prediction_known(answer)) {
+        message = answer->note;
+        holds = json_boolean(p->holds);
+    } else {
+        message = prediction_reason(answer);
+        holds = json_null();
     }
-
-    // the same pulse in the run
-    json_t *simulation = json_of("peak_N:n time_to_peak_s:n impulse_Ns:n", came->peak,
-                                 came->time_to_peak, came->impulse);
-    return json_of("scenario:t t_s:n predictions:o simulation:o", s->name, p->row->time,
-                   array, simulation);
+    return json_of("method:t message:t holds:o peak_N:n time_to_peak_s:n impulse_Ns:n "
+                   "equivalent_restitution:n inductance_changes_peak_N:n",
+                   answer->name, message, holds, p->force, p->delay, p->impulse,
+                   p->restitution, p->inductance);
 }
 
-static void print_line(const char *label, double force, double delay, double impulse)
+static json_t *predictions_json(const void *found)
+{
+    const predicted_contact *p = found;
+    const landing *simulated = &p->result->landing;
+
+    // one entry each, even where a predictor has no answer
+    json_t *predictions = json_array();
+    for (int i = 0; i < PREDICTOR_COUNT; i++) {
+        json_add(predictions, answer_json(&p->answers[i]));
+    }
+    json_t *simulation =
+        json_of("peak_N:n time_to_peak_s:n impulse_Ns:n", simulated->peak,
+                simulated->time_to_peak, simulated->impulse);
+    return json_of("scenario:t t_s:n predictions:o simulation:o", p->scenario->name,
+                   p->row->time, predictions, simulation);
+}
+
+// The contact, and the instant from which it is predicted.
+static void print_contact(const predicted_contact *p)
+{
+    const double time = p->result->landing.time;
+    const char *contact = "first contact after a flight";
+    if (time == p->result->summary.first_contact_s) {
+        contact = "first contact";
+    }
+    say_title(p->scenario);
+    printf("%s at %.6g s, predicted from the instant before it\n\n", contact, time);
+
+    const sample *row = p->row;
+    printf(
+        "  last free row at %.6g s: hub, first and last link at %.5g, %.5g, %.5g rad,\n"
+        "  turning with %.5g, %.5g, %.5g rad/s\n\n",
+        row->time, row->hub_angle, row->first_angle, row->last_angle, row->hub_velocity,
+        row->first_velocity, row->last_velocity);
+}
+
+static void print_pulse(const char *label, double force, double delay, double impulse)
 {
     printf("  %-30s", label);
     print_cell(14, "%.5g", force);
     print_cell(14, "%.5g", 1e3 * delay);
     print_cell(14, "%.5g", impulse);
     printf("\n");
+}
+
+static void print_prediction(const prediction_answer *answer)
+{
+    const prediction *p = &answer->prediction;
+    if (answer->outcome == PREDICTION_HOLDS) {
+        print_pulse(answer->label, p->force, p->delay, p->impulse);
+        return;
+    }
+    say("  %-30s %s", answer->label, prediction_reason(answer));
+    if (!isnan(p->impulse)) {
+        say(", its impulse is %.5g N s", p->impulse);
+    }
+    say("\n");
 }
 
 // What the motor's inductance does to the peak.
@@ -93,86 +149,73 @@ static void print_inductance(const scenario *s, const prediction *linearised)
     printf("\n  The current lags by L/R = %.3g ms",
            1e3 * motor->inductance / motor->resistance);
     if (!isnan(linearised->inductance)) {
+        const double without = linearised->force - linearised->inductance;
         printf(", which changes the peak by %.3g N (%.2g %%)", linearised->inductance,
-               100 * linearised->inductance /
-                   (linearised->force - linearised->inductance));
+               100 * linearised->inductance / without);
     }
     printf(
         ";\n  only the linearised arm follows it, to the others it follows at once.\n");
 }
 
-static void print_predictions(const scenario *s, const void *found)
+static void print_predictions(const void *found)
 {
-    const run_result *result = ((const predicted *)found)->result;
-    const sample *row = ((const predicted *)found)->row;
-    const prediction_answer *answers = ((const predicted *)found)->answers;
-    const landing *came = &result->landing;
-    const bool first = came->time == result->summary.first_contact_s;
-    say_title(s);
-    printf("%s at %.6g s, predicted from the instant before it\n\n",
-           first ? "first contact" : "first contact after a flight", came->time);
-
-    printf(
-        "  last free row at %.6g s: hub, first and last link at %.5g, %.5g, %.5g rad,\n"
-        "  turning with %.5g, %.5g, %.5g rad/s\n\n",
-        row->time, row->hub_angle, row->first_angle, row->last_angle, row->hub_velocity,
-        row->first_velocity, row->last_velocity);
+    const predicted_contact *p = found;
+    print_contact(p);
 
     // the predictors, then what they should have found
+    const landing *simulated = &p->result->landing;
     printf("  %-30s %14s %14s %14s\n", "first pulse", "peak [N]", "after [ms]",
            "impulse [N s]");
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
-        const prediction *p = &answers[i].prediction;
-        if (answers[i].outcome == PREDICTION_HOLDS) {
-            print_line(answers[i].label, p->force, p->delay, p->impulse);
-        } else {
-            say("  %-30s %s", answers[i].label, prediction_reason(&answers[i]));
-            say(isnan(p->impulse) ? "\n" : ", its impulse is %.5g N s\n", p->impulse);
-        }
+        print_prediction(&p->answers[i]);
     }
+    print_pulse("simulation", simulated->peak, simulated->time_to_peak,
+                simulated->impulse);
 
-    print_line("simulation", came->peak, came->time_to_peak, came->impulse);
-
-    const prediction *pulse = &answers[PREDICTOR_LINEARISED].prediction;
-    if (!isnan(pulse->restitution)) {
+    // what has to be said of them
+    const parameters *given = &p->scenario->parameters;
+    const prediction *linearised = &p->answers[PREDICTOR_LINEARISED].prediction;
+    if (!isnan(linearised->restitution)) {
         printf("\n  Kinetic energy given back by the end of the pulse, of the largest "
                "energy in the\n"
                "  springs (e_eq of 4.1.1): %.4g\n",
-               pulse->restitution);
+               linearised->restitution);
     }
-    if (s->parameters.motor.inductance > 0) {
-        print_inductance(s, pulse);
+    if (given->motor.inductance > 0) {
+        print_inductance(p->scenario, linearised);
     }
-    if (s->parameters.arm.links != 2) {
+    if (given->arm.links != 2) {
         printf("\n  The thesis's predictors know two links, the simulation has %d.\n",
-               s->parameters.arm.links);
+               given->arm.links);
     }
 }
 
+// --- the picture -----------------------------------------------------------------------
+
 // The peak that each predictor says, one below the other, with that of the simulation as
 // a line.
-static int plot_predictions(const arguments *a, const scenario *s, const void *found)
+static int plot_predictions(const arguments *a, const void *found)
 {
-    const prediction_answer *answers = ((const predicted *)found)->answers;
-    double peak[PREDICTOR_COUNT], place[PREDICTOR_COUNT], line_y[2], line_x[2];
-    figure_tick ticks[PREDICTOR_COUNT];
+    const predicted_contact *p = found;
 
-    // a tick for each, but no point where a predictor does not hold
+    // a tick for each, but no point where a predictor does not hold; the first one
+    // uppermost
+    double peak[PREDICTOR_COUNT], place[PREDICTOR_COUNT];
+    figure_tick ticks[PREDICTOR_COUNT];
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
-        bool holds = answers[i].outcome == PREDICTION_HOLDS;
-        if (holds) {
-            peak[i] = answers[i].prediction.force;
-        } else {
-            peak[i] = (double)NAN;
+        const prediction_answer *answer = &p->answers[i];
+        peak[i] = (double)NAN;
+        if (answer->outcome == PREDICTION_HOLDS) {
+            peak[i] = answer->prediction.force;
         }
-        place[i] = PREDICTOR_COUNT - i; // the first one uppermost
-        ticks[PREDICTOR_COUNT - 1 - i] = (figure_tick){place[i], answers[i].label};
+        place[i] = PREDICTOR_COUNT - i;
+        ticks[PREDICTOR_COUNT - 1 - i] = (figure_tick){place[i], answer->label};
     }
 
     // the simulation as an upright line past all of them
-    line_x[0] = line_x[1] = ((const predicted *)found)->result->landing.peak;
-    line_y[0] = 0.4;
-    line_y[1] = PREDICTOR_COUNT + 0.6;
+    const double simulated = p->result->landing.peak;
+    const double line_x[2] = {simulated, simulated};
+    const double line_y[2] = {0.4, PREDICTOR_COUNT + 0.6};
     figure_series series[] = {
         curve_of("predicted", "predicted", peak, place, PREDICTOR_COUNT, 0),
         curve_of("simulation", "simulation", line_x, line_y, 2, 5),
@@ -201,53 +244,59 @@ static int plot_predictions(const arguments *a, const scenario *s, const void *f
                         .panels = &panel,
                         .panel_count = 1,
                         .common_legend = true};
-    return publish_titled(a, s, "peak of the first pulse, predicted and simulated", &fig);
+    return publish_titled(a, p->scenario,
+                          "peak of the first pulse, predicted and simulated", &fig);
 }
 
-static int report(const arguments *a, const scenario *s, const run_result *result)
+// --- the command -----------------------------------------------------------------------
+
+// Asks the predictors about a run and writes what they say. Returns the exit status.
+static int predict_and_report(const arguments *a, const scenario *s,
+                              const run_result *result)
 {
-    static const command_results r = {predict_object, print_predictions,
-                                      plot_predictions};
-    predicted p = {.result = result};
     voltage_commands then;
     if (!read_commands(a->then, &then)) {
         return EXIT_BAD_ARGUMENTS;
     }
 
-    p.row = predict_first_contact(s, result,
-                                  &(voltage_profile){then.count, then.times, then.volts},
-                                  p.answers);
+    predicted_contact p = {.scenario = s, .result = result};
+    const voltage_profile profile = {then.count, then.times, then.volts};
+    p.row = predict_first_contact(s, result, &profile, p.answers);
     if (p.row == NULL) {
         complain(
             "%s has no free flight that ends in a contact, there is nothing to predict",
             s->name);
         return EXIT_FAILED;
     }
-
-    // what there was no memory for is no answer
     for (int i = 0; i < PREDICTOR_COUNT; i++) {
         if (p.answers[i].fault.code == STATUS_NO_MEMORY) {
             return complain_fault(&p.answers[i].fault);
         }
     }
-    return write_results(a, &r, s, &p, true);
+
+    static const command_results results = {.json = predictions_json,
+                                            .text = print_predictions,
+                                            .plot = plot_predictions};
+    return write_results(a, &results, &p, true);
 }
 
-static int predict_and_report(const arguments *a, scenario *s)
+static int run_and_predict(const arguments *a, scenario *s)
 {
-    run_result result;
-    int code = EXIT_FAILED;
-    status ran = run_with_progress(a, s, true, &result);
-    if (ran == STATUS_OK) {
-        code = report(a, s, &result);
-    } else if (ran == STATUS_STOPPED) {
-        code = run_stopped(s, "nothing is predicted");
-    } else {
-        complain("%s failed: %s", s->name, result.summary.message);
+    run_result simulated;
+    int result;
+    switch (run_with_progress(a, s, true, &simulated)) {
+    case STATUS_OK:
+        result = predict_and_report(a, s, &simulated);
+        break;
+    case STATUS_STOPPED:
+        result = run_stopped(s, "nothing is predicted");
+        break;
+    default:
+        complain("%s failed: %s", s->name, simulated.summary.message);
+        result = EXIT_FAILED;
     }
-
-    run_finish(&result);
-    return code;
+    run_finish(&simulated);
+    return result;
 }
 
 static const option_row rows[] = {
@@ -257,13 +306,17 @@ static const option_row rows[] = {
 };
 
 const command predict_command = {
-    CALLED("predict", ONE_RUN,
-           "Predict the peak force from the instant before contact, beside what then "
-           "happens"),
-    ONE_SCENARIO,
+    .name = "predict",
+    .group = GROUP_ONE_RUN,
+    .summary = "Predict the peak force from the instant before contact, beside what then "
+               "happens",
+    .operands = "SCENARIO",
+    .least = 1,
+    .most = 1,
+    .takes_scenarios = true,
     .help = "On a terminal a run of more than a second tells how far it is; ^C "
             "ends it (exit status 130), and nothing\nis predicted.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
-    .use = predict_and_report,
+    .use = run_and_predict,
 };

@@ -2,19 +2,25 @@
 // states.
 #include "ui/commands/command.h"
 
-#include <stdlib.h>
+#include <glib.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "render/page/text.h"
 #include "render/plot/study_plot.h"
 #include "src/rig/controller_values.h"
 #include "src/rig/rig.h"
-#include "src/study/store/sweep_store.h"
 #include "src/study/robust.h"
+#include "src/study/store/sweep_store.h"
 #include "src/tables/settings.h"
-#include "ui/commands/progress.h"
 #include "ui/commands/command_pictures.h"
+#include "ui/commands/progress.h"
+#include "ui/commands/results.h"
 
 enum { DEFAULT_RUNS = 200, DEFAULT_CASE_RUNS = 4 };
+
+// The case of a set without cases: the scenario as it is.
+enum { NO_CASE = -1 };
 
 // The shipped set, in the folder of the scenarios.
 static const char default_set[] = "sets/robust.set";
@@ -24,15 +30,44 @@ typedef struct robustness {
     const arguments *arguments;
     const scenario *scenario;
     robust_set set;
-    int laws[LAW_COUNT +
-             1]; // control_law; behind the last the one of --against, if it is given
-    int count;   // of laws, that one left out
-    int against; // its place, -1: none
-    size_t runs; // of each law, in each case
+    int laws[LAW_COUNT + 1]; // control_law; behind those that are judged that of
+                             // --against, if it is none of them
+    int judged_laws;         // how many are judged
+    int against;             // place of the law of --against, -1: none
+    size_t runs;             // of each law, in each case
     robust_law *found;
-    int judged;
+    int found_count;
     size_t done; // runs of all laws in all cases
 } robustness;
+
+// How many laws are run: those that are judged, and the one of --against.
+static int count_laws(const robustness *r)
+{
+    if (r->against == r->judged_laws) {
+        return r->judged_laws + 1;
+    }
+    return r->judged_laws;
+}
+
+// How often the laws are run: once for each case, or once.
+static int count_cases(const robustness *r)
+{
+    if (r->set.case_count > 0) {
+        return r->set.case_count;
+    }
+    return 1;
+}
+
+static void robustness_finish(robustness *r)
+{
+    for (int i = 0; i < r->found_count; i++) {
+        robust_law_finish(&r->found[i]);
+    }
+    g_free(r->found);
+    robust_set_finish(&r->set);
+}
+
+// --- what is asked for -----------------------------------------------------------------
 
 // The law of a word of a certain length; LAW_NONE if there is none.
 static int find_law(const char *text, size_t length)
@@ -46,7 +81,53 @@ static int find_law(const char *text, size_t length)
     return LAW_NONE;
 }
 
-// The law of --against: one of those that are judged, or one more.
+// Reads --laws, words between commas. Returns the exit status.
+static int read_law_list(robustness *r, const char *list)
+{
+    const char *rest = list;
+    while (rest != NULL) {
+        const size_t length = strcspn(rest, ",");
+        const int law = find_law(rest, length);
+        if (law == LAW_NONE || r->judged_laws == LAW_COUNT) {
+            return complain(
+                "--laws %s: '%.*s' is no control law, expected those of control.law",
+                list, (int)length, rest);
+        }
+        r->laws[r->judged_laws++] = law;
+
+        const char *comma = rest + length;
+        rest = NULL;
+        if (*comma == ',') {
+            rest = comma + 1;
+        }
+    }
+    return EXIT_DONE;
+}
+
+// The laws of --laws, or the scenario's own. Returns the exit status.
+static int read_laws(robustness *r)
+{
+    if (r->arguments->laws != NULL) {
+        const int ended = read_law_list(r, r->arguments->laws);
+        if (ended != EXIT_DONE) {
+            return ended;
+        }
+    } else {
+        r->laws[r->judged_laws++] = r->scenario->parameters.control.law;
+    }
+
+    if (r->laws[0] == LAW_NONE) {
+        return complain("%s has no control law, expected one or --laws",
+                        r->scenario->name);
+    }
+    if (r->arguments->plot != NULL && r->judged_laws > ROBUST_MOST_CURVES) {
+        return complain("--plot shows at most %d laws", ROBUST_MOST_CURVES);
+    }
+    return EXIT_DONE;
+}
+
+// The law of --against: one of those that are judged, or one more. Returns the exit
+// status.
 static int read_against(robustness *r)
 {
     const char *word = r->arguments->against;
@@ -54,7 +135,7 @@ static int read_against(robustness *r)
     if (word == NULL) {
         return EXIT_DONE;
     }
-    int law = find_law(word, strlen(word));
+    const int law = find_law(word, strlen(word));
     if (law == LAW_NONE) {
         return complain("--against %s: no control law, expected one of control.law",
                         word);
@@ -65,50 +146,12 @@ static int read_against(robustness *r)
             word);
     }
 
-    for (int i = 0; i < r->count; i++) {
+    r->against = r->judged_laws;
+    r->laws[r->judged_laws] = law;
+    for (int i = 0; i < r->judged_laws; i++) {
         if (r->laws[i] == law) {
             r->against = i;
         }
-    }
-    if (r->against < 0) {
-        r->against = r->count;
-        r->laws[r->count] = law;
-    }
-    return EXIT_DONE;
-}
-
-// The laws of --laws, or the scenario's own.
-static int read_laws(robustness *r)
-{
-    const char *rest = r->arguments->laws;
-    if (rest == NULL) {
-        r->laws[r->count++] = r->scenario->parameters.control.law;
-    }
-
-    // each of the words between commas
-    while (rest != NULL) {
-        size_t length = strcspn(rest, ",");
-        int law = find_law(rest, length);
-        if (law == LAW_NONE || r->count == LAW_COUNT) {
-            return complain(
-                "--laws %s: '%.*s' is no control law, expected those of control.law",
-                r->arguments->laws, (int)length, rest);
-        }
-        r->laws[r->count++] = law;
-        if (rest[length] == ',') {
-            rest = rest + length + 1;
-        } else {
-            rest = NULL;
-        }
-    }
-
-    // what cannot be run, or not be shown
-    if (r->laws[0] == LAW_NONE) {
-        return complain("%s has no control law, expected one or --laws",
-                        r->scenario->name);
-    }
-    if (r->arguments->plot != NULL && r->count > ROBUST_MOST_CURVES) {
-        return complain("--plot shows at most %d laws", ROBUST_MOST_CURVES);
     }
     return EXIT_DONE;
 }
@@ -125,212 +168,249 @@ static sweep_request request_of(const robustness *r)
                            .lines = r->set.line_numbers};
 }
 
-// The set, and room for what will be found.
+// Checks that the draws of the set can be made. Returns the exit status.
+static int check_draws(const robustness *r)
+{
+    const sweep_request request = request_of(r);
+    SCOPED(sweep_finish) sweep plan;
+    fault f = {0};
+    if (sweep_plan(&plan, &request, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    return EXIT_DONE;
+}
+
+// The path of the set: that of --over, or the shipped one; to be freed with free.
+static char *path_of_set(const arguments *a)
+{
+    if (a->over != NULL) {
+        return strdup(a->over);
+    }
+    return scenario_folder_file(default_set);
+}
+
+// Reads the set, and makes room for what will be found. Returns the exit status.
 static int read_set(robustness *r)
 {
     const arguments *a = r->arguments;
-    SCOPED(free_kept)
-    char *path = a->over == NULL ? scenario_folder_file(default_set) : NULL;
-    const char *read = a->over != NULL ? a->over : path;
     fault f = {0};
-    if (read != NULL) {
-        if (robust_set_read(&r->set, read, &f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
-    } else {
-        if (fault_no_memory(&f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
+    SCOPED(free_kept) char *path = path_of_set(a);
+    if (path == NULL) {
+        fault_no_memory(&f);
+        return complain_fault(&f);
+    }
+    if (robust_set_read(&r->set, path, &f) != STATUS_OK) {
+        return complain_fault(&f);
     }
     if (r->set.case_count > 0 && a->plot != NULL) {
         return complain("--plot shows laws, not the cases of %s", a->over);
     }
 
-    // what is drawn is the same in all cases
-    bool cases = r->set.case_count > 0;
-    if (a->runs > 0) {
-        r->runs = (size_t)a->runs;
-    } else if (cases) {
-        r->runs = DEFAULT_CASE_RUNS;
-    } else {
-        r->runs = DEFAULT_RUNS;
+    r->runs = (size_t)a->runs;
+    if (r->runs == 0) {
+        r->runs = r->set.case_count > 0 ? DEFAULT_CASE_RUNS : DEFAULT_RUNS;
     }
-    const sweep_request request = request_of(r);
-    SCOPED(sweep_finish) sweep plan;
-    if (sweep_plan(&plan, &request, &f) != STATUS_OK) {
-        return complain_fault(&f);
+    const int ended = check_draws(r);
+    if (ended != EXIT_DONE) {
+        return ended;
     }
-    r->found = calloc((size_t)(cases ? r->set.case_count : 1) * (size_t)(r->count + 1),
-                      sizeof *r->found);
-    if (r->found == NULL) {
-        if (fault_no_memory(&f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
-    }
+    const int most_laws = r->judged_laws + 1;
+    r->found = g_new0(robust_law, (size_t)count_cases(r) * (size_t)most_laws);
     return EXIT_DONE;
 }
 
-// "a/b-LAW.sqlite" for --db a/b.sqlite, of case k (from 0) "a/b-LAW-3.sqlite" with its
-// number from 1, on the heap; NULL without memory.
-static char *place_of(const char *db, const char *law, int k)
-{
-    const char *slash = strrchr(db, '/'), *dot = strrchr(db, '.');
-    bool ends = dot != NULL && (slash == NULL || dot > slash);
-    int stem = (int)(ends ? (size_t)(dot - db) : strlen(db));
-    char *path, number[16] = "";
-    if (k >= 0) {
-        snprintf(number, sizeof number, "-%d", k + 1);
-    }
-    int length = asprintf(&path, "%.*s-%s%s%s", stem, db, law, number, ends ? dot : "");
-    if (length < 0) {
-        return NULL;
-    }
-    return path;
-}
+// --- a law under a case ----------------------------------------------------------------
 
-// The runs of a law that are not in the store yet, and their judgement.
-static int judge_law(robustness *r, const char *law, int k, const sweep *s)
-{
-    const arguments *a = r->arguments;
-    fault f = {0};
-    char word[64];
-    SCOPED(free_kept) char *db = a->db != NULL ? place_of(a->db, law, k) : NULL;
-    SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
-    sweep_progress progress = {0};
-    snprintf(word, sizeof word, "%-16.40s", law);
-    const sweep_options options = many_runs_begin(a, word);
-
-    // the runs
-    status code;
-    if (a->db != NULL && db == NULL) {
-        code = fault_no_memory(&f);
-    } else {
-        code = sweep_store_open(&store, db, s, &f);
-    }
-    if (code == STATUS_OK) {
-        code = sweep_run(s, store, &options, &progress, &f);
-    }
-    many_runs_end(&options);
-
-    // all of them are there, or what there is
-    bool stopped = code == STATUS_OK && progress.done < progress.total;
-    r->done += progress.done;
-    const bool tell =
-        progress.failed > 0 && (!a->quiet || progress.failed == progress.total);
-    if (code == STATUS_OK && tell) {
-        many_runs_report_failure(&progress);
-    }
-    if (code == STATUS_OK && progress.done > 0) {
-        robust_law *found = &r->found[r->judged++];
-        code = robust_law_of(found, law, s, (sweep_share){0}, store, &f);
-        if (k >= 0) {
-            found->case_title = r->set.cases[k].title;
-        } else {
-            found->case_title = NULL;
-        }
-    }
-    if (code != STATUS_OK) {
-        return complain_fault(&f);
-    }
-    if (stopped) {
-        const int cases = r->set.case_count > 0 ? r->set.case_count : 1,
-                  laws = r->count + (r->against == r->count);
-        return many_runs_stopped(db, r->done, r->runs * (size_t)(cases * laws),
-                                 r->done > 0 ? "the table is that of these"
-                                             : "none is shown");
-    }
-    return EXIT_DONE;
-}
-
-// Whether the scenario's own law or one that is judged has a parameter of that name. The
+// Whether the scenario's own law or one that is run has a parameter of that name. The
 // parameters of a plug-in or a program are not known here: it may have any.
-static bool others_have_parameter(const robustness *r, const char *name)
+static bool any_law_has_parameter(const robustness *r, const char *name)
 {
-    const int own = r->scenario->parameters.control.law,
-              laws = r->count + (r->against == r->count);
-    bool known = false;
-    for (int i = own == LAW_NONE ? 0 : -1; i < laws && !known; i++) {
-        const controller *law = controller_of(i < 0 ? own : r->laws[i]);
-        known = law == NULL || controller_find_parameter(law, name) >= 0;
+    int laws[LAW_COUNT + 2], count = 0;
+    if (r->scenario->parameters.control.law != LAW_NONE) {
+        laws[count++] = r->scenario->parameters.control.law;
     }
-    return known;
+    for (int i = 0; i < count_laws(r); i++) {
+        laws[count++] = r->laws[i];
+    }
+
+    for (int i = 0; i < count; i++) {
+        const controller *law = controller_of(laws[i]);
+        if (law == NULL || controller_find_parameter(law, name) >= 0) {
+            return true;
+        }
+    }
+    return false;
 }
 
-// Leaves a law those settings that it has, and says which it does without (`tell`). What
-// no law has stays, and is refused.
+// Leaves a law those settings that it has, and says which it does without, unless it is
+// `quiet`. What no law has stays, and is refused.
 static void fit_settings(const robustness *r, int law, control_parameters *control,
-                         bool tell)
+                         bool quiet)
 {
     const controller *known = controller_of(law);
-    char kept[sizeof control->settings] = "", left[sizeof control->settings] = "";
     if (known == NULL) {
         return;
     }
 
     // word by word
+    g_autoptr(GString) kept = g_string_new(NULL);
+    g_autoptr(GString) left_out = g_string_new(NULL);
     const char *rest = control->settings;
     setting s;
     while (settings_next(&rest, &s)) {
-        bool stays = controller_find_parameter(known, s.name) >= 0 ||
-                     !others_have_parameter(r, s.name);
-        char *list = stays ? kept : left;
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof kept - used, "%s%.*s", used > 0 ? " " : "",
-                 (int)s.length, s.word);
+        GString *list = left_out;
+        if (controller_find_parameter(known, s.name) >= 0 ||
+            !any_law_has_parameter(r, s.name)) {
+            list = kept;
+        }
+        if (list->len > 0) {
+            g_string_append_c(list, ' ');
+        }
+        g_string_append_len(list, s.word, (gssize)s.length);
     }
 
-    memcpy(control->settings, kept, sizeof kept);
-    if (tell && left[0] != '\0') {
+    snprintf(control->settings, sizeof control->settings, "%s", kept->str);
+    if (!quiet && left_out->len > 0) {
         complain("%s runs without '%s' of control.settings, which it does not have",
-                 control_law_table[law].word, left);
+                 control_law_table[law].word, left_out->str);
     }
 }
 
-// What a law gets to do under case k of the set, -1: under the scenario as it is. The
-// same draws for every law. `base` and `under` last as long as the sweep; `tell` says
-// which settings it does without.
-static int open_law(const robustness *r, const scenario *base, int which, int k,
-                    bool tell, scenario *under, sweep *s)
+// What the i-th law gets to do under case k: `under` is the scenario of the case with
+// that law, and the sweep draws the same for every law. Both last as long as `of_case`.
+// Returns the exit status.
+static int open_law_sweep(const robustness *r, const scenario *of_case, int i, int k,
+                          bool quiet, scenario *under, sweep *s)
 {
-    fault f = {0};
-    const sweep_request request = request_of(r);
-    *under = *base; // borrows all but its parameters
-    under->parameters.control.law = r->laws[which];
+    *under = *of_case; // borrows all but its parameters
+    under->parameters.control.law = r->laws[i];
     under->parameters.set[PARAMETER_INDEX(control.law)] = 1;
 
-    // said once, and where a case has settings of its own
-    const bool own = strcmp(under->parameters.control.settings,
-                            r->scenario->parameters.control.settings) != 0;
-    fit_settings(r, r->laws[which], &under->parameters.control, (k <= 0 || own) && tell);
-    if (parameters_resolve(&under->parameters, &f) != STATUS_OK ||
-        sweep_init(s, under, &request, &f) != STATUS_OK) {
-        fault of_case = f;
-        if (k >= 0) {
-            robust_case_fault(&r->set.cases[k], &f, &of_case);
-        }
-        return complain_fault(&of_case);
-    }
-    return EXIT_DONE;
-}
+    // what a law does without is said once, and where a case has settings of its own
+    const bool has_own_settings = strcmp(under->parameters.control.settings,
+                                         r->scenario->parameters.control.settings) != 0;
+    const bool is_said_before = k > 0 && !has_own_settings;
+    fit_settings(r, r->laws[i], &under->parameters.control, quiet || is_said_before);
 
-// All laws under case k (-1: the scenario as it is), looked at or run. Everything that
-// can be wrong with a case is known before the first one is run.
-static int take_case(robustness *r, int k, bool run)
-{
-    SCOPED(robust_case_finish) scenario base;
-    const robust_case *c = k >= 0 ? &r->set.cases[k] : NULL;
+    const sweep_request request = request_of(r);
     fault f = {0};
-    if (robust_case_scenario(&base, r->scenario, c, &f) != STATUS_OK) {
+    if (parameters_resolve(&under->parameters, &f) == STATUS_OK &&
+        sweep_init(s, under, &request, &f) == STATUS_OK) {
+        return EXIT_DONE;
+    }
+    if (k == NO_CASE) {
         return complain_fault(&f);
     }
-    for (int i = 0; i < r->count + (r->against == r->count); i++) {
+    fault in_case = f;
+    robust_case_fault(&r->set.cases[k], &f, &in_case);
+    return complain_fault(&in_case);
+}
+
+// "a/b-LAW.sqlite" for --db a/b.sqlite, of case k "a/b-LAW-3.sqlite" with its number from
+// 1; to be freed with g_free. NULL without --db.
+static char *database_of_law(const char *db, const char *law, int k)
+{
+    if (db == NULL) {
+        return NULL;
+    }
+    const char *slash = strrchr(db, '/'), *ending = strrchr(db, '.');
+    if (ending == NULL || (slash != NULL && slash > ending)) {
+        ending = db + strlen(db);
+    }
+
+    const int stem = (int)(ending - db);
+    if (k == NO_CASE) {
+        return text_printf("%.*s-%s%s", stem, db, law, ending);
+    }
+    return text_printf("%.*s-%s-%d%s", stem, db, law, k + 1, ending);
+}
+
+// Judges a law by the runs of it that there are.
+static status add_judgement(robustness *r, const char *law, int k, const sweep *s,
+                            sweep_store *store, fault *f)
+{
+    robust_law *found = &r->found[r->found_count++];
+    const status code = robust_law_of(found, law, s, (sweep_share){0}, store, f);
+    found->case_title = NULL;
+    if (k != NO_CASE) {
+        found->case_title = r->set.cases[k].title;
+    }
+    return code;
+}
+
+// Runs a law under case k, as far as its runs are not in the database yet.
+static status run_law(const robustness *r, const char *law, const char *db,
+                      const sweep *s, sweep_store **store, sweep_progress *progress,
+                      fault *f)
+{
+    char word[64];
+    snprintf(word, sizeof word, "%-16.40s", law);
+    const sweep_options options = many_runs_begin(r->arguments, word);
+    status code = sweep_store_open(store, db, s, f);
+    if (code == STATUS_OK) {
+        code = sweep_run(s, *store, &options, progress, f);
+    }
+    many_runs_end(&options);
+    return code;
+}
+
+// Runs a law under case k, and judges it. Returns the exit status.
+static int judge_law(robustness *r, const char *law, int k, const sweep *s)
+{
+    const bool quiet = r->arguments->quiet;
+    g_autofree char *db = database_of_law(r->arguments->db, law, k);
+    SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
+    sweep_progress progress = {0};
+    fault f = {0};
+    if (run_law(r, law, db, s, &store, &progress, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    r->done += progress.done;
+
+    // all of its runs are there, or what there is
+    const bool all_failed = progress.failed == progress.total;
+    if (progress.failed > 0 && (!quiet || all_failed)) {
+        many_runs_report_failure(&progress);
+    }
+    if (progress.done > 0 && add_judgement(r, law, k, s, store, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+    if (progress.done == progress.total) {
+        return EXIT_DONE;
+    }
+
+    const char *what_became = "none is shown";
+    if (r->done > 0) {
+        what_became = "the table is that of these";
+    }
+    const size_t total = r->runs * (size_t)count_cases(r) * (size_t)count_laws(r);
+    return many_runs_stopped(db, r->done, total, what_became);
+}
+
+// --- cases -----------------------------------------------------------------------------
+
+// Goes through all laws under case k: looks whether each can run, or runs and judges it.
+// Returns the exit status.
+static int go_through_laws(robustness *r, int k, bool runs)
+{
+    const robust_case *c = NULL;
+    if (k != NO_CASE) {
+        c = &r->set.cases[k];
+    }
+    SCOPED(robust_case_finish) scenario of_case;
+    fault f = {0};
+    if (robust_case_scenario(&of_case, r->scenario, c, &f) != STATUS_OK) {
+        return complain_fault(&f);
+    }
+
+    const bool quiet = !runs || r->arguments->quiet;
+    for (int i = 0; i < count_laws(r); i++) {
         scenario under;
         SCOPED(sweep_finish) sweep s = {0};
-        int ended = open_law(r, &base, i, k, run && !r->arguments->quiet, &under, &s);
-        if (ended != EXIT_DONE) {
-            return ended;
+        int ended = open_law_sweep(r, &of_case, i, k, quiet, &under, &s);
+        if (ended == EXIT_DONE && runs) {
+            ended = judge_law(r, control_law_table[r->laws[i]].word, k, &s);
         }
-        ended = run ? judge_law(r, control_law_table[r->laws[i]].word, k, &s) : EXIT_DONE;
         if (ended != EXIT_DONE) {
             return ended;
         }
@@ -338,72 +418,115 @@ static int take_case(robustness *r, int k, bool run)
     return EXIT_DONE;
 }
 
-// Runs all laws under case k, and compares them with that of --against.
-static int run_case(robustness *r, int k)
+// Holds the laws that were just judged against that of --against, whose own line is shown
+// only where it is one of them.
+static void compare_with_against(robustness *r)
 {
-    const int first = r->judged;
-    int ended = take_case(r, k, true);
-    if (ended != EXIT_DONE) {
-        return ended;
+    const int first = r->found_count - count_laws(r);
+    robust_law *of_case = &r->found[first];
+    const double other = of_case[r->against].from_start[ROBUST_WORST];
+    for (int i = 0; i < r->judged_laws; i++) {
+        of_case[i].against = of_case[i].from_start[ROBUST_WORST] / other;
     }
-
-    // its own line is shown only where it was asked for
-    if (r->against >= 0) {
-        double other = r->found[first + r->against].from_start[ROBUST_WORST];
-        for (int i = 0; i < r->count; i++) {
-            r->found[first + i].against =
-                r->found[first + i].from_start[ROBUST_WORST] / other;
-        }
-        if (r->against == r->count) {
-            robust_law_finish(&r->found[--r->judged]);
-        }
+    if (r->against == r->judged_laws) {
+        r->found_count--;
+        robust_law_finish(&r->found[r->found_count]);
     }
-    return EXIT_DONE;
 }
 
-RESULT_GIVEN(json_t *, table_json, robust_table, return robust_json(found))
-RESULT_GIVEN(void, print_table, robust_table, robust_text(stdout, found, false))
-RESULT_WRITER(write_markdown, robust_table, robust_text(stream, found, true))
-RESULT_WRITER(write_csv, robust_table, robust_csv(stream, found))
-
-static int plot(const arguments *a, const scenario *s, const void *table)
+// Runs all cases. Everything that can be wrong with one is known before the first is run,
+// and faults of all are told. Returns the exit status.
+static int run_cases(robustness *r)
 {
+    int first = 0, last = r->set.case_count - 1;
+    if (r->set.case_count == 0) {
+        first = last = NO_CASE;
+    }
+
+    int result = EXIT_DONE;
+    for (int k = first; k <= last; k++) {
+        result = worse(result, go_through_laws(r, k, false));
+    }
+    for (int k = first; k <= last && result == EXIT_DONE; k++) {
+        result = go_through_laws(r, k, true);
+        if (result == EXIT_DONE && r->against >= 0) {
+            compare_with_against(r);
+        }
+    }
+    return result;
+}
+
+// --- results ---------------------------------------------------------------------------
+
+// The table of what was found.
+static robust_table table_of(const robustness *r)
+{
+    return (robust_table){r->scenario->name, r->found, r->found_count,
+                          r->arguments->against};
+}
+
+static json_t *robustness_json(const void *found)
+{
+    const robust_table table = table_of(found);
+    return robust_json(&table);
+}
+
+static void print_robustness(const void *found)
+{
+    const robust_table table = table_of(found);
+    robust_text(stdout, &table, false);
+}
+
+static void write_robustness_markdown(FILE *stream, const void *found)
+{
+    const robust_table table = table_of(found);
+    robust_text(stream, &table, true);
+}
+
+static void write_robustness_csv(FILE *stream, const void *found)
+{
+    const robust_table table = table_of(found);
+    robust_csv(stream, &table);
+}
+
+static int plot_robustness(const arguments *a, const void *found)
+{
+    const robustness *r = found;
+    const robust_table table = table_of(r);
     char changes[SCENARIO_CHANGES];
-    return publish_owned(a, robust_figure_create(table, scenario_changes(s, changes)));
+    scenario_changes(r->scenario, changes);
+    return publish_owned(a, robust_figure_create(&table, changes));
 }
 
-static int report(const robustness *r, bool whole)
+// Whether any run did not fail.
+static bool any_succeeded(const robustness *r)
 {
-    static const command_results written = {
-        table_json,        print_table, plot, write_csv, .markdown = write_markdown,
-        .draws_part = true};
-    const robust_table table = {r->scenario->name, r->found, r->judged,
-                                r->arguments->against};
-    const int code = write_results(r->arguments, &written, r->scenario, &table, whole);
-
-    // nothing to judge is a failure
-    bool any = false;
-    for (int i = 0; i < r->judged; i++) {
-        any = any || r->found[i].failed < r->found[i].runs;
+    for (int i = 0; i < r->found_count; i++) {
+        if (r->found[i].failed < r->found[i].runs) {
+            return true;
+        }
     }
-    if (any) {
-        return code;
-    }
-    return worse(code, EXIT_FAILED);
+    return false;
 }
 
-static void finish(robustness *r)
+static int report_robustness(const robustness *r, bool whole)
 {
-    for (int i = 0; i < r->judged; i++) {
-        robust_law_finish(&r->found[i]);
+    static const command_results results = {.json = robustness_json,
+                                            .text = print_robustness,
+                                            .plot = plot_robustness,
+                                            .csv = write_robustness_csv,
+                                            .markdown = write_robustness_markdown,
+                                            .draws_part = true};
+    const int result = write_results(r->arguments, &results, r, whole);
+    if (!any_succeeded(r)) {
+        return worse(result, EXIT_FAILED);
     }
-    free(r->found);
-    robust_set_finish(&r->set);
+    return result;
 }
 
-static int robust(const arguments *a, scenario *s)
+static int judge_and_report(const arguments *a, scenario *s)
 {
-    SCOPED(finish) robustness r = {.arguments = a, .scenario = s};
+    SCOPED(robustness_finish) robustness r = {.arguments = a, .scenario = s};
     int ended = read_laws(&r);
     if (ended != EXIT_DONE) {
         return ended;
@@ -417,20 +540,13 @@ static int robust(const arguments *a, scenario *s)
         return ended;
     }
 
-    // case by case, or the scenario as it is; faults of all cases are told
-    const int last = r.set.case_count - 1, begin = last < 0 ? -1 : 0;
-    int code = EXIT_DONE;
-    for (int k = begin; k <= last; k++) {
-        code = worse(code, take_case(&r, k, false));
+    // an interrupt leaves a table of what was judged
+    const int result = run_cases(&r);
+    const bool is_part = interrupted != 0 && r.found_count > 0;
+    if (result == EXIT_DONE || is_part) {
+        return worse(result, report_robustness(&r, result == EXIT_DONE));
     }
-    for (int k = begin; k <= last && code == EXIT_DONE; k++) {
-        code = run_case(&r, k);
-    }
-    const bool part = interrupted != 0 && r.judged > 0;
-    if (code == EXIT_DONE || part) {
-        return worse(code, report(&r, code == EXIT_DONE));
-    }
-    return code;
+    return result;
 }
 
 static const option_row rows[] = {
@@ -452,8 +568,13 @@ static const option_row rows[] = {
 };
 
 const command robust_command = {
-    CALLED("robust", CONTROL, "How control laws stand what they were not told"),
-    ONE_SCENARIO,
+    .name = "robust",
+    .group = GROUP_CONTROL,
+    .summary = "How control laws stand what they were not told",
+    .operands = "SCENARIO",
+    .least = 1,
+    .most = 1,
+    .takes_scenarios = true,
     .help =
         "Runs each law many times on the scenario, with beliefs, sensors, wall and start "
         "drawn "
@@ -477,5 +598,5 @@ const command robust_command = {
         "status 130); with --db it goes on.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options,
                 &page_options},
-    .use = robust,
+    .use = judge_and_report,
 };

@@ -1,40 +1,103 @@
 // impactlab solve: the limit of a parameter up to which a condition on a result holds.
+#include "ui/commands/command.h"
+
+#include <glib.h>
+#include <math.h>
+#include <stdio.h>
 
 #include "src/base/json.h"
 #include "src/base/numbers.h"
 #include "src/study/solve.h"
 #include "ui/commands/progress.h"
+#include "ui/commands/results.h"
 
 // What is asked for, and the answer: SCENARIO, PATH[=a:b], 'KEY<VALUE'.
 typedef struct question {
+    const scenario *scenario;
     sweep_axis axis;
     solve_condition condition;
     int points;
     solution found;
 } question;
 
-static json_t *answer(const scenario *s, const void *asked)
+static json_t *limit_json(const question *q, const solve_limit *limit)
 {
-    const question *q = asked;
-    const solution *found = &q->found;
-    json_t *limits = json_array();
-    for (int i = 0; i < found->count; i++) {
-        const solve_limit *limit = &found->limits[i];
-        json_t *line =
-            json_of("path:t value:n quantity:t reached:n holds:t jumps:b", q->axis.name,
-                    limit->value, summary_table[q->condition.quantity].key,
-                    limit->reached, limit->holds_below ? "below" : "above", limit->jumps);
-        if (found->stopped) {
-            json_members(line, "beyond:n", limit->beyond);
-        }
-        json_add(limits, line);
+    const char *holds = limit->holds_below ? "below" : "above";
+    json_t *object =
+        json_of("path:t value:n quantity:t reached:n holds:t jumps:b", q->axis.name,
+                limit->value, summary_table[q->condition.quantity].key, limit->reached,
+                holds, limit->jumps);
+    if (q->found.stopped) {
+        json_members(object, "beyond:n", limit->beyond);
     }
-    return json_of("scenario:t solve:o", s->name, limits);
+    return object;
+}
+
+static json_t *solution_json(const void *found)
+{
+    const question *q = found;
+    json_t *limits = json_array();
+    for (int i = 0; i < q->found.count; i++) {
+        json_add(limits, limit_json(q, &q->found.limits[i]));
+    }
+    return json_of("scenario:t solve:o", q->scenario->name, limits);
+}
+
+// A value with its unit, as text to be freed with g_free.
+static char *value_with_unit(const char *value, const char *unit)
+{
+    return g_strconcat(value, blank_before(unit), unit, NULL);
+}
+
+// "peak force < 2 N for motor.voltage from 1 to 2 V, 65 runs"
+static void print_question(const question *q)
+{
+    const solve_condition *c = &q->condition;
+    const summary_info *quantity = &summary_table[c->quantity];
+    char relation[3] = ">";
+    if (c->below) {
+        relation[0] = '<';
+    }
+    if (c->equal) {
+        relation[1] = '=';
+    }
+
+    char bound[NUMBER_TEXT], low[NUMBER_TEXT], high[NUMBER_TEXT];
+    number_format_short(bound, c->bound);
+    number_format_short(low, fmin(q->axis.low, q->axis.high));
+    number_format_short(high, fmax(q->axis.low, q->axis.high));
+    g_autofree char *bound_text = value_with_unit(bound, quantity->unit);
+    g_autofree char *high_text =
+        value_with_unit(high, sweep_axis_parameter(&q->axis)->unit);
+    say("%s %s %s for %s from %s to %s, %d runs\n", quantity->label, relation, bound_text,
+        q->axis.name, low, high_text, q->found.done);
+}
+
+static void print_limit(const question *q, const solve_limit *limit)
+{
+    const summary_info *quantity = &summary_table[q->condition.quantity];
+    const char *unit = sweep_axis_parameter(&q->axis)->unit;
+    const char *side = limit->holds_below ? "up to" : "from";
+    char value[64], reached[64];
+    decimal_print(value, sizeof value, "%.7g", limit->value);
+    decimal_print(reached, sizeof reached, "%.7g", limit->reached);
+    g_autofree char *value_text = value_with_unit(value, unit);
+    g_autofree char *reached_text = value_with_unit(reached, quantity->unit);
+
+    say("\n  %s %s = %s, where the %s is %s", side, q->axis.name, value_text,
+        quantity->label, reached_text);
+    if (limit->jumps) {
+        say(" and jumps");
+    }
+    if (q->found.stopped) {
+        say("; it does not hold at %.7g%s%s", limit->beyond, blank_before(unit), unit);
+    }
 }
 
 // How many values of the range say nothing, and why.
-static void say_what_is_unknown(const question *q, const solution *found)
+static void print_unknown(const question *q)
 {
+    const solution *found = &q->found;
     if (found->missing > 0) {
         say("  in %d of %d runs there is no %s\n", found->missing, found->done,
             summary_table[q->condition.quantity].label);
@@ -48,82 +111,60 @@ static void say_what_is_unknown(const question *q, const solution *found)
     }
 }
 
-static void print_answer(const scenario *s, const void *asked)
+static void print_solution(const void *found)
 {
-    const question *q = asked;
-    const solution *found = &q->found;
-    const solve_condition *c = &q->condition;
-    const summary_info *quantity = &summary_table[c->quantity];
-    const char *unit = sweep_axis_parameter(&q->axis)->unit, *gap = blank_before(unit);
-    char bound[NUMBER_TEXT], low[NUMBER_TEXT], high[NUMBER_TEXT];
-    number_format_short(bound, c->bound);
-    number_format_short(low, fmin(q->axis.low, q->axis.high));
-    number_format_short(high, fmax(q->axis.low, q->axis.high));
-
-    // the question, with the range that was looked at
-    char relation[3] = ">";
-    if (c->below) {
-        relation[0] = '<';
+    const question *q = found;
+    const solution *s = &q->found;
+    say_title(q->scenario);
+    print_question(q);
+    for (int i = 0; i < s->count; i++) {
+        print_limit(q, &s->limits[i]);
     }
-    if (c->equal) {
-        relation[1] = '=';
-    }
-    say_title(s);
-    say("%s %s %s%s%s for %s from %s to %s%s%s, %d runs\n", quantity->label, relation,
-        bound, blank_before(quantity->unit), quantity->unit, q->axis.name, low, high, gap,
-        unit, found->done);
-
-    // the answer: each limit
-    for (int i = 0; i < found->count; i++) {
-        const solve_limit *limit = &found->limits[i];
-        char value[64], reached[64];
-        decimal_print(value, sizeof value, "%.7g", limit->value);
-        decimal_print(reached, sizeof reached, "%.7g", limit->reached);
-        say("\n  %s %s = %s%s%s, where the %s is %s%s%s",
-            limit->holds_below ? "up to" : "from", q->axis.name, value, gap, unit,
-            quantity->label, reached, blank_before(quantity->unit), quantity->unit);
-        if (limit->jumps) {
-            say(" and jumps");
-        }
-        if (found->stopped) {
-            say("; it does not hold at %.7g%s%s", limit->beyond, gap, unit);
-        }
-    }
-    if (found->count == 0) {
-        say("\n  no limit: it holds in %d of these runs and does not in %d",
-            found->holding, found->failing);
+    if (s->count == 0) {
+        say("\n  no limit: it holds in %d of these runs and does not in %d", s->holding,
+            s->failing);
     }
     say("\n");
-    say_what_is_unknown(q, found);
+    print_unknown(q);
 }
 
-static int find_and_report(const arguments *a, scenario *s)
+// Reads the question and finds its answer.
+static status read_and_solve(const arguments *a, question *q, run_monitor *monitor,
+                             fault *f)
 {
-    static const command_results r = {answer, print_answer,
-                                      .kept = "limits are told as near as these come",
-                                      .none = "there is nothing to show"};
-    question q = {.points = a->runs > 0 ? (int)a->runs : SOLVE_POINTS};
+    TRY(solve_condition_read(a->operands[2], &q->condition, f));
+    TRY(solve_axis_read(&q->axis, a->operands[1], q->scenario, f));
+    return solve(q->scenario, &q->axis, &q->condition, q->points, many_runs_jobs(a),
+                 monitor, &q->found, f);
+}
+
+static int solve_and_report(const arguments *a, scenario *s)
+{
+    static const command_results results = {.json = solution_json,
+                                            .text = print_solution,
+                                            .kept =
+                                                "limits are told as near as these come",
+                                            .none = "there is nothing to show"};
+    question q = {.scenario = s, .points = SOLVE_POINTS};
+    if (a->runs > 0) {
+        q.points = (int)a->runs;
+    }
+
     fault f = {0};
     run_monitor *monitor = work_begin(a, "runs", q.points);
-    status code = solve_condition_read(a->operands[2], &q.condition, &f);
-    if (code == STATUS_OK) {
-        code = solve_axis_read(&q.axis, a->operands[1], s, &f);
-    }
-    if (code == STATUS_OK) {
-        code = solve(s, &q.axis, &q.condition, q.points, many_runs_jobs(a), monitor,
-                     &q.found, &f);
-    }
-    const int written = work_finish(a, code, &f, &r, s, &q);
+    const status code = read_and_solve(a, &q, monitor, &f);
+    int result = work_finish(a, code, &f, &results, &q);
     sweep_axis_finish(&q.axis);
-    const bool none = code == STATUS_OK && q.found.count == 0;
-    if (none && !summary_wanted(a)) {
-        complain("no limit: it holds in %d of these runs and does not in %d",
-                 q.found.holding, q.found.failing);
+
+    // no limit is a failure, which is said where the text does not say it
+    if (code == STATUS_OK && q.found.count == 0) {
+        if (!summary_wanted(a)) {
+            complain("no limit: it holds in %d of these runs and does not in %d",
+                     q.found.holding, q.found.failing);
+        }
+        result = worse(result, EXIT_FAILED);
     }
-    if (none) {
-        return worse(written, EXIT_FAILED);
-    }
-    return written;
+    return result;
 }
 
 static const option_row rows[] = {
@@ -134,9 +175,13 @@ static const option_row rows[] = {
 };
 
 const command solve_command = {
-    CALLED("solve", MANY_RUNS,
-           "Find the limit of a parameter for a condition on a result"),
-    SCENARIOS("SCENARIO PATH[=a:b] 'KEY<VALUE'", 3, 3),
+    .name = "solve",
+    .group = GROUP_MANY_RUNS,
+    .summary = "Find the limit of a parameter for a condition on a result",
+    .operands = "SCENARIO PATH[=a:b] 'KEY<VALUE'",
+    .least = 3,
+    .most = 3,
+    .takes_scenarios = true,
     .help =
         "Up to which voltage does the peak stay below 2 N? solve corrected/first-impact\n"
         "motor.voltage 'peak_force_N<2' runs the range, that of the parameter's slider "
@@ -146,5 +191,5 @@ const command solve_command = {
         "condition "
         "holds. Where there is\nnone the exit status is 1.\n",
     .options = {&set_options, &json_options, OWN_OPTIONS(rows), &quiet_options},
-    .use = find_and_report,
+    .use = solve_and_report,
 };

@@ -1,15 +1,17 @@
 // impactlab sweep: a run for each of many parameter values.
 #include "ui/commands/command.h"
 
+#include <glib.h>
 #include <math.h>
-#include <stdlib.h>
+#include <stdio.h>
 
 #include "render/plot/study_plot.h"
-#include "src/base/json.h"
+#include "src/base/whole_file.h"
 #include "src/study/store/sweep_store.h"
 #include "src/study/sweep_run.h"
-#include "ui/commands/progress.h"
 #include "ui/commands/command_pictures.h"
+#include "ui/commands/progress.h"
+#include "ui/commands/results.h"
 
 // The options of the command line, checked.
 typedef struct sweep_order {
@@ -20,12 +22,115 @@ typedef struct sweep_order {
     const sweep *sweep;
 } sweep_order;
 
-// --- results ---------------------------------------------------------------------------
+// --- text ------------------------------------------------------------------------------
 
 enum { ROWS_SHOWN = 40 };
 
-// Writes all rows to a file, as JSON or CSV; path NULL: nothing is asked for.
-static int write_rows(sweep_store *store, const char *path, bool json)
+// "motor.voltage = 2 V, method.name = event" of a run.
+static void print_run_values(const sweep *s, size_t run)
+{
+    for (int i = 0; i < s->axis_count; i++) {
+        const char *unit = sweep_axis_parameter(&s->axes[i])->unit;
+        char text[128];
+        sweep_value_text(s, run, i, text, sizeof text);
+        if (i > 0) {
+            say(", ");
+        }
+        say("%s = %s%s%s", s->axes[i].name, text, blank_before(unit), unit);
+        if (sweep_idle(s, run, i) != NULL) {
+            say(" (no effect)");
+        }
+    }
+}
+
+// How many runs there were, and the quantity that is summarised.
+static void print_counts(const sweep_order *o, size_t failed, const sweep_progress *p)
+{
+    char changes[SCENARIO_CHANGES];
+    say("%s%s: %zu run%s (%s), %zu failed", o->scenario->name,
+        scenario_changes(o->scenario, changes), p->done, plural_ending(p->done),
+        sweep_sampling_name(o->sweep->sampling), failed);
+    if (p->done_now < p->done) {
+        printf(", %zu were there already", p->done - p->done_now);
+    }
+
+    const summary_info *quantity = &summary_table[summary_index(o->quantity)];
+    printf("\n%s", quantity->label);
+    if (quantity->unit[0] != '\0') {
+        printf(" [%s]", quantity->unit);
+    }
+    printf("\n");
+}
+
+// A line for each of the first runs.
+static void print_run_list(const sweep *s, const sweep_store *store, const double *values)
+{
+    for (size_t run = 0; run < s->run_count && run < ROWS_SHOWN; run++) {
+        if (store->present[run]) {
+            printf("  %10.5g  ", values[run]);
+            print_run_values(s, run);
+            printf("\n");
+        }
+    }
+    if (s->run_count > ROWS_SHOWN) {
+        printf("  ... and %zu more (--csv writes all)\n", s->run_count - ROWS_SHOWN);
+    }
+}
+
+// One line for the smallest or largest value.
+static void print_extreme(const sweep_order *o, const char *word, const double *values,
+                          size_t run)
+{
+    const char *unit = summary_table[summary_index(o->quantity)].unit;
+    printf("  %-9s %.6g%s%s  in run %zu: ", word, values[run], blank_before(unit), unit,
+           run + 1);
+    print_run_values(o->sweep, run);
+    printf("\n");
+}
+
+// The smallest and the largest value of those that occurred.
+static void print_extremes(const sweep_order *o, const double *values)
+{
+    const size_t count = o->sweep->run_count, none = count;
+    size_t smallest = none, largest = none;
+    for (size_t run = 0; run < count; run++) {
+        if (!isfinite(values[run])) {
+            continue;
+        }
+        if (smallest == none || values[run] < values[smallest]) {
+            smallest = run;
+        }
+        if (largest == none || values[run] > values[largest]) {
+            largest = run;
+        }
+    }
+
+    if (smallest == none) {
+        printf("  did not occur in any run\n");
+        return;
+    }
+    print_extreme(o, "smallest", values, smallest);
+    print_extreme(o, "largest", values, largest);
+}
+
+static void print_sweep(const sweep_order *o, const sweep_store *store,
+                        const double *values, size_t failed, const sweep_progress *p)
+{
+    const arguments *a = o->arguments;
+    print_counts(o, failed, p);
+
+    // each value, where no file has them
+    if (a->csv == NULL && a->json == NULL && a->db == NULL && a->plot == NULL) {
+        print_run_list(o->sweep, store, values);
+    }
+    print_extremes(o, values);
+}
+
+// --- files -----------------------------------------------------------------------------
+
+// Writes all rows to a file, as JSON or CSV; path NULL: nothing is asked for. Returns the
+// exit status.
+static int write_sweep_rows(sweep_store *store, const char *path, bool json)
 {
     whole_file file;
     fault f = {0};
@@ -42,142 +147,52 @@ static int write_rows(sweep_store *store, const char *path, bool json)
     return EXIT_DONE;
 }
 
-// "motor.voltage = 2 V, method.name = event" of a run.
-static void print_values(const sweep *s, size_t run)
+static int plot_sweep(const sweep_order *o, const double *values)
 {
-    for (int i = 0; i < s->axis_count; i++) {
-        const parameter_info *info = sweep_axis_parameter(&s->axes[i]);
-        char text[128];
-        sweep_value_text(s, run, i, text, sizeof text);
-        if (i > 0) {
-            say(", ");
-        }
-        say("%s = %s%s%s", s->axes[i].name, text, blank_before(info->unit), info->unit);
-        if (sweep_idle(s, run, i) != NULL) {
-            say(" (no effect)");
-        }
-    }
-}
-
-// One line for the smallest or largest value.
-static void print_extreme(const sweep *s, const char *word, const double *values,
-                          size_t run, const char *unit)
-{
-    printf("  %-9s %.6g%s%s  in run %zu: ", word, values[run], blank_before(unit), unit,
-           run + 1);
-    print_values(s, run);
-    printf("\n");
-}
-
-static void print_summary(const sweep_order *o, const sweep_store *store,
-                          const double *values, size_t failed, const sweep_progress *p)
-{
-    const sweep *s = o->sweep;
-    const arguments *a = o->arguments;
-    const summary_info *quantity = &summary_table[summary_index(o->quantity)];
-    const char *unit = quantity->unit;
-
-    // how many runs there were
-    char changes[SCENARIO_CHANGES];
-    say("%s%s: %zu run%s (%s), %zu failed", o->scenario->name,
-        scenario_changes(o->scenario, changes), p->done, plural_ending(p->done),
-        sweep_sampling_name(s->sampling), failed);
-    if (p->done_now < p->done) {
-        printf(", %zu were there already", p->done - p->done_now);
-    }
-    printf("\n%s", quantity->label);
-    if (unit[0] != '\0') {
-        printf(" [%s]", unit);
-    }
-    printf("\n");
-
-    // each value, where no file has them
-    const bool listed =
-        a->csv == NULL && a->json == NULL && a->db == NULL && a->plot == NULL;
-    size_t shown = 0;
-    if (listed) {
-        if (s->run_count < ROWS_SHOWN) {
-            shown = s->run_count;
-        } else {
-            shown = ROWS_SHOWN;
-        }
-    }
-    for (size_t run = 0; run < shown; run++) {
-        if (store->present[run]) {
-            printf("  %10.5g  ", values[run]);
-            print_values(s, run);
-            printf("\n");
-        }
-    }
-    if (listed && shown < s->run_count) {
-        printf("  ... and %zu more (--csv writes all)\n", s->run_count - shown);
-    }
-
-    // the smallest and the largest of those that occurred
-    size_t low = s->run_count, high = s->run_count;
-    for (size_t run = 0; run < s->run_count; run++) {
-        if (isfinite(values[run])) {
-            if (low == s->run_count || values[run] < values[low]) {
-                low = run;
-            }
-            if (high == s->run_count || values[run] > values[high]) {
-                high = run;
-            }
-        }
-    }
-    if (low == s->run_count) {
-        printf("  did not occur in any run\n");
-        return;
-    }
-    print_extreme(s, "smallest", values, low, unit);
-    print_extreme(s, "largest", values, high, unit);
+    const sweep_picture shown = {.sweep = o->sweep, .key = o->quantity, .values = values};
+    return publish_owned(o->arguments, sweep_figure_create(&shown));
 }
 
 // Writes the files asked for and prints the summary, of the runs that are done. If one
-// fails, the others are still written.
+// fails, the others are still written. Returns the exit status.
 static int report_sweep(const sweep_order *o, sweep_store *store, const sweep_progress *p)
 {
     const arguments *a = o->arguments;
+    g_autofree double *values = g_new(double, o->sweep->run_count);
     size_t failed = 0;
-    SCOPED(free_kept) double *values = malloc(o->sweep->run_count * sizeof *values);
     fault f = {0};
-    if (values == NULL) {
-        if (fault_no_memory(&f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
-    } else {
-        if (sweep_store_quantity(store, o->share, o->quantity, values, &failed, &f) !=
-            STATUS_OK) {
-            return complain_fault(&f);
-        }
+    if (sweep_store_quantity(store, o->share, o->quantity, values, &failed, &f) !=
+        STATUS_OK) {
+        return complain_fault(&f);
     }
 
     // files first: what is printed may be cut off
-    int code = worse(write_rows(store, a->csv, false), write_rows(store, a->json, true));
+    int result = write_sweep_rows(store, a->csv, false);
+    result = worse(result, write_sweep_rows(store, a->json, true));
     if (a->plot != NULL) {
-        const sweep_picture shown = {.sweep = o->sweep,
-                                     .key = o->quantity,
-                                     .values = values};
-        code = worse(code, publish_owned(a, sweep_figure_create(&shown)));
+        result = worse(result, plot_sweep(o, values));
     }
     if (summary_wanted(a)) {
-        print_summary(o, store, values, failed, p);
+        print_sweep(o, store, values, failed, p);
     }
-    if (p->failed > 0 && (!a->quiet || failed == p->done)) {
+
+    // runs that failed now, or before
+    const bool all_failed = failed == p->done;
+    if (p->failed > 0 && (!a->quiet || all_failed)) {
         many_runs_report_failure(p);
-    } else if (failed == p->done) {
+    } else if (all_failed) {
         complain("all %zu runs failed; the message of each is in its row", failed);
     }
-    if (failed == p->done) {
-        return worse(code, EXIT_FAILED);
+    if (all_failed) {
+        result = worse(result, EXIT_FAILED);
     }
-    return code;
+    return result;
 }
 
 // --- the request -----------------------------------------------------------------------
 
 // Reads --part K/N, which needs a database: what a part computes is good for being
-// merged.
+// merged. Returns the exit status.
 static int read_share(const arguments *a, sweep_share *share)
 {
     char rest;
@@ -205,82 +220,98 @@ static int read_share(const arguments *a, sweep_share *share)
     return EXIT_DONE;
 }
 
+// Makes the sweep that the command line asks for. One that cannot be, or that could not
+// be drawn, is refused before it computes.
+static status plan_sweep(const arguments *a, const scenario *base, sweep *s, fault *f)
+{
+    const char *sampling = "grid";
+    if (a->sampling != NULL) {
+        sampling = a->sampling;
+    }
+    const sweep_request request = {.vary = a->varies.items,
+                                   .vary_count = a->varies.count,
+                                   .sampling =
+                                       (sweep_sampling)sweep_sampling_find(sampling),
+                                   .runs = (size_t)a->runs,
+                                   .seed = a->seed};
+    TRY(sweep_init(s, base, &request, f));
+    for (int i = 0; i < s->axis_count; i++) {
+        TRY(sweep_check_effect(s, i, f));
+    }
+    if (a->plot != NULL) {
+        return sweep_plot_check(s, a->plot, f);
+    }
+    return STATUS_OK;
+}
+
 // --- the runs --------------------------------------------------------------------------
 
-static int compute(const sweep_order *o, sweep_store *store)
+// Says what there is of a part of a sweep. Returns the exit status.
+static int report_part(const sweep_order *o, const sweep_progress *p)
 {
-    fault f = {0};
-    sweep_progress progress;
-    sweep_options options = many_runs_begin(o->arguments, NULL);
-    options.share = o->share;
-    status code = sweep_run(o->sweep, store, &options, &progress, &f);
-    many_runs_end(&options);
-
-    // what it came to: an error, a stop, the whole sweep or a part of it
-    if (code != STATUS_OK) {
-        return complain_fault(&f);
-    }
-    const bool stopped = progress.done < progress.total,
-               shown = o->share.parts == 0 && progress.done > 0;
-    const int result = shown ? report_sweep(o, store, &progress) : EXIT_DONE;
-    if (stopped) {
-        return many_runs_stopped(o->arguments->db, progress.done, progress.total,
-                                 shown ? "the results are those of these"
-                                       : "none is shown");
-    }
-    if (o->share.parts == 0) {
-        return result;
-    }
     if (!o->arguments->quiet) {
         say("%s: part %d of %d, %zu of %zu runs in '%s'\n", o->scenario->name,
-            o->share.part, o->share.parts, progress.done, o->sweep->run_count,
+            o->share.part, o->share.parts, p->done, o->sweep->run_count,
             o->arguments->db);
     }
-    if (progress.failed > 0 && progress.failed == progress.total) {
+    if (p->failed > 0 && p->failed == p->total) {
         return EXIT_FAILED;
     }
     return EXIT_DONE;
 }
 
-// A sweep that cannot be, or that could not be drawn, is refused before it computes.
+// Runs what is not in the store yet, and reports the whole sweep or the part of it.
+// Returns the exit status.
+static int run_and_report_sweep(const sweep_order *o, sweep_store *store)
+{
+    fault f = {0};
+    sweep_progress progress;
+    sweep_options options = many_runs_begin(o->arguments, NULL);
+    options.share = o->share;
+    const status code = sweep_run(o->sweep, store, &options, &progress, &f);
+    many_runs_end(&options);
+    if (code != STATUS_OK) {
+        return complain_fault(&f);
+    }
+
+    const bool is_part = o->share.parts > 0;
+    const bool is_stopped = progress.done < progress.total;
+    const char *what_became = "none is shown";
+    int result = EXIT_DONE;
+    if (!is_part && progress.done > 0) {
+        result = report_sweep(o, store, &progress);
+        what_became = "the results are those of these";
+    }
+    if (is_stopped) {
+        return many_runs_stopped(o->arguments->db, progress.done, progress.total,
+                                 what_became);
+    }
+    if (is_part) {
+        result = report_part(o, &progress);
+    }
+    return result;
+}
+
 static int sweep_and_report(const arguments *a, scenario *base)
 {
-    sweep_order o = {.arguments = a,
-                     .scenario = base,
-                     .quantity = a->quantity != NULL ? a->quantity : "peak_force_N"};
-    const sweep_request request = {.vary = a->varies.items,
-                                   .vary_count = a->varies.count,
-                                   .sampling = (sweep_sampling)sweep_sampling_find(
-                                       a->sampling ? a->sampling : "grid"),
-                                   .runs = (size_t)a->runs,
-                                   .seed = a->seed};
-    int ended = read_share(a, &o.share);
+    sweep_order o = {.arguments = a, .scenario = base, .quantity = "peak_force_N"};
+    if (a->quantity != NULL) {
+        o.quantity = a->quantity;
+    }
+    const int ended = read_share(a, &o.share);
     if (ended != EXIT_DONE) {
         return ended;
     }
+
     SCOPED(sweep_finish) sweep s = {0};
     SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
-    o.sweep = &s;
-
-    // the rows, in the file or in memory
     fault f = {0};
-    if (sweep_init(&s, base, &request, &f) != STATUS_OK) {
+    if (plan_sweep(a, base, &s, &f) != STATUS_OK ||
+        sweep_store_open(&store, a->db, &s, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-    for (int i = 0; i < s.axis_count; i++) {
-        if (sweep_check_effect(&s, i, &f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
-    }
-    if (a->plot != NULL) {
-        if (sweep_plot_check(&s, a->plot, &f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
-    }
-    if (sweep_store_open(&store, a->db, &s, &f) != STATUS_OK) {
-        return complain_fault(&f);
-    }
-    return compute(&o, store);
+    o.sweep = &s;
+    return run_and_report_sweep(&o, store);
 }
 
 static const option_row rows[] = {
@@ -300,8 +331,13 @@ static const option_row rows[] = {
 };
 
 const command sweep_command = {
-    CALLED("sweep", MANY_RUNS, "A run for each of many parameter values"),
-    ONE_SCENARIO,
+    .name = "sweep",
+    .group = GROUP_MANY_RUNS,
+    .summary = "A run for each of many parameter values",
+    .operands = "SCENARIO",
+    .least = 1,
+    .most = 1,
+    .takes_scenarios = true,
     .help = "--vary PATH=a:b:n takes n values from a to b, PATH=a:b:n:log spaces them "
             "evenly in the "
             "logarithm,\nPATH=v1,v2,v3 takes those (words too: "

@@ -2,15 +2,18 @@
 #include "ui/commands/command.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "render/plot/study_plot.h"
 #include "src/base/json.h"
-#include "src/study/store/sweep_store.h"
+#include "src/base/whole_file.h"
 #include "src/study/linear/linear.h"
+#include "src/study/store/sweep_store.h"
 #include "src/study/tune.h"
 #include "ui/commands/command_pictures.h"
 #include "ui/commands/progress.h"
+#include "ui/commands/results.h"
 
 // What is judged on draws that the search did not see: the values as given, those found,
 // and these with one number a tenth lower and higher, a whole one by one at least. What a
@@ -23,79 +26,202 @@ typedef struct tuner {
     tuning tuning;
     tune_result rows[ROWS];
     int count; // of rows
-    bool kept; // the best so far, in the file of --output
 } tuner;
 
-static void write_best(FILE *stream, const scenario *s, const void *found)
+static void tuner_finish(tuner *t)
 {
-    const tuning *t = &((const tuner *)found)->tuning;
-    scenario best;
-    if (tune_apply(t, t->found, &best, NULL) == STATUS_OK) {
-        scenario_write(stream, &best);
+    for (int i = 0; i < t->count; i++) {
+        robust_law_finish(&t->rows[i].law);
     }
+    tune_finish(&t->tuning);
 }
 
-// Writes the best so far; the standard output gets it once, at the end.
-static status keep_best(void *context, const tuning *best, fault *f)
-{
-    tuner *t = context;
-    const char *path = t->arguments->output;
-    whole_file file;
-    if (path == NULL || strcmp(path, "-") == 0) {
-        return STATUS_OK;
-    }
-    TRY(whole_file_open(&file, path, f));
-    t->kept = true;
-    write_best(file.stream, t->scenario, t);
-    return whole_file_commit(&file, f);
-}
+// --- results ---------------------------------------------------------------------------
 
+// The value of a varied parameter in the scenario.
 static double given_value(const tuner *t, int axis)
 {
     return sweep_axis_get(&t->tuning.plan.axes[axis], &t->scenario->parameters);
 }
 
+// What came of the values with one parameter a tenth lower, and a tenth higher.
+static const tune_result *changed_rows(const tuner *t, int axis)
+{
+    return &t->rows[CHANGED + 2 * axis];
+}
+
+// Given and tuned as laws, side by side; `laws` has room for both.
+static robust_table table_of_laws(const tuner *t, robust_law laws[CHANGED])
+{
+    laws[GIVEN] = t->rows[GIVEN].law;
+    laws[TUNED] = t->rows[TUNED].law;
+    robust_table table = {.scenario = t->scenario->name, .laws = laws};
+    if (t->rows[TUNED].law.runs > 0) {
+        table.count = CHANGED;
+    }
+    return table;
+}
+
+static json_t *tuning_json(const void *found)
+{
+    const tuner *t = found;
+    const tuning *tuned = &t->tuning;
+    json_t *object, *numbers = json_array();
+    if (tuned->asked.over != NULL) {
+        robust_law laws[CHANGED];
+        const robust_table table = table_of_laws(t, laws);
+        object = robust_json(&table);
+    } else {
+        object = json_object();
+    }
+    for (int i = 0; i < tuned->asked.vary_count; i++) {
+        const tune_result *changed = changed_rows(t, i);
+        json_add(numbers, json_of("path:t given:n value:n tenth_lower:n tenth_higher:n",
+                                  tuned->plan.axes[i].name, given_value(t, i),
+                                  tuned->found[i], changed[0].value, changed[1].value));
+    }
+    return json_members(object,
+                        "scenario:t minimise:t evaluations:i runs_each:i least:n "
+                        "unseen_given:n unseen_tuned:n tune:o",
+                        t->scenario->name, tuned->asked.minimise, (int)tuned->done,
+                        (int)tuned->each, tuned->best.value, t->rows[GIVEN].value,
+                        t->rows[TUNED].value, numbers);
+}
+
+static void print_tuned_parameter(const tuner *t, int axis)
+{
+    const tune_result *changed = changed_rows(t, axis);
+    say("  %-34s", t->tuning.plan.axes[axis].name);
+    print_cell(12, "%.6g", given_value(t, axis));
+    print_cell(12, "%.6g", t->tuning.found[axis]);
+    print_cell(12, "%.5g", changed[0].value);
+    print_cell(12, "%.5g", changed[1].value);
+    say("\n");
+}
+
+static void print_tuning(const void *found)
+{
+    const tuner *t = found;
+    const tuning *tuned = &t->tuning;
+    say_title(t->scenario);
+    say("%s\n%.6g in %zu evaluations of %zu run%s\n\n", tuned->asked.minimise,
+        tuned->best.value, tuned->done, tuned->each, plural_ending(tuned->each));
+
+    say("  %-34s%13s%13s%13s%13s\n", "", "given", "tuned", "-10 % gives", "+10 % gives");
+    for (int i = 0; i < tuned->asked.vary_count; i++) {
+        print_tuned_parameter(t, i);
+    }
+    say("  %-34s", "on draws that it did not see");
+    print_cell(12, "%.5g", t->rows[GIVEN].value);
+    print_cell(12, "%.5g", t->rows[TUNED].value);
+    say("\n");
+
+    if (t->rows[TUNED].law.runs > 0) {
+        robust_law laws[CHANGED];
+        const robust_table table = table_of_laws(t, laws);
+        say("\n");
+        robust_text(stdout, &table, false);
+    }
+}
+
+static void write_best_scenario(FILE *stream, const void *found)
+{
+    const tuning *tuned = &((const tuner *)found)->tuning;
+    scenario best;
+    if (tune_apply(tuned, tuned->found, &best, NULL) == STATUS_OK) {
+        scenario_write(stream, &best);
+    }
+}
+
+static int plot_tuning(const arguments *a, const void *found)
+{
+    const tuner *t = found;
+    char changes[SCENARIO_CHANGES];
+    scenario_changes(t->scenario, changes);
+    return publish_owned(a, tune_figure_create(&t->tuning, changes));
+}
+
+// Writes what was found. Returns the exit status.
+static int report_tuning(const tuner *t, bool whole)
+{
+    static const command_results results = {.json = tuning_json,
+                                            .text = print_tuning,
+                                            .plot = plot_tuning,
+                                            .output = write_best_scenario,
+                                            .draws_part = true};
+    const tuning *tuned = &t->tuning;
+    const int result = write_results(t->arguments, &results, t, whole);
+    if (tuned->best.rank < TUNE_REFUSED) {
+        return result;
+    }
+
+    const char *why = "can be judged: in each, runs fail or never settle";
+    if (isfinite(tuned->best.value)) {
+        why = "meets --subject";
+    }
+    complain("none of the %zu evaluations %s", tuned->done, why);
+    return worse(result, EXIT_FAILED);
+}
+
+// --- the search ------------------------------------------------------------------------
+
+// Writes the best so far; the standard output gets it once, at the end.
+static status keep_best(void *context, const tuning *best, fault *f)
+{
+    (void)best;
+    const tuner *t = context;
+    const char *path = t->arguments->output;
+    if (path == NULL || strcmp(path, "-") == 0) {
+        return STATUS_OK;
+    }
+    whole_file file;
+    TRY(whole_file_open(&file, path, f));
+    write_best_scenario(file.stream, t);
+    return whole_file_commit(&file, f);
+}
+
+// A value a tenth lower or higher, a whole one by one at least.
+static double changed_value(const sweep_axis *axis, double value, bool lower)
+{
+    const double factor = lower ? 0.9 : 1.1;
+    const double changed = factor * value;
+    if (sweep_axis_parameter(axis)->type != PARAMETER_INTEGER) {
+        return changed;
+    }
+    return lower ? floor(changed) : ceil(changed);
+}
+
+// The values that a row judges.
+static void values_of_row(const tuner *t, int row, double values[SWEEP_MOST_AXES])
+{
+    for (int k = 0; k < t->tuning.asked.vary_count; k++) {
+        values[k] = t->tuning.found[k];
+        if (row == GIVEN) {
+            values[k] = given_value(t, k);
+        }
+    }
+    if (row >= CHANGED) {
+        const int axis = (row - CHANGED) / 2;
+        const bool lower = (row - CHANGED) % 2 == 0;
+        values[axis] = changed_value(&t->tuning.plan.axes[axis], values[axis], lower);
+    }
+}
+
+// Judges all rows on draws that the search did not see.
 static status judge_rows(tuner *t, const sweep_options *options, fault *f)
 {
-    const int varied = t->tuning.asked.vary_count, rows = CHANGED + 2 * varied;
+    const int rows = CHANGED + 2 * t->tuning.asked.vary_count;
     SCOPED(tune_finish) tuning unseen = {.done = 0};
     SCOPED(sweep_store_close_kept) sweep_store *store = NULL;
-    for (int i = 0; i < rows; i++) {
-        t->rows[i].value = (double)NAN;
-    }
     TRY(tune_unseen(&unseen, &t->tuning, (size_t)rows, f));
     TRY(sweep_store_open(&store, NULL, &unseen.plan, f));
     while (t->count < rows) {
-        const int i = t->count++;
+        const int row = t->count++;
         double values[SWEEP_MOST_AXES];
-        for (int k = 0; k < varied; k++) {
-            if (i == GIVEN) {
-                values[k] = given_value(t, k);
-            } else {
-                values[k] = t->tuning.found[k];
-            }
-        }
-        if (i >= CHANGED) {
-            const int k = (i - CHANGED) / 2;
-            const bool lower = i % 2 == CHANGED % 2;
-            const bool whole =
-                sweep_axis_parameter(&unseen.plan.axes[k])->type == PARAMETER_INTEGER;
-            if (lower) {
-                values[k] *= 0.9;
-            } else {
-                values[k] *= 1.1;
-            }
-            if (whole) {
-                if (lower) {
-                    values[k] = floor(values[k]);
-                } else {
-                    values[k] = ceil(values[k]);
-                }
-            }
-        }
-        const status code =
-            tune_evaluate(&unseen, (size_t)i, values, i == GIVEN ? "given" : "tuned",
-                          store, options, &t->rows[i], f);
+        values_of_row(t, row, values);
+        const char *name = row == GIVEN ? "given" : "tuned";
+        const status code = tune_evaluate(&unseen, (size_t)row, values, name, store,
+                                          options, &t->rows[row], f);
         if (code == STATUS_STOPPED || code == STATUS_NO_MEMORY) {
             return code;
         }
@@ -103,91 +229,18 @@ static status judge_rows(tuner *t, const sweep_options *options, fault *f)
     return STATUS_OK;
 }
 
-// Given and tuned as laws, side by side.
-static robust_table compared(const tuner *t, robust_law *laws)
+// Says what became of a search that was stopped. Returns the exit status.
+static int report_stopped_search(const tuner *t, bool any)
 {
-    laws[GIVEN] = t->rows[GIVEN].law;
-    laws[TUNED] = t->rows[TUNED].law;
-    const bool judged = t->rows[TUNED].law.runs > 0;
-    return (robust_table){.scenario = t->scenario->name,
-                          .laws = laws,
-                          .count = judged ? CHANGED : 0};
-}
-
-static json_t *answer(const scenario *s, const void *found_by)
-{
-    const tuner *t = found_by;
-    const tuning *found = &t->tuning;
-    robust_law laws[CHANGED];
-    const robust_table table = compared(t, laws);
-    json_t *object = found->asked.over != NULL ? robust_json(&table) : json_object(),
-           *numbers = json_array();
-    for (int i = 0; i < found->asked.vary_count; i++) {
-        const tune_result *changed = &t->rows[CHANGED + 2 * i];
-        json_add(numbers, json_of("path:t given:n value:n tenth_lower:n tenth_higher:n",
-                                  found->plan.axes[i].name, given_value(t, i),
-                                  found->found[i], changed[0].value, changed[1].value));
+    const char *what_became = "none is shown";
+    if (any) {
+        what_became = "the values are the best of these, not judged on other draws";
     }
-    return json_members(object,
-                        "scenario:t minimise:t evaluations:i runs_each:i least:n "
-                        "unseen_given:n unseen_tuned:n tune:o",
-                        s->name, found->asked.minimise, (int)found->done,
-                        (int)found->each, found->best.value, t->rows[GIVEN].value,
-                        t->rows[TUNED].value, numbers);
+    return many_runs_stopped(t->arguments->db, t->tuning.done * t->tuning.each,
+                             t->tuning.plan.run_count, what_became);
 }
 
-static void print_answer(const scenario *s, const void *found_by)
-{
-    const tuner *t = found_by;
-    const tuning *found = &t->tuning;
-    robust_law laws[CHANGED];
-    say_title(s);
-    say("%s\n%.6g in %zu evaluations of %zu run%s\n\n  %-34s%13s%13s%13s%13s\n",
-        found->asked.minimise, found->best.value, found->done, found->each,
-        found->each == 1 ? "" : "s", "", "given", "tuned", "-10 % gives", "+10 % gives");
-    for (int i = 0; i < found->asked.vary_count; i++) {
-        say("  %-34s", found->plan.axes[i].name);
-        print_cell(12, "%.6g", given_value(t, i));
-        print_cell(12, "%.6g", found->found[i]);
-        print_cell(12, "%.5g", t->rows[CHANGED + 2 * i].value);
-        print_cell(12, "%.5g", t->rows[CHANGED + 2 * i + 1].value);
-        say("\n");
-    }
-    say("  %-34s", "on draws that it did not see");
-    print_cell(12, "%.5g", t->rows[GIVEN].value);
-    print_cell(12, "%.5g", t->rows[TUNED].value);
-    say("\n");
-    if (t->rows[TUNED].law.runs > 0) {
-        const robust_table table = compared(t, laws);
-        say("\n");
-        robust_text(stdout, &table, false);
-    }
-}
-
-static int plot(const arguments *a, const scenario *s, const void *found)
-{
-    char changes[SCENARIO_CHANGES];
-    return publish_owned(a, tune_figure_create(&((const tuner *)found)->tuning,
-                                               scenario_changes(s, changes)));
-}
-
-static int report(const tuner *t, bool whole)
-{
-    static const command_results r = {answer, print_answer, plot, .output = write_best,
-                                      .draws_part = true};
-    const tuning *found = &t->tuning;
-    const int code = write_results(t->arguments, &r, t->scenario, t, whole);
-    if (found->best.rank < TUNE_REFUSED) {
-        return code;
-    }
-    complain("none of the %zu evaluations %s", found->done,
-             isfinite(found->best.value)
-                 ? "meets --subject"
-                 : "can be judged: in each, runs fail or never settle");
-    return worse(code, EXIT_FAILED);
-}
-
-static int search(tuner *t)
+static int search_and_report(tuner *t)
 {
     const arguments *a = t->arguments;
     fault f = {0};
@@ -199,68 +252,72 @@ static int search(tuner *t)
     t->tuning.improved = keep_best;
     t->tuning.context = t;
 
-    status code = sweep_store_open(&store, a->db, &t->tuning.plan, &f);
-    if (code == STATUS_OK) {
-        code = tune_run(&t->tuning, store, &options, &f);
+    status searched = sweep_store_open(&store, a->db, &t->tuning.plan, &f);
+    if (searched == STATUS_OK) {
+        searched = tune_run(&t->tuning, store, &options, &f);
     }
-    status judged;
-    if (code == STATUS_OK) {
+    status judged = searched;
+    if (searched == STATUS_OK) {
         judged = judge_rows(t, &options, &f);
-    } else {
-        judged = code;
     }
     many_runs_end(&options);
 
-    // what was found is told whatever the judging came to
-    const bool any = t->tuning.done > 0 && (code == STATUS_OK || code == STATUS_STOPPED);
-    const int result = any ? report(t, judged != STATUS_STOPPED) : EXIT_DONE;
-    if (judged != STATUS_STOPPED) {
-        if (judged == STATUS_OK) {
-            return result;
-        }
-        return worse(result, complain_fault(&f));
+    // what was found is reported whatever the judging came to
+    const bool any =
+        t->tuning.done > 0 && (searched == STATUS_OK || searched == STATUS_STOPPED);
+    int result = EXIT_DONE;
+    if (any) {
+        result = report_tuning(t, judged != STATUS_STOPPED);
     }
-    return many_runs_stopped(
-        a->db, t->tuning.done * t->tuning.each, t->tuning.plan.run_count,
-        any ? "the values are the best of these, not judged on other draws"
-            : "none is shown");
+    if (judged == STATUS_STOPPED) {
+        return report_stopped_search(t, any);
+    }
+    if (judged != STATUS_OK) {
+        result = worse(result, complain_fault(&f));
+    }
+    return result;
 }
 
-static void finish(tuner *t)
+// --- the command -----------------------------------------------------------------------
+
+// What is asked for; `set` is that of --over.
+static tune_request request_of_tuning(const arguments *a, const scenario *s,
+                                      const robust_set *set)
 {
-    for (int i = 0; i < t->count; i++) {
-        robust_law_finish(&t->rows[i].law);
+    tune_request asked = {.base = s,
+                          .vary = a->varies.items,
+                          .vary_count = a->varies.count,
+                          .minimise = a->minimise,
+                          .subject = a->subject,
+                          .runs = TUNE_RUNS_ALONE,
+                          .seed = a->seed,
+                          .growth = linear_growth};
+    if (a->over != NULL) {
+        asked.over = set;
+        asked.runs = TUNE_RUNS;
     }
-    tune_finish(&t->tuning);
+    if (a->runs > 0) {
+        asked.runs = (size_t)a->runs;
+    }
+    return asked;
 }
 
-static int tune(const arguments *a, scenario *s)
+static int tune_and_report(const arguments *a, scenario *s)
 {
-    SCOPED(robust_set_finish) robust_set set = {0};
-    SCOPED(finish) tuner t = {.arguments = a, .scenario = s};
     if (a->varies.count == 0 || a->minimise == NULL) {
         return complain("tune: expected --vary PATH=a:b and --minimise EXPR");
     }
-    const size_t usual = a->over != NULL ? TUNE_RUNS : TUNE_RUNS_ALONE;
-    const tune_request asked = {.base = s,
-                                .vary = a->varies.items,
-                                .vary_count = a->varies.count,
-                                .minimise = a->minimise,
-                                .subject = a->subject,
-                                .over = a->over != NULL ? &set : NULL,
-                                .runs = a->runs > 0 ? (size_t)a->runs : usual,
-                                .seed = a->seed,
-                                .growth = linear_growth};
+    SCOPED(robust_set_finish) robust_set set = {0};
+    SCOPED(tuner_finish) tuner t = {.arguments = a, .scenario = s};
     fault f = {0};
-    if (a->over != NULL) {
-        if (robust_set_read(&set, a->over, &f) != STATUS_OK) {
-            return complain_fault(&f);
-        }
+    if (a->over != NULL && robust_set_read(&set, a->over, &f) != STATUS_OK) {
+        return complain_fault(&f);
     }
+    const tune_request asked = request_of_tuning(a, s, &set);
     if (tune_init(&t.tuning, &asked, &f) != STATUS_OK) {
         return complain_fault(&f);
     }
-    return search(&t);
+    return search_and_report(&t);
 }
 
 static const option_row rows[] = {
@@ -279,9 +336,13 @@ static const option_row rows[] = {
 };
 
 const command tune_command = {
-    CALLED("tune", CONTROL,
-           "Values of parameters that make an expression of results smallest"),
-    ONE_SCENARIO,
+    .name = "tune",
+    .group = GROUP_CONTROL,
+    .summary = "Values of parameters that make an expression of results smallest",
+    .operands = "SCENARIO",
+    .least = 1,
+    .most = 1,
+    .takes_scenarios = true,
     .help = "EXPR is made of numbers, + - * / ( ), max(a, b) and keys: with --over "
             "those of robust --json, else those of\nrun --json; growth_per_s is that "
             "of linear --vary. --vary PATH=a:b (or a:b:log) says what may be changed "
@@ -294,5 +355,5 @@ const command tune_command = {
             "status is 1 if no values meet --subject.\n",
     .options = {&set_options, &vary_options, &json_options, OWN_OPTIONS(rows),
                 &quiet_options, &page_options},
-    .use = tune,
+    .use = tune_and_report,
 };
