@@ -1,41 +1,65 @@
 // The whole screen of the explorer: title, panels, the page, status and prompt.
 #include "ui/explorer/panels/panel.h"
 
+#include <assert.h>
+#include <stdarg.h>
 #include <string.h>
 
 #include "ui/terminal/pictures.h"
 
 // --- the lines above and below the panels ----------------------------------------------
 
-static void draw_title(const explorer_model *model, screen *s)
+// How many changes there are, and how many of them are to come; "" without any.
+static void write_change_count(const session *e, char text[64])
 {
-    const session *e = &model->session;
-    char changes[64] = "";
-
-    // how many changes, and those that are to come
-    if (e->input_count > 0) {
-        int later = 0;
-        for (int i = 0; i < e->input_count; i++) {
-            later +=
-                e->inputs[i].kind != SESSION_INPUT_START && e->inputs[i].time > e->now;
-        }
-        snprintf(changes, sizeof changes, "\u25cf %d change%s", e->input_count,
-                 e->input_count == 1 ? "" : "s");
-        if (later > 0) {
-            text_add(changes, sizeof changes, ", \u25cb %d later", later);
+    int later = 0;
+    text[0] = '\0';
+    if (e->input_count == 0) {
+        return;
+    }
+    for (int i = 0; i < e->input_count; i++) {
+        const session_input *in = &e->inputs[i];
+        if (in->kind != SESSION_INPUT_START && in->time > e->now) {
+            later++;
         }
     }
+    snprintf(text, 64, "\u25cf %d change%s", e->input_count,
+             e->input_count == 1 ? "" : "s");
+    if (later > 0) {
+        text_add(text, 64, ", \u25cb %d later", later);
+    }
+}
 
-    // the name and the changes go before the title
-    char title[LINE_TEXT + SCENARIO_CHANGES], given[SCENARIO_CHANGES];
-    snprintf(title, sizeof title, "%s%s", e->base.title ? e->base.title : "",
-             scenario_changes(&e->base, given));
-    int room = s->width - 2 - (changes[0] ? text_cells(changes) + 2 : 0), x = 1;
-    if (12 + text_cells(e->base.name) <= room) {
+// The scenario's title, and what was changed in it before it was opened.
+static void write_title(const scenario *base, char *text, size_t size)
+{
+    char given[SCENARIO_CHANGES];
+    text[0] = '\0';
+    if (base->title != NULL) {
+        text_add(text, size, "%s", base->title);
+    }
+    text_add(text, size, "%s", scenario_changes(base, given));
+}
+
+static void draw_title(const explorer_model *model, screen *s)
+{
+    enum { NAME_OF_LAB = 12, LEAST_TITLE = 8 }; // cells
+    const session *e = &model->session;
+    char changes[64], title[LINE_TEXT + SCENARIO_CHANGES];
+    write_change_count(e, changes);
+    write_title(&e->base, title, sizeof title);
+
+    // the scenario's name and the changes go before its title
+    int room = s->width - 2;
+    if (changes[0] != '\0') {
+        room -= text_cells(changes) + 2;
+    }
+    int x = 1;
+    if (NAME_OF_LAB + text_cells(e->base.name) <= room) {
         x += screen_text(s, x, 0, room, INK_TITLE, "impactlab  ");
     }
     x += screen_text(s, x, 0, room - x + 1, INK_TITLE, e->base.name);
-    if (room - x > 8 && title[0] != '\0') {
+    if (room - x > LEAST_TITLE && title[0] != '\0') {
         x += 2 + screen_words(s, x + 2, 0, room - x - 1, INK_TEXT, title);
     }
     screen_text(s, x + 2, 0, s->width - x - 3, INK_EVENT, changes);
@@ -51,6 +75,26 @@ typedef struct bar_item {
 
 enum { BAR_ITEMS = 16 };
 
+// A line of items at the edge of the screen.
+typedef struct bar {
+    bar_item items[BAR_ITEMS]; // from left to right
+    int count;
+} bar;
+
+static void bar_add(bar *b, int rank, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static void bar_add(bar *b, int rank, const char *format, ...)
+{
+    assert(b->count < BAR_ITEMS && rank < BAR_ITEMS);
+    bar_item *item = &b->items[b->count++];
+    item->rank = rank;
+    va_list list;
+    va_start(list, format);
+    vsnprintf(item->text, sizeof item->text, format, list);
+    va_end(list);
+}
+
 static void blank_row(screen *s, int y)
 {
     for (int x = 0; x < s->width; x++) {
@@ -58,111 +102,129 @@ static void blank_row(screen *s, int y)
     }
 }
 
-// Draws a bar: the items of the lowest ranks as far as they have room, those below
-// `always` in any case, in their order from left to right.
-static void draw_bar(screen *s, int y, int room, int always, ink colour,
-                     const bar_item *items, int count)
+// Draws a bar into a row: the items of the lowest ranks as far as `room` cells have room
+// for them, those of ranks below `always` in any case.
+static void draw_bar(screen *s, int y, int room, int always, ink colour, const bar *b)
 {
+    // which ones, by their ranks
     bool shown[BAR_ITEMS] = {false};
-    for (int rank = 0, used = 1; rank < BAR_ITEMS; rank++) {
-        for (int i = 0; i < count; i++) {
-            const int length = text_cells(items[i].text);
-            if (items[i].rank == rank && length > 0 &&
-                (rank < always || used + length <= room)) {
+    int used = 1;
+    for (int rank = 0; rank < BAR_ITEMS; rank++) {
+        for (int i = 0; i < b->count; i++) {
+            const int length = text_cells(b->items[i].text);
+            const bool wanted = b->items[i].rank == rank && length > 0;
+            if (wanted && (rank < always || used + length <= room)) {
                 shown[i] = true;
                 used += length + 2;
             }
         }
     }
+
+    // from left to right
     blank_row(s, y);
-    for (int i = 0, x = 1; i < count; i++) {
+    int x = 1;
+    for (int i = 0; i < b->count; i++) {
         if (shown[i]) {
-            x += 2 + screen_text(s, x, y, s->width - x, colour, items[i].text);
+            x += 2 + screen_text(s, x, y, s->width - x, colour, b->items[i].text);
         }
     }
 }
 
-// Fills the items from left to right; returns how many.
-static int write_status(const explorer_model *model, const explorer_view *view,
-                        bar_item items[BAR_ITEMS])
+// What the run does, or how it ended where the cursor is at its end.
+static const char *state_of_run(const session *e, bool playing)
+{
+    const status ended = e->run.summary.status;
+    if (playing) {
+        return e->now < e->seen ? "replaying" : "playing";
+    }
+    if (ended == STATUS_OK || e->now < session_end(e)) {
+        return "paused";
+    }
+    switch (ended) {
+    case STATUS_STOPPED:
+        return "stopped";
+    case STATUS_NOT_ALLOWED:
+        return "not allowed";
+    case STATUS_CONTROLLER_FAILED:
+        return "controller failed";
+    default:
+        return "diverged";
+    }
+}
+
+// How fast it plays: as wanted, and as measured.
+static void add_speed(bar *b, const playback *p)
+{
+    if (!p->playing) {
+        bar_add(b, 3, "\u00d7%g", p->speed);
+    } else if (p->slowed > 1.05) {
+        bar_add(b, 3, "\u00d7%g slow motion (%.2g)", p->speed, p->measured);
+    } else {
+        bar_add(b, 3, "\u00d7%g (%.3g)", p->speed, p->measured);
+    }
+}
+
+// Which equations are solved, and by which law the arm is driven.
+static void add_equations(bar *b, const parameters *p)
+{
+    char equations[64];
+    parameter_format(p, PARAMETER_INDEX(arm.model), equations, sizeof equations);
+    if (p->control.law != LAW_NONE) {
+        bar_add(b, 4, "%.40s, %.38s", equations, control_law_table[p->control.law].word);
+    } else {
+        bar_add(b, 4, "%.40s", equations);
+    }
+}
+
+// The parts of the status, each with what it is worth where not all fit.
+static bar status_bar(const explorer_model *model, const explorer_view *view)
 {
     const session *e = &model->session;
     const sample *row = session_sample(e);
     const parameters *p = &e->effective.parameters;
-    const status ended = e->run.summary.status;
-    bool failed = ended != STATUS_OK, old = e->now < e->seen;
-    const char *how = "stopped";
-    if (ended != STATUS_STOPPED) {
-        if (ended == STATUS_NOT_ALLOWED) {
-            how = "not allowed";
-        } else if (ended == STATUS_CONTROLLER_FAILED) {
-            how = "controller failed";
-        } else {
-            how = "diverged";
-        }
-    }
-    const char *state;
-    if (view->playback.playing) {
-        if (old) {
-            state = "replaying";
-        } else {
-            state = "playing";
-        }
-    } else if (failed && e->now >= session_end(e)) {
-        state = how;
-    } else {
-        state = "paused";
-    }
-    const bool has_law = p->control.law != LAW_NONE;
-    char equations[64], speed[32] = "";
-    int n = 0;
-    parameter_format(p, PARAMETER_INDEX(arm.model), equations, sizeof equations);
-    if (view->playback.playing) {
-        const bool slowed = view->playback.slowed > 1.05;
-        snprintf(speed, sizeof speed, slowed ? " slow motion (%.2g)" : " (%.3g)",
-                 view->playback.measured);
-    }
+    const bool playing = view->playback.playing;
+    bar b = {.count = 0};
 
-    // each part with what it is worth where not all fit
-#define ITEM(importance, ...)                                                            \
-    do {                                                                                 \
-        items[n].rank = importance;                                                      \
-        snprintf(items[n].text, sizeof items[n].text, __VA_ARGS__);                      \
-        n++;                                                                             \
-    } while (0)
-    ITEM(0, "%s %-9s", view->playback.playing ? "\u25b6" : "\u2016", state);
+    // the run
+    bar_add(&b, 0, "%s %-9s", playing ? "\u25b6" : "\u2016", state_of_run(e, playing));
     if (e->computing != NULL) {
-        ITEM(2, "computing %.1f of %g s (Esc stops)", session_end(e), p->run.duration);
+        bar_add(&b, 2, "computing %.1f of %g s (Esc stops)", session_end(e),
+                p->run.duration);
     }
     if (e->run.summary.inaccurate) {
-        ITEM(1, "inaccurate");
+        bar_add(&b, 1, "inaccurate");
     }
-    ITEM(1, "t %.5f s", e->now);
-    ITEM(5, "row %zu/%zu", e->row + 1, e->run.trace.row_count);
-    ITEM(3, "\u00d7%g%s", view->playback.speed, speed);
-    ITEM(4, "%.40s%s%.38s", equations, has_law ? ", " : "",
-         has_law ? control_law_table[p->control.law].word : "");
-    ITEM(2, "%s%s", row->contact != 0 ? "in contact" : "free flight",
-         row->sticking != 0 ? ", hub sticks" : "");
+
+    // where the cursor is, and how it moves
+    bar_add(&b, 1, "t %.5f s", e->now);
+    bar_add(&b, 5, "row %zu/%zu", e->row + 1, e->run.trace.row_count);
+    add_speed(&b, &view->playback);
+
+    // the arm there
+    add_equations(&b, p);
+    bar_add(&b, 2, "%s%s", row->contact != 0 ? "in contact" : "free flight",
+            row->sticking != 0 ? ", hub sticks" : "");
     if (view->mark.set) {
-        ITEM(3, "from mark %.5g s", e->now - view->mark.time);
+        bar_add(&b, 3, "from mark %.5g s", e->now - view->mark.time);
     }
-#undef ITEM
-    return n;
+    return b;
 }
 
 static void draw_status(const explorer_model *model, const explorer_view *view, screen *s,
                         int y)
 {
-    bar_item items[BAR_ITEMS];
-    const int count = write_status(model, view, items);
-    draw_bar(s, y, s->width, 2, INK_TEXT, items, count);
+    enum { ALWAYS = 2 }; // ranks
+    const bar b = status_bar(model, view);
+    draw_bar(s, y, s->width, ALWAYS, INK_TEXT, &b);
 
     // what went wrong colours the bar
     const summary *m = &model->session.run.summary;
-    bool failed = m->status != STATUS_OK || m->inaccurate;
-    screen_tint(s, 0, y, s->width, 1,
-                failed && !view->playback.playing ? INK_WARNING : INK_SELECTED);
+    const bool failed = m->status != STATUS_OK || m->inaccurate;
+    ink colour = INK_SELECTED;
+    if (failed && !view->playback.playing) {
+        colour = INK_WARNING;
+    }
+    screen_tint(s, 0, y, s->width, 1, colour);
 }
 
 // --- the bottom ------------------------------------------------------------------------
@@ -172,38 +234,50 @@ static int draw_message(const explorer_input *input, screen *s, int below, ink s
 {
     enum { MOST = 3 };
     text_line lines[MOST];
-    const int count = text_wrap(input->message.text, s->width - 2, lines, MOST, NULL);
-    for (int i = 0, y = below - count; i < count; i++, y++) {
+    const int width = s->width - 2;
+    const int count = text_wrap(input->message.text, width, lines, MOST, NULL);
+    for (int i = 0; i < count; i++) {
+        const int y = below - count + i;
+        const bool cut = i == MOST - 1 && !input->prompt.open;
         blank_row(s, y);
-        if (i == MOST - 1 && !input->prompt.open) {
-            screen_words(s, 1, y, s->width - 2, shade, lines[i].start);
+        if (cut) {
+            // the last row says if something is left out
+            screen_words(s, 1, y, width, shade, lines[i].start);
         } else {
-            screen_print(s, 1, y, s->width - 2, shade, "%.*s", lines[i].bytes,
-                         lines[i].start);
+            screen_print(s, 1, y, width, shade, "%.*s", lines[i].bytes, lines[i].start);
         }
     }
     return count;
 }
 
-// The end of the prompt if it is wider than the screen, and what was said about it.
+// The end of a text that has more cells than there is room for.
+static const char *end_of_text(const char *text, int room)
+{
+    for (int over = text_cells(text) - room; over > 0; over--) {
+        glyph_decode(&text);
+    }
+    return text;
+}
+
+// The prompt, and what was said about it; returns the rows it took.
 static int draw_prompt(const explorer_input *input, screen *s)
 {
     const prompt *p = &input->prompt;
-    const char *text = p->text, *said = input->message.text;
-    int y = s->height - 1, room = s->width - 2, over = text_cells(text) - (room - 1);
-    for (int i = 0; i < over; i++) {
-        glyph_decode(&text);
-    }
+    const char *said = input->message.text;
+    const int y = s->height - 1, room = s->width - 2;
     blank_row(s, y);
-    int x =
-        screen_print(s, 0, y, room, INK_TITLE, "%s%s", p->searches ? "find " : ":", text);
+    const int x =
+        screen_print(s, 0, y, room, INK_TITLE, "%s%s", p->searches ? "find " : ":",
+                     end_of_text(p->text, room - 1));
     screen_put(s, x, y, ' ', INK_SELECTED);
 
     // a value that typing replaces looks selected
     if (p->replaces) {
-        int value = text_cells(p->text + p->fixed);
+        const int value = text_cells(p->text + p->fixed);
         screen_tint(s, x - value, y, value, 1, INK_SELECTED);
     }
+
+    // beside it, or above where that has no room
     if (x + 4 + text_cells(said) > s->width) {
         return 1 + draw_message(input, s, y, INK_DIM);
     }
@@ -211,7 +285,36 @@ static int draw_prompt(const explorer_input *input, screen *s)
     return 1;
 }
 
-// What the most wanted keys do, as many as there is room for; the last two always.
+// The filter that is being typed.
+static void draw_filter(const filters *f, screen *s)
+{
+    const int y = s->height - 1;
+    blank_row(s, y);
+    const int x =
+        screen_print(s, 0, y, s->width - 2, INK_TITLE, "/%s", f->text[f->typing]);
+    screen_put(s, x, y, ' ', INK_SELECTED);
+    screen_text(s, x + 3, y, s->width - x - 3, INK_DIM,
+                "filters by words and their parts; Enter takes, Esc shows all");
+}
+
+// The keys of a command in a few characters: the first one, or both ways of a pair as
+// long as they are the lab's own; "" if it has none.
+static void write_brief_keys(const key_bindings *bindings, const char *command,
+                             char text[64])
+{
+    key_names_of(bindings, command, text, 64);
+    if (strncmp(text, "Right l Left", strlen("Right l Left")) == 0) {
+        snprintf(text, 64, "\u25c0 \u25b6");
+    } else if (strcmp(text, "n N") == 0) {
+        snprintf(text, 64, "n/N");
+    } else if (strncmp(text, "+ = -", strlen("+ = -")) == 0) {
+        snprintf(text, 64, "+/-");
+    } else {
+        text[strcspn(text, " ")] = '\0';
+    }
+}
+
+// What the most wanted keys do, as many as there is room for.
 static void draw_hints(const explorer_view *view, screen *s)
 {
     static const struct {
@@ -224,58 +327,36 @@ static void draw_hints(const explorer_view *view, screen *s)
                  {"save", "save", 10},        {"help", "help", 1},
                  {"quit", "quit", 2}};
     enum { HINTS = sizeof hints / sizeof hints[0] };
-    bar_item items[HINTS];
-
-    // the first key of each, and what it does
+    bar b = {.count = 0};
     for (int i = 0; i < HINTS; i++) {
         char keys[64];
-        key_names_of(&view->keys, hints[i].command, keys, sizeof keys);
-        // as long as the key is the explorer's own there is a shorter way to say it
-        const char *brief = "\u25c0 \u25b6";
-        if (strncmp(keys, "Right l Left", 12) != 0) {
-            if (strcmp(keys, "n N") == 0) {
-                brief = "n/N";
-            } else if (strncmp(keys, "+ = -", 5) == 0) {
-                brief = "+/-";
-            } else {
-                brief = NULL;
-            }
-        }
-        keys[strcspn(keys, " ")] = '\0';
-        items[i] = (bar_item){.rank = hints[i].rank};
+        write_brief_keys(&view->keys, hints[i].command, keys);
         if (keys[0] != '\0') {
-            snprintf(items[i].text, sizeof items[i].text, "%.20s %s",
-                     brief ? brief : keys, hints[i].does);
+            bar_add(&b, hints[i].rank, "%.20s %s", keys, hints[i].does);
         }
     }
-    draw_bar(s, s->height - 1, s->width - 1, 0, INK_DIM, items, HINTS);
+    draw_bar(s, s->height - 1, s->width - 1, 0, INK_DIM, &b);
 }
 
 // Draws the prompt, the message or hints in the last rows and returns how many it took.
 static int draw_bottom(const explorer_view *view, const explorer_input *input, screen *s)
 {
-    const int y = s->height - 1;
-    int rows = 1;
     if (input->prompt.open) {
-        rows = draw_prompt(input, s);
-    } else if (view->filters.typing != PANEL_NONE) {
-        blank_row(s, y);
-        int x = screen_print(s, 0, y, s->width - 2, INK_TITLE, "/%s",
-                             view->filters.text[view->filters.typing]);
-        screen_put(s, x, y, ' ', INK_SELECTED);
-        screen_text(s, x + 3, y, s->width - x - 3, INK_DIM,
-                    "filters by words and their parts; Enter takes, Esc shows all");
-    } else if (input->message.text[0] == '\0') {
-        draw_hints(view, s);
-    } else {
-        // a long message covers some of the panels until the next key
-        rows = draw_message(input, s, s->height,
-                            input->message.warning ? INK_WARNING : INK_TEXT);
+        return draw_prompt(input, s);
     }
-    if (rows < 1) {
+    if (view->filters.typing != PANEL_NONE) {
+        draw_filter(&view->filters, s);
         return 1;
     }
-    return rows;
+    if (input->message.text[0] == '\0') {
+        draw_hints(view, s);
+        return 1;
+    }
+
+    // a long message covers some of the panels until the next key, one of blanks nothing
+    const ink shade = input->message.warning ? INK_WARNING : INK_TEXT;
+    const int rows = draw_message(input, s, s->height, shade);
+    return rows > 0 ? rows : 1;
 }
 
 // --- too small -------------------------------------------------------------------------
@@ -292,21 +373,21 @@ static void draw_too_small(screen *s)
         "< %1$dx%2$d",
         "small",
         "<"};
-    enum { FORMS = sizeof forms / sizeof forms[0] };
+    enum { FORMS = sizeof forms / sizeof forms[0], MOST_ROWS = 24 };
     char text[96];
-    text_line lines[24];
-    const int w = s->width, h = s->height;
+    text_line lines[MOST_ROWS];
+    const area whole = {0, 0, s->width, s->height};
+    const int most = s->height < MOST_ROWS ? s->height : MOST_ROWS;
     int count = 0;
     bool split = true;
 
     // the first whose words all fit
     for (int i = 0; i < FORMS && split; i++) {
-        snprintf(text, sizeof text, forms[i], LEAST_WIDTH, LEAST_HEIGHT, w, h);
-        count = text_wrap(text, w, lines, h < 24 ? h : 24, &split);
+        snprintf(text, sizeof text, forms[i], LEAST_WIDTH, LEAST_HEIGHT, s->width,
+                 s->height);
+        count = text_wrap(text, s->width, lines, most, &split);
     }
-    for (int k = 0; k < count; k++) {
-        screen_print(s, 0, k, w, INK_WARNING, "%.*s", lines[k].bytes, lines[k].start);
-    }
+    area_lines(s, whole, INK_WARNING, lines, count);
 }
 
 // --- the whole screen ------------------------------------------------------------------
@@ -330,28 +411,39 @@ static int side_width(int screen_width)
     return 0;
 }
 
+// Folds a panel of the stack, if it has rows, and returns how many those were.
+static int fold_panel(layout *lay, int rows[PANEL_IDS], panel_id id)
+{
+    const int freed = rows[id];
+    if (freed > 0) {
+        lay->drawn.folded[id] = true;
+        rows[id] = 0;
+    }
+    return freed;
+}
+
 // Folds panels of the stack until the chosen one has enough of the rows, of which it has
 // `left`: first those without anything to show. Returns the rows that it has then.
 static int fold_stack(const explorer_model *model, layout *lay, int rows[PANEL_IDS],
                       int left)
 {
-    enum {
-        SHORT = 14,
-        ENOUGH = 8,
-        LITTLE = 3
-    }; // rows of all; six lines in a frame, or one
+    // six lines in a frame are enough, or one where all have few rows
+    enum { SHORT = 14, ENOUGH = 8, LITTLE = 3 };
     int rows_of_all = left;
     for (int id = 0; id < PANEL_IDS; id++) {
         rows_of_all += rows[id];
     }
     const int enough = rows_of_all < SHORT ? LITTLE : ENOUGH;
+
+    // an empty log goes first
     const bool log_is_empty = model->log.count == 0 || model->session.seen <= 0;
-    const panel_id order[] = {log_is_empty ? PANEL_LOG : PANEL_NONE, PANEL_PREDICTORS,
-                              PANEL_CONTROLLER, PANEL_LOG, PANEL_RUNS};
+    if (log_is_empty && left < enough) {
+        left += fold_panel(lay, rows, PANEL_LOG);
+    }
+    static const panel_id order[] = {PANEL_PREDICTORS, PANEL_CONTROLLER, PANEL_LOG,
+                                     PANEL_RUNS};
     for (size_t i = 0; i < sizeof order / sizeof order[0] && left < enough; i++) {
-        lay->drawn.folded[order[i]] |= rows[order[i]] > 0;
-        left += rows[order[i]];
-        rows[order[i]] = 0;
+        left += fold_panel(lay, rows, order[i]);
     }
     return left;
 }
@@ -360,82 +452,102 @@ static int fold_stack(const explorer_model *model, layout *lay, int rows[PANEL_I
 static void draw_tabs(const layout *lay, screen *s, area a)
 {
     char text[96] = " Tab: ";
-    const size_t none = strlen(text);
+    bool any = false;
     for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         if (lay->drawn.folded[id]) {
-            text_add(text, sizeof text, "%s%s", strlen(text) > none ? ", " : "",
+            text_add(text, sizeof text, "%s%s", any ? ", " : "",
                      panel_of((panel_id)id)->name);
+            any = true;
         }
     }
-    if (strlen(text) > none && a.height > 1) {
+    if (any && a.height > 1) {
         text_add(text, sizeof text, " ");
         screen_text(s, a.x + 1, a.y + a.height - 1, a.width - 2, INK_DIM, text);
     }
 }
 
-// The right side: the selected panel, and below it all that have room.
+// The rows of the panels below the chosen one; returns their sum. Of a sweep and of
+// statistics there is more to show than all have rows, so others are folded.
+static int rows_of_stack(const explorer_model *model, const explorer_view *view,
+                         layout *lay, screen_size body, int rows[PANEL_IDS])
+{
+    const panel_id chosen = view->side.panel;
+    const bool chosen_has_much = chosen == PANEL_SWEEP || chosen == PANEL_STATISTICS;
+    int sum = 0;
+    for (panel_id id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
+        rows[id] = 0;
+        if (panel_place_of(id) != PLACE_STACK || id == chosen) {
+            continue;
+        }
+        rows[id] = panel_of(id)->rows(model, view, body);
+        if (chosen_has_much && (id == PANEL_CONTROLLER || id == PANEL_PREDICTORS)) {
+            fold_panel(lay, rows, id);
+        }
+        sum += rows[id];
+    }
+    return sum;
+}
+
+// The right side: the chosen panel, and below it all that have room.
 static void draw_stack(const explorer_model *model, const explorer_view *view,
                        layout *lay, screen *s, area a)
 {
+    int rows[PANEL_IDS] = {0};
     const screen_size body = {s->width, a.height};
-    int rows[PANEL_IDS] = {0}, left = a.height;
+    const int left = a.height - rows_of_stack(model, view, lay, body, rows);
 
-    // the rows of those below; the chosen one gets what they leave, and of some all where
-    // it has more to show than they have
-    const bool much =
-        view->side.panel == PANEL_SWEEP || view->side.panel == PANEL_STATISTICS;
-    for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
-        const panel *p = panel_of((panel_id)id);
-        if (panel_place_of((panel_id)id) == PLACE_STACK && id != (int)view->side.panel) {
-            rows[id] = p->rows(model, view, body);
-            lay->drawn.folded[id] = rows[id] > 0 && much &&
-                                    (id == PANEL_CONTROLLER || id == PANEL_PREDICTORS);
-            if (lay->drawn.folded[id]) {
-                rows[id] = 0;
-            }
-            left -= rows[id];
-        }
-    }
+    // the chosen one has what the others leave
     area at = {a.x, a.y, a.width, fold_stack(model, lay, rows, left)};
     panel_draw(view->side.panel, model, view, lay, s, at);
     draw_tabs(lay, s, at);
-    for (int id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
+    for (panel_id id = PANEL_NONE + 1; id < PANEL_IDS; id++) {
         at.y += at.height;
         at.height = rows[id];
         if (rows[id] > 0) {
-            panel_draw((panel_id)id, model, view, lay, s, at);
+            panel_draw(id, model, view, lay, s, at);
         }
     }
+}
+
+// Draws the lesson, if there is one, into the first rows of an area; returns what it
+// leaves.
+static area draw_lesson_strip(const explorer_model *model, const explorer_view *view,
+                              layout *lay, screen *s, area a)
+{
+    const screen_size room = {s->width, a.height};
+    const int rows = panel_of(PANEL_LESSON)->rows(model, view, room);
+    if (rows > 0) {
+        panel_draw(PANEL_LESSON, model, view, lay, s, (area){0, a.y, s->width, rows});
+    }
+    return area_below(a, rows);
 }
 
 static void draw_panels(const explorer_model *model, const explorer_view *view,
                         layout *lay, screen *s, area body)
 {
-    // the lesson takes its rows from all others
-    const panel *strip = panel_of(PANEL_LESSON);
-    const int taken = strip->rows(model, view, (screen_size){s->width, body.height});
-    if (taken > 0) {
-        panel_draw(PANEL_LESSON, model, view, lay, s, (area){0, body.y, s->width, taken});
-        body.y += taken;
-        body.height -= taken;
+    body = draw_lesson_strip(model, view, lay, s, body);
+    const int side = side_width(s->width), width = s->width - side;
+
+    // the arm has two fifths of a tall screen, or as many rows as it makes use of
+    int arm_height = body.height / 2;
+    if (body.height >= 20) {
+        arm_height = body.height * 2 / 5;
     }
-    int right = side_width(s->width), left = s->width - right;
-    int top = body.height >= 20 ? body.height * 2 / 5 : body.height / 2;
-    const int arm = arm_rows(model, lay, (screen_size){left, top});
-    if (top > arm) {
-        top = arm;
+    const int useful = arm_rows(model, lay, (screen_size){width, arm_height});
+    if (arm_height > useful) {
+        arm_height = useful;
     }
-    panel_draw(PANEL_ARM, model, view, lay, s, (area){body.x, body.y, left, top});
+    panel_draw(PANEL_ARM, model, view, lay, s, (area){body.x, body.y, width, arm_height});
 
     // on a narrow screen the side takes the place of the curves
-    area below = {body.x, body.y + top, left, body.height - top};
-    if (right == 0 && view->side.in_front) {
+    const area below = {body.x, body.y + arm_height, width, body.height - arm_height};
+    if (side == 0 && view->side.in_front) {
         draw_stack(model, view, lay, s, below);
-    } else {
-        panel_draw(PANEL_CURVES, model, view, lay, s, below);
+        return;
     }
-    if (right > 0) {
-        draw_stack(model, view, lay, s, (area){left, body.y, right, body.height});
+    panel_draw(PANEL_CURVES, model, view, lay, s, below);
+    if (side > 0) {
+        draw_stack(model, view, lay, s, (area){width, body.y, side, body.height});
     }
 }
 
@@ -449,6 +561,8 @@ void compose_screen(const explorer_model *model, const explorer_view *view,
 {
     screen_clear(s);
     pictures_clear(s);
+
+    // no part has a place yet
     lay->hit_count = 0;
     lay->plot = (area){0};
     lay->drawn = view->drawn;
@@ -466,7 +580,7 @@ void compose_screen(const explorer_model *model, const explorer_view *view,
     if (view->page != PANEL_NONE) {
         panel_draw(view->page, model, view, lay, s, body);
     }
-    int rows = draw_bottom(view, input, s);
+    const int rows = draw_bottom(view, input, s);
     draw_status(model, view, s, s->height - 1 - rows);
     if (palette_shows(&input->prompt)) {
         const area above = {0, 1, s->width, s->height - 2 - rows};
