@@ -24,68 +24,113 @@ static bool colour_is_taken(const explorer_view *view, const pane_look *look, in
 {
     const ink wanted = (ink)(INK_SERIES_0 + slot);
     const looks *l = &view->looks;
-    bool taken = false;
     for (int k = 0; k < curves; k++) {
-        taken =
-            taken || inks_look_alike(l->theme, l->shown_depth, look->colour[k], wanted);
+        if (inks_look_alike(l->theme, l->shown_depth, look->colour[k], wanted)) {
+            return true;
+        }
     }
-    return taken;
+    return false;
+}
+
+// The slot's colour, or the first behind it that no earlier curve of the pane has.
+static int free_colour(const explorer_view *view, const pane_look *look, int curves,
+                       int slot)
+{
+    enum { COLOURS = 8 };
+    for (int i = 0; i < COLOURS; i++) {
+        const int other = (slot + i) % COLOURS;
+        if (!colour_is_taken(view, look, curves, other)) {
+            return other;
+        }
+    }
+    return slot;
+}
+
+// The style, or the plainest that no earlier curve of the pane has; of more curves than
+// there are styles the last one.
+static line_style free_style(const pane_look *look, int curves, line_style style)
+{
+    static const line_style plain_first[] = {LINE_SOLID, LINE_DASHED, LINE_DOTTED,
+                                             LINE_DASH_DOT};
+    enum { STYLES = sizeof plain_first / sizeof plain_first[0] };
+    bool taken[STYLES] = {false};
+    for (int k = 0; k < curves; k++) {
+        taken[look->style[k]] = true;
+    }
+    for (int i = 0; i < STYLES && taken[style]; i++) {
+        style = plain_first[i];
+    }
+    return style;
 }
 
 static pane_look pane_look_of(const explorer_view *view, const pane *p)
 {
-    enum { COLOURS = 8, STYLES = 4 };
-    static const line_style plain_first[] = {LINE_SOLID, LINE_DASHED, LINE_DOTTED,
-                                             LINE_DASH_DOT};
-    bool style_taken[STYLES] = {false};
     pane_look look;
-
-    // the table's colour and line unless an earlier signal of the pane has them
     for (int k = 0; k < p->count; k++) {
         const signal_info *info = &signal_table[p->signals[k]];
-        int slot = info->colour, style = (int)info->style;
-        for (int i = 0; i < COLOURS && colour_is_taken(view, &look, k, slot); i++) {
-            slot = (info->colour + 1 + i) % COLOURS;
-        }
-        for (int i = 0; i < STYLES && style_taken[style]; i++) {
-            style = (int)plain_first[i];
-        }
-        style_taken[style] = true;
+        const int slot = free_colour(view, &look, k, info->colour);
         look.colour[k] = (ink)(INK_SERIES_0 + slot);
-        look.style[k] = (line_style)style;
+        look.style[k] = free_style(&look, k, info->style);
     }
     return look;
+}
+
+// Whether a signal of a pane is only in its legend.
+static bool is_hidden(const pane *p, int k)
+{
+    return (p->hidden >> k & 1) != 0;
 }
 
 // How a legend says what its curves are, most words first.
 typedef enum legend { LEGEND_NAMES, LEGEND_SYMBOLS, LEGEND_TIGHT, LEGEND_BARE } legend;
 
-// What a legend says of a signal's value: a mode by its name where the law is one of
-// ours, else a number; short ones have up to three digits.
-static void format_value(const explorer_model *model, const pane *p, int signal,
-                         bool briefly, char *text, size_t size)
+// The name of a mode of the law, NULL for none and for a law that is not one of ours.
+static const char *own_mode_name(const explorer_model *model, double mode)
 {
-    shown_run runs[SHOWN_RUNS];
-    const trace *t =
-        (model_runs(model, p, runs) > 0 ? runs[0] : model_run(model, 0)).trace;
-    double value = signal_value(&t->rows[model_row(model, t)], signal);
     const controller *law =
         controller_of(model->session.effective.parameters.control.law);
-    bool is_mode = strcmp(signal_table[signal].name, "controller_mode") == 0;
+    if (law == NULL || law->modes == NULL) {
+        return NULL;
+    }
+    for (int i = 0; law->modes[i] != NULL; i++) {
+        if (mode == i) {
+            return law->modes[i];
+        }
+    }
+    return NULL;
+}
 
-    // fewer digits where room is short
-    snprintf(text, size, "%s", draw_number(value).text);
-    if (briefly && fabs(value) > 1e-12) {
-        for (int digits = 3, length = 9; digits > 1 && length > 6; digits--) {
-            length = snprintf(text, size, "%.*g", digits, value);
+// The value of a signal at the cursor, of the first run that a pane shows.
+static double value_at_cursor(const explorer_model *model, const pane *p, int signal)
+{
+    shown_run runs[SHOWN_RUNS];
+    const trace *t = model_run(model, 0).trace;
+    if (model_runs(model, p, runs) > 0) {
+        t = runs[0].trace;
+    }
+    return signal_value(&t->rows[model_row(model, t)], signal);
+}
+
+// What a legend says of a signal's value: a mode by its name where the law is one of
+// ours, else a number; brief ones have up to three digits.
+static void format_value(const explorer_model *model, const pane *p, int signal,
+                         bool brief, char *text, size_t size)
+{
+    const double value = value_at_cursor(model, p, signal);
+    if (strcmp(signal_table[signal].name, "controller_mode") == 0) {
+        const char *name = own_mode_name(model, value);
+        if (name != NULL) {
+            snprintf(text, size, "%s", name);
+            return;
         }
     }
 
-    // a mode by its name
-    for (int i = 0; is_mode && law != NULL && law->modes != NULL && law->modes[i] != NULL;
-         i++) {
-        if (value == i) {
-            snprintf(text, size, "%s", law->modes[i]);
+    // as many digits as six cells have room for
+    snprintf(text, size, "%s", draw_number(value).text);
+    if (brief && fabs(value) > 1e-12) {
+        int length = snprintf(text, size, "%.3g", value);
+        if (length > 6) {
+            snprintf(text, size, "%.2g", value);
         }
     }
 }
@@ -96,59 +141,116 @@ static const char *unit_of(const pane *p)
     const char *unit = signal_table[p->signals[0]].unit;
     for (int k = 1; k < p->count; k++) {
         if (strcmp(signal_table[p->signals[k]].unit, unit) != 0) {
-            unit = "";
+            return "";
         }
     }
     return unit;
 }
 
-// Writes a legend and returns the cells it takes; values are padded so that it stands
-// still.
-static int draw_legend(const explorer_model *model, const explorer_view *view,
-                       layout *lay, screen *s, int index, legend how, int x, int y,
-                       int room)
+// What a legend says of a signal: its name or symbol, and its value at the cursor, padded
+// so that the legend stands still.
+static void write_legend(const explorer_model *model, const pane *p, int signal,
+                         legend how, char *text, size_t size)
 {
-    static const uint32_t lines[] = {0x2500, 0x254c, 0x2508,
-                                     0x2574}; // by style, in one character
-    const pane *p = &view->panes.pane[index];
-    int start = x, end = x + room;
-    const pane_look look = pane_look_of(view, p);
-
-    // each signal: its line, its name, its value at the cursor
-    for (int k = 0; k < p->count; k++) {
-        const signal_info *info = &signal_table[p->signals[k]];
-        char value[48], text[128];
-        format_value(model, p, p->signals[k], how == LEGEND_TIGHT, value, sizeof value);
-        if (unit_of(p)[0] == '\0' && info->unit[0] != '\0' && how < LEGEND_TIGHT) {
+    const signal_info *info = &signal_table[signal];
+    char value[48];
+    format_value(model, p, signal, how == LEGEND_TIGHT, value, sizeof value);
+    const bool has_own_unit = unit_of(p)[0] == '\0' && info->unit[0] != '\0';
+    switch (how) {
+    case LEGEND_NAMES:
+    case LEGEND_SYMBOLS:
+        if (has_own_unit) {
             text_add(value, sizeof value, " %s", info->unit);
         }
-        // what is hidden goes first where room is short
-        if (p->hidden >> k & 1 && how >= LEGEND_SYMBOLS) {
+        snprintf(text, size, "%s %-8s", how == LEGEND_NAMES ? info->name : info->ascii,
+                 value);
+        break;
+    case LEGEND_TIGHT:
+        snprintf(text, size, "%s %-6s", info->ascii, value);
+        break;
+    case LEGEND_BARE:
+        snprintf(text, size, "%s ", info->ascii);
+        break;
+    }
+}
+
+// Whether a legend has a signal of a pane: what is hidden goes where room is short.
+static bool legend_has(const pane *p, int k, legend how)
+{
+    return !is_hidden(p, k) || how == LEGEND_NAMES;
+}
+
+// The cells that a legend takes.
+static int legend_width(const explorer_model *model, const pane *p, legend how)
+{
+    int width = -1;
+    for (int k = 0; k < p->count; k++) {
+        if (legend_has(p, k, how)) {
+            char text[128];
+            write_legend(model, p, p->signals[k], how, text, sizeof text);
+            width += 2 + (int)strlen(text) + 1;
+        }
+    }
+    return width;
+}
+
+// Draws a legend: of each signal its line, its name and its value.
+static void draw_legend(const explorer_model *model, const explorer_view *view,
+                        layout *lay, screen *s, int index, legend how, area a)
+{
+    static const uint32_t lines[] = {[LINE_SOLID] = 0x2500,
+                                     [LINE_DASHED] = 0x254c,
+                                     [LINE_DOTTED] = 0x2508,
+                                     [LINE_DASH_DOT] = 0x2574};
+    const pane *p = &view->panes.pane[index];
+    const pane_look look = pane_look_of(view, p);
+    if (a.width < 1) {
+        return;
+    }
+    for (int k = 0; k < p->count; k++) {
+        if (!legend_has(p, k, how)) {
             continue;
         }
-        int width = 6;
-        if (how != LEGEND_TIGHT) {
-            if (how == LEGEND_BARE) {
-                width = 0;
-            } else {
-                width = 8;
-            }
-        }
-        int length = snprintf(text, sizeof text, "%s %-*s",
-                              how == LEGEND_NAMES ? info->name : info->ascii, width,
-                              how == LEGEND_BARE ? "" : value);
-        if (room > 0) {
-            const ink shade = p->hidden >> k & 1 ? INK_FRAME : look.colour[k];
-            screen_put(s, x, y, x < end ? lines[look.style[k]] : ' ', shade);
-            screen_text(s, x + 2, y, end - x - 2, shade, text);
-            layout_add_hit(lay, (hit_area){PANEL_CURVES,
-                                           PART_LEGEND,
-                                           index * PANE_SIGNALS + k,
-                                           {x, y, 2 + length, 1}});
-        }
-        x += 2 + length + 1;
+        char text[128];
+        write_legend(model, p, p->signals[k], how, text, sizeof text);
+        const int length = 2 + (int)strlen(text);
+        const ink shade = is_hidden(p, k) ? INK_FRAME : look.colour[k];
+        screen_put(s, a.x, a.y, a.width > 0 ? lines[look.style[k]] : ' ', shade);
+        area_text(s, area_right(a, 2), shade, text);
+
+        // a click hides the signal
+        const area place = {a.x, a.y, length, 1};
+        const int number = index * PANE_SIGNALS + k;
+        layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LEGEND, number, place});
+        a = area_right(a, length + 1);
     }
-    return x - start - 1;
+}
+
+// The number and the unit of a pane, where its labels are.
+static void draw_pane_number(const explorer_view *view, screen *s, int index, area a)
+{
+    const bool focused = index == panes_focused(&view->panes);
+    const char *unit = unit_of(&view->panes.pane[index]);
+    screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "%3d%*s", index + 1, LABEL_WIDTH - 3,
+                 unit);
+    if (focused) {
+        screen_print(s, a.x, a.y, 3, INK_TITLE, "\u25b8%-2d", index + 1);
+    } else {
+        screen_print(s, a.x, a.y, 3, INK_DIM, " %-2d", index + 1);
+    }
+}
+
+// Words at the right end of a title, if it leaves `least` cells and more; returns the
+// area without them.
+static area draw_end_of_title(screen *s, area a, int least, int cells, ink shade,
+                              const char *words)
+{
+    if (a.width <= least) {
+        return a;
+    }
+    a.width -= cells + 1;
+    screen_text(s, a.x + a.width + 1, a.y, cells, shade, words);
+    return a;
 }
 
 // The pane's number, its unit, its signals with their values at the cursor as far as
@@ -157,47 +259,43 @@ static void draw_pane_title(const explorer_model *model, const explorer_view *vi
                             layout *lay, screen *s, int index, area a)
 {
     const pane *p = &view->panes.pane[index];
-    static const char *const axes[] = {"", "grows", "fixed", "calm"};
-    const bool residual = p->view == VIEW_RESIDUAL;
-    const bool difference = !residual && model_subtracts(model) && pane_has_amounts(p);
-    bool focused = index == panes_focused(&view->panes);
-    int x = a.x + LABEL_WIDTH + 1, room = a.width - LABEL_WIDTH - 1;
+    draw_pane_number(view, s, index, a);
 
-    // number, unit, and what the axis does
-    screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "%3d%*s", index + 1, LABEL_WIDTH - 3,
-                 unit_of(p));
-    screen_print(s, a.x, a.y, 3, focused ? INK_TITLE : INK_DIM, "%s%-2d",
-                 focused ? "\u25b8" : " ", index + 1);
-    if (p->scaling != AXIS_AUTO && room > 30) {
-        room -= 6;
-        screen_text(s, x + room + 1, a.y, 5, INK_DIM, axes[p->scaling]);
+    // what the axis does, and what is subtracted
+    static const char *const axes[] = {"", "grows", "fixed", "calm"};
+    area rest = area_right(area_row(a, 0), LABEL_WIDTH + 1);
+    if (p->scaling != AXIS_AUTO) {
+        rest = draw_end_of_title(s, rest, 30, 5, INK_DIM, axes[p->scaling]);
     }
-    if ((difference || residual) && room > 40) {
-        room -= 15;
-        screen_text(s, x + room + 1, a.y, 14, INK_EVENT,
-                    residual ? "data minus run" : "minus baseline");
+    if (p->view == VIEW_RESIDUAL) {
+        rest = draw_end_of_title(s, rest, 40, 14, INK_EVENT, "data minus run");
+    } else if (model_subtracts(model) && pane_has_amounts(p)) {
+        rest = draw_end_of_title(s, rest, 40, 14, INK_EVENT, "minus baseline");
     }
 
     // what is not over time has no values at the cursor
+    const char *name = signal_table[p->signals[0]].name;
+    if (p->view == VIEW_PHASE) {
+        area_print(s, rest, INK_SERIES_0, "%s over %s", name,
+                   signal_table[p->signals[1]].name);
+        return;
+    }
     if (!pane_is_over_time(p)) {
-        screen_print(s, x, a.y, room, INK_SERIES_0,
-                     p->view == VIEW_PHASE ? "%s over %s" : "amplitudes of %s",
-                     signal_table[p->signals[0]].name, signal_table[p->signals[1]].name);
+        area_print(s, rest, INK_SERIES_0, "amplitudes of %s", name);
         return;
     }
 
     // as many words as fit
     legend how = LEGEND_NAMES;
-    while (how < LEGEND_BARE &&
-           draw_legend(model, view, lay, s, index, how, x, a.y, 0) > room) {
+    while (how < LEGEND_BARE && legend_width(model, p, how) > rest.width) {
         how++;
     }
-    layout_add_hit(lay,
-                   (hit_area){PANEL_CURVES, PART_VIEW, index, {a.x, a.y, a.width, 1}});
-    draw_legend(model, view, lay, s, index, how, x, a.y, room);
+    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_VIEW, index, area_row(a, 0)});
+    draw_legend(model, view, lay, s, index, how, rest);
 }
 
 // --- the panes -------------------------------------------------------------------------
+
 // How a run's curves differ from those of others: the present one has the signals'
 // colours and lines, a single pinned one their lines in one colour, several have their
 // own lines.
@@ -205,65 +303,92 @@ static void set_look(const explorer_model *model, const explorer_view *view,
                      plot_frame *f, const pane *p, const shown_run *run,
                      const pane_look *look, int k)
 {
+    const bool by_run = view->looks.by_run != 0;
     f->pattern = style_pattern(look->style[k]);
     f->colour = look->colour[k];
-    if (view->looks.by_run && (run->kind == SHOWN_PINNED || run->kind == SHOWN_PRESENT)) {
-        f->colour = run_ink(run->kind == SHOWN_PINNED ? run->index : -1);
-    } else if (run->kind == SHOWN_PINNED && model_visible_pins(model) == 1) {
-        f->colour = INK_OTHER;
-    } else if (run->kind == SHOWN_PINNED) {
-        f->pattern = run_pattern(run->index);
-    } else if (run->kind == SHOWN_SWEPT) {
-        if (run->index == model->sweep.selected) {
+    switch (run->kind) {
+    case SHOWN_PRESENT:
+        if (by_run) {
+            f->colour = run_ink(-1);
+        }
+        break;
+    case SHOWN_PINNED:
+        if (by_run) {
+            f->colour = run_ink(run->index);
+        } else if (model_visible_pins(model) == 1) {
             f->colour = INK_OTHER;
         } else {
-            f->colour = INK_FRAME;
+            f->pattern = run_pattern(run->index);
         }
-    } else if (run->kind == SHOWN_BEFORE) {
+        break;
+    case SHOWN_SWEPT:
+        f->colour = run->index == model->sweep.selected ? INK_OTHER : INK_FRAME;
+        break;
+    case SHOWN_BEFORE:
         f->colour = INK_FRAME;
-    } else if (run->kind == SHOWN_MEASURED && p->view != VIEW_RESIDUAL) {
-        f->colour = INK_TEXT;
+        break;
+    case SHOWN_MEASURED:
+        if (p->view != VIEW_RESIDUAL) {
+            f->colour = INK_TEXT;
+        }
+        break;
+    case SHOWN_DIFFERENCE:
+        break;
     }
 }
 
-// The curves of one run in a pane: 0 is the present one, as far as it was seen.
-static void draw_run(const explorer_model *model, const explorer_view *view, plot_frame f,
-                     const pane *p, shown_run run, int number)
+// Whether a run of a sweep is one of those whose curves are drawn: of many a few, evenly
+// spread, and the chosen one.
+static bool is_in_fan(const lab_sweep *sweep, int index)
+{
+    enum { FAN = 5 };
+    const int stride = (sweep->count + FAN - 2) / (FAN - 1);
+    return sweep->count <= FAN || index == sweep->selected || index % stride == 0 ||
+           index == sweep->count - 1;
+}
+
+// A curve of a run: of the present one (`is_present`) what was seen of it, and after a
+// change dimly what is to come. While a value is adjusted all of it is shown.
+static void draw_curve(const explorer_model *model, plot_frame f, const trace *t,
+                       int signal, const double *pairs, bool is_present)
+{
+    const session *e = &model->session;
+    const ink bright = f.colour;
+    double until = f.to;
+    if (is_present && !e->has_ghost) {
+        if (e->input_count > 0) {
+            f.colour = INK_FRAME;
+            plot_frame_signal(&f, t, signal, f.to, pairs);
+        }
+        until = e->seen;
+    }
+    f.colour = bright;
+    plot_frame_signal(&f, t, signal, until, pairs);
+}
+
+// The curves of a run in a pane, by its number among those that the pane shows.
+static void draw_run_curves(const explorer_model *model, const explorer_view *view,
+                            plot_frame f, const pane *p, const shown_run *run, int number)
 {
     const pane_look look = pane_look_of(view, p);
-
-    // of a sweep of many runs a few curves, evenly spread, and the chosen one
-    enum { FAN = 5 };
-    const int swept = model->sweep.count, stride = (swept + FAN - 2) / (FAN - 1);
-    if (run.kind == SHOWN_SWEPT && swept > FAN && run.index != model->sweep.selected &&
-        run.index % stride != 0 && run.index != swept - 1) {
+    const bool is_present = number == 0 && run->kind != SHOWN_MEASURED;
+    if (run->kind == SHOWN_SWEPT && !is_in_fan(&model->sweep, run->index)) {
         return;
     }
 
     // of many runs a pane shows what it is about
-    const bool first_only =
-        run.kind == SHOWN_SWEPT || (run.kind == SHOWN_PINNED &&
-                                    model_visible_pins(model) > 1 && !view->looks.by_run);
-    const int count = first_only && p->count > 1 ? 1 : p->count;
-    for (int k = 0; k < count; k++) {
-        if (p->hidden >> k & 1) {
+    const bool one_of_many = run->kind == SHOWN_SWEPT ||
+                             (run->kind == SHOWN_PINNED &&
+                              model_visible_pins(model) > 1 && !view->looks.by_run);
+    const int count = one_of_many ? 1 : p->count;
+    for (int k = 0; k < count && k < p->count; k++) {
+        if (is_hidden(p, k)) {
             continue;
         }
-        const double *pairs =
-            extremes_pairs(&model->extremes[number], &run, p->signals[k]);
-        set_look(model, view, &f, p, &run, &look, k);
-
-        // while a value is adjusted the whole future is shown, and after a change dimly
-        const bool hidden =
-            number == 0 && run.kind != SHOWN_MEASURED && !model->session.has_ghost;
-        if (hidden && model->session.input_count > 0) {
-            const ink seen = f.colour;
-            f.colour = INK_FRAME;
-            plot_frame_signal(&f, run.trace, p->signals[k], f.to, pairs);
-            f.colour = seen;
-        }
-        plot_frame_signal(&f, run.trace, p->signals[k],
-                          hidden ? model->session.seen : f.to, pairs);
+        const int signal = p->signals[k];
+        const double *pairs = extremes_pairs(&model->extremes[number], run, signal);
+        set_look(model, view, &f, p, run, &look, k);
+        draw_curve(model, f, run->trace, signal, pairs, is_present);
     }
 }
 
@@ -288,38 +413,67 @@ static void draw_levels(const explorer_model *model, const plot_frame *f, screen
         }
     }
 
-    // those that belong to a signal of the pane and have a value in the run
+    // those that belong to the first signal of the pane and have a value in the run
     const parameters now = model_parameters(model);
     for (size_t i = 0; i < sizeof levels / sizeof levels[0]; i++) {
         const int parameter = levels[i].parameter;
+        if (p->signals[0] != levels[i].signal ||
+            model_inert_reason(model, parameter) != NULL) {
+            continue;
+        }
         const char *name = strchr(parameter_table[parameter].path, '.') + 1;
-        if (p->signals[0] == levels[i].signal &&
-            model_inert_reason(model, parameter) == NULL) {
-            const double value = parameter_get(&now, parameter);
-            plot_frame_level(f, s, value, name);
-            plot_frame_level(f, s, levels[i].both_ways ? -value : (double)NAN, name);
+        const double value = parameter_get(&now, parameter);
+        plot_frame_level(f, s, value, name);
+        if (levels[i].both_ways) {
+            plot_frame_level(f, s, -value, name);
         }
     }
+}
+
+// A signal of the baseline, shifted by an amount.
+static void draw_shifted(const explorer_model *model, const plot_frame *f, int signal,
+                         double by)
+{
+    plot_frame shifted = *f;
+    shifted.axis.low -= by;
+    shifted.axis.high -= by;
+    shifted.pixels.low -= by;
+    shifted.pixels.high -= by;
+    shifted.pattern = style_pattern(LINE_DOTTED);
+    shifted.colour = INK_FRAME;
+    plot_frame_signal(&shifted, &model->session.other.trace, signal, f->to, NULL);
 }
 
 // The tolerance on both sides of the baseline: its curve, shifted.
 static void draw_band(const explorer_model *model, const plot_frame *f, const pane *p)
 {
+    const solved_limit *band = &model->band;
     for (int k = 0; k < p->count; k++) {
-        if (p->signals[k] != model->band.signal || p->hidden >> k & 1) {
-            continue;
+        if (p->signals[k] == band->signal && !is_hidden(p, k)) {
+            draw_shifted(model, f, band->signal, -band->bound);
+            draw_shifted(model, f, band->signal, band->bound);
         }
-        for (int side = -1; side <= 1; side += 2) {
-            plot_frame shifted = *f;
-            const double by = side * model->band.bound;
-            shifted.axis = (value_range){f->axis.low - by, f->axis.high - by};
-            shifted.pixels.low -= by;
-            shifted.pixels.high -= by;
-            shifted.pattern = style_pattern(LINE_DOTTED);
-            shifted.colour = INK_FRAME;
-            plot_frame_signal(&shifted, &model->session.other.trace, p->signals[k], f->to,
-                              NULL);
+    }
+}
+
+// What the curves of a pane over time are compared with: setpoints, limits, tolerances.
+static void draw_bounds(const explorer_model *model, const plot_frame *f, screen *s,
+                        const pane *p)
+{
+    if (p->view != VIEW_TIME) {
+        return;
+    }
+    if (!model_subtracts(model)) {
+        if (model->session.has_other) {
+            draw_band(model, f, p);
         }
+        draw_levels(model, f, s, p);
+        return;
+    }
+    const double tolerance = model->difference.tolerance;
+    if (tolerance > 0 && pane_has_amounts(p)) {
+        plot_frame_level(f, s, tolerance, "tolerance");
+        plot_frame_level(f, s, -tolerance, "tolerance");
     }
 }
 
@@ -338,113 +492,141 @@ static const char *reason_of_emptiness(const explorer_model *model, const pane *
     return "this run has no such values";
 }
 
+// The curves of a pane over time, the present run over those for comparison; limits and
+// cursors behind all of them.
+static void draw_pane_curves(const explorer_model *model, const explorer_view *view,
+                             screen *s, const pane *p, plot_frame *f)
+{
+    shown_run runs[SHOWN_RUNS];
+    plot_frame_open(view, f);
+    for (int i = model_runs(model, p, runs) - 1; i >= 0; i--) {
+        draw_run_curves(model, view, *f, p, &runs[i], i);
+    }
+    draw_bounds(model, f, s, p);
+    if (view->mark.set) {
+        plot_frame_cursor(f, s, view->mark.time);
+    }
+    plot_frame_cursor(f, s, model->session.now);
+    if (f->picture != NULL) {
+        picture_end(s, f->picture);
+    }
+}
+
+// A pane: its title in the first row, below it an axis of values and what it shows.
 static void draw_pane(const explorer_model *model, const explorer_view *view, layout *lay,
                       screen *s, int index, area a)
 {
-    const pane *shown = &view->panes.pane[index];
-    const area labels = {a.x, a.y + 1, LABEL_WIDTH + 1, a.height - 1};
-    const area inside = {a.x + LABEL_WIDTH + 1, a.y + 1, a.width - LABEL_WIDTH - 1,
-                         a.height - 1};
-    plot_frame f = {.canvas = {s, inside.x, inside.y, inside.width, inside.height}};
-    const bool over_time = pane_is_over_time(shown);
+    const pane *p = &view->panes.pane[index];
+    const area below = area_below(a, 1), inside = area_right(below, LABEL_WIDTH + 1);
+    const area labels = {below.x, below.y, LABEL_WIDTH + 1, below.height};
+    const bool over_time = pane_is_over_time(p);
+    value_range axis;
+    bool has_values;
     draw_pane_title(model, view, lay, s, index, a);
-    view_window(model, view, &f.from, &f.to);
 
     // what there is to see, or why there is nothing
-    if (!over_time) {
-        layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_VIEW, index, inside});
-    }
-    bool has_values;
     if (over_time) {
-        has_values = view_pane_axis(model, view, index, &f.axis);
+        has_values = view_pane_axis(model, view, index, &axis);
     } else {
-        has_values = draw_pane_view(model, view, s, shown, inside, &f.axis);
+        layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_VIEW, index, inside});
+        has_values = draw_pane_view(model, view, s, p, inside, &axis);
     }
     if (!has_values) {
-        screen_text(s, inside.x, inside.y, inside.width, INK_DIM,
-                    reason_of_emptiness(model, shown));
+        area_text(s, inside, INK_DIM, reason_of_emptiness(model, p));
         return;
     }
-    draw_value_axis(s, labels, f.axis);
+    draw_value_axis(s, labels, axis);
 
     // another axis than time: nothing to click at, nothing to scale
     if (!over_time) {
         return;
     }
-    lay->axes[index] = f.axis;
+    plot_frame f = {.canvas = {s, inside.x, inside.y, inside.width, inside.height},
+                    .axis = axis};
+    view_window(model, view, &f.from, &f.to);
+    lay->axes[index] = axis;
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_PANE, index, inside});
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LABELS, index, labels});
-    plot_frame_open(view, &f);
-
-    // the present run over those for comparison, limits and cursors behind all curves
-    shown_run runs[SHOWN_RUNS];
-    for (int run = model_runs(model, shown, runs); run-- > 0;) {
-        draw_run(model, view, f, shown, runs[run], run);
-    }
-    if (shown->view == VIEW_TIME && !model_subtracts(model)) {
-        if (model->session.has_other) {
-            draw_band(model, &f, shown);
-        }
-        draw_levels(model, &f, s, shown);
-    } else if (shown->view == VIEW_TIME && model->difference.tolerance > 0 &&
-               pane_has_amounts(shown)) {
-        plot_frame_level(&f, s, model->difference.tolerance, "tolerance");
-        plot_frame_level(&f, s, -model->difference.tolerance, "tolerance");
-    }
-    if (view->mark.set) {
-        plot_frame_cursor(&f, s, view->mark.time);
-    }
-    plot_frame_cursor(&f, s, model->session.now);
-    if (f.picture != NULL) {
-        picture_end(s, f.picture);
-    }
+    draw_pane_curves(model, view, s, p, &f);
 }
 
-static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
-                 screen *s, area a)
+enum { TIME_AXIS = 2 }; // rows
+
+static int count_shown_panes(const pane_set *panes)
 {
-    enum { LEAST_PANE = 3, AXIS = 2 };
-    int shown = 0;
-
-    // the lanes take the lowest rows
-    const int lanes = lanes_rows(model, view, &lay->lanes, a.height);
-    a.height -= lanes;
-    const area beneath = {a.x, a.y + a.height, a.width, lanes};
+    int count = 0;
     for (int i = 0; i < PANES; i++) {
-        shown += view->panes.pane[i].shown;
+        if (panes->pane[i].shown) {
+            count++;
+        }
     }
-    int most = view->panes.alone ? 1 : (a.height - AXIS) / LEAST_PANE;
-    if (shown < 1 || most < 1 || a.width < LABEL_WIDTH + 10) {
-        screen_text(s, a.x, a.y, a.width, INK_DIM, "1 to 9 show curves");
-        return;
+    return count;
+}
+
+// Draws as many panes as have room, `most`, one below the other; those from the focused
+// one on where that is not all, so that each can be reached.
+static void draw_panes(const explorer_model *model, const explorer_view *view,
+                       layout *lay, screen *s, area a, int most)
+{
+    const int shown = count_shown_panes(&view->panes);
+    int first = 0, left = shown;
+    if (shown > most) {
+        first = panes_focused(&view->panes);
+        left = most;
     }
 
-    const area plot = {a.x + LABEL_WIDTH + 1, a.y, a.width - LABEL_WIDTH - 1,
-                       a.height - AXIS};
-    lay->plot = (area){plot.x, plot.y, plot.width, a.height};
-    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_BODY, 0, plot});
-
-    // where not all have room, those from the focused one on, so that each can be reached
-    int drawn = shown > most ? most : shown, top = a.y, left = drawn;
-    int first = drawn < shown ? panes_focused(&view->panes) : 0;
+    // each has its share of the rows that are left, rounded up
     for (int i = 0; i < PANES && left > 0; i++) {
-        int index = (first + i) % PANES;
+        const int index = (first + i) % PANES;
         if (view->panes.pane[index].shown) {
-            int height = (a.y + a.height - AXIS - top + left - 1) / left;
-            draw_pane(model, view, lay, s, index, (area){a.x, top, a.width, height});
-            top += height;
+            const int height = (a.height + left - 1) / left;
+            draw_pane(model, view, lay, s, index, (area){a.x, a.y, a.width, height});
+            a = area_below(a, height);
             left--;
         }
     }
-    if (view->box.held) {
-        const zoom_box *b = &view->box;
-        screen_tint(s, b->x0 < b->x1 ? b->x0 : b->x1, b->y0 < b->y1 ? b->y0 : b->y1,
-                    abs(b->x1 - b->x0) + 1, abs(b->y1 - b->y0) + 1, INK_SELECTED);
-    }
-    const area below = {a.x, a.y + a.height - AXIS, a.width, AXIS};
-    const area axis = draw_time_axis(model, view, s, below);
-    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_TIME_AXIS, 0, axis});
-    draw_lanes(model, view, lay, s, beneath);
 }
 
-const panel curves_panel = {.name = "curves", .draw = draw, .point = curves_point};
+// The box that the mouse draws.
+static void tint_box(const zoom_box *b, screen *s)
+{
+    const area box = {b->x0 < b->x1 ? b->x0 : b->x1, b->y0 < b->y1 ? b->y0 : b->y1,
+                      abs(b->x1 - b->x0) + 1, abs(b->y1 - b->y0) + 1};
+    area_tint(s, box, INK_SELECTED);
+}
+
+static void draw_curves(const explorer_model *model, const explorer_view *view,
+                        layout *lay, screen *s, area a)
+{
+    enum { LEAST_PANE = 3, LEAST_PLOT = 9 }; // height, width
+
+    // from below: the lanes, the time axis, the panes
+    const int lanes_height = lanes_rows(model, view, &lay->lanes, a.height);
+    const int panes_height = a.height - lanes_height - TIME_AXIS;
+    const area panes = {a.x, a.y, a.width, panes_height};
+    const area axis = {a.x, a.y + panes_height, a.width, TIME_AXIS};
+    const area lanes = {a.x, axis.y + TIME_AXIS, a.width, lanes_height};
+
+    int most = panes_height / LEAST_PANE;
+    if (view->panes.alone) {
+        most = 1;
+    }
+    const area plot = area_right(panes, LABEL_WIDTH + 1);
+    if (count_shown_panes(&view->panes) < 1 || most < 1 || plot.width < LEAST_PLOT) {
+        area_text(s, a, INK_DIM, "1 to 9 show curves");
+        return;
+    }
+
+    // for the mouse; its parts lie over that
+    lay->plot = (area){plot.x, plot.y, plot.width, panes_height + TIME_AXIS};
+    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_BODY, 0, plot});
+    draw_panes(model, view, lay, s, panes, most);
+    if (view->box.held) {
+        tint_box(&view->box, s);
+    }
+    const area marked = draw_time_axis(model, view, s, axis);
+    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_TIME_AXIS, 0, marked});
+    draw_lanes(model, view, lay, s, lanes);
+}
+
+const panel curves_panel = {.name = "curves", .draw = draw_curves, .point = curves_point};
