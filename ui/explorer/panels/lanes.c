@@ -39,7 +39,7 @@ typedef struct lane_band {
 // --- which lanes there are -------------------------------------------------------------
 
 // Examines the rows that a run has gained.
-static void survey(const explorer_model *model, lane_survey *known)
+static void survey_run(const explorer_model *model, lane_survey *known)
 {
     const trace *t = &model->session.run.trace;
     const unsigned long run = model_run_id(model);
@@ -51,47 +51,79 @@ static void survey(const explorer_model *model, lane_survey *known)
     const double limit = model->session.effective.parameters.motor.voltage_limit;
     for (; known->rows < t->row_count; known->rows++) {
         const sample *row = &t->rows[known->rows];
-        known->sticks = known->sticks || row->sticking != 0;
-        known->saturates = known->saturates || fabs(row->command) > limit;
+        if (row->sticking != 0) {
+            known->sticks = true;
+        }
+        if (fabs(row->command) > limit) {
+            known->saturates = true;
+        }
     }
 }
 
+// Whether a law is locked in a mode, from the start or by a change.
 static bool has_lock(const explorer_model *model)
 {
     const scenario *s = &model->session.effective;
-    bool found = strcmp(s->parameters.control.lock, "none") != 0;
-    for (int i = 0; i < s->action_count; i++) {
-        found = found || (s->actions[i].kind == ACTION_SET &&
-                          s->actions[i].parameter == PARAMETER_INDEX(control.lock));
+    if (!model_has_law(model)) {
+        return false;
     }
-    return found && model_has_law(model);
+    if (strcmp(s->parameters.control.lock, "none") != 0) {
+        return true;
+    }
+    for (int i = 0; i < s->action_count; i++) {
+        const action *c = &s->actions[i];
+        if (c->kind == ACTION_SET && c->parameter == PARAMETER_INDEX(control.lock)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Whether a lane of this run has anything to show.
+static bool has_lane(const explorer_model *model, const lane_survey *known, bool others,
+                     lane_kind kind)
+{
+    switch (kind) {
+    case LANE_CONTACT:
+        return others; // the time axis shows it: a lane only beside those of others
+    case LANE_MODE:
+        return model_has_law(model);
+    case LANE_CHANGES:
+        return model->session.effective.action_count > 0;
+    case LANE_SATURATION:
+        return known->saturates;
+    case LANE_LOCK:
+        return has_lock(model);
+    case LANE_STICKING:
+        return known->sticks;
+    case LANE_KINDS:
+        break;
+    }
+    return false;
 }
 
 // The lanes of the runs that are shown, the ones that tell most first; returns how many.
 static int find_lanes(const explorer_model *model, const lane_survey *known,
                       lane lanes[MOST_LANES])
 {
-    int count = 0;
-    bool others = false;
-    const int runs = model_run_count(model);
-    for (int run = 1; run < runs; run++) {
-        others = others || model_run_name(model, run)[0] != '\0';
+    // contact of the other runs, to compare
+    lane others[MOST_LANES];
+    int other_count = 0, count = 0;
+    for (int run = 1; run < model_run_count(model); run++) {
+        if (model_run_name(model, run)[0] != '\0' &&
+            other_count < MOST_LANES - LANE_KINDS) {
+            others[other_count++] = (lane){LANE_CONTACT, run};
+        }
     }
 
-    // the time axis shows this run's contact: a lane only beside those of others
-    const bool there[LANE_KINDS] = {
-        others,           model_has_law(model), model->session.effective.action_count > 0,
-        known->saturates, has_lock(model),      known->sticks};
-    for (int kind = 0; kind < LANE_KINDS; kind++) {
-        // contact of the other runs, to compare, before the least informative: its place
-        // is left
-        for (int run = 1; kind == LANE_STICKING && run < runs; run++) {
-            if (model_run_name(model, run)[0] != '\0' && count < MOST_LANES - 1) {
-                lanes[count++] = (lane){LANE_CONTACT, run};
-            }
+    // they go before the least informative of this run
+    for (lane_kind kind = 0; kind < LANE_KINDS; kind++) {
+        if (kind == LANE_STICKING) {
+            memcpy(lanes + count, others, (size_t)other_count * sizeof *others);
+            count += other_count;
         }
-        if (there[kind]) {
-            lanes[count++] = (lane){(lane_kind)kind, 0};
+        if (has_lane(model, known, other_count > 0, kind)) {
+            lanes[count++] = (lane){kind, 0};
         }
     }
     return count;
@@ -107,92 +139,97 @@ int lanes_rows(const explorer_model *model, const explorer_view *view, lane_surv
                int height)
 {
     lane lanes[MOST_LANES];
-    survey(model, known);
-    const int wanted = find_lanes(model, known, lanes) + has_map(view);
-    int spare;
+    survey_run(model, known);
+    int wanted = find_lanes(model, known, lanes);
+    if (has_map(view)) {
+        wanted++;
+    }
+
+    // what the curves leave to them
+    int spare = 0;
     if (view->looks.lanes == LANES_ALL) {
         spare = height - LEAST_CURVES;
-    } else if (height > FEWEST_CURVES) {
+    } else if (view->looks.lanes == LANES_AUTO) {
         spare = (height - FEWEST_CURVES) / 2;
-    } else {
-        spare = 0;
     }
-    int rows = 0;
-    if (view->looks.lanes != LANES_OFF) {
-        if (spare < wanted) {
-            rows = spare;
-        } else {
-            rows = wanted;
-        }
-    }
-    if (rows < 0) {
+    if (spare < 0) {
         return 0;
     }
-    return rows;
+    return spare < wanted ? spare : wanted;
 }
 
 // --- what is in them -------------------------------------------------------------------
 
-// Whether any of the rows from an instant to another one is in contact, sticks, and so
-// on; a few of many are sampled.
-static bool any_row(const trace *t, double from, double to, int signal, double above)
+// Whether the size of a signal is above a bound in any of the rows from an instant to
+// another one; a few of many are sampled.
+static bool any_row_above(const trace *t, double from, double to, int signal,
+                          double bound)
 {
     const size_t first = trace_row_at(t, from), last = trace_row_at(t, to);
     const size_t stride = (last - first) / SAMPLES + 1;
-    bool found = false;
-    for (size_t r = first; r <= last && !found; r += stride) {
-        found = fabs(signal_value(&t->rows[r], signal)) > above;
+    for (size_t r = first; r <= last; r += stride) {
+        if (fabs(signal_value(&t->rows[r], signal)) > bound) {
+            return true;
+        }
     }
-    return found;
+    return false;
 }
 
-// What a lane of some rows holds between two instants [s].
-static lane_band band_between(const explorer_model *model, lane l, const trace *t,
-                              double from, double to)
+static lane_band mode_band(const explorer_model *model, const trace *t, double time)
 {
     enum { COLOURS = 6 }; // of modes
-    static const ink colours[LANE_KINDS] = {[LANE_CONTACT] = INK_FORCE,
-                                            [LANE_SATURATION] = INK_WARNING,
-                                            [LANE_LOCK] = INK_EVENT,
-                                            [LANE_STICKING] = INK_HUB};
-    lane_band band = {-1, colours[l.kind], ""};
+    lane_band band = {.value = -1};
+    const double mode = t->rows[trace_row_at(t, time)].controller_mode;
+    if (mode >= 0) {
+        band.value = (int)mode;
+        band.colour = (ink)(INK_SERIES_0 + (int)mode % COLOURS);
+        law_mode_name(&model->modes, mode, band.name, sizeof band.name);
+    }
+    return band;
+}
 
-    // one value for each name
-    if (l.kind == LANE_MODE) {
-        const double mode = t->rows[trace_row_at(t, to)].controller_mode;
-        if (mode >= 0) {
-            band.value = (int)mode;
-            band.colour = (ink)(INK_SERIES_0 + (int)mode % COLOURS);
-            law_mode_name(&model->modes, mode, band.name, sizeof band.name);
+// The mode in which the law is locked, none if that is no mode of it.
+static lane_band lock_band(const explorer_model *model, double time)
+{
+    lane_band band = {.value = -1, .colour = INK_EVENT};
+    const parameters p = session_parameters_at(&model->session, time);
+    for (int i = 0; i < model->modes.count; i++) {
+        if (strcmp(model->modes.names[i], p.control.lock) == 0) {
+            band.value = i;
         }
-    } else if (l.kind == LANE_LOCK) {
-        const parameters p = session_parameters_at(&model->session, to);
-        for (int i = 0; i < model->modes.count; i++) {
-            if (strcmp(model->modes.names[i], p.control.lock) == 0) {
-                band.value = i;
-            }
-        }
-        snprintf(band.name, sizeof band.name, "%.*s", (int)sizeof band.name - 1,
-                 p.control.lock);
-    } else {
-        // on or off, if anything in between is on
-        int signal;
-        if (l.kind == LANE_CONTACT) {
-            signal = SIGNAL_INDEX(contact);
-        } else if (l.kind == LANE_STICKING) {
-            signal = SIGNAL_INDEX(sticking);
-        } else {
-            signal = SIGNAL_INDEX(command);
-        }
-        const double above =
-            l.kind == LANE_SATURATION
-                ? session_parameters_at(&model->session, to).motor.voltage_limit
-                : 0;
-        if (any_row(t, from, to, signal, above)) {
-            band.value = 1;
-        } else {
-            band.value = -1;
-        }
+    }
+    snprintf(band.name, sizeof band.name, "%.*s", (int)sizeof band.name - 1,
+             p.control.lock);
+    return band;
+}
+
+// What a lane of a run's rows holds between two instants [s]: what is on or off is on if
+// it is anywhere in between.
+static lane_band band_between(const explorer_model *model, lane_kind kind, const trace *t,
+                              double from, double to)
+{
+    int signal = SIGNAL_INDEX(contact);
+    double bound = 0;
+    lane_band band = {.value = -1, .colour = INK_FORCE};
+    switch (kind) {
+    case LANE_MODE:
+        return mode_band(model, t, to);
+    case LANE_LOCK:
+        return lock_band(model, to);
+    case LANE_STICKING:
+        band.colour = INK_HUB;
+        signal = SIGNAL_INDEX(sticking);
+        break;
+    case LANE_SATURATION:
+        band.colour = INK_WARNING;
+        signal = SIGNAL_INDEX(command);
+        bound = session_parameters_at(&model->session, to).motor.voltage_limit;
+        break;
+    default:
+        break;
+    }
+    if (any_row_above(t, from, to, signal, bound)) {
+        band.value = 1;
     }
     return band;
 }
@@ -202,34 +239,52 @@ static lane_band band_between(const explorer_model *model, lane l, const trace *
 // A name in a band, as far as that is long enough to tell it.
 static void name_band(screen *s, int start, int end, int y, const lane_band *band)
 {
+    enum { LEAST = 3 }; // cells of a name that tell it
     const int length = (int)strlen(band->name), room = end - start - 1;
-    if (length > 0 && room >= (length < 3 ? length : 3)) {
+    if (length > 0 && (room >= length || room >= LEAST)) {
         screen_text(s, start + 1, y, room, band->colour, band->name);
     }
 }
 
-// A lane of bands, as far as the run has been seen.
+// A cell of a band: a named one begins with a stroke, one without a name is shaded.
+static void draw_band_cell(screen *s, int x, int y, const lane_band *band, bool begins)
+{
+    if (band->value < 0) {
+        return;
+    }
+    uint32_t glyph = 0x2500;
+    if (band->name[0] == '\0') {
+        glyph = 0x2592;
+    } else if (begins) {
+        glyph = 0x2502;
+    }
+    screen_put(s, x, y, glyph, band->colour);
+}
+
+// A lane of bands, as far as the run has been seen; of other runs, and while a value is
+// adjusted, all of it.
 static void draw_bands(const explorer_model *model, const explorer_view *view, screen *s,
                        area line, lane l)
 {
     // what the run did, also where panes show a difference
-    const trace *t =
-        l.run == 0 ? &model->session.run.trace : model_run(model, l.run).trace;
-    const bool future = model->session.has_ghost || l.run > 0;
-    lane_band before = {.value = -1};
-    double left, right;
-    int start = 0;
+    const trace *t = &model->session.run.trace;
+    if (l.run > 0) {
+        t = model_run(model, l.run).trace;
+    }
+    double left, right, seen = model->session.seen;
     view_window(model, view, &left, &right);
+    if (model->session.has_ghost || l.run > 0) {
+        seen = (double)INFINITY;
+    }
+
+    lane_band before = {.value = -1};
+    int start = 0;
     for (int i = 0; i <= line.width; i++) {
         const double from = left + (right - left) * i / line.width;
         const double to = left + (right - left) * (i + 1) / line.width;
-        const bool known = i < line.width && (future || from <= model->session.seen);
-        lane_band band;
-        if (known) {
-            band = band_between(model, l, t, from,
-                                future ? to : fmin(to, model->session.seen));
-        } else {
-            band = (lane_band){.value = -1};
+        lane_band band = {.value = -1};
+        if (i < line.width && from <= seen) {
+            band = band_between(model, l.kind, t, from, fmin(to, seen));
         }
 
         // a band ends where the next one begins
@@ -237,78 +292,99 @@ static void draw_bands(const explorer_model *model, const explorer_view *view, s
             name_band(s, line.x + start, line.x + i, line.y, &before);
             start = i;
         }
-        const bool begins = band.name[0] != '\0' && start == i;
-        if (band.value >= 0) {
-            const uint32_t fill = band.name[0] == '\0' ? 0x2592 : 0x2500;
-            screen_put(s, line.x + i, line.y, begins ? 0x2502 : fill, band.colour);
-        }
+        draw_band_cell(s, line.x + i, line.y, &band, start == i);
         before = band;
     }
 }
 
+// A change or a push in few words: a parameter goes without its group.
+static void write_action(const action *c, char *text, size_t size)
+{
+    char value[PARAMETER_TEXT_SIZE], path[ACTION_PATH];
+    if (c->kind == ACTION_PUSH) {
+        snprintf(text, size, "push %g", c->value);
+        return;
+    }
+    action_format_value(c, value, sizeof value);
+    snprintf(text, size, "%s %s", strchr(action_path(c, path), '.') + 1, value);
+}
+
 // What was changed, at its instant, with as much of its text as there is room for.
-static void draw_changes(const explorer_model *model, const explorer_view *view,
-                         screen *s, area line)
+static void draw_change_lane(const explorer_model *model, const explorer_view *view,
+                             screen *s, area line)
 {
     const scenario *scripted = &model->session.effective;
     for (int i = 0; i < scripted->action_count; i++) {
         const action *c = &scripted->actions[i];
-        const int at = time_column(model, view, line, c->time);
-        char text[LINE_TEXT], value[PARAMETER_TEXT_SIZE];
-        if (at < 0) {
+        const int x = time_column(model, view, line, c->time);
+        if (x < 0) {
             continue;
         }
 
-        // as short as it may be: a parameter goes without its group
-        const bool seen = c->time <= model->session.now;
-        if (c->kind == ACTION_PUSH) {
-            snprintf(text, sizeof text, "push %g", c->value);
-        } else {
-            action_format_value(c, value, sizeof value);
-            char path[ACTION_PATH];
-            snprintf(text, sizeof text, "%s %s", strchr(action_path(c, path), '.') + 1,
-                     value);
-        }
-
         // what is still to come is hollow and dim
-        const ink colour = seen ? INK_EVENT : INK_DIM;
-        screen_put(s, at, line.y, seen ? 0x25cf : 0x25cb, colour);
-        screen_text(s, at + 1, line.y, line.x + line.width - at - 1, colour, text);
+        uint32_t sign = 0x25cf;
+        ink shade = INK_EVENT;
+        if (c->time > model->session.now) {
+            sign = 0x25cb;
+            shade = INK_DIM;
+        }
+        char text[LINE_TEXT];
+        write_action(c, text, sizeof text);
+        screen_put(s, x, line.y, sign, shade);
+        area_text(s, area_right(line, x + 1 - line.x), shade, text);
     }
 }
 
+// The column of a line over the whole run at which an instant is.
+static int map_column(const session *e, area line, double time)
+{
+    return (int)(time / e->effective.parameters.run.duration * line.width);
+}
+
 // The whole run in a row: the visible part, impacts, the cursor.
-static void draw_map(const explorer_model *model, const explorer_view *view, layout *lay,
-                     screen *s, area a, area line)
+static void draw_map(const explorer_model *model, const explorer_view *view, screen *s,
+                     area line)
 {
     const session *e = &model->session;
     const trace *t = &e->run.trace;
-    const double whole = e->effective.parameters.run.duration;
     double from, to;
     view_window(model, view, &from, &to);
-    const int left = (int)(from / whole * line.width),
-              right = (int)(to / whole * line.width);
-    screen_text(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "whole run");
+    const int left = map_column(e, line, from), right = map_column(e, line, to);
     for (int i = 0; i < line.width; i++) {
-        const bool visible = i >= left && i <= right;
-        screen_put(s, line.x + i, line.y, visible ? 0x2592 : 0x2500,
-                   visible ? INK_CURSOR : INK_FRAME);
-    }
-
-    // impacts and changes that have been seen, the cursor over them
-    for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
-        const event *v = &t->events[i];
-        const int at = (int)(v->time / whole * line.width);
-        const bool impact = v->kind == EVENT_IMPACT;
-        const bool change = v->kind == EVENT_CHANGE || v->kind == EVENT_PUSH;
-        if ((impact || change) && at < line.width) {
-            screen_put(s, line.x + at, line.y, impact ? 0x25b2 : 0x25cf, INK_EVENT);
+        if (i >= left && i <= right) {
+            screen_put(s, line.x + i, line.y, 0x2592, INK_CURSOR);
+        } else {
+            screen_put(s, line.x + i, line.y, 0x2500, INK_FRAME);
         }
     }
-    const int now = (int)(e->now / whole * line.width);
-    screen_put(s, line.x + (now < line.width ? now : line.width - 1), line.y, 0x2506,
-               INK_TITLE);
-    layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_MAP, 0, line});
+
+    // impacts and changes that have been seen
+    for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
+        const event *v = &t->events[i];
+        const int at = map_column(e, line, v->time);
+        if (v->kind == EVENT_IMPACT && at < line.width) {
+            screen_put(s, line.x + at, line.y, 0x25b2, INK_EVENT);
+        } else if (event_is_input(v->kind) && at < line.width) {
+            screen_put(s, line.x + at, line.y, 0x25cf, INK_EVENT);
+        }
+    }
+
+    // the cursor over them
+    int now = map_column(e, line, e->now);
+    if (now >= line.width) {
+        now = line.width - 1;
+    }
+    screen_put(s, line.x + now, line.y, 0x2506, INK_TITLE);
+}
+
+static void draw_lane_label(const explorer_model *model, screen *s, area a, lane l)
+{
+    if (l.run > 0) {
+        screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "\u2592 %s",
+                     model_run_name(model, l.run));
+    } else {
+        screen_text(s, a.x, a.y, LABEL_WIDTH, INK_DIM, labels[l.kind]);
+    }
 }
 
 void draw_lanes(const explorer_model *model, const explorer_view *view, layout *lay,
@@ -316,26 +392,25 @@ void draw_lanes(const explorer_model *model, const explorer_view *view, layout *
 {
     lane lanes[MOST_LANES];
     const int count = find_lanes(model, &lay->lanes, lanes);
-    area line = {a.x + LABEL_WIDTH + 1, a.y, a.width - LABEL_WIDTH - 1, 1};
-    int left = a.height;
 
-    // the map first, then as many lanes as have a row
-    if (left > 0 && has_map(view)) {
-        draw_map(model, view, lay, s, a, line);
-        left--;
-        a.y++;
-        line.y++;
+    // the map first
+    if (a.height > 0 && has_map(view)) {
+        const area line = area_right(area_row(a, 0), LABEL_WIDTH + 1);
+        screen_text(s, a.x, a.y, LABEL_WIDTH, INK_DIM, "whole run");
+        draw_map(model, view, s, line);
+        layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_MAP, 0, line});
+        a = area_below(a, 1);
     }
-    const area all = {line.x, line.y, line.width, left};
+
+    // then as many lanes as have a row
+    const area all = area_right(a, LABEL_WIDTH + 1);
     layout_add_hit(lay, (hit_area){PANEL_CURVES, PART_LANES, 0, all});
-    for (int i = 0; i < count && left > 0; i++, left--, a.y++, line.y++) {
-        const bool other = lanes[i].run > 0;
-        screen_print(s, a.x, a.y, LABEL_WIDTH, INK_DIM, other ? "\u2592 %s" : "%s",
-                     other ? model_run_name(model, lanes[i].run) : labels[lanes[i].kind]);
+    for (int i = 0; i < count && i < a.height; i++) {
+        draw_lane_label(model, s, area_row(a, i), lanes[i]);
         if (lanes[i].kind == LANE_CHANGES) {
-            draw_changes(model, view, s, line);
+            draw_change_lane(model, view, s, area_row(all, i));
         } else {
-            draw_bands(model, view, s, line, lanes[i]);
+            draw_bands(model, view, s, area_row(all, i), lanes[i]);
         }
     }
 }

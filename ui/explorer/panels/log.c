@@ -57,11 +57,8 @@ typedef struct listed_entries {
 
 static bool is_input(const explorer_model *model, const log_entry *entry)
 {
-    if (entry->event < 0) {
-        return false;
-    }
-    const event_kind kind = model->session.run.trace.events[entry->event].kind;
-    return kind == EVENT_CHANGE || kind == EVENT_PUSH;
+    return entry->event >= 0 &&
+           event_is_input(model->session.run.trace.events[entry->event].kind);
 }
 
 static listed_entries list_entries(const explorer_model *model)

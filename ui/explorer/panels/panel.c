@@ -155,6 +155,11 @@ number_text draw_number(double value)
     return n;
 }
 
+bool event_is_input(event_kind kind)
+{
+    return kind == EVENT_CHANGE || kind == EVENT_PUSH;
+}
+
 int draw_first_line(int selected, int count, int height)
 {
     int first = selected - height / 2;

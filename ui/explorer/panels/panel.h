@@ -145,6 +145,9 @@ typedef struct number_text {
 } number_text;
 number_text draw_number(double value);
 
+// Whether an event is something that was done to the run: a change or a push.
+bool event_is_input(event_kind kind);
+
 // The first line to show so that the selected one is visible.
 int draw_first_line(int selected, int count, int height);
 

@@ -1,3 +1,4 @@
+// Drawing in a pane of curves over time, as dots or as pixels, and its axes.
 #include "ui/explorer/panels/plot.h"
 
 #include <assert.h>
@@ -40,32 +41,51 @@ static double plot_y(const plot_frame *f, double value)
            (4.0 * f->canvas.height - 1);
 }
 
-// Every row joined to the next one by a line.
+// Every row joined to the next one by a line, as long as they are visible and seen; the
+// line's pattern is that of where it ends.
 static void draw_rows(const plot_frame *f, const trace *t, int signal, double until)
 {
     double x0 = (double)NAN, y0 = (double)NAN;
-    bool visible = true;
-
-    // joined as long as they are visible and seen
-    for (size_t r = trace_row_at(t, f->from);
-         visible && r < t->row_count && t->rows[r].time <= until; r++) {
-        double x = plot_x(f, t->rows[r].time),
-               y = plot_y(f, signal_value(&t->rows[r], signal));
+    for (size_t r = trace_row_at(t, f->from); r < t->row_count; r++) {
+        const sample *row = &t->rows[r];
+        if (row->time > until) {
+            break;
+        }
+        const double x = plot_x(f, row->time), y = plot_y(f, signal_value(row, signal));
         if (line_has_dot(f->pattern, lround(x))) {
             canvas_line(&f->canvas, x0, y0, x, y, f->colour);
         }
         x0 = x;
         y0 = y;
-        visible = t->rows[r].time <= f->to;
+
+        // the first one beyond the window is the last
+        if (row->time > f->to) {
+            break;
+        }
     }
 }
 
-// One column of dots.
+// One column of dots; a high one is drawn in any case, so that no spike falls into a gap
+// of the pattern.
 static void draw_column(const plot_frame *f, long column, value_range y)
 {
-    if (y.high >= y.low && (y.high - y.low > 4 || line_has_dot(f->pattern, column))) {
+    enum { HIGH = 4 }; // dots
+    if (y.high < y.low) {
+        return;
+    }
+    if (y.high - y.low > HIGH || line_has_dot(f->pattern, column)) {
         canvas_line(&f->canvas, (double)column, y.low, (double)column, y.high, f->colour);
     }
+}
+
+// Whether the block of rows from r on, whose least and greatest values are known, lies
+// within a column and before an instant.
+static bool block_is_in_column(const plot_frame *f, const trace *t, size_t r,
+                               double until, long column)
+{
+    const size_t end = r + EXTREMES_BLOCK;
+    return r % EXTREMES_BLOCK == 0 && end < t->row_count && t->rows[end].time <= until &&
+           lround(plot_x(f, t->rows[end].time)) == column;
 }
 
 // The smallest and the largest value of each column of dots, so that no spike is lost.
@@ -76,31 +96,28 @@ static void draw_columns(const plot_frame *f, const trace *t, int signal, double
     value_range y = value_range_empty;
     double last = (double)NAN;
     long column = -1;
-
-    // row by row, or block by block where one lies within a column
-    for (size_t r = trace_row_at(t, f->from);
-         r < t->row_count && t->rows[r].time <= until;) {
-        size_t end = r + EXTREMES_BLOCK, take = 1;
-        long here = lround(plot_x(f, t->rows[r].time));
+    size_t r = trace_row_at(t, f->from);
+    while (r < t->row_count && t->rows[r].time <= until) {
+        // the next column goes on where the last one ended, so that curves hang together
+        const long here = lround(plot_x(f, t->rows[r].time));
         if (here != column) {
             draw_column(f, column, y);
-            // from where the last one ended, so that curves hang together
             column = here;
             y = value_range_empty;
             value_range_add(&y, last);
         }
-        bool whole = pairs != NULL && r % EXTREMES_BLOCK == 0 && end < t->row_count &&
-                     t->rows[end].time <= until &&
-                     lround(plot_x(f, t->rows[end].time)) == column;
-        if (whole) {
+
+        // a block at once, or a row
+        size_t taken = 1;
+        if (pairs != NULL && block_is_in_column(f, t, r, until, column)) {
             const double *pair = pairs + 2 * (r / EXTREMES_BLOCK);
-            take = EXTREMES_BLOCK;
             value_range_add(&y, plot_y(f, pair[1]));
             value_range_add(&y, plot_y(f, pair[0]));
+            taken = EXTREMES_BLOCK;
         }
-        last = plot_y(f, signal_value(&t->rows[r + take - 1], signal));
+        last = plot_y(f, signal_value(&t->rows[r + taken - 1], signal));
         value_range_add(&y, last);
-        r += take;
+        r += taken;
     }
     draw_column(f, column, y);
 }
@@ -131,9 +148,11 @@ void plot_frame_signal(const plot_frame *f, const trace *t, int signal, double u
         pane_curve_paint(f->picture, &f->pixels, &c);
         return;
     }
-    double shown = (double)(trace_row_at(t, f->to) - trace_row_at(t, f->from));
+
+    // few rows one by one, many by the columns that they are in
+    const double rows = (double)(trace_row_at(t, f->to) - trace_row_at(t, f->from));
     until = fmin(until, f->to);
-    if (shown < 4.0 * f->canvas.width) {
+    if (rows < 4.0 * f->canvas.width) {
         draw_rows(f, t, signal, until);
     } else {
         draw_columns(f, t, signal, until, pairs);
@@ -149,10 +168,27 @@ void plot_frame_cursor(const plot_frame *f, screen *s, double time)
     if (!(time >= f->from && time <= f->to)) {
         return;
     }
+
+    // only where nothing is drawn yet
     const int column = f->canvas.x + (int)(plot_x(f, time) / 2);
     for (int y = f->canvas.y; y < f->canvas.y + f->canvas.height; y++) {
         if (s->cells[(long)y * s->width + column].glyph == ' ') {
             screen_put(s, column, y, 0x2506, INK_CURSOR);
+        }
+    }
+}
+
+// A dotted line across the canvas, its name at its end; only where nothing is drawn yet.
+static void draw_level_behind(const canvas *c, screen *s, int y, const char *name)
+{
+    const int end = c->x + c->width, name_at = end - (int)strlen(name);
+    for (int x = c->x; x < end; x++) {
+        uint32_t glyph = 0x2508;
+        if (x >= name_at) {
+            glyph = (uint32_t)name[x - name_at];
+        }
+        if (s->cells[(long)y * s->width + x].glyph == ' ') {
+            screen_put(s, x, y, glyph, INK_FRAME);
         }
     }
 }
@@ -164,26 +200,16 @@ void plot_frame_level(const plot_frame *f, screen *s, double value, const char *
     if (!(value >= f->axis.low - edge && value <= f->axis.high + edge)) {
         return;
     }
-    const double row = fmax(0, fmin(4.0 * f->canvas.height - 1, plot_y(f, value)));
-    const int y = f->canvas.y + (int)(lround(row) / 4);
-
-    // the name is at the end
-    const int length = (int)strlen(name), end = f->canvas.x + f->canvas.width;
-    if (f->picture != NULL) {
-        pane_level_paint(f->picture, &f->pixels, value, pixel_colour(f, INK_FRAME));
-        screen_text(s, end - length, y, length, INK_FRAME, name);
+    const canvas *c = &f->canvas;
+    const double dot = fmax(0, fmin(4.0 * c->height - 1, plot_y(f, value)));
+    const int y = c->y + (int)(lround(dot) / 4);
+    if (f->picture == NULL) {
+        draw_level_behind(c, s, y, name);
         return;
     }
-
-    // only where nothing is drawn yet
-    for (int x = f->canvas.x; x < end; x++) {
-        cell *at = &s->cells[(long)y * s->width + x];
-        if (at->glyph == ' ') {
-            const int in_name = x - (end - length);
-            screen_put(s, x, y, in_name >= 0 ? (uint32_t)name[in_name] : 0x2508,
-                       INK_FRAME);
-        }
-    }
+    const int length = (int)strlen(name);
+    pane_level_paint(f->picture, &f->pixels, value, pixel_colour(f, INK_FRAME));
+    screen_text(s, c->x + c->width - length, y, length, INK_FRAME, name);
 }
 
 // --- axes ------------------------------------------------------------------------------
@@ -216,82 +242,139 @@ static long row_of(value_range axis, int height, double value)
     return lround((axis.high - value) / (axis.high - axis.low) * (4.0 * height - 1)) / 4;
 }
 
+// Whether no two ticks lie in one row of an axis.
+static bool ticks_have_rows(const ticks *t, value_range axis, int height)
+{
+    for (int i = 1; i < t->count; i++) {
+        const long row = row_of(axis, height, t->value[i]);
+        if (row == row_of(axis, height, t->value[i - 1])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// As many ticks as have a row each: one that is left out would make the others look
+// uneven.
+static void choose_ticks(ticks *t, value_range axis, int height)
+{
+    int wanted = 3;
+    if (height >= 12) {
+        wanted = 5;
+    } else if (height >= 6) {
+        wanted = 4;
+    }
+    ticks_between(t, axis.low, axis.high, wanted);
+    while (wanted > 2 && !ticks_have_rows(t, axis, height)) {
+        wanted--;
+        ticks_between(t, axis.low, axis.high, wanted);
+    }
+}
+
+// The tick that labels a row of an axis, -1 if there is none.
+static int tick_of_row(const ticks *t, value_range axis, int height, int row)
+{
+    const bool upper_half = 2 * row < height;
+    int best = -1;
+    for (int i = 0; i < t->count; i++) {
+        if (row_of(axis, height, t->value[i]) == row &&
+            (best < 0 || outranks(t->value[i], t->value[best], upper_half))) {
+            best = i;
+        }
+    }
+    return best;
+}
+
 void draw_value_axis(screen *s, area a, value_range axis)
 {
     assert(axis.high > axis.low);
-    const int h = a.height;
     ticks t;
+    choose_ticks(&t, axis, a.height);
+    const int line = a.x + a.width - 1, label_width = a.width - 1;
+    for (int row = 0; row < a.height; row++) {
+        const int y = a.y + row, tick = tick_of_row(&t, axis, a.height, row);
+        if (tick < 0) {
+            screen_put(s, line, y, 0x2502, INK_FRAME);
+            continue;
+        }
+        char text[TICK_TEXT + 8];
+        axis_label(&t, tick, text, sizeof text);
+        screen_put(s, line, y, 0x2524, INK_FRAME);
+        screen_print(s, a.x, y, label_width, INK_DIM, "%*s", label_width, text);
+    }
+}
 
-    // as many as have a row each: one that is left out would make the others look uneven
-    bool fit = false;
-    int most = 3;
-    if (h >= 12) {
-        most = 5;
-    } else if (h >= 6) {
-        most = 4;
-    }
-    for (int wanted = most; wanted > 1 && !fit; wanted--) {
-        ticks_between(&t, axis.low, axis.high, wanted);
-        fit = true;
-        for (int i = 1; i < t.count; i++) {
-            fit = fit && row_of(axis, h, t.value[i]) != row_of(axis, h, t.value[i - 1]);
-        }
-    }
-    for (int y = 0; y < a.height; y++) {
-        int best = -1;
-        for (int i = 0; i < t.count; i++) {
-            bool better =
-                best < 0 || outranks(t.value[i], t.value[best], 2 * y < a.height);
-            if (row_of(axis, a.height, t.value[i]) == y && better) {
-                best = i;
-            }
-        }
-        screen_put(s, a.x + a.width - 1, a.y + y, best < 0 ? 0x2502 : 0x2524, INK_FRAME);
-        if (best >= 0) {
-            char text[TICK_TEXT + 8];
-            axis_label(&t, best, text, sizeof text);
-            screen_print(s, a.x, a.y + y, a.width - 1, INK_DIM, "%*s", a.width - 1, text);
-        }
+// A tick on the line of a time axis, where no bar is.
+static void draw_time_tick(screen *s, int x, int y)
+{
+    cell *at = &s->cells[(long)y * s->width + x];
+    if (at->glyph == 0x2500) {
+        at->glyph = 0x252c;
     }
 }
 
 // Seconds below round instants, the unit behind the last one.
 static void draw_instants(screen *s, area a, double from, double to)
 {
+    enum { LABEL = 14 }; // cells that a label may take
+    const int end = a.x + a.width, room_for = a.width / LABEL;
     ticks t;
-    int free = a.x;
-    ticks_between(&t, from, to, a.width / 14 < 2 ? 2 : a.width / 14);
+    ticks_between(&t, from, to, room_for > 2 ? room_for : 2);
 
     // each tick with its label below, unless that would touch the one before
+    int free = a.x;
     for (int i = 0; i < t.count; i++) {
         char text[TICK_TEXT + 16];
-        double share = (t.value[i] - from) / (to - from);
-        int x = a.x + (int)(share * (2.0 * a.width - 1) / 2);
+        const double share = (t.value[i] - from) / (to - from);
+        const int x = a.x + (int)(share * (2.0 * a.width - 1) / 2);
         axis_label(&t, i, text, sizeof text);
         if (i == t.count - 1) {
             strcat(text, " s");
         }
+        if (x < s->width && x < end) {
+            draw_time_tick(s, x, a.y);
+        }
 
-        // kept within the axis
-        int length = (int)strlen(text), start = x - length / 2;
-        if (start + length > a.x + a.width) {
-            start = a.x + a.width - length;
+        // in the middle below its tick, but within the axis
+        const int length = (int)strlen(text);
+        int start = x - length / 2;
+        if (start + length > end) {
+            start = end - length;
         }
         if (start < a.x) {
             start = a.x;
         }
-
-        // a tick on the line, where no bar is
-        if (s->width > x && x < a.x + a.width) {
-            cell *at = &s->cells[(long)a.y * s->width + x];
-            if (at->glyph == 0x2500) {
-                at->glyph = 0x252c;
-            }
-        }
         if (start >= free) {
-            screen_text(s, start, a.y + 1, a.x + a.width - start, INK_DIM, text);
+            screen_text(s, start, a.y + 1, end - start, INK_DIM, text);
             free = start + length + 1;
         }
+    }
+}
+
+// Contact as a bar on the line of the axis, as far as the run has been seen.
+static void draw_contact(const session *e, screen *s, area line, double from, double to)
+{
+    const trace *t = &e->run.trace;
+    for (int i = 0; i < line.width; i++) {
+        const double time = from + (to - from) * (i + 0.5) / line.width;
+        if (time <= e->seen && t->rows[trace_row_at(t, time)].contact != 0) {
+            screen_put(s, line.x + i, line.y, 0x2592, INK_FORCE);
+        } else {
+            screen_put(s, line.x + i, line.y, 0x2500, INK_FRAME);
+        }
+    }
+}
+
+// A mark for an impact that has been seen and for an input: the coming motion is not
+// known yet, coming changes are.
+static void draw_event(screen *s, int x, int y, event_kind kind, bool seen)
+{
+    if (kind == EVENT_IMPACT && seen) {
+        screen_put(s, x, y, 0x25b2, INK_EVENT);
+    } else if (event_is_input(kind) && seen) {
+        screen_put(s, x, y, 0x25cf, INK_EVENT);
+    } else if (event_is_input(kind)) {
+        screen_put(s, x, y, 0x25cb, INK_DIM);
     }
 }
 
@@ -300,51 +383,29 @@ area draw_time_axis(const explorer_model *model, const explorer_view *view, scre
 {
     const session *e = &model->session;
     const trace *t = &e->run.trace;
+    const area below = area_right(a, LABEL_WIDTH + 1), line = area_row(below, 0);
     double from, to;
     view_window(model, view, &from, &to);
-    area line = {a.x + LABEL_WIDTH + 1, a.y, a.width - LABEL_WIDTH - 1, 1};
-
-    // contact as a bar
-    for (int i = 0; i < line.width; i++) {
-        double time = from + (to - from) * (i + 0.5) / line.width;
-        bool touches = time <= e->seen && t->rows[trace_row_at(t, time)].contact != 0;
-        screen_put(s, line.x + i, a.y, touches ? 0x2592 : 0x2500,
-                   touches ? INK_FORCE : INK_FRAME);
-    }
+    draw_contact(e, s, line, from, to);
 
     // a touch that is shorter than a column
     for (size_t i = 0; i < t->event_count && t->events[i].time <= e->seen; i++) {
         if (t->events[i].kind == EVENT_CONTACT) {
-            screen_put(s, time_column(model, view, line, t->events[i].time), a.y, 0x2592,
-                       INK_FORCE);
+            const int x = time_column(model, view, line, t->events[i].time);
+            screen_put(s, x, a.y, 0x2592, INK_FORCE);
         }
     }
     draw_instants(s, line, from, to);
 
-    // impacts that have been seen and inputs: the coming motion is not known yet, coming
-    // changes are
+    // events and notes
     for (size_t i = 0; i < t->event_count; i++) {
         const event *v = &t->events[i];
-        const bool input = v->kind == EVENT_CHANGE || v->kind == EVENT_PUSH;
-        const bool seen = v->time <= e->seen, impact = v->kind == EVENT_IMPACT && seen;
-        uint32_t mark = 0x25b2;
-        if (!impact) {
-            if (seen) {
-                mark = 0x25cf;
-            } else {
-                mark = 0x25cb;
-            }
-        }
-        if (impact || input) {
-            screen_put(s, time_column(model, view, line, v->time), a.y, mark,
-                       seen ? INK_EVENT : INK_DIM);
-        }
+        const int x = time_column(model, view, line, v->time);
+        draw_event(s, x, a.y, v->kind, v->time <= e->seen);
     }
-
-    // notes
     for (int i = 0; i < model->note_count; i++) {
-        screen_put(s, time_column(model, view, line, model->notes[i].time), a.y, '!',
-                   INK_TITLE);
+        const int x = time_column(model, view, line, model->notes[i].time);
+        screen_put(s, x, a.y, '!', INK_TITLE);
     }
 
     // the meaning of the marks, next to them
