@@ -39,10 +39,12 @@ static bool find_track(const explorer_view *view, const parameters *p, track *k)
 
 static void draw_track(layout *lay, screen *s, area a, const track *k)
 {
-    int at = (int)lround(slider_share(&k->scale, k->value) * (a.width - 1));
     for (int i = 0; i < a.width; i++) {
-        screen_put(s, a.x + i, a.y, i == at ? 0x25cf : 0x2500,
-                   i == at ? k->knob : INK_FRAME);
+        screen_put(s, a.x + i, a.y, 0x2500, INK_FRAME);
+    }
+    const long at = lround(slider_share(&k->scale, k->value) * (a.width - 1));
+    if (at >= 0 && at < a.width) {
+        screen_put(s, a.x + (int)at, a.y, 0x25cf, k->knob);
     }
     layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_SLIDER, k->parameter, a});
 }
@@ -50,11 +52,14 @@ static void draw_track(layout *lay, screen *s, area a, const track *k)
 // Value and unit as far as `most` cells have room for them: where they have not, the unit
 // goes, then the value's end, which two points stand for. Returns the cells it takes.
 static int fit_value(char *shown, size_t size, int most, const char *value,
-                     const parameter_info *info)
+                     const char *unit)
 {
-    snprintf(shown, size, "%s%s%s", value, info->unit[0] ? " " : "", info->unit);
-    if (!(most > LEAST_VALUE)) {
+    if (most < LEAST_VALUE) {
         most = LEAST_VALUE;
+    }
+    snprintf(shown, size, "%s", value);
+    if (unit[0] != '\0') {
+        text_add(shown, size, " %s", unit);
     }
     if (text_cells(shown) > most) {
         snprintf(shown, size, "%s", value);
@@ -71,153 +76,214 @@ static int fit_value(char *shown, size_t size, int most, const char *value,
     return text_cells(shown);
 }
 
-// Name, value and unit in a line, with a slider behind them where there is room.
-static void draw_line(const explorer_model *model, const explorer_view *view, layout *lay,
-                      screen *s, area a, const parameters *p, int parameter)
+// The slider's place at the end of a line, of no width where there is no room for it.
+static area slider_area(area line)
 {
-    const parameter_info *info = &parameter_table[parameter];
-    char value[PARAMETER_TEXT_SIZE], shown[PARAMETER_TEXT_SIZE + 32];
-    const bool inert = model_inert_reason(model, parameter) != NULL;
-    const bool held = view->slider.held && view->slider.parameter == parameter;
-    track k = {.parameter = parameter};
-    if (inert) {
-        k.knob = INK_FRAME;
-    } else if (held) {
-        k.knob = INK_EVENT;
-    } else if (info->timed) {
-        k.knob = INK_ARM;
-    } else {
-        k.knob = INK_DIM;
+    int width = line.width - PATH_ROOM;
+    if (width < LEAST_SLIDER) {
+        width = 0;
     }
-    const bool has_slider = find_track(view, p, &k);
-    parameter_format(p, parameter, value, sizeof value);
-    if (info->type == PARAMETER_REAL || held) {
-        snprintf(value, sizeof value, "%.6g", k.value);
+    if (width > MOST_SLIDER) {
+        width = MOST_SLIDER;
     }
-    int slider = a.width - PATH_ROOM, room = a.width;
-    if (slider >= LEAST_SLIDER) {
-        if (slider > MOST_SLIDER) {
-            slider = MOST_SLIDER;
-        }
-        room -= slider + 1;
-    }
-    bool given = model->session.effective.parameters.set[parameter] != 0;
-    layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_LINES, parameter, a});
-
-    // the heading has the group
-    const char *name = strchr(info->path, '.') + 1;
-    const int length =
-        fit_value(shown, sizeof shown, room - (int)strlen(name) - 3, value, info);
-    const int start = room - length;
-    ink colour = INK_TEXT;
-    if (inert) {
-        colour = INK_FRAME;
-    } else if (given) {
-        colour = INK_TITLE;
-    }
-    screen_text(s, a.x + 1, a.y, start - 2, colour, name);
-    screen_text(s, a.x + start, a.y, room - start, k.knob, shown);
-    if (has_slider && slider >= LEAST_SLIDER && !inert) {
-        draw_track(lay, s, (area){a.x + room + 1, a.y, slider, 1}, &k);
-    }
+    return (area){line.x + line.width - width, line.y, width, 1};
 }
 
-// The heading of a group: its name, and how many parameters it hides.
+// How the value of a parameter looks: one that has no effect dim, one that can be changed
+// while the arm moves bright.
+static ink value_ink(const explorer_view *view, int parameter, bool inert)
+{
+    if (inert) {
+        return INK_FRAME;
+    }
+    if (view->slider.held && view->slider.parameter == parameter) {
+        return INK_EVENT;
+    }
+    if (parameter_table[parameter].timed) {
+        return INK_ARM;
+    }
+    return INK_DIM;
+}
+
+// How its name looks: one that the scenario gives stands out.
+static ink name_ink(const explorer_model *model, int parameter, bool inert)
+{
+    if (inert) {
+        return INK_FRAME;
+    }
+    if (model->session.effective.parameters.set[parameter] != 0) {
+        return INK_TITLE;
+    }
+    return INK_TEXT;
+}
+
+// Name, value and unit in a line, with a slider behind them where there is room.
+static void draw_parameter(const explorer_model *model, const explorer_view *view,
+                           layout *lay, screen *s, area a, const parameters *p,
+                           int parameter)
+{
+    const parameter_info *info = &parameter_table[parameter];
+    const bool inert = model_inert_reason(model, parameter) != NULL;
+    const bool held = view->slider.held && view->slider.parameter == parameter;
+    track k = {.parameter = parameter, .knob = value_ink(view, parameter, inert)};
+    const bool has_slider = find_track(view, p, &k);
+    layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_LINES, parameter, a});
+
+    // a slider, and what it leaves
+    const area slider = slider_area(a);
+    int room = a.width;
+    if (slider.width > 0) {
+        room -= slider.width + 1;
+    }
+    if (has_slider && slider.width > 0 && !inert) {
+        draw_track(lay, s, slider, &k);
+    }
+
+    // a number as it would be typed
+    char value[PARAMETER_TEXT_SIZE], shown[PARAMETER_TEXT_SIZE + 32];
+    if (info->type == PARAMETER_REAL || held) {
+        snprintf(value, sizeof value, "%.6g", k.value);
+    } else {
+        parameter_format(p, parameter, value, sizeof value);
+    }
+
+    // the name without its group, which the heading has, and the value at the end
+    const char *name = strchr(info->path, '.') + 1;
+    const int name_width = (int)strlen(name) + 3;
+    const int length =
+        fit_value(shown, sizeof shown, room - name_width, value, info->unit);
+    const int value_at = room - length;
+    screen_text(s, a.x + 1, a.y, value_at - 2, name_ink(model, parameter, inert), name);
+    screen_text(s, a.x + value_at, a.y, length, k.knob, shown);
+}
+
+// How many parameters there are in the group that begins with one.
+static int group_size(int first)
+{
+    int end = first;
+    while (end < parameter_count && parameter_group(end) == first) {
+        end++;
+    }
+    return end - first;
+}
+
+// The heading of a group: its name, and how many parameters are folded away.
 static void draw_heading(const explorer_view *view, layout *lay, screen *s, area a,
-                         int parameter)
+                         int first)
 {
     char name[PARAMETER_NAME];
     const bool filtered = view->filters.text[PANEL_PARAMETERS][0] != '\0';
-    const bool folded = view->parameters.folded[parameter] && !filtered;
-    parameter_group_name(parameter, name, sizeof name);
-
-    // its name, and how many parameters are folded away
-    int x = a.x + screen_print(s, a.x, a.y, a.width, INK_EVENT, "%s %s",
-                               folded ? "\u25b8" : "\u25be", name);
+    const bool folded = view->parameters.folded[first] && !filtered;
+    parameter_group_name(first, name, sizeof name);
     if (folded) {
-        int end = parameter;
-        while (end < parameter_count && parameter_group(end) == parameter) {
-            end++;
-        }
-        screen_print(s, x + 1, a.y, a.x + a.width - x - 1, INK_FRAME, "%d",
-                     end - parameter);
+        const int used = area_print(s, a, INK_EVENT, "\u25b8 %s", name);
+        area_print(s, area_right(a, used + 1), INK_FRAME, "%d", group_size(first));
+    } else {
+        area_print(s, a, INK_EVENT, "\u25be %s", name);
     }
-    layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_HEADING, parameter, a});
+    layout_add_hit(lay, (hit_area){PANEL_PARAMETERS, PART_HEADING, first, a});
 }
 
 // The line below the selected parameter: its slider between the ends of its range, or the
 // reason why it has no effect.
-static void draw_below(const explorer_model *model, layout *lay, screen *s, area a,
-                       const track *k)
+static void draw_wide_slider(const explorer_model *model, layout *lay, screen *s, area a,
+                             const track *k)
 {
     const char *inert = model_inert_reason(model, k->parameter);
     if (inert != NULL) {
-        screen_text(s, a.x + 1, a.y, a.width - 1, INK_WARNING, inert);
+        area_text(s, area_right(a, 1), INK_WARNING, inert);
         return;
     }
     const number_text low = draw_number(k->scale.low), high = draw_number(k->scale.high);
     const int before = (int)strlen(low.text), after = (int)strlen(high.text);
-    screen_text(s, a.x, a.y, a.width, INK_DIM, low.text);
-    screen_text(s, a.x + a.width - after, a.y, after, INK_DIM, high.text);
-    draw_track(lay, s, (area){a.x + before + 1, a.y, a.width - before - after - 2, 1}, k);
+    const area between = {a.x + before + 1, a.y, a.width - before - after - 2, 1};
+    area_text(s, a, INK_DIM, low.text);
+    area_text(s, area_right(a, a.width - after), INK_DIM, high.text);
+    draw_track(lay, s, between, k);
 }
 
-static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
-                 screen *s, area a)
+static void draw_parameters_frame(const explorer_view *view, screen *s, area a)
 {
-    parameters p = model_parameters(model);
-    parameter_line lines[PARAMETER_LINES];
-    const parameter_list *list = &view->parameters;
+    enum { WIDE = 46 };
     const char *filter = view->filters.text[PANEL_PARAMETERS];
     char title[LINE_TEXT + 32] = "parameters (Tab: values, / filters)";
-    int line = 0, height = a.height - 2;
-    track wide = {.parameter = list->parameter,
-                  .knob = view->slider.held ? INK_EVENT : INK_CURSOR};
-    const bool number = find_track(view, &p, &wide);
     if (filter[0] != '\0') {
         snprintf(title, sizeof title, "parameters /%s", filter);
-    } else if (a.width < 46) {
+    } else if (a.width < WIDE) {
         snprintf(title, sizeof title, "parameters (Tab: values)");
     }
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
+    area_frame(s, a, INK_FRAME, title);
+}
 
-    // a number that is selected takes a second line, and so does what has no effect
+// Whether the selected line is that of the chosen parameter, and has something to say in
+// a second one: a number its slider, what has no effect why.
+static bool selected_line_expands(const explorer_model *model, const explorer_view *view,
+                                  parameter_line line, bool has_slider)
+{
+    const int chosen = view->parameters.parameter;
+    if (line.heading || line.parameter != chosen) {
+        return false;
+    }
+    return has_slider || model_inert_reason(model, chosen) != NULL;
+}
+
+static void draw_parameters(const explorer_model *model, const explorer_view *view,
+                            layout *lay, screen *s, area a)
+{
+    const parameters p = model_parameters(model);
+    const area inside = area_inside(a);
+    parameter_line lines[PARAMETER_LINES];
     int selected;
     const int count = view_parameter_lines(view, lines, &selected);
-    const bool shows_parameter = count > 0 && !lines[selected].heading &&
-                                 lines[selected].parameter == list->parameter;
-    const bool expands = shows_parameter && height >= 2 &&
-                         (number || model_inert_reason(model, list->parameter) != NULL);
+    draw_parameters_frame(view, s, a);
     if (count == 0) {
-        screen_text(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "none has these words");
+        area_text(s, inside, INK_DIM, "none has these words");
+        return;
     }
 
-    int first = draw_first_line(selected, count + expands, height);
-    for (int i = 0; i < count && line - first < height; i++) {
-        area at = {a.x + 2, a.y + 1 + line++ - first, a.width - 4, 1};
-        if (at.y > a.y && lines[i].heading) {
-            draw_heading(view, lay, s, at, lines[i].parameter);
-        } else if (at.y > a.y) {
-            draw_line(model, view, lay, s, at, &p, lines[i].parameter);
-        }
-        if (i != selected) {
+    // the selected parameter takes a second row for its slider
+    track wide = {.parameter = view->parameters.parameter,
+                  .knob = view->slider.held ? INK_EVENT : INK_CURSOR};
+    const bool has_slider = find_track(view, &p, &wide);
+    const bool expands = inside.height >= 2 &&
+                         selected_line_expands(model, view, lines[selected], has_slider);
+    const int rows = expands ? count + 1 : count;
+    const int first = draw_first_line(selected, rows, inside.height);
+
+    for (int i = 0; i < count; i++) {
+        const bool behind = expands && i > selected;
+        const int row = (behind ? i + 1 : i) - first;
+        if (row < 0 || row >= inside.height) {
             continue;
         }
-        screen_tint(s, a.x + 1, at.y, a.width - 2, 1, INK_SELECTED);
-        if (expands && line - first < height) {
-            at.y = a.y + 1 + line++ - first;
-            draw_below(model, lay, s, at, &wide);
+        const area line = area_row(inside, row);
+        if (lines[i].heading) {
+            draw_heading(view, lay, s, line, lines[i].parameter);
+        } else {
+            draw_parameter(model, view, lay, s, line, &p, lines[i].parameter);
         }
+        if (i == selected) {
+            area_tint(s, (area){a.x + 1, line.y, a.width - 2, 1}, INK_SELECTED);
+        }
+    }
+
+    // over the line above it where there is no room for both
+    const int slider_row = selected + 1 - first;
+    if (expands && slider_row < inside.height) {
+        draw_wide_slider(model, lay, s, area_row(inside, slider_row), &wide);
     }
 }
 
 // The mouse on a slider: takes hold, drags, nudges with the wheel.
-static bool point_at_slider(explorer_model *model, explorer_view *view,
+static void point_at_slider(explorer_model *model, explorer_view *view,
                             explorer_input *input, const panel_gesture *g)
 {
     const hit_area *h = &g->hit;
     const int cells = h->area.width, wheel = pointer_wheel(g->event);
-    const double share = cells > 1 ? (double)(g->event.x - h->area.x) / (cells - 1) : 0;
+    double share = 0;
+    if (cells > 1) {
+        share = (double)(g->event.x - h->area.x) / (cells - 1);
+    }
     if (wheel != 0) {
         parameter_list_select(&view->parameters, (parameter_line){h->index, false});
         act_nudge(model, view, input, wheel < 0 ? "" : "-1");
@@ -226,25 +292,28 @@ static bool point_at_slider(explorer_model *model, explorer_view *view,
     } else {
         act_drag_slider(model, view, h->index, share, cells);
     }
+}
+
+// A press folds the group of a heading and selects any other line; a slider takes the
+// mouse in its own way.
+static bool point_at_parameters(explorer_model *model, explorer_view *view,
+                                explorer_input *input, const panel_gesture *g)
+{
+    if (g->hit.part == PART_SLIDER) {
+        point_at_slider(model, view, input, g);
+        return true;
+    }
+    if (g->event.kind != POINTER_PRESS) {
+        return false;
+    }
+    if (g->hit.part == PART_HEADING) {
+        parameter_list_fold(&view->parameters, g->hit.index);
+    } else {
+        parameter_list_select(&view->parameters, (parameter_line){g->hit.index, false});
+    }
     return true;
 }
 
-// A click selects a line; a slider takes the mouse in its own way.
-static bool point(explorer_model *model, explorer_view *view, explorer_input *input,
-                  const panel_gesture *g)
-{
-    const bool pressed = g->event.kind == POINTER_PRESS;
-    if (g->hit.part == PART_SLIDER) {
-        return point_at_slider(model, view, input, g);
-    }
-
-    // a press folds the group of a heading and selects any other line
-    if (pressed && g->hit.part == PART_HEADING) {
-        parameter_list_fold(&view->parameters, g->hit.index);
-    } else if (pressed) {
-        parameter_list_select(&view->parameters, (parameter_line){g->hit.index, false});
-    }
-    return pressed;
-}
-
-const panel parameters_panel = {.name = "parameters", .draw = draw, .point = point};
+const panel parameters_panel = {.name = "parameters",
+                                .draw = draw_parameters,
+                                .point = point_at_parameters};

@@ -9,92 +9,146 @@
 // --- values ----------------------------------------------------------------------------
 // The panel of all recorded values at the cursor.
 
-enum { NAME = 19, NUMBER = 10, UNIT = 6 }; // columns [cells]
+enum { NAME = 19, NUMBER = 10, UNIT = 6 }; // widths of columns [cells]
 
 // Whether a signal is in the list: the filter lets it through, and it is not of a sensor
 // that is not fitted, which has no value.
 static bool is_listed(const explorer_view *view, const sample *row, int signal)
 {
-    return !(signal_table[signal].optional && isnan(signal_value(row, signal))) &&
-           filter_passes(view->filters.text[PANEL_VALUES], signal_table[signal].name);
+    const signal_info *info = &signal_table[signal];
+    if (info->optional && isnan(signal_value(row, signal))) {
+        return false;
+    }
+    return filter_passes(view->filters.text[PANEL_VALUES], info->name);
 }
 
-static void draw(const explorer_model *model, const explorer_view *view, layout *lay,
-                 screen *s, area a)
+// What the values are compared with: those at the mark, or else those of the kept run.
+typedef struct compared_values {
+    const sample *row; // NULL: with nothing
+    sample between;    // of the kept run at the same instant
+    const char *name;  // in the title
+} compared_values;
+
+static void find_compared_values(const explorer_model *model, const explorer_view *view,
+                                 compared_values *c)
 {
     const session *e = &model->session;
-    const sample *row = session_sample(e), *beside = NULL;
-    sample between;
-    const char *against = "", *filter = view->filters.text[PANEL_VALUES];
-
-    // beside the values at the mark, or else those of the kept run
+    const trace *t = &e->run.trace;
+    *c = (compared_values){.name = ""};
     if (view->mark.set) {
-        const trace *t = &e->run.trace;
-        beside = &t->rows[trace_row_on_side(t, view->mark.time, view->mark.side)];
-        against = ", minus mark";
+        c->row = &t->rows[trace_row_on_side(t, view->mark.time, view->mark.side)];
+        c->name = ", minus mark";
     } else if (e->has_other) {
-        between = trace_sample_at(&e->other.trace, row->time,
-                                  trace_side(&e->run.trace, e->row));
-        beside = &between;
-        against = ", minus old run";
+        const double time = session_sample(e)->time;
+        c->between = trace_sample_at(&e->other.trace, time, trace_side(t, e->row));
+        c->row = &c->between;
+        c->name = ", minus old run";
+    }
+}
+
+// How the columns of the list are laid out: full names and units if there is room for
+// them and the numbers.
+typedef struct value_columns {
+    int names; // width [cells]
+    bool units;
+} value_columns;
+
+static value_columns value_columns_for(int room, bool compares)
+{
+    const int numbers = compares ? 2 * NUMBER : NUMBER;
+    value_columns c = {.units = !compares || room >= NAME + numbers + UNIT};
+    c.names = room - numbers;
+    if (c.units) {
+        c.names -= UNIT;
+    }
+    return c;
+}
+
+// By how much a value differs from the other one; of a state only whether it does.
+static void draw_difference(screen *s, area a, int signal, double value, double other)
+{
+    const double size = fmax(fabs(value), fabs(other));
+    const bool differs = fabs(value - other) > 1e-6 * size;
+    number_text text = draw_number(value - other);
+    if (signal_is_state(signal)) {
+        snprintf(text.text, sizeof text.text, "%s", differs ? "other" : "same");
+    }
+    screen_print(s, a.x, a.y, NUMBER, differs ? INK_WARNING : INK_DIM, "%9s", text.text);
+}
+
+static void draw_value(screen *s, area line, int signal, const sample *row,
+                       const sample *other, value_columns columns)
+{
+    const signal_info *info = &signal_table[signal];
+    const char *name = info->name;
+    if ((int)strlen(name) >= columns.names) {
+        name = info->ascii;
+    }
+    const double value = signal_value(row, signal);
+    screen_text(s, line.x, line.y, columns.names - 1, INK_TEXT, name);
+    area rest = area_right(line, columns.names);
+    screen_print(s, rest.x, rest.y, NUMBER, INK_TITLE, "%9s", draw_number(value).text);
+    rest = area_right(rest, NUMBER);
+    if (other != NULL) {
+        draw_difference(s, rest, signal, value, signal_value(other, signal));
+        rest = area_right(rest, NUMBER);
+    }
+    if (columns.units) {
+        area_text(s, rest, INK_DIM, info->unit);
+    }
+}
+
+static void draw_values(const explorer_model *model, const explorer_view *view,
+                        layout *lay, screen *s, area a)
+{
+    const sample *row = session_sample(&model->session);
+    const char *filter = view->filters.text[PANEL_VALUES];
+    compared_values compared;
+    find_compared_values(model, view, &compared);
+
+    // those that the filter lets through
+    int listed[SIGNALS_AT_MOST], count = 0;
+    for (int i = 0; i < signal_count; i++) {
+        if (is_listed(view, row, i)) {
+            listed[count++] = i;
+        }
     }
 
     // as many as there is room for, from the line that it is scrolled to
-    int height = a.height - 2, shown = 0, line = 0;
-    for (int i = 0; i < signal_count; i++) {
-        shown += is_listed(view, row, i);
-    }
-    int first =
-        layout_keep_scroll(lay, PANEL_VALUES, shown > height ? shown - height : 0);
+    const area inside = area_inside(a);
+    const int first = layout_keep_scroll(lay, PANEL_VALUES, count - inside.height);
     layout_add_hit(lay, (hit_area){.panel = PANEL_VALUES, .area = a});
-    char title[LINE_TEXT + 64], part[32] = "";
-    if (shown > height) {
-        snprintf(part, sizeof part, ", %d-%d of %d", first + 1, first + height, shown);
+    char title[LINE_TEXT + 64];
+    snprintf(title, sizeof title, "values%s%s%s", compared.name,
+             filter[0] != '\0' ? " /" : "", filter);
+    if (count > inside.height) {
+        text_add(title, sizeof title, ", %d-%d of %d", first + 1, first + inside.height,
+                 count);
     }
-    snprintf(title, sizeof title, "values%s%s%s%s", against, filter[0] ? " /" : "",
-             filter, part);
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME, title);
-
-    // full names if there is room for them and two numbers
-    const int room = a.width - 4, numbers = beside != NULL ? 2 * NUMBER : NUMBER;
-    const bool wide = room >= NAME + numbers + UNIT;
-    const int names = room - numbers - (wide || beside == NULL ? UNIT : 0);
-    for (int i = 0; i < signal_count && line < first + height; i++) {
-        if (!is_listed(view, row, i) || line++ < first) {
-            continue;
-        }
-        const signal_info *info = &signal_table[i];
-        double value = signal_value(row, i), other = beside ? signal_value(beside, i) : 0;
-        double difference = value - other, size = fmax(fabs(value), fabs(other));
-        bool differs = beside != NULL && fabs(difference) > 1e-6 * size;
-        int y = a.y + line - first, x = a.x + 2;
-        const bool fits = (int)strlen(info->name) < names;
-        screen_text(s, x, y, names - 1, INK_TEXT, fits ? info->name : info->ascii);
-        x += names;
-        screen_print(s, x, y, NUMBER, INK_TITLE, "%9s", draw_number(value).text);
-        x += NUMBER;
-        if (beside != NULL) {
-            number_text said = draw_number(difference);
-            if (signal_is_state(i)) {
-                snprintf(said.text, sizeof said.text, "%s", differs ? "other" : "same");
-            }
-            const ink colour = differs ? INK_WARNING : INK_DIM;
-            screen_print(s, x, y, NUMBER, colour, "%9s", said.text);
-            x += NUMBER;
-        }
-        if (wide || beside == NULL) {
-            screen_text(s, x, y, a.x + a.width - 2 - x, INK_DIM, info->unit);
-        }
+    area_frame(s, a, INK_FRAME, title);
+    const value_columns columns = value_columns_for(inside.width, compared.row != NULL);
+    for (int i = first; i < count && i - first < inside.height; i++) {
+        draw_value(s, area_row(inside, i - first), listed[i], row, compared.row, columns);
     }
 }
 
-const panel values_panel = {.name = "values", .draw = draw, .wheel = WHEEL_LINES};
+const panel values_panel = {.name = "values", .draw = draw_values, .wheel = WHEEL_LINES};
 
 // --- statistics ------------------------------------------------------------------------
 // The panel of statistics: what the signals of the panes come to between the mark and the
 // cursor, or in the visible part of the run.
 
-enum { LINES = 3 }; // of a signal
+enum { SIGNAL_ROWS = 3 };
+
+static bool is_among(const int *signals, int count, int signal)
+{
+    for (int i = 0; i < count; i++) {
+        if (signals[i] == signal) {
+            return true;
+        }
+    }
+    return false;
+}
 
 // The signals of the panes that are shown, those of the pane in focus first, each once;
 // an expression has no difference.
@@ -104,17 +158,21 @@ static int find_signals(const explorer_model *model, const explorer_view *view,
     int count = 0;
     const int focused = panes_focused(&view->panes);
     const bool subtracts = model_subtracts(model);
+    if (focused < 0) {
+        return 0;
+    }
 
-    // from the pane in focus on and around, a signal of several panes once
-    for (int i = 0; i < PANES && focused >= 0; i++) {
+    // from the pane in focus on and around
+    for (int i = 0; i < PANES; i++) {
         const pane *p = &view->panes.pane[(focused + i) % PANES];
-        for (int k = 0; p->shown && k < p->count; k++) {
-            bool there = subtracts && signal_is_derived(p->signals[k]);
-            for (int j = 0; j < count; j++) {
-                there = there || signals[j] == p->signals[k];
-            }
-            if (!there) {
-                signals[count++] = p->signals[k];
+        if (!p->shown) {
+            continue;
+        }
+        for (int k = 0; k < p->count; k++) {
+            const int signal = p->signals[k];
+            const bool has_values = !subtracts || !signal_is_derived(signal);
+            if (has_values && !is_among(signals, count, signal)) {
+                signals[count++] = signal;
             }
         }
     }
@@ -134,62 +192,68 @@ static void integral_unit(const char *unit, char *text, size_t size)
     }
 }
 
-// The three lines of a signal.
-static void draw_signal(screen *s, area a, int signal, const signal_statistics *x)
+// The three rows of a signal: its name and two rows of numbers.
+static void draw_signal_statistics(screen *s, area a, int signal,
+                                   const signal_statistics *x)
 {
+    enum { UNITS = 8, WIDE = 40, MEAN_AT = 28 }; // cells
     const signal_info *info = &signal_table[signal];
-    char unit[32];
-    const number_text mean = draw_number(x->mean), integral = draw_number(x->integral);
-    integral_unit(info->unit, unit, sizeof unit);
-
-    // name, then two rows of numbers
-    screen_text(s, a.x, a.y, a.width, INK_TITLE, info->name);
+    const area first = area_row(a, 1), second = area_row(a, 2);
+    area_text(s, a, INK_TITLE, info->name);
     if (info->unit[0] != '\0') {
-        screen_print(s, a.x + a.width - 8, a.y, 8, INK_DIM, "%8s", info->unit);
+        area_print(s, area_right(a, a.width - UNITS), INK_DIM, "%8s", info->unit);
     }
-    screen_print(s, a.x, a.y + 1, a.width, INK_TEXT, " min %-9s max %s",
-                 draw_number(x->minimum).text, draw_number(x->maximum).text);
+    area_print(s, first, INK_TEXT, " min %-9s max %s", draw_number(x->minimum).text,
+               draw_number(x->maximum).text);
 
     // a state has no mean and no integral, one that is on or off the time it is on
-    if (signal_is_state(signal) && x->maximum <= 1) {
-        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " for %s s in all",
-                     integral.text);
-    } else if (!signal_is_state(signal) && a.width >= 40) {
-        screen_print(s, a.x + 28, a.y + 1, a.width - 28, INK_TEXT, "mean %s", mean.text);
-        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " rms %-9s integral %s %s",
-                     draw_number(x->rms).text, integral.text, unit);
-    } else if (!signal_is_state(signal)) {
-        screen_print(s, a.x, a.y + 2, a.width, INK_TEXT, " mean %-8s \u222b %s %s",
-                     mean.text, integral.text, unit);
+    const number_text mean = draw_number(x->mean), integral = draw_number(x->integral);
+    if (signal_is_state(signal)) {
+        if (x->maximum <= 1) {
+            area_print(s, second, INK_TEXT, " for %s s in all", integral.text);
+        }
+        return;
+    }
+    char unit[32];
+    integral_unit(info->unit, unit, sizeof unit);
+    if (a.width >= WIDE) {
+        area_print(s, area_right(first, MEAN_AT), INK_TEXT, "mean %s", mean.text);
+        area_print(s, second, INK_TEXT, " rms %-9s integral %s %s",
+                   draw_number(x->rms).text, integral.text, unit);
+    } else {
+        area_print(s, second, INK_TEXT, " mean %-8s \u222b %s %s", mean.text,
+                   integral.text, unit);
     }
 }
 
 static void draw_statistics(const explorer_model *model, const explorer_view *view,
                             layout *lay, screen *s, area a)
 {
-    int signals[PANES * PANE_SIGNALS];
-    const trace *t = model_run(model, 0).trace;
-    const int count = find_signals(model, view, signals), fit = (a.height - 3) / LINES;
-    const int first =
-        layout_keep_scroll(lay, PANEL_STATISTICS, count > fit ? count - fit : 0);
-    double from, to;
-
     // between both cursors, else what is visible
+    double from, to;
+    const char *part = "visible part,";
     view_window(model, view, &from, &to);
     if (view->mark.set) {
         from = fmin(view->mark.time, model->session.now);
         to = fmax(view->mark.time, model->session.now);
+        part = "mark and cursor,";
     }
-    screen_frame(s, a.x, a.y, a.width, a.height, INK_FRAME,
-                 "statistics (m sets the mark)");
+    const area inside = area_inside(a), below = area_below(inside, 1);
+    const char *difference = model_subtracts(model) ? "minus baseline, " : "";
+    area_frame(s, a, INK_FRAME, "statistics (m sets the mark)");
     layout_add_hit(lay, (hit_area){.panel = PANEL_STATISTICS, .area = a});
-    screen_print(s, a.x + 2, a.y + 1, a.width - 4, INK_DIM, "%s%s %.5g to %.5g s",
-                 model_subtracts(model) ? "minus baseline, " : "",
-                 view->mark.set ? "mark and cursor," : "visible part,", from, to);
-    for (int i = first; i < count && i - first < fit; i++) {
-        const signal_statistics x = trace_statistics(t, signals[i], from, to);
-        const area lines = {a.x + 2, a.y + 2 + LINES * (i - first), a.width - 4, LINES};
-        draw_signal(s, lines, signals[i], &x);
+    area_print(s, inside, INK_DIM, "%s%s %.5g to %.5g s", difference, part, from, to);
+
+    // as many signals as there is room for, from the one that it is scrolled to
+    int signals[PANES * PANE_SIGNALS];
+    const int count = find_signals(model, view, signals);
+    const int most = below.height / SIGNAL_ROWS;
+    const int first = layout_keep_scroll(lay, PANEL_STATISTICS, count - most);
+    for (int i = first; i < count && i - first < most; i++) {
+        const signal_statistics x =
+            trace_statistics(model_run(model, 0).trace, signals[i], from, to);
+        draw_signal_statistics(s, area_below(below, SIGNAL_ROWS * (i - first)),
+                               signals[i], &x);
     }
 }
 
