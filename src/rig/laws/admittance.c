@@ -39,7 +39,7 @@ typedef struct admittance_memory {
     int mode;
 } admittance_memory;
 
-static const char *tune(void *memory, const controller_setup *setup)
+static const char *admittance_tune(void *memory, const controller_setup *setup)
 {
     admittance_memory *m = memory;
     set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period,
@@ -49,7 +49,8 @@ static const char *tune(void *memory, const controller_setup *setup)
     return NULL;
 }
 
-static void sample(void *memory, const controller_input *in, controller_output *out)
+static void admittance_sample(void *memory, const controller_input *in,
+                              controller_output *out)
 {
     admittance_memory *m = memory;
     const controller_setup *r = &m->rig;
@@ -63,30 +64,37 @@ static void sample(void *memory, const controller_input *in, controller_output *
         m->mode = APPROACH;
     }
 
-    // the mass, exactly over a period; a set-point that moves takes the hub with it, and
-    // is read a little later
+    // the speed at which the damper takes up the force's error; the reading of a
+    // set-point that moves comes a little later
     set_point_follow(&m->wanted, r->period);
-    const double turn = m->mode == CONTACT ? set_point_turn(&m->wanted, r) : 0;
     const double later = (READ_LATER * r->period + r->delay) * m->wanted.rate;
-    double wanted = (m->wanted.force - later - in->force) / m->p[DAMPING];
-    double kept = m->p[MASS_TIME] > 0 ? plain_exp(-r->period / m->p[MASS_TIME]) : 0;
+    const double wanted = (m->wanted.force - later - in->force) / m->p[DAMPING];
+
+    // the mass comes to it, exactly over a period: v' = (wanted - v)/mass_time
+    const double kept = m->p[MASS_TIME] > 0 ? plain_exp(-r->period / m->p[MASS_TIME]) : 0;
     m->speed = wanted + kept * (m->speed - wanted);
-    const double speed = m->speed + turn;
+
+    // in contact a set-point that moves takes the hub with it
+    double speed = m->speed, following = 0;
+    if (m->mode == CONTACT) {
+        speed = m->speed + set_point_turn(&m->wanted, r);
+        following = set_point_torque(&m->wanted, r);
+    }
     m->angle += speed * r->period;
 
-    out->mode = m->mode;
-    out->desired_angle = m->angle;
-    out->desired_velocity = speed;
+    // position control of the hub, and what its motion and the pressed beam take
     double torque =
         m->p[KP] * (m->angle - in->encoder) + m->p[KV] * (speed - in->tachometer);
-    if (m->mode == CONTACT) {
-        torque += set_point_torque(&m->wanted, r);
-    }
+    torque += following;
     out->command = (torque + r->hub_damping * m->speed + coulomb_friction(r, m->speed) +
                     2 * r->link_length * in->force) /
                    r->torque_per_volt;
+    out->mode = m->mode;
+    out->desired_angle = m->angle;
+    out->desired_velocity = speed;
 }
 
 const controller admittance_law =
-    CONTROLLER_LAW("admittance", mode_names, table, admittance_memory, .start = tune,
-                   .sample = sample, .tune = tune);
+    CONTROLLER_LAW("admittance", mode_names, table, admittance_memory,
+                   .start = admittance_tune, .sample = admittance_sample,
+                   .tune = admittance_tune);

@@ -5,13 +5,13 @@
 // In contact the arm has one degree of freedom, theta, with the wall at theta_imp
 // (docs/explanation/control-design.md):
 //
-//     M theta'' = K u - D theta' - k_st sign(theta') + 4 k2 (theta_imp - theta) (5.13) M
-//     = I1 + 2 I + m l^2/2                                                         (5.21)
+//     M theta'' = K u - D theta' - k_st sign(theta') + 4 k2 (theta_imp - theta)    (5.13)
+//     M = I1 + 2 I + m l^2/2                                                       (5.21)
 //
 // APPROACH sends the constant command. IMPACT follows the quintic (5.15) from the state
 // at contact to rest at the angle at which the beam presses with the wanted force f,
 //
-//     theta_f = theta_imp + f l/(2 k2) (5.23)
+//     theta_f = theta_imp + f l/(2 k2)                                             (5.23)
 //
 // by the inverse of the model along it and feedback of both errors, (5.24). FORCE holds
 // theta_f with the static torque 2 f l in advance, (5.25). Printed coefficients have 6
@@ -72,7 +72,8 @@ typedef struct hybrid_memory {
     bool replans;       // t_f has changed since
     double planned;     // force at its end [N]
     double start_angle; // at the first sample [rad]
-    bool started, reversed;
+    bool started;       // the first sample is over
+    bool reversed;      // bang-bang has braked until the hub rested
     int readings_without_contact;
 } hybrid_memory;
 
@@ -115,7 +116,8 @@ static const char *hybrid_start_with_own(void *memory, const controller_setup *s
 // counted right (errata B2) [N m/rad].
 static double contact_stiffness(const hybrid_memory *m)
 {
-    return (m->printed ? 6 : 4) * m->rig.k2;
+    const double factor = m->printed ? 6 : 4;
+    return factor * m->rig.k2;
 }
 
 // Torque of the beam's spring on the hub at an angle.
@@ -155,12 +157,17 @@ static double contact_acceleration(const hybrid_memory *m, double angle, double 
 static double hybrid_calculated_force(const hybrid_memory *m, const controller_input *in)
 {
     const controller_setup *r = &m->rig;
-    double eps2 = r->link_length * r->link_length / 4;
-    double mass_term = r->link_mass * eps2 + (m->printed ? 0 : r->link_inertia);
-    // corrected: link 3 turns back about a joint that moves on: (m l^2/2 - m l^2/4 - I3)
-    double coupling = m->printed ? mass_term : 2 * r->link_mass * eps2 - mass_term;
-    double acceleration =
+    const double eps2 = r->link_length * r->link_length / 4;
+    const double acceleration =
         contact_acceleration(m, in->encoder, in->tachometer, in->voltage);
+
+    // corrected: link 3 turns back about a joint that moves on, m l^2/2 - m l^2/4 - I3
+    double coupling;
+    if (m->printed) {
+        coupling = r->link_mass * eps2;
+    } else {
+        coupling = 2 * r->link_mass * eps2 - (r->link_mass * eps2 + r->link_inertia);
+    }
     return (2 * r->k2 * (in->encoder - r->wall_angle) - coupling * acceleration) /
            r->link_length;
 }
@@ -180,7 +187,7 @@ static double feedback(const hybrid_memory *m, double angle_error, double veloci
 
 // The coefficients of the quintic (5.15) that lead it to rest at the final angle from
 // what the first three say of its start: the solution of (5.18)-(5.20).
-static void lead_to_end(hybrid_memory *m)
+static void set_quintic_end(hybrid_memory *m)
 {
     const double T = m->length, way = pressing_angle(m, m->planned) - m->a[0];
     const double velocity = m->a[1], acceleration = 2 * m->a[2];
@@ -193,7 +200,7 @@ static void lead_to_end(hybrid_memory *m)
 
 // Plans from the present state and command on, so that the command goes on from where it
 // is.
-static void plan(hybrid_memory *m, const controller_input *in, double length)
+static void plan_quintic(hybrid_memory *m, const controller_input *in, double length)
 {
     m->begun = in->time;
     m->length = length;
@@ -201,12 +208,12 @@ static void plan(hybrid_memory *m, const controller_input *in, double length)
     m->a[0] = in->encoder;
     m->a[1] = in->tachometer;
     m->a[2] = contact_acceleration(m, in->encoder, in->tachometer, in->voltage) / 2;
-    lead_to_end(m);
+    set_quintic_end(m);
 }
 
 // The impact angle that a sample's readings show, NaN where the sensor is not fitted
 // [rad].
-static double angle_shown(const hybrid_memory *m, const controller_input *in)
+static double impact_angle_shown(const hybrid_memory *m, const controller_input *in)
 {
     if ((int)m->p[IMPACT_ANGLE] == ANGLE_BY_FILM) {
         return in->encoder + in->film / 2;
@@ -222,17 +229,21 @@ static double angle_shown(const hybrid_memory *m, const controller_input *in)
 // Averages what the first readings of the impact mode show; the trajectory's end goes
 // with it. The accelerometer is off scale at the impact and lags behind it for a while,
 // the film loses its charge.
-static void follow_angle(hybrid_memory *m, const controller_input *in)
+static void average_impact_angle(hybrid_memory *m, const controller_input *in)
 {
     const double lag = 0.01, window = 0.1; // [s]
     const int source = (int)m->p[IMPACT_ANGLE];
-    double time = in->time - m->since, from = source == ANGLE_BY_ACCELEROMETER ? lag : 0;
-    bool tells = source != ANGLE_TOLD && time >= from && time <= window;
-    double shown = tells ? angle_shown(m, in) : (double)NAN;
+    const double time = in->time - m->since;
+    const double from = source == ANGLE_BY_ACCELEROMETER ? lag : 0;
+    if (source == ANGLE_TOLD || time < from || time > window) {
+        return;
+    }
+
+    const double shown = impact_angle_shown(m, in);
     if (!isnan(shown)) {
         m->readings++;
         m->impact_angle += (shown - m->impact_angle) / m->readings;
-        lead_to_end(m);
+        set_quintic_end(m);
     }
 }
 
@@ -242,17 +253,17 @@ static void hybrid_begin(hybrid_memory *m, int mode, const controller_input *in)
     m->since = in->time;
     if (mode == IMPACT) {
         m->readings = 0;
-        plan(m, in, m->p[TRANSITION]);
+        plan_quintic(m, in, m->p[TRANSITION]);
     }
 }
 
 // Plans anew for what is left of the transition, if that is more than a sample.
-static void plan_again(hybrid_memory *m, const controller_input *in)
+static void replan(hybrid_memory *m, const controller_input *in)
 {
     const double left = m->since + m->p[TRANSITION] - in->time;
     m->replans = false;
     if (left > m->rig.period) {
-        plan(m, in, left);
+        plan_quintic(m, in, left);
     }
 }
 
@@ -267,8 +278,9 @@ static bool hybrid_held(hybrid_memory *m, const controller_input *in)
 }
 
 // The command that gives a torque and feeds the errors of angle and velocity back [V].
-static double follow(const hybrid_memory *m, const controller_input *in,
-                     controller_output *out, double angle, double velocity, double torque)
+static double tracking_command(const hybrid_memory *m, const controller_input *in,
+                               controller_output *out, double angle, double velocity,
+                               double torque)
 {
     out->desired_angle = angle;
     out->desired_velocity = velocity;
@@ -295,7 +307,7 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
     // the model's torque along the plan, (5.24)
     double torque = m->rig.hub_damping * velocity + coulomb_friction(&m->rig, velocity) -
                     spring_torque(m, angle) + contact_inertia(m) * acceleration;
-    return follow(m, in, out, angle, velocity, torque);
+    return tracking_command(m, in, out, angle, velocity, torque);
 }
 
 // Force mode: PD round the final angle with the static torque in advance, (5.25); while
@@ -304,21 +316,25 @@ static double impact_command(const hybrid_memory *m, const controller_input *in,
 static double hybrid_force_command(const hybrid_memory *m, const controller_input *in,
                                    controller_output *out)
 {
-    double torque = (m->printed ? 3 : 2) * m->wanted.force * m->rig.link_length;
+    const double factor = m->printed ? 3 : 2;
+    double torque = factor * m->wanted.force * m->rig.link_length;
     torque += set_point_torque(&m->wanted, &m->rig);
-    return follow(m, in, out, pressing_angle(m, m->wanted.force),
-                  set_point_turn(&m->wanted, &m->rig), torque);
+    return tracking_command(m, in, out, pressing_angle(m, m->wanted.force),
+                            set_point_turn(&m->wanted, &m->rig), torque);
 }
 
 // What begins a sample: approach ends with contact, the impact mode after a time [s].
 static void choose_mode(hybrid_memory *m, const controller_input *in, double impact_time)
 {
     set_point_follow(&m->wanted, m->rig.period);
-    bool chooses = !hybrid_held(m, in), waits = m->mode == APPROACH || m->mode == RECOVER;
-    if (chooses && waits && in->force > m->p[THRESHOLD]) {
+    if (hybrid_held(m, in)) {
+        return;
+    }
+    const bool waits = m->mode == APPROACH || m->mode == RECOVER;
+    if (waits && in->force > m->p[THRESHOLD]) {
         hybrid_begin(m, IMPACT, in);
     }
-    if (chooses && m->mode == IMPACT && in->time - m->since >= impact_time) {
+    if (m->mode == IMPACT && in->time - m->since >= impact_time) {
         hybrid_begin(m, FORCE, in);
     }
 }
@@ -330,10 +346,10 @@ static double hybrid_command(hybrid_memory *m, const controller_input *in,
 {
     choose_mode(m, in, m->p[TRANSITION]);
     if (m->replans && m->mode == IMPACT) {
-        plan_again(m, in);
+        replan(m, in);
     }
     if (m->mode == IMPACT) {
-        follow_angle(m, in);
+        average_impact_angle(m, in);
     }
 
     out->mode = m->mode;
@@ -399,10 +415,13 @@ static void recovering_sample(void *memory, const controller_input *in,
     if (!hybrid_held(m, in) && pressing && m->readings_without_contact >= lost) {
         hybrid_begin(m, RECOVER, in);
     }
-    // a slow move towards the angle at which the beam would press
-    double speed = fmin(0.3, 5 * (pressing_angle(m, m->p[FORCE_WANTED]) - in->encoder));
-    double approach =
-        m->mode == RECOVER ? hybrid_speed_command(m, in, speed) : m->p[APPROACH_VOLTAGE];
+
+    // back to the wall by a slow move towards the angle at which the beam would press
+    double approach = m->p[APPROACH_VOLTAGE];
+    if (m->mode == RECOVER) {
+        const double way = pressing_angle(m, m->p[FORCE_WANTED]) - in->encoder;
+        approach = hybrid_speed_command(m, in, fmin(0.3, 5 * way));
+    }
     out->command = hybrid_command(m, in, out, approach);
 }
 
@@ -517,14 +536,12 @@ static void bang_bang_sample(void *memory, const controller_input *in,
     double gone = in->encoder - m->start_angle, way = m->rig.wall_angle - m->start_angle;
     if (gone >= m->p[OWN] * way) {
         m->reversed = m->reversed || in->tachometer <= 0;
-        if (m->reversed) {
-            approach = m->p[APPROACH_VOLTAGE];
-        } else {
-            approach = -limit;
-        }
+        approach = -limit;
     }
-    out->command =
-        hybrid_command(m, in, out, m->reversed ? m->p[APPROACH_VOLTAGE] : approach);
+    if (m->reversed) {
+        approach = m->p[APPROACH_VOLTAGE];
+    }
+    out->command = hybrid_command(m, in, out, approach);
 }
 
 const controller bang_bang_law =

@@ -7,13 +7,14 @@
 // The point goes with the speed that the approach's voltage holds from where the arm
 // starts to
 //
-//     theta_e = theta_f + 2 f l/k,      theta_f = theta_imp + f l/(2 k2) (5.23)
+//     theta_e = theta_f + 2 f l/k
+//     theta_f = theta_imp + f l/(2 k2)                                             (5.23)
 //
 // where spring and beam balance with the wanted force f. It uses no force reading: k sets
 // how much a wrong wall or stiffness changes f, namely by k/(k + 4 k2) of the error under
-// a hard position control. The damper makes the arm in contact critical, d = 2 sqrt(M (k
-// + 4 k2)) with M = I1 + 2 I
-// + m l^2/2.
+// a hard position control. The damper makes the arm in contact critical,
+//
+//     d = 2 sqrt(M (k + 4 k2)) - D,      M = I1 + 2 I + m l^2/2
 #include <math.h>
 #include <string.h>
 
@@ -42,7 +43,7 @@ typedef struct impedance_memory {
     int mode;
 } impedance_memory;
 
-static const char *tune(void *memory, const controller_setup *setup)
+static const char *impedance_tune(void *memory, const controller_setup *setup)
 {
     impedance_memory *m = memory;
     set_point_tell(&m->wanted, setup->parameters[FORCE_WANTED], setup->period,
@@ -59,44 +60,51 @@ static const char *tune(void *memory, const controller_setup *setup)
     return NULL;
 }
 
-static void sample(void *memory, const controller_input *in, controller_output *out)
+static void impedance_sample(void *memory, const controller_input *in,
+                             controller_output *out)
 {
     impedance_memory *m = memory;
     const controller_setup *r = &m->rig;
-    set_point_follow(&m->wanted, r->period);
-    const double k = m->p[STIFFNESS], torque = 2 * m->wanted.force * r->link_length;
-    const double end = r->wall_angle + torque / (4 * r->k2) + torque / k;
     if (!m->started) {
         m->started = true;
         m->point = in->encoder;
     }
-    if (m->mode == CONTACT || in->force > m->p[THRESHOLD]) {
+    if (in->force > m->p[THRESHOLD]) {
         m->mode = CONTACT;
-    } else {
-        m->mode = APPROACH;
     }
 
-    // the point moves on until it is where it belongs, and then goes with that
-    double step = m->speed * r->period, left = end - m->point;
-    bool moves = !m->arrived && step * left > 0 && fabs(step) < fabs(left);
-    double rate = moves ? m->speed : set_point_turn(&m->wanted, r);
-    m->arrived = !moves;
+    // where the point belongs: theta_e = theta_imp + 2 f l (1/(4 k2) + 1/k)
+    set_point_follow(&m->wanted, r->period);
+    const double k = m->p[STIFFNESS], torque = 2 * m->wanted.force * r->link_length;
+    const double end = r->wall_angle + torque / (4 * r->k2) + torque / k;
+
+    // it moves on until it is there, and then goes with that
+    const double step = m->speed * r->period, left = end - m->point;
+    const bool moves = !m->arrived && step * left > 0 && fabs(step) < fabs(left);
+    double rate, drag, friction;
     if (moves) {
         m->point = m->point + step;
+        rate = m->speed;
+        drag = r->hub_damping * rate;
+        friction = coulomb_friction(r, rate);
     } else {
+        m->arrived = true;
         m->point = end;
+        rate = set_point_turn(&m->wanted, r);
+        drag = set_point_torque(&m->wanted, r);
+        friction = 0;
     }
 
+    // spring and damper, and what the point's own motion takes
+    out->command = (k * (m->point - in->encoder) + m->damping * (rate - in->tachometer) +
+                    drag + friction) /
+                   r->torque_per_volt;
     out->mode = m->mode;
     out->desired_angle = m->point;
     out->desired_velocity = rate;
-    const double turning =
-        moves ? r->hub_damping * rate : set_point_torque(&m->wanted, r);
-    out->command = (k * (m->point - in->encoder) + m->damping * (rate - in->tachometer) +
-                    turning + (moves ? coulomb_friction(r, rate) : 0)) /
-                   r->torque_per_volt;
 }
 
 const controller impedance_law =
-    CONTROLLER_LAW("impedance", mode_names, table, impedance_memory, .start = tune,
-                   .sample = sample, .tune = tune);
+    CONTROLLER_LAW("impedance", mode_names, table, impedance_memory,
+                   .start = impedance_tune, .sample = impedance_sample,
+                   .tune = impedance_tune);

@@ -35,7 +35,13 @@ static inline controller_setup setup_kept(const controller_setup *setup)
 // Coulomb friction of a hub that moves at a rate [rad/s] [N m].
 static inline double coulomb_friction(const controller_setup *setup, double rate)
 {
-    return rate > 0 ? setup->stiction : rate < 0 ? -setup->stiction : 0;
+    if (rate > 0) {
+        return setup->stiction;
+    }
+    if (rate < 0) {
+        return -setup->stiction;
+    }
+    return 0;
 }
 
 // A wanted force that changes, as it is told, and a smooth one that follows it: in a step
@@ -46,48 +52,63 @@ typedef struct set_point {
     double aim;                       // [N]
     double rise;                      // since the sample before [N]
     double seen_rate, aim_rate;       // by two samples, of a step none; smoothed [N/s]
-    bool told;                        // since the last sample
+    bool changed;                     // since the last sample
     double force, rate, acceleration; // of what follows [N], [N/s], [N/s2]
 } set_point;
 
 #define SET_POINT_RATE 40.0 // of following, w [1/s]
 
-// The wanted force at the start, or anew; of a step the two samples round it tell no
-// rate.
+// Gives the set-point a wanted force [N], at the start or later.
 static inline void set_point_tell(set_point *s, double force, double period,
                                   bool at_start)
 {
-    const double before = s->rise;
-    s->rise = at_start ? 0 : force - s->aim;
-    s->told = !at_start;
-    s->aim = force;
-    s->seen_rate = before * s->rise > 0
-                       ? copysign(fmin(fabs(before), fabs(s->rise)), s->rise) / period
-                       : 0;
-    s->force = at_start ? force : s->force;
-}
-
-// At a sample: since the one before e = force - aim has died away further, e'' + 2 w e' +
-// w^2 e = 0.
-static inline void set_point_follow(set_point *s, double period)
-{
-    if (!s->told) {
+    if (at_start) {
+        s->aim = s->force = force;
         s->rise = s->seen_rate = 0;
-    }
-    s->told = false;
-    const double w = SET_POINT_RATE, decay = plain_exp(-w * period);
-    s->aim_rate = s->seen_rate + decay * (s->aim_rate - s->seen_rate);
-    const double falls = s->rate - s->aim_rate;
-    const double e = s->force - (s->aim - s->aim_rate * period);
-    if (e == 0 && falls == 0) {
+        s->changed = false;
         return;
     }
-    const double both = falls + w * e;
-    const double left = (e + both * period) * decay,
-                 rate = (falls - w * both * period) * decay;
-    s->force = s->aim + left;
+    const double rise_before = s->rise;
+    s->rise = force - s->aim;
+    s->aim = force;
+    s->changed = true;
+
+    // two changes the same way are a rate, by the smaller of them; one alone is a step
+    s->seen_rate = 0;
+    if (rise_before * s->rise > 0) {
+        const double change = fmin(fabs(rise_before), fabs(s->rise));
+        s->seen_rate = copysign(change, s->rise) / period;
+    }
+}
+
+// At a sample: over the period before it the error e = force - aim died away as
+//
+//     e'' + 2 w e' + w^2 e = 0,    e(t) = (e0 + (e0' + w e0) t) exp(-w t)
+static inline void set_point_follow(set_point *s, double period)
+{
+    const double w = SET_POINT_RATE, decay = plain_exp(-w * period);
+
+    // the rate of the aim, smoothed; one that has not changed has none
+    if (!s->changed) {
+        s->rise = s->seen_rate = 0;
+    }
+    s->changed = false;
+    s->aim_rate = s->seen_rate + decay * (s->aim_rate - s->seen_rate);
+
+    // the error and its rate a period ago
+    const double error_before = s->force - (s->aim - s->aim_rate * period);
+    const double rate_before = s->rate - s->aim_rate;
+    if (error_before == 0 && rate_before == 0) {
+        return;
+    }
+
+    // and what is left of them
+    const double slope = rate_before + w * error_before;
+    const double error = (error_before + slope * period) * decay;
+    const double rate = (rate_before - w * slope * period) * decay;
+    s->force = s->aim + error;
     s->rate = s->aim_rate + rate;
-    s->acceleration = -w * (2 * rate + w * left);
+    s->acceleration = -w * (2 * rate + w * error);
 }
 
 // Inertia of the arm in contact, M = I1 + 2 I + m l^2/2 [kg m2].

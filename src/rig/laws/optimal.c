@@ -402,7 +402,7 @@ static double hold(optimal_memory *m, const controller_input *in)
     // this force implies
     bool wanted = in->wanted_mode == HOLD;
     const double differs = fabs(m->held_force - m->force);
-    if (!wanted && (m->wanted.told || differs > 0.05 + 0.05 * m->force)) {
+    if (!wanted && (m->wanted.changed || differs > 0.05 + 0.05 * m->force)) {
         m->mode = PRESS;
         if (!m->flies) {
             m->e.z[PRESSED_WALL] = in->encoder - m->held_force / m->spring_force;
@@ -440,7 +440,7 @@ static double press(optimal_memory *m, const controller_input *in)
     double velocity = z[PRESSED_RATE];
     bool rests = fabs(velocity) < 0.02;
     bool wanted = in->wanted_mode == PRESS;
-    if (!wanted && !m->wanted.told && rests &&
+    if (!wanted && !m->wanted.changed && rests &&
         fabs(error) * m->spring_force < tolerance) {
         begin_hold(m, x);
         return m->hold_command;
