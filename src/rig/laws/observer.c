@@ -76,13 +76,13 @@ typedef struct observer_memory {
     observer_arms arms;
     smooth_approach plan;
     quickest_touch quickest; // in place of that, where the wall is not in doubt,
-    bool hurries;            // until the tip is there
+    bool in_least_time;      // until the tip is there
     force_rise rise;         // of the first mode in contact
     int mode;
     bool started;
     int felt;            // readings in a row that showed contact
-    double moved;        // change of the set-point since the sample before [N]
-    double ahead;        // of a set-point that goes on moving is aimed at [N]
+    double force_change; // change of the set-point since the sample before [N]
+    double lead_force;   // by which a set-point that keeps moving is led [N]
     double force_rate;   // of a set-point that moves from sample to sample [N/s]
     double correction;   // of the force aimed at: what the estimated force is above the
                          // reading [N]
@@ -93,7 +93,7 @@ typedef struct observer_memory {
     int losses;          // of contacts in a row that were brief
     double away;         // for how long no force has been felt [s]
     double touched;      // encoder at the last touch [rad]
-    double way;          // that the hub is to have made since [rad]
+    double hub_way;      // that the hub is to have made since [rad]
     double integral;     // of the force error [N]
 } observer_memory;
 
@@ -109,7 +109,7 @@ static const arm_observer *observer_of(const observer_memory *m)
     return observer_arms_observer(&m->arms);
 }
 
-static const char *start(void *memory, const controller_setup *setup)
+static const char *observer_start(void *memory, const controller_setup *setup)
 {
     observer_memory *m = memory;
     m->rig = setup_kept(setup);
@@ -124,8 +124,8 @@ static const char *start(void *memory, const controller_setup *setup)
                           .stopping_force = limit > 0 ? fmin(limit, force) : force,
                           .approach_voltage = m->p[APPROACH_VOLTAGE]};
     const char *refusal = observer_arms_init(&m->arms, setup, &task);
-    m->hurries = refusal == NULL && !(m->p[WALL_DOUBT] > 0);
-    if (m->hurries) {
+    m->in_least_time = refusal == NULL && !(m->p[WALL_DOUBT] > 0);
+    if (m->in_least_time) {
         quickest_touch_init(&m->quickest, design_of(m));
     }
     return refusal;
@@ -143,13 +143,13 @@ static bool same_rig(const controller_setup *a, const controller_setup *b)
 }
 
 // The force and its limits may change; what the observers are designed for may not.
-static const char *tune(void *memory, const controller_setup *setup)
+static const char *observer_tune(void *memory, const controller_setup *setup)
 {
     observer_memory *m = memory;
     if (!same_rig(&m->rig, setup)) {
         return "it takes its model and its rate at the start only";
     }
-    m->moved += setup->parameters[FORCE_WANTED] - m->p[FORCE_WANTED];
+    m->force_change += setup->parameters[FORCE_WANTED] - m->p[FORCE_WANTED];
     m->rig.voltage_limit = setup->voltage_limit;
     memcpy(m->p, setup->parameters, sizeof m->p);
     return NULL;
@@ -181,15 +181,14 @@ static double landing_speed(const observer_memory *m, const estimator *e)
 
 // Lands softly: takes the vibration out of the arm, so that all of it turns towards the
 // wall.
-static double land(const observer_memory *m, const estimator *e)
+static double landing_command(const observer_memory *m, const estimator *e)
 {
     const arm_observer *o = observer_of(m);
     const mode_set *set = &o->arm.free;
-    const double *gain = design_of(m)->land_gain, speed = landing_speed(m, e);
-    const double rate = arm_observer_rate(o, e), stiction = m->rig.stiction;
     const int n = set->count;
 
-    // feedback of all deviations but the angle's
+    // feedback of all deviations from a turn at the landing speed but the angle's
+    const double *gain = design_of(m)->land_gain, speed = landing_speed(m, e);
     double torque = 0;
     for (int i = 0; i < n; i++) {
         const double off = i > 0 ? -e->z[i] : 0;
@@ -198,6 +197,7 @@ static double land(const observer_memory *m, const estimator *e)
     torque *= m->rig.torque_per_volt;
 
     // what friction takes of it; of a hub at rest no more than there is
+    const double rate = arm_observer_rate(o, e), stiction = m->rig.stiction;
     const double share = fabs(rate) > REST ? rate / REST : torque / stiction;
     torque += m->rig.hub_damping * speed - e->z[arm_observer_torque_index(o)] +
               stiction * fmax(-1, fmin(share, 1));
@@ -210,33 +210,37 @@ static double land(const observer_memory *m, const estimator *e)
 
 // Keeps the arm to the plan: the torque it takes, and feedback of all deviations but the
 // angle.
-static double travel(observer_memory *m, const estimator *e)
+static double travel_command(observer_memory *m, const estimator *e)
 {
     const arm_observer *o = observer_of(m);
+    const observer_design *design = design_of(m);
     const mode_set *set = &o->arm.free;
     const int n = set->count;
-    smooth_approach_slow(&m->plan, design_of(m), arm_observer_tip(o, e),
-                         e->z[0] / set->momentum[0]);
-    double speed = smooth_approach_speed(&m->plan, design_of(m)), hub_speed = 0,
-           feedback = 0;
 
-    // all deviations but the angle's
+    // near the wall the plan slows down
+    smooth_approach_slow(&m->plan, design, arm_observer_tip(o, e),
+                         e->z[0] / set->momentum[0]);
+    const double speed = smooth_approach_speed(&m->plan, design);
+
+    // all deviations from it but the angle's
+    const double *gain = design->travel_gain, *planned = m->plan.state;
+    double hub_speed = 0, feedback = 0;
     for (int i = 0; i < n; i++) {
-        hub_speed += set->hub[i] * m->plan.state[n + i];
-        feedback +=
-            design_of(m)->travel_gain[i] * (m->plan.state[i] - e->z[i]) +
-            design_of(m)->travel_gain[n + i] * (m->plan.state[n + i] - e->z[n + i]);
+        hub_speed += set->hub[i] * planned[n + i];
+        feedback += gain[i] * (planned[i] - e->z[i]) +
+                    gain[n + i] * (planned[n + i] - e->z[n + i]);
     }
 
-    // and what the plan takes
-    double torque = m->rig.hub_damping * hub_speed - e->z[arm_observer_torque_index(o)] +
-                    friction_ahead(m, arm_observer_rate(o, e), fmax(speed, hub_speed)) +
-                    smooth_approach_follow(&m->plan, design_of(m));
+    // and the torque that it takes
+    const double torque =
+        m->rig.hub_damping * hub_speed - e->z[arm_observer_torque_index(o)] +
+        friction_ahead(m, arm_observer_rate(o, e), fmax(speed, hub_speed)) +
+        smooth_approach_follow(&m->plan, design);
     return limited(m, torque / m->rig.torque_per_volt + feedback);
 }
 
 // Comes to the wall in the least time; by the usual approach where no such plan exists.
-static double hurry(observer_memory *m, const estimator *e)
+static double least_time_command(observer_memory *m, const estimator *e)
 {
     const controller_setup *r = &m->rig;
     const double volts = fmin(fabs(m->p[APPROACH_VOLTAGE]), r->voltage_limit);
@@ -249,12 +253,12 @@ static double hurry(observer_memory *m, const estimator *e)
                                 .high = drift + most,
                                 .wall = r->wall_angle,
                                 .force = m->p[FORCE_WANTED]};
-    m->hurries = most > 0 && quickest_touch_plan(&m->quickest, &task);
-    if (m->hurries) {
+    m->in_least_time = most > 0 && quickest_touch_plan(&m->quickest, &task);
+    if (m->in_least_time) {
         return limited(m,
                        (quickest_touch_next(&m->quickest) - drift) / r->torque_per_volt);
     }
-    return travel(m, e);
+    return travel_command(m, e);
 }
 
 // Rate with which a wrong force in contact runs away, at the stiffness that the readings
@@ -290,16 +294,20 @@ static double least_share(const observer_memory *m)
 static double within_force(const observer_memory *m, const estimator *e, double command)
 {
     const arm_observer *o = observer_of(m);
-    double per_volt = arm_observer_force_per_torque(o) * m->rig.torque_per_volt;
-    double stopping = stopping_force(m, e), wanted = m->p[FORCE_WANTED];
-    double least =
+    const double per_volt = arm_observer_force_per_torque(o) * m->rig.torque_per_volt;
+    const double stopping = stopping_force(m, e), wanted = m->p[FORCE_WANTED];
+
+    // between what keeps the tip at the wall and the limit, or what stops the motion
+    const double least =
         fmax(0, fmin(OBSERVER_LEAST_FORCE * wanted, least_share(m) * stopping));
     double most = m->p[FORCE_LIMIT] > 0 ? m->p[FORCE_LIMIT] : HUGE_VAL;
     if (stopping > most) {
         most = 2 * stopping - wanted;
     }
+
+    // the force at once falls by per_volt for each volt: braking presses
     if (-per_volt * m->rig.voltage_limit > least) {
-        double force = arm_observer_force(o, e, m->rig.torque_per_volt * command);
+        const double force = arm_observer_force(o, e, m->rig.torque_per_volt * command);
         command += (fmax(least, fmin(force, most)) - force) / per_volt;
     }
     return limited(m, command);
@@ -317,17 +325,18 @@ static void plan_rise(observer_memory *m, double time, double coordinate, double
                       double force)
 {
     const double limit = m->p[FORCE_LIMIT], stopped = coordinate + rate / divergence(m);
+    const double least = mode_at_rest(m, OBSERVER_LEAST_FORCE * force);
     const force_rise_task task = {
         .coordinate = coordinate,
         .rate = rate,
         .divergence = divergence(m),
         .end = mode_at_rest(m, force),
-        .least = fmax(0, fmin(mode_at_rest(m, OBSERVER_LEAST_FORCE * force),
-                              least_share(m) * stopped)),
+        .least = fmax(0, fmin(least, least_share(m) * stopped)),
         .most = limit > 0 ? mode_at_rest(m, limit) : HUGE_VAL,
         .time = time,
     };
-    // no force is wanted: nothing rises
+
+    // where no force is wanted nothing rises
     if (task.end > 0) {
         m->rise = force_rise_begin(&task);
     } else {
@@ -342,37 +351,46 @@ static void begin_rise(observer_memory *m, double time)
     plan_rise(m, time, o->e.z[0], o->e.z[o->arm.contact.count], m->p[FORCE_WANTED]);
 }
 
-// Follows a set-point that changes in contact. The way goes on from where it is to the
-// new force; of a plan made anew at every sample the force is 2 r/s behind a set-point
-// with the rate r, which is aimed at in advance, with a lag of a quarter of that time
-// lest quick waves be amplified without bound.
-static void follow_setpoint(observer_memory *m, double time)
+// Force by which a set-point that keeps moving is led [N]. Of a plan that is made again
+// at every sample the force is 2 r/s behind a set-point with the rate r; what is aimed at
+// in advance comes to that with a lag of a quarter of that time, lest quick waves be
+// amplified without bound.
+static void lead_setpoint(observer_memory *m, bool keeps_moving)
 {
-    const double before = m->p[FORCE_WANTED] - m->moved, period = m->rig.period;
-    const bool goes_on = m->moved != 0 && m->force_rate != 0;
-    if (m->moved == 0 && m->force_rate == 0) {
+    if (!keeps_moving) {
+        m->lead_force = 0;
         return;
     }
+    const double lead = 2 / divergence(m), share = fmin(1, 4 * m->rig.period / lead);
+    m->lead_force += share * (lead * m->force_rate - m->lead_force);
+}
 
-    // one change by itself is a step
+// Follows a set-point that changes in contact: the way goes on from where it is to the
+// new force. One change by itself is a step.
+static void follow_setpoint(observer_memory *m, double time)
+{
+    if (m->force_change == 0 && m->force_rate == 0) {
+        return;
+    }
+    const bool keeps_moving = m->force_change != 0 && m->force_rate != 0;
+
+    // where the way is, or where it rests under the force before
+    const double before = m->p[FORCE_WANTED] - m->force_change;
     double way[3] = {mode_at_rest(m, before + m->correction), 0, 0};
     if (force_rise_moves(&m->rise, time)) {
         force_rise_at(&m->rise, time, way);
     }
-    m->force_rate = m->moved / period;
-    const double lead = 2 / divergence(m), share = fmin(1, 4 * period / lead);
-    if (goes_on) {
-        m->ahead = m->ahead + share * (lead * m->force_rate - m->ahead);
-    } else {
-        m->ahead = 0;
-    }
+
+    // and from there to the new force
+    m->force_rate = m->force_change / m->rig.period;
+    m->force_change = 0;
+    lead_setpoint(m, keeps_moving);
     plan_rise(m, time, way[0], way[1],
-              fmax(0, m->p[FORCE_WANTED] + m->correction + m->ahead));
-    if (goes_on) {
-        m->rise.time = fmax(m->rise.time, 2 * period);
+              fmax(0, m->p[FORCE_WANTED] + m->correction + m->lead_force));
+    if (keeps_moving) {
+        m->rise.time = fmax(m->rise.time, 2 * m->rig.period);
     }
     m->mode = PRESS;
-    m->moved = 0;
 }
 
 // Force with which the beam presses where the hub is [N].
@@ -403,7 +421,7 @@ static double friction_pressing(const observer_memory *m, const estimator *e, do
 
 // Keeps the arm to the rise and then at rest: the first mode on its way, the others as
 // its torque bends them.
-static double press(const observer_memory *m, const estimator *e, double time)
+static double press_command(const observer_memory *m, const estimator *e, double time)
 {
     const arm_observer *o = observer_of(m);
     const mode_set *set = &o->arm.contact;
@@ -419,14 +437,20 @@ static double press(const observer_memory *m, const estimator *e, double time)
     double torque = (way[2] + arm_observer_square(o, 0) * way[0]) / set->hub[0];
 
     // the others stand as that torque bends them
-    double feedback = 0, hub_rate = set->hub[0] * way[1];
+    const double *gain = design_of(m)->press_gain;
+    double feedback = 0;
     for (int i = 0; i < n; i++) {
-        double wanted = i == 0 ? way[0] : set->hub[i] * torque / set->square[i];
-        double off = wanted - e->z[i], off_rate = (i == 0 ? way[1] : 0) - e->z[n + i];
-        feedback += design_of(m)->press_gain[i] * off +
-                    design_of(m)->press_gain[n + i] * off_rate;
+        double wanted = set->hub[i] * torque / set->square[i], wanted_rate = 0;
+        if (i == 0) {
+            wanted = way[0];
+            wanted_rate = way[1];
+        }
+        feedback +=
+            gain[i] * (wanted - e->z[i]) + gain[n + i] * (wanted_rate - e->z[n + i]);
     }
 
+    // friction, and the torque that the model does not know of
+    const double hub_rate = set->hub[0] * way[1];
     torque += m->rig.hub_damping * hub_rate - e->z[arm_observer_torque_index(o)] +
               friction_pressing(m, e, aim, hub_rate, moves);
     return within_force(m, e, torque / m->rig.torque_per_volt + feedback);
@@ -439,35 +463,44 @@ static double press(const observer_memory *m, const estimator *e, double time)
 // has gained; an integral of the force error does the rest. Damper and spring are those
 // of an arm damped at 0.7 of the critical, as far as the lag of the loop leaves them
 // phase.
-static double catch_tip(observer_memory *m, const controller_input *in)
+static double catch_command(observer_memory *m, const controller_input *in)
 {
     const controller_setup *r = &m->rig;
     const arm_observer *o = observer_of(m);
-    const double h = o->arm.contact.hub[0], length = o->arm.length,
-                 force = m->p[FORCE_WANTED];
+    const double length = o->arm.length, force = m->p[FORCE_WANTED];
+
+    // inertia and stiffness of the first mode at the hub
+    const double h = o->arm.contact.hub[0];
     const double inertia = 1 / (h * h), arm = inertia * arm_observer_square(o, 0);
+
+    // damper and spring
     const double damping =
         fmin(2 * sqrt(inertia * arm), inertia / (PHASE_LOST * (r->period + r->delay)));
     const double spring = fmax(0, fmin(arm, damping * damping / (2 * inertia) - arm));
 
-    // the way, and at its end the integral, which cannot wind up beyond what friction and
-    // a wrong model explain
-    const double end = force * length / arm, left = end - m->way;
-    const double rate = fmin(CATCH_SPEED * end + CATCH_GROWTH * m->way, left / CATCH_END);
-    m->way += rate * r->period;
+    // the way to where the arm presses with the force
+    const double end = force * length / arm, left = end - m->hub_way;
+    const double rate =
+        fmin(CATCH_SPEED * end + CATCH_GROWTH * m->hub_way, left / CATCH_END);
+    const bool near_end = left < 0.1 * end;
+    m->hub_way += rate * r->period;
+
+    // at its end the integral, which cannot wind up beyond what friction and a wrong
+    // model explain
     m->mean_force +=
         fmin(1, r->period / CATCH_MEAN) * (fmin(in->force, 2 * force) - m->mean_force);
     const double off = force - m->mean_force;
-    if (left < 0.1 * end && fabs(off) > HOLD_WITHIN * force + HOLD_LEAST) {
+    if (near_end && fabs(off) > HOLD_WITHIN * force + HOLD_LEAST) {
         const double most = MOST_CORRECTION * force + r->stiction / length;
         m->integral += r->period / INTEGRAL_TIME * off;
         m->integral = fmax(-most, fmin(m->integral, most));
     }
 
+    // the torque that the way takes, spring and damper
     const double more = length * m->integral;
-    const double angle = m->touched + m->way + more / arm;
-    const double moving = left < 0.1 * end ? in->tachometer : rate;
-    const double torque = arm * m->way + more + r->hub_damping * rate +
+    const double angle = m->touched + m->hub_way + more / arm;
+    const double moving = near_end ? in->tachometer : rate;
+    const double torque = arm * m->hub_way + more + r->hub_damping * rate +
                           r->stiction * fmax(-1, fmin(moving / FULL_FRICTION, 1)) +
                           spring * (angle - in->encoder) +
                           fmax(0, damping - r->hub_damping) * (rate - in->tachometer);
@@ -477,12 +510,12 @@ static double catch_tip(observer_memory *m, const controller_input *in)
 // --- modes -----------------------------------------------------------------------------
 
 // Where the readings favour another arm, the present mode starts again for that one.
-static void change_arm(observer_memory *m, double time)
+static void restart_mode(observer_memory *m, double time)
 {
     if (observer_of(m)->touches) {
         m->correction = 0;
         begin_rise(m, time);
-    } else if (m->hurries) {
+    } else if (m->in_least_time) {
         quickest_touch_init(&m->quickest, design_of(m));
     } else if (m->mode == TRAVEL) {
         smooth_approach_again(&m->plan, design_of(m));
@@ -494,53 +527,61 @@ static void begin_contact(observer_memory *m, double time)
 {
     observer_arms_touch(&m->arms, time);
     m->mode = PRESS;
-    m->hurries = false;
+    m->in_least_time = false;
     m->correction = 0;
     m->away = 0;
     m->touched = observer_of(m)->met;
     begin_rise(m, time);
 }
 
+// The tip has left the wall. One that is thrown back again and again is caught, any other
+// lands again.
+static void end_contact(observer_memory *m, const controller_input *in)
+{
+    // only brief contacts in a row count
+    const bool brief = in->time - observer_of(m)->since < design_of(m)->ramp_time;
+    if (brief) {
+        m->losses++;
+    } else {
+        m->losses = 1;
+    }
+
+    const bool returns = m->losses > 1 && arm_observer_returns(observer_of(m));
+    if (m->mode != CATCH && (returns || m->losses >= THROWN_BACK)) {
+        m->mode = CATCH;
+        m->hub_way = in->encoder - m->touched;
+        m->integral = 0;
+        return;
+    }
+    observer_arms_leave(&m->arms, in->time);
+    m->mode = RECOVER;
+}
+
 // Contact and its loss by the force reading; a plan that has come to its end needs none.
 static void follow_contact(observer_memory *m, const controller_input *in)
 {
-    const bool arrived = m->hurries && m->quickest.planned && m->quickest.left == 0;
+    const bool arrived = m->in_least_time && m->quickest.planned && m->quickest.left == 0;
     const bool touches = observer_of(m)->touches;
     if (!touches && (m->felt > 0 || arrived)) {
         begin_contact(m, in->time);
         return;
     }
 
-    // a tip that stays is pressed on
+    // a tip that was caught and stays is pressed on
     if (m->mode == CATCH && m->felt > 2 && m->felt * m->rig.period > STAYS_AFTER) {
         m->mode = PRESS;
         m->correction = 0;
         begin_rise(m, in->time);
     }
 
-    // it ends with readings that do not
+    // contact ends with readings that show none; while a tip is caught, later
+    m->away += m->rig.period;
     if (m->felt > 0) {
         m->away = 0;
-    } else {
-        m->away = m->away + m->rig.period;
     }
     const bool caught = m->mode == CATCH && m->away < design_of(m)->ramp_time;
     if (touches && m->away >= LOST_AFTER && !caught) {
-        const bool brief = in->time - observer_of(m)->since < design_of(m)->ramp_time;
-        if (brief) {
-            m->losses = m->losses + 1;
-        } else {
-            m->losses = 1;
-        }
-        const bool returns = m->losses > 1 && arm_observer_returns(observer_of(m));
-        if (m->mode != CATCH && (returns || m->losses >= THROWN_BACK)) {
-            m->mode = CATCH;
-            m->way = in->encoder - m->touched;
-            m->integral = 0;
-            return;
-        }
-        observer_arms_leave(&m->arms, in->time);
-        m->mode = RECOVER;
+        end_contact(m, in);
     }
 }
 
@@ -573,7 +614,7 @@ static void follow_reading(observer_memory *m, double reading)
 // Whether the held command is still right. A reading counts as at most five standard
 // deviations off, because the sensor also shows blows on the tip that the hub does not
 // feel.
-static bool holds_right(observer_memory *m, double reading)
+static bool held_force_is_right(observer_memory *m, double reading)
 {
     double force = m->p[FORCE_WANTED], off = reading - m->held_force;
     double most = 5 * arm_observer_force_noise(force);
@@ -583,7 +624,8 @@ static bool holds_right(observer_memory *m, double reading)
 
 // Whether friction holds the hub at rest where the force is right, that one stays, and
 // the beam has come to rest.
-static bool rests_right(const observer_memory *m, const estimator *e, double rate)
+static bool rests_at_right_force(const observer_memory *m, const estimator *e,
+                                 double rate)
 {
     double force = m->p[FORCE_WANTED];
     return m->rig.stiction > 0 && m->force_rate == 0 && rate < REST &&
@@ -600,12 +642,10 @@ static void choose_hold(observer_memory *m, const estimator *e,
     double rate = fabs(arm_observer_rate(o, e));
     follow_reading(m, in->force);
     if (m->mode == HOLD) {
-        if (holds_right(m, in->force)) {
-            m->mode = HOLD;
-        } else {
+        if (!held_force_is_right(m, in->force)) {
             m->mode = PRESS;
         }
-    } else if (rests_right(m, e, rate)) {
+    } else if (rests_at_right_force(m, e, rate)) {
         m->mode = HOLD;
         m->held_force = resting_force(m, e);
         m->hold_command =
@@ -613,83 +653,103 @@ static void choose_hold(observer_memory *m, const estimator *e,
     }
 }
 
-static void sample(void *memory, const controller_input *in, controller_output *out)
+// The first sample: everything rests where the encoder is.
+static void begin_approach(observer_memory *m, const controller_input *in)
 {
-    observer_memory *m = memory;
-
-    // what the sensors say
-    if (!m->started) {
-        m->started = true;
-        observer_arms_start(&m->arms, in);
-        if (m->hurries) {
-            observer_arms_know_wall(&m->arms, m->rig.wall_angle);
-        }
-        const double soft = design_of(m)->arrival_speed, doubt = m->p[WALL_DOUBT];
-        m->plan = (smooth_approach){.period = m->rig.period,
-                                    .guarded = m->rig.wall_angle -
-                                               fmin(doubt, GUARD_BEFORE * soft),
-                                    .passed = m->rig.wall_angle +
-                                              fmin(doubt, GUARD_AFTER * soft)};
-        smooth_approach_begin(&m->plan, design_of(m), in->encoder);
-    } else {
-        if (in->force > m->p[THRESHOLD]) {
-            m->felt = m->felt + 1;
-        } else {
-            m->felt = 0;
-        }
-        observer_arms_sample(&m->arms, in, m->felt);
-        if (observer_arms_choose(&m->arms)) {
-            change_arm(m, in->time);
-        }
-        follow_contact(m, in);
+    m->started = true;
+    observer_arms_start(&m->arms, in);
+    if (m->in_least_time) {
+        observer_arms_know_wall(&m->arms, m->rig.wall_angle);
     }
 
+    // the wall is looked for from a little before it may be until a little behind it
+    const double wall = m->rig.wall_angle, doubt = m->p[WALL_DOUBT];
+    const double soft = design_of(m)->arrival_speed;
+    m->plan = (smooth_approach){.period = m->rig.period,
+                                .guarded = wall - fmin(doubt, GUARD_BEFORE * soft),
+                                .passed = wall + fmin(doubt, GUARD_AFTER * soft)};
+    smooth_approach_begin(&m->plan, design_of(m), in->encoder);
+}
+
+// What the sensors say of the arm, of which arm it is, and of contact.
+static void take_readings(observer_memory *m, const controller_input *in)
+{
+    m->felt++;
+    if (!(in->force > m->p[THRESHOLD])) {
+        m->felt = 0;
+    }
+    observer_arms_sample(&m->arms, in, m->felt);
+    if (observer_arms_choose(&m->arms)) {
+        restart_mode(m, in->time);
+    }
+    follow_contact(m, in);
+}
+
+// The command in contact, for the state when it takes effect.
+static void answer_in_contact(observer_memory *m, const estimator *ahead,
+                              const controller_input *in, controller_output *out)
+{
+    const arm_observer *o = observer_of(m);
+    if (m->mode == CATCH) {
+        out->command = catch_command(m, in);
+    } else {
+        choose_hold(m, ahead, in);
+        if (m->mode == HOLD) {
+            out->command = m->hold_command;
+        } else {
+            correct_aim(m, in);
+            out->command = press_command(m, ahead, in->time + m->rig.delay);
+        }
+    }
+
+    out->desired_angle =
+        o->wall + o->arm.contact.hub[0] * mode_at_rest(m, m->p[FORCE_WANTED]);
+    out->desired_velocity = 0;
+    out->calculated_force =
+        arm_observer_force(o, &o->e, m->rig.torque_per_volt * in->voltage);
+}
+
+// The command in flight, for the state when it takes effect.
+static void answer_in_flight(observer_memory *m, const estimator *ahead,
+                             controller_output *out)
+{
+    out->calculated_force = 0;
+    if (m->mode == RECOVER) {
+        out->desired_velocity = landing_speed(m, ahead);
+        out->command = landing_command(m, ahead);
+        return;
+    }
+    out->desired_velocity = smooth_approach_speed(&m->plan, design_of(m));
+    if (m->in_least_time) {
+        out->command = least_time_command(m, ahead);
+    } else {
+        out->command = travel_command(m, ahead);
+    }
+}
+
+static void observer_sample(void *memory, const controller_input *in,
+                            controller_output *out)
+{
+    observer_memory *m = memory;
+    if (m->started) {
+        take_readings(m, in);
+    } else {
+        begin_approach(m, in);
+    }
     if (observer_of(m)->touches && m->mode != CATCH) {
         follow_setpoint(m, in->time);
     }
 
-    // the command, for the state when it takes effect
-    const arm_observer *o = observer_of(m);
-    estimator ahead = arm_observer_ahead(o, in->voltage);
-    double force_now = 0;
-    if (o->touches) {
-        if (m->mode != CATCH) {
-            choose_hold(m, &ahead, in);
-        }
-        if (m->mode == PRESS) {
-            correct_aim(m, in);
-        }
-        if (m->mode == CATCH) {
-            out->command = catch_tip(m, in);
-        } else if (m->mode == HOLD) {
-            out->command = m->hold_command;
-        } else {
-            out->command = press(m, &ahead, in->time + m->rig.delay);
-        }
-        out->desired_angle =
-            o->wall + o->arm.contact.hub[0] * mode_at_rest(m, m->p[FORCE_WANTED]);
-        out->desired_velocity = 0;
-        force_now = arm_observer_force(o, &o->e, m->rig.torque_per_volt * in->voltage);
+    const estimator ahead = arm_observer_ahead(observer_of(m), in->voltage);
+    if (observer_of(m)->touches) {
+        answer_in_contact(m, &ahead, in, out);
     } else {
-        const bool lands = m->mode == RECOVER;
-        if (lands) {
-            out->desired_velocity = landing_speed(m, &ahead);
-        } else {
-            out->desired_velocity = smooth_approach_speed(&m->plan, design_of(m));
-        }
-        if (lands) {
-            out->command = land(m, &ahead);
-        } else if (m->hurries) {
-            out->command = hurry(m, &ahead);
-        } else {
-            out->command = travel(m, &ahead);
-        }
+        answer_in_flight(m, &ahead, out);
     }
-
     out->mode = m->mode;
-    out->calculated_force = force_now;
 }
 
 const controller observer_law =
-    CONTROLLER_LAW("observer", mode_names, table, observer_memory, .start = start,
-                   .sample = sample, .tune = tune);
+    CONTROLLER_LAW("observer", mode_names, table, observer_memory,
+                   .start = observer_start, .sample = observer_sample,
+                   .tune = observer_tune);
