@@ -39,7 +39,7 @@ status artwork_write_csv(const artwork *a, const char *path, fault *f)
     return whole_file_commit(&file, f);
 }
 
-static status paint(cairo_t *cr, const void *what, fault *f)
+static status paint_artwork(cairo_t *cr, const void *what, fault *f)
 {
     const artwork *a = what;
     return artwork_paint(a, cr, a->seen, f);
@@ -57,7 +57,7 @@ picture artwork_picture(const artwork *a, const figure_options *options)
                      .title = a->title,
                      .software = picture_software(),
                      .parameters = a->parameters,
-                     .paint = paint,
+                     .paint = paint_artwork,
                      .what = a};
 }
 
@@ -151,43 +151,95 @@ artwork artwork_of_owned(owned_figure *o)
 
 // ---- LaTeX
 
-// What is written otherwise in LaTeX, and how, by turns; longer beginnings come first.
-static const char replacements[] =
-    "<i>|\\textit{|</i>|}|<b>|\\textbf{|</b>|}|<sub>|\\textsubscript{|</"
-    "sub>|}|<sup>|\\textsuperscript{|</"
-    "sup>|}|&amp;|\\&|&lt;|$<$|&gt;|$>$|&quot;|\"|&apos;|'|&#39;|'|θ\u0307|$\\dot\\theta$"
-    "|θ\u0308|$\\ddot\\theta$|F\u0302|$\\hat "
-    "F$|X\u0302|$\\hat X$|Ŷ|$\\hat "
-    "Y$|Δ|$\\Delta$|α|$\\alpha$|β|$\\beta$|γ|$\\gamma$|δ|$\\delta$|ε|$\\varepsilon$|θ|$"
-    "\\theta$|μ|$\\mu$|µ|$\\mu$|ρ|$\\rho$|τ|$\\tau$|ω|$\\omega$|Ω|$\\Omega$|Ω|$\\Omega$|"
-    "−|$-$|·|$\\cdot$|×|$\\times$|≥|$\\geq$|≤|$\\leq$|∞|$\\infty$|∫|$\\int$|\u2009|\\,|"
-    "\u202f|\\,|\u00a0|~|½|$\\frac12$|¼|$\\frac14$|²|\\textsuperscript{2}|³|"
-    "\\textsuperscript{3}|⁻|\\textsuperscript{$-$}|¹|\\textsuperscript{1}|’|'|\\|"
-    "\\textbackslash{}|#|\\#|$|\\$|%|\\%|_|\\_|{|\\{|}|\\}|~|\\textasciitilde{}|^|"
-    "\\textasciicircum{}|\u2060|";
+// What is written otherwise in LaTeX, and how; longer beginnings come first.
+static const struct {
+    const char *markup, *latex;
+} replacements[] = {
+    {"<i>", "\\textit{"},
+    {"</i>", "}"},
+    {"<b>", "\\textbf{"},
+    {"</b>", "}"},
+    {"<sub>", "\\textsubscript{"},
+    {"</sub>", "}"},
+    {"<sup>", "\\textsuperscript{"},
+    {"</sup>", "}"},
+    {"&amp;", "\\&"},
+    {"&lt;", "$<$"},
+    {"&gt;", "$>$"},
+    {"&quot;", "\""},
+    {"&apos;", "'"},
+    {"&#39;", "'"},
+    {"θ\u0307", "$\\dot\\theta$"},
+    {"θ\u0308", "$\\ddot\\theta$"},
+    {"F\u0302", "$\\hat F$"},
+    {"X\u0302", "$\\hat X$"},
+    {"Ŷ", "$\\hat Y$"},
+    {"Δ", "$\\Delta$"},
+    {"α", "$\\alpha$"},
+    {"β", "$\\beta$"},
+    {"γ", "$\\gamma$"},
+    {"δ", "$\\delta$"},
+    {"ε", "$\\varepsilon$"},
+    {"θ", "$\\theta$"},
+    {"μ", "$\\mu$"},
+    {"µ", "$\\mu$"},
+    {"ρ", "$\\rho$"},
+    {"τ", "$\\tau$"},
+    {"ω", "$\\omega$"},
+    {"Ω", "$\\Omega$"},
+    {"Ω", "$\\Omega$"},
+    {"−", "$-$"},
+    {"·", "$\\cdot$"},
+    {"×", "$\\times$"},
+    {"≥", "$\\geq$"},
+    {"≤", "$\\leq$"},
+    {"∞", "$\\infty$"},
+    {"∫", "$\\int$"},
+    {"\u2009", "\\,"},
+    {"\u202f", "\\,"},
+    {"\u00a0", "~"},
+    {"½", "$\\frac12$"},
+    {"¼", "$\\frac14$"},
+    {"²", "\\textsuperscript{2}"},
+    {"³", "\\textsuperscript{3}"},
+    {"⁻", "\\textsuperscript{$-$}"},
+    {"¹", "\\textsuperscript{1}"},
+    {"’", "'"},
+    {"\\", "\\textbackslash{}"},
+    {"#", "\\#"},
+    {"$", "\\$"},
+    {"%", "\\%"},
+    {"_", "\\_"},
+    {"{", "\\{"},
+    {"}", "\\}"},
+    {"~", "\\textasciitilde{}"},
+    {"^", "\\textasciicircum{}"},
+    {"\u2060", ""},
+};
 
 // Pango markup as LaTeX: italics, indices, Greek letters and signs. Free the result with
 // g_free.
 static char *latex_of_markup(const char *markup)
 {
     GString *out = g_string_new(NULL);
-    g_auto(GStrv) words = g_strsplit(replacements, "|", -1);
-
     while (*markup != '\0') {
-        // what LaTeX writes otherwise, else the character itself
-        char **found = words;
-        while (found[0] != NULL && !g_str_has_prefix(markup, found[0])) {
-            found += 2;
+        size_t found = 0;
+        while (found < G_N_ELEMENTS(replacements) &&
+               !g_str_has_prefix(markup, replacements[found].markup)) {
+            found++;
         }
 
-        if (found[0] != NULL) {
-            g_string_append(out, found[1]);
-            markup += strlen(found[0]);
-        } else if (strncmp(markup, "<span", 5) == 0 ||
-                   strncmp(markup, "</span", 6) == 0) {
-            // what only sizes letters has no meaning in a caption
+        // what LaTeX writes otherwise; what only sizes letters has no meaning in a
+        // caption; or else the character itself
+        if (found < G_N_ELEMENTS(replacements)) {
+            g_string_append(out, replacements[found].latex);
+            markup += strlen(replacements[found].markup);
+        } else if (g_str_has_prefix(markup, "<span") ||
+                   g_str_has_prefix(markup, "</span")) {
             markup += strcspn(markup, ">");
-            markup += *markup == '>';
+            if (*markup == '>') {
+                markup++;
+            }
         } else {
             g_string_append_c(out, *markup++);
         }
@@ -255,7 +307,7 @@ char *artwork_beside(const char *file, const char *ending)
     return text_printf("%.*s%s", (int)(picture_ending(file) - file), file, ending);
 }
 
-static status write_text(const char *path, const char *text, fault *f)
+static status write_text_file(const char *path, const char *text, fault *f)
 {
     whole_file file;
     TRY(whole_file_open(&file, path, f));
@@ -263,24 +315,39 @@ static status write_text(const char *path, const char *text, fault *f)
     return whole_file_commit(&file, f);
 }
 
-status artwork_publish_csv(const artwork *a, const char *path, fault *f)
+// Whether a CSV is there that is none of a figure's.
+static bool holds_other_numbers(const char *csv)
 {
     static const char heading[] = "panel,"; // of figure_write_csv
-    g_autofree char *csv = artwork_beside(path, ".csv");
     char start[sizeof heading] = "";
-    FILE *there = NULL;
-    if (a->plotted != NULL) {
-        there = fopen(csv, "re");
+    FILE *there = fopen(csv, "re");
+    if (there == NULL) {
+        return false;
     }
-    const bool written = there != NULL && fread(start, 1, sizeof start - 1, there) > 0;
-    if (there != NULL) {
-        fclose(there);
-    }
-    FAULT_IF(written && strcmp(start, heading) != 0, f, STATUS_CANNOT_WRITE,
+    const size_t length = fread(start, 1, sizeof start - 1, there);
+    fclose(there);
+    return length > 0 && strcmp(start, heading) != 0;
+}
+
+status artwork_publish_csv(const artwork *a, const char *path, fault *f)
+{
+    g_autofree char *csv = artwork_beside(path, ".csv");
+    FAULT_IF(a->plotted != NULL && holds_other_numbers(csv), f, STATUS_CANNOT_WRITE,
              "'%s' holds other numbers and is kept, so that those of the picture are not "
              "written",
              csv);
     return artwork_write_csv(a, csv, f);
+}
+
+// Writes title and caption as plain text beside a picture.
+static status write_caption(const artwork *a, const char *path, fault *f)
+{
+    g_autofree char *file = artwork_beside(path, ".txt");
+    g_autofree char *caption = text_plain(text_or(a->caption, ""));
+    const char *between = caption[0] != '\0' ? "\n\n" : "";
+    g_autofree char *text =
+        text_printf("%s%s%s\n", text_or(a->title, ""), between, caption);
+    return write_text_file(file, text, f);
 }
 
 status artwork_publish(const artwork *a, const figure_options *o, const char *path,
@@ -289,18 +356,15 @@ status artwork_publish(const artwork *a, const figure_options *o, const char *pa
     picture p = artwork_picture(a, o);
     TRY(picture_write(&p, path, f));
 
-    // text of a picture that has none of its own
+    // title and caption of a picture that has none of its own
     if (o->look.bare) {
-        g_autofree char *txt = artwork_beside(path, ".txt");
-        g_autofree char *caption = text_plain(text_or(a->caption, ""));
-        const char *between = caption[0] != '\0' ? "\n\n" : "";
-        g_autofree char *text =
-            text_printf("%s%s%s\n", text_or(a->title, ""), between, caption);
-        TRY(write_text(txt, text, f));
+        TRY(write_caption(a, path, f));
     }
+
+    // for LaTeX, and as numbers
     if (o->latex != NULL) {
         g_autofree char *text = latex_environment(a, o->latex, path);
-        TRY(write_text(o->latex, text, f));
+        TRY(write_text_file(o->latex, text, f));
     }
     if (with_csv) {
         return artwork_publish_csv(a, path, f);

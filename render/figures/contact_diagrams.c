@@ -31,7 +31,7 @@ static arm_places places_of(const view *v, const diagram *d, arm_shape a, double
 }
 
 // Direction on the page from one place to another, counterclockwise from the right [rad].
-static double direction_of(point from, point to)
+static double page_direction(point from, point to)
 {
     return atan2(from.y - to.y, to.x - from.x);
 }
@@ -54,8 +54,8 @@ static void draw_full_arm(const sketch *s, arm_places a)
 
 // Wall and contact force at a place, across a link that has the given direction on the
 // page.
-static void draw_wall(sketch *s, point at, double direction, const char *symbol,
-                      double force)
+static void draw_contact_force(sketch *s, point at, double direction, const char *symbol,
+                               double force)
 {
     g_autofree char *quantity = text_quantity(force, 3, "N");
     double ux = cos(direction), uy = -sin(direction), nx = -sin(direction),
@@ -94,9 +94,9 @@ static void draw_contact(sketch *s, const diagram *d)
     // both configurations, and the angles of the first
     draw_full_arm(s, one);
     draw_dashed_arm(s, other, SLOT_BLUE);
-    diagram_link_angle(s, one.hub, 84, direction_of(one.hub, one.joint),
+    diagram_link_angle(s, one.hub, 84, page_direction(one.hub, one.joint),
                        "<i>θ</i><sub>2</sub>");
-    diagram_link_angle(s, one.joint, 62, direction_of(one.joint, one.end),
+    diagram_link_angle(s, one.joint, 62, page_direction(one.joint, one.end),
                        "<i>θ</i><sub>3</sub>");
     sketch_label(s,
                  (point){(one.hub.x + one.joint.x) / 2 - 10,
@@ -107,7 +107,8 @@ static void draw_contact(sketch *s, const diagram *d)
                          (one.joint.y + one.end.y) / 2 - 8},
                  (anchor){1, 1}, "<i>l</i>");
 
-    draw_wall(s, contact, direction_of(one.joint, contact), "<i>f</i>", of->one.force);
+    draw_contact_force(s, contact, page_direction(one.joint, contact), "<i>f</i>",
+                       of->one.force);
 
     // which is which
     double key = s->top + 14;
@@ -205,13 +206,13 @@ static void draw_deformation(sketch *s, const diagram *d)
 
     // angles from that line
     diagram_angle(s, peak.hub,
-                  (angle_arc){92, 0, direction_of(peak.hub, peak.joint),
+                  (angle_arc){92, 0, page_direction(peak.hub, peak.joint),
                               "<i>θ</i><sub>2</sub> − <i>θ</i><sub>0</sub>"});
-    diagram_link_angle(s, peak.joint, 66, direction_of(peak.joint, peak.end),
+    diagram_link_angle(s, peak.joint, 66, page_direction(peak.joint, peak.end),
                        "<i>θ</i><sub>3</sub> − <i>θ</i><sub>0</sub>");
 
-    draw_wall(s, contact, direction_of(peak.joint, contact), "<i>f</i><sub>max</sub>",
-              of->one.force);
+    draw_contact_force(s, contact, page_direction(peak.joint, contact),
+                       "<i>f</i><sub>max</sub>", of->one.force);
 
     // a name at each joint
     sketch_small(s, shifted(assumed.joint, 0, -5), (anchor){0.5, 1}, "energy principle");
@@ -329,8 +330,8 @@ static cut_body cut_last_body(const diagram *d)
 }
 
 // "X = −0.0123 N·s" with three digits.
-static void write_value(sketch *s, point at, double ax, const char *symbol, double value,
-                        const char *unit)
+static void put_value(sketch *s, point at, double ax, const char *symbol, double value,
+                      const char *unit)
 {
     g_autofree char *number = text_number(value, 3), *shown = text_unit(unit);
     sketch_small(s, at, (anchor){ax, 0.5}, "%s = %s\u2009%s", symbol, number, shown);
@@ -412,17 +413,17 @@ static void draw_cut_body(sketch *s, const diagram *d)
     double wall = IMPULSE_LENGTH * fabs(b.wall_impulse);
     double pin = IMPULSE_LENGTH * b.hinge_impulse;
     sketch_arrow(s, (point){hit.x, y - 6 - wall}, (point){hit.x, y - 6}, SLOT_VERMILLION);
-    write_value(s, (point){hit.x, y - 14 - wall}, 0.5, "<i>F̂</i><sup>c</sup>",
-                b.wall_impulse, "N s");
+    put_value(s, (point){hit.x, y - 14 - wall}, 0.5, "<i>F̂</i><sup>c</sup>",
+              b.wall_impulse, "N s");
     sketch_arrow(s, (point){hinge.x, y - 6 + fmin(0, pin)},
                  (point){hinge.x, y - 6 - fmax(0, pin)}, SLOT_VERMILLION);
-    write_value(s, (point){hinge.x, y - 14 - fabs(pin)}, 0.5, "<i>X̂</i><sup>c</sup>",
-                b.hinge_impulse, "N s");
+    put_value(s, (point){hinge.x, y - 14 - fabs(pin)}, 0.5, "<i>X̂</i><sup>c</sup>",
+              b.hinge_impulse, "N s");
 
     // the hinge's torque about C, and how the body's motion jumps
     sketch_arc(s, turning_arc(hinge, 18, 2.6, 3.7, b.hinge_torque), SLOT_BLUE);
-    write_value(s, (point){hinge.x - 4, y + 44}, 0.5, "<i>Ŷ</i><sup>c</sup>",
-                b.hinge_torque, "N m s");
+    put_value(s, (point){hinge.x - 4, y + 44}, 0.5, "<i>Ŷ</i><sup>c</sup>",
+              b.hinge_torque, "N m s");
     const double jump = SPEED_LENGTH * b.centre_jump;
     double from = y - 7;
     if (b.centre_jump < 0) {
@@ -430,16 +431,15 @@ static void draw_cut_body(sketch *s, const diagram *d)
     }
     sketch_dashed_arrow(s, (point){centre.x, from}, (point){centre.x, from - jump},
                         SLOT_ORANGE);
-    write_value(s, (point){centre.x - 8, from - 0.7 * jump}, 1, "Δ<i>v</i><sub>C</sub>",
-                b.centre_jump, "m/s");
+    put_value(s, (point){centre.x - 8, from - 0.7 * jump}, 1, "Δ<i>v</i><sub>C</sub>",
+              b.centre_jump, "m/s");
     sketch_arc(s, turning_arc((point){centre.x, y}, 30, -1.6, -0.5, b.angular_jump),
                SLOT_ORANGE);
-    write_value(s, (point){centre.x + 30, y + 22}, 0, "Δ<i>ω</i>", b.angular_jump,
-                "rad/s");
+    put_value(s, (point){centre.x + 30, y + 22}, 0, "Δ<i>ω</i>", b.angular_jump, "rad/s");
 
     // the lever of the wall's impulse
     sketch_measure(s, (point){centre.x, y + 42}, (point){hit.x, y + 42});
-    write_value(s, (point){(centre.x + hit.x) / 2, y + 50}, 0.5, "<i>ρ</i>", b.rho, "m");
+    put_value(s, (point){(centre.x + hit.x) / 2, y + 50}, 0.5, "<i>ρ</i>", b.rho, "m");
 }
 
 static void draw_collision(sketch *s, const diagram *d)

@@ -12,8 +12,8 @@
 // ---- 2.2: hub and links
 
 // A dimension line parallel to a link, `away` points from it.
-static void draw_length(sketch *s, point from, point to, double away, anchor part,
-                        const char *markup)
+static void draw_dimension(sketch *s, point from, point to, double away, anchor part,
+                           const char *markup)
 {
     double length = hypot(to.x - from.x, to.y - from.y);
     double nx = (to.y - from.y) / length, ny = -(to.x - from.x) / length;
@@ -27,7 +27,7 @@ static void draw_length(sketch *s, point from, point to, double away, anchor par
                  part, "%s", markup);
 }
 
-static void draw_links(sketch *s, const diagram *d)
+static void draw_links_diagram(sketch *s, const diagram *d)
 {
     const double first = 12 * DEGREE, hub = 5 * DEGREE, second = 32 * DEGREE;
     double l = d->p.arm.length / 2, radius = HUB_RADIUS;
@@ -60,10 +60,10 @@ static void draw_links(sketch *s, const diagram *d)
     sketch_label(s, (point){hub_page.x - v.metre * radius - 4, hub_page.y},
                  (anchor){1, 0.5}, "<i>k</i><sub>1</sub>");
     sketch_label(s, shifted(joint_page, 0, 14), (anchor){0.5, 0}, "<i>k</i><sub>2</sub>");
-    draw_length(s, hub_page, c1_page, 35, (anchor){0.5, 1}, "<i>ε</i><sub>2</sub>");
-    draw_length(s, joint_page, c2_page, 17, (anchor){1, 1}, "<i>ε</i><sub>3</sub>");
-    draw_length(s, hub_page, joint_page, 54, (anchor){0.5, 1}, "<i>l</i>");
-    draw_length(s, joint_page, tip_page, 36, (anchor){1, 1}, "<i>l</i>");
+    draw_dimension(s, hub_page, c1_page, 35, (anchor){0.5, 1}, "<i>ε</i><sub>2</sub>");
+    draw_dimension(s, joint_page, c2_page, 17, (anchor){1, 1}, "<i>ε</i><sub>3</sub>");
+    draw_dimension(s, hub_page, joint_page, 54, (anchor){0.5, 1}, "<i>l</i>");
+    draw_dimension(s, joint_page, tip_page, 36, (anchor){1, 1}, "<i>l</i>");
     sketch_label(s, shifted(c1_page, 30, -13), (anchor){0.5, 1},
                  "<i>m</i><sub>2</sub>, <i>I</i><sub>2</sub>");
     sketch_label(s, shifted(c2_page, 64, -22), (anchor){0, 0},
@@ -85,7 +85,7 @@ static void add_arm_values(diagram *d)
 
 status diagram_links(const figure_order *order, artwork *out, fault *f)
 {
-    g_autoptr(diagram) d = diagram_create(order, NULL, 190, draw_links, f);
+    g_autoptr(diagram) d = diagram_create(order, NULL, 190, draw_links_diagram, f);
     add_arm_values(d);
 
     return diagram_open(

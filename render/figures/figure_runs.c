@@ -77,7 +77,7 @@ const char *nearest_signal(const char *name)
 }
 
 // One panel, "hub_angle+last_angle".
-static status read_panel(const char *text, trace_panel *p, fault *f)
+static status read_signal_panel(const char *text, trace_panel *p, fault *f)
 {
     g_auto(GStrv) words = g_strsplit(text, "+", -1);
     for (int i = 0; i == 0 || words[i] != NULL; i++) {
@@ -105,7 +105,8 @@ static status read_panel(const char *text, trace_panel *p, fault *f)
 }
 
 // All panels, "force,hub_angle+last_angle".
-static status read_signals(const char *text, trace_panel *panels, int *count, fault *f)
+static status read_signal_panels(const char *text, trace_panel *panels, int *count,
+                                 fault *f)
 {
     g_auto(GStrv) words = g_strsplit(text, ",", -1);
     for (*count = 0; *count == 0 || words[*count] != NULL; ++*count) {
@@ -113,7 +114,7 @@ static status read_signals(const char *text, trace_panel *panels, int *count, fa
                  "'%s': a figure has at most %d panels", text, FIGURE_PANELS - 1);
         trace_panel *p = &panels[*count];
         *p = (trace_panel){.weight = 1};
-        TRY(read_panel(text_or(words[*count], ""), p, f));
+        TRY(read_signal_panel(text_or(words[*count], ""), p, f));
 
         // what goes without saying for a panel of its first signal
         const signal_info *signal = &signal_table[signal_index(p->signals[0])];
@@ -145,7 +146,7 @@ owned_figure *run_figure_create(const char *title, const trace_panel *panels,
         panels = usual_panels;
     }
     if (o->signals != NULL) {
-        if (read_signals(o->signals, asked, &panel_count, f) != STATUS_OK) {
+        if (read_signal_panels(o->signals, asked, &panel_count, f) != STATUS_OK) {
             return NULL;
         }
         panels = asked;

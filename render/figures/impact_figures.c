@@ -40,8 +40,8 @@ static impact_figure open_impact(const figure_order *order, int panels, fault *f
 }
 
 // A recorded signal over time, in the rows' own numbers.
-static figure_series *add_signal(impact_figure *fig, int panel, const char *name,
-                                 const char *label)
+static figure_series *add_recorded_signal(impact_figure *fig, int panel, const char *name,
+                                          const char *label)
 {
     const trace_run rows = {.scenario = &fig->run->scenario,
                             .result = &fig->run->result,
@@ -83,7 +83,7 @@ status figure_force_profile(const figure_order *order, artwork *out, fault *f)
     if (!isfinite(pulse)) {
         pulse = fig.peak_time - fig.contact;
     }
-    add_signal(&fig, 0, "force", NULL);
+    add_recorded_signal(&fig, 0, "force", NULL);
     panel->y.label = "Contact force <i>f</i>";
     panel->weight = 1.7;
     panel->y.low = -0.04 * fig.peak;
@@ -222,7 +222,7 @@ status assumed_motion(const figure_order *order, artwork *out, fault *f)
             computed = "computed";
             approximation = approximations[of_angle];
         }
-        add_signal(&fig, i, name, computed)->colour = SLOT_BLUE;
+        add_recorded_signal(&fig, i, name, computed)->colour = SLOT_BLUE;
         add_assumption(&fig, i, &a, approximation);
         most[i] = departure(&fig, name, &a);
         fig.plot->panels[i].y.label = labels[of_angle][i];

@@ -37,9 +37,9 @@ static const printed_kind kinds[] = {{"force", "Peak force", "N", 1, forces, 3},
                                      {"delay", "Delay", "ms", 1e3, delays, 2}};
 
 // The points and lines of a table, and the panel of their distances.
-static void add_table(owned_figure *plot, const printed_kind *kind, const double *voltage,
-                      const table_row *const *rows, figure_panel *shown,
-                      figure_panel *distances)
+static void add_table_panels(owned_figure *plot, const printed_kind *kind,
+                             const double *voltage, const table_row *const *rows,
+                             figure_panel *shown, figure_panel *distances)
 {
     static const figure_level zero = {0};
     int panel = (int)(shown - plot->panels), below = (int)(distances - plot->panels);
@@ -144,7 +144,7 @@ status printed_values_figure(const figure_order *order, artwork *out, fault *f)
             rows[q] = computed_row(all, tables[t], "printed", kind->quantities[q].key);
         }
         figure_panel *shown = &plot->panels[panels_a_table * t];
-        add_table(plot, kind, all->voltage, rows, shown, shown + to_residuals);
+        add_table_panels(plot, kind, all->voltage, rows, shown, shown + to_residuals);
     }
 
     *out = artwork_of_owned(plot);

@@ -64,7 +64,8 @@ static const char *heading_of(recipe_context *c, const multiples *m, int index)
 }
 
 // A run with the parameter at a value; false after a fault.
-static bool add_run(recipe_context *c, const multiples *m, int index, recipe_source run)
+static bool repeat_run(recipe_context *c, const multiples *m, int index,
+                       recipe_source run)
 {
     recipe *r = c->recipe;
     if (r->source_count == RECIPE_SOURCES || run.change_count == RECIPE_CHANGES) {
@@ -94,7 +95,7 @@ static bool repeat_runs(recipe_context *c, const multiples *m, int at[][RECIPE_S
             const recipe_source *source = &read.sources[i];
             at[k][i] = r->source_count;
             if (source->kind == SOURCE_RUN) {
-                if (!add_run(c, m, k, *source)) {
+                if (!repeat_run(c, m, k, *source)) {
                     return false;
                 }
             } else if (k == 0) {

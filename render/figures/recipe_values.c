@@ -47,8 +47,8 @@ const tree_node *recipe_first(recipe_context *c, const tree_node *list, const ch
     return list->first;
 }
 
-static void read_number(recipe_context *c, const tree_node *node, const recipe_key *key,
-                        double *value)
+static void read_quantity_field(recipe_context *c, const tree_node *node,
+                                const recipe_key *key, double *value)
 {
     if (!reader_quantity(&c->reader, node, key->key, text_or(key->unit, ""), value) ||
         key->expected == NULL) {
@@ -120,7 +120,7 @@ static void read_field(recipe_context *c, const tree_node *node, const recipe_ke
         read_truth(c, node, key->key, field);
         break;
     case VALUE_NUMBER:
-        read_number(c, node, key, field);
+        read_quantity_field(c, node, key, field);
         break;
     case VALUE_PAIR:
         read_pair(c, node, key->key, field, second);

@@ -84,7 +84,7 @@ static gpointer compute_cells(gpointer data)
     return NULL;
 }
 
-static void compute(newmark_map *m)
+static void compute_map(newmark_map *m)
 {
     const int columns = m->kind->columns, rows = m->kind->rows;
     assert(columns > 1 && columns <= MAP_COLUMNS && rows > 1 && rows <= MAP_ROWS);
@@ -117,7 +117,7 @@ static void compute(newmark_map *m)
 
 // ---- the picture
 
-static void describe(newmark_map *m, const figure_options *o)
+static void describe_map_figure(newmark_map *m, const figure_options *o)
 {
     const newmark_kind *kind = m->kind;
     for (int panel = 0; panel < MAP_PANELS; panel++) {
@@ -163,7 +163,7 @@ static newmark_map *newmark_map_create(const newmark_kind *kind,
         owned_figure_destroy(o);
         return NULL;
     }
-    describe(m, order->options);
+    describe_map_figure(m, order->options);
     return m;
 }
 
@@ -274,7 +274,7 @@ status stability_map(const figure_order *order, artwork *out, fault *f)
         1e3 * WINDOW);
 
     sample_force(&run->result.trace, m->from, m->force);
-    compute(m);
+    compute_map(m);
     add_rings(m);
     *out = artwork_of_owned(m->plot);
     return STATUS_OK;
@@ -291,7 +291,7 @@ static const struct {
                                   {REEVALUATE_NONE, 2e-4}};
 
 // The largest force in times that of Fig. 3.4.
-static double printed_force(const newmark_map *m, int panel, double beta, double gamma)
+static double printed_peak(const newmark_map *m, int panel, double beta, double gamma)
 {
     run_result result;
     scenario s = m->base;
@@ -320,7 +320,7 @@ status printed_stability_map(const figure_order *order, artwork *out, fault *f)
                                                 .scale = SCALE_LOGARITHMIC,
                                                 .low = 0.5,
                                                 .high = 500},
-                                      .value = printed_force};
+                                      .value = printed_peak};
     const opened_run *run;
     newmark_map *m = newmark_map_create(&kind, order, &run, f);
     if (m == NULL) {
@@ -337,7 +337,7 @@ status printed_stability_map(const figure_order *order, artwork *out, fault *f)
         "corrected arm. Hatched: the equations of a step became singular.",
         1e3 * WINDOW, m->peak);
 
-    compute(m);
+    compute_map(m);
     *out = artwork_of_owned(m->plot);
     return STATUS_OK;
 }

@@ -84,7 +84,8 @@ static bool has_alpha(cairo_surface_t *surface)
     return cairo_image_surface_get_format(surface) == CAIRO_FORMAT_ARGB32;
 }
 
-static void write_rows(png_structp png, cairo_surface_t *surface, unsigned char *row)
+static void write_pixel_rows(png_structp png, cairo_surface_t *surface,
+                             unsigned char *row)
 {
     const unsigned char *data = cairo_image_surface_get_data(surface);
     int width = cairo_image_surface_get_width(surface);
@@ -131,7 +132,7 @@ status png_file_write(FILE *stream, cairo_surface_t *surface, double dpi,
         png_set_compression_level(png, COMPRESSION);
         set_notes(png, info, notes, note_count);
         png_write_info(png, info);
-        write_rows(png, surface, row);
+        write_pixel_rows(png, surface, row);
         png_write_end(png, info);
     }
 
@@ -297,7 +298,7 @@ static void set_metadata(cairo_surface_t *surface, cairo_pdf_metadata_t what,
     }
 }
 
-static status write_pages(FILE *stream, const picture *p, int count, fault *f)
+static status write_pdf_pages(FILE *stream, const picture *p, int count, fault *f)
 {
     cairo_surface_t *surface =
         cairo_pdf_surface_create_for_stream(to_stream, stream, p->width, p->height);
@@ -388,7 +389,7 @@ status picture_write_pages(const picture *pages, int count, const char *path, fa
     assert(count > 0);
     whole_file file;
     TRY(whole_file_open(&file, path, f));
-    return whole_file_close(&file, write_pages(file.stream, pages, count, f), f);
+    return whole_file_close(&file, write_pdf_pages(file.stream, pages, count, f), f);
 }
 
 static status write_svg(const picture *p, FILE *stream, fault *f)
@@ -413,7 +414,7 @@ status picture_write(const picture *p, const char *path, fault *f)
     } else if (format == FORMAT_SVG) {
         code = write_svg(p, file.stream, f);
     } else {
-        code = write_pages(file.stream, p, 1, f);
+        code = write_pdf_pages(file.stream, p, 1, f);
     }
     return whole_file_close(&file, code, f);
 }

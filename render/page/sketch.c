@@ -227,7 +227,7 @@ static void draw_head(const sketch *s, point tip, double direction, double lengt
 }
 
 // Length of the way from one point to another, and its direction on the page.
-static double length_of(point from, point to)
+static double distance_between(point from, point to)
 {
     return hypot(to.x - from.x, to.y - from.y);
 }
@@ -238,9 +238,9 @@ static double direction_of(point from, point to)
 }
 
 // The shaft ends within the head.
-static void draw_arrow(const sketch *s, point from, point to)
+static void draw_shaft_and_head(const sketch *s, point from, point to)
 {
-    double length = length_of(from, to), head = fmin(HEAD_LENGTH, length);
+    double length = distance_between(from, to), head = fmin(HEAD_LENGTH, length);
     double share = 0;
     if (length > 0) {
         share = 1 - 0.8 * head / length;
@@ -253,19 +253,19 @@ static void draw_arrow(const sketch *s, point from, point to)
 void sketch_arrow(const sketch *s, point from, point to, int slot)
 {
     set_pen(s, STRONG_WIDTH, slot);
-    draw_arrow(s, from, to);
+    draw_shaft_and_head(s, from, to);
 }
 
 void sketch_dashed_arrow(const sketch *s, point from, point to, int slot)
 {
     set_pen(s, STRONG_WIDTH, slot);
     set_dashes(s);
-    draw_arrow(s, from, to);
+    draw_shaft_and_head(s, from, to);
 }
 
 void sketch_measure(const sketch *s, point from, point to)
 {
-    assert(isfinite(length_of(from, to)));
+    assert(isfinite(distance_between(from, to)));
     sketch_line(s, from, to, 0.5, SKETCH_INK);
     draw_head(s, to, direction_of(from, to), SMALL_HEAD);
     draw_head(s, from, direction_of(from, to) + G_PI, SMALL_HEAD);
@@ -365,7 +365,7 @@ typedef struct guide {
 
 static guide guide_of(point from, point to)
 {
-    double length = length_of(from, to);
+    double length = distance_between(from, to);
     return (guide){from, length, (to.x - from.x) / length, (to.y - from.y) / length};
 }
 

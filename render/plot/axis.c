@@ -264,7 +264,7 @@ static char *unit_markup(const char *unit, int exponent)
     return text_printf("(%s\u2009%s)", factor + strlen("\u00d7"), unbroken);
 }
 
-char *axis_label(const char *label, const char *unit, int exponent)
+char *axis_label_text(const char *label, const char *unit, int exponent)
 {
     if (!has_text(unit) && exponent == 0) {
         return g_strdup(text_or(label, ""));
@@ -278,5 +278,5 @@ char *axis_label(const char *label, const char *unit, int exponent)
 
 char *axis_title(const axis *a)
 {
-    return axis_label(a->from->label, a->from->unit, a->even.exponent);
+    return axis_label_text(a->from->label, a->from->unit, a->even.exponent);
 }

@@ -64,7 +64,7 @@ int axis_minor_ticks(const axis *a, double length, double at[AXIS_MINOR]);
 char *axis_title(const axis *a);
 
 // A label with its unit and a factor of 10^exponent, as markup. To be freed with g_free.
-char *axis_label(const char *label, const char *unit, int exponent);
+char *axis_label_text(const char *label, const char *unit, int exponent);
 
 // --- from a series' numbers to lines: gaps, decimation and clipping: curve.c
 

@@ -80,8 +80,8 @@ static bool inside(const pen *p, point q)
 
 // Narrows [*from, *to] to the part of a line where start + t delta lies within low and
 // high.
-static bool narrow(double start, double delta, double low, double high, double *from,
-                   double *to)
+static bool clip_share(double start, double delta, double low, double high, double *from,
+                       double *to)
 {
     if (delta == 0) {
         return start >= low && start <= high;
@@ -111,8 +111,8 @@ static void pen_to(pen *p, point q)
         double from = 0, to = 1;
 
         // the part inside
-        if (narrow(a.x, q.x - a.x, p->left, p->right, &from, &to) &&
-            narrow(a.y, q.y - a.y, p->top, p->bottom, &from, &to)) {
+        if (clip_share(a.x, q.x - a.x, p->left, p->right, &from, &to) &&
+            clip_share(a.y, q.y - a.y, p->top, p->bottom, &from, &to)) {
             if (!p->moved) {
                 p->sink(p->context, STROKE_MOVE, a.x + from * (q.x - a.x),
                         a.y + from * (q.y - a.y));

@@ -146,8 +146,8 @@ double width_of(const drawing *d, const char *markup, double size);
 double height_of(const drawing *d, text_block t);
 
 void draw_text(drawing *d, text_block t, double x, double y, anchor at, colour c);
-void draw_label(drawing *d, const char *markup, double size, double x, double y,
-                anchor at);
+void put_label(drawing *d, const char *markup, double size, double x, double y,
+               anchor at);
 // Draws t vertically, upwards; (x, y) is the middle of its upper edge, which is on the
 // left.
 void draw_rotated(drawing *d, text_block t, double x, double y, colour c);
@@ -193,7 +193,7 @@ void map_choose_scale(panel_layout *l);
 void map_include(const figure_map *map, axis_scale *x, axis_scale *y);
 double colour_bar_width(const drawing *d, const panel_layout *l);
 void set_shade(const drawing *d, const panel_layout *l, double value);
-void draw_map(drawing *d, const panel_layout *l);
+void draw_panel_map(drawing *d, const panel_layout *l);
 void draw_colour_bar(drawing *d, const panel_layout *l);
 
 // --- marks: marks.c
@@ -207,7 +207,7 @@ void clip_out_labels(const drawing *d);
 // The dots of marks with a point, and the labels at them.
 void draw_points(drawing *d);
 void draw_measure(drawing *d);
-void draw_levels(drawing *d, const panel_layout *l);
+void draw_panel_levels(drawing *d, const panel_layout *l);
 void draw_notes(drawing *d, const panel_layout *l);
 // Adds the ink of levels and marks to the placement.
 void ink_of_marks(const drawing *d, panel_layout *l, placement *grid);
@@ -230,7 +230,7 @@ char *impulse_strip_label(const figure_panel *panel);
 
 // Returns false if there is no room inside the panel.
 bool place_legend(drawing *d, panel_layout *l, const placement *grid);
-void draw_legend(drawing *d, const panel_layout *l);
+void draw_panel_legend(drawing *d, const panel_layout *l);
 // The legend for all panels, in rows that are wrapped where they are too long, drawn or
 // only measured. Returns its height; 0: none.
 double common_legend(drawing *d, bool draw);

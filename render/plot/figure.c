@@ -170,8 +170,8 @@ static void draw_panel_texts(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
     if (l->panel->heading != NULL) {
-        draw_label(d, l->panel->heading, d->style.label, box->x + box->width / 2,
-                   box->y - 2, (anchor){0.5, 1});
+        put_label(d, l->panel->heading, d->style.label, box->x + box->width / 2,
+                  box->y - 2, (anchor){0.5, 1});
     }
     if (l->panel->remark != NULL) {
         draw_text(d, figure_text_of(d, l->panel->remark, d->style.label),
@@ -191,8 +191,8 @@ static void draw_panel(drawing *d, int index)
 
     // data
     draw_impulses(d, l);
-    draw_map(d, l);
-    draw_levels(d, l);
+    draw_panel_map(d, l);
+    draw_panel_levels(d, l);
     draw_series(d, l, &l->plane);
 
     // axes and texts
@@ -204,7 +204,7 @@ static void draw_panel(drawing *d, int index)
     // what stands in the panel
     draw_notes(d, l);
     draw_inset(d, l);
-    draw_legend(d, l);
+    draw_panel_legend(d, l);
 
     // where they went
     if (d->report != NULL) {
@@ -249,9 +249,9 @@ static void draw_all(drawing *d)
     // the horizontal axis once, below all columns
     g_autofree char *x_title = axis_title(&d->x);
     if (fig->x.label != NULL) {
-        draw_label(d, x_title, d->style.label,
-                   (d->column[0].left + d->column[d->columns - 1].right) / 2,
-                   d->x_label_y, (anchor){0.5, 0});
+        put_label(d, x_title, d->style.label,
+                  (d->column[0].left + d->column[d->columns - 1].right) / 2, d->x_label_y,
+                  (anchor){0.5, 0});
     }
     common_legend(d, true);
     for (int i = 0; i < fig->panel_count; i++) {
@@ -316,7 +316,7 @@ status figure_paint(cairo_t *cr, const figure *fig, figure_report *report, fault
 
 // ==== files
 
-static status paint(cairo_t *cr, const void *what, fault *f)
+static status paint_figure(cairo_t *cr, const void *what, fault *f)
 {
     return figure_paint(cr, what, NULL, f);
 }
@@ -327,7 +327,7 @@ status figure_write(const figure *fig, const char *path, fault *f)
                  .dpi = fig->dpi,
                  .software = picture_software(),
                  .parameters = fig->parameters,
-                 .paint = paint,
+                 .paint = paint_figure,
                  .what = fig};
     figure_size(fig, &p.width, &p.height);
     return picture_write(&p, path, f);
@@ -366,7 +366,7 @@ static void write_panel_name(long_form *t, const figure_panel *panel)
 }
 
 // A number; what is not finite leaves the field empty.
-static void write_value(long_form *t, double value)
+static void write_finite(long_form *t, double value)
 {
     if (isinf(value)) {
         value = (double)NAN;
@@ -378,9 +378,9 @@ static void write_value(long_form *t, double value)
 static void write_point(long_form *t, double x, double y, double shade)
 {
     csv_number(t->csv, x);
-    write_value(t, y);
+    write_finite(t, y);
     if (t->shaded) {
-        write_value(t, shade);
+        write_finite(t, shade);
     }
     csv_end_row(t->csv);
 }

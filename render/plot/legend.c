@@ -275,7 +275,7 @@ bool place_legend(drawing *d, panel_layout *l, const placement *grid)
 
 // ---- strokes
 
-void draw_legend(drawing *d, const panel_layout *l)
+void draw_panel_legend(drawing *d, const panel_layout *l)
 {
     if (l->legend.width > 0 && !l->legend_inside && !d->fig->transparent) {
         // hairlines of marks do not cross it

@@ -228,7 +228,7 @@ static void draw_contour(const drawing *d, const panel_layout *l, double level)
     cairo_stroke(d->cr);
 }
 
-void draw_map(drawing *d, const panel_layout *l)
+void draw_panel_map(drawing *d, const panel_layout *l)
 {
     const figure_map *map = l->panel->map;
     if (map == NULL) {
@@ -304,8 +304,8 @@ void draw_colour_bar(drawing *d, const panel_layout *l)
 
         set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
         picture_line(d->cr, right, y, right + TICK_LENGTH, y);
-        draw_label(d, l->colours.text[i], d->style.tick, right + TICK_LENGTH + TICK_SPACE,
-                   y, (anchor){0, 0.5});
+        put_label(d, l->colours.text[i], d->style.tick, right + TICK_LENGTH + TICK_SPACE,
+                  y, (anchor){0, 0.5});
     }
     set_plain_line(d->cr, d->style.colours->axis, AXIS_WIDTH);
     cairo_rectangle(d->cr, bar.x, bar.y, bar.width, bar.height);

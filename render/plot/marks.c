@@ -104,8 +104,8 @@ static bool crosses_line(const drawing *d, const figure_rect *r, int index)
 
 // Whether a label of mark `index` can stand at a place of the first panel: off curves,
 // and off the lines of other marks unless it may lie over them.
-static bool is_free(const drawing *d, const placement *grid, const figure_rect *r,
-                    int index, bool over_lines)
+static bool label_fits(const drawing *d, const placement *grid, const figure_rect *r,
+                       int index, bool over_lines)
 {
     const figure_rect *box = &d->panels[0].plane.box;
     return r->x >= box->x + 1 && r->x + r->width <= box->x + box->width &&
@@ -130,7 +130,7 @@ static bool find_inside(const drawing *d, const placement *grid, int index,
          y += MARK_ROW) {
         for (int side = 0; side < sides; side++) {
             figure_rect r = {lefts[side], y, width, MARK_ROW};
-            bool fits = is_free(d, grid, &r, index, false);
+            bool fits = label_fits(d, grid, &r, index, false);
             for (int i = 0; i < taken_count && fits; i++) {
                 fits = !rects_meet(&r, &taken[i], 3);
             }
@@ -162,7 +162,7 @@ static bool find_at_point(const drawing *d, const placement *grid, int index,
         const double tops[] = {y - away - MARK_ROW, y - MARK_ROW / 2, y + away};
         for (int place = 0; place < 6; place++) {
             figure_rect r = {lefts[place % 2], tops[place / 2], width, MARK_ROW};
-            if (is_free(d, grid, &r, index, over_lines)) {
+            if (label_fits(d, grid, &r, index, over_lines)) {
                 *found = r;
                 return true;
             }
@@ -408,7 +408,7 @@ void draw_points(drawing *d)
         }
         draw_dot(d, p, m->x, m->y);
         if (at_point(d, i)) {
-            draw_label(d, m->label, d->style.small, r->x, r->y, (anchor){0, 0});
+            put_label(d, m->label, d->style.small, r->x, r->y, (anchor){0, 0});
         }
     }
 }
@@ -436,8 +436,8 @@ static double draw_flag(drawing *d, int index, double x, double shift)
     const double row = d->marks_bottom - MARK_ROW * (d->mark_row[index] + 1);
     const bool before = m->onwards && d->mark_text_x[index] < x;
     g_autofree char *label = g_strconcat(m->label, before ? ARROW : "", NULL);
-    draw_label(d, label, d->style.small, d->mark_text_x[index] + shift, row,
-               (anchor){0, 0});
+    put_label(d, label, d->style.small, d->mark_text_x[index] + shift, row,
+              (anchor){0, 0});
     return row + 1;
 }
 
@@ -454,8 +454,8 @@ static void draw_column_marks(drawing *d, const plane *first, const plane *last,
         // its label inside the first panel or above it, where its line begins
         double x = plane_x(first, m->x), top = first->box.y + 1;
         if (i < MARKS_LABELLED && d->mark_row[i] >= 0 && d->marks_inside) {
-            draw_label(d, m->label, d->style.small, d->mark_text_x[i] + shift,
-                       d->mark_text_y[i], (anchor){0, 0});
+            put_label(d, m->label, d->style.small, d->mark_text_x[i] + shift,
+                      d->mark_text_y[i], (anchor){0, 0});
             top = first->box.y;
         } else if (i < MARKS_LABELLED && d->mark_row[i] >= 0) {
             top = draw_flag(d, i, x, shift);
@@ -477,7 +477,7 @@ void draw_marks(drawing *d)
     }
 }
 
-void draw_levels(drawing *d, const panel_layout *l)
+void draw_panel_levels(drawing *d, const panel_layout *l)
 {
     const figure_rect *box = &l->plane.box;
     for (int i = 0; i < l->panel->level_count; i++) {
@@ -495,9 +495,9 @@ void draw_levels(drawing *d, const panel_layout *l)
             const figure_rect *r = &l->level_place[i];
             const bool above = r->y < y - 1;
             if (above) {
-                draw_label(d, level->label, d->style.small, r->x, y, (anchor){0, 1});
+                put_label(d, level->label, d->style.small, r->x, y, (anchor){0, 1});
             } else {
-                draw_label(d, level->label, d->style.small, r->x, y + 0.5, (anchor){0});
+                put_label(d, level->label, d->style.small, r->x, y + 0.5, (anchor){0});
             }
         }
     }
@@ -514,6 +514,6 @@ void draw_notes(drawing *d, const panel_layout *l)
         // a dot and its text
         figure_rect place = note_place(d, l, n);
         draw_dot(d, &l->plane, n->x, n->y);
-        draw_label(d, n->text, d->style.tick, place.x, place.y, (anchor){0, 0});
+        put_label(d, n->text, d->style.tick, place.x, place.y, (anchor){0, 0});
     }
 }

@@ -22,7 +22,7 @@ static double pixel_y(const pane_frame *f, double value)
 }
 
 // The pen of a curve: its pattern as lengths that are drawn and left out by turns.
-static void set_pen(cairo_t *cr, const pane_frame *f, const pane_curve *c)
+static void set_curve_pen(cairo_t *cr, const pane_frame *f, const pane_curve *c)
 {
     double lengths[PIECES];
     int count = 0;
@@ -157,7 +157,7 @@ void pane_curve_paint(cairo_t *cr, const pane_frame *f, const pane_curve *c)
     } else {
         trace_rows(cr, f, c, until);
     }
-    set_pen(cr, f, c);
+    set_curve_pen(cr, f, c);
     cairo_stroke(cr);
 }
 

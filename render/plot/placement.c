@@ -3,17 +3,17 @@
 
 #include "render/plot/drawing.h"
 
-static int column_of(const placement *g, double x)
+static int cell_column(const placement *g, double x)
 {
     return (int)floor((x - g->box.x) / g->box.width * PLACEMENT_COLUMNS);
 }
 
-static int row_of(const placement *g, double y)
+static int cell_row(const placement *g, double y)
 {
     return (int)floor((y - g->box.y) / g->box.height * PLACEMENT_ROWS);
 }
 
-static void mark(placement *g, int row, int column, int weight)
+static void add_ink(placement *g, int row, int column, int weight)
 {
     if (row >= 0 && row < PLACEMENT_ROWS && column >= 0 && column < PLACEMENT_COLUMNS) {
         g->ink[row + 1][column + 1] = fmax(g->ink[row + 1][column + 1], weight);
@@ -27,16 +27,18 @@ void placement_line(placement *g, double x0, double y0, double x1, double y1, in
     int steps = 1 + (int)fmin(2 * fmax(across, down), 4 * PLACEMENT_COLUMNS);
     for (int i = 0; i <= steps; i++) {
         double t = (double)i / steps;
-        mark(g, row_of(g, y0 + t * (y1 - y0)), column_of(g, x0 + t * (x1 - x0)), weight);
+        add_ink(g, cell_row(g, y0 + t * (y1 - y0)), cell_column(g, x0 + t * (x1 - x0)),
+                weight);
     }
 }
 
 void placement_block(placement *g, figure_rect r, int weight)
 {
-    int last_row = row_of(g, r.y + r.height), last_column = column_of(g, r.x + r.width);
-    for (int row = row_of(g, r.y); row <= last_row; row++) {
-        for (int column = column_of(g, r.x); column <= last_column; column++) {
-            mark(g, row, column, weight);
+    int last_row = cell_row(g, r.y + r.height),
+        last_column = cell_column(g, r.x + r.width);
+    for (int row = cell_row(g, r.y); row <= last_row; row++) {
+        for (int column = cell_column(g, r.x); column <= last_column; column++) {
+            add_ink(g, row, column, weight);
         }
     }
 }
@@ -44,9 +46,10 @@ void placement_block(placement *g, figure_rect r, int weight)
 double placement_ink(const placement *g, figure_rect r)
 {
     double sum = 0;
-    int last_row = row_of(g, r.y + r.height), last_column = column_of(g, r.x + r.width);
-    for (int row = row_of(g, r.y); row <= last_row; row++) {
-        for (int column = column_of(g, r.x); column <= last_column; column++) {
+    int last_row = cell_row(g, r.y + r.height),
+        last_column = cell_column(g, r.x + r.width);
+    for (int row = cell_row(g, r.y); row <= last_row; row++) {
+        for (int column = cell_column(g, r.x); column <= last_column; column++) {
             bool inside = row >= 0 && row < PLACEMENT_ROWS && column >= 0 &&
                           column < PLACEMENT_COLUMNS;
             if (inside) {

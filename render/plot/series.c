@@ -273,7 +273,8 @@ static void stroke(void *context, stroke_kind kind, double x, double y)
 }
 
 // The line of a series, cut at the panel's edge.
-static void draw_line(const drawing *d, const panel_layout *l, const plane *p, int index)
+static void draw_series_line(const drawing *d, const panel_layout *l, const plane *p,
+                             int index)
 {
     const figure_series *s = &l->panel->series[index];
     const double width = set_series(d, l, index);
@@ -320,7 +321,7 @@ void draw_series(const drawing *d, const panel_layout *l, const plane *p)
     for (int i = 0; i < l->panel->series_count; i++) {
         const figure_series *s = &l->panel->series[i];
         if (!s->no_line) {
-            draw_line(d, l, p, i);
+            draw_series_line(d, l, p, i);
         }
         if (s->marker != MARKER_NONE) {
             draw_markers(d, l, p, i);
@@ -387,7 +388,7 @@ static int impulse_exponent(const figure_panel *panel)
 char *impulse_strip_label(const figure_panel *panel)
 {
     g_autofree char *unit =
-        axis_label(NULL, panel->impulse_unit, impulse_exponent(panel));
+        axis_label_text(NULL, panel->impulse_unit, impulse_exponent(panel));
     return text_printf("%s\n%s", panel->impulse_label, unit);
 }
 

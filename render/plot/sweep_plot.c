@@ -169,7 +169,7 @@ static const char *point_label(owned_figure *o, const varied *v, size_t i)
 }
 
 // The axis of a varied parameter.
-static figure_axis describe_axis(owned_figure *o, varied *v, const sweep_axis *axis)
+static figure_axis varied_axis(owned_figure *o, varied *v, const sweep_axis *axis)
 {
     const parameter_info *info = sweep_axis_parameter(axis);
     const bool words = info->type == PARAMETER_CHOICE || info->type == PARAMETER_BOOLEAN;
@@ -208,7 +208,7 @@ static figure_axis describe_axis(owned_figure *o, varied *v, const sweep_axis *a
 }
 
 // Where a run's value lies on the axis.
-static double place_of(const varied *v, double value)
+static double place_on_axis(const varied *v, double value)
 {
     for (size_t i = 0; v->words && i < v->count; i++) {
         if (v->axis->values[i] == value) {
@@ -223,7 +223,7 @@ static double *run_places(owned_figure *o, const sweep *from, const varied *v, i
 {
     double *places = owned_figure_numbers(o, from->run_count);
     for (size_t run = 0; run < from->run_count; run++) {
-        places[run] = place_of(v, sweep_value(from, run, axis));
+        places[run] = place_on_axis(v, sweep_value(from, run, axis));
     }
     return places;
 }
@@ -406,9 +406,9 @@ owned_figure *sweep_figure_create(const sweep_picture *p)
 
     // axes and layers
     varied both[2] = {0};
-    figure_axis axes[2] = {describe_axis(o, &both[0], &from->axes[0])};
+    figure_axis axes[2] = {varied_axis(o, &both[0], &from->axes[0])};
     if (from->axis_count > 1) {
-        axes[1] = describe_axis(o, &both[1], &from->axes[1]);
+        axes[1] = varied_axis(o, &both[1], &from->axes[1]);
     }
     const int words = axis_of_curves(both, from);
     const figure_axis quantity = described_axis(o, p->key, info->label, info->unit);

@@ -87,7 +87,8 @@ static const char *label_of(const trace_figure *t, int panel, int run, int index
 }
 
 // The series of one run in a panel.
-static void add_run(const trace_figure *t, const trace_key *key, int panel, int run)
+static void add_run_curves(const trace_figure *t, const trace_key *key, int panel,
+                           int run)
 {
     const trace_run *of = &t->runs[run];
     const trace_panel *from = &t->panels[panel];
@@ -176,7 +177,7 @@ static void describe_trace_panel(const trace_figure *t, const trace_key *key, in
     panel->y = signal_axis(t, from);
     panel->weight = from->weight;
     for (int run = 0; run < t->run_count; run++) {
-        add_run(t, key, index, run);
+        add_run_curves(t, key, index, run);
     }
 
     // what is drawn with them
